@@ -1,0 +1,26 @@
+//! Points, boxes, triangle meshes, their topology, and poses. Everything is `f64`.
+
+mod aabb;
+mod mesh;
+mod similarity;
+mod topology;
+mod weld;
+
+pub use aabb::Aabb;
+pub use mesh::{MeshError, TriMesh};
+pub use similarity::{MatrixError, Similarity};
+pub use topology::{BorderLoop, Topology, orient_consistently};
+pub use weld::{Welded, weld};
+
+/// A position in space.
+pub type Point3 = nalgebra::Point3<f64>;
+/// A displacement or a direction.
+pub type Vector3 = nalgebra::Vector3<f64>;
+/// A 3×3 matrix, for example a rotation.
+pub type Matrix3 = nalgebra::Matrix3<f64>;
+/// A 4×4 matrix acting on column vectors.
+pub type Matrix4 = nalgebra::Matrix4<f64>;
+/// A rigid motion `target_from_source`: rotation (unit quaternion), then translation.
+pub type Pose = nalgebra::Isometry3<f64>;
+/// A rotation as a unit quaternion.
+pub type Rotation = nalgebra::UnitQuaternion<f64>;

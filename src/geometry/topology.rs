@@ -1,0 +1,248 @@
+use std::collections::HashMap;
+
+use super::TriMesh;
+
+/// One chain of border edges, vertex by vertex. A closed loop does not repeat its first vertex.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BorderLoop {
+    /// Vertex indices in walking order, the surface to the left when seen along the normal.
+    pub vertices: Vec<u32>,
+    /// False where a non-manifold vertex ended the walk early.
+    pub closed: bool,
+}
+
+/// Edge adjacency of a mesh. Edges are undirected; an edge with one triangle is a border edge, with
+/// three or more a non-manifold one.
+#[derive(Debug, Clone)]
+pub struct Topology {
+    /// Both ends of each edge, the smaller vertex first, sorted.
+    pub edges: Vec<[u32; 2]>,
+    /// For each edge, where its triangles start in `edge_triangles`; one entry more than edges.
+    pub edge_start: Vec<u32>,
+    /// Triangles around the edges, in index order within one edge.
+    pub edge_triangles: Vec<u32>,
+}
+
+impl Topology {
+    /// Sorts all edges. O(triangles · log triangles); the result depends on the mesh alone.
+    pub fn of(mesh: &TriMesh) -> Self {
+        let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * mesh.n_triangles());
+        for (t, &[a, b, c]) in mesh.triangles().iter().enumerate() {
+            for [u, v] in [[a, b], [b, c], [c, a]] {
+                if u != v {
+                    sides.push(([u.min(v), u.max(v)], t as u32));
+                }
+            }
+        }
+        sides.sort_unstable();
+        let mut edges = Vec::new();
+        let mut edge_start = Vec::new();
+        for (i, (edge, _)) in sides.iter().enumerate() {
+            if edges.last() != Some(edge) {
+                edges.push(*edge);
+                edge_start.push(i as u32);
+            }
+        }
+        edge_start.push(sides.len() as u32);
+        let edge_triangles = sides.into_iter().map(|(_, t)| t).collect();
+        Self {
+            edges,
+            edge_start,
+            edge_triangles,
+        }
+    }
+
+    /// Triangles that share edge `edge`.
+    pub fn triangles_of(&self, edge: usize) -> &[u32] {
+        &self.edge_triangles[self.edge_start[edge] as usize..self.edge_start[edge + 1] as usize]
+    }
+
+    /// Indices of the edges with exactly one triangle.
+    pub fn border_edges(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.edges.len()).filter(|&e| self.triangles_of(e).len() == 1)
+    }
+
+    /// Border edges chained to loops, each starting at its smallest vertex, ordered by it.
+    pub fn border_loops(&self, mesh: &TriMesh) -> Vec<BorderLoop> {
+        // A border edge runs in its triangle's direction, so each border vertex has one successor
+        // unless two fans touch there.
+        let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
+        let mut starts = Vec::new();
+        for edge in self.border_edges() {
+            let [u, v] = self.edges[edge];
+            let corners = mesh.triangles()[self.triangles_of(edge)[0] as usize];
+            let forward = (0..3).any(|i| corners[i] == u && corners[(i + 1) % 3] == v);
+            let (from, to) = if forward { (u, v) } else { (v, u) };
+            next.entry(from).or_default().push(to);
+            starts.push(from);
+        }
+        for targets in next.values_mut() {
+            targets.sort_unstable_by(|a, b| b.cmp(a));
+        }
+        starts.sort_unstable();
+        let mut loops = Vec::new();
+        for start in starts {
+            let mut vertices = vec![start];
+            let mut at = start;
+            let mut closed = false;
+            while let Some(to) = next.get_mut(&at).and_then(Vec::pop) {
+                if to == start {
+                    closed = true;
+                    break;
+                }
+                vertices.push(to);
+                at = to;
+            }
+            if vertices.len() > 1 {
+                loops.push(BorderLoop { vertices, closed });
+            }
+        }
+        loops
+    }
+
+    /// Component number of every triangle (connected over edges), counted from 0 in order of each
+    /// component's first triangle, and how many there are.
+    pub fn components(&self, n_triangles: usize) -> (Vec<u32>, usize) {
+        let mut parent: Vec<u32> = (0..n_triangles as u32).collect();
+        for edge in 0..self.edges.len() {
+            let around = self.triangles_of(edge);
+            for &other in &around[1..] {
+                let (a, b) = (find(&mut parent, around[0]), find(&mut parent, other));
+                // The smaller root wins, so a component's root is its first triangle.
+                parent[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let mut number = vec![u32::MAX; n_triangles];
+        let mut count = 0;
+        for t in 0..n_triangles as u32 {
+            let root = find(&mut parent, t) as usize;
+            if number[root] == u32::MAX {
+                number[root] = count;
+                count += 1;
+            }
+            number[t as usize] = number[root];
+        }
+        (number, count as usize)
+    }
+}
+
+fn find(parent: &mut [u32], mut node: u32) -> u32 {
+    while parent[node as usize] != node {
+        let above = parent[parent[node as usize] as usize];
+        parent[node as usize] = above;
+        node = above;
+    }
+    node
+}
+
+/// Turns triangles so that neighbours over manifold edges agree, component by component, each kept
+/// on the side that most of its area already faces. Returns the mesh and how many were turned.
+///
+/// A Möbius strip cannot be oriented; there one seam stays. O(triangles · log triangles).
+pub fn orient_consistently(mesh: &TriMesh) -> (TriMesh, usize) {
+    let topology = Topology::of(mesh);
+    let n = mesh.n_triangles();
+    let mut neighbours: Vec<Vec<(u32, bool)>> = vec![Vec::new(); n];
+    for (edge, &[u, v]) in topology.edges.iter().enumerate() {
+        if let &[s, t] = topology.triangles_of(edge) {
+            let runs_forward = |triangle: u32| {
+                let corners = mesh.triangles()[triangle as usize];
+                (0..3).any(|i| corners[i] == u && corners[(i + 1) % 3] == v)
+            };
+            let disagree = runs_forward(s) == runs_forward(t);
+            neighbours[s as usize].push((t, disagree));
+            neighbours[t as usize].push((s, disagree));
+        }
+    }
+    let mut turn: Vec<Option<bool>> = vec![None; n];
+    let mut turned = vec![false; n];
+    for seed in 0..n {
+        if turn[seed].is_some() {
+            continue;
+        }
+        turn[seed] = Some(false);
+        let mut component = vec![seed];
+        let mut at = 0;
+        let mut kept_area = 0.0;
+        while at < component.len() {
+            let t = component[at];
+            at += 1;
+            let flip = turn[t] == Some(true);
+            kept_area += if flip {
+                -mesh.triangle_area(t)
+            } else {
+                mesh.triangle_area(t)
+            };
+            for &(other, disagree) in &neighbours[t] {
+                if turn[other as usize].is_none() {
+                    turn[other as usize] = Some(flip != disagree);
+                    component.push(other as usize);
+                }
+            }
+        }
+        let flip_all = kept_area < 0.0;
+        for t in component {
+            turned[t] = (turn[t] == Some(true)) != flip_all;
+        }
+    }
+    let n_turned = turned.iter().filter(|&&t| t).count();
+    let (positions, mut triangles) = mesh.clone().into_parts();
+    for (corners, turned) in triangles.iter_mut().zip(turned) {
+        if turned {
+            corners.swap(1, 2);
+        }
+    }
+    let mesh = TriMesh::new(positions, triangles).expect("only corner order changed");
+    (mesh, n_turned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Point3;
+    use super::*;
+
+    /// An n × n grid of quads with the middle quad left out.
+    fn plate_with_hole(n: u32) -> TriMesh {
+        let mut positions = Vec::new();
+        for j in 0..=n {
+            for i in 0..=n {
+                positions.push(Point3::new(f64::from(i), f64::from(j), 0.0));
+            }
+        }
+        let mut triangles = Vec::new();
+        for j in 0..n {
+            for i in 0..n {
+                if (i, j) != (n / 2, n / 2) {
+                    let a = j * (n + 1) + i;
+                    triangles.push([a, a + 1, a + n + 2]);
+                    triangles.push([a, a + n + 2, a + n + 1]);
+                }
+            }
+        }
+        TriMesh::new(positions, triangles).unwrap()
+    }
+
+    #[test]
+    fn finds_rim_and_hole() {
+        let mesh = plate_with_hole(5);
+        let topology = Topology::of(&mesh);
+        let loops = topology.border_loops(&mesh);
+        let mut lengths: Vec<_> = loops.iter().map(|l| (l.vertices.len(), l.closed)).collect();
+        lengths.sort_unstable();
+        assert_eq!(lengths, vec![(4, true), (20, true)]);
+        assert_eq!(topology.components(mesh.n_triangles()).1, 1);
+    }
+
+    #[test]
+    fn orientation_follows_the_majority() {
+        let mesh = plate_with_hole(5);
+        let (positions, mut triangles) = mesh.clone().into_parts();
+        for t in [0, 7, 8, 21] {
+            triangles[t].swap(0, 1);
+        }
+        let mixed = TriMesh::new(positions, triangles).unwrap();
+        let (repaired, n_turned) = orient_consistently(&mixed);
+        assert_eq!(n_turned, 4);
+        assert!((repaired.mean_normal() - mesh.mean_normal()).norm() < 1e-12);
+    }
+}

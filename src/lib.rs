@@ -1,0 +1,29 @@
+//! Shape matching for stamped sheet parts: finds the pose that lays the part of a stamping
+//! simulation on the same part of a crash model.
+//!
+//! The product of a match is `target_from_source`, the similarity of
+//! `crash = c · R · stamped + t` in column vectors. The modules, from the ground up:
+//!
+//! - [`monitor`]: progress, stop and cancel.
+//! - [`geometry`]: points, meshes, topology, poses.
+//! - [`formats`]: LS-DYNA keyword decks, STL, OBJ, PLY.
+//! - [`simplify`]: quadric error simplification.
+//! - [`search`]: closest points and rays on triangle meshes.
+//! - [`registration`]: Umeyama, ICP, Trimmed ICP, Fractional ICP, and the race of many starts.
+//! - [`assess`]: is the pose right? Coverage, ambiguity, free motions, verdict.
+//! - [`samples`]: generated pairs of sheet parts with a known pose.
+//! - [`report`]: the matrix in all its forms, LS-DYNA cards, the record of a run.
+//! - [`pipeline`]: load, reduce, match, export, as one call each.
+//!
+//! `ARCHITECTURE.md` says who may use whom.
+
+pub mod assess;
+pub mod formats;
+pub mod geometry;
+pub mod monitor;
+pub mod pipeline;
+pub mod registration;
+pub mod report;
+pub mod samples;
+pub mod search;
+pub mod simplify;

@@ -1,0 +1,4 @@
+//! Tests below the window: one file per module, all in one binary.
+
+mod layering;
+mod tidy;
