@@ -1,4 +1,16 @@
 //! Closest points on triangle meshes.
+//!
+//! [`Bvh`] is the tree for work, [`BruteForce`] the plain loop that the tests hold it against. Both
+//! decide with the same `f64` function, [`closest_point_on_triangle`], so their answers agree to
+//! the last bit: the smallest squared distance, and of equal ones the lowest triangle index.
+
+mod brute;
+mod bvh;
+mod triangle;
+
+pub use brute::BruteForce;
+pub use bvh::Bvh;
+pub use triangle::{TrianglePoint, closest_point_on_triangle};
 
 use crate::geometry::{Point3, TriMesh, Vector3};
 
@@ -18,7 +30,7 @@ pub enum Feature {
 pub struct SurfaceHit {
     /// The closest point, in the mesh's frame.
     pub point: Point3,
-    /// The triangle it lies on; of several equally close ones, the one found first.
+    /// The triangle it lies on; of several equally close ones, the one with the lowest index.
     pub triangle: u32,
     /// Weights of the triangle's corners; they sum to 1.
     pub barycentric: [f64; 3],
@@ -28,7 +40,27 @@ pub struct SurfaceHit {
     pub distance_sq: f64,
 }
 
-/// Lets only triangles count whose unit normal n has n · `direction` ≥ `min_cos`.
+impl SurfaceHit {
+    fn on_triangle(triangle: u32, found: TrianglePoint) -> Self {
+        Self {
+            point: found.point,
+            triangle,
+            barycentric: found.barycentric,
+            feature: found.feature,
+            distance_sq: found.distance_sq,
+        }
+    }
+
+    /// True if this hit wins over `other`: closer, or as close on a triangle of lower index.
+    fn beats(&self, other: Option<&Self>) -> bool {
+        other.is_none_or(|other| {
+            (self.distance_sq, self.triangle) < (other.distance_sq, other.triangle)
+        })
+    }
+}
+
+/// Lets only triangles count whose unit normal n has n · `direction` ≥ `min_cos`. A triangle without
+/// area has no normal and never counts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NormalFilter {
     /// Unit direction the normals are compared with.
@@ -37,15 +69,26 @@ pub struct NormalFilter {
     pub min_cos: f64,
 }
 
+impl NormalFilter {
+    /// True if the triangle counts.
+    pub fn accepts(&self, mesh: &TriMesh, triangle: usize) -> bool {
+        let normal = mesh.normal(triangle);
+        normal != Vector3::zeros() && normal.dot(&self.direction) >= self.min_cos
+    }
+}
+
 /// Something that answers closest-point questions about a mesh.
 pub trait ClosestPoint: Send + Sync {
     /// The mesh the answers refer to.
     fn mesh(&self) -> &TriMesh;
 
-    /// The closest point within `max_distance` (may be infinite), or `None` if there is none.
+    /// The closest point within `max_distance` (may be infinite), or `None` if there is none: no
+    /// triangle, none that near, none that `filter` lets through, or a query that is not finite.
     ///
     /// `hint` names a triangle that is probably close, such as the last answer for this query; it
-    /// changes the speed, never the answer. With `filter`, only triangles it lets through count.
+    /// changes the speed, never the answer. With `filter`, only triangles it lets through count:
+    /// the answer is the closest of those, not the closest of all if it happens to pass.
+    /// Triangles without area count as the segments or points that they are.
     fn closest(
         &self,
         query: &Point3,

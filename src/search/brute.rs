@@ -1,0 +1,48 @@
+use std::sync::Arc;
+
+use super::{ClosestPoint, NormalFilter, SurfaceHit, closest_point_on_triangle};
+use crate::geometry::{Point3, TriMesh};
+
+/// Asks every triangle. The measure that the tree is held against, and the quickest way for a
+/// handful of triangles. O(triangles) per query.
+#[derive(Debug, Clone)]
+pub struct BruteForce {
+    mesh: Arc<TriMesh>,
+}
+
+impl BruteForce {
+    /// Takes the mesh, shared or not.
+    pub fn new(mesh: impl Into<Arc<TriMesh>>) -> Self {
+        Self { mesh: mesh.into() }
+    }
+}
+
+impl ClosestPoint for BruteForce {
+    fn mesh(&self) -> &TriMesh {
+        &self.mesh
+    }
+
+    fn closest(
+        &self,
+        query: &Point3,
+        max_distance: f64,
+        _hint: Option<u32>,
+        filter: Option<&NormalFilter>,
+    ) -> Option<SurfaceHit> {
+        if !query.iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        let mut best: Option<SurfaceHit> = None;
+        for triangle in 0..self.mesh.n_triangles() {
+            if filter.is_some_and(|f| !f.accepts(&self.mesh, triangle)) {
+                continue;
+            }
+            let found = closest_point_on_triangle(query, &self.mesh.corners(triangle));
+            let hit = SurfaceHit::on_triangle(triangle as u32, found);
+            if hit.distance_sq.sqrt() <= max_distance && hit.beats(best.as_ref()) {
+                best = Some(hit);
+            }
+        }
+        best
+    }
+}
