@@ -1,12 +1,14 @@
 //! Points, boxes, triangle meshes, their topology, and poses. Everything is `f64`.
 
 mod aabb;
+pub mod camera;
 mod mesh;
 mod similarity;
 mod topology;
 mod weld;
 
 pub use aabb::Aabb;
+pub use camera::{Camera, Projection};
 pub use mesh::{MeshError, TriMesh};
 pub use similarity::{MatrixError, Similarity};
 pub use topology::{BorderLoop, Topology, orient_consistently};
