@@ -1,0 +1,326 @@
+//! What a reader could not understand, where it stood, and what was expected there.
+
+use std::fmt;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A place in a text file. Line and column count from 1; 0 where they are not known.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Position {
+    /// The file, as it was opened.
+    pub file: Arc<Path>,
+    /// Line, from 1.
+    pub line: u64,
+    /// Column in bytes, from 1.
+    pub column: u32,
+}
+
+impl Position {
+    /// The file as a whole.
+    pub fn file(file: &Arc<Path>) -> Self {
+        Self {
+            file: file.clone(),
+            line: 0,
+            column: 0,
+        }
+    }
+}
+
+impl fmt::Display for Position {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file.display())?;
+        if self.line > 0 {
+            write!(f, ":{}", self.line)?;
+            if self.column > 0 {
+                write!(f, ":{}", self.column)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// How much a finding matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Severity {
+    /// Worth knowing; nothing is missing from what was read.
+    Note,
+    /// Read, but perhaps not as meant.
+    Warning,
+    /// Something the file asks for is missing from what was read.
+    Error,
+}
+
+impl Severity {
+    /// The word shown before the message.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Note => "note",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
+}
+
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $kind:ident, $severity:ident, $label:literal;)*) => {
+        /// What went wrong. Diagnostics are counted per kind, and each kind has one severity.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum DiagnosticKind { $($(#[$doc])* $kind,)* }
+
+        impl DiagnosticKind {
+            /// Every kind.
+            pub const ALL: &[Self] = &[$(Self::$kind,)*];
+
+            /// A short name, for example `"missing node"`.
+            pub fn label(self) -> &'static str {
+                match self { $(Self::$kind => $label,)* }
+            }
+
+            /// How much findings of this kind matter.
+            pub fn severity(self) -> Severity {
+                match self { $(Self::$kind => Severity::$severity,)* }
+            }
+        }
+    };
+}
+
+kinds! {
+    /// A field holds something that is not what it should be.
+    BadField, Error, "unreadable field";
+    /// A card that must be there is not.
+    MissingCard, Error, "missing card";
+    /// A number is NaN or infinite.
+    NotFinite, Error, "number not finite";
+    /// `&name` with no such parameter.
+    UnresolvedParameter, Error, "unresolved parameter";
+    /// A parameter whose definition cannot be used.
+    BadParameter, Error, "unusable parameter";
+    /// An element names a node that no file defines.
+    MissingNode, Error, "missing node";
+    /// A node id is defined twice at different places.
+    DuplicateNode, Warning, "duplicate node id";
+    /// An element id is defined twice.
+    DuplicateElement, Warning, "duplicate element id";
+    /// A part id is defined twice.
+    DuplicatePart, Warning, "duplicate part id";
+    /// An element without area.
+    ZeroArea, Warning, "element without area";
+    /// A shell with fewer than three different nodes.
+    DegenerateElement, Warning, "degenerate element";
+    /// An element names a part that no file defines.
+    UndefinedPart, Note, "undefined part";
+    /// A part names a section that no file defines.
+    UndefinedSection, Note, "undefined section";
+    /// An included file cannot be found or read.
+    MissingInclude, Error, "missing include";
+    /// A file includes itself, directly or through others.
+    IncludeCycle, Error, "include cycle";
+    /// The file's own `*KEYWORD` asks for another number format than the include line.
+    FormatMismatch, Warning, "number format mismatch";
+    /// A transformation that is undefined or cannot be carried out.
+    BadTransformation, Error, "unusable transformation";
+    /// Forming results that contradict themselves.
+    BadForming, Error, "unusable forming result";
+    /// A set that is undefined or refers to itself.
+    BadSet, Warning, "unusable set";
+    /// A keyword that matters to the mesh but is not carried out.
+    Unsupported, Warning, "keyword not carried out";
+    /// Encrypted text was skipped.
+    Encrypted, Note, "encrypted block skipped";
+    /// Tabs were expanded to columns of eight.
+    Tabs, Note, "tabs expanded";
+    /// A mesh file's own oddities (STL, OBJ, PLY).
+    Mesh, Warning, "mesh file";
+}
+
+/// One finding: where, what was found, what was expected.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// What went wrong.
+    pub kind: DiagnosticKind,
+    /// Where, as far as it is known.
+    pub position: Option<Position>,
+    /// What went wrong, in one sentence.
+    pub message: String,
+    /// The text that stood there.
+    pub found: Option<String>,
+    /// What should have stood there.
+    pub expected: Option<String>,
+}
+
+impl Diagnostic {
+    /// A finding with a message only.
+    pub fn new(kind: DiagnosticKind, message: impl Into<String>) -> Self {
+        Self {
+            kind,
+            position: None,
+            message: message.into(),
+            found: None,
+            expected: None,
+        }
+    }
+
+    /// Says where.
+    #[must_use]
+    pub fn at(mut self, position: Position) -> Self {
+        self.position = Some(position);
+        self
+    }
+
+    /// Says what stood there.
+    #[must_use]
+    pub fn found(mut self, found: impl Into<String>) -> Self {
+        self.found = Some(found.into());
+        self
+    }
+
+    /// Says what should have stood there.
+    #[must_use]
+    pub fn expected(mut self, expected: impl Into<String>) -> Self {
+        self.expected = Some(expected.into());
+        self
+    }
+
+    /// How much it matters.
+    pub fn severity(&self) -> Severity {
+        self.kind.severity()
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(position) = &self.position {
+            write!(f, "{position}: ")?;
+        }
+        write!(f, "{}: {}", self.severity().label(), self.message)?;
+        if let Some(found) = &self.found {
+            write!(f, ", found {found:?}")?;
+        }
+        if let Some(expected) = &self.expected {
+            write!(f, ", expected {expected}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Findings in the order they were made. Of each kind the first [`Diagnostics::KEPT_PER_KIND`] are
+/// kept and all are counted, so a deck with a million broken lines costs no memory.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostics {
+    kept: Vec<Diagnostic>,
+    counts: Vec<u64>,
+}
+
+impl Default for Diagnostics {
+    fn default() -> Self {
+        Self {
+            kept: Vec::new(),
+            counts: vec![0; DiagnosticKind::ALL.len()],
+        }
+    }
+}
+
+impl Diagnostics {
+    /// How many findings of one kind are kept with their text.
+    pub const KEPT_PER_KIND: u64 = 20;
+
+    /// Adds a finding.
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        self.push_with(diagnostic.kind, || diagnostic);
+    }
+
+    /// Counts a finding; `describe` is called only if it will be kept.
+    pub fn push_with(&mut self, kind: DiagnosticKind, describe: impl FnOnce() -> Diagnostic) {
+        self.counts[kind as usize] += 1;
+        if self.counts[kind as usize] <= Self::KEPT_PER_KIND {
+            self.kept.push(describe());
+        }
+    }
+
+    /// Adds the findings of a later piece of the same work.
+    pub fn append(&mut self, later: Self) {
+        let mut room: Vec<u64> = self
+            .counts
+            .iter()
+            .map(|&count| Self::KEPT_PER_KIND.saturating_sub(count))
+            .collect();
+        for diagnostic in later.kept {
+            let room = &mut room[diagnostic.kind as usize];
+            if *room > 0 {
+                *room -= 1;
+                self.kept.push(diagnostic);
+            }
+        }
+        for (count, later) in self.counts.iter_mut().zip(later.counts) {
+            *count += later;
+        }
+    }
+
+    /// The kept findings in the order they were made.
+    pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.kept.iter()
+    }
+
+    /// How many findings of a kind were made.
+    pub fn count(&self, kind: DiagnosticKind) -> u64 {
+        self.counts[kind as usize]
+    }
+
+    /// Kinds that occurred, with their number.
+    pub fn counts(&self) -> impl Iterator<Item = (DiagnosticKind, u64)> + '_ {
+        let both = DiagnosticKind::ALL.iter().zip(&self.counts);
+        both.map(|(&kind, &count)| (kind, count))
+            .filter(|&(_, count)| count > 0)
+    }
+
+    /// How many findings were made in all.
+    pub fn total(&self) -> u64 {
+        self.counts.iter().sum()
+    }
+
+    /// True if nothing was found.
+    pub fn is_empty(&self) -> bool {
+        self.total() == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_of_one_kind_are_counted_and_few_are_kept() {
+        let mut all = Diagnostics::default();
+        for part in 0..3 {
+            let mut later = Diagnostics::default();
+            for i in 0..15 {
+                let text = format!("{part} {i}");
+                later.push(Diagnostic::new(DiagnosticKind::MissingNode, text));
+            }
+            later.push(Diagnostic::new(DiagnosticKind::ZeroArea, "flat"));
+            all.append(later);
+        }
+        assert_eq!(all.count(DiagnosticKind::MissingNode), 45);
+        assert_eq!(all.total(), 48);
+        assert_eq!(all.iter().count(), 23);
+        assert_eq!(all.counts().count(), 2);
+    }
+
+    #[test]
+    fn a_finding_reads_as_one_line() {
+        let file: Arc<Path> = Arc::from(Path::new("a.k"));
+        let position = Position {
+            file,
+            line: 3,
+            column: 9,
+        };
+        let finding = Diagnostic::new(DiagnosticKind::BadField, "the part id is not a number")
+            .at(position)
+            .found("x1")
+            .expected("an integer");
+        assert_eq!(
+            finding.to_string(),
+            "a.k:3:9: error: the part id is not a number, found \"x1\", expected an integer"
+        );
+    }
+}

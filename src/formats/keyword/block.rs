@@ -1,0 +1,368 @@
+//! Cutting a file into keyword blocks, and a block into cards. Both are cheap: nothing is copied
+//! but the keyword's name, and line numbers are worked out only when a finding needs one.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use memchr::{memchr, memchr_iter, memmem};
+
+use super::super::diagnostic::{Diagnostic, DiagnosticKind, Position};
+use super::super::source::Bytes;
+use super::card::{Card, Layout, Parameters};
+
+const PGP_BEGIN: &[u8] = b"-----BEGIN PGP";
+const PGP_END: &[u8] = b"-----END PGP";
+/// Newlines are counted once per this many bytes when a first position is asked for.
+const LINE_INDEX_STEP: usize = 1 << 16;
+
+/// A file with its bytes, able to tell the line of a byte offset.
+#[derive(Debug)]
+pub struct SourceFile {
+    path: Arc<Path>,
+    bytes: Bytes,
+    /// Newlines before each multiple of [`LINE_INDEX_STEP`].
+    line_index: OnceLock<Vec<u64>>,
+}
+
+impl SourceFile {
+    /// A file of the given path with the given bytes.
+    pub fn new(path: impl Into<PathBuf>, bytes: Bytes) -> Self {
+        Self {
+            path: Arc::from(path.into()),
+            bytes,
+            line_index: OnceLock::new(),
+        }
+    }
+
+    /// A file in memory.
+    pub fn from_text(path: &str, text: impl Into<Vec<u8>>) -> Self {
+        Self::new(path, Bytes::Owned(text.into()))
+    }
+
+    /// The path it was opened under.
+    pub fn path(&self) -> &Arc<Path> {
+        &self.path
+    }
+
+    /// Its bytes.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// Line and column of a byte offset. The first call counts the newlines of the whole file.
+    pub fn position(&self, offset: usize) -> Position {
+        let offset = offset.min(self.bytes.len());
+        let index = self.line_index.get_or_init(|| {
+            let mut total = 0;
+            let mut before = Vec::with_capacity(self.bytes.len() / LINE_INDEX_STEP + 1);
+            for chunk in self.bytes.chunks(LINE_INDEX_STEP) {
+                before.push(total);
+                total += memchr_iter(b'\n', chunk).count() as u64;
+            }
+            before.push(total);
+            before
+        });
+        let step = (offset / LINE_INDEX_STEP).min(index.len() - 1);
+        let tail = &self.bytes[step * LINE_INDEX_STEP..offset];
+        let line_start = memchr::memrchr(b'\n', &self.bytes[..offset]).map_or(0, |i| i + 1);
+        Position {
+            file: self.path.clone(),
+            line: index[step] + memchr_iter(b'\n', tail).count() as u64 + 1,
+            column: u32::try_from(offset - line_start + 1).unwrap_or(u32::MAX),
+        }
+    }
+}
+
+/// A keyword line and the data lines below it.
+#[derive(Clone)]
+pub struct Block<'a> {
+    /// The file it stands in.
+    pub file: &'a SourceFile,
+    /// Upper-case name with its options, without `*` and suffix: `ELEMENT_SHELL_THICKNESS`.
+    pub name: String,
+    /// What follows the name on the keyword line, for example `LONG=Y`.
+    pub remark: &'a [u8],
+    /// The suffix `%`, `+` or `-`, if there is one.
+    pub suffix: Option<Layout>,
+    /// How wide the fields are.
+    pub layout: Layout,
+    /// Byte offset of the `*`.
+    pub offset: usize,
+    /// Byte range of the data lines.
+    pub body: Range<usize>,
+    /// Who knows the parameters at this place of the deck.
+    pub parameters: Option<&'a dyn Parameters>,
+}
+
+impl<'a> Block<'a> {
+    /// The data lines; comments and encrypted text are passed over.
+    pub fn cards(&self) -> Cards<'a> {
+        self.cards_in(self.body.clone())
+    }
+
+    /// The data lines of a part of the body that starts at a line's start.
+    pub fn cards_in(&self, range: Range<usize>) -> Cards<'a> {
+        Cards {
+            file: self.file,
+            layout: self.layout,
+            parameters: self.parameters,
+            next: range.start,
+            end: range.end,
+        }
+    }
+
+    /// True if the name ends in the given option or holds it between underscores.
+    pub fn has_option(&self, option: &str) -> bool {
+        self.name.split('_').any(|word| word == option)
+    }
+
+    /// Where the keyword stands.
+    pub fn position(&self) -> Position {
+        self.file.position(self.offset)
+    }
+
+    /// A finding about the block as a whole.
+    pub fn diagnose(&self, kind: DiagnosticKind, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(kind, message).at(self.position())
+    }
+}
+
+/// The data lines of a block.
+#[derive(Clone)]
+pub struct Cards<'a> {
+    file: &'a SourceFile,
+    layout: Layout,
+    parameters: Option<&'a dyn Parameters>,
+    next: usize,
+    end: usize,
+}
+
+impl Cards<'_> {
+    /// Byte offset of the line that comes next.
+    pub fn offset(&self) -> usize {
+        self.next
+    }
+}
+
+impl<'a> Iterator for Cards<'a> {
+    type Item = Card<'a>;
+
+    fn next(&mut self) -> Option<Card<'a>> {
+        loop {
+            let (line, offset, next) = next_line(self.file.bytes(), self.next, self.end)?;
+            self.next = next;
+            match line.first() {
+                Some(b'$') => {}
+                Some(b'-') if line.starts_with(PGP_BEGIN) => {
+                    let rest = &self.file.bytes()[self.next..self.end];
+                    self.next += end_of_encrypted(rest);
+                }
+                _ => {
+                    return Some(Card::new(
+                        line,
+                        offset,
+                        self.layout,
+                        self.file,
+                        self.parameters,
+                    ));
+                }
+            }
+        }
+    }
+}
+
+/// The line at `start`, its offset, and the offset of the line after it. Without CR and LF.
+#[inline]
+pub(crate) fn next_line(bytes: &[u8], start: usize, end: usize) -> Option<(&[u8], usize, usize)> {
+    if start >= end {
+        return None;
+    }
+    let (stop, next) = match memchr(b'\n', &bytes[start..end]) {
+        Some(length) => (start + length, start + length + 1),
+        None => (end, end),
+    };
+    let line = &bytes[start..stop];
+    Some((line.strip_suffix(b"\r").unwrap_or(line), start, next))
+}
+
+/// Length of the text up to and with the line that ends an encrypted part.
+fn end_of_encrypted(text: &[u8]) -> usize {
+    match memmem::find(text, PGP_END) {
+        Some(at) => memchr(b'\n', &text[at..]).map_or(text.len(), |i| at + i + 1),
+        None => text.len(),
+    }
+}
+
+/// Cuts a file into blocks. What stands before the first `*` is no block, unless the file has no
+/// keyword line at all.
+pub struct Blocks<'a> {
+    file: &'a SourceFile,
+    layout: Layout,
+    next: Option<usize>,
+    encrypted: Vec<Range<usize>>,
+}
+
+impl<'a> Blocks<'a> {
+    /// The blocks of a file whose cards are `layout` where the keyword has no suffix.
+    pub fn new(file: &'a SourceFile, layout: Layout) -> Self {
+        let encrypted = encrypted_ranges(file.bytes());
+        let mut blocks = Self {
+            file,
+            layout,
+            next: None,
+            encrypted,
+        };
+        blocks.next = blocks.find_star(0);
+        blocks
+    }
+
+    /// Changes the width of fields for the blocks to come.
+    pub fn set_layout(&mut self, layout: Layout) {
+        self.layout = layout;
+    }
+
+    /// How many encrypted parts the file has.
+    pub fn n_encrypted(&self) -> usize {
+        self.encrypted.len()
+    }
+
+    /// Where the first encrypted part begins.
+    pub fn first_encrypted(&self) -> Option<usize> {
+        self.encrypted.first().map(|range| range.start)
+    }
+
+    /// Offset of the next `*` that begins a line at or after the line start `from`.
+    fn find_star(&self, from: usize) -> Option<usize> {
+        let bytes = self.file.bytes();
+        let mut at = from;
+        loop {
+            if bytes.get(at) != Some(&b'*') {
+                at += memmem::find(bytes.get(at..)?, b"\n*")? + 1;
+            }
+            match self.encrypted.iter().find(|range| range.contains(&at)) {
+                Some(range) => at = range.end,
+                None => return Some(at),
+            }
+        }
+    }
+}
+
+/// The parts between the lines that begin and end an encrypted message.
+fn encrypted_ranges(bytes: &[u8]) -> Vec<Range<usize>> {
+    let mut ranges = Vec::new();
+    let mut from = 0;
+    let finder = memmem::Finder::new(PGP_BEGIN);
+    while let Some(at) = finder.find(&bytes[from..]).map(|i| from + i) {
+        let starts_line = at == 0 || bytes[at - 1] == b'\n';
+        if starts_line {
+            from = at + end_of_encrypted(&bytes[at..]);
+            ranges.push(at..from);
+        } else {
+            from = at + PGP_BEGIN.len();
+        }
+    }
+    ranges
+}
+
+impl<'a> Iterator for Blocks<'a> {
+    type Item = Block<'a>;
+
+    fn next(&mut self) -> Option<Block<'a>> {
+        let offset = self.next?;
+        let bytes = self.file.bytes();
+        let (line, _, body_start) = next_line(bytes, offset, bytes.len())?;
+        self.next = self.find_star(body_start);
+        let (name, suffix, remark) = keyword_line(&line[1..]);
+        Some(Block {
+            file: self.file,
+            name,
+            remark,
+            suffix,
+            layout: suffix.unwrap_or(self.layout),
+            offset,
+            body: body_start..self.next.unwrap_or(bytes.len()),
+            parameters: None,
+        })
+    }
+}
+
+/// Name, suffix and remark of a keyword line without its `*`.
+fn keyword_line(line: &[u8]) -> (String, Option<Layout>, &[u8]) {
+    let line = line.trim_ascii_start();
+    let end = line
+        .iter()
+        .position(|b| b" \t,$".contains(b))
+        .unwrap_or(line.len());
+    let (mut name, remark) = (&line[..end], line[end..].trim_ascii());
+    let mut suffix = None;
+    if let Some((&last, shorter)) = name.split_last() {
+        suffix = Layout::of_suffix(last);
+        if suffix.is_some() {
+            name = shorter;
+        }
+    }
+    if suffix.is_none() {
+        let first_word = remark.split(u8::is_ascii_whitespace).next();
+        if let Some(&[mark]) = first_word {
+            suffix = Layout::of_suffix(mark);
+        }
+    }
+    let name = String::from_utf8_lossy(name).to_ascii_uppercase();
+    (name, suffix, remark)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(text: &str) -> Vec<(String, Layout, usize)> {
+        let file = SourceFile::from_text("t.k", text);
+        let blocks = Blocks::new(&file, Layout::Standard);
+        blocks
+            .map(|b| (b.name.clone(), b.layout, b.cards().count()))
+            .collect()
+    }
+
+    #[test]
+    fn keyword_lines_in_all_their_forms() {
+        let deck =
+            "$ head\n*KEYWORD LONG=Y\n*node+\n1\n$ c\n2\r\n*NODE %\n3\n*Node - trailing\n*END";
+        let expected = [
+            ("KEYWORD", Layout::Standard, 0),
+            ("NODE", Layout::Long, 2),
+            ("NODE", Layout::I10, 1),
+            ("NODE", Layout::Standard, 0),
+            ("END", Layout::Standard, 0),
+        ];
+        let expected: Vec<_> = expected
+            .iter()
+            .map(|&(n, l, c)| (n.to_owned(), l, c))
+            .collect();
+        assert_eq!(names(deck), expected);
+    }
+
+    #[test]
+    fn encrypted_text_neither_begins_a_keyword_nor_is_a_card() {
+        let deck = "*NODE\n1\n-----BEGIN PGP MESSAGE-----\n\nabc\n*NODE\n-----END PGP MESSAGE-----\n2\n*END\n";
+        let got = names(deck);
+        assert_eq!(got[0], ("NODE".to_owned(), Layout::Standard, 2));
+        assert_eq!(got.len(), 2);
+        assert_eq!(
+            names("*NODE\n-----BEGIN PGP MESSAGE-----\nabc\n*X").len(),
+            1
+        );
+    }
+
+    #[test]
+    fn positions_are_found_across_index_steps() {
+        let text: String = (0..20_000).map(|i| format!("line {i}\n")).collect();
+        let file = SourceFile::from_text("t.k", text.clone());
+        for line in [0usize, 1, 6_000, 12_345, 19_999] {
+            let offset = text.find(&format!("line {line}\n")).unwrap() + 3;
+            let position = file.position(offset);
+            assert_eq!((position.line, position.column), (line as u64 + 1, 4));
+        }
+        assert_eq!(file.position(usize::MAX).line, 20_001);
+    }
+}

@@ -1,0 +1,24 @@
+//! LS-DYNA keyword decks.
+//!
+//! [`block`] cuts a file into keyword blocks, [`card`] a line into fields; [`mesh`] reads nodes and
+//! elements; [`deck`] walks the tree of included files and puts the model together.
+//!
+//! Every reader of a keyword has the same shape: it takes a [`block::Block`], walks its
+//! [`cards`](block::Block::cards), adds to what it fills and pushes a
+//! [`Diagnostic`](super::diagnostic::Diagnostic) (made by [`card::Card::diagnose`] or
+//! [`block::Block::diagnose`]) for what it cannot use:
+//!
+//! - `parameter::ParameterTable` implements [`card::Parameters`] and has `define(&mut self,
+//!   &Block, &mut Diagnostics)` for every `*PARAMETER…` block, `push_scope()` and `pop_scope()`
+//!   around an included file.
+//! - `transform::Transformation::from_block(&Block, &mut Diagnostics) -> Option<(u64, Self)>` reads
+//!   one `*DEFINE_TRANSFORMATION`; `matrix(&dyn Fn(u64) -> Option<Point3>) -> Result<Matrix4, _>`
+//!   carries it out, with node positions by id.
+//! - `forming::read_block(&Block, id_offset: u64, &mut Forming, &mut Diagnostics)` reads one
+//!   `*INITIAL_STRESS_SHELL`, `*INITIAL_STRAIN_SHELL` … block.
+
+pub mod block;
+pub mod card;
+pub mod deck;
+pub mod mesh;
+pub mod number;

@@ -1,0 +1,280 @@
+//! What a file holds, whatever its format: nodes, shells, solids, parts, sets, forming results.
+
+mod forming;
+mod index;
+mod surface;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+pub use forming::{Forming, ShellStrain, ShellStress, StrainPoint, StressPoint};
+pub use index::IdIndex;
+pub use surface::{PartSummary, Selection, SelectionError, Surface};
+
+use super::diagnostic::Diagnostics;
+use crate::geometry::{Point3, TriMesh};
+
+/// Nodes in the order of the files, found by id.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Nodes {
+    ids: Vec<u64>,
+    positions: Vec<Point3>,
+    index: IdIndex,
+}
+
+impl Nodes {
+    /// Takes ids and positions; the second value lists the indices of repeated ids, of which the
+    /// first counts in look-ups. Both must have the same length.
+    pub fn new(ids: Vec<u64>, positions: Vec<Point3>) -> (Self, Vec<u32>) {
+        assert_eq!(ids.len(), positions.len(), "one id for each position");
+        let (index, repeated) = IdIndex::new(&ids);
+        let nodes = Self {
+            ids,
+            positions,
+            index,
+        };
+        (nodes, repeated)
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// True if there are none.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// Ids in the order of the files.
+    pub fn ids(&self) -> &[u64] {
+        &self.ids
+    }
+
+    /// Positions in the order of the files, in the deck's length unit.
+    pub fn positions(&self) -> &[Point3] {
+        &self.positions
+    }
+
+    /// Positions to be moved; ids stay.
+    pub fn positions_mut(&mut self) -> &mut [Point3] {
+        &mut self.positions
+    }
+
+    /// Index of a node id.
+    #[inline]
+    pub fn index_of(&self, id: u64) -> Option<u32> {
+        self.index.get(id)
+    }
+
+    /// Position of a node id.
+    pub fn position_of(&self, id: u64) -> Option<Point3> {
+        self.index_of(id)
+            .map(|index| self.positions[index as usize])
+    }
+}
+
+/// A shell of three or four corners. A triangle repeats its third node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shell {
+    /// The deck's element id.
+    pub id: u64,
+    /// Node indices of the corners.
+    pub nodes: [u32; 4],
+    /// Index into [`Model::parts`].
+    pub part: u32,
+}
+
+impl Shell {
+    /// True if it has three corners.
+    pub fn is_triangle(&self) -> bool {
+        self.nodes[2] == self.nodes[3]
+    }
+
+    /// Its three or four corners.
+    pub fn corners(&self) -> &[u32] {
+        &self.nodes[..if self.is_triangle() { 3 } else { 4 }]
+    }
+}
+
+/// What only some shells carry, sorted by shell index.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShellExtra {
+    /// Index into [`Model::shells`].
+    pub shell: u32,
+    /// Thickness at the corners; 0 where the section's thickness counts.
+    pub thickness: [f64; 4],
+    /// Material angle in degrees; 0 if none was given.
+    pub beta: f64,
+}
+
+/// Kind of a solid element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SolidKind {
+    /// `*ELEMENT_SOLID`.
+    Solid,
+    /// `*ELEMENT_TSHELL`: a brick that behaves like a shell.
+    ThickShell,
+}
+
+/// A brick or what remains of one when nodes repeat: wedge, pyramid, tetrahedron.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Solid {
+    /// The deck's element id.
+    pub id: u64,
+    /// Node indices of the corners: bottom face 0–3, top face 4–7.
+    pub nodes: [u32; 8],
+    /// Index into [`Model::parts`].
+    pub part: u32,
+    /// Solid or thick shell.
+    pub kind: SolidKind,
+}
+
+/// A part: what the elements of one sheet or casting have in common.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Part {
+    /// The deck's part id.
+    pub id: u64,
+    /// Title; empty if none was given.
+    pub title: String,
+    /// Id of the section; 0 if none was given.
+    pub section_id: u64,
+    /// Thickness that elements without their own take: at the four corners.
+    pub thickness: Option<[f64; 4]>,
+    /// False if elements name the part but no file defines it.
+    pub is_defined: bool,
+}
+
+impl Part {
+    /// Mean of the four corner thicknesses.
+    pub fn mean_thickness(&self) -> Option<f64> {
+        self.thickness
+            .map(|corners| corners.iter().sum::<f64>() / 4.0)
+    }
+}
+
+/// `*SECTION_SHELL`: thickness of the parts that name it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Section {
+    /// The deck's section id.
+    pub id: u64,
+    /// Thickness at the four corners.
+    pub thickness: [f64; 4],
+}
+
+/// A named list of ids.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Set {
+    /// Title; empty if none was given.
+    pub title: String,
+    /// Ids in the order of the deck.
+    pub ids: Vec<u64>,
+}
+
+/// Sets by id.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Sets {
+    /// `*SET_PART…`.
+    pub parts: BTreeMap<u64, Set>,
+    /// `*SET_SHELL…`.
+    pub shells: BTreeMap<u64, Set>,
+    /// `*SET_NODE…`.
+    pub nodes: BTreeMap<u64, Set>,
+}
+
+/// A file that was read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ReadFile {
+    /// The path it was opened under.
+    pub path: PathBuf,
+    /// Its length, unpacked.
+    pub n_bytes: u64,
+}
+
+/// Everything that was read from a file and the files it includes.
+///
+/// Lengths are in the deck's own unit. Indices are dense and in the order of the files.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Model {
+    /// The deck's title; empty if it has none.
+    pub title: String,
+    /// Nodes.
+    pub nodes: Nodes,
+    /// Shells whose nodes all exist.
+    pub shells: Vec<Shell>,
+    /// Mid-side nodes (N5–N8) of quadratic shells, sorted by shell index; `u32::MAX` where there
+    /// is none.
+    pub mid_side: Vec<(u32, [u32; 4])>,
+    /// Corner thickness and material angle of the shells that have their own.
+    pub shell_extras: Vec<ShellExtra>,
+    /// Solids and thick shells whose nodes all exist.
+    pub solids: Vec<Solid>,
+    /// Parts, the defined ones and those that only elements name, in the order they were met.
+    pub parts: Vec<Part>,
+    /// Shell sections.
+    pub sections: Vec<Section>,
+    /// Sets of parts, shells and nodes.
+    pub sets: Sets,
+    /// Forming results.
+    pub forming: Forming,
+    /// What could not be understood.
+    pub diagnostics: Diagnostics,
+    /// The files that were read, the one asked for first.
+    pub files: Vec<ReadFile>,
+}
+
+impl Model {
+    /// A model of one part from a bare triangle mesh; ids count from 1.
+    pub fn from_mesh(mesh: &TriMesh, title: impl Into<String>) -> Self {
+        let ids = (1..=mesh.n_vertices() as u64).collect();
+        let (nodes, _) = Nodes::new(ids, mesh.positions().to_vec());
+        let shell = |(&[a, b, c], id): (&[u32; 3], u64)| Shell {
+            id,
+            nodes: [a, b, c, c],
+            part: 0,
+        };
+        let title = title.into();
+        let part = Part {
+            id: 1,
+            title: title.clone(),
+            is_defined: true,
+            ..Part::default()
+        };
+        Self {
+            title,
+            nodes,
+            shells: mesh.triangles().iter().zip(1..).map(shell).collect(),
+            parts: vec![part],
+            ..Self::default()
+        }
+    }
+
+    /// Index of a part id. O(parts).
+    pub fn part_index(&self, id: u64) -> Option<u32> {
+        let at = self.parts.iter().position(|part| part.id == id)?;
+        u32::try_from(at).ok()
+    }
+
+    /// Corner thickness of a shell: its own where that is not 0, else its part's.
+    pub fn shell_thickness(&self, shell: u32) -> Option<[f64; 4]> {
+        let of_part = self.parts[self.shells[shell as usize].part as usize].thickness;
+        let Some(extra) = self.shell_extra(shell) else {
+            return of_part;
+        };
+        let own = extra.thickness;
+        match of_part {
+            Some(part) => Some(std::array::from_fn(|i| {
+                if own[i] == 0.0 { part[i] } else { own[i] }
+            })),
+            None => (own != [0.0; 4]).then_some(own),
+        }
+    }
+
+    /// Thickness and material angle written with the shell itself. O(log shells).
+    pub fn shell_extra(&self, shell: u32) -> Option<&ShellExtra> {
+        let at = self
+            .shell_extras
+            .binary_search_by_key(&shell, |extra| extra.shell);
+        at.ok().map(|at| &self.shell_extras[at])
+    }
+}

@@ -1,0 +1,373 @@
+//! From a model to the triangle mesh that is matched.
+
+use std::collections::{BTreeSet, HashMap};
+
+use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
+use super::{Model, Nodes, Solid};
+use crate::geometry::{Aabb, MeshError, Point3, TriMesh};
+
+/// Marks a node no chosen element uses.
+const UNUSED: u32 = u32::MAX;
+
+/// Which elements make the surface.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Selection {
+    /// Every shell, and the skin of every solid.
+    #[default]
+    All,
+    /// The elements of these part ids.
+    Parts(Vec<u64>),
+    /// The elements of parts with this title, letter case and blanks around it ignored.
+    PartTitle(String),
+    /// The elements of the parts in a `*SET_PART`.
+    PartSet(u64),
+    /// The shells in a `*SET_SHELL`.
+    ShellSet(u64),
+    /// The shells whose nodes are all in a `*SET_NODE`.
+    NodeSet(u64),
+}
+
+/// Why a selection gives no surface.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SelectionError {
+    /// No part has the id.
+    #[error("there is no part {0}")]
+    NoSuchPart(u64),
+    /// No part has the title.
+    #[error("there is no part with the title {0:?}")]
+    NoSuchTitle(String),
+    /// No set of the kind has the id.
+    #[error("there is no {kind} set {id}")]
+    NoSuchSet {
+        /// `"part"`, `"shell"` or `"node"`.
+        kind: &'static str,
+        /// The set's id.
+        id: u64,
+    },
+    /// The chosen elements have no triangle with area.
+    #[error("the selection holds no shell or solid with area")]
+    Empty,
+    /// The triangles make no mesh.
+    #[error("the surface cannot be built: {0}")]
+    Mesh(#[from] MeshError),
+}
+
+/// The triangles of the chosen elements and where they come from.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Surface {
+    /// The mesh. Every vertex is used by a triangle, every triangle has area.
+    pub mesh: TriMesh,
+    /// For each vertex its node index.
+    pub vertex_node: Vec<u32>,
+    /// For each triangle its element: an index into the shells, or, from `shells.len()` on, into
+    /// the solids.
+    pub triangle_element: Vec<u32>,
+    /// For each triangle the index of its part.
+    pub triangle_part: Vec<u32>,
+    /// Elements that were left out because they have no area.
+    pub diagnostics: Diagnostics,
+}
+
+/// One row of the list of parts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartSummary {
+    /// The deck's part id.
+    pub id: u64,
+    /// Title; empty if none was given.
+    pub title: String,
+    /// Number of shells.
+    pub n_shells: usize,
+    /// Number of solids and thick shells.
+    pub n_solids: usize,
+    /// Triangles the shells are cut into; solids are not counted.
+    pub n_triangles: usize,
+    /// Mean over the shells of their corner thickness; the part's own if it has no shells.
+    pub thickness: Option<f64>,
+}
+
+impl Model {
+    /// The triangle mesh of the chosen elements. Quads are cut along the shorter diagonal (equal
+    /// ones from the first corner); of solids the faces used once are taken, outward. O(elements).
+    pub fn surface(&self, selection: &Selection) -> Result<Surface, SelectionError> {
+        let chosen = self.chosen(selection)?;
+        let mut builder = Builder::new(&self.nodes);
+        for (index, shell) in self.shells.iter().enumerate() {
+            if chosen.shell(index, shell.part) {
+                let name = || format!("shell {}", shell.id);
+                builder.polygon(shell.corners(), index as u32, shell.part, name);
+            }
+        }
+        self.add_skin(&chosen, &mut builder);
+        builder.finish()
+    }
+
+    /// The parts in the order they were met. O(elements).
+    pub fn part_summaries(&self) -> Vec<PartSummary> {
+        let row = |part: &super::Part| PartSummary {
+            id: part.id,
+            title: part.title.clone(),
+            n_shells: 0,
+            n_solids: 0,
+            n_triangles: 0,
+            thickness: part.mean_thickness(),
+        };
+        let mut rows: Vec<PartSummary> = self.parts.iter().map(row).collect();
+        let mut sums = vec![0.0; rows.len()];
+        for (index, shell) in self.shells.iter().enumerate() {
+            let row = &mut rows[shell.part as usize];
+            row.n_shells += 1;
+            row.n_triangles += shell.corners().len() - 2;
+            let n = shell.corners().len();
+            let corners = self.shell_thickness(index as u32).unwrap_or_default();
+            sums[shell.part as usize] += corners[..n].iter().sum::<f64>() / n as f64;
+        }
+        for solid in &self.solids {
+            rows[solid.part as usize].n_solids += 1;
+        }
+        for (row, sum) in rows.iter_mut().zip(sums) {
+            if row.n_shells > 0 {
+                row.thickness = (sum > 0.0).then_some(sum / row.n_shells as f64);
+            }
+        }
+        rows
+    }
+
+    /// Box around the nodes that shells and solids use; around all nodes if there are none.
+    pub fn bounds(&self) -> Aabb {
+        let positions = self.nodes.positions();
+        let of_shells = self.shells.iter().flat_map(|shell| &shell.nodes);
+        let of_solids = self.solids.iter().flat_map(|solid| &solid.nodes);
+        let used = of_shells.chain(of_solids).map(|&n| &positions[n as usize]);
+        let aabb = Aabb::of_points(used);
+        if aabb.is_empty() {
+            Aabb::of_points(positions)
+        } else {
+            aabb
+        }
+    }
+
+    fn chosen(&self, selection: &Selection) -> Result<Chosen, SelectionError> {
+        let no_set = |kind, id| SelectionError::NoSuchSet { kind, id };
+        match selection {
+            Selection::All => Ok(Chosen::Parts(vec![true; self.parts.len()])),
+            Selection::Parts(ids) => self.chosen_parts(ids),
+            Selection::PartTitle(title) => {
+                let wanted = title.trim().to_lowercase();
+                let same = |part: &super::Part| part.title.trim().to_lowercase() == wanted;
+                let parts: Vec<bool> = self.parts.iter().map(same).collect();
+                if parts.contains(&true) {
+                    Ok(Chosen::Parts(parts))
+                } else {
+                    Err(SelectionError::NoSuchTitle(title.clone()))
+                }
+            }
+            Selection::PartSet(id) => {
+                let set = self.sets.parts.get(id).ok_or(no_set("part", *id))?;
+                // A set may list parts of a file that was not found; the others still count.
+                let known: BTreeSet<u64> = self.parts.iter().map(|part| part.id).collect();
+                let ids: Vec<u64> = set
+                    .ids
+                    .iter()
+                    .copied()
+                    .filter(|i| known.contains(i))
+                    .collect();
+                self.chosen_parts(&ids)
+            }
+            Selection::ShellSet(id) => {
+                let set = self.sets.shells.get(id).ok_or(no_set("shell", *id))?;
+                let ids: BTreeSet<u64> = set.ids.iter().copied().collect();
+                let shells = self.shells.iter().map(|shell| ids.contains(&shell.id));
+                Ok(Chosen::Shells(shells.collect()))
+            }
+            Selection::NodeSet(id) => {
+                let set = self.sets.nodes.get(id).ok_or(no_set("node", *id))?;
+                let mut is_in = vec![false; self.nodes.len()];
+                for index in set.ids.iter().filter_map(|&id| self.nodes.index_of(id)) {
+                    is_in[index as usize] = true;
+                }
+                let all_in = |shell: &super::Shell| shell.nodes.iter().all(|&n| is_in[n as usize]);
+                Ok(Chosen::Shells(self.shells.iter().map(all_in).collect()))
+            }
+        }
+    }
+
+    fn chosen_parts(&self, ids: &[u64]) -> Result<Chosen, SelectionError> {
+        let mut parts = vec![false; self.parts.len()];
+        for &id in ids {
+            let mut found = false;
+            for (chosen, part) in parts.iter_mut().zip(&self.parts) {
+                if part.id == id {
+                    *chosen = true;
+                    found = true;
+                }
+            }
+            if !found {
+                return Err(SelectionError::NoSuchPart(id));
+            }
+        }
+        Ok(Chosen::Parts(parts))
+    }
+
+    /// Adds the faces that exactly one chosen solid has.
+    fn add_skin(&self, chosen: &Chosen, builder: &mut Builder) {
+        let solids = || {
+            let all = self.solids.iter().enumerate();
+            all.filter(|(_, solid)| chosen.solid(solid.part))
+        };
+        let mut uses: HashMap<[u32; 4], u32> = HashMap::new();
+        for (_, solid) in solids() {
+            for face in faces(solid) {
+                *uses.entry(face_key(&face)).or_default() += 1;
+            }
+        }
+        for (index, solid) in solids() {
+            let element = (self.shells.len() + index) as u32;
+            for face in faces(solid).filter(|face| uses[&face_key(face)] == 1) {
+                let name = || format!("solid {}", solid.id);
+                builder.polygon(&face, element, solid.part, name);
+            }
+        }
+    }
+}
+
+enum Chosen {
+    /// By part index.
+    Parts(Vec<bool>),
+    /// By shell index; no solids.
+    Shells(Vec<bool>),
+}
+
+impl Chosen {
+    fn shell(&self, index: usize, part: u32) -> bool {
+        match self {
+            Self::Parts(parts) => parts[part as usize],
+            Self::Shells(shells) => shells[index],
+        }
+    }
+
+    fn solid(&self, part: u32) -> bool {
+        match self {
+            Self::Parts(parts) => parts[part as usize],
+            Self::Shells(_) => false,
+        }
+    }
+}
+
+/// The faces of a solid with three or more different nodes, seen from outside counter-clockwise.
+fn faces(solid: &Solid) -> impl Iterator<Item = Vec<u32>> + use<> {
+    const FACES: [[usize; 4]; 6] = [
+        [0, 3, 2, 1],
+        [4, 5, 6, 7],
+        [0, 1, 5, 4],
+        [1, 2, 6, 5],
+        [2, 3, 7, 6],
+        [3, 0, 4, 7],
+    ];
+    let nodes = solid.nodes;
+    let distinct = move |face: [usize; 4]| {
+        let mut corners: Vec<u32> = Vec::with_capacity(4);
+        for node in face.map(|i| nodes[i]) {
+            if !corners.contains(&node) {
+                corners.push(node);
+            }
+        }
+        corners
+    };
+    FACES
+        .into_iter()
+        .map(distinct)
+        .filter(|face| face.len() >= 3)
+}
+
+/// The same for a face seen from both of its solids.
+fn face_key(face: &[u32]) -> [u32; 4] {
+    let mut key = [u32::MAX; 4];
+    key[..face.len()].copy_from_slice(face);
+    key.sort_unstable();
+    key
+}
+
+/// Collects triangles and gives their nodes vertex numbers.
+struct Builder<'a> {
+    nodes: &'a Nodes,
+    node_vertex: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+    surface: Surface,
+}
+
+impl<'a> Builder<'a> {
+    fn new(nodes: &'a Nodes) -> Self {
+        Self {
+            nodes,
+            node_vertex: vec![UNUSED; nodes.len()],
+            triangles: Vec::new(),
+            surface: Surface::default(),
+        }
+    }
+
+    fn polygon(&mut self, corners: &[u32], element: u32, part: u32, name: impl Fn() -> String) {
+        let n_before = self.triangles.len();
+        if let &[a, b, c, d] = corners {
+            let point = |n: u32| self.nodes.positions()[n as usize];
+            let along_ac = (point(c) - point(a)).norm_squared();
+            let along_bd = (point(d) - point(b)).norm_squared();
+            if along_ac <= along_bd {
+                self.triangle([a, b, c], element, part);
+                self.triangle([a, c, d], element, part);
+            } else {
+                self.triangle([a, b, d], element, part);
+                self.triangle([b, c, d], element, part);
+            }
+        } else if let &[a, b, c] = corners {
+            self.triangle([a, b, c], element, part);
+        }
+        if self.triangles.len() == n_before {
+            let kind = DiagnosticKind::ZeroArea;
+            let message = || Diagnostic::new(kind, format!("{} has no area", name()));
+            self.surface.diagnostics.push_with(kind, message);
+        }
+    }
+
+    fn triangle(&mut self, corners: [u32; 3], element: u32, part: u32) {
+        let [a, b, c] = corners.map(|n| self.nodes.positions()[n as usize]);
+        if !has_area(a, b, c) {
+            return;
+        }
+        self.triangles.push(corners);
+        self.surface.triangle_element.push(element);
+        self.surface.triangle_part.push(part);
+    }
+
+    /// Numbers the used nodes in the order of the file, so that neighbours stay neighbours.
+    fn finish(mut self) -> Result<Surface, SelectionError> {
+        if self.triangles.is_empty() {
+            return Err(SelectionError::Empty);
+        }
+        for &node in self.triangles.iter().flatten() {
+            self.node_vertex[node as usize] = 0;
+        }
+        let mut positions = Vec::new();
+        for (node, vertex) in self.node_vertex.iter_mut().enumerate() {
+            if *vertex != UNUSED {
+                *vertex = positions.len() as u32;
+                positions.push(self.nodes.positions()[node]);
+                self.surface.vertex_node.push(node as u32);
+            }
+        }
+        for node in self.triangles.iter_mut().flatten() {
+            *node = self.node_vertex[*node as usize];
+        }
+        self.surface.mesh = TriMesh::new(positions, self.triangles)?;
+        Ok(self.surface)
+    }
+}
+
+/// False if the corners lie on a line to the accuracy of their coordinates' differences.
+pub(crate) fn has_area(a: Point3, b: Point3, c: Point3) -> bool {
+    let (u, v) = (b - a, c - a);
+    let longest_sq = u
+        .norm_squared()
+        .max(v.norm_squared())
+        .max((c - b).norm_squared());
+    u.cross(&v).norm() > 1e-12 * longest_sq
+}
