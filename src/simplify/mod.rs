@@ -1,1 +1,40 @@
-//! Nothing here yet.
+//! Quadric error simplification (Garland and Heckbert 1997) to a maximum number of triangles.
+//!
+//! Edges are collapsed cheapest first. The price of a collapse is the area-weighted squared
+//! distance to the planes of all triangles merged so far. Borders, seams between parts and edges
+//! with three or more triangles pull on their vertices as well and are only collapsed along
+//! themselves. No collapse may turn a triangle over, pinch the surface or join separate sheets.
+//!
+//! The result does not depend on the unit of length or on the place of the part, and equal prices
+//! are decided by vertex numbers, so the same mesh always gives the same result.
+
+mod decimator;
+mod fans;
+mod intake;
+mod legality;
+mod quadric;
+mod sequence;
+mod settings;
+
+pub use sequence::CollapseSequence;
+pub use settings::{
+    Placement, Simplified, SimplifyError, SimplifyReport, SimplifySettings, StopReason,
+};
+
+use crate::geometry::TriMesh;
+use crate::monitor::Monitor;
+
+/// Reduces `mesh` to at most `settings.max_triangles` triangles.
+///
+/// Vertices at the same place count as joined only if they are one vertex: weld first. Zero-area,
+/// repeated and non-manifold triangles and unused vertices are taken as they come. The result has
+/// more triangles than the maximum only if nothing legal is left to collapse, which
+/// [`SimplifyReport::stop_reason`] then says. O(n log n) in the triangles.
+pub fn simplify(
+    mesh: &TriMesh,
+    settings: &SimplifySettings,
+    monitor: &Monitor,
+) -> Result<Simplified, SimplifyError> {
+    let sequence = CollapseSequence::record(mesh, settings, monitor)?;
+    Ok(sequence.simplified(settings.max_triangles))
+}

@@ -1,4 +1,6 @@
 //! Tests below the window: one file per module, all in one binary.
 
 mod layering;
+mod pan;
+mod simplify;
 mod tidy;

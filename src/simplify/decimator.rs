@@ -1,0 +1,430 @@
+//! Cheapest collapse first.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use nalgebra::Vector3;
+
+use super::fans::Fans;
+use super::intake::Intake;
+use super::legality::{Kind, Marks, Refusal, keeps_orientation, link_condition};
+use super::quadric::Quadric;
+use super::settings::{Placement, SimplifySettings, StopReason};
+use crate::monitor::{Cancelled, Monitor};
+
+/// One collapse as it is remembered.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Collapse {
+    /// The vertex that stays, the smaller of the two.
+    pub(super) kept: u32,
+    /// The vertex that goes.
+    pub(super) removed: u32,
+    /// Triangles left afterwards.
+    pub(super) n_triangles: u32,
+    /// Border loops closed by this collapse, 0 or 1.
+    pub(super) closes: u32,
+    /// Where the kept vertex is afterwards, in unit coordinates.
+    pub(super) position: Vector3<f64>,
+    /// The quadrics' mean square distance here, in unit coordinates.
+    pub(super) error: f64,
+}
+
+/// An edge in the queue, ordered by price, then by its ends. The price is a lower bound: merging
+/// adds quadrics, which only raises what the neighbouring edges cost. An entry is priced anew when
+/// it comes up and either collapsed or put back, so the order is exact without touching the
+/// neighbours of every collapse.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Entry {
+    key: u32,
+    a: u32,
+    b: u32,
+    stamp: u32,
+}
+
+/// What moving an edge's ends together costs, and where to.
+struct Price {
+    cost: f64,
+    position: Vector3<f64>,
+    quadric: Quadric,
+}
+
+/// Counts of edges that cannot be collapsed, by reason.
+#[derive(Debug, Clone, Copy, Default)]
+struct Refused {
+    link: usize,
+    flip: usize,
+    feature: usize,
+}
+
+pub(super) struct Decimator {
+    placement: Placement,
+    min_cosine: f64,
+    may_close_loops: bool,
+    fans: Fans,
+    part_of: Vec<u32>,
+    kinds: Vec<Kind>,
+    quadrics: Vec<Quadric>,
+    versions: Vec<u32>,
+    merged_into: Vec<u32>,
+    /// Vertices with an edge that was refused and waits for its neighbourhood to change.
+    waiting: Vec<bool>,
+    marks: Marks,
+    sorted: Vec<Entry>,
+    next_sorted: usize,
+    heap: BinaryHeap<Reverse<Entry>>,
+    closing: bool,
+    refused: Refused,
+    collapses: Vec<Collapse>,
+}
+
+impl Decimator {
+    pub(super) fn new(intake: Intake, settings: &SimplifySettings) -> Self {
+        let n = intake.kinds.len();
+        let mut decimator = Self {
+            placement: settings.placement,
+            min_cosine: settings.max_turn_deg.to_radians().cos(),
+            may_close_loops: settings.may_close_loops,
+            fans: intake.fans,
+            part_of: intake.part_of,
+            kinds: intake.kinds,
+            quadrics: intake.quadrics,
+            versions: vec![0; n],
+            merged_into: (0..n as u32).collect(),
+            waiting: vec![false; n],
+            marks: Marks::new(n),
+            sorted: Vec::new(),
+            next_sorted: 0,
+            heap: BinaryHeap::new(),
+            closing: false,
+            refused: Refused::default(),
+            collapses: Vec::new(),
+        };
+        decimator.fill_queue(&intake.edges);
+        decimator
+    }
+
+    /// Collapses until `max_triangles` are left, nothing legal is left, or the monitor says stop.
+    pub(super) fn run(
+        mut self,
+        max_triangles: usize,
+        monitor: &Monitor,
+    ) -> Result<(Vec<Collapse>, StopReason), Cancelled> {
+        let n_start = self.fans.n_triangles;
+        let to_do = n_start.saturating_sub(max_triangles) as u64;
+        let mut n_popped = 0_usize;
+        let mut n_at_fill = self.collapses.len();
+        while self.fans.n_triangles > max_triangles {
+            if n_popped.is_multiple_of(1024) {
+                monitor.check()?;
+                if monitor.stop_requested() {
+                    return Ok((self.collapses, StopReason::StopRequested));
+                }
+                let done = (n_start - self.fans.n_triangles) as u64;
+                monitor.progress("simplify", done, Some(to_do));
+            }
+            n_popped += 1;
+            if let Some(entry) = self.pop() {
+                self.treat(entry);
+                continue;
+            }
+            // The queue has run dry. Edges refused on the way may have become legal since.
+            if self.collapses.len() == n_at_fill {
+                if self.closing || !self.may_close_loops {
+                    let Refused {
+                        link,
+                        flip,
+                        feature,
+                    } = self.refused;
+                    let reason = StopReason::NothingLegal {
+                        link,
+                        flip,
+                        feature,
+                    };
+                    return Ok((self.collapses, reason));
+                }
+                self.closing = true;
+            } else {
+                self.closing = false;
+            }
+            n_at_fill = self.collapses.len();
+            let edges = self.edges_left();
+            self.fill_queue(&edges);
+        }
+        Ok((self.collapses, StopReason::Reached))
+    }
+
+    /// Prices an entry that came up, and collapses it, puts it back, or sets it aside.
+    fn treat(&mut self, entry: Entry) {
+        let (a, b) = (self.root(entry.a), self.root(entry.b));
+        if a == b || self.fans.sides(a, b).next().is_none() {
+            return;
+        }
+        let (a, b) = (a.min(b), a.max(b));
+        let stamp = self.stamp(a, b);
+        let Some(price) = self.price(a, b) else {
+            self.refused.feature += 1;
+            return;
+        };
+        let now = Entry {
+            key: key_of(price.cost),
+            a,
+            b,
+            stamp,
+        };
+        if now > entry && self.peek().is_some_and(|next| next < now) {
+            self.heap.push(Reverse(now));
+            return;
+        }
+        match self.refusal(a, b, &price.position) {
+            None => self.collapse(a, b, &price),
+            Some(refusal) => {
+                match refusal {
+                    Refusal::Link => self.refused.link += 1,
+                    Refusal::Flip => self.refused.flip += 1,
+                }
+                self.waiting[a as usize] = true;
+                self.waiting[b as usize] = true;
+            }
+        }
+    }
+
+    fn refusal(&mut self, a: u32, b: u32, position: &Vector3<f64>) -> Option<Refusal> {
+        if !link_condition(&self.fans, &mut self.marks, a, b, self.closing) {
+            return Some(Refusal::Link);
+        }
+        if !keeps_orientation(&self.fans, a, b, position, self.min_cosine) {
+            return Some(Refusal::Flip);
+        }
+        None
+    }
+
+    fn collapse(&mut self, kept: u32, removed: u32, price: &Price) {
+        let (k, r) = (kept as usize, removed as usize);
+        let third = self.third_of_loop(kept, removed);
+        self.fans.collapse(kept, removed, price.position);
+        self.quadrics[k] = price.quadric;
+        self.kinds[k] = self.kinds[k].max(self.kinds[r]);
+        self.merged_into[r] = kept;
+        self.versions[k] = self.versions[k].max(self.versions[r]) + 1;
+        self.collapses.push(Collapse {
+            kept,
+            removed,
+            n_triangles: self.fans.n_triangles as u32,
+            closes: u32::from(third.is_some()),
+            position: price.position,
+            error: mean_square(price),
+        });
+        if let Some(third) = third {
+            self.kinds[k] = self.kind_by_count(kept);
+            self.kinds[third as usize] = self.kind_by_count(third);
+        }
+        let waited = self.waiting[k] | self.waiting[r];
+        self.waiting[k] = false;
+        self.requeue_around(kept, waited);
+    }
+
+    /// Puts edges of `vertex` back that were refused before its neighbourhood changed.
+    fn requeue_around(&mut self, vertex: u32, all: bool) {
+        for i in 0..self.fans.around(vertex).len() {
+            let t = self.fans.around(vertex)[i];
+            for w in self.fans.triangles[t as usize] {
+                if w == vertex || !(all || self.waiting[w as usize]) {
+                    continue;
+                }
+                let (a, b) = (vertex.min(w), vertex.max(w));
+                if let Some(price) = self.price(a, b) {
+                    self.heap.push(Reverse(Entry {
+                        key: key_of(price.cost),
+                        a,
+                        b,
+                        stamp: self.stamp(a, b),
+                    }));
+                }
+            }
+        }
+    }
+
+    /// Cost and place of a collapse; `None` if features forbid it.
+    fn price(&self, a: u32, b: u32) -> Option<Price> {
+        let (kind_a, kind_b) = (self.kinds[a as usize], self.kinds[b as usize]);
+        let both_on_features = kind_a != Kind::Free && kind_b != Kind::Free;
+        let both_fixed = kind_a == Kind::Corner && kind_b == Kind::Corner;
+        if both_fixed || (both_on_features && !self.is_feature(a, b)) {
+            return None;
+        }
+        let origin = self.positions(a);
+        let across = self.positions(b) - origin;
+        let mut quadric = self.quadrics[b as usize].moved_to(&-across);
+        quadric.add(&self.quadrics[a as usize]);
+        let shift = if kind_a == Kind::Corner {
+            Vector3::zeros()
+        } else if kind_b == Kind::Corner {
+            across
+        } else {
+            place(&quadric, &across, self.placement)
+        };
+        let quadric_there = quadric.moved_to(&shift);
+        Some(Price {
+            cost: quadric.at(&shift),
+            position: origin + shift,
+            quadric: quadric_there,
+        })
+    }
+
+    fn positions(&self, vertex: u32) -> Vector3<f64> {
+        self.fans.positions[vertex as usize]
+    }
+
+    /// True for a border edge, a seam, or an edge with three or more triangles.
+    fn is_feature(&self, a: u32, b: u32) -> bool {
+        let mut sides = self.fans.sides(a, b);
+        let (Some((s, _)), Some((t, _)), None) = (sides.next(), sides.next(), sides.next()) else {
+            return true;
+        };
+        let part = |t: u32| self.part_of.get(t as usize);
+        let forward = |t: u32| {
+            let corners = self.fans.triangles[t as usize];
+            (0..3).any(|i| corners[i] == a && corners[(i + 1) % 3] == b)
+        };
+        part(s) != part(t) || forward(s) == forward(t)
+    }
+
+    fn kind_by_count(&self, vertex: u32) -> Kind {
+        let mut ring: Vec<u32> = self
+            .fans
+            .around(vertex)
+            .iter()
+            .flat_map(|&t| self.fans.triangles[t as usize])
+            .filter(|&v| v != vertex)
+            .collect();
+        ring.sort_unstable();
+        ring.dedup();
+        match ring.iter().filter(|&&v| self.is_feature(vertex, v)).count() {
+            0 => Kind::Free,
+            2 => Kind::Line,
+            _ => Kind::Corner,
+        }
+    }
+
+    /// The third vertex of the border loop of three that collapsing this edge would close.
+    fn third_of_loop(&self, a: u32, b: u32) -> Option<u32> {
+        if !self.closing || self.fans.sides(a, b).count() != 1 {
+            return None;
+        }
+        let opposite = self.fans.sides(a, b).next()?.1;
+        let is_border = |u: u32, v: u32| self.fans.sides(u, v).count() == 1;
+        self.fans
+            .around(a)
+            .iter()
+            .flat_map(|&t| self.fans.triangles[t as usize])
+            .find(|&x| x != a && x != b && x != opposite && is_border(a, x) && is_border(b, x))
+    }
+
+    /// Sum of two counters that only grow, so equal sums mean that neither end has changed.
+    fn stamp(&self, a: u32, b: u32) -> u32 {
+        self.versions[a as usize] + self.versions[b as usize]
+    }
+
+    fn root(&mut self, mut vertex: u32) -> u32 {
+        while self.merged_into[vertex as usize] != vertex {
+            let above = self.merged_into[self.merged_into[vertex as usize] as usize];
+            self.merged_into[vertex as usize] = above;
+            vertex = above;
+        }
+        vertex
+    }
+
+    fn fill_queue(&mut self, edges: &[[u32; 2]]) {
+        self.refused = Refused::default();
+        self.waiting.fill(false);
+        self.sorted.clear();
+        self.next_sorted = 0;
+        self.heap.clear();
+        for &[a, b] in edges {
+            match self.price(a, b) {
+                Some(price) => self.sorted.push(Entry {
+                    key: key_of(price.cost),
+                    a,
+                    b,
+                    stamp: self.stamp(a, b),
+                }),
+                None => self.refused.feature += 1,
+            }
+        }
+        self.sorted.sort_unstable();
+    }
+
+    fn edges_left(&self) -> Vec<[u32; 2]> {
+        let mut edges: Vec<[u32; 2]> = self
+            .fans
+            .triangles
+            .iter()
+            .filter(|corners| corners[0] != super::fans::GONE)
+            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+            .map(|[u, v]| [u.min(v), u.max(v)])
+            .collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    fn peek(&self) -> Option<Entry> {
+        let sorted = self.sorted.get(self.next_sorted).copied();
+        let heaped = self.heap.peek().map(|entry| entry.0);
+        match (sorted, heaped) {
+            (Some(s), Some(h)) => Some(s.min(h)),
+            (s, h) => s.or(h),
+        }
+    }
+
+    /// The cheapest entry. Entries that have become equal come up one after the other and count once.
+    fn pop(&mut self) -> Option<Entry> {
+        let entry = self.peek()?;
+        while self.peek() == Some(entry) {
+            if self.sorted.get(self.next_sorted) == Some(&entry) {
+                self.next_sorted += 1;
+            } else {
+                self.heap.pop();
+            }
+        }
+        Some(entry)
+    }
+}
+
+/// The shift from the first end to where the merged vertex goes.
+fn place(quadric: &Quadric, across: &Vector3<f64>, placement: Placement) -> Vector3<f64> {
+    if placement == Placement::Optimal
+        && let Some(least) = quadric.minimum()
+    {
+        return least;
+    }
+    let candidates = [Vector3::zeros(), *across, across * 0.5];
+    let n = if placement == Placement::Endpoint {
+        2
+    } else {
+        3
+    };
+    let mut best = candidates[0];
+    for candidate in &candidates[1..n] {
+        if quadric.at(candidate) < quadric.at(&best) {
+            best = *candidate;
+        }
+    }
+    best
+}
+
+/// Mean over the quadric's weight instead of the sum.
+fn mean_square(price: &Price) -> f64 {
+    let weight = price.quadric.weight();
+    if weight > 0.0 {
+        price.cost / weight
+    } else {
+        0.0
+    }
+}
+
+/// The cost as an integer that sorts alike. Its last bits are cut off, so that costs which differ
+/// by rounding alone are equal and the vertex numbers decide.
+fn key_of(cost: f64) -> u32 {
+    (cost as f32).to_bits() >> 8
+}
