@@ -97,6 +97,8 @@ kinds! {
     BadParameter, Error, "unusable parameter";
     /// An element names a node that no file defines.
     MissingNode, Error, "missing node";
+    /// A parameter is defined twice.
+    DuplicateParameter, Warning, "duplicate parameter";
     /// A node id is defined twice at different places.
     DuplicateNode, Warning, "duplicate node id";
     /// An element id is defined twice.

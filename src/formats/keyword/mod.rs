@@ -20,5 +20,8 @@
 pub mod block;
 pub mod card;
 pub mod deck;
+pub mod expression;
 pub mod mesh;
 pub mod number;
+pub mod parameter;
+pub mod transform;

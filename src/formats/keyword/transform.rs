@@ -1,0 +1,647 @@
+//! `*DEFINE_TRANSFORMATION`: rows of elementary motions and the matrix they make together.
+
+use std::collections::BTreeMap;
+
+use crate::geometry::{Matrix3, Matrix4, Point3, Vector3};
+
+use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
+use super::block::Block;
+use super::card::{Card, EIGHT_BY_10, FieldError};
+
+/// A row that cannot be carried out. Rows count from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum TransformError {
+    /// A node that no file defines.
+    #[error("row {row} of the transformation names node {node}, which is not defined")]
+    MissingNode {
+        /// The row.
+        row: usize,
+        /// The node's id.
+        node: u64,
+    },
+    /// A point that no `POINT` row defines.
+    #[error("row {row} of the transformation names point {point}, which is not defined")]
+    MissingPoint {
+        /// The row.
+        row: usize,
+        /// The point's local id.
+        point: u64,
+    },
+    /// Two points that should span a direction coincide, or a direction is zero.
+    #[error("row {row} of the transformation has no direction")]
+    NoDirection {
+        /// The row.
+        row: usize,
+    },
+    /// Three points that should span a plane lie on a line.
+    #[error("row {row} of the transformation has three points on one line")]
+    Collinear {
+        /// The row.
+        row: usize,
+    },
+    /// The last column of a `MATRIX` row is not 0 0 0 1.
+    #[error("row {row} of the transformation holds a matrix whose last column is not 0 0 0 1")]
+    NotAffine {
+        /// The row.
+        row: usize,
+    },
+}
+
+/// One elementary motion, or a point for later rows. Angles are degrees as in the card.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TransformRow {
+    /// `SCALE`: factors along x, y, z about the origin.
+    Scale(Vector3),
+    /// `TRANSL`.
+    Translate(Vector3),
+    /// `TRANSL2ND`: `distance` along two nodes; the whole way between them if it is 0.
+    TranslateAlongNodes {
+        /// Where the direction starts.
+        from: u64,
+        /// Where the direction points.
+        to: u64,
+        /// Length of the motion.
+        distance: f64,
+    },
+    /// `ROTATE` about a direction through a point, right hand.
+    Rotate {
+        /// Direction of the axis, of any length.
+        axis: Vector3,
+        /// A point of the axis.
+        through: Point3,
+        /// Angle in degrees.
+        angle_deg: f64,
+    },
+    /// `ROTATE` about the axis from one `POINT` to another.
+    RotateAboutPoints {
+        /// Local id of the first point.
+        from: u64,
+        /// Local id of the second point.
+        to: u64,
+        /// Angle in degrees.
+        angle_deg: f64,
+    },
+    /// `ROTATE3NA`: the direction from node to node, through a third node.
+    RotateAboutNodes {
+        /// Where the direction starts.
+        from: u64,
+        /// Where the direction points.
+        to: u64,
+        /// The node on the axis; `from` if 0.
+        through: u64,
+        /// Angle in degrees.
+        angle_deg: f64,
+    },
+    /// `POINT`: moves nothing.
+    Point {
+        /// Local id.
+        id: u64,
+        /// Coordinates before any row.
+        position: Point3,
+    },
+    /// `POS6P`: three start points onto three target points.
+    PositionByPoints([u64; 6]),
+    /// `POS6N`: three start nodes onto three target nodes.
+    PositionByNodes([u64; 6]),
+    /// `MIRROR` at the plane through `point` whose normal points to `toward`.
+    Mirror {
+        /// A point of the plane.
+        point: Point3,
+        /// A point along its normal.
+        toward: Point3,
+    },
+    /// `MATRIX`, kept for column vectors: the card writes the transpose, `(x y z 1)·M`.
+    Matrix(Matrix4),
+}
+
+/// A `*DEFINE_TRANSFORMATION`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Transformation {
+    /// The rows, the first applied first.
+    pub rows: Vec<TransformRow>,
+}
+
+impl Transformation {
+    /// Reads a block: the transformation and its `TRANID`. Rows that cannot be read are reported
+    /// and left out.
+    pub fn from_block(block: &Block<'_>, diagnostics: &mut Diagnostics) -> Option<(u64, Self)> {
+        let mut cards = block.cards();
+        if block.has_option("TITLE") {
+            cards.next();
+        }
+        let Some(first) = cards.next() else {
+            let text = "the transformation has no card with its id";
+            diagnostics.push(block.diagnose(DiagnosticKind::MissingCard, text));
+            return None;
+        };
+        let id = match first.id(EIGHT_BY_10, 0) {
+            Ok(id) => id,
+            Err(error) => {
+                diagnostics.push(first.diagnose(&error, "the id of a transformation"));
+                return None;
+            }
+        };
+        let mut rows = Vec::new();
+        while let Some(card) = cards.next() {
+            if card.is_blank() {
+                continue;
+            }
+            match read_row(&card, &mut cards) {
+                Ok(row) => rows.extend(row),
+                Err(RowError::Field(error)) => {
+                    let what = format!("a row of transformation {id}");
+                    diagnostics.push(card.diagnose(&error, &what));
+                }
+                Err(RowError::Option(option)) => {
+                    let text = format!("transformation {id} has a row that is not carried out");
+                    let position = card.position(0);
+                    let finding = Diagnostic::new(DiagnosticKind::BadTransformation, text)
+                        .at(position)
+                        .found(option)
+                        .expected("SCALE, TRANSL, ROTATE, POS6P or another option of the manual");
+                    diagnostics.push(finding);
+                }
+                Err(RowError::MatrixCards) => {
+                    let text = format!("transformation {id} lacks the two cards of its matrix");
+                    let finding = Diagnostic::new(DiagnosticKind::MissingCard, text);
+                    diagnostics.push(finding.at(card.position(0)));
+                }
+            }
+        }
+        Some((id, Self { rows }))
+    }
+
+    /// The matrix for column vectors: rows apply from top to bottom, so it is `… · T2 · T1`.
+    /// `node` gives the coordinates of a node. A `POINT` is carried through all rows above the
+    /// one that uses it. O(rows).
+    pub fn matrix(&self, node: &dyn Fn(u64) -> Option<Point3>) -> Result<Matrix4, TransformError> {
+        let points = self.points();
+        let mut total = Matrix4::identity();
+        for (index, row) in self.rows.iter().enumerate() {
+            let places = Places {
+                row: index + 1,
+                node,
+                points: &points,
+                above: &total,
+            };
+            total = row.matrix(&places)? * total;
+        }
+        Ok(total)
+    }
+
+    /// Adds `offset` to the ids of all nodes that rows name, as an including deck asks for.
+    pub fn offset_nodes(&mut self, offset: i64) {
+        let shift = |id: &mut u64| {
+            if *id != 0 {
+                *id = id.saturating_add_signed(offset);
+            }
+        };
+        for row in &mut self.rows {
+            match row {
+                TransformRow::TranslateAlongNodes { from, to, .. } => [from, to].map(shift),
+                TransformRow::RotateAboutNodes {
+                    from, to, through, ..
+                } => {
+                    shift(through);
+                    [from, to].map(shift)
+                }
+                TransformRow::PositionByNodes(ids) => {
+                    ids.iter_mut().for_each(shift);
+                    continue;
+                }
+                _ => continue,
+            };
+        }
+    }
+
+    fn points(&self) -> BTreeMap<u64, Point3> {
+        let rows = self.rows.iter();
+        rows.filter_map(|row| match row {
+            TransformRow::Point { id, position } => Some((*id, *position)),
+            _ => None,
+        })
+        .collect()
+    }
+}
+
+enum RowError {
+    Field(FieldError),
+    Option(String),
+    MatrixCards,
+}
+
+impl From<FieldError> for RowError {
+    fn from(error: FieldError) -> Self {
+        Self::Field(error)
+    }
+}
+
+/// `None` for a row that moves nothing.
+fn read_row<'a>(
+    card: &Card<'a>,
+    rest: &mut impl Iterator<Item = Card<'a>>,
+) -> Result<Option<TransformRow>, RowError> {
+    let option = card.text(EIGHT_BY_10, 0)?.to_ascii_uppercase();
+    let mut a = [0.0; 7];
+    for (i, value) in a.iter_mut().enumerate() {
+        *value = card.real_or_zero(EIGHT_BY_10, i + 1)?;
+    }
+    let id = |i: usize| card.id(EIGHT_BY_10, i);
+    let vector = |i: usize| Vector3::new(a[i], a[i + 1], a[i + 2]);
+    let point = |i: usize| Point3::from(vector(i));
+    Ok(Some(match option.as_str() {
+        "SCALE" => TransformRow::Scale(vector(0).map(|x| if x == 0.0 { 1.0 } else { x })),
+        "TRANSL" => TransformRow::Translate(vector(0)),
+        "TRANSL2ND" => TransformRow::TranslateAlongNodes {
+            from: id(1)?,
+            to: id(2)?,
+            distance: a[2],
+        },
+        "ROTATE" if a[3..] != [0.0; 4] => TransformRow::Rotate {
+            axis: vector(0),
+            through: point(3),
+            angle_deg: a[6],
+        },
+        // No angle in either form.
+        "ROTATE" if a[2] == 0.0 || a[0] < 1.0 || a[1] < 1.0 => return Ok(None),
+        "ROTATE" => TransformRow::RotateAboutPoints {
+            from: id(1)?,
+            to: id(2)?,
+            angle_deg: a[2],
+        },
+        "ROTATE3NA" => TransformRow::RotateAboutNodes {
+            from: id(1)?,
+            to: id(2)?,
+            through: id(3)?,
+            angle_deg: a[3],
+        },
+        "POINT" => TransformRow::Point {
+            id: id(1)?,
+            position: point(1),
+        },
+        "POS6P" => TransformRow::PositionByPoints(six_ids(card)?),
+        "POS6N" => TransformRow::PositionByNodes(six_ids(card)?),
+        "MIRROR" => TransformRow::Mirror {
+            point: point(0),
+            toward: point(3),
+        },
+        "MATRIX" => {
+            let (Some(upper), Some(lower)) = (rest.next(), rest.next()) else {
+                return Err(RowError::MatrixCards);
+            };
+            TransformRow::Matrix(read_matrix(&[upper, lower])?)
+        }
+        _ => return Err(RowError::Option(option)),
+    }))
+}
+
+fn six_ids(card: &Card<'_>) -> Result<[u64; 6], FieldError> {
+    let mut ids = [0; 6];
+    for (i, id) in ids.iter_mut().enumerate() {
+        *id = card.id(EIGHT_BY_10, i + 1)?;
+    }
+    Ok(ids)
+}
+
+fn read_matrix(cards: &[Card<'_>; 2]) -> Result<Matrix4, FieldError> {
+    let mut values = [0.0; 16];
+    for (i, value) in values.iter_mut().enumerate() {
+        *value = cards[i / 8].real_or_zero(EIGHT_BY_10, i % 8)?;
+    }
+    if values[15] == 0.0 {
+        values[15] = 1.0;
+    }
+    // Row by row in the card and for row vectors is column by column for column vectors.
+    Ok(Matrix4::from_column_slice(&values))
+}
+
+/// Where a row finds nodes and points.
+struct Places<'a> {
+    row: usize,
+    node: &'a dyn Fn(u64) -> Option<Point3>,
+    points: &'a BTreeMap<u64, Point3>,
+    above: &'a Matrix4,
+}
+
+impl Places<'_> {
+    fn node(&self, node: u64) -> Result<Point3, TransformError> {
+        let row = self.row;
+        (self.node)(node).ok_or(TransformError::MissingNode { row, node })
+    }
+
+    fn point(&self, point: u64) -> Result<Point3, TransformError> {
+        let row = self.row;
+        let start = self.points.get(&point);
+        start
+            .map(|p| self.above.transform_point(p))
+            .ok_or(TransformError::MissingPoint { row, point })
+    }
+
+    fn six(
+        &self,
+        ids: &[u64; 6],
+        find: impl Fn(u64) -> Result<Point3, TransformError>,
+    ) -> Result<Matrix4, TransformError> {
+        let mut p = [Point3::origin(); 6];
+        for (point, &id) in p.iter_mut().zip(ids) {
+            *point = find(id)?;
+        }
+        let collinear = TransformError::Collinear { row: self.row };
+        let start = frame(&p[0], &p[1], &p[2]).ok_or(collinear)?;
+        let target = frame(&p[3], &p[4], &p[5]).ok_or(collinear)?;
+        Ok(about(&p[0], &p[3], &(target * start.transpose())))
+    }
+}
+
+impl TransformRow {
+    fn matrix(&self, places: &Places<'_>) -> Result<Matrix4, TransformError> {
+        let no_direction = TransformError::NoDirection { row: places.row };
+        let rotation = |axis: Vector3, through: Point3, angle_deg: f64| {
+            let axis = nalgebra::Unit::try_new(axis, 0.0).ok_or(no_direction)?;
+            let turn = nalgebra::Rotation3::from_axis_angle(&axis, angle_deg.to_radians());
+            Ok(about(&through, &through, turn.matrix()))
+        };
+        match self {
+            Self::Scale(factors) => Ok(Matrix4::new_nonuniform_scaling(factors)),
+            Self::Translate(vector) => Ok(Matrix4::new_translation(vector)),
+            Self::TranslateAlongNodes { from, to, distance } => {
+                let way = places.node(*to)? - places.node(*from)?;
+                let direction = way.try_normalize(0.0).ok_or(no_direction)?;
+                let vector = if *distance == 0.0 {
+                    way
+                } else {
+                    direction * *distance
+                };
+                Ok(Matrix4::new_translation(&vector))
+            }
+            Self::Rotate {
+                axis,
+                through,
+                angle_deg,
+            } => rotation(*axis, *through, *angle_deg),
+            Self::RotateAboutPoints {
+                from,
+                to,
+                angle_deg,
+            } => {
+                let (from, to) = (places.point(*from)?, places.point(*to)?);
+                rotation(to - from, from, *angle_deg)
+            }
+            Self::RotateAboutNodes {
+                from,
+                to,
+                through,
+                angle_deg,
+            } => {
+                let through = if *through == 0 { from } else { through };
+                let (from, to) = (places.node(*from)?, places.node(*to)?);
+                rotation(to - from, places.node(*through)?, *angle_deg)
+            }
+            Self::Point { .. } => Ok(Matrix4::identity()),
+            Self::PositionByPoints(ids) => places.six(ids, |id| places.point(id)),
+            Self::PositionByNodes(ids) => places.six(ids, |id| places.node(id)),
+            Self::Mirror { point, toward } => {
+                let normal = (toward - point).try_normalize(0.0).ok_or(no_direction)?;
+                let mirror = Matrix3::identity() - normal * normal.transpose() * 2.0;
+                Ok(about(point, point, &mirror))
+            }
+            Self::Matrix(matrix) if matrix.row(3) == nalgebra::RowVector4::new(0., 0., 0., 1.) => {
+                Ok(*matrix)
+            }
+            Self::Matrix(_) => Err(TransformError::NotAffine { row: places.row }),
+        }
+    }
+}
+
+/// `x' = target + linear · (x − start)`.
+fn about(start: &Point3, target: &Point3, linear: &Matrix3) -> Matrix4 {
+    let mut matrix = linear.to_homogeneous();
+    let shift = target.coords - linear * start.coords;
+    matrix.fixed_view_mut::<3, 1>(0, 3).copy_from(&shift);
+    matrix
+}
+
+/// Columns: the direction 1→2, the direction in the plane across it, the plane's normal.
+/// `None` if the points lie on a line to within rounding.
+fn frame(first: &Point3, second: &Point3, third: &Point3) -> Option<Matrix3> {
+    let along = (second - first).try_normalize(0.0)?;
+    let side = third - first;
+    let across = side - along * along.dot(&side);
+    let across = across.try_normalize(1e-12 * side.norm())?;
+    Some(Matrix3::from_columns(&[
+        along,
+        across,
+        along.cross(&across),
+    ]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::block::{Blocks, SourceFile};
+    use super::super::card::Layout;
+    use super::*;
+    use crate::geometry::Similarity;
+    use proptest::prelude::*;
+
+    fn nodes(id: u64) -> Option<Point3> {
+        match id {
+            1 => Some(Point3::new(0.0, 0.0, 0.0)),
+            2 => Some(Point3::new(0.0, 0.0, 10.0)),
+            3 => Some(Point3::new(5.0, 0.0, 0.0)),
+            4 => Some(Point3::new(1.0, 1.0, 1.0)),
+            5 => Some(Point3::new(1.0, 2.0, 1.0)),
+            6 => Some(Point3::new(-1.0, 1.0, 1.0)),
+            _ => None,
+        }
+    }
+
+    fn read(text: &str) -> ((u64, Transformation), Diagnostics) {
+        let file = SourceFile::from_text("t.k", text);
+        let block = Blocks::new(&file, Layout::Standard).next().unwrap();
+        let mut diagnostics = Diagnostics::default();
+        let found = Transformation::from_block(&block, &mut diagnostics).unwrap();
+        (found, diagnostics)
+    }
+
+    fn rows(text: &str) -> Transformation {
+        let ((id, found), diagnostics) = read(&format!("*DEFINE_TRANSFORMATION\n7\n{text}\n"));
+        assert!(diagnostics.is_empty(), "{diagnostics:?}");
+        assert_eq!(id, 7);
+        found
+    }
+
+    /// Where the rows carry a point.
+    #[track_caller]
+    fn carries(text: &str, from: [f64; 3], to: [f64; 3]) {
+        let matrix = rows(text).matrix(&nodes).unwrap();
+        let found = matrix.transform_point(&Point3::from(from));
+        assert!((found - Point3::from(to)).norm() < 1e-12, "{text}: {found}");
+    }
+
+    #[test]
+    fn every_option_by_hand() {
+        let p = [1.0, 2.0, 3.0];
+        carries("SCALE,2,,4", p, [2.0, 2.0, 12.0]);
+        carries("TRANSL,1,-1,.5", p, [2.0, 1.0, 3.5]);
+        carries("transl2nd,1,2,4.", p, [1.0, 2.0, 7.0]);
+        carries("TRANSL2ND,1,2,0", p, [1.0, 2.0, 13.0]);
+        carries("ROTATE,0,0,2,0,0,0,90", p, [-2.0, 1.0, 3.0]);
+        carries("ROTATE,0,0,1,1,0,0,180", p, [1.0, -2.0, 3.0]);
+        carries(
+            "POINT,8,0,0,0\nPOINT,9,0,0,1\nROTATE,8,9,90",
+            p,
+            [-2.0, 1.0, 3.0],
+        );
+        carries("ROTATE3NA,1,2,3,180", p, [9.0, -2.0, 3.0]);
+        carries("ROTATE3NA,1,2,,180", p, [-1.0, -2.0, 3.0]);
+        carries("ROTATE,0,0,1", p, p);
+        carries("MIRROR,0,0,0,0,3,0", p, [1.0, -2.0, 3.0]);
+        carries("MIRROR,1,1,1,2,1,1", [3.0, 2.0, 3.0], [-1.0, 2.0, 3.0]);
+        carries(
+            "MATRIX\n0,1,0,0,-1,0,0,0\n0,0,1,0,10,20,30,1",
+            p,
+            [8.0, 21.0, 33.0],
+        );
+        // Node 1 goes to node 4; z turns to y, x turns to −x.
+        carries("POS6N,1,2,3,4,5,6", [0.0, 0.0, 2.0], [1.0, 3.0, 1.0]);
+        carries("POS6N,1,2,3,4,5,6", [2.0, 0.0, 0.0], [-1.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn rows_apply_from_top_to_bottom() {
+        carries(
+            "TRANSL,10,0,0\nROTATE,0,0,1,0,0,0,90",
+            [0.0; 3],
+            [0.0, 10.0, 0.0],
+        );
+        carries(
+            "ROTATE,0,0,1,0,0,0,90\nTRANSL,10,0,0",
+            [0.0; 3],
+            [10.0, 0.0, 0.0],
+        );
+    }
+
+    #[test]
+    fn points_are_carried_by_the_rows_above_their_use() {
+        // The axis moves with the translation, wherever the POINT rows stand.
+        let axis = "POINT,1,0,0,0\nPOINT,2,0,0,1";
+        let turn = "ROTATE,1,2,180";
+        for text in [
+            format!("{axis}\nTRANSL,5,0,0\n{turn}"),
+            format!("TRANSL,5,0,0\n{turn}\n{axis}"),
+        ] {
+            carries(&text, [1.0, 1.0, 0.0], [4.0, -1.0, 0.0]);
+        }
+    }
+
+    #[test]
+    fn fixed_columns_and_titles() {
+        let deck = "*DEFINE_TRANSFORMATION_TITLE\nmy title\n$ id\n         3\n\
+                    TRANSL           0.0       0.0      50.0\n";
+        let ((id, found), diagnostics) = read(deck);
+        assert!(diagnostics.is_empty());
+        assert_eq!(id, 3);
+        let expected = TransformRow::Translate(Vector3::new(0.0, 0.0, 50.0));
+        assert_eq!(found.rows, [expected]);
+    }
+
+    #[test]
+    fn what_cannot_be_done_is_said() {
+        let error = |text| rows(text).matrix(&nodes).unwrap_err();
+        assert_eq!(
+            error("TRANSL,1,0,0\nTRANSL2ND,1,99,4"),
+            TransformError::MissingNode { row: 2, node: 99 }
+        );
+        assert_eq!(
+            error("ROTATE,8,9,5"),
+            TransformError::MissingPoint { row: 1, point: 8 }
+        );
+        assert_eq!(
+            error("ROTATE,0,0,0,1,0,0,5"),
+            TransformError::NoDirection { row: 1 }
+        );
+        assert_eq!(
+            error("POS6N,1,2,2,4,5,6"),
+            TransformError::Collinear { row: 1 }
+        );
+        assert_eq!(
+            error("MATRIX\n1,0,0,5,0,1,0\n0,0,1"),
+            TransformError::NotAffine { row: 1 }
+        );
+        let ((_, found), diagnostics) =
+            read("*DEFINE_TRANSFORMATION\n1\nTWIST,1\nTRANSL,x\nSCALE,2\n");
+        assert_eq!(found.rows.len(), 1);
+        assert_eq!(diagnostics.total(), 2);
+        let ((_, found), diagnostics) = read("*DEFINE_TRANSFORMATION\n1\nMATRIX\n1\n");
+        assert_eq!((found.rows.len(), diagnostics.total()), (0, 1));
+    }
+
+    #[test]
+    fn node_ids_take_an_offset() {
+        let mut shifted =
+            rows("POS6N,1,2,3,4,5,6\nROTATE3NA,1,2,,9\nPOINT,1,0,0,0\nTRANSL2ND,1,2,1");
+        shifted.offset_nodes(100);
+        assert_eq!(
+            shifted,
+            rows(
+                "POS6N,101,102,103,104,105,106\nROTATE3NA,101,102,,9\nPOINT,1,0,0,0\nTRANSL2ND,101,102,1"
+            )
+        );
+    }
+
+    fn number() -> impl Strategy<Value = f64> {
+        -1000.0..1000.0f64
+    }
+
+    proptest! {
+        #[test]
+        fn rotations_and_mirrors_stay_rigid(
+            axis in [number(), number(), number()],
+            through in [number(), number(), number()],
+            angle_deg in -360.0..360.0f64,
+        ) {
+            let (axis, through) = (Vector3::from(axis), Point3::from(through));
+            prop_assume!(axis.norm() > 1e-3);
+            let rows = vec![
+                TransformRow::Rotate { axis, through, angle_deg },
+                TransformRow::Mirror { point: through, toward: through + axis },
+            ];
+            let matrix = Transformation { rows }.matrix(&nodes).unwrap();
+            let motion = Similarity::from_matrix4(&matrix, 1e-12).unwrap();
+            prop_assert!(motion.is_mirrored());
+            prop_assert_eq!(motion.scale, 1.0);
+            // The point on axis and plane stays.
+            prop_assert!((motion.apply(&through) - through).norm() < 1e-9);
+        }
+
+        #[test]
+        fn six_points_do_what_they_promise(p in proptest::array::uniform18(number())) {
+            let p: Vec<Point3> = p.chunks(3).map(|c| Point3::new(c[0], c[1], c[2])).collect();
+            let area = |a: usize| (p[a + 1] - p[a]).cross(&(p[a + 2] - p[a])).norm();
+            prop_assume!(area(0) > 1.0 && area(3) > 1.0);
+            let point = |(i, position): (usize, &Point3)| TransformRow::Point {
+                id: i as u64 + 1,
+                position: *position,
+            };
+            let mut rows: Vec<_> = p.iter().enumerate().map(point).collect();
+            rows.push(TransformRow::PositionByPoints([1, 2, 3, 4, 5, 6]));
+            let matrix = Transformation { rows }.matrix(&nodes).unwrap();
+            let motion = Similarity::from_matrix4(&matrix, 1e-9).unwrap();
+            let moved: Vec<Point3> = p.iter().map(|p| motion.apply(p)).collect();
+            prop_assert!(!motion.is_mirrored());
+            prop_assert!((moved[0] - p[3]).norm() < 1e-9, "point 1 exactly");
+            let along = (p[4] - p[3]).normalize();
+            prop_assert!((moved[1] - p[3]).normalize().dot(&along) > 1.0 - 1e-9);
+            let normal = along.cross(&(p[5] - p[3])).normalize();
+            prop_assert!((moved[2] - p[3]).normalize().dot(&normal).abs() < 1e-6);
+            prop_assert!((moved[2] - p[3]).dot(&(p[5] - p[3] - along * along.dot(&(p[5] - p[3])))) > 0.0);
+        }
+
+        #[test]
+        fn never_panics(text in "(ROTATE|POS6P|MATRIX|POINT|X)?[-0-9.,e\n]{0,80}") {
+            let deck = format!("*DEFINE_TRANSFORMATION\n1\n{text}\n");
+            let ((_, found), _) = read(&deck);
+            let _ = found.matrix(&nodes);
+        }
+    }
+}
