@@ -3,4 +3,5 @@
 mod layering;
 mod pan;
 mod simplify;
+mod samples;
 mod tidy;
