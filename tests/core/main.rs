@@ -2,6 +2,6 @@
 
 mod layering;
 mod pan;
-mod simplify;
 mod samples;
+mod simplify;
 mod tidy;
