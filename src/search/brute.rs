@@ -29,20 +29,31 @@ impl ClosestPoint for BruteForce {
         _hint: Option<u32>,
         filter: Option<&NormalFilter>,
     ) -> Option<SurfaceHit> {
-        if !query.iter().all(|x| x.is_finite()) {
-            return None;
-        }
-        let mut best: Option<SurfaceHit> = None;
-        for triangle in 0..self.mesh.n_triangles() {
-            if filter.is_some_and(|f| !f.accepts(&self.mesh, triangle)) {
-                continue;
-            }
-            let found = closest_point_on_triangle(query, &self.mesh.corners(triangle));
-            let hit = SurfaceHit::on_triangle(triangle as u32, found);
-            if hit.distance_sq.sqrt() <= max_distance && hit.beats(best.as_ref()) {
-                best = Some(hit);
-            }
-        }
-        best
+        closest(&self.mesh, query, max_distance, filter)
     }
+}
+
+/// The closest point by asking every triangle.
+pub(super) fn closest(
+    mesh: &TriMesh,
+    query: &Point3,
+    max_distance: f64,
+    filter: Option<&NormalFilter>,
+) -> Option<SurfaceHit> {
+    if !query.iter().all(|x| x.is_finite()) {
+        return None;
+    }
+    let mut best: Option<SurfaceHit> = None;
+    for triangle in 0..mesh.n_triangles() {
+        let found = closest_point_on_triangle(query, &mesh.corners(triangle));
+        let hit = SurfaceHit::on_triangle(triangle as u32, found);
+        // The normal comes last: it costs more than the comparison.
+        if hit.distance_sq.sqrt() <= max_distance
+            && hit.beats(best.as_ref())
+            && filter.is_none_or(|f| f.accepts(mesh, triangle))
+        {
+            best = Some(hit);
+        }
+    }
+    best
 }

@@ -1,64 +1,100 @@
 use std::sync::Arc;
-use std::time::Duration;
 
-use glam::Vec3A;
-use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::builder::build_bvh2;
-use obvhs::{BvhBuildParams, aabb::Aabb as Box32};
+use super::pack::TrianglePack;
+use super::traverse::{Nearest, OUT_OF_SIGHT, Walk};
+use super::wide::{LocalFrame, Query, WideTree, box_around};
+use super::{
+    ClosestPoint, NormalFilter, SurfaceHit, TrianglePoint, brute, closest_point_on_triangle,
+};
+use crate::geometry::{Point3, TriMesh};
 
-use super::{ClosestPoint, NormalFilter, SurfaceHit, closest_point_on_triangle};
-use crate::geometry::{Point3, TriMesh, Vector3};
+/// Rounding of a normal's cosine in `f32`, generously.
+const COS_SLACK: f32 = 4e-6;
 
-/// A tree of boxes over the triangles of a mesh.
+/// A tree of boxes over the triangles of a mesh: built by obvhs, folded to four children per node
+/// and four triangles per leaf (after Wald, Benthin and Boulos 2008).
 ///
-/// Boxes are `f32` about the mesh's centre and rounded outwards; they only rule triangles out.
-/// Distances are decided in `f64`, so the answers are those of [`super::BruteForce`].
-#[derive(Clone)]
+/// The tree works in `f32` about the mesh's centre and only rules triangles out, with all rounding
+/// allowed for. Distances are decided in `f64`, so the answers are those of
+/// [`super::BruteForce`], bit for bit, with and without hint and for any number of threads.
+/// That includes meshes far from the origin. A query more than a million mesh sizes away is
+/// answered by asking every triangle.
+#[derive(Debug, Clone)]
 pub struct Bvh {
     mesh: Arc<TriMesh>,
-    center: Point3,
-    tree: Bvh2,
+    pub(super) frame: LocalFrame,
+    pub(super) tree: WideTree<TrianglePack>,
 }
 
 impl Bvh {
-    /// Builds the tree. O(triangles · log triangles).
+    /// Builds the tree over a mesh, shared or not. O(triangles · log triangles), on all threads.
     pub fn build(mesh: impl Into<Arc<TriMesh>>) -> Self {
         let mesh: Arc<TriMesh> = mesh.into();
-        let center = mesh.aabb().center();
-        let boxes: Vec<Box32> = (0..mesh.n_triangles())
-            .map(|t| box_around(mesh.corners(t).map(|p| p - center)))
+        let frame = LocalFrame::around(&mesh.aabb());
+        let local: Vec<_> = mesh.positions().iter().map(|p| frame.to_local(p)).collect();
+        let corners = |t: u32| mesh.triangles()[t as usize].map(|v| local[v as usize]);
+        let boxes: Vec<_> = (0..mesh.n_triangles() as u32)
+            .map(|t| box_around(&corners(t)))
             .collect();
-        let params = BvhBuildParams {
-            max_prims_per_leaf: 4,
-            ..BvhBuildParams::medium_build()
-        };
-        let tree = if boxes.is_empty() {
-            Bvh2::default()
-        } else {
-            build_bvh2(&boxes, params, &mut Duration::default())
-        };
-        Self { mesh, center, tree }
+        let tree = WideTree::build(&boxes, corners);
+        Self { mesh, frame, tree }
     }
 
-    fn box_distance_sq(&self, node: usize, local: &Vector3) -> f64 {
-        let aabb = self.tree.nodes[node].aabb();
-        let (min, max) = (aabb.min.as_dvec3(), aabb.max.as_dvec3());
-        (0..3)
-            .map(|i| (min[i] - local[i]).max(local[i] - max[i]).max(0.0).powi(2))
-            .sum()
+    /// The exact answer for one triangle, if it counts.
+    fn exact(
+        &self,
+        query: &Point3,
+        max_distance: f64,
+        triangle: u32,
+    ) -> Option<Nearest<TrianglePoint>> {
+        let found = closest_point_on_triangle(query, &self.mesh.corners(triangle as usize));
+        (found.distance_sq.sqrt() <= max_distance).then_some(Nearest {
+            distance_sq: found.distance_sq,
+            id: triangle,
+            found,
+        })
     }
-}
 
-/// The box in `f32`, widened to the next number where rounding would have cut something off.
-fn box_around(corners: [Vector3; 3]) -> Box32 {
-    let min = corners[0].inf(&corners[1]).inf(&corners[2]);
-    let max = corners[0].sup(&corners[1]).sup(&corners[2]);
-    let below = |x: f64| (x as f32).next_down();
-    let above = |x: f64| (x as f32).next_up();
-    Box32::new(
-        Vec3A::new(below(min.x), below(min.y), below(min.z)),
-        Vec3A::new(above(max.x), above(max.y), above(max.z)),
-    )
+    /// Walks the tree, letting `admit` choose among the triangles of each leaf.
+    fn walk(
+        &self,
+        query: &Point3,
+        max_distance: f64,
+        hint: Option<u32>,
+        admit: impl Fn(&TrianglePack, u32) -> u32,
+    ) -> Option<Nearest<TrianglePoint>> {
+        let local = self.frame.to_local(query);
+        let exact = |triangle| self.exact(query, max_distance, triangle);
+        let limit = max_distance * self.frame.scale;
+        let mut walk = Walk::new(&self.tree, &local, limit, admit, exact);
+        if let Some(near) = hint.and_then(exact) {
+            walk.lower_bound((near.distance_sq.sqrt() * self.frame.scale) as f32);
+        }
+        walk.run()
+    }
+
+    /// Of the marked triangles of a leaf, those that a filter lets through.
+    fn admitted(&self, filter: &NormalFilter, pack: &TrianglePack, marked: u32) -> u32 {
+        let cos = pack.normal_cos(&Query::at(&filter.direction)).to_array();
+        let needles = pack.needles();
+        let mut admitted = marked;
+        for (slot, &cos) in cos.iter().enumerate() {
+            let bit = 1 << slot;
+            if marked & bit == 0 {
+                continue;
+            }
+            let doubt = cos - filter.min_cos as f32;
+            let accepted = if needles & bit != 0 || doubt.abs() <= COS_SLACK {
+                filter.accepts(&self.mesh, pack.id(slot) as usize)
+            } else {
+                doubt > 0.0
+            };
+            if !accepted {
+                admitted &= !bit;
+            }
+        }
+        admitted
+    }
 }
 
 impl ClosestPoint for Bvh {
@@ -73,46 +109,24 @@ impl ClosestPoint for Bvh {
         hint: Option<u32>,
         filter: Option<&NormalFilter>,
     ) -> Option<SurfaceHit> {
-        if self.tree.nodes.is_empty() || !query.iter().all(|x| x.is_finite()) {
+        if !query.iter().all(|x| x.is_finite()) || max_distance.is_nan() || max_distance < 0.0 {
             return None;
         }
-        let local = query - self.center;
-        let mut best: Option<SurfaceHit> = None;
-        let consider = |triangle: u32, best: &mut Option<SurfaceHit>| {
-            if filter.is_some_and(|f| !f.accepts(&self.mesh, triangle as usize)) {
-                return;
-            }
-            let found = closest_point_on_triangle(query, &self.mesh.corners(triangle as usize));
-            let hit = SurfaceHit::on_triangle(triangle, found);
-            if hit.distance_sq.sqrt() <= max_distance && hit.beats(best.as_ref()) {
-                *best = Some(hit);
-            }
+        if self.frame.to_local(query).amax() > OUT_OF_SIGHT {
+            return brute::closest(&self.mesh, query, max_distance, filter);
+        }
+        let accepted = |t: &u32| {
+            (*t as usize) < self.mesh.n_triangles()
+                && filter.is_none_or(|f| f.accepts(&self.mesh, *t as usize))
         };
-        if let Some(hint) = hint.filter(|&t| (t as usize) < self.mesh.n_triangles()) {
-            consider(hint, &mut best);
-        }
-        let mut stack = vec![(self.box_distance_sq(0, &local), 0usize)];
-        while let Some((near_sq, node)) = stack.pop() {
-            let limit = best.map_or(max_distance * max_distance, |hit| hit.distance_sq);
-            // The box may be as far as the triangle in it, give or take the last digits.
-            if near_sq > limit * (1.0 + 1e-12) {
-                continue;
-            }
-            let node = &self.tree.nodes[node];
-            let first = node.first_index as usize;
-            if node.is_leaf() {
-                for i in first..first + node.prim_count as usize {
-                    consider(self.tree.primitive_indices[i], &mut best);
-                }
-                continue;
-            }
-            let mut children = [first, first + 1].map(|c| (self.box_distance_sq(c, &local), c));
-            if children[0].0 < children[1].0 {
-                children.swap(0, 1);
-            }
-            stack.extend(children);
-        }
-        best
+        let hint = hint.filter(accepted);
+        let nearest = match filter {
+            None => self.walk(query, max_distance, hint, |_, marked| marked),
+            Some(filter) => self.walk(query, max_distance, hint, |pack, marked| {
+                self.admitted(filter, pack, marked)
+            }),
+        };
+        nearest.map(|nearest| SurfaceHit::on_triangle(nearest.id, nearest.found))
     }
 }
 

@@ -6,10 +6,17 @@
 
 mod brute;
 mod bvh;
+mod pack;
+mod points;
+mod ray;
+mod traverse;
 mod triangle;
+mod wide;
 
 pub use brute::BruteForce;
 pub use bvh::Bvh;
+pub use points::{NearestPoint, PointTree};
+pub use ray::RayHit;
 pub use triangle::{TrianglePoint, closest_point_on_triangle};
 
 use crate::geometry::{Point3, TriMesh, Vector3};

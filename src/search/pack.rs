@@ -1,0 +1,221 @@
+//! What the leaves of a [`WideTree`](super::wide::WideTree) hold: four triangles or four points.
+
+use glam::Vec4;
+
+use super::wide::{FAR_AWAY, Pack, Query, WIDTH};
+use crate::geometry::Vector3;
+
+/// Height over longest edge below which the direction of a triangle's normal is left to `f64`.
+const NEEDLE: f64 = 1e-6;
+
+/// Edges shorter than this, in local units, count as points; far less than `f32` can tell apart.
+const NO_LENGTH: f64 = 1e-12;
+
+/// Four triangles, each in a frame of its own: corner a at the origin, b on the first axis, c in
+/// the plane of the first two. a–b is the longest edge, which keeps needles well-conditioned.
+#[derive(Debug, Clone)]
+#[repr(C, align(64))]
+pub(super) struct TrianglePack {
+    origin: [Vec4; 3],
+    first_axis: [Vec4; 3],
+    second_axis: [Vec4; 3],
+    /// First coordinate of b; its second is zero.
+    b: Vec4,
+    c: [Vec4; 2],
+    /// One over the squared length of b–c; zero where it has no length.
+    inv_bc: Vec4,
+    /// One over the squared length of a–c; zero where it has no length.
+    inv_ac: Vec4,
+    ids: [u32; WIDTH],
+}
+
+impl TrianglePack {
+    /// Cosine between each triangle's normal and `direction`.
+    #[inline]
+    pub(super) fn normal_cos(&self, direction: &Query) -> Vec4 {
+        let [x, y, z] = self.normals();
+        x * direction.x + y * direction.y + z * direction.z
+    }
+
+    #[inline]
+    fn normals(&self) -> [Vec4; 3] {
+        let (u, v) = (&self.first_axis, &self.second_axis);
+        [
+            u[1] * v[2] - u[2] * v[1],
+            u[2] * v[0] - u[0] * v[2],
+            u[0] * v[1] - u[1] * v[0],
+        ]
+    }
+
+    /// Indices of the triangles without the unused places.
+    pub(super) fn real_ids(&self) -> impl Iterator<Item = u32> {
+        self.ids.into_iter().filter(|&id| id != u32::MAX)
+    }
+
+    /// Index of the triangle in a place.
+    pub(super) fn id(&self, slot: usize) -> u32 {
+        self.ids[slot]
+    }
+
+    /// Bit per triangle: so narrow that [`Self::normal_cos`] says nothing about it.
+    pub(super) fn needles(&self) -> u32 {
+        (self.c[1].cmple(self.b * NEEDLE as f32)).bitmask()
+    }
+}
+
+impl Pack for TrianglePack {
+    type Item = [Vector3; 3];
+
+    fn new(items: &[(u32, [Vector3; 3])]) -> Self {
+        let mut pack = Self {
+            origin: [Vec4::splat(FAR_AWAY); 3],
+            first_axis: [Vec4::ONE, Vec4::ZERO, Vec4::ZERO],
+            second_axis: [Vec4::ZERO, Vec4::ONE, Vec4::ZERO],
+            b: Vec4::ZERO,
+            c: [Vec4::ZERO; 2],
+            inv_bc: Vec4::ZERO,
+            inv_ac: Vec4::ZERO,
+            ids: [u32::MAX; WIDTH],
+        };
+        for (slot, (id, corners)) in items.iter().enumerate() {
+            pack.set(slot, corners);
+            pack.ids[slot] = *id;
+        }
+        pack
+    }
+
+    /// The distance to the plane where the foot of the perpendicular lies inside, otherwise the
+    /// smallest of the distances to the three edges. "Inside" is strict, so that a triangle
+    /// without area is its edges.
+    #[inline]
+    fn distance_sq(&self, query: &Query) -> Vec4 {
+        let (px, py, pz) = (
+            query.x - self.origin[0],
+            query.y - self.origin[1],
+            query.z - self.origin[2],
+        );
+        let along = |axis: &[Vec4; 3]| px * axis[0] + py * axis[1] + pz * axis[2];
+        let (x, y) = (along(&self.first_axis), along(&self.second_axis));
+        let height = along(&self.normals());
+
+        let ab_x = x - x.max(Vec4::ZERO).min(self.b);
+        let ab_sq = ab_x * ab_x + y * y;
+
+        let (ex, ey) = (self.c[0] - self.b, self.c[1]);
+        let from_b = x - self.b;
+        let t = clamp_unit((from_b * ex + y * ey) * self.inv_bc);
+        let (rx, ry) = (from_b - ex * t, y - ey * t);
+        let bc_sq = rx * rx + ry * ry;
+
+        let (fx, fy) = (self.c[0], self.c[1]);
+        let t = clamp_unit((x * fx + y * fy) * self.inv_ac);
+        let (rx, ry) = (x - fx * t, y - fy * t);
+        let ac_sq = rx * rx + ry * ry;
+
+        let inside = y.cmpgt(Vec4::ZERO) & (ex * y).cmpgt(ey * from_b) & (fx * y).cmplt(fy * x);
+        let in_plane = Vec4::select(inside, Vec4::ZERO, ab_sq.min(bc_sq).min(ac_sq));
+        in_plane + height * height
+    }
+
+    #[inline]
+    fn ids(&self) -> &[u32; WIDTH] {
+        &self.ids
+    }
+}
+
+#[inline]
+fn clamp_unit(t: Vec4) -> Vec4 {
+    t.max(Vec4::ZERO).min(Vec4::ONE)
+}
+
+impl TrianglePack {
+    fn set(&mut self, slot: usize, corners: &[Vector3; 3]) {
+        let length = |i: usize| (corners[(i + 1) % 3] - corners[i]).norm_squared();
+        let start = (1..3).fold(0, |best, i| if length(i) > length(best) { i } else { best });
+        let [a, b, c] = [0, 1, 2].map(|i| corners[(start + i) % 3]);
+        let ab = b - a;
+        let first = ab.try_normalize(0.0).unwrap_or_else(Vector3::x);
+        let across = (c - a) - first * first.dot(&(c - a));
+        let tiny = ab.norm() * f64::EPSILON;
+        let second = across.try_normalize(tiny).map_or_else(
+            || any_perpendicular(&first),
+            // Once more, because what cancelled above left `across` slightly off.
+            |v| (v - first * first.dot(&v)).normalize(),
+        );
+        let (cx, cy) = ((c - a).dot(&first), (c - a).dot(&second).max(0.0));
+        let inverse = |length_sq: f64| {
+            if length_sq < NO_LENGTH * NO_LENGTH {
+                0.0
+            } else {
+                (1.0 / length_sq) as f32
+            }
+        };
+        for axis in 0..3 {
+            self.origin[axis][slot] = a[axis] as f32;
+            self.first_axis[axis][slot] = first[axis] as f32;
+            self.second_axis[axis][slot] = second[axis] as f32;
+        }
+        self.b[slot] = ab.norm() as f32;
+        self.c[0][slot] = cx as f32;
+        self.c[1][slot] = cy as f32;
+        self.inv_bc[slot] = inverse((c - b).norm_squared());
+        self.inv_ac[slot] = inverse((c - a).norm_squared());
+    }
+}
+
+fn any_perpendicular(unit: &Vector3) -> Vector3 {
+    let axis = unit.iamin();
+    let mut other = Vector3::zeros();
+    other[axis] = 1.0;
+    unit.cross(&other).normalize()
+}
+
+/// Four points.
+#[derive(Debug, Clone)]
+#[repr(C, align(64))]
+pub(super) struct PointPack {
+    position: [Vec4; 3],
+    ids: [u32; WIDTH],
+}
+
+impl PointPack {
+    /// Replaces every index by what `new_ids` has in its place.
+    pub(super) fn rename(&mut self, new_ids: &[u32]) {
+        for id in self.ids.iter_mut().filter(|id| **id != u32::MAX) {
+            *id = new_ids[*id as usize];
+        }
+    }
+}
+
+impl Pack for PointPack {
+    type Item = Vector3;
+
+    fn new(items: &[(u32, Vector3)]) -> Self {
+        let mut pack = Self {
+            position: [Vec4::splat(FAR_AWAY); 3],
+            ids: [u32::MAX; WIDTH],
+        };
+        for (slot, (id, point)) in items.iter().enumerate() {
+            for axis in 0..3 {
+                pack.position[axis][slot] = point[axis] as f32;
+            }
+            pack.ids[slot] = *id;
+        }
+        pack
+    }
+
+    #[inline]
+    fn distance_sq(&self, query: &Query) -> Vec4 {
+        let (x, y, z) = (
+            query.x - self.position[0],
+            query.y - self.position[1],
+            query.z - self.position[2],
+        );
+        x * x + y * y + z * z
+    }
+
+    #[inline]
+    fn ids(&self) -> &[u32; WIDTH] {
+        &self.ids
+    }
+}

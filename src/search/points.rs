@@ -1,0 +1,101 @@
+use std::sync::Arc;
+
+use super::pack::PointPack;
+use super::traverse::{Nearest, OUT_OF_SIGHT, Walk};
+use super::wide::{LocalFrame, WideTree, box_around};
+use crate::geometry::{Aabb, Point3};
+
+/// The point of a set that is closest to a query.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearestPoint {
+    /// Index of the point; of several equally close ones, the lowest.
+    pub index: u32,
+    /// Squared distance from the query.
+    pub distance_sq: f64,
+}
+
+/// A tree over points, for pairing nodes with nodes.
+///
+/// The same tree as [`super::Bvh`] with points for triangles, and as exact: its answers are those
+/// of a plain loop, bit for bit.
+#[derive(Debug, Clone)]
+pub struct PointTree {
+    points: Arc<[Point3]>,
+    frame: LocalFrame,
+    tree: WideTree<PointPack>,
+}
+
+impl PointTree {
+    /// Builds the tree. Points that are not finite are never found. O(points · log points).
+    pub fn build(points: impl Into<Arc<[Point3]>>) -> Self {
+        let points: Arc<[Point3]> = points.into();
+        let finite: Vec<u32> = (0..points.len() as u32)
+            .filter(|&i| points[i as usize].iter().all(|x| x.is_finite()))
+            .collect();
+        let frame = LocalFrame::around(&Aabb::of_points(
+            finite.iter().map(|&i| &points[i as usize]),
+        ));
+        let local = |i: u32| frame.to_local(&points[i as usize]);
+        let boxes: Vec<_> = finite.iter().map(|&i| box_around(&[local(i)])).collect();
+        let mut tree = WideTree::<PointPack>::build(&boxes, |i| local(finite[i as usize]));
+        if finite.len() < points.len() {
+            for pack in &mut tree.packs {
+                pack.rename(&finite);
+            }
+        }
+        Self {
+            points,
+            frame,
+            tree,
+        }
+    }
+
+    /// The points, as given.
+    pub fn points(&self) -> &[Point3] {
+        &self.points
+    }
+
+    /// The closest point within `max_distance` (may be infinite), or `None` if there is none or
+    /// the query is not finite. `hint` names a point that is probably close; it changes the speed,
+    /// never the answer.
+    pub fn nearest(
+        &self,
+        query: &Point3,
+        max_distance: f64,
+        hint: Option<u32>,
+    ) -> Option<NearestPoint> {
+        if !query.iter().all(|x| x.is_finite()) || max_distance.is_nan() || max_distance < 0.0 {
+            return None;
+        }
+        let exact = |index: u32| {
+            let distance_sq = (query - self.points[index as usize]).norm_squared();
+            (distance_sq.sqrt() <= max_distance).then_some(Nearest {
+                distance_sq,
+                id: index,
+                found: (),
+            })
+        };
+        let local = self.frame.to_local(query);
+        let nearest = if local.amax() > OUT_OF_SIGHT {
+            let mut best = None;
+            for near in (0..self.points.len() as u32).filter_map(exact) {
+                if near.beats(best.as_ref()) {
+                    best = Some(near);
+                }
+            }
+            best
+        } else {
+            let limit = max_distance * self.frame.scale;
+            let mut walk = Walk::new(&self.tree, &local, limit, |_, marked| marked, exact);
+            let hint = hint.filter(|&i| (i as usize) < self.points.len());
+            if let Some(near) = hint.and_then(exact) {
+                walk.lower_bound((near.distance_sq.sqrt() * self.frame.scale) as f32);
+            }
+            walk.run()
+        };
+        nearest.map(|nearest| NearestPoint {
+            index: nearest.id,
+            distance_sq: nearest.distance_sq,
+        })
+    }
+}

@@ -1,0 +1,123 @@
+use super::Bvh;
+use super::wide::{Link, Node, WIDTH};
+use crate::geometry::{Point3, Vector3};
+
+use super::ClosestPoint;
+
+/// Where a ray first meets the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RayHit {
+    /// The point on the surface.
+    pub point: Point3,
+    /// The triangle it lies on; of several met at the same place, the one with the lowest index.
+    pub triangle: u32,
+    /// Weights of the triangle's corners; they sum to 1.
+    pub barycentric: [f64; 3],
+    /// Distance from the ray's origin, in the mesh's length unit.
+    pub distance: f64,
+}
+
+impl Bvh {
+    /// The first point where the ray from `origin` along `direction` (any length) meets a triangle
+    /// from either side, or `None`. Triangles without area and triangles seen edge-on are not met.
+    ///
+    /// For picking: `f64` throughout, a few microseconds per ray.
+    pub fn first_hit(&self, origin: &Point3, direction: &Vector3) -> Option<RayHit> {
+        let direction = direction.try_normalize(0.0)?;
+        let finite = |v: &Vector3| v.iter().all(|x| x.is_finite());
+        if !finite(&origin.coords) || !finite(&direction) {
+            return None;
+        }
+        // Boxes are in local units; a uniform scale leaves the direction as it is.
+        let local = self.frame.to_local(origin);
+        let inverse = direction.map(|x| 1.0 / x);
+        let mut best: Option<RayHit> = None;
+        let mut waiting: Vec<(f64, Link)> = self.tree.root.map(|r| (0.0, r)).into_iter().collect();
+        while let Some((entry, link)) = waiting.pop() {
+            // A hair beyond, because the entry is rounded too.
+            if best.is_some_and(|hit| entry > hit.distance * self.frame.scale * (1.0 + 1e-9) + 1e-9)
+            {
+                continue;
+            }
+            match link.leaf() {
+                Ok(leaf) => {
+                    for id in self.tree.packs[leaf].real_ids() {
+                        let hit = self.meet(origin, &direction, id);
+                        best = nearer(best, hit);
+                    }
+                }
+                Err(node) => {
+                    let mut entered = entries(&self.tree.nodes[node], &local, &inverse);
+                    entered.sort_by(|a, b| b.0.total_cmp(&a.0));
+                    waiting.extend(entered);
+                }
+            }
+        }
+        best
+    }
+
+    /// Where the ray meets one triangle (Möller and Trumbore 1997).
+    fn meet(&self, origin: &Point3, direction: &Vector3, triangle: u32) -> Option<RayHit> {
+        let [a, b, c] = self.mesh().corners(triangle as usize);
+        let (ab, ac) = (b - a, c - a);
+        let across = direction.cross(&ac);
+        let determinant = ab.dot(&across);
+        let from_a = origin - a;
+        let turned = from_a.cross(&ab);
+        let v = from_a.dot(&across) / determinant;
+        let w = direction.dot(&turned) / determinant;
+        let distance = ac.dot(&turned) / determinant;
+        // A hair of overlap closes the seam between neighbours; NaN fails every comparison.
+        let edge = -1e-12;
+        if !(v >= edge && w >= edge && v + w <= 1.0 - edge && distance >= 0.0) {
+            return None;
+        }
+        let point = a + ab * v + ac * w;
+        point.iter().all(|x| x.is_finite()).then_some(RayHit {
+            point,
+            triangle,
+            barycentric: [1.0 - v - w, v, w],
+            distance,
+        })
+    }
+}
+
+fn nearer(best: Option<RayHit>, hit: Option<RayHit>) -> Option<RayHit> {
+    match (best, hit) {
+        (Some(a), Some(b)) => {
+            let b_first = (b.distance, b.triangle) < (a.distance, a.triangle);
+            Some(if b_first { b } else { a })
+        }
+        (a, b) => a.or(b),
+    }
+}
+
+/// The children whose boxes the ray enters, with the distance at which it does (slab test, Kay and
+/// Kajiya 1986). Boxes are a little larger than what they hold, which covers the rounding here.
+fn entries(node: &Node, origin: &Vector3, inverse: &Vector3) -> Vec<(f64, Link)> {
+    let mut entered = Vec::with_capacity(WIDTH);
+    for slot in 0..WIDTH {
+        let (mut from, mut to) = (0.0_f64, f64::INFINITY);
+        for axis in 0..3 {
+            let min = f64::from(node.min[axis][slot]);
+            let max = f64::from(node.max[axis][slot]);
+            if inverse[axis].is_infinite() {
+                // Parallel to the slab: inside it or never.
+                if origin[axis] < min || origin[axis] > max {
+                    to = f64::NEG_INFINITY;
+                }
+                continue;
+            }
+            let (s, t) = (
+                (min - origin[axis]) * inverse[axis],
+                (max - origin[axis]) * inverse[axis],
+            );
+            from = from.max(s.min(t));
+            to = to.min(s.max(t));
+        }
+        if from <= to && node.is_used(slot) {
+            entered.push((from, node.child[slot]));
+        }
+    }
+    entered
+}
