@@ -1,1 +1,16 @@
-//! Nothing here yet.
+//! The work of the program as one call each: load, reduce, match, export, and the paper's tables.
+//!
+//! From here up the two meshes have roles: the *crash* part is fixed (target), the *stamped* part
+//! moves (source). Each stage returns what it did and how long it took; nothing here prints.
+
+pub mod load;
+pub mod reduce;
+
+mod error;
+
+pub use error::PipelineError;
+
+/// Milliseconds since `start`, for reports; no result depends on it.
+fn millis_since(start: std::time::Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}

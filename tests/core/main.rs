@@ -1,7 +1,8 @@
 //! Tests below the window: one file per module, all in one binary.
 
+#![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
+
 mod layering;
 mod pan;
-mod samples;
 mod simplify;
 mod tidy;

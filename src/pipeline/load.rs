@@ -1,0 +1,226 @@
+//! From a file to a mesh that can be shown, reduced and matched.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::{PipelineError, millis_since};
+use crate::formats::{self, Model, ReadOptions, Selection, Surface};
+use crate::geometry::{Point3, TriMesh, orient_consistently, weld};
+use crate::monitor::Monitor;
+
+/// Choices for loading one side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadSettings {
+    /// Which elements make the part.
+    pub selection: Selection,
+    /// Coordinates are multiplied by this once, here; 1 for a file in the crash model's unit.
+    pub length_factor: f64,
+    /// Further folders for included files.
+    pub read: ReadOptions,
+}
+
+impl Default for LoadSettings {
+    fn default() -> Self {
+        Self {
+            selection: Selection::All,
+            length_factor: 1.0,
+            read: ReadOptions::default(),
+        }
+    }
+}
+
+/// What loading did.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LoadReport {
+    /// Nodes in the file and its includes.
+    pub n_nodes: usize,
+    /// Shells in the file and its includes.
+    pub n_shells: usize,
+    /// Parts in the file and its includes.
+    pub n_parts: usize,
+    /// Triangles of the chosen part.
+    pub n_triangles: usize,
+    /// Nodes that were joined because they lie at the same place.
+    pub n_joined: usize,
+    /// Triangles that were turned to agree with their neighbours.
+    pub n_turned: usize,
+    /// Findings of the reader.
+    pub n_diagnostics: u64,
+    /// Time to read, in milliseconds; 0 if the model was at hand.
+    pub read_ms: f64,
+    /// Time to choose, join and orient, in milliseconds.
+    pub prepare_ms: f64,
+}
+
+/// A part as it was read, and the mesh made of it.
+#[derive(Debug, Clone)]
+pub struct LoadedPart {
+    /// The file it came from.
+    pub path: PathBuf,
+    /// Everything the file holds, in the file's own unit.
+    pub model: Arc<Model>,
+    /// The settings it was loaded with.
+    pub settings: LoadSettings,
+    /// The chosen elements as triangles, in the file's own unit, with the way back to the elements.
+    pub surface: Arc<Surface>,
+    /// The surface in the crash model's unit, joined at equal positions, its triangles turned to
+    /// agree with their neighbours. This is what is reduced and matched.
+    pub mesh: Arc<TriMesh>,
+    /// For each triangle of `mesh`, the triangle of `surface` it came from.
+    pub triangle_of: Arc<Vec<u32>>,
+    /// For each vertex of `surface`, the vertex of `mesh` it became.
+    pub vertex_of: Arc<Vec<u32>>,
+    /// What loading did.
+    pub report: LoadReport,
+}
+
+impl LoadedPart {
+    /// The file name without its folder.
+    pub fn file_name(&self) -> String {
+        self.path
+            .file_name()
+            .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+    }
+
+    /// Ids of the parts that have triangles in the mesh, in the order of the file.
+    pub fn chosen_part_ids(&self) -> Vec<u64> {
+        let mut used = vec![false; self.model.parts.len()];
+        for &part in &self.surface.triangle_part {
+            used[part as usize] = true;
+        }
+        let parts = self.model.parts.iter().zip(used);
+        parts
+            .filter(|(_, used)| *used)
+            .map(|(part, _)| part.id)
+            .collect()
+    }
+
+    /// Area-weighted mean thickness of the chosen elements in the crash model's unit, if known.
+    pub fn mean_thickness(&self) -> Option<f64> {
+        let (mut sum, mut area_sum) = (0.0, 0.0);
+        for (triangle, &element) in self.surface.triangle_element.iter().enumerate() {
+            if (element as usize) < self.model.shells.len()
+                && let Some(corners) = self.model.shell_thickness(element)
+            {
+                let area = self.surface.mesh.triangle_area(triangle);
+                sum += area * corners.iter().sum::<f64>() / 4.0;
+                area_sum += area;
+            }
+        }
+        (sum > 0.0).then(|| sum / area_sum * self.settings.length_factor)
+    }
+}
+
+/// Reads a file and prepares the chosen part.
+pub fn load(
+    path: &Path,
+    settings: &LoadSettings,
+    monitor: &Monitor,
+) -> Result<LoadedPart, PipelineError> {
+    let start = Instant::now();
+    let model = Arc::new(formats::read(path, &settings.read, monitor)?);
+    let read_ms = millis_since(start);
+    let mut part = prepare(path, model, settings, monitor)?;
+    part.report.read_ms = read_ms;
+    Ok(part)
+}
+
+/// Prepares the chosen part of a model that was read before, for example after another choice of
+/// parts.
+pub fn prepare(
+    path: &Path,
+    model: Arc<Model>,
+    settings: &LoadSettings,
+    monitor: &Monitor,
+) -> Result<LoadedPart, PipelineError> {
+    let start = Instant::now();
+    let factor = settings.length_factor;
+    if !(factor.is_finite() && factor > 0.0) {
+        return Err(PipelineError::BadUnitFactor(factor));
+    }
+    monitor.check()?;
+    monitor.progress("prepare", 0, None);
+    let surface = model
+        .surface(&settings.selection)
+        .map_err(|error| PipelineError::Selection {
+            error,
+            path: path.to_path_buf(),
+        })?;
+    monitor.check()?;
+    let welded = weld(&scaled(&surface.mesh, factor), 0.0);
+    monitor.check()?;
+    let (mesh, n_turned) = orient_consistently(&welded.mesh);
+    let report = LoadReport {
+        n_nodes: model.nodes.len(),
+        n_shells: model.shells.len(),
+        n_parts: model.parts.len(),
+        n_triangles: mesh.n_triangles(),
+        n_joined: surface.mesh.n_vertices() - mesh.n_vertices(),
+        n_turned,
+        n_diagnostics: model.diagnostics.total() + surface.diagnostics.total(),
+        read_ms: 0.0,
+        prepare_ms: millis_since(start),
+    };
+    Ok(LoadedPart {
+        path: path.to_path_buf(),
+        model,
+        settings: settings.clone(),
+        surface: Arc::new(surface),
+        mesh: Arc::new(mesh),
+        triangle_of: Arc::new(welded.triangle_of),
+        vertex_of: Arc::new(welded.vertex_of),
+        report,
+    })
+}
+
+fn scaled(mesh: &TriMesh, factor: f64) -> TriMesh {
+    if factor == 1.0 {
+        return mesh.clone();
+    }
+    let positions: Vec<Point3> = mesh.positions().iter().map(|p| p * factor).collect();
+    // A product that overflows leaves the mesh as it was, which the sizes then show.
+    TriMesh::new(positions, mesh.triangles().to_vec()).unwrap_or_else(|_| mesh.clone())
+}
+
+/// Understands a choice of parts as typed: `2001`, `2001,2002`, a title, `set:7`, `shell-set:7`,
+/// `node-set:7`. Anything that is none of the numeric forms is a title.
+pub fn parse_selection(text: &str) -> Selection {
+    let text = text.trim();
+    let after = |prefix: &str| {
+        text.strip_prefix(prefix)
+            .and_then(|id| id.trim().parse().ok())
+    };
+    if let Some(id) = after("set:").or_else(|| after("part-set:")) {
+        return Selection::PartSet(id);
+    }
+    if let Some(id) = after("shell-set:") {
+        return Selection::ShellSet(id);
+    }
+    if let Some(id) = after("node-set:") {
+        return Selection::NodeSet(id);
+    }
+    let ids: Result<Vec<u64>, _> = text.split(',').map(|id| id.trim().parse()).collect();
+    match ids {
+        Ok(ids) => Selection::Parts(ids),
+        Err(_) => Selection::PartTitle(text.to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn choices_are_understood_as_typed() {
+        assert_eq!(parse_selection(" 12 "), Selection::Parts(vec![12]));
+        assert_eq!(parse_selection("1, 2,3"), Selection::Parts(vec![1, 2, 3]));
+        assert_eq!(parse_selection("set:7"), Selection::PartSet(7));
+        assert_eq!(parse_selection("shell-set: 8"), Selection::ShellSet(8));
+        assert_eq!(parse_selection("node-set:9"), Selection::NodeSet(9));
+        assert_eq!(
+            parse_selection("B pillar, inner"),
+            Selection::PartTitle("B pillar, inner".into())
+        );
+    }
+}
