@@ -6,6 +6,7 @@
 pub mod diagnostic;
 pub mod keyword;
 pub mod model;
+pub mod moved;
 pub mod source;
 
 use std::path::{Path, PathBuf};

@@ -1,0 +1,461 @@
+//! Writes a model as a keyword deck: parts, sections, nodes, elements, sets, forming results.
+
+use super::super::model::{Model, Part, Shell, SolidKind};
+use super::card::Layout;
+use super::fixed_width::fixed_width;
+use crate::monitor::{Cancelled, Monitor};
+
+/// Rows between two questions whether the writing is still wanted.
+const CHUNK: usize = 4096;
+
+/// What goes into the deck.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// Lines of text for the head of the deck, written as comments.
+    pub comments: Vec<String>,
+    /// Stresses, strains and history variables too.
+    pub with_forming: bool,
+}
+
+impl Default for WriteOptions {
+    fn default() -> Self {
+        Self {
+            comments: Vec::new(),
+            with_forming: true,
+        }
+    }
+}
+
+/// The deck as bytes. Ids beyond 8 digits make it an I10 deck, beyond 10 digits a long one.
+/// Coordinates are written so that they read back bit-equal where 16 columns allow it, else with
+/// an error below 1e-9 of their size. O(model).
+pub fn write(
+    model: &Model,
+    options: &WriteOptions,
+    monitor: &Monitor,
+) -> Result<Vec<u8>, Cancelled> {
+    let layout = layout_for(largest_id(model));
+    let mut deck = Writer {
+        text: Vec::new(),
+        layout,
+        monitor,
+    };
+    deck.head(model, options);
+    deck.parts(model);
+    deck.nodes(model)?;
+    deck.shells(model)?;
+    deck.solids(model)?;
+    deck.sets(model)?;
+    if options.with_forming {
+        deck.stresses(model)?;
+        deck.strains(model)?;
+    }
+    deck.line("*END");
+    Ok(deck.text)
+}
+
+fn largest_id(model: &Model) -> u64 {
+    let sections = model.sections.iter().map(|section| section.id);
+    let parts = model.parts.iter().map(|part| part.id.max(part.section_id));
+    let shells = model.shells.iter().map(|shell| shell.id);
+    let solids = model.solids.iter().map(|solid| solid.id);
+    let nodes = model.nodes.ids().iter().copied();
+    nodes
+        .chain(shells)
+        .chain(solids)
+        .chain(parts)
+        .chain(sections)
+        .max()
+        .unwrap_or(0)
+}
+
+fn layout_for(largest_id: u64) -> Layout {
+    match largest_id {
+        0..=99_999_999 => Layout::Standard,
+        100_000_000..=9_999_999_999 => Layout::I10,
+        _ => Layout::Long,
+    }
+}
+
+struct Writer<'a> {
+    text: Vec<u8>,
+    layout: Layout,
+    monitor: &'a Monitor,
+}
+
+impl Writer<'_> {
+    fn head(&mut self, model: &Model, options: &WriteOptions) {
+        self.line(match self.layout {
+            Layout::Standard => "*KEYWORD",
+            Layout::I10 => "*KEYWORD I10=Y",
+            Layout::Long => "*KEYWORD LONG=Y",
+        });
+        for comment in options.comments.iter().flat_map(|text| text.lines()) {
+            self.line(&format!("$ {comment}"));
+        }
+        if !model.title.is_empty() {
+            self.line("*TITLE");
+            self.title(&model.title);
+        }
+    }
+
+    fn parts(&mut self, model: &Model) {
+        let mut sections: Vec<(u64, [f64; 4])> = model
+            .sections
+            .iter()
+            .map(|section| (section.id, section.thickness))
+            .collect();
+        for part in model.parts.iter().filter(|part| part.is_defined) {
+            let section_id = section_of(part, &mut sections);
+            self.line("*PART");
+            self.title(&part.title);
+            self.int(part.id, 10);
+            self.int(section_id, 10);
+            self.end();
+        }
+        for (id, thickness) in sections {
+            self.line("*SECTION_SHELL");
+            self.int(id, 10);
+            self.int(2, 10);
+            self.end();
+            self.reals(&thickness, 10);
+            self.end();
+        }
+    }
+
+    fn nodes(&mut self, model: &Model) -> Result<(), Cancelled> {
+        self.line("*NODE");
+        let rows = model.nodes.ids().iter().zip(model.nodes.positions());
+        for (row, (&id, position)) in rows.enumerate() {
+            self.pause(row)?;
+            self.int(id, 8);
+            self.reals(position.coords.as_slice(), 16);
+            self.end();
+        }
+        Ok(())
+    }
+
+    /// Runs of shells with and without their own thickness keep the order of the model.
+    fn shells(&mut self, model: &Model) -> Result<(), Cancelled> {
+        let mut mid_side = model.mid_side.iter().peekable();
+        let mut keyword = "";
+        for (row, shell) in model.shells.iter().enumerate() {
+            self.pause(row)?;
+            let extra = model.shell_extra(row as u32);
+            let needed = match extra {
+                None => "*ELEMENT_SHELL",
+                Some(extra) if extra.beta == 0.0 => "*ELEMENT_SHELL_THICKNESS",
+                Some(_) => "*ELEMENT_SHELL_BETA",
+            };
+            if needed != keyword {
+                keyword = needed;
+                self.line(keyword);
+            }
+            let quadratic = mid_side.next_if(|(index, _)| *index as usize == row);
+            self.shell(model, shell, quadratic.map(|(_, nodes)| nodes));
+            if let Some(extra) = extra {
+                self.reals(&extra.thickness, 16);
+                if extra.beta != 0.0 {
+                    self.real(extra.beta, 16);
+                }
+                self.end();
+                if quadratic.is_some() {
+                    self.reals(&[0.0; 4], 16);
+                    self.end();
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn shell(&mut self, model: &Model, shell: &Shell, mid_side: Option<&[u32; 4]>) {
+        self.int(shell.id, 8);
+        self.int(model.parts[shell.part as usize].id, 8);
+        let ids = model.nodes.ids();
+        for node in shell.nodes {
+            self.int(ids[node as usize], 8);
+        }
+        for &node in mid_side.into_iter().flatten() {
+            self.int(ids.get(node as usize).copied().unwrap_or(0), 8);
+        }
+        self.end();
+    }
+
+    fn solids(&mut self, model: &Model) -> Result<(), Cancelled> {
+        let mut kind = None;
+        for (row, solid) in model.solids.iter().enumerate() {
+            self.pause(row)?;
+            if kind != Some(solid.kind) {
+                kind = Some(solid.kind);
+                self.line(match solid.kind {
+                    SolidKind::Solid => "*ELEMENT_SOLID",
+                    SolidKind::ThickShell => "*ELEMENT_TSHELL",
+                });
+            }
+            self.int(solid.id, 8);
+            self.int(model.parts[solid.part as usize].id, 8);
+            if solid.kind == SolidKind::Solid {
+                self.end();
+            }
+            for node in solid.nodes {
+                self.int(model.nodes.ids()[node as usize], 8);
+            }
+            self.end();
+        }
+        Ok(())
+    }
+
+    fn sets(&mut self, model: &Model) -> Result<(), Cancelled> {
+        let sets = &model.sets;
+        let kinds = [
+            ("*SET_PART_LIST_TITLE", &sets.parts),
+            ("*SET_SHELL_LIST_TITLE", &sets.shells),
+            ("*SET_NODE_LIST_TITLE", &sets.nodes),
+        ];
+        for (keyword, sets) in kinds {
+            for (&id, set) in sets {
+                self.monitor.check()?;
+                self.line(keyword);
+                self.title(&set.title);
+                self.int(id, 10);
+                self.end();
+                for row in set.ids.chunks(8) {
+                    for &id in row {
+                        self.int(id, 10);
+                    }
+                    self.end();
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn stresses(&mut self, model: &Model) -> Result<(), Cancelled> {
+        for (row, shell) in model.forming.stresses().enumerate() {
+            self.pause(row)?;
+            if row == 0 {
+                self.line("*INITIAL_STRESS_SHELL");
+            }
+            let n_thick = shell.points.len() / shell.n_plane.max(1);
+            let counts = [shell.n_plane, n_thick, shell.n_history, 0, 1];
+            self.int(shell.element_id, 10);
+            for count in counts {
+                self.int(count as u64, 10);
+            }
+            self.end();
+            for (i, point) in shell.points.iter().enumerate() {
+                let [xx, yy, zz, xy, yz, zx] = point.stress;
+                self.five_a_line(&[point.t, xx, yy, zz, xy, yz, zx, point.plastic_strain]);
+                self.five_a_line(&shell.history[i * shell.n_history..][..shell.n_history]);
+            }
+        }
+        Ok(())
+    }
+
+    fn strains(&mut self, model: &Model) -> Result<(), Cancelled> {
+        for (row, shell) in model.forming.strains().enumerate() {
+            self.pause(row)?;
+            if row == 0 {
+                self.line("*INITIAL_STRAIN_SHELL");
+            }
+            let n_thick = shell.points.len() / shell.n_plane.max(1);
+            self.int(shell.element_id, 10);
+            for count in [shell.n_plane, n_thick, 1] {
+                self.int(count as u64, 10);
+            }
+            self.end();
+            for point in shell.points {
+                let [xx, yy, zz, xy, yz, zx] = point.strain;
+                self.five_a_line(&[xx, yy, zz, xy, yz, zx, point.t]);
+            }
+        }
+        Ok(())
+    }
+
+    fn five_a_line(&mut self, values: &[f64]) {
+        for line in values.chunks(5) {
+            self.reals(line, 16);
+            self.end();
+        }
+    }
+
+    fn reals(&mut self, values: &[f64], width: u8) {
+        for &value in values {
+            self.real(value, width);
+        }
+    }
+
+    fn real(&mut self, value: f64, width: u8) {
+        let width = self.layout.width(width);
+        let text = fixed_width(value, width).unwrap_or_else(|| "0.".to_owned());
+        self.right(&text, width);
+    }
+
+    fn int(&mut self, value: u64, width: u8) {
+        self.right(&value.to_string(), self.layout.width(width));
+    }
+
+    fn right(&mut self, text: &str, width: usize) {
+        let padding = width.saturating_sub(text.len());
+        self.text.extend(std::iter::repeat_n(b' ', padding));
+        self.text.extend_from_slice(text.as_bytes());
+    }
+
+    /// A title on its own line; a first character that would begin a keyword or a comment is
+    /// moved from the first column.
+    fn title(&mut self, title: &str) {
+        let line = title.lines().next().unwrap_or_default();
+        if line.starts_with(['*', '$']) {
+            self.text.push(b' ');
+        }
+        self.line(line);
+    }
+
+    fn line(&mut self, text: &str) {
+        self.text.extend_from_slice(text.as_bytes());
+        self.end();
+    }
+
+    fn end(&mut self) {
+        self.text.push(b'\n');
+    }
+
+    fn pause(&self, row: usize) -> Result<(), Cancelled> {
+        if row.is_multiple_of(CHUNK) {
+            self.monitor.check()?;
+        }
+        Ok(())
+    }
+}
+
+/// The section a part names. A thickness that no section holds, as `*PART_COMPOSITE` gives it,
+/// gets a section of its own.
+fn section_of(part: &Part, sections: &mut Vec<(u64, [f64; 4])>) -> u64 {
+    let named = sections.iter().find(|(id, _)| *id == part.section_id);
+    match (named, part.thickness) {
+        (Some(&(_, thickness)), Some(own)) if thickness != own => {}
+        (None, Some(_)) => {}
+        _ => return part.section_id,
+    }
+    let own = part.thickness.expect("both arms above have a thickness");
+    let id = if named.is_none() && part.section_id != 0 {
+        part.section_id
+    } else {
+        sections.iter().map(|(id, _)| id + 1).max().unwrap_or(1)
+    };
+    sections.push((id, own));
+    id
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::model::{ShellExtra, StressPoint};
+    use super::super::super::{Memory, ReadOptions, read_from};
+    use super::*;
+    use crate::geometry::{Point3, TriMesh};
+    use std::path::Path;
+
+    fn sheet() -> Model {
+        let corners = [
+            [0.1, 1234.567_891_234_567_8, -1e-7],
+            [1.0, 0.0, 5.0],
+            [0.0, 1.0, 1.0 / 3.0],
+        ];
+        let mesh = TriMesh::new(
+            corners.map(Point3::from).to_vec(),
+            vec![[0, 1, 2], [2, 1, 0]],
+        );
+        let mut model = Model::from_mesh(&mesh.unwrap(), "a sheet");
+        model.parts[0].thickness = Some([1.25; 4]);
+        model.parts[0].section_id = 9;
+        model
+    }
+
+    fn text(model: &Model) -> String {
+        let bytes = write(model, &WriteOptions::default(), &Monitor::silent()).unwrap();
+        String::from_utf8(bytes).unwrap()
+    }
+
+    #[test]
+    fn nodes_shells_and_parts_read_back_bit_equal() {
+        let model = sheet();
+        let source = Memory::new().with("out.k", text(&model));
+        let options = ReadOptions::default();
+        let back = read_from(&source, Path::new("out.k"), &options, &Monitor::silent()).unwrap();
+        assert!(back.diagnostics.is_empty(), "{:?}", back.diagnostics);
+        assert_eq!(back.nodes.ids(), model.nodes.ids());
+        assert_eq!(back.shells, model.shells);
+        assert_eq!(back.parts[0].title, "a sheet");
+        for (a, b) in back.nodes.positions().iter().zip(model.nodes.positions()) {
+            assert!((a - b).norm() <= 1e-11, "{a} {b}");
+        }
+        assert_eq!(back.nodes.positions()[1], model.nodes.positions()[1]);
+    }
+
+    #[test]
+    fn widths_follow_the_largest_id() {
+        let mut model = sheet();
+        model.shells[0].id = 123_456_789;
+        let deck = text(&model);
+        assert!(deck.starts_with("*KEYWORD I10=Y\n"));
+        let line = deck.lines().find(|l| l.starts_with(" 123456789")).unwrap();
+        assert_eq!(line.len(), 60);
+        model.shells[0].id = 12_345_678_901;
+        assert!(text(&model).starts_with("*KEYWORD LONG=Y\n"));
+        assert!(text(&model).lines().any(|l| l.len() == 120));
+    }
+
+    #[test]
+    fn thickness_and_forming_results_have_their_cards() {
+        let mut model = sheet();
+        model.shell_extras.push(ShellExtra {
+            shell: 1,
+            thickness: [1.5, 1.6, 1.7, 0.0],
+            beta: 30.0,
+        });
+        let point = StressPoint {
+            t: -1.0,
+            stress: [1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
+            plastic_strain: 0.5,
+        };
+        model
+            .forming
+            .add_stress(2, 1, &[point], &[7.0, 8.0])
+            .unwrap();
+        let deck = text(&model);
+        let cards = "\
+*ELEMENT_SHELL
+       1       1       1       2       3       3
+*ELEMENT_SHELL_BETA
+       2       1       3       2       1       1
+             1.5             1.6             1.7              0.             30.
+*INITIAL_STRESS_SHELL
+         2         1         1         2         0         1
+             -1.              1.              2.              3.              4.
+              5.              6.              .5
+              7.              8.
+*END
+";
+        assert!(deck.ends_with(cards), "{deck}");
+        assert!(deck.contains(
+            "*PART\na sheet\n         1         9\n*SECTION_SHELL\n         9         2\n"
+        ));
+        let without = WriteOptions {
+            with_forming: false,
+            comments: vec!["two\nlines".into()],
+        };
+        let bytes = write(&model, &without, &Monitor::silent()).unwrap();
+        let deck = String::from_utf8(bytes).unwrap();
+        assert!(!deck.contains("INITIAL_STRESS") && deck.contains("\n$ two\n$ lines\n"));
+    }
+
+    #[test]
+    fn a_cancelled_writing_ends() {
+        let monitor = Monitor::silent();
+        monitor.request_cancel();
+        assert_eq!(
+            write(&sheet(), &WriteOptions::default(), &monitor),
+            Err(Cancelled)
+        );
+    }
+}
