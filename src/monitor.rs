@@ -77,6 +77,14 @@ impl Monitor {
         }
     }
 
+    /// The same flags without anybody watching, for side work that is not part of the story.
+    pub fn without_observer(&self) -> Self {
+        Self {
+            flags: self.flags.clone(),
+            observer: None,
+        }
+    }
+
     /// Asks the work to end early and to keep its best result.
     pub fn request_stop(&self) {
         self.flags.stop.store(true, Ordering::Relaxed);

@@ -4,5 +4,6 @@
 
 mod layering;
 mod pan;
+mod registration;
 mod simplify;
 mod tidy;

@@ -1,0 +1,120 @@
+use super::correspondence::{MatchRules, PairWith, Sample, correspond};
+use super::problem::thin;
+use super::reject::RejectRules;
+use super::select::{Floor, SelectRules, Selection, select};
+use super::stages::natural_floor;
+use super::surface::Surface;
+use crate::geometry::Similarity;
+
+/// Points of each mesh that poses are compared with.
+const N_POINTS: usize = 2000;
+/// λ of the comparison, a cut at two sigma.
+const LAMBDA: f64 = 1.5;
+
+/// Compares poses of one pair of surfaces by the same measure, whatever search they came from:
+/// floored FRMSD of points of each mesh to the smooth surface of the other.
+pub(crate) struct Judge<'a> {
+    source: &'a Surface,
+    target: &'a Surface,
+    source_samples: Vec<Sample>,
+    target_samples: Vec<Sample>,
+    floor: f64,
+}
+
+/// Scores of both directions, in length units; smaller is better.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TwoSided {
+    pub(crate) source_on_target: f64,
+    pub(crate) target_on_source: f64,
+}
+
+impl TwoSided {
+    /// The geometric mean, by which poses are ranked.
+    pub(crate) fn score(&self) -> f64 {
+        (self.source_on_target * self.target_on_source).sqrt()
+    }
+
+    /// How much worse `other` is, by the direction that tells more. At least 1 for a worse score.
+    pub(crate) fn ratio_of(&self, other: &Self) -> f64 {
+        let forward = other.source_on_target / self.source_on_target;
+        let backward = other.target_on_source / self.target_on_source;
+        forward.max(backward)
+    }
+}
+
+impl<'a> Judge<'a> {
+    pub(crate) fn new(source: &'a Surface, target: &'a Surface, allowance: f64) -> Self {
+        Self {
+            source,
+            target,
+            source_samples: thin(source, N_POINTS),
+            target_samples: thin(target, N_POINTS),
+            floor: natural_floor(source, target) + allowance,
+        }
+    }
+
+    /// The floor under both scores.
+    pub(crate) fn floor(&self) -> f64 {
+        self.floor
+    }
+
+    /// Scores the pose of `source` on `target`; `flipped` reverses the source's normals.
+    pub(crate) fn score(&self, target_from_source: &Similarity, flipped: bool) -> TwoSided {
+        let inverse = target_from_source.inverse();
+        let (forward, backward) = rayon::join(
+            || {
+                self.one_side(
+                    &self.source_samples,
+                    self.target,
+                    target_from_source,
+                    flipped,
+                )
+            },
+            || self.one_side(&self.target_samples, self.source, &inverse, flipped),
+        );
+        TwoSided {
+            source_on_target: forward,
+            // Distances were measured in the source's unit.
+            target_on_source: backward * target_from_source.scale,
+        }
+    }
+
+    fn one_side(
+        &self,
+        samples: &[Sample],
+        model: &Surface,
+        model_from_data: &Similarity,
+        flipped: bool,
+    ) -> f64 {
+        let turned: Vec<Sample> = samples
+            .iter()
+            .map(|sample| Sample {
+                normal: if flipped {
+                    -sample.normal
+                } else {
+                    sample.normal
+                },
+                ..*sample
+            })
+            .collect();
+        let rules = MatchRules {
+            pair_with: PairWith::Triangle,
+            reject: RejectRules {
+                min_cos: 0.5,
+                ..RejectRules::default()
+            },
+            curved: true,
+        };
+        let pairs = correspond(&turned, model, model_from_data, &rules, &[]);
+        let floor = self.floor;
+        let selection = SelectRules {
+            selection: Selection::Fractional {
+                lambda: LAMBDA,
+                floor: Floor::Length(floor),
+            },
+            floor,
+            max_fraction: 1.0,
+        };
+        select(&pairs, &selection).map_or(f64::INFINITY, |s| s.objective)
+    }
+}

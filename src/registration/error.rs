@@ -1,0 +1,62 @@
+use crate::monitor::Cancelled;
+
+/// Why a registration gave no pose.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RegistrationError {
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A mesh has no triangle with area.
+    #[error("the {side} mesh has no triangle with area")]
+    EmptyMesh {
+        /// `source` or `target`.
+        side: &'static str,
+    },
+    /// Paired points need the same count on both sides.
+    #[error(
+        "paired points need equal counts, but the source has {n_source} and the target {n_target}"
+    )]
+    UnequalCounts {
+        /// Points of the source.
+        n_source: usize,
+        /// Points of the target.
+        n_target: usize,
+    },
+    /// Fewer than three pairs with positive weight and finite coordinates.
+    #[error("{n_pairs} usable pairs do not fix a pose, at least three are needed")]
+    TooFewPairs {
+        /// Usable pairs.
+        n_pairs: usize,
+    },
+    /// All points of one side lie in one place.
+    #[error("all points coincide, so every rotation fits")]
+    CoincidentPoints,
+    /// All points lie on one line.
+    #[error("all points lie on one line, so the rotation about it is free")]
+    CollinearPoints,
+    /// The angle segment gives too few or absurdly many starts.
+    #[error(
+        "an angle segment of {degrees}° is outside 1° to 60°: above 60° there are fewer than six \
+         starts, too few to reach the right minimum from every placement"
+    )]
+    AngleSegment {
+        /// The segment asked for.
+        degrees: f64,
+    },
+    /// There is no start to run.
+    #[error("the chosen start method gives no start (no start poses were passed)")]
+    NoStarts,
+    /// A setting is outside its range.
+    #[error("{name} is {value}, but must lie in {range}")]
+    Setting {
+        /// The setting.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The allowed range in words.
+        range: &'static str,
+    },
+    /// No start had a single usable pair.
+    #[error("no start found usable pairs between the two parts")]
+    NoPairs,
+}

@@ -1,0 +1,164 @@
+use std::time::Duration;
+
+use super::starts::StartKind;
+use super::termination::Termination;
+use super::units::ScaleCheck;
+use crate::geometry::Similarity;
+use crate::monitor::IterationReport;
+
+/// Which of the two meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// The moving (stamped) mesh.
+    Source,
+    /// The fixed (crash) mesh.
+    Target,
+}
+
+/// One iteration of one start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IterationRecord {
+    /// Stage of the search in one word: `race`, `refine`, `finish`, `match`.
+    pub stage: &'static str,
+    /// The pose whose pairs were measured, before the step.
+    pub target_from_source: Similarity,
+    /// What the selection minimises, in length units; comparable within one stage only.
+    pub objective: f64,
+    /// Root mean square distance of the kept pairs.
+    pub rmse: f64,
+    /// Share of the data area whose pairs were kept.
+    pub fraction: f64,
+}
+
+impl IterationRecord {
+    pub(crate) fn report(&self, start_idx: usize, iteration: usize) -> IterationReport {
+        IterationReport {
+            start_idx,
+            iteration,
+            target_from_source: self.target_from_source.to_rows(),
+            objective: self.objective,
+            rmse: self.rmse,
+            fraction: self.fraction,
+        }
+    }
+}
+
+/// What became of a start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fate {
+    /// It gave the result.
+    Won,
+    /// It went to the last comparison and lost to a better pose.
+    RunnerUp,
+    /// It met another start's pose and was dropped for it.
+    MergedInto {
+        /// Index of the other start.
+        start: usize,
+    },
+    /// Others were ahead after so many iterations.
+    Dropped {
+        /// Iterations made.
+        after: usize,
+    },
+    /// It found no pairs or its pairs fixed no motion.
+    Failed,
+}
+
+/// The story of one start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StartRecord {
+    /// How it came to be.
+    pub kind: StartKind,
+    /// True if the source's normals counted reversed.
+    pub flipped: bool,
+    /// True if the source was mirrored.
+    pub mirrored: bool,
+    /// Which mesh supplied the points.
+    pub data_side: Side,
+    /// First pose, `target_from_source`.
+    pub first: Similarity,
+    /// Last pose.
+    pub last: Similarity,
+    /// Every iteration, in order.
+    pub iterations: Vec<IterationRecord>,
+    /// Objective of the last iteration.
+    pub score: f64,
+    /// Why its last stage ended, if it was not dropped.
+    pub termination: Option<Termination>,
+    /// What became of it.
+    pub fate: Fate,
+}
+
+/// A distinct pose that came close.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Alternative {
+    /// The pose.
+    pub target_from_source: Similarity,
+    /// How much worse than the result, 1 = equally good; the larger one of both directions.
+    pub score_ratio: f64,
+    /// The start it came from.
+    pub start: usize,
+}
+
+/// What the pairs say about the opposite hand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MirrorCheck {
+    /// Root mean square distance of the final pairs under the best mirrored motion; compare with
+    /// the outcome's `rmse`. Equal for a flat part, which has no hand.
+    pub mirrored_rmse: f64,
+    /// Score of a search with the mirrored source relative to the result's, where one was made
+    /// (when the result did not convince): below 1 the opposite hand fits better.
+    pub score_ratio: Option<f64>,
+}
+
+/// How long the phases took. For the reader; nothing depends on them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MatchTimings {
+    /// First poses.
+    pub align: Duration,
+    /// All starts on few points.
+    pub race: Duration,
+    /// The best distinct ones on more points.
+    pub refine: Duration,
+    /// The winner on the full meshes.
+    pub finish: Duration,
+    /// Everything, preparation of mirrored and reduced meshes included.
+    pub total: Duration,
+}
+
+/// The product of a match.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MatchOutcome {
+    /// `target = c · R · source + t`.
+    pub target_from_source: Similarity,
+    /// Why the last stage ended.
+    pub termination: Termination,
+    /// Root mean square distance of the kept pairs, in target length units.
+    pub rmse: f64,
+    /// Distance that 95 % of the kept pairs stay below.
+    pub p95: f64,
+    /// Largest distance of a kept pair.
+    pub max: f64,
+    /// Kept share of the data mesh's area.
+    pub fraction: f64,
+    /// Which mesh supplied the points.
+    pub data_side: Side,
+    /// True if the source's normals point to the other side of the sheet than the target's.
+    pub normals_opposed: bool,
+    /// Objective at the end, in length units.
+    pub objective: f64,
+    /// The floor σ0 of the last stage.
+    pub floor: f64,
+    /// Distinct poses that were compared in the end, best first, without the result itself.
+    pub alternatives: Vec<Alternative>,
+    /// Every start.
+    pub starts: Vec<StartRecord>,
+    /// Index of the start that won.
+    pub winner: usize,
+    /// Do the sizes hint at different length units?
+    pub scale_check: ScaleCheck,
+    /// Would the opposite hand fit?
+    pub mirror_check: MirrorCheck,
+    /// Durations.
+    pub timings: MatchTimings,
+}

@@ -1,0 +1,262 @@
+use std::time::{Duration, Instant};
+
+use super::compare::{Judge, TwoSided};
+use super::icp::{Data, Frames, Run, advance};
+use super::multi_start::{Entrant, Leg, Pairing, race, ranking, refine, run_every_start, twins};
+use super::problem::all_nodes;
+use super::result::{Fate, Side};
+use super::select::Selection;
+use super::settings::{DataSide, MatchSettings, Search};
+use super::stages::{Stage, stage_rules};
+use super::starts::{Start, further_starts, patch_starts, starts};
+use super::surface::Surface;
+use super::{MatchInput, RegistrationError};
+use crate::geometry::Similarity;
+use crate::monitor::{Cancelled, Monitor};
+
+/// Distinct poses that are refined and compared.
+const N_DISTINCT: usize = 4;
+/// A pose convinces if its kept pairs lie within this many floors …
+const CONVINCING_RMSE: f64 = 2.5;
+/// … and make up this share of the data.
+const CONVINCING_FRACTION: f64 = 0.5;
+/// Below this kept share the data overhangs, and the other mesh's points are tried as well.
+const OVERHANG: f64 = 0.9;
+/// The smaller part is laid on patches of the larger below this ratio of areas.
+const PATCH_RATIO: f64 = 0.75;
+
+/// The search for one hand of the source: legs (choices of data and model) with their entrants.
+pub(crate) struct Contest<'a> {
+    input: MatchInput<'a>,
+    settings: &'a MatchSettings,
+    mirror: Option<Similarity>,
+    pub(crate) legs: Vec<(Leg<'a>, Vec<Entrant>)>,
+    judge: Judge<'a>,
+    n_starts: usize,
+    pub(crate) align: Duration,
+    pub(crate) race: Duration,
+    pub(crate) refine: Duration,
+}
+
+/// A pose that reached the last comparison.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Contender {
+    pub(crate) leg: usize,
+    pub(crate) entrant: usize,
+    pub(crate) target_from_source: Similarity,
+    pub(crate) scores: TwoSided,
+}
+
+impl<'a> Contest<'a> {
+    /// `input` holds the source already mirrored where `mirror` says so; `n_before` starts were
+    /// numbered before.
+    pub(crate) fn new(
+        input: MatchInput<'a>,
+        settings: &'a MatchSettings,
+        mirror: Option<Similarity>,
+        n_before: usize,
+    ) -> Self {
+        Self {
+            judge: Judge::new(input.source, input.target, settings.allowance),
+            input,
+            settings,
+            mirror,
+            legs: Vec::new(),
+            n_starts: n_before,
+            align: Duration::ZERO,
+            race: Duration::ZERO,
+            refine: Duration::ZERO,
+        }
+    }
+
+    /// Runs the starts, the other choice of data where the data overhangs, and wider starts where
+    /// nothing convinces.
+    pub(crate) fn run(&mut self, monitor: &Monitor) -> Result<(), RegistrationError> {
+        let begin = Instant::now();
+        let first = starts(self.input.source, self.input.target, &self.settings.starts)?;
+        self.align += begin.elapsed();
+        let side = self.data_side();
+        self.add_leg(side);
+        self.compete(0, &first, monitor)?;
+        let swaps = self.settings.data_side == DataSide::Auto
+            && self.settings.search == Search::Race
+            && self.best_fraction(0) < OVERHANG;
+        if swaps {
+            self.add_leg(match side {
+                Side::Source => Side::Target,
+                Side::Target => Side::Source,
+            });
+            self.compete(1, &first, monitor)?;
+        }
+        let widens = self.settings.starts.widen
+            && self.settings.search == Search::Race
+            && self.settings.selection != Selection::All;
+        if widens && !self.convinces() && !monitor.stop_requested() {
+            let begin = Instant::now();
+            let (source, target) = (self.input.source, self.input.target);
+            let mut wider = further_starts(source, target);
+            let (a, b) = (source.measures().area, target.measures().area);
+            if a.min(b) < PATCH_RATIO * a.max(b) {
+                wider.extend(patch_starts(source, target, &self.settings.starts)?);
+            }
+            self.align += begin.elapsed();
+            self.compete(0, &wider, monitor)?;
+        }
+        Ok(())
+    }
+
+    fn data_side(&self) -> Side {
+        match self.settings.data_side {
+            DataSide::Source => Side::Source,
+            DataSide::Target => Side::Target,
+            DataSide::Auto => natural_data_side(self.input.source, self.input.target),
+        }
+    }
+
+    fn add_leg(&mut self, side: Side) {
+        let in_roles = |source, target| match side {
+            Side::Source => Pairing {
+                data: source,
+                model: target,
+            },
+            Side::Target => Pairing {
+                data: target,
+                model: source,
+            },
+        };
+        let full = in_roles(self.input.source, self.input.target);
+        let coarse = self.input.reduced.map_or(full, |(s, t)| in_roles(s, t));
+        let leg = Leg {
+            coarse,
+            fine: if self.settings.finish { full } else { coarse },
+            frames: Frames {
+                data_is_target: side == Side::Target,
+                mirror: self.mirror.unwrap_or_default(),
+            },
+            mirrored: self.mirror.is_some(),
+        };
+        self.legs.push((leg, Vec::new()));
+    }
+
+    fn compete(
+        &mut self,
+        leg_idx: usize,
+        starts: &[Start],
+        monitor: &Monitor,
+    ) -> Result<(), Cancelled> {
+        let begin = Instant::now();
+        let settings = self.settings;
+        let (leg, done) = &mut self.legs[leg_idx];
+        let enter = |starts: &[Start], n_starts: &mut usize| -> Vec<Entrant> {
+            let new = starts.iter().map(|start| {
+                *n_starts += 1;
+                Entrant::new(leg, *start, *n_starts - 1)
+            });
+            new.collect()
+        };
+        let mut entrants = enter(starts, &mut self.n_starts);
+        if settings.search == Search::EveryStart {
+            run_every_start(leg, &mut entrants, settings, monitor)?;
+            self.race += begin.elapsed();
+            done.extend(entrants);
+            return Ok(());
+        }
+        race(leg, &mut entrants, settings, monitor)?;
+        if let Some(&best) = ranking(&entrants).first() {
+            let mut late = enter(&twins(leg, &entrants[best]), &mut self.n_starts);
+            race(leg, &mut late, settings, monitor)?;
+            entrants.extend(late);
+        }
+        self.race += begin.elapsed();
+        let begin = Instant::now();
+        refine(leg, &mut entrants, N_DISTINCT, settings, monitor)?;
+        self.refine += begin.elapsed();
+        done.extend(entrants);
+        Ok(())
+    }
+
+    fn best_fraction(&self, leg_idx: usize) -> f64 {
+        let (_, entrants) = &self.legs[leg_idx];
+        ranking(entrants)
+            .first()
+            .map_or(0.0, |&i| entrants[i].run.fraction)
+    }
+
+    /// True if a pose lays a fair share of the data within a few floors of the model.
+    pub(crate) fn convinces(&self) -> bool {
+        let limit = CONVINCING_RMSE * self.judge.floor();
+        self.legs.iter().any(|(_, entrants)| {
+            ranking(entrants).first().is_some_and(|&i| {
+                let run = &entrants[i].run;
+                run.rmse <= limit && run.fraction >= CONVINCING_FRACTION
+            })
+        })
+    }
+
+    /// All that are alive, best first by the two-sided score, without those that met.
+    pub(crate) fn contenders(&self) -> Vec<Contender> {
+        let mut found = Vec::new();
+        for (leg_idx, (leg, entrants)) in self.legs.iter().enumerate() {
+            for entrant_idx in ranking(entrants) {
+                let entrant = &entrants[entrant_idx];
+                let pose = leg.frames.target_from_source(&entrant.run.model_from_data);
+                let bare = pose.after(&leg.frames.mirror.inverse());
+                found.push(Contender {
+                    leg: leg_idx,
+                    entrant: entrant_idx,
+                    target_from_source: pose,
+                    scores: self.judge.score(&bare, entrant.start.flipped),
+                });
+            }
+        }
+        found.sort_by(|a, b| a.scores.score().total_cmp(&b.scores.score()));
+        found
+    }
+
+    /// Runs the winner on all points of the fine meshes and returns it with its data's sign.
+    pub(crate) fn finish(
+        &mut self,
+        winner: &Contender,
+        monitor: &Monitor,
+    ) -> Result<Run, Cancelled> {
+        let (leg, entrants) = &mut self.legs[winner.leg];
+        let entrant = &mut entrants[winner.entrant];
+        entrant.fate = Some(Fate::Won);
+        if self.settings.finish {
+            let Pairing { data, model } = leg.fine;
+            let rules = stage_rules(Stage::Finish, self.settings, data, model);
+            let points = Data::new(all_nodes(data, true));
+            let points = if entrant.start.flipped {
+                points.flipped()
+            } else {
+                points
+            };
+            entrant.run.enter_stage();
+            monitor.progress("finish", 0, None);
+            let cap = rules.max_iterations;
+            let run = &mut entrant.run;
+            advance(run, &points, (model, &rules), cap, &leg.frames, monitor)?;
+        }
+        Ok(entrant.run.clone())
+    }
+
+    pub(crate) fn n_starts(&self) -> usize {
+        self.n_starts
+    }
+}
+
+/// The smaller mesh is the data, because it is the one that is contained; of meshes that differ by
+/// less than a tenth the coarser one, because facets of the finer one are more exact.
+fn natural_data_side(source: &Surface, target: &Surface) -> Side {
+    let (a, b) = (source.measures(), target.measures());
+    let source_is_data = if (a.area - b.area).abs() > 0.1 * a.area.max(b.area) {
+        a.area < b.area
+    } else {
+        source.mesh().n_vertices() <= target.mesh().n_vertices()
+    };
+    if source_is_data {
+        Side::Source
+    } else {
+        Side::Target
+    }
+}
