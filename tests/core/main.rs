@@ -5,5 +5,6 @@
 mod layering;
 mod pan;
 mod registration;
+mod samples;
 mod simplify;
 mod tidy;
