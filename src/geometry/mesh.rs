@@ -96,6 +96,7 @@ impl TriMesh {
     }
 
     /// Corner positions of a triangle.
+    #[inline]
     pub fn corners(&self, triangle: usize) -> [Point3; 3] {
         self.triangles[triangle].map(|v| self.positions[v as usize])
     }
@@ -271,7 +272,7 @@ mod tests {
     fn refuses_bad_input() {
         let p = vec![Point3::origin()];
         assert!(matches!(
-            TriMesh::new(p.clone(), vec![[0, 0, 1]]),
+            TriMesh::new(p, vec![[0, 0, 1]]),
             Err(MeshError::IndexOutOfRange { vertex: 1, .. })
         ));
         let nan = vec![Point3::new(f64::NAN, 0.0, 0.0)];

@@ -1,5 +1,7 @@
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::pack::TrianglePack;
 use super::traverse::{Nearest, OUT_OF_SIGHT, Walk};
 use super::wide::{LocalFrame, Query, WideTree, box_around};
@@ -34,6 +36,7 @@ impl Bvh {
         let local: Vec<_> = mesh.positions().iter().map(|p| frame.to_local(p)).collect();
         let corners = |t: u32| mesh.triangles()[t as usize].map(|v| local[v as usize]);
         let boxes: Vec<_> = (0..mesh.n_triangles() as u32)
+            .into_par_iter()
             .map(|t| box_around(&corners(t)))
             .collect();
         let tree = WideTree::build(&boxes, corners);
@@ -68,7 +71,8 @@ impl Bvh {
         let limit = max_distance * self.frame.scale;
         let mut walk = Walk::new(&self.tree, &local, limit, admit, exact);
         if let Some(near) = hint.and_then(exact) {
-            walk.lower_bound((near.distance_sq.sqrt() * self.frame.scale) as f32);
+            let distance = near.distance_sq.sqrt() * self.frame.scale;
+            walk.start_from(near, distance);
         }
         walk.run()
     }
@@ -127,56 +131,5 @@ impl ClosestPoint for Bvh {
             }),
         };
         nearest.map(|nearest| SurfaceHit::on_triangle(nearest.id, nearest.found))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::BruteForce;
-    use super::*;
-
-    fn wave(n: u32) -> TriMesh {
-        let mut positions = Vec::new();
-        for j in 0..=n {
-            for i in 0..=n {
-                let (x, y) = (f64::from(i), f64::from(j));
-                positions.push(Point3::new(x, y, (0.7 * x).sin() * (0.5 * y).cos()));
-            }
-        }
-        let mut triangles = Vec::new();
-        for j in 0..n {
-            for i in 0..n {
-                let a = j * (n + 1) + i;
-                triangles.push([a, a + 1, a + n + 2]);
-                triangles.push([a, a + n + 2, a + n + 1]);
-            }
-        }
-        TriMesh::new(positions, triangles).unwrap()
-    }
-
-    #[test]
-    fn agrees_with_brute_force() {
-        let mesh = Arc::new(wave(12));
-        let (tree, brute) = (Bvh::build(mesh.clone()), BruteForce::new(mesh));
-        for i in 0..500 {
-            let s = f64::from(i);
-            let query = Point3::new(
-                6.0 + 8.0 * (1.3 * s).sin(),
-                0.026 * s,
-                2.0 * (0.9 * s).cos(),
-            );
-            for limit in [f64::INFINITY, 0.5] {
-                let expected = brute.closest(&query, limit, None, None);
-                assert_eq!(tree.closest(&query, limit, None, None), expected);
-                assert_eq!(tree.closest(&query, limit, Some(i % 288), None), expected);
-            }
-        }
-        let nan = Point3::new(f64::NAN, 0.0, 0.0);
-        assert_eq!(tree.closest(&nan, f64::INFINITY, None, None), None);
-        let empty = Bvh::build(TriMesh::default());
-        assert_eq!(
-            empty.closest(&Point3::origin(), f64::INFINITY, None, None),
-            None
-        );
     }
 }

@@ -66,7 +66,7 @@ impl TrianglePack {
 impl Pack for TrianglePack {
     type Item = [Vector3; 3];
 
-    fn new(items: &[(u32, [Vector3; 3])]) -> Self {
+    fn new(ids: &[u32], item: &impl Fn(u32) -> [Vector3; 3]) -> Self {
         let mut pack = Self {
             origin: [Vec4::splat(FAR_AWAY); 3],
             first_axis: [Vec4::ONE, Vec4::ZERO, Vec4::ZERO],
@@ -77,9 +77,9 @@ impl Pack for TrianglePack {
             inv_ac: Vec4::ZERO,
             ids: [u32::MAX; WIDTH],
         };
-        for (slot, (id, corners)) in items.iter().enumerate() {
-            pack.set(slot, corners);
-            pack.ids[slot] = *id;
+        for (slot, &id) in ids.iter().enumerate() {
+            pack.set(slot, &item(id));
+            pack.ids[slot] = id;
         }
         pack
     }
@@ -136,7 +136,8 @@ impl TrianglePack {
         let ab = b - a;
         let first = ab.try_normalize(0.0).unwrap_or_else(Vector3::x);
         let across = (c - a) - first * first.dot(&(c - a));
-        let tiny = ab.norm() * f64::EPSILON;
+        // Below this, `across` is rounding and may point anywhere, even along `first`.
+        let tiny = ab.norm() * 1e-14;
         let second = across.try_normalize(tiny).map_or_else(
             || any_perpendicular(&first),
             // Once more, because what cancelled above left `across` slightly off.
@@ -190,16 +191,17 @@ impl PointPack {
 impl Pack for PointPack {
     type Item = Vector3;
 
-    fn new(items: &[(u32, Vector3)]) -> Self {
+    fn new(ids: &[u32], item: &impl Fn(u32) -> Vector3) -> Self {
         let mut pack = Self {
             position: [Vec4::splat(FAR_AWAY); 3],
             ids: [u32::MAX; WIDTH],
         };
-        for (slot, (id, point)) in items.iter().enumerate() {
+        for (slot, &id) in ids.iter().enumerate() {
+            let point = item(id);
             for axis in 0..3 {
                 pack.position[axis][slot] = point[axis] as f32;
             }
-            pack.ids[slot] = *id;
+            pack.ids[slot] = id;
         }
         pack
     }

@@ -89,7 +89,8 @@ impl PointTree {
             let mut walk = Walk::new(&self.tree, &local, limit, |_, marked| marked, exact);
             let hint = hint.filter(|&i| (i as usize) < self.points.len());
             if let Some(near) = hint.and_then(exact) {
-                walk.lower_bound((near.distance_sq.sqrt() * self.frame.scale) as f32);
+                let distance = near.distance_sq.sqrt() * self.frame.scale;
+                walk.start_from(near, distance);
             }
             walk.run()
         };

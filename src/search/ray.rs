@@ -97,25 +97,23 @@ fn nearer(best: Option<RayHit>, hit: Option<RayHit>) -> Option<RayHit> {
 fn entries(node: &Node, origin: &Vector3, inverse: &Vector3) -> Vec<(f64, Link)> {
     let mut entered = Vec::with_capacity(WIDTH);
     for slot in 0..WIDTH {
+        let Some([min, max]) = node.bounds(slot) else {
+            continue;
+        };
         let (mut from, mut to) = (0.0_f64, f64::INFINITY);
         for axis in 0..3 {
-            let min = f64::from(node.min[axis][slot]);
-            let max = f64::from(node.max[axis][slot]);
-            if inverse[axis].is_infinite() {
-                // Parallel to the slab: inside it or never.
-                if origin[axis] < min || origin[axis] > max {
-                    to = f64::NEG_INFINITY;
-                }
-                continue;
+            let to_min = f64::from(min[axis]) - origin[axis];
+            let to_max = f64::from(max[axis]) - origin[axis];
+            if inverse[axis].is_finite() {
+                let (s, t) = (to_min * inverse[axis], to_max * inverse[axis]);
+                from = from.max(s.min(t));
+                to = to.min(s.max(t));
+            } else if to_min > 0.0 || to_max < 0.0 {
+                // Parallel to the slab and outside it.
+                to = f64::NEG_INFINITY;
             }
-            let (s, t) = (
-                (min - origin[axis]) * inverse[axis],
-                (max - origin[axis]) * inverse[axis],
-            );
-            from = from.max(s.min(t));
-            to = to.min(s.max(t));
         }
-        if from <= to && node.is_used(slot) {
+        if from <= to {
             entered.push((from, node.child[slot]));
         }
     }

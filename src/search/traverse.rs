@@ -92,6 +92,12 @@ where
         self.bound_sq = self.bound_sq.min(reach * reach);
     }
 
+    /// Starts from a known item, which need not be asked again.
+    pub(super) fn start_from(&mut self, known: Nearest<T>, distance: f64) {
+        self.lower_bound(distance as f32);
+        self.best = Some(known);
+    }
+
     /// Runs the walk and returns the winner.
     pub(super) fn run(mut self) -> Option<Nearest<T>> {
         let root = self.tree.root?;
@@ -113,13 +119,16 @@ where
             match link.leaf() {
                 Ok(leaf) => self.visit_leaf(leaf),
                 Err(node) => {
-                    let keys = self.children_by_distance(node);
-                    let limit = u64::from(self.bound_sq.to_bits()) << 32 | 0xffff_ffff;
-                    for key in keys.into_iter().rev() {
-                        if key <= limit {
-                            stack[waiting] = key;
-                            waiting += 1;
+                    let [nearest, others @ ..] = self.children_by_distance(node);
+                    if self.within_reach(nearest) {
+                        for key in others.into_iter().rev() {
+                            if self.within_reach(key) {
+                                stack[waiting] = key;
+                                waiting += 1;
+                            }
                         }
+                        link = Link(nearest as u32);
+                        continue;
                     }
                 }
             }
@@ -128,15 +137,20 @@ where
                     return;
                 }
                 waiting -= 1;
-                let key = stack[waiting];
-                if f32::from_bits((key >> 32) as u32) <= self.bound_sq {
-                    link = Link(key as u32);
+                if self.within_reach(stack[waiting]) {
+                    link = Link(stack[waiting] as u32);
                     break;
                 }
             }
         }
     }
 
+    #[inline]
+    fn within_reach(&self, key: u64) -> bool {
+        (key >> 32) as u32 <= self.bound_sq.to_bits()
+    }
+
+    /// Keys of a node's children, the nearest first.
     #[inline]
     fn children_by_distance(&self, node: usize) -> [u64; WIDTH] {
         let node = &self.tree.nodes[node];
@@ -146,8 +160,7 @@ where
         });
         // A sorting network: five exchanges without a branch.
         for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
-            let (low, high) = (keys[i].min(keys[j]), keys[i].max(keys[j]));
-            (keys[i], keys[j]) = (low, high);
+            (keys[i], keys[j]) = (keys[i].min(keys[j]), keys[i].max(keys[j]));
         }
         keys
     }
@@ -201,7 +214,9 @@ where
     /// Takes the exact distance of every candidate still in reach.
     fn decide(&mut self) {
         for &(distance_sq, id) in &self.candidates[..self.n_candidates] {
+            let known = self.best.as_ref().is_some_and(|best| best.id == id);
             if distance_sq <= self.bound_sq
+                && !known
                 && let Some(nearest) = (self.exact)(id)
                 && nearest.beats(self.best.as_ref())
             {

@@ -28,6 +28,7 @@ pub fn closest_point_on_triangle(query: &Point3, corners: &[Point3; 3]) -> Trian
 }
 
 /// The foot of the perpendicular if it lies strictly inside the triangle.
+#[inline]
 fn inside(
     query: &Point3,
     a: Point3,
@@ -60,6 +61,7 @@ fn inside(
 }
 
 /// The closest point of the three edges.
+#[inline]
 fn on_border(
     query: &Point3,
     corners: &[Point3; 3],

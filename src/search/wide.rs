@@ -12,10 +12,12 @@ use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb as Box32;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
+use rayon::prelude::*;
 
 use crate::geometry::{Aabb, Point3, Vector3};
 
-/// Items per leaf and children per node.
+/// Items per leaf and children per node. Eight children were measured slower without a hint (too
+/// many to sort while nothing is ruled out) and no faster with one.
 pub(super) const WIDTH: usize = 4;
 
 /// Coordinates beyond this are farther than anything a query may compare.
@@ -47,8 +49,8 @@ impl LocalFrame {
 pub(super) trait Pack: Send + Sync {
     /// What an item is before packing.
     type Item;
-    /// Packs one to four items with their indices.
-    fn new(items: &[(u32, Self::Item)]) -> Self;
+    /// Packs one to four items, given by their indices.
+    fn new(ids: &[u32], item: &impl Fn(u32) -> Self::Item) -> Self;
     /// Squared distance of each item from `query`; unused places are [`FAR_AWAY`].
     fn distance_sq(&self, query: &Query) -> Vec4;
     /// The items' indices.
@@ -94,8 +96,8 @@ impl Link {
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub(super) struct Node {
-    pub(super) min: [Vec4; 3],
-    pub(super) max: [Vec4; 3],
+    min: [Vec4; 3],
+    max: [Vec4; 3],
     pub(super) child: [Link; WIDTH],
 }
 
@@ -116,9 +118,11 @@ impl Node {
         }
     }
 
-    /// False for a place without a child.
-    pub(super) fn is_used(&self, slot: usize) -> bool {
-        self.min[0][slot] < FAR_AWAY
+    /// Smallest and largest coordinates of a child's box; `None` for a place without a child.
+    pub(super) fn bounds(&self, slot: usize) -> Option<[[f32; 3]; 2]> {
+        let min = self.min.map(|column| column[slot]);
+        let max = self.max.map(|column| column[slot]);
+        (min[0] < FAR_AWAY).then_some([min, max])
     }
 
     /// Squared distance of each child's box from `query`.
@@ -143,7 +147,7 @@ pub(super) struct WideTree<P> {
 
 impl<P: Pack> WideTree<P> {
     /// Builds the tree over items given by their local boxes; `item` makes what is packed.
-    pub(super) fn build(boxes: &[Box32], item: impl Fn(u32) -> P::Item) -> Self {
+    pub(super) fn build(boxes: &[Box32], item: impl Fn(u32) -> P::Item + Sync) -> Self {
         let mut tree = Self {
             root: None,
             nodes: Vec::new(),
@@ -158,39 +162,37 @@ impl<P: Pack> WideTree<P> {
             ..BvhBuildParams::medium_build()
         };
         let binary = build_bvh2(boxes, params, &mut Duration::default());
-        let sizes = subtree_sizes(&binary);
-        tree.fold(&binary, &sizes, item);
+        let leaves = tree.fold(&binary);
+        tree.packs = leaves
+            .par_iter()
+            .map(|leaf| P::new(leaf.as_slice(), &item))
+            .collect();
         tree
     }
 
     /// Folds the binary tree from the root down, depth first, so that what is visited together
-    /// lies together.
-    fn fold(&mut self, binary: &Bvh2, sizes: &[u32], item: impl Fn(u32) -> P::Item) {
-        struct Waiting {
-            binary_node: usize,
-            parent: Option<(usize, usize)>,
-            depth: usize,
-        }
+    /// lies together. Returns the leaves' items.
+    fn fold(&mut self, binary: &Bvh2) -> Vec<Few> {
+        let sizes = subtree_sizes(binary);
+        let mut leaves = Vec::with_capacity(binary.nodes.len() / WIDTH);
         let mut waiting = vec![Waiting {
             binary_node: 0,
             parent: None,
             depth: 1,
         }];
         while let Some(next) = waiting.pop() {
-            let is_leaf = sizes[next.binary_node] as usize <= WIDTH;
+            let is_leaf = sizes[next.binary_node as usize] as usize <= WIDTH;
             let link = if is_leaf {
-                let items: Vec<_> = items_below(binary, next.binary_node)
-                    .into_iter()
-                    .map(|id| (id, item(id)))
-                    .collect();
-                self.packs.push(P::new(&items));
-                Link((self.packs.len() - 1) as u32 | Link::LEAF)
+                let mut leaf = Few::default();
+                gather_items(binary, next.binary_node, &mut leaf);
+                leaves.push(leaf);
+                Link((leaves.len() - 1) as u32 | Link::LEAF)
             } else {
                 let number = self.nodes.len();
                 let mut node = Node::unused();
-                let children = children_to_adopt(binary, sizes, next.binary_node);
-                for (slot, &child) in children.iter().enumerate().rev() {
-                    node.set(slot, binary.nodes[child].aabb());
+                let children = children_to_adopt(binary, &sizes, next.binary_node);
+                for (slot, &child) in children.as_slice().iter().enumerate().rev() {
+                    node.set(slot, binary.nodes[child as usize].aabb());
                     waiting.push(Waiting {
                         binary_node: child,
                         parent: Some((number, slot)),
@@ -204,8 +206,35 @@ impl<P: Pack> WideTree<P> {
                 Some((parent, slot)) => self.nodes[parent].child[slot] = link,
                 None => self.root = Some(link),
             }
-            self.stack_size = self.stack_size.max(next.depth * (WIDTH - 1) + 1);
+            self.stack_size = self.stack_size.max(next.depth * (WIDTH - 1) + WIDTH);
         }
+        leaves
+    }
+}
+
+/// A part of the binary tree that has yet to be folded.
+struct Waiting {
+    binary_node: u32,
+    /// Node and place that it will be linked from.
+    parent: Option<(usize, usize)>,
+    depth: usize,
+}
+
+/// Up to [`WIDTH`] numbers of items or nodes.
+#[derive(Debug, Clone, Copy, Default)]
+struct Few {
+    numbers: [u32; WIDTH],
+    len: usize,
+}
+
+impl Few {
+    fn push(&mut self, number: u32) {
+        self.numbers[self.len] = number;
+        self.len += 1;
+    }
+
+    fn as_slice(&self) -> &[u32] {
+        &self.numbers[..self.len]
     }
 }
 
@@ -236,38 +265,38 @@ fn subtree_sizes(binary: &Bvh2) -> Vec<u32> {
 
 /// Up to four nodes that together hold what `node` holds: its children, the largest of them opened
 /// again and again.
-fn children_to_adopt(binary: &Bvh2, sizes: &[u32], node: usize) -> Vec<usize> {
-    let first = binary.nodes[node].first_index as usize;
-    let mut children = vec![first, first + 1];
-    while children.len() < WIDTH {
-        let area = |&slot: &usize| binary.nodes[children[slot]].aabb().half_area();
-        let largest = (0..children.len())
-            .filter(|&slot| sizes[children[slot]] as usize > WIDTH)
+fn children_to_adopt(binary: &Bvh2, sizes: &[u32], node: u32) -> Few {
+    let first = binary.nodes[node as usize].first_index;
+    let mut children = Few::default();
+    children.push(first);
+    children.push(first + 1);
+    while children.len < WIDTH {
+        let area = |&slot: &usize| {
+            let child = children.numbers[slot] as usize;
+            binary.nodes[child].aabb().half_area()
+        };
+        let largest = (0..children.len)
+            .filter(|&slot| sizes[children.numbers[slot] as usize] as usize > WIDTH)
             .max_by(|a, b| area(a).total_cmp(&area(b)));
         let Some(slot) = largest else { break };
-        let first = binary.nodes[children[slot]].first_index as usize;
-        children[slot] = first;
-        children.insert(slot + 1, first + 1);
+        let first = binary.nodes[children.numbers[slot] as usize].first_index;
+        children.numbers[slot] = first;
+        children.push(first + 1);
     }
     children
 }
 
-/// Indices of the items below a node, sorted.
-fn items_below(binary: &Bvh2, node: usize) -> Vec<u32> {
-    let mut found = Vec::with_capacity(WIDTH);
-    let mut waiting = vec![node];
-    while let Some(index) = waiting.pop() {
-        let node = &binary.nodes[index];
-        let first = node.first_index as usize;
-        if node.is_leaf() {
-            let range = first..first + node.prim_count as usize;
-            found.extend_from_slice(&binary.primitive_indices[range]);
-        } else {
-            waiting.extend([first, first + 1]);
+/// Adds the items below a node that has no more of them than fit.
+fn gather_items(binary: &Bvh2, node: u32, items: &mut Few) {
+    let node = &binary.nodes[node as usize];
+    if node.is_leaf() {
+        for i in 0..node.prim_count {
+            items.push(binary.primitive_indices[(node.first_index + i) as usize]);
         }
+    } else {
+        gather_items(binary, node.first_index, items);
+        gather_items(binary, node.first_index + 1, items);
     }
-    found.sort_unstable();
-    found
 }
 
 /// The smallest `f32` box around local points, widened to the next number, so that rounding cuts

@@ -6,5 +6,6 @@ mod layering;
 mod pan;
 mod registration;
 mod samples;
+mod search;
 mod simplify;
 mod tidy;
