@@ -1,0 +1,702 @@
+//! LS-DYNA cards that carry a pose: `*INCLUDE_STAMPED_PART_MATRIX`, its inverse form, and
+//! `*DEFINE_TRANSFORMATION` with `*INCLUDE_TRANSFORM`.
+//!
+//! A card has ten columns a number. Every text written here is read back at once by the same code
+//! that reads decks, so that the error of rounding is known and not assumed.
+
+use crate::formats::keyword::fixed_width::fixed_width;
+use crate::geometry::{Aabb, Matrix3, MatrixError, Point3, Similarity, Vector3};
+
+pub use super::card_reader::{ReadBackError, read_back};
+
+/// A set of cards that lays the stamped part on the crash part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum CardForm {
+    /// `*INCLUDE_STAMPED_PART_MATRIX`: the solver maps the forming results.
+    StampedPart,
+    /// `*INCLUDE_STAMPED_PART_MATRIX_INVERSE`: the same from the matrix of the way back.
+    StampedPartInverse,
+    /// `*DEFINE_TRANSFORMATION` and `*INCLUDE_TRANSFORM`: the stamped mesh joins the crash model.
+    IncludeTransform,
+}
+
+impl CardForm {
+    /// Every form.
+    pub const ALL: &[Self] = &[
+        Self::StampedPart,
+        Self::StampedPartInverse,
+        Self::IncludeTransform,
+    ];
+
+    /// Its name for people.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::StampedPart => "*INCLUDE_STAMPED_PART_MATRIX",
+            Self::StampedPartInverse => "*INCLUDE_STAMPED_PART_MATRIX_INVERSE",
+            Self::IncludeTransform => "*DEFINE_TRANSFORMATION with *INCLUDE_TRANSFORM",
+        }
+    }
+
+    /// A word for the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::StampedPart => "stamped",
+            Self::StampedPartInverse => "stamped-inverse",
+            Self::IncludeTransform => "transform",
+        }
+    }
+}
+
+/// The crash part, or set of parts, that receives the forming results.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Receiver {
+    /// A part id.
+    Part(u64),
+    /// The id of a part set.
+    Set(u64),
+}
+
+/// What the cards hold besides the pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CardOptions {
+    /// Name of the stamped file as the deck shall call it, at most 236 columns.
+    pub file_name: String,
+    /// Who receives the forming results.
+    pub receiver: Receiver,
+    /// Search radius RMAX in model units, from the measured deviation; rounded up.
+    pub search_radius: f64,
+    /// PERCELE: share of elements in percent that must be mapped, from the measured overlap;
+    /// rounded down.
+    pub mapped_percent: f64,
+    /// Id of the transformation.
+    pub transformation_id: u64,
+    /// Added to the node and element ids of the stamped mesh where it joins the crash model.
+    pub id_offset: u64,
+    /// Twenty columns a number (`+` after the keyword) in place of ten.
+    pub is_long: bool,
+    /// Box around the stamped part: where rounding errors count.
+    pub bounds: Aabb,
+    /// Lines for the head: files, build, fit.
+    pub comments: Vec<String>,
+}
+
+impl Default for CardOptions {
+    fn default() -> Self {
+        Self {
+            file_name: "dynain".to_owned(),
+            receiver: Receiver::Part(1),
+            search_radius: 20.0,
+            mapped_percent: 0.0,
+            transformation_id: 1,
+            id_offset: 0,
+            is_long: false,
+            bounds: Aabb {
+                min: Point3::from([-5000.0; 3]),
+                max: Point3::from([5000.0; 3]),
+            },
+            comments: Vec::new(),
+        }
+    }
+}
+
+/// Why a pose cannot be put on cards.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CardError {
+    /// The cards hold a rigid motion only.
+    #[error(
+        "the pose has the scale {scale}, which the cards cannot hold: the solver would scale \
+         coordinates but neither thickness nor stresses; bring the stamped file to the unit of \
+         the crash model first"
+    )]
+    Scaled {
+        /// The scale.
+        scale: f64,
+    },
+    /// The 3×3 block is no rotation.
+    #[error(transparent)]
+    Matrix(#[from] MatrixError),
+    /// A number that no field of ten columns can hold.
+    #[error("{value} does not fit {width} columns")]
+    DoesNotFit {
+        /// The number.
+        value: f64,
+        /// Columns of the field.
+        width: usize,
+    },
+    /// An id with more digits than its field.
+    #[error("the id {id} has more than {width} digits")]
+    IdTooLong {
+        /// The id.
+        id: u64,
+        /// Columns of the field.
+        width: usize,
+    },
+    /// File names may have 236 columns.
+    #[error("the file name has {length} columns, the solver reads 236")]
+    NameTooLong {
+        /// Columns of the name.
+        length: usize,
+    },
+    /// The written text reads back as something else.
+    #[error("the written cards cannot be read back: {0}")]
+    ReadBack(#[from] ReadBackError),
+}
+
+/// Cards and what a solver makes of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cards {
+    /// The text, ending in a newline.
+    pub text: String,
+    /// The pose as it reads back, with all rounding.
+    pub read_back: Similarity,
+    /// The pose that was asked for.
+    pub asked: Similarity,
+}
+
+impl Cards {
+    /// Largest distance between where the cards and where the exact pose put these points of the
+    /// stamped part. The distance is largest at corners of any convex hull.
+    pub fn largest_node_error<'a>(&self, points: impl IntoIterator<Item = &'a Point3>) -> f64 {
+        self.asked.max_displacement(&self.read_back, points)
+    }
+
+    /// Largest entry of |RᵀR − I| of the rotation as it reads back.
+    pub fn orthogonality_error(&self) -> f64 {
+        let r = self.read_back.rotation;
+        (r.transpose() * r - Matrix3::identity()).amax()
+    }
+}
+
+/// Writes the pose `crash_from_stamped` as cards and reads them back. A mirrored pose becomes a
+/// mirror in the plane x = 0 of the stamped part and a rotation after it.
+pub fn write(
+    form: CardForm,
+    crash_from_stamped: &Similarity,
+    options: &CardOptions,
+) -> Result<Cards, CardError> {
+    let asked = *crash_from_stamped;
+    if asked.scale != 1.0 {
+        let scale = asked.scale;
+        return Err(CardError::Scaled { scale });
+    }
+    Similarity::from_matrix4(&asked.to_matrix4(), 1e-6)?;
+    match form {
+        CardForm::StampedPart => stamped_part(&asked, options, false),
+        CardForm::StampedPartInverse => stamped_part(&asked, options, true),
+        CardForm::IncludeTransform => include_transform(&asked, options),
+    }
+}
+
+/// The rigid motion that follows the mirror x → −x, if there is a mirror.
+fn proper_part(motion: &Similarity) -> Similarity {
+    if motion.is_mirrored() {
+        motion.after(&Similarity::mirror_x())
+    } else {
+        *motion
+    }
+}
+
+fn finish(text: String, asked: &Similarity) -> Result<Cards, CardError> {
+    let read_back = read_back(&text)?;
+    Ok(Cards {
+        text,
+        read_back,
+        asked: *asked,
+    })
+}
+
+/// Builds lines of right-aligned fields.
+struct Sheet {
+    text: String,
+    /// Columns of a number.
+    width: usize,
+    suffix: &'static str,
+}
+
+impl Sheet {
+    fn new(options: &CardOptions) -> Self {
+        Self {
+            text: String::new(),
+            width: if options.is_long { 20 } else { 10 },
+            suffix: if options.is_long { "+" } else { "" },
+        }
+    }
+
+    fn line(&mut self, line: &str) {
+        self.text += line.trim_end();
+        self.text.push('\n');
+    }
+
+    fn keyword(&mut self, name: &str) {
+        self.line(&format!("*{name}{}", self.suffix));
+    }
+
+    fn comments(&mut self, lines: &[String]) {
+        for line in lines.iter().flat_map(|text| text.lines()) {
+            self.line(&format!("$ {line}"));
+        }
+    }
+
+    /// Field names over a card, as LS-PrePost writes them.
+    fn names(&mut self, names: &str) {
+        let mut line = String::from("$#");
+        for (i, name) in names.split(' ').enumerate() {
+            let width = if i == 0 { self.width - 2 } else { self.width };
+            line += &format!("{:>width$}", if name == "-" { "" } else { name });
+        }
+        self.line(&line);
+    }
+
+    fn file_name(&mut self, name: &str) -> Result<(), CardError> {
+        let characters: Vec<char> = name.chars().collect();
+        if characters.len() > 236 {
+            let length = characters.len();
+            return Err(CardError::NameTooLong { length });
+        }
+        let mut rest = &characters[..];
+        // The last line may be full; the others need two columns for the sign that they go on.
+        while rest.len() > 80 {
+            let (line, after) = rest.split_at(78);
+            self.line(&(line.iter().collect::<String>() + " +"));
+            rest = after;
+        }
+        self.line(&rest.iter().collect::<String>());
+        Ok(())
+    }
+
+    fn real(&self, value: f64) -> Result<String, CardError> {
+        let width = self.width;
+        let text = fixed_width(value + 0.0, width);
+        let text = text.ok_or(CardError::DoesNotFit { value, width })?;
+        Ok(format!("{text:>width$}"))
+    }
+
+    fn int(&self, id: u64) -> Result<String, CardError> {
+        let width = self.width;
+        let text = format!("{id:>width$}");
+        if text.len() > width {
+            return Err(CardError::IdTooLong { id, width });
+        }
+        Ok(text)
+    }
+
+    fn blank(&self) -> String {
+        " ".repeat(self.width)
+    }
+
+    fn reals(&mut self, values: &[f64]) -> Result<(), CardError> {
+        let fields: Result<Vec<String>, CardError> = values.iter().map(|&v| self.real(v)).collect();
+        self.line(&fields?.concat());
+        Ok(())
+    }
+
+    fn ints(&mut self, values: &[u64]) -> Result<(), CardError> {
+        let fields: Result<Vec<String>, CardError> = values.iter().map(|&v| self.int(v)).collect();
+        self.line(&fields?.concat());
+        Ok(())
+    }
+
+    fn option_row(&mut self, option: &str, fields: &[String]) {
+        let width = self.width;
+        self.line(&format!("{option:<width$}{}", fields.concat()));
+    }
+}
+
+/// Translation that balances the rounding of the rotation at `center`, so that the error grows
+/// from the part's middle and not from a far origin.
+fn balanced(exact: &Similarity, rounded: &Matrix3, center: &Point3) -> Vector3 {
+    exact.translation + (exact.rotation - rounded) * center.coords
+}
+
+/// The matrix as its fields will read.
+fn rounded(matrix: &Matrix3, width: usize) -> Result<Matrix3, CardError> {
+    let mut result = *matrix;
+    for value in result.iter_mut() {
+        let exact = *value + 0.0;
+        let read = fixed_width(exact, width).and_then(|text| text.parse().ok());
+        let lost = CardError::DoesNotFit {
+            value: exact,
+            width,
+        };
+        *value = read.ok_or(lost)?;
+    }
+    Ok(result)
+}
+
+fn stamped_part(
+    asked: &Similarity,
+    options: &CardOptions,
+    is_inverse: bool,
+) -> Result<Cards, CardError> {
+    let forward = proper_part(asked);
+    let center = options.bounds.center();
+    let (motion, center) = if is_inverse {
+        (forward.inverse(), asked.apply(&center))
+    } else if asked.is_mirrored() {
+        (forward, Similarity::mirror_x().apply(&center))
+    } else {
+        (forward, center)
+    };
+    let mut sheet = Sheet::new(options);
+    let rotation = rounded(&motion.rotation, sheet.width)?;
+    let translation = balanced(&motion, &rotation, &center);
+    sheet.comments(&options.comments);
+    sheet.line(if is_inverse {
+        "$ The matrix carries the crash part to the stamped part: stamped = R * crash + t"
+    } else {
+        "$ The matrix carries the stamped part to the crash part: crash = R * stamped + t"
+    });
+    if asked.is_mirrored() {
+        sheet.line("$ Opposite hand: ISYM 1 with IAFTER 0 mirrors the stamped part at x = 0 first");
+    }
+    let (target, id) = match options.receiver {
+        Receiver::Part(id) => ("PART", id),
+        Receiver::Set(id) => ("SET", id),
+    };
+    let inverse = if is_inverse { "_INVERSE" } else { "" };
+    sheet.keyword(&format!("INCLUDE_STAMPED_{target}_MATRIX{inverse}"));
+    sheet.file_name(&options.file_name)?;
+    sheet.names("pid thick pstrn strain stress incout - rmax");
+    let zero = sheet.int(0)?;
+    // The solver takes a radius below 0.001 for its own default.
+    let radius = (options.search_radius * 1000.0).ceil().max(1.0) / 1000.0;
+    let mut fields = vec![sheet.int(id)?];
+    fields.extend(std::iter::repeat_n(zero.clone(), 5));
+    fields.extend([sheet.blank(), sheet.real(radius)?]);
+    sheet.line(&fields.concat());
+    sheet.names("r11 r12 r13 xp tensor thkscl");
+    for (row, t) in translation.iter().enumerate() {
+        let r = rotation.row(row);
+        let mut fields = String::new();
+        for value in [r[0], r[1], r[2], *t] {
+            fields += &sheet.real(value)?;
+        }
+        if row == 0 {
+            fields = fields + &zero + &sheet.real(1.0)?;
+        }
+        sheet.line(&fields);
+    }
+    sheet.names("isym iafter percele iortho - isrcout mtype");
+    let percent = (options.mapped_percent.clamp(0.0, 100.0) * 100.0).floor() / 100.0;
+    let fields = [
+        sheet.int(asked.is_mirrored().into())?,
+        zero.clone(),
+        sheet.real(percent)?,
+        zero.clone(),
+        sheet.blank(),
+        zero.clone(),
+        zero,
+    ];
+    sheet.line(&fields.concat());
+    sheet.reals(&[0.0; 3])?;
+    sheet.reals(&[0.0; 6])?;
+    finish(sheet.text, asked)
+}
+
+/// Tries the ways to write the motion and takes the one that reads back best.
+fn include_transform(asked: &Similarity, options: &CardOptions) -> Result<Cards, CardError> {
+    let corners = options.bounds.corners();
+    let mut best: Option<(f64, Cards)> = None;
+    for way in [Way::Rotate, Way::Points(1000.0), Way::Points(4000.0)] {
+        let cards = transform_cards(asked, options, way)?;
+        let error = cards.largest_node_error(&corners);
+        if best.as_ref().is_none_or(|(least, _)| error < *least) {
+            best = Some((error, cards));
+        }
+    }
+    Ok(best.expect("one of three ways is the best").1)
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Way {
+    /// A rotation about an axis through the origin, then a translation.
+    Rotate,
+    /// Six points, the legs of their triangle this long.
+    Points(f64),
+}
+
+fn transform_cards(
+    asked: &Similarity,
+    options: &CardOptions,
+    way: Way,
+) -> Result<Cards, CardError> {
+    let mut sheet = Sheet::new(options);
+    sheet.comments(&options.comments);
+    sheet.line(
+        "$ The transformation carries the stamped part to the crash part; rows apply in turn",
+    );
+    sheet.keyword("DEFINE_TRANSFORMATION");
+    sheet.ints(&[options.transformation_id])?;
+    sheet.names("option a1 a2 a3 a4 a5 a6 a7");
+    if asked.is_mirrored() {
+        let fields = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0].map(|v| sheet.real(v));
+        let fields: Result<Vec<String>, CardError> = fields.into_iter().collect();
+        sheet.option_row("MIRROR", &fields?);
+    }
+    let motion = proper_part(asked);
+    let center = options.bounds.center();
+    let center = if asked.is_mirrored() {
+        Similarity::mirror_x().apply(&center)
+    } else {
+        center
+    };
+    match way {
+        Way::Rotate => rotate_rows(&mut sheet, &motion, &center)?,
+        Way::Points(length) => point_rows(&mut sheet, &motion, &center, length)?,
+    }
+    sheet.keyword("INCLUDE_TRANSFORM");
+    sheet.file_name(&options.file_name)?;
+    sheet.names("idnoff ideoff idpoff idmoff idsoff idfoff iddoff");
+    let offset = options.id_offset;
+    sheet.ints(&[offset, offset, 0, 0, 0, 0, 0])?;
+    sheet.names("idroff");
+    sheet.ints(&[0])?;
+    sheet.names("fctmas fcttim fctlen");
+    sheet.reals(&[1.0; 3])?;
+    sheet.names("tranid");
+    sheet.ints(&[options.transformation_id])?;
+    finish(sheet.text, asked)
+}
+
+fn rotate_rows(sheet: &mut Sheet, motion: &Similarity, center: &Point3) -> Result<(), CardError> {
+    let (axis, angle_deg) = axis_angle(&motion.rotation);
+    let mut turned = Similarity::identity();
+    if angle_deg != 0.0 {
+        let mut fields = Vec::new();
+        for value in [axis.x, axis.y, axis.z, 0.0, 0.0, 0.0, angle_deg] {
+            fields.push(sheet.real(value)?);
+        }
+        sheet.option_row("ROTATE", &fields);
+        // What the row does as it reads back decides what is left for the translation.
+        turned = read_back(&sheet.text)?;
+        if turned.is_mirrored() {
+            turned = turned.after(&Similarity::mirror_x());
+        }
+    }
+    let shift = balanced(motion, &turned.rotation, center);
+    let mut fields = Vec::new();
+    for value in shift.iter() {
+        fields.push(sheet.real(*value)?);
+    }
+    sheet.option_row("TRANSL", &fields);
+    Ok(())
+}
+
+/// Axis with its largest component ±1 and angle in degrees, 0 to 180; exact also near both ends.
+fn axis_angle(rotation: &Matrix3) -> (Vector3, f64) {
+    let turn = nalgebra::Rotation3::from_matrix_unchecked(*rotation);
+    let mut q = nalgebra::UnitQuaternion::from_rotation_matrix(&turn).into_inner();
+    if q.w < 0.0 {
+        q = -q;
+    }
+    let axis = q.imag();
+    let largest = axis.amax();
+    if largest == 0.0 {
+        return (Vector3::z(), 0.0);
+    }
+    let angle = 2.0 * axis.norm().atan2(q.w);
+    (axis / largest, angle.to_degrees())
+}
+
+/// `POINT` rows and one `POS6P`. The first point is carried exactly, so the error grows from it.
+fn point_rows(
+    sheet: &mut Sheet,
+    motion: &Similarity,
+    center: &Point3,
+    length: f64,
+) -> Result<(), CardError> {
+    // Whole coordinates are written without error; legs towards the origin keep numbers short.
+    let first = center.map(f64::round);
+    let leg = |axis: usize| {
+        let mut point = first;
+        point[axis] += if first[axis] > 0.0 { -length } else { length };
+        point
+    };
+    let start = [first, leg(0), leg(1)];
+    let target = start.map(|point| motion.apply(&point));
+    for (id, point) in (1..).zip(start.iter().chain(&target)) {
+        let mut fields = vec![sheet.int(id)?];
+        for value in point.iter() {
+            fields.push(sheet.real(*value)?);
+        }
+        sheet.option_row("POINT", &fields);
+    }
+    let ids: Result<Vec<String>, CardError> = (1..=6).map(|id| sheet.int(id)).collect();
+    sheet.option_row("POS6P", &ids?);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Pose;
+    use proptest::prelude::*;
+
+    fn pose(turn: [f64; 3], shift: [f64; 3], is_mirrored: bool) -> Similarity {
+        let rigid = Similarity::from(Pose::new(Vector3::from(shift), Vector3::from(turn)));
+        if is_mirrored {
+            rigid.after(&Similarity::mirror_x())
+        } else {
+            rigid
+        }
+    }
+
+    fn any_pose() -> impl Strategy<Value = Similarity> {
+        // Plain turns and small ones too, not only those in general position.
+        let angle = prop_oneof![
+            -3.1..3.1f64,
+            Just(0.0),
+            Just(std::f64::consts::FRAC_PI_2),
+            Just(std::f64::consts::PI),
+            -1e-6..1e-6f64,
+        ];
+        let turn = [angle.clone(), angle.clone(), angle];
+        let shift = proptest::array::uniform3(-5000.0..5000.0f64);
+        (turn, shift, any::<bool>()).prop_map(|(r, t, m)| pose(r, t, m))
+    }
+
+    proptest! {
+        #[test]
+        fn every_form_keeps_nodes_within_a_micrometre(motion in any_pose()) {
+            let corners = CardOptions::default().bounds.corners();
+            for &form in CardForm::ALL {
+                for is_long in [false, true] {
+                    let options = CardOptions { is_long, ..CardOptions::default() };
+                    let cards = write(form, &motion, &options).unwrap();
+                    let limit = if is_long { 1e-9 } else { 1e-3 };
+                    let error = cards.largest_node_error(&corners);
+                    prop_assert!(error <= limit, "{:?} {}\n{}", form, error, cards.text);
+                    prop_assert!(cards.orthogonality_error() < 1e-7);
+                    let longest = cards.text.lines().filter(|l| !l.starts_with('$')).map(str::len).max();
+                    let widest = if is_long { 160 } else { 80 };
+                    prop_assert!(longest <= Some(widest));
+                }
+            }
+        }
+
+        #[test]
+        fn a_part_far_from_the_origin_loses_no_more(
+            motion in any_pose(),
+            middle in proptest::array::uniform3(-5000.0..5000.0f64),
+        ) {
+            let middle = Point3::from(middle);
+            let size = Vector3::repeat(500.0);
+            let bounds = Aabb { min: middle - size, max: middle + size };
+            for &form in CardForm::ALL {
+                let options = CardOptions { bounds, ..CardOptions::default() };
+                let cards = write(form, &motion, &options).unwrap();
+                let error = cards.largest_node_error(&bounds.corners());
+                prop_assert!(error <= 1e-3, "{:?} {}\n{}", form, error, cards.text);
+            }
+        }
+
+        #[test]
+        fn any_text_is_read_back_without_panic(text in "[-+0-9.,\n $]{0,200}") {
+            for name in ["INCLUDE_STAMPED_PART_MATRIX", "DEFINE_TRANSFORMATION+"] {
+                let _ = read_back(&format!("*{name}\n{text}"));
+            }
+        }
+    }
+
+    #[test]
+    fn the_stamped_part_card_as_it_is_written() {
+        let motion = Similarity {
+            rotation: Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0),
+            translation: Vector3::new(1234.5, -20.25, 0.0),
+            scale: 1.0,
+        };
+        let options = CardOptions {
+            file_name: "door.dynain".into(),
+            receiver: Receiver::Part(2000012),
+            search_radius: 2.3456,
+            mapped_percent: 98.765,
+            comments: vec!["crash.k from door.dynain".into()],
+            ..CardOptions::default()
+        };
+        let cards = write(CardForm::StampedPart, &motion, &options).unwrap();
+        let expected = "\
+$ crash.k from door.dynain
+$ The matrix carries the stamped part to the crash part: crash = R * stamped + t
+*INCLUDE_STAMPED_PART_MATRIX
+door.dynain
+$#     pid     thick     pstrn    strain    stress    incout                rmax
+   2000012         0         0         0         0         0               2.346
+$#     r11       r12       r13        xp    tensor    thkscl
+        0.       -1.        0.    1234.5         0        1.
+        1.        0.        0.    -20.25
+        0.        0.        1.        0.
+$#    isym    iafter   percele    iortho             isrcout     mtype
+         0         0     98.76         0                   0         0
+        0.        0.        0.
+        0.        0.        0.        0.        0.        0.
+";
+        assert_eq!(cards.text, expected);
+        assert_eq!(cards.read_back, motion);
+        let set = CardOptions {
+            receiver: Receiver::Set(7),
+            ..options
+        };
+        let cards = write(CardForm::StampedPartInverse, &motion, &set).unwrap();
+        assert!(cards.text.contains("*INCLUDE_STAMPED_SET_MATRIX_INVERSE\n"));
+        assert!(cards.text.contains("stamped = R * crash + t"));
+    }
+
+    #[test]
+    fn what_cannot_be_written_is_refused() {
+        let scaled = Similarity::from_scale(25.4);
+        let options = CardOptions::default();
+        for &form in CardForm::ALL {
+            let error = write(form, &scaled, &options).unwrap_err();
+            assert_eq!(error, CardError::Scaled { scale: 25.4 });
+        }
+        let id = 12_345_678_901;
+        let options = CardOptions {
+            receiver: Receiver::Part(id),
+            ..CardOptions::default()
+        };
+        let motion = Similarity::identity();
+        let error = write(CardForm::StampedPart, &motion, &options).unwrap_err();
+        assert_eq!(error, CardError::IdTooLong { id, width: 10 });
+        let options = CardOptions {
+            file_name: "x".repeat(237),
+            ..CardOptions::default()
+        };
+        let error = write(CardForm::StampedPart, &motion, &options).unwrap_err();
+        assert_eq!(error, CardError::NameTooLong { length: 237 });
+        assert_eq!(read_back("*NODE\n"), Err(ReadBackError::NoKeyword));
+    }
+
+    #[test]
+    fn long_names_go_on_over_lines() {
+        let options = CardOptions {
+            file_name: "n".repeat(236),
+            ..CardOptions::default()
+        };
+        let motion = pose([0.1, 0.2, 0.3], [1.0, 2.0, 3.0], false);
+        let cards = write(CardForm::StampedPart, &motion, &options).unwrap();
+        let names: Vec<usize> = cards
+            .text
+            .lines()
+            .filter(|l| l.starts_with('n'))
+            .map(str::len)
+            .collect();
+        assert_eq!(names, [80, 80, 80]);
+    }
+
+    #[test]
+    fn every_symmetry_of_other_peoples_cards() {
+        let deck = |flags: &str, points: &str| {
+            let rows = "1.,0.,0.,10.\n0.,1.,0.,0.\n0.,0.,1.,0.\n";
+            let text = format!("*INCLUDE_STAMPED_PART_MATRIX\na,b.k\n1\n{rows}{flags}\n{points}\n");
+            read_back(&text).unwrap().apply(&Point3::new(1.0, 2.0, 3.0))
+        };
+        assert_eq!(deck("0", ""), Point3::new(11.0, 2.0, 3.0));
+        assert_eq!(deck("1,0", ""), Point3::new(9.0, 2.0, 3.0));
+        assert_eq!(deck("1,1", ""), Point3::new(-11.0, 2.0, 3.0));
+        assert_eq!(deck("2", ""), Point3::new(11.0, -2.0, 3.0));
+        assert_eq!(deck("3", ""), Point3::new(9.0, -2.0, 3.0));
+        // The plane z = 5.
+        let moved = deck("4", "0,0,5\n1,0,5,0,1,5");
+        assert!((moved - Point3::new(11.0, 2.0, 7.0)).norm() < 1e-12);
+    }
+}
