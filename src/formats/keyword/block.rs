@@ -104,11 +104,13 @@ impl<'a> Block<'a> {
     /// The data lines of a part of the body that starts at a line's start.
     pub fn cards_in(&self, range: Range<usize>) -> Cards<'a> {
         Cards {
-            file: self.file,
+            lines: Lines {
+                file: self.file,
+                next: range.start,
+                end: range.end,
+            },
             layout: self.layout,
             parameters: self.parameters,
-            next: range.start,
-            end: range.end,
         }
     }
 
@@ -131,17 +133,26 @@ impl<'a> Block<'a> {
 /// The data lines of a block.
 #[derive(Clone)]
 pub struct Cards<'a> {
-    file: &'a SourceFile,
+    lines: Lines<'a>,
     layout: Layout,
     parameters: Option<&'a dyn Parameters>,
-    next: usize,
-    end: usize,
 }
 
-impl Cards<'_> {
+impl<'a> Cards<'a> {
     /// Byte offset of the line that comes next.
     pub fn offset(&self) -> usize {
-        self.next
+        self.lines.next
+    }
+
+    /// The next line as it stands, with its offset.
+    #[inline]
+    pub fn next_line(&mut self) -> Option<(&'a [u8], usize)> {
+        self.lines.next()
+    }
+
+    /// A card of this block from one of its lines.
+    pub fn card(&self, line: &'a [u8], offset: usize) -> Card<'a> {
+        Card::new(line, offset, self.layout, self.lines.file, self.parameters)
     }
 }
 
@@ -149,24 +160,34 @@ impl<'a> Iterator for Cards<'a> {
     type Item = Card<'a>;
 
     fn next(&mut self) -> Option<Card<'a>> {
+        let (line, offset) = self.lines.next()?;
+        Some(self.card(line, offset))
+    }
+}
+
+/// Lines that are neither comments nor encrypted, with their offsets.
+#[derive(Clone)]
+struct Lines<'a> {
+    file: &'a SourceFile,
+    next: usize,
+    end: usize,
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = (&'a [u8], usize);
+
+    #[inline]
+    fn next(&mut self) -> Option<(&'a [u8], usize)> {
         loop {
             let (line, offset, next) = next_line(self.file.bytes(), self.next, self.end)?;
             self.next = next;
             match line.first() {
                 Some(b'$') => {}
                 Some(b'-') if line.starts_with(PGP_BEGIN) => {
-                    let rest = &self.file.bytes()[self.next..self.end];
-                    self.next += end_of_encrypted(rest);
+                    let rest = &self.file.bytes()[offset..self.end];
+                    self.next = offset + end_of_encrypted(rest);
                 }
-                _ => {
-                    return Some(Card::new(
-                        line,
-                        offset,
-                        self.layout,
-                        self.file,
-                        self.parameters,
-                    ));
-                }
+                _ => return Some((line, offset)),
             }
         }
     }

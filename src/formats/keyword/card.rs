@@ -51,6 +51,16 @@ impl Layout {
     }
 }
 
+/// Where the first `N` fields of a card begin and, last, where the last of them ends.
+pub fn columns<const N: usize>(widths: &[u8], layout: Layout) -> [usize; N] {
+    let mut at = 0;
+    std::array::from_fn(|i| {
+        let column = at;
+        at += widths.get(i).map_or(0, |&w| layout.width(w));
+        column
+    })
+}
+
 /// What a parameter stands for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
@@ -254,6 +264,18 @@ impl<'a> Card<'a> {
                 "an id, which is not negative",
             )
         })
+    }
+
+    /// An id that must be there: an integer from 1.
+    #[inline]
+    pub fn required_id(&self, widths: &[u8], index: usize) -> Result<u64, FieldError> {
+        match self.id(widths, index)? {
+            0 => {
+                let field = self.field(widths, index);
+                Err(field_error(DiagnosticKind::BadField, field, "an id from 1"))
+            }
+            id => Ok(id),
+        }
     }
 
     /// A finite real number; `None` for a blank field.

@@ -1,63 +1,123 @@
-//! Nodes and elements.
+//! The element keywords: which cards each has.
 
-use super::super::diagnostic::Diagnostics;
 use super::block::Block;
-use super::card::{Card, FieldError, TEN_BY_8};
-use crate::geometry::Point3;
 
-/// Standard widths of a `*NODE` card.
-pub const NODE: &[u8] = &[8, 16, 16, 16, 8, 8];
-
-/// A shell as its card has it, with ids in place of indices.
+/// What is known of an element keyword.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct RawShell {
-    /// Element id.
-    pub id: u64,
-    /// Part id.
-    pub part: u64,
-    /// Node ids of the corners.
-    pub nodes: [u64; 4],
+pub(crate) enum ElementKeyword {
+    /// `*ELEMENT_SHELL…`.
+    Shell(ShellCards),
+    /// `*ELEMENT_SOLID…` and `*ELEMENT_TSHELL…`.
+    Solid(SolidCards),
+    /// An element list of a kind that has no surface, or no element list at all.
+    Skipped,
+    /// Has a surface, but its cards are not known.
+    Unknown,
 }
 
-/// Reads the cards of `*NODE`.
-pub fn read_nodes(block: &Block<'_>, into: &mut Vec<(u64, Point3)>, found: &mut Diagnostics) {
-    for card in block.cards().filter(|card| !card.is_blank()) {
-        match node(&card) {
-            Ok(node) => into.push(node),
-            Err(error) => found.push_with(error.kind, || card.diagnose(&error, "the node")),
+/// The cards of one shell after its first, in this order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct ShellCards {
+    /// Corner thickness and material angle.
+    pub thickness: bool,
+    /// The fifth field of that card is the material angle, not a coordinate system.
+    pub beta: bool,
+    /// Cards for offset and scalar nodes, which are passed over.
+    pub n_passed_over: usize,
+    /// Any number of cards with plies.
+    pub plies: bool,
+}
+
+/// The cards of one solid or thick shell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct SolidCards {
+    /// A thick shell, always on one line.
+    pub thick_shell: bool,
+    /// Lines with nodes after the line with the ids; `None` if the first card tells.
+    pub n_node_cards: Option<usize>,
+    /// Corners among the nodes of the keyword: 8, or 4 for quadratic and cubic tetrahedra.
+    pub n_corners: usize,
+    /// Cards after the nodes, which are passed over.
+    pub n_passed_over: usize,
+    /// Any number of cards with plies.
+    pub plies: bool,
+}
+
+/// Solids of higher order: option, lines with nodes, corners.
+const SOLID_ORDERS: &[(&str, usize, usize)] = &[
+    ("H20", 2, 8),
+    ("H27", 3, 8),
+    ("H64", 7, 8),
+    ("T15", 2, 4),
+    ("T20", 2, 4),
+];
+
+/// Options of `*ELEMENT_SOLID` that ask for other elements to be made and have no cards.
+const SOLID_CONVERSIONS: &[&str] = &["TET4TOTET10", "H8TOH20", "H8TOH27", "H8TOH64"];
+
+/// What the cards of a block's keyword are.
+pub(crate) fn element_keyword(block: &Block<'_>) -> ElementKeyword {
+    let Some(rest) = block.name.strip_prefix("ELEMENT_") else {
+        return ElementKeyword::Skipped;
+    };
+    let mut words = rest.split('_');
+    let keyword = match words.next() {
+        Some("SHELL") => shell_cards(words).map(ElementKeyword::Shell),
+        Some("SOLID") => solid_cards(words).map(ElementKeyword::Solid),
+        Some("TSHELL") => thick_shell_cards(words).map(ElementKeyword::Solid),
+        _ => Some(ElementKeyword::Skipped),
+    };
+    keyword.unwrap_or(ElementKeyword::Unknown)
+}
+
+fn shell_cards<'a>(options: impl Iterator<Item = &'a str>) -> Option<ShellCards> {
+    let mut cards = ShellCards::default();
+    for option in options {
+        match option {
+            "THICKNESS" | "MCID" => cards.thickness = true,
+            "BETA" => (cards.thickness, cards.beta) = (true, true),
+            "OFFSET" | "DOF" => cards.n_passed_over += 1,
+            "COMPOSITE" => cards.plies = true,
+            // `COMPOSITE_LONG` has one ply a card; `SHL4_TO_SHL8` has no cards of its own.
+            "LONG" | "SHL4" | "TO" | "SHL8" => {}
+            _ => return None,
         }
     }
+    Some(cards)
 }
 
-fn node(card: &Card<'_>) -> Result<(u64, Point3), FieldError> {
-    let id = card.id(NODE, 0)?;
-    let x = card.real_or_zero(NODE, 1)?;
-    let y = card.real_or_zero(NODE, 2)?;
-    let z = card.real_or_zero(NODE, 3)?;
-    Ok((id, Point3::new(x, y, z)))
-}
-
-/// Reads the cards of `*ELEMENT_SHELL`.
-pub fn read_shells(block: &Block<'_>, into: &mut Vec<RawShell>, found: &mut Diagnostics) {
-    for card in block.cards().filter(|card| !card.is_blank()) {
-        match shell(&card) {
-            Ok(shell) => into.push(shell),
-            Err(error) => found.push_with(error.kind, || card.diagnose(&error, "the shell")),
+fn solid_cards<'a>(options: impl Iterator<Item = &'a str>) -> Option<SolidCards> {
+    let mut cards = SolidCards {
+        n_corners: 8,
+        ..SolidCards::default()
+    };
+    for option in options {
+        if let Some(&(_, n_cards, n_corners)) = SOLID_ORDERS.iter().find(|row| row.0 == option) {
+            cards.n_node_cards = Some(n_cards);
+            cards.n_corners = n_corners;
+        } else if option == "ORTHO" {
+            cards.n_passed_over += 2;
+        } else if option == "DOF" {
+            cards.n_passed_over += 1;
+        } else if !SOLID_CONVERSIONS.contains(&option) {
+            return None;
         }
     }
+    Some(cards)
 }
 
-fn shell(card: &Card<'_>) -> Result<RawShell, FieldError> {
-    let mut nodes = [0; 4];
-    for (i, node) in nodes.iter_mut().enumerate() {
-        *node = card.id(TEN_BY_8, 2 + i)?;
+fn thick_shell_cards<'a>(options: impl Iterator<Item = &'a str>) -> Option<SolidCards> {
+    let mut cards = SolidCards {
+        thick_shell: true,
+        n_corners: 8,
+        ..SolidCards::default()
+    };
+    for option in options {
+        match option {
+            "BETA" => cards.n_passed_over += 1,
+            "COMPOSITE" => cards.plies = true,
+            _ => return None,
+        }
     }
-    if nodes[3] == 0 {
-        nodes[3] = nodes[2];
-    }
-    Ok(RawShell {
-        id: card.id(TEN_BY_8, 0)?,
-        part: card.id(TEN_BY_8, 1)?,
-        nodes,
-    })
+    Some(cards)
 }

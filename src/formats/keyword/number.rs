@@ -127,6 +127,24 @@ fn parse_slowly(text: &[u8]) -> Option<f64> {
     fast_float2::parse(&plain).ok()
 }
 
+/// A field of blanks around decimal digits; `None` for anything else and for a blank field.
+#[inline]
+pub fn parse_digits(field: &[u8]) -> Option<u64> {
+    let digits = field.trim_ascii();
+    if digits.is_empty() || digits.len() > 18 {
+        return None;
+    }
+    let mut value = 0u64;
+    for &byte in digits {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            return None;
+        }
+        value = value * 10 + u64::from(digit);
+    }
+    Some(value)
+}
+
 /// An integer, also one written as a real (`3.0`, `1e3`); `None` if the trimmed text is none.
 #[inline]
 pub fn parse_int(text: &[u8]) -> Option<i64> {

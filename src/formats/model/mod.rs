@@ -9,6 +9,7 @@ use std::path::PathBuf;
 
 pub use forming::{Forming, ShellStrain, ShellStress, StrainPoint, StressPoint};
 pub use index::IdIndex;
+pub(crate) use surface::has_area;
 pub use surface::{PartSummary, Selection, SelectionError, Surface};
 
 use super::diagnostic::Diagnostics;

@@ -1,0 +1,262 @@
+//! Puts together what the blocks of a deck hold: ids become indices, includes are moved, parts get
+//! their thickness, and what does not fit is told with its place.
+
+use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position};
+use super::super::model::{Forming, Model, Part, ReadFile, Section, Shell, ShellExtra};
+use super::block::{Block, SourceFile};
+use super::card::Layout;
+use super::include::Context;
+use super::nodes::{NodeChunk, NodeThickness, find_node};
+use super::parts::RawPart;
+use super::resolve;
+use super::sets::RawSet;
+use super::shells::{ElementOffsets, PackedIds, PartIds, ShellChunk, find_element};
+use super::solids::{RawSolid, SolidChunk};
+use super::transform::Transformation;
+use crate::geometry::Point3;
+use crate::monitor::{Cancelled, Monitor};
+
+/// Where a run of nodes or elements comes from, so that a finding can name its line.
+#[derive(Clone)]
+pub(crate) struct Origin {
+    file: Arc<SourceFile>,
+    range: Range<usize>,
+    layout: Layout,
+    elements: ElementOffsets,
+    /// Index of the run's first node or element.
+    first: usize,
+}
+
+impl Origin {
+    pub(crate) fn new(file: &Arc<SourceFile>, block: &Block<'_>, context: &Context) -> Self {
+        Self {
+            file: file.clone(),
+            range: block.body.clone(),
+            layout: block.layout,
+            elements: context.elements(),
+            first: 0,
+        }
+    }
+
+    /// The same for a piece of the block.
+    pub(crate) fn of(&self, range: Range<usize>) -> Self {
+        Self {
+            range,
+            ..self.clone()
+        }
+    }
+
+    fn block(&self) -> Block<'_> {
+        Block {
+            file: &self.file,
+            name: String::new(),
+            remark: b"",
+            suffix: None,
+            layout: self.layout,
+            offset: self.range.start,
+            body: self.range.clone(),
+            parameters: None,
+        }
+    }
+
+    /// The line of a node; that of the run's first line if the node's own uses parameters.
+    fn node(&self, id: u64) -> Position {
+        let found = find_node(&self.block(), self.range.clone(), id, self.elements.node);
+        self.file.position(found.unwrap_or(self.range.start))
+    }
+
+    fn element(&self, id: u64, part: u64) -> Position {
+        let range = self.range.clone();
+        let found = find_element(&self.block(), range, id, part, &self.elements);
+        self.file.position(found.unwrap_or(self.range.start))
+    }
+}
+
+/// The origin of the node or element at `index`.
+fn origin_of(origins: &[Origin], index: usize) -> Option<&Origin> {
+    let after = origins.partition_point(|origin| origin.first <= index);
+    origins[..after].last()
+}
+
+/// A motion of nodes, carried out when all files are read, in the order of this list.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Motion {
+    /// A unit factor on the coordinates of a file and those it includes.
+    Scale { nodes: Range<usize>, factor: f64 },
+    /// The transformation of an include.
+    Include {
+        nodes: Range<usize>,
+        transformation: u64,
+        position: Position,
+    },
+    /// `*NODE_TRANSFORM`.
+    NodeSet {
+        set: u64,
+        transformation: u64,
+        position: Position,
+    },
+}
+
+/// Everything that was read so far, with ids.
+#[derive(Default)]
+pub(crate) struct Assembly {
+    pub title: String,
+    pub files: Vec<ReadFile>,
+    pub found: Diagnostics,
+    pub forming: Forming,
+    pub sections: Vec<Section>,
+    pub sets: Vec<RawSet>,
+    pub transformations: BTreeMap<u64, Transformation>,
+    pub node_thickness: Vec<NodeThickness>,
+    pub(super) node_ids: Vec<u64>,
+    pub(super) positions: Vec<Point3>,
+    pub(super) node_origins: Vec<Origin>,
+    /// Nodes are packed ids, parts are indices into `part_ids`.
+    pub(super) shells: Vec<Shell>,
+    pub(super) packed: PackedIds,
+    pub(super) shell_origins: Vec<Origin>,
+    pub(super) mid_side: Vec<(u32, [u64; 4])>,
+    pub(super) extras: Vec<ShellExtra>,
+    pub(super) solids: Vec<RawSolid>,
+    pub(super) solid_origins: Vec<Origin>,
+    part_index: HashMap<u64, u32>,
+    pub(super) parts: Vec<Part>,
+    pub(super) part_positions: Vec<Option<Position>>,
+    pub(super) motions: Vec<Motion>,
+    told_tabs: bool,
+}
+
+impl Assembly {
+    /// Number of nodes so far.
+    pub(crate) fn n_nodes(&self) -> usize {
+        self.node_ids.len()
+    }
+
+    pub(crate) fn add_motion(&mut self, motion: Motion) {
+        self.motions.push(motion);
+    }
+
+    pub(crate) fn add_nodes(&mut self, chunk: NodeChunk, mut origin: Origin) {
+        origin.first = self.node_ids.len();
+        self.tell_tabs(chunk.had_tabs, &origin);
+        if self.node_ids.is_empty() {
+            (self.node_ids, self.positions) = (chunk.ids, chunk.positions);
+        } else {
+            self.node_ids.extend(chunk.ids);
+            self.positions.extend(chunk.positions);
+        }
+        self.found.append(chunk.diagnostics);
+        self.node_origins.push(origin);
+    }
+
+    pub(crate) fn add_shells(&mut self, chunk: ShellChunk, mut origin: Origin) {
+        let first = self.shells.len();
+        origin.first = first;
+        self.tell_tabs(chunk.had_tabs, &origin);
+        let parts = self.part_numbers(&chunk.parts);
+        let moved = self.packed.append(chunk.packed);
+        self.shells.extend(chunk.shells.into_iter().map(|shell| Shell {
+            id: shell.id,
+            nodes: shell.nodes.map(&moved),
+            part: parts[shell.part as usize],
+        }));
+        let by = first as u32;
+        let mid_side = chunk.mid_side.into_iter();
+        self.mid_side.extend(mid_side.map(|(shell, nodes)| (shell + by, nodes)));
+        let extras = chunk.extras.into_iter().map(|extra| ShellExtra {
+            shell: extra.shell + by,
+            ..extra
+        });
+        self.extras.extend(extras);
+        self.found.append(chunk.diagnostics);
+        self.shell_origins.push(origin);
+    }
+
+    pub(crate) fn add_solids(&mut self, chunk: SolidChunk, mut origin: Origin) {
+        origin.first = self.solids.len();
+        let parts = self.part_numbers(&chunk.parts);
+        self.solids.extend(chunk.solids.into_iter().map(|solid| RawSolid {
+            part: parts[solid.part as usize],
+            ..solid
+        }));
+        self.found.append(chunk.diagnostics);
+        self.solid_origins.push(origin);
+    }
+
+    /// Adds parts; of parts with the same id the first counts.
+    pub(crate) fn add_parts(&mut self, parts: Vec<RawPart>, file: &SourceFile) {
+        for raw in parts {
+            let index = self.part_number(raw.id) as usize;
+            if self.parts[index].is_defined {
+                let kind = DiagnosticKind::DuplicatePart;
+                let first = self.part_positions[index].as_ref();
+                self.found.push_with(kind, || {
+                    let before = first.map_or(String::new(), |first| format!(" (first at {first})"));
+                    let message = format!("part {} is defined again{before}", raw.id);
+                    Diagnostic::new(kind, message).at(file.position(raw.at))
+                });
+                continue;
+            }
+            self.part_positions[index] = Some(file.position(raw.at));
+            self.parts[index] = Part {
+                id: raw.id,
+                title: raw.title,
+                section_id: raw.section_id,
+                thickness: raw.thickness.map(|sum| [sum; 4]),
+                is_defined: true,
+            };
+        }
+    }
+
+    /// Index of a part id; a part that only elements name so far is added.
+    fn part_number(&mut self, id: u64) -> u32 {
+        *self.part_index.entry(id).or_insert_with(|| {
+            let part = Part {
+                id,
+                ..Part::default()
+            };
+            self.parts.push(part);
+            self.part_positions.push(None);
+            (self.parts.len() - 1) as u32
+        })
+    }
+
+    fn part_numbers(&mut self, parts: &PartIds) -> Vec<u32> {
+        parts.ids.iter().map(|&id| self.part_number(id)).collect()
+    }
+
+    fn tell_tabs(&mut self, had_tabs: bool, origin: &Origin) {
+        if had_tabs && !self.told_tabs {
+            self.told_tabs = true;
+            let message = "tabs are taken as steps to the next multiple of eight columns";
+            let finding = Diagnostic::new(DiagnosticKind::Tabs, message);
+            let place = origin.file.position(origin.range.start);
+            self.found.push(finding.at(place));
+        }
+    }
+
+    pub(super) fn node_position(&self, index: usize, id: u64) -> Option<Position> {
+        origin_of(&self.node_origins, index).map(|origin| origin.node(id))
+    }
+
+    pub(super) fn shell_position(&self, index: usize) -> Option<Position> {
+        let shell = &self.shells[index];
+        let part = self.parts[shell.part as usize].id;
+        origin_of(&self.shell_origins, index).map(|origin| origin.element(shell.id, part))
+    }
+
+    pub(super) fn solid_position(&self, index: usize) -> Option<Position> {
+        let solid = &self.solids[index];
+        let part = self.parts[solid.part as usize].id;
+        origin_of(&self.solid_origins, index).map(|origin| origin.element(solid.id, part))
+    }
+
+    /// The model.
+    pub(crate) fn finish(self, monitor: &Monitor) -> Result<Model, Cancelled> {
+        resolve::finish(self, monitor)
+    }
+}

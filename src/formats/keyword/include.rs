@@ -1,0 +1,336 @@
+//! `*INCLUDE` and its relatives: file names, where they are looked for, offsets and units.
+
+use std::path::{Path, PathBuf};
+
+use super::super::diagnostic::Diagnostics;
+use super::super::source::{FileSource, tidy};
+use super::block::{Block, Cards};
+use super::card::{Card, EIGHT_BY_10, Layout};
+use super::nodes::shifted;
+use super::parts::PartOffsets;
+use super::sets::SetOffsets;
+use super::shells::ElementOffsets;
+
+/// What `*INCLUDE_TRANSFORM` adds to the ids of a file, summed over all files around it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Offsets {
+    pub node: i64,
+    pub element: i64,
+    pub part: i64,
+    pub material: i64,
+    pub set: i64,
+    pub function: i64,
+    pub define: i64,
+    pub other: i64,
+}
+
+impl Offsets {
+    /// The offsets of a file included by one that has offsets itself.
+    #[must_use]
+    fn plus(self, inner: Self) -> Self {
+        Self {
+            node: self.node.saturating_add(inner.node),
+            element: self.element.saturating_add(inner.element),
+            part: self.part.saturating_add(inner.part),
+            material: self.material.saturating_add(inner.material),
+            set: self.set.saturating_add(inner.set),
+            function: self.function.saturating_add(inner.function),
+            define: self.define.saturating_add(inner.define),
+            other: self.other.saturating_add(inner.other),
+        }
+    }
+}
+
+/// The circumstances under which a file is read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Context {
+    /// Width of fields unless a keyword says otherwise.
+    pub layout: Layout,
+    /// True if the suffix of the include line demands the layout.
+    pub layout_is_fixed: bool,
+    pub offsets: Offsets,
+    /// Factor on lengths that are not coordinates: thicknesses.
+    pub length: f64,
+}
+
+impl Default for Context {
+    fn default() -> Self {
+        Self {
+            layout: Layout::Standard,
+            layout_is_fixed: false,
+            offsets: Offsets::default(),
+            length: 1.0,
+        }
+    }
+}
+
+impl Context {
+    pub(crate) fn elements(&self) -> ElementOffsets {
+        ElementOffsets {
+            element: self.offsets.element,
+            part: self.offsets.part,
+            node: self.offsets.node,
+            length: self.length,
+        }
+    }
+
+    pub(crate) fn parts(&self) -> PartOffsets {
+        PartOffsets {
+            part: self.offsets.part,
+            section: self.offsets.other,
+            length: self.length,
+        }
+    }
+
+    pub(crate) fn sets(&self) -> SetOffsets {
+        SetOffsets {
+            set: self.offsets.set,
+            part: self.offsets.part,
+            element: self.offsets.element,
+            node: self.offsets.node,
+        }
+    }
+
+    /// The circumstances of a file that this one includes.
+    pub(crate) fn inside(&self, include: &Include, suffix: Option<Layout>) -> Self {
+        Self {
+            layout: suffix.unwrap_or(self.layout),
+            layout_is_fixed: suffix.is_some(),
+            offsets: self.offsets.plus(include.offsets),
+            length: self.length * include.length,
+        }
+    }
+}
+
+/// One file to be included.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Include {
+    pub name: String,
+    /// Byte offset of the name in the including file.
+    pub at: usize,
+    /// What the including file's own offsets are not part of.
+    pub offsets: Offsets,
+    /// FCTLEN: factor on coordinates and thicknesses.
+    pub length: f64,
+    /// TRANID with the including file's offset, or 0.
+    pub transformation: u64,
+}
+
+impl Include {
+    fn plain(name: String, at: usize) -> Self {
+        Self {
+            name,
+            at,
+            offsets: Offsets::default(),
+            length: 1.0,
+            transformation: 0,
+        }
+    }
+}
+
+/// The files of an `*INCLUDE` block: one or more names.
+pub(crate) fn read_includes(block: &Block<'_>) -> Vec<Include> {
+    let mut cards = block.cards();
+    let mut includes = Vec::new();
+    while let Some((name, at)) = file_name(&mut cards) {
+        includes.push(Include::plain(name, at));
+    }
+    includes
+}
+
+/// The folders of an `*INCLUDE_PATH` block.
+pub(crate) fn read_paths(block: &Block<'_>) -> Vec<String> {
+    read_includes(block).into_iter().map(|i| i.name).collect()
+}
+
+/// The file of an `*INCLUDE_TRANSFORM` block. Cards at the end may be missing.
+pub(crate) fn read_include_transform(
+    block: &Block<'_>,
+    define_offset: i64,
+    found: &mut Diagnostics,
+) -> Option<Include> {
+    let mut cards = block.cards();
+    let (name, at) = file_name(&mut cards)?;
+    let mut include = Include::plain(name, at);
+    let mut report = |card: &Card<'_>, error| {
+        let what = "the transformed include";
+        found.push(card.diagnose(&error, what));
+    };
+    if let Some(card) = cards.next() {
+        let offsets = &mut include.offsets;
+        let fields = [
+            &mut offsets.node,
+            &mut offsets.element,
+            &mut offsets.part,
+            &mut offsets.material,
+            &mut offsets.set,
+            &mut offsets.function,
+            &mut offsets.define,
+        ];
+        for (index, field) in fields.into_iter().enumerate() {
+            match card.int_or_zero(EIGHT_BY_10, index) {
+                Ok(value) => *field = value,
+                Err(error) => report(&card, error),
+            }
+        }
+    }
+    if let Some(card) = cards.next() {
+        match card.int_or_zero(EIGHT_BY_10, 0) {
+            Ok(value) => include.offsets.other = value,
+            Err(error) => report(&card, error),
+        }
+    }
+    if let Some(card) = cards.next() {
+        match card.real_or_zero(EIGHT_BY_10, 2) {
+            Ok(0.0) => {}
+            Ok(value) => include.length = value,
+            Err(error) => report(&card, error),
+        }
+    }
+    if let Some(card) = cards.next() {
+        match card.id(EIGHT_BY_10, 0) {
+            Ok(id) => include.transformation = shifted(id, define_offset),
+            Err(error) => report(&card, error),
+        }
+    }
+    Some(include)
+}
+
+/// A file name, joined over lines that end in ` +`, and where it begins.
+fn file_name(cards: &mut Cards<'_>) -> Option<(String, usize)> {
+    let mut name = String::new();
+    let mut at = None;
+    for card in cards.by_ref() {
+        if card.is_blank() && at.is_none() {
+            continue;
+        }
+        at.get_or_insert(card.offset());
+        let text = card.line_text();
+        match text.strip_suffix(" +") {
+            Some(piece) => name.push_str(if name.is_empty() { piece.trim_start() } else { piece }),
+            None => {
+                name.push_str(if name.is_empty() { text.trim_start() } else { &text });
+                break;
+            }
+        }
+    }
+    let name = name.trim_end();
+    let unquoted = name.strip_prefix('"').and_then(|name| name.strip_suffix('"'));
+    Some((unquoted.unwrap_or(name).to_owned(), at?))
+}
+
+/// Where included files are looked for.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct SearchPath {
+    /// The folder of the file that was asked for.
+    pub master: PathBuf,
+    /// `*INCLUDE_PATH` and `*INCLUDE_PATH_RELATIVE` in the order of the deck, then the options'.
+    pub folders: Vec<PathBuf>,
+}
+
+impl SearchPath {
+    /// The file that `name` means in a file of `folder`: as given, beside the including file,
+    /// beside the master, in the folders; then the same with Windows separators, and last the bare
+    /// name, because decks carry the drives of the machine they come from.
+    pub(crate) fn find(
+        &self,
+        source: &dyn FileSource,
+        folder: &Path,
+        name: &str,
+    ) -> Option<PathBuf> {
+        let with_slashes = name.replace('\\', "/");
+        let bare = with_slashes.rsplit('/').next().unwrap_or_default();
+        let mut names = vec![name, &with_slashes, bare];
+        names.dedup();
+        let folders = || {
+            let near = [folder, &self.master];
+            near.into_iter().chain(self.folders.iter().map(PathBuf::as_path))
+        };
+        for name in names.into_iter().filter(|name| !name.is_empty()) {
+            let name = Path::new(name);
+            let found = if name.is_absolute() {
+                source.find(name)
+            } else {
+                folders().find_map(|folder| source.find(&tidy(&folder.join(name))))
+            };
+            if found.is_some() {
+                return found;
+            }
+        }
+        None
+    }
+}
+
+/// What a `*KEYWORD` line says about the width of fields: `LONG=Y`, `I10 = Y`.
+pub(crate) fn layout_of_keyword(remark: &[u8]) -> Option<Layout> {
+    let text = String::from_utf8_lossy(remark).to_ascii_uppercase();
+    let value_of = |option: &str| {
+        let at = text.find(option)?;
+        let rest = text[at + option.len()..].trim_start().strip_prefix('=')?;
+        rest.trim_start().chars().next()
+    };
+    match (value_of("LONG"), value_of("I10")) {
+        // `LONG=S` asks for standard input and a long structured file.
+        (Some('Y' | 'K'), _) => Some(Layout::Long),
+        (_, Some('Y')) => Some(Layout::I10),
+        (Some(_), _) | (_, Some(_)) => Some(Layout::Standard),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::source::Memory;
+    use super::super::block::{Blocks, SourceFile};
+    use super::*;
+
+    fn names(text: &str) -> Vec<String> {
+        let file = SourceFile::from_text("t.k", text);
+        let block = Blocks::new(&file, Layout::Standard).next().unwrap();
+        read_includes(&block).into_iter().map(|i| i.name).collect()
+    }
+
+    #[test]
+    fn names_may_be_several_or_run_over_lines() {
+        assert_eq!(names("*INCLUDE\na b,c.k\n$ comment\nd.k\n"), ["a b,c.k", "d.k"]);
+        assert_eq!(names("*INCLUDE\nlong/ +\n$ c\n path +\n/x.k\ny.k"), ["long/ path/x.k", "y.k"]);
+        assert_eq!(names("*INCLUDE\n\"q.k\"\n\n"), ["q.k"]);
+        assert!(names("*INCLUDE\n").is_empty());
+    }
+
+    #[test]
+    fn the_keyword_line_tells_the_width_of_fields() {
+        let cases: &[(&str, Option<Layout>)] = &[
+            ("LONG=Y", Some(Layout::Long)),
+            ("long = k", Some(Layout::Long)),
+            ("LONG=S", Some(Layout::Standard)),
+            ("I10=Y", Some(Layout::I10)),
+            ("MEMORY=5000 I10= y NCPU=4", Some(Layout::I10)),
+            ("MEMORY=500000000 NCPU=16", None),
+            ("", None),
+        ];
+        for (remark, layout) in cases {
+            assert_eq!(layout_of_keyword(remark.as_bytes()), *layout, "{remark}");
+        }
+    }
+
+    #[test]
+    fn files_are_looked_for_near_and_far() {
+        let source = Memory::new()
+            .with("m/sub/near.k", "")
+            .with("m/master.k", "")
+            .with("lib/far.k", "")
+            .with("m/Mesh.K", "");
+        let search = SearchPath {
+            master: "m".into(),
+            folders: vec!["lib".into()],
+        };
+        let find = |name| search.find(&source, Path::new("m/sub"), name);
+        assert_eq!(find("near.k"), Some("m/sub/near.k".into()));
+        assert_eq!(find("../master.k"), Some("m/master.k".into()));
+        assert_eq!(find("master.k"), Some("m/master.k".into()));
+        assert_eq!(find("far.k"), Some("lib/far.k".into()));
+        assert_eq!(find("D:\\work\\mesh.k"), Some("m/Mesh.K".into()));
+        assert_eq!(find("nowhere.k"), None);
+    }
+}

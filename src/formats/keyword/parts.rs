@@ -1,0 +1,228 @@
+//! Parts and shell sections: titles and thickness.
+
+use super::super::diagnostic::{DiagnosticKind, Diagnostics};
+use super::super::model::Section;
+use super::block::{Block, Cards};
+use super::card::{Card, EIGHT_BY_10, FieldError};
+use super::nodes::shifted;
+
+/// What an include adds to the ids on part and section cards, and the factor on lengths.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PartOffsets {
+    pub part: i64,
+    pub section: i64,
+    pub length: f64,
+}
+
+/// A part as its cards have it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RawPart {
+    pub id: u64,
+    pub title: String,
+    pub section_id: u64,
+    /// Sum of the plies of `*PART_COMPOSITE`.
+    pub thickness: Option<f64>,
+    /// Byte offset of its card.
+    pub at: usize,
+}
+
+/// Keywords that begin like a part's but define none.
+const NOT_PARTS: &[&str] = &[
+    "MOVE", "MODES", "SENSOR", "DUPLICATE", "ANNEAL", "STACKED", "ADAPTIVE",
+];
+
+/// Reads `*PART` with its options or `*PART_COMPOSITE`; nothing for keywords that define no parts.
+pub(crate) fn read_parts(
+    block: &Block<'_>,
+    offsets: &PartOffsets,
+    found: &mut Diagnostics,
+) -> Vec<RawPart> {
+    let mut options = block.name.split('_').skip(1);
+    if options.any(|option| NOT_PARTS.contains(&option)) {
+        return Vec::new();
+    }
+    let mut parts = Vec::new();
+    let mut cards = block.cards();
+    while let Some(heading) = cards.next() {
+        let Some(card) = cards.next() else {
+            // Blank lines at the end of a block are no heading.
+            if !heading.is_blank() {
+                found.push_with(DiagnosticKind::MissingCard, || {
+                    let message = "the last part has a heading but no card";
+                    block.diagnose(DiagnosticKind::MissingCard, message).at(heading.position(0))
+                });
+            }
+            break;
+        };
+        match part(block, &heading, &card, &mut cards, offsets) {
+            Ok(part) => parts.push(part),
+            Err(error) => {
+                let what = format!("part {:?}", heading.line_text().trim());
+                found.push_with(error.kind, || card.diagnose(&error, &what));
+            }
+        }
+    }
+    parts
+}
+
+fn part(
+    block: &Block<'_>,
+    heading: &Card<'_>,
+    card: &Card<'_>,
+    cards: &mut Cards<'_>,
+    offsets: &PartOffsets,
+) -> Result<RawPart, FieldError> {
+    let composite = block.has_option("COMPOSITE");
+    let id = card.required_id(EIGHT_BY_10, 0);
+    let section = if composite {
+        Ok(0)
+    } else {
+        card.id(EIGHT_BY_10, 1)
+    };
+    // The other cards are passed over even if this one is no good.
+    let thickness = if composite {
+        Some(composite_thickness(block, cards) * offsets.length)
+    } else {
+        pass_over_options(block, cards);
+        None
+    };
+    Ok(RawPart {
+        id: shifted(id?, offsets.part),
+        title: heading.line_text().trim().to_owned(),
+        section_id: shifted(section?, offsets.section),
+        thickness: thickness.filter(|&sum| sum > 0.0),
+        at: card.offset(),
+    })
+}
+
+/// Passes over the cards that the options of `*PART` bring, in the order of the manual.
+fn pass_over_options(block: &Block<'_>, cards: &mut Cards<'_>) {
+    if block.has_option("INERTIA") {
+        let first = cards.next();
+        let own_axes = first.is_some_and(|card| card.int(EIGHT_BY_10, 4) == Ok(Some(1)));
+        for _ in 0..2 + usize::from(own_axes) {
+            cards.next_line();
+        }
+    }
+    for option in ["REPOSITION", "CONTACT", "PRINT", "ATTACHMENT", "FIELD"] {
+        if block.has_option(option) {
+            cards.next_line();
+        }
+    }
+}
+
+/// Sum of the plies that follow; the heading of the next part ends them.
+fn composite_thickness(block: &Block<'_>, cards: &mut Cards<'_>) -> f64 {
+    if block.has_option("CONTACT") {
+        cards.next_line();
+    }
+    let one_ply_a_card = block.has_option("LONG");
+    let mut sum = 0.0;
+    loop {
+        let before = cards.clone();
+        let Some(card) = cards.next() else { break };
+        let Some((first, second)) = plies(&card) else {
+            *cards = before;
+            break;
+        };
+        sum += first + if one_ply_a_card { 0.0 } else { second };
+    }
+    sum
+}
+
+/// The two ply thicknesses on a card: all of its filled fields are numbers and the first is an id.
+fn plies(card: &Card<'_>) -> Option<(f64, f64)> {
+    let mut values = [None; 8];
+    for (i, value) in values.iter_mut().enumerate() {
+        *value = card.real(EIGHT_BY_10, i).ok()?;
+    }
+    card.required_id(EIGHT_BY_10, 0).ok()?;
+    values[1]?;
+    Some((values[1].unwrap_or(0.0), values[5].unwrap_or(0.0)))
+}
+
+/// Reads `*SECTION_SHELL` with its options. Sections are repeated below one keyword.
+pub(crate) fn read_shell_sections(
+    block: &Block<'_>,
+    offsets: &PartOffsets,
+    found: &mut Diagnostics,
+) -> Vec<Section> {
+    let mut sections = Vec::new();
+    let mut cards = block.cards();
+    loop {
+        if block.has_option("TITLE") {
+            cards.next_line();
+        }
+        let Some(first) = cards.next() else { break };
+        let second = cards.next();
+        if first.is_blank() && second.as_ref().is_none_or(Card::is_blank) {
+            break;
+        }
+        let Some(second) = second else {
+            found.push_with(DiagnosticKind::MissingCard, || {
+                let message = "the last section has no card with thicknesses";
+                block.diagnose(DiagnosticKind::MissingCard, message).at(first.position(0))
+            });
+            break;
+        };
+        match section(&first, &second, offsets) {
+            Ok(section) => sections.push(section),
+            Err((card, error)) => {
+                found.push_with(error.kind, || card.diagnose(&error, "the shell section"));
+            }
+        }
+        pass_over_section_cards(block, &first, &mut cards);
+    }
+    sections
+}
+
+fn section<'a, 'b>(
+    first: &'a Card<'b>,
+    second: &'a Card<'b>,
+    offsets: &PartOffsets,
+) -> Result<Section, (&'a Card<'b>, FieldError)> {
+    let id = first.required_id(EIGHT_BY_10, 0).map_err(|e| (first, e))?;
+    let mut thickness = [0.0; 4];
+    for i in 0..4 {
+        let value = second.real(EIGHT_BY_10, i).map_err(|e| (second, e))?;
+        // Blank corners take the first one's thickness.
+        let value = value.filter(|&t| t != 0.0).map(|t| t * offsets.length);
+        thickness[i] = value.unwrap_or(thickness[0]);
+    }
+    Ok(Section {
+        id: shifted(id, offsets.section),
+        thickness,
+    })
+}
+
+/// Passes over angle cards, the cards of options and those of user-defined shells.
+fn pass_over_section_cards(block: &Block<'_>, first: &Card<'_>, cards: &mut Cards<'_>) {
+    let int = |index| first.int_or_zero(EIGHT_BY_10, index).unwrap_or(0);
+    if int(6) == 1 {
+        let n_points = match int(3).unsigned_abs() as usize {
+            0 => 2,
+            n => n.min(10_000),
+        };
+        for _ in 0..n_points.div_ceil(8) {
+            cards.next_line();
+        }
+    }
+    for option in ["EFG", "THERMAL", "XFEM", "MISC"] {
+        if block.has_option(option) {
+            cards.next_line();
+        }
+    }
+    if (101..=105).contains(&int(1)) {
+        pass_over_user_cards(cards);
+    }
+}
+
+/// User shells: a card NIPP, NXDOF, IUNF, IHGF, ITAJ, LMC, NHSV, ILOC; then NIPP integration
+/// points (five fields), then LMC parameters, eight a card.
+fn pass_over_user_cards(cards: &mut Cards<'_>) {
+    let Some(card) = cards.next() else { return };
+    let count = |index| card.int_or_zero(EIGHT_BY_10, index).unwrap_or(0).clamp(0, 1000) as usize;
+    for _ in 0..count(0) + count(5).div_ceil(8) {
+        cards.next_line();
+    }
+}

@@ -1,0 +1,406 @@
+//! The end of reading a deck: ids become indices, motions are carried out, thickness is handed out.
+
+use std::collections::{BTreeMap, HashMap};
+
+use rayon::prelude::*;
+
+use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
+use super::super::model::{IdIndex, Model, Nodes, Set, Sets, Shell, ShellExtra, Solid, has_area};
+use super::assemble::{Assembly, Motion};
+use super::sets::{Members, SetKind, resolve_sets};
+use crate::geometry::{Matrix4, Point3};
+use crate::monitor::{Cancelled, Monitor};
+
+/// Marks a node that does not exist.
+const MISSING: u32 = u32::MAX;
+/// Elements per piece of parallel work. Fixed, so that results do not depend on threads.
+const PIECE: usize = 1 << 14;
+
+/// Puts the model together.
+pub(super) fn finish(mut assembly: Assembly, monitor: &Monitor) -> Result<Model, Cancelled> {
+    let mut model = Model {
+        title: std::mem::take(&mut assembly.title),
+        files: std::mem::take(&mut assembly.files),
+        forming: std::mem::take(&mut assembly.forming),
+        ..Model::default()
+    };
+    number_nodes(&mut assembly, &mut model);
+    monitor.check()?;
+    link_shells(&mut assembly, &mut model);
+    monitor.check()?;
+    link_solids(&mut assembly, &mut model);
+    monitor.check()?;
+    give_thickness_to_parts(&mut assembly, &mut model);
+    collect_sets(&mut assembly, &mut model);
+    spread_node_thickness(&assembly, &mut model);
+    move_nodes(&mut assembly, &mut model);
+    monitor.check()?;
+    tell_flat_shells(&mut model);
+    let mut found = assembly.found;
+    found.append(std::mem::take(&mut model.diagnostics));
+    model.diagnostics = found;
+    Ok(model)
+}
+
+fn number_nodes(assembly: &mut Assembly, model: &mut Model) {
+    let ids = std::mem::take(&mut assembly.node_ids);
+    let positions = std::mem::take(&mut assembly.positions);
+    let (nodes, repeated) = Nodes::new(ids, positions);
+    let mut found = Diagnostics::default();
+    for index in repeated {
+        let kind = DiagnosticKind::DuplicateNode;
+        found.push_with(kind, || {
+            let id = nodes.ids()[index as usize];
+            let here = nodes.positions()[index as usize];
+            let place = match nodes.position_of(id) {
+                Some(first) if first == here => "at the same place",
+                _ => "at another place, the first counts",
+            };
+            let message = format!("node {id} is defined again {place}");
+            with_position(
+                Diagnostic::new(kind, message),
+                assembly.node_position(index as usize, id),
+            )
+        });
+    }
+    assembly.found.append(found);
+    model.nodes = nodes;
+}
+
+fn with_position(
+    finding: Diagnostic,
+    position: Option<super::super::diagnostic::Position>,
+) -> Diagnostic {
+    match position {
+        Some(position) => finding.at(position),
+        None => finding,
+    }
+}
+
+/// Turns packed node ids into indices, in place, and leaves out shells with missing nodes.
+fn link_shells(assembly: &mut Assembly, model: &mut Model) {
+    tell_duplicate_shells(assembly);
+    let packed = std::mem::take(&mut assembly.packed);
+    let nodes = &model.nodes;
+    let link = |shell: &Shell| shell.nodes.map(|p| nodes.index_of(packed.unpack(p)).unwrap_or(MISSING));
+    let is_broken = |shell: &Shell| link(shell).contains(&MISSING);
+    let n_broken: usize = assembly
+        .shells
+        .par_chunks(PIECE)
+        .map(|shells| shells.iter().filter(|shell| is_broken(shell)).count())
+        .sum();
+    let mut kept = Vec::new();
+    if n_broken > 0 {
+        let mut found = Diagnostics::default();
+        let mut n_kept = 0;
+        for (index, shell) in assembly.shells.iter().enumerate() {
+            let broken = is_broken(shell);
+            kept.push(if broken { MISSING } else { n_kept });
+            n_kept += u32::from(!broken);
+            if broken {
+                found.push_with(DiagnosticKind::MissingNode, || {
+                    let ids = shell.nodes.map(|p| packed.unpack(p));
+                    let position = assembly.shell_position(index);
+                    missing_node("shell", shell.id, &ids, nodes, position)
+                });
+            }
+        }
+        assembly.found.append(found);
+    }
+    let mut shells = std::mem::take(&mut assembly.shells);
+    if n_broken > 0 {
+        let mut index = 0;
+        shells.retain(|_| {
+            index += 1;
+            kept[index - 1] != MISSING
+        });
+    }
+    shells
+        .par_chunks_mut(PIECE)
+        .for_each(|shells| shells.iter_mut().for_each(|shell| shell.nodes = link(shell)));
+    model.shells = shells;
+    let new_index = |old: u32| match kept.get(old as usize) {
+        Some(&MISSING) => None,
+        Some(&new) => Some(new),
+        None => Some(old),
+    };
+    let extras = std::mem::take(&mut assembly.extras).into_iter();
+    model.shell_extras = extras
+        .filter_map(|extra| new_index(extra.shell).map(|shell| ShellExtra { shell, ..extra }))
+        .collect();
+    let mid_side = std::mem::take(&mut assembly.mid_side).into_iter();
+    model.mid_side = mid_side
+        .filter_map(|(shell, ids)| {
+            let indices = ids.map(|id| nodes.index_of(id).unwrap_or(MISSING));
+            new_index(shell).map(|shell| (shell, indices))
+        })
+        .collect();
+}
+
+fn missing_node(
+    what: &str,
+    id: u64,
+    node_ids: &[u64],
+    nodes: &Nodes,
+    position: Option<super::super::diagnostic::Position>,
+) -> Diagnostic {
+    let missing = node_ids.iter().find(|&&id| nodes.index_of(id).is_none());
+    let missing = missing.copied().unwrap_or_default();
+    let message = format!("{what} {id} names node {missing}, which is not defined");
+    with_position(
+        Diagnostic::new(DiagnosticKind::MissingNode, message),
+        position,
+    )
+}
+
+fn tell_duplicate_shells(assembly: &mut Assembly) {
+    let is_rising = assembly.shells.windows(2).all(|pair| pair[0].id < pair[1].id);
+    if is_rising {
+        return;
+    }
+    let ids: Vec<u64> = assembly.shells.iter().map(|shell| shell.id).collect();
+    let (_, repeated) = IdIndex::new(&ids);
+    let mut found = Diagnostics::default();
+    for index in repeated {
+        found.push_with(DiagnosticKind::DuplicateElement, || {
+            let message = format!("shell {} is defined again, both count", ids[index as usize]);
+            with_position(
+                Diagnostic::new(DiagnosticKind::DuplicateElement, message),
+                assembly.shell_position(index as usize),
+            )
+        });
+    }
+    assembly.found.append(found);
+}
+
+fn link_solids(assembly: &mut Assembly, model: &mut Model) {
+    let mut found = Diagnostics::default();
+    let mut seen: HashMap<u64, ()> = HashMap::with_capacity(assembly.solids.len());
+    for (index, raw) in assembly.solids.iter().enumerate() {
+        if seen.insert(raw.id, ()).is_some() {
+            found.push_with(DiagnosticKind::DuplicateElement, || {
+                let message = format!("solid {} is defined again, both count", raw.id);
+                with_position(
+                    Diagnostic::new(DiagnosticKind::DuplicateElement, message),
+                    assembly.solid_position(index),
+                )
+            });
+        }
+        let nodes = raw.nodes.map(|id| model.nodes.index_of(id).unwrap_or(MISSING));
+        if nodes.contains(&MISSING) {
+            found.push_with(DiagnosticKind::MissingNode, || {
+                let position = assembly.solid_position(index);
+                missing_node("solid", raw.id, &raw.nodes, &model.nodes, position)
+            });
+            continue;
+        }
+        model.solids.push(Solid {
+            id: raw.id,
+            nodes,
+            part: raw.part,
+            kind: raw.kind,
+        });
+    }
+    assembly.found.append(found);
+    assembly.solids = Vec::new();
+}
+
+/// Parts take the thickness of their section, unless plies gave them one.
+fn give_thickness_to_parts(assembly: &mut Assembly, model: &mut Model) {
+    let mut by_id: BTreeMap<u64, usize> = BTreeMap::new();
+    for (index, section) in assembly.sections.iter().enumerate() {
+        by_id.entry(section.id).or_insert(index);
+    }
+    for part in &mut assembly.parts {
+        if !part.is_defined {
+            let kind = DiagnosticKind::UndefinedPart;
+            let message = format!("elements name part {}, which is not defined", part.id);
+            assembly.found.push_with(kind, || Diagnostic::new(kind, message));
+            continue;
+        }
+        if part.thickness.is_none() {
+            let section = by_id.get(&part.section_id).map(|&i| assembly.sections[i]);
+            let thickness = section.map(|section| section.thickness);
+            part.thickness = thickness.filter(|corners| *corners != [0.0; 4]);
+        }
+    }
+    model.parts = std::mem::take(&mut assembly.parts);
+    model.sections = std::mem::take(&mut assembly.sections);
+}
+
+impl Members for Model {
+    fn all(&self, kind: SetKind) -> Vec<u64> {
+        match kind {
+            SetKind::Part => self.parts.iter().map(|part| part.id).collect(),
+            SetKind::Shell => self.shells.iter().map(|shell| shell.id).collect(),
+            SetKind::Node => self.nodes.ids().to_vec(),
+        }
+    }
+
+    fn of_part(&self, kind: SetKind, part: u64) -> Vec<u64> {
+        let Some(index) = self.part_index(part) else {
+            return Vec::new();
+        };
+        let shells = || self.shells.iter().filter(|shell| shell.part == index);
+        match kind {
+            SetKind::Part => vec![part],
+            SetKind::Shell => shells().map(|shell| shell.id).collect(),
+            SetKind::Node => {
+                let solids = self.solids.iter().filter(|solid| solid.part == index);
+                let of_shells = shells().flat_map(|shell| shell.nodes);
+                let of_solids = solids.flat_map(|solid| solid.nodes);
+                let mut nodes: Vec<u32> = of_shells.chain(of_solids).collect();
+                nodes.sort_unstable();
+                nodes.dedup();
+                nodes.iter().map(|&n| self.nodes.ids()[n as usize]).collect()
+            }
+        }
+    }
+}
+
+fn collect_sets(assembly: &mut Assembly, model: &mut Model) {
+    let resolved = resolve_sets(&assembly.sets, model, &mut assembly.found);
+    let mut sets = Sets::default();
+    for ((kind, id), set) in resolved {
+        let into: &mut BTreeMap<u64, Set> = match kind {
+            SetKind::Part => &mut sets.parts,
+            SetKind::Shell => &mut sets.shells,
+            SetKind::Node => &mut sets.nodes,
+        };
+        into.insert(id, set);
+    }
+    model.sets = sets;
+}
+
+/// Thickness at nodes goes to the corners of shells that have none of their own.
+fn spread_node_thickness(assembly: &Assembly, model: &mut Model) {
+    if assembly.node_thickness.is_empty() {
+        return;
+    }
+    let mut at_node = vec![0.0; model.nodes.len()];
+    let mut give = |id: u64, thickness: f64| {
+        if let Some(index) = model.nodes.index_of(id) {
+            at_node[index as usize] = thickness;
+        }
+    };
+    for row in &assembly.node_thickness {
+        if row.is_set {
+            let set = model.sets.nodes.get(&row.first);
+            set.into_iter().flat_map(|set| &set.ids).for_each(|&id| give(id, row.thickness));
+        } else {
+            let last = row.last.min(row.first.saturating_add(row.step * 100_000_000));
+            let ids = (row.first..=last).step_by(row.step as usize);
+            ids.for_each(|id| give(id, row.thickness));
+        }
+    }
+    let mut own = std::mem::take(&mut model.shell_extras).into_iter().peekable();
+    for (index, shell) in (0u32..).zip(&model.shells) {
+        let extra = own.next_if(|extra| extra.shell == index);
+        let of_nodes = shell.nodes.map(|node| at_node[node as usize]);
+        let mut merged = extra.unwrap_or(ShellExtra {
+            shell: index,
+            thickness: [0.0; 4],
+            beta: 0.0,
+        });
+        for (own, of_node) in merged.thickness.iter_mut().zip(of_nodes) {
+            if *own == 0.0 {
+                *own = of_node;
+            }
+        }
+        if extra.is_some() || merged.thickness != [0.0; 4] {
+            model.shell_extras.push(merged);
+        }
+    }
+}
+
+/// Carries out unit factors and transformations, the innermost include first.
+fn move_nodes(assembly: &mut Assembly, model: &mut Model) {
+    for motion in std::mem::take(&mut assembly.motions) {
+        let (transformation, position) = match &motion {
+            Motion::Scale { nodes, factor } => {
+                let positions = &mut model.nodes.positions_mut()[nodes.clone()];
+                positions.iter_mut().for_each(|point| point.coords *= *factor);
+                continue;
+            }
+            Motion::Include {
+                transformation,
+                position,
+                ..
+            }
+            | Motion::NodeSet {
+                transformation,
+                position,
+                ..
+            } => (*transformation, position.clone()),
+        };
+        let matrix = match matrix(assembly, model, transformation) {
+            Ok(matrix) => matrix,
+            Err(reason) => {
+                let message = format!("transformation {transformation} {reason}");
+                let finding = Diagnostic::new(DiagnosticKind::BadTransformation, message);
+                assembly.found.push(finding.at(position));
+                continue;
+            }
+        };
+        apply(model, &motion, &matrix, assembly);
+    }
+}
+
+fn matrix(assembly: &Assembly, model: &Model, id: u64) -> Result<Matrix4, String> {
+    let transformation = assembly.transformations.get(&id);
+    let transformation = transformation.ok_or("is not defined")?;
+    let matrix = transformation
+        .matrix(&|node| model.nodes.position_of(node))
+        .map_err(|error| format!("cannot be carried out: {error}"))?;
+    if matrix.iter().all(|x| x.is_finite()) {
+        Ok(matrix)
+    } else {
+        Err("cannot be carried out: it is not finite".to_owned())
+    }
+}
+
+fn apply(model: &mut Model, motion: &Motion, matrix: &Matrix4, assembly: &mut Assembly) {
+    let moved = |point: &mut Point3| *point = matrix.transform_point(point);
+    match motion {
+        Motion::Scale { .. } => {}
+        Motion::Include { nodes, .. } => {
+            model.nodes.positions_mut()[nodes.clone()].iter_mut().for_each(moved);
+        }
+        Motion::NodeSet { set, position, .. } => {
+            let Some(ids) = model.sets.nodes.get(set).map(|set| set.ids.clone()) else {
+                let message = format!("node set {set} is not defined");
+                let finding = Diagnostic::new(DiagnosticKind::BadSet, message);
+                assembly.found.push(finding.at(position.clone()));
+                return;
+            };
+            for index in ids.into_iter().filter_map(|id| model.nodes.index_of(id)) {
+                moved(&mut model.nodes.positions_mut()[index as usize]);
+            }
+        }
+    }
+}
+
+/// Shells without area stay in the model and are left out of surfaces.
+fn tell_flat_shells(model: &mut Model) {
+    let positions = model.nodes.positions();
+    let is_flat = |shell: &Shell| {
+        let [a, b, c, d] = shell.nodes.map(|n| positions[n as usize]);
+        !has_area(a, b, c) && (shell.is_triangle() || !has_area(a, c, d))
+    };
+    let flat: Vec<usize> = model
+        .shells
+        .par_chunks(PIECE)
+        .enumerate()
+        .flat_map_iter(|(piece, shells)| {
+            let is_flat = &is_flat;
+            let flat = shells.iter().enumerate().filter(move |(_, shell)| is_flat(shell));
+            flat.map(move |(i, _)| piece * PIECE + i)
+        })
+        .collect();
+    for index in flat {
+        let id = model.shells[index].id;
+        let kind = DiagnosticKind::ZeroArea;
+        let describe = || Diagnostic::new(kind, format!("shell {id} has no area"));
+        model.diagnostics.push_with(kind, describe);
+    }
+}

@@ -1,0 +1,459 @@
+//! `*ELEMENT_SHELL` with all its options.
+
+use std::ops::Range;
+
+use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
+use super::super::model::{Shell, ShellExtra};
+use super::block::{Block, Cards};
+use super::card::{Card, EIGHT_BY_10, FIVE_BY_16, FieldError, Layout, TEN_BY_8, columns};
+use super::chunks::{Cut, Irregular};
+use super::mesh::ShellCards;
+use super::nodes::shifted;
+use super::number::parse_digits;
+
+/// What an include adds to the ids of its elements and the lengths on their cards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ElementOffsets {
+    pub element: i64,
+    pub part: i64,
+    pub node: i64,
+    /// Factor on lengths.
+    pub length: f64,
+}
+
+/// Node ids in 32 bits: small ids as they are, others as places in a table. A shell then takes the
+/// same memory before and after its ids have become indices.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct PackedIds {
+    wide: Vec<u64>,
+}
+
+impl PackedIds {
+    const WIDE: u32 = 1 << 31;
+
+    #[inline]
+    pub(crate) fn pack(&mut self, id: u64) -> u32 {
+        if id < u64::from(Self::WIDE) {
+            return id as u32;
+        }
+        self.wide.push(id);
+        Self::WIDE | (self.wide.len() - 1) as u32
+    }
+
+    #[inline]
+    pub(crate) fn unpack(&self, packed: u32) -> u64 {
+        if packed < Self::WIDE {
+            packed.into()
+        } else {
+            self.wide[(packed & !Self::WIDE) as usize]
+        }
+    }
+
+    /// Takes over the table of a later piece; the result moves its packed ids.
+    pub(crate) fn append(&mut self, later: Self) -> impl Fn(u32) -> u32 + use<> {
+        let shift = self.wide.len() as u32;
+        self.wide.extend(later.wide);
+        move |packed| if packed < Self::WIDE { packed } else { packed + shift }
+    }
+}
+
+/// Part ids in the order they were met, found fast while neighbours share their part.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct PartIds {
+    pub ids: Vec<u64>,
+    last: u32,
+}
+
+impl PartIds {
+    #[inline]
+    pub(crate) fn index(&mut self, id: u64) -> u32 {
+        if self.ids.get(self.last as usize) != Some(&id) {
+            let known = self.ids.iter().position(|&known| known == id);
+            self.last = known.unwrap_or_else(|| {
+                self.ids.push(id);
+                self.ids.len() - 1
+            }) as u32;
+        }
+        self.last
+    }
+}
+
+/// Shells of one piece of a block. Their `part` is an index into `parts`, their nodes are packed.
+#[derive(Debug, Default)]
+pub(crate) struct ShellChunk {
+    pub shells: Vec<Shell>,
+    pub parts: PartIds,
+    pub packed: PackedIds,
+    pub mid_side: Vec<(u32, [u64; 4])>,
+    pub extras: Vec<ShellExtra>,
+    pub diagnostics: Diagnostics,
+    pub had_tabs: bool,
+}
+
+/// A shell's first card, ids as in the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct ShellCard {
+    id: u64,
+    part: u64,
+    corners: [u64; 4],
+    mid_side: [u64; 4],
+}
+
+impl ShellCards {
+    /// Where a block of such shells may be cut.
+    pub(crate) fn cut(self) -> Cut {
+        if self.plies {
+            Cut::Nowhere
+        } else {
+            Cut::Every(1 + usize::from(self.thickness) + self.n_passed_over)
+        }
+    }
+}
+
+/// Reads the shells in a byte range of a block.
+pub(crate) fn read_shells(
+    block: &Block<'_>,
+    range: Range<usize>,
+    cards: ShellCards,
+    offsets: &ElementOffsets,
+    must_be_regular: bool,
+) -> Result<ShellChunk, Irregular> {
+    let mut reader = Reader {
+        columns: columns(TEN_BY_8, block.layout),
+        layout: block.layout,
+        options: cards,
+        offsets,
+        must_be_regular,
+        chunk: ShellChunk::default(),
+    };
+    let mut cards = block.cards_in(range.clone());
+    let line_length = 1 + cards.clone().next_line().map_or(0, |(line, _)| line.len());
+    let n_cards = 1 + usize::from(reader.options.thickness) + reader.options.n_passed_over;
+    let n_expected = range.len() / (line_length * n_cards);
+    reader.chunk.shells.reserve(n_expected);
+    if reader.options.thickness {
+        reader.chunk.extras.reserve(n_expected);
+    }
+    while let Some((line, at)) = cards.next_line() {
+        reader.element(line, at, &mut cards)?;
+    }
+    Ok(reader.chunk)
+}
+
+struct Reader<'a> {
+    columns: [usize; 11],
+    layout: Layout,
+    options: ShellCards,
+    offsets: &'a ElementOffsets,
+    must_be_regular: bool,
+    chunk: ShellChunk,
+}
+
+impl Reader<'_> {
+    /// Reads the cards of one element, the first of which is `line`.
+    fn element<'a>(
+        &mut self,
+        line: &'a [u8],
+        at: usize,
+        cards: &mut Cards<'a>,
+    ) -> Result<(), Irregular> {
+        let shell = match fixed_shell(line, &self.columns) {
+            Some(shell) => Some(shell),
+            None => {
+                let card = cards.card(line, at);
+                self.chunk.had_tabs |= card.had_tabs();
+                if card.is_blank() {
+                    return Ok(());
+                }
+                match shell_card(&card) {
+                    Ok(shell) => Some(shell),
+                    Err(error) => {
+                        let describe = || card.diagnose(&error, &shell_name(&card));
+                        self.chunk.diagnostics.push_with(error.kind, describe);
+                        None
+                    }
+                }
+            }
+        };
+        let is_kept = shell.is_some_and(|shell| self.keep(&shell, || cards.card(line, at)));
+        if self.options.thickness {
+            let has_mid_side = shell.is_some_and(|shell| shell.mid_side[0] != 0);
+            self.thickness(cards, is_kept, has_mid_side)?;
+        }
+        for _ in 0..self.options.n_passed_over {
+            cards.next_line();
+        }
+        if self.options.plies {
+            self.plies(cards, is_kept);
+        }
+        Ok(())
+    }
+
+    /// Adds a shell; false if it has fewer than three different corners.
+    fn keep<'a>(&mut self, shell: &ShellCard, card: impl Fn() -> Card<'a>) -> bool {
+        let corners = shell.corners.map(|id| shifted(id, self.offsets.node));
+        let id = shifted(shell.id, self.offsets.element);
+        let Some(corners) = distinct_corners(corners) else {
+            self.chunk
+                .diagnostics
+                .push_with(DiagnosticKind::DegenerateElement, || {
+                    let kind = DiagnosticKind::DegenerateElement;
+                    let message = format!("shell {id} has fewer than three different nodes");
+                    Diagnostic::new(kind, message).at(card().position(0))
+                });
+            return false;
+        };
+        if shell.mid_side != [0; 4] {
+            let nodes = shell.mid_side.map(|id| shifted(id, self.offsets.node));
+            let index = self.chunk.shells.len() as u32;
+            self.chunk.mid_side.push((index, nodes));
+        }
+        let part = shifted(shell.part, self.offsets.part);
+        let nodes = corners.map(|id| self.chunk.packed.pack(id));
+        self.chunk.shells.push(Shell {
+            id,
+            nodes,
+            part: self.chunk.parts.index(part),
+        });
+        true
+    }
+
+    /// Reads the thickness card of the shell that was read last, and the second one that mid-side
+    /// nodes bring.
+    fn thickness(
+        &mut self,
+        cards: &mut Cards<'_>,
+        is_kept: bool,
+        has_mid_side: bool,
+    ) -> Result<(), Irregular> {
+        if has_mid_side && self.must_be_regular {
+            return Err(Irregular);
+        }
+        let before = cards.clone();
+        let Some((line, at)) = cards.next_line() else {
+            let message = "the last shell has no thickness card".to_owned();
+            let at = before.card(b"", before.offset()).position(0);
+            let missing = Diagnostic::new(DiagnosticKind::MissingCard, message).at(at);
+            self.chunk.diagnostics.push(missing);
+            return Ok(());
+        };
+        let card = cards.card(line, at);
+        match thickness_card(&card) {
+            Ok((thickness, angle)) if is_kept => {
+                self.chunk.extras.push(ShellExtra {
+                    shell: self.chunk.shells.len() as u32 - 1,
+                    thickness: thickness.map(|t| t * self.offsets.length),
+                    beta: if self.options.beta { angle } else { 0.0 },
+                });
+            }
+            Ok(_) => {}
+            // A shell's card in its place: the thickness card is missing.
+            Err(_) if looks_like_a_shell(line, &self.columns) => {
+                if self.must_be_regular {
+                    return Err(Irregular);
+                }
+                *cards = before;
+                let kind = DiagnosticKind::MissingCard;
+                let describe = || {
+                    let message = "a shell has no thickness card";
+                    let finding = Diagnostic::new(kind, message).at(card.position(0));
+                    finding.found(card.line_text()).expected("four thicknesses")
+                };
+                self.chunk.diagnostics.push_with(kind, describe);
+                return Ok(());
+            }
+            Err(error) => {
+                let describe = || card.diagnose(&error, "the shell's thickness");
+                self.chunk.diagnostics.push_with(error.kind, describe);
+            }
+        }
+        if has_mid_side {
+            cards.next_line();
+        }
+        Ok(())
+    }
+
+    /// Passes over the plies of a composite shell and keeps the sum of their thicknesses.
+    fn plies(&mut self, cards: &mut Cards<'_>, is_kept: bool) {
+        let mut sum = 0.0;
+        loop {
+            let before = cards.clone();
+            let Some(card) = cards.next() else { break };
+            if !is_ply(&card) {
+                *cards = before;
+                break;
+            }
+            sum += card.real(EIGHT_BY_10, 1).ok().flatten().unwrap_or(0.0);
+            // `_LONG` has a ply id in place of the second ply, without a thickness.
+            if !card.is_empty_field(EIGHT_BY_10, 4) && is_real_text(card.field(EIGHT_BY_10, 5).text)
+            {
+                sum += card.real(EIGHT_BY_10, 5).ok().flatten().unwrap_or(0.0);
+            }
+        }
+        let has_own = self.options.thickness;
+        if is_kept && sum > 0.0 && !has_own {
+            self.chunk.extras.push(ShellExtra {
+                shell: self.chunk.shells.len() as u32 - 1,
+                thickness: [sum * self.offsets.length; 4],
+                beta: 0.0,
+            });
+        }
+    }
+}
+
+/// A ply card has up to eight ten-wide fields of which the second is written as a real.
+fn is_ply(card: &Card<'_>) -> bool {
+    card.n_fields(10) <= 8
+        && is_real_text(card.field(EIGHT_BY_10, 1).text)
+        && card.int(EIGHT_BY_10, 0).is_ok()
+}
+
+fn is_real_text(text: &[u8]) -> bool {
+    text.contains(&b'.') || text.iter().any(|b| b"eEdD".contains(b)) || text.first() == Some(&b'&')
+}
+
+/// A line of blanks and digits that fills at least five integer fields.
+fn looks_like_a_shell(line: &[u8], columns: &[usize; 11]) -> bool {
+    fixed_shell(line, columns).is_some_and(|shell| shell.part != 0 && shell.corners[2] != 0)
+}
+
+/// Corners without repeated neighbours, a triangle's third one twice; `None` for less than that.
+pub(crate) fn distinct_corners(corners: [u64; 4]) -> Option<[u64; 4]> {
+    let [a, b, c, d] = corners;
+    let d = if d == 0 { c } else { d };
+    let triangle = |a, b, c| (a != b && b != c && c != a).then_some([a, b, c, c]);
+    if [a, b, c].contains(&0) {
+        return None;
+    }
+    if c == d || d == a {
+        return triangle(a, b, c);
+    }
+    if a == b || b == c {
+        return triangle(a, c, d);
+    }
+    // A quad folded onto its diagonal has no area but four edges; it is left to the area check.
+    Some([a, b, c, d])
+}
+
+fn shell_name(card: &Card<'_>) -> String {
+    match card.id(TEN_BY_8, 0) {
+        Ok(id) => format!("shell {id}"),
+        Err(_) => "the shell".to_owned(),
+    }
+}
+
+/// A shell's first card in any form. Exactly what [`fixed_shell`] does for plain fixed lines.
+fn shell_card(card: &Card<'_>) -> Result<ShellCard, FieldError> {
+    let mut ids = [0; 10];
+    ids[0] = card.required_id(TEN_BY_8, 0)?;
+    for (i, id) in ids.iter_mut().enumerate().skip(1) {
+        *id = card.id(TEN_BY_8, i)?;
+    }
+    Ok(ShellCard::from_ids(&ids))
+}
+
+impl ShellCard {
+    fn from_ids(ids: &[u64; 10]) -> Self {
+        Self {
+            id: ids[0],
+            part: ids[1],
+            corners: [ids[2], ids[3], ids[4], ids[5]],
+            mid_side: [ids[6], ids[7], ids[8], ids[9]],
+        }
+    }
+}
+
+/// A shell from a line of blanks and digits in fixed columns; `None` leaves it to the general way.
+#[inline]
+fn fixed_shell(line: &[u8], columns: &[usize; 11]) -> Option<ShellCard> {
+    let (line, beyond) = line.split_at(line.len().min(columns[10]));
+    // A comma or tab anywhere changes the meaning of the whole line.
+    if line.len() <= columns[4] || beyond.iter().any(|b| b",\t".contains(b)) {
+        return None;
+    }
+    let mut ids = [0; 10];
+    for (i, id) in ids.iter_mut().enumerate() {
+        let (from, to) = (columns[i], columns[i + 1].min(line.len()));
+        if from >= to {
+            break;
+        }
+        *id = match parse_digits(&line[from..to]) {
+            Some(id) => id,
+            None if line[from..to].iter().all(|&b| b == b' ') => 0,
+            None => return None,
+        };
+    }
+    (ids[0] != 0).then(|| ShellCard::from_ids(&ids))
+}
+
+fn thickness_card(card: &Card<'_>) -> Result<([f64; 4], f64), FieldError> {
+    let mut thickness = [0.0; 4];
+    for (i, value) in thickness.iter_mut().enumerate() {
+        *value = card.real_or_zero(FIVE_BY_16, i)?;
+    }
+    // A fifth field that is not a number costs the angle only.
+    let angle = card.real_or_zero(FIVE_BY_16, 4).unwrap_or(0.0);
+    Ok((thickness, angle))
+}
+
+/// The last card in a range that begins the element `id` of part `part`, and its offset.
+pub(crate) fn find_element(
+    block: &Block<'_>,
+    range: Range<usize>,
+    id: u64,
+    part: u64,
+    offsets: &ElementOffsets,
+) -> Option<usize> {
+    let same = |card: &Card<'_>| {
+        card.id(TEN_BY_8, 0).is_ok_and(|i| shifted(i, offsets.element) == id)
+            && card.id(TEN_BY_8, 1).is_ok_and(|p| shifted(p, offsets.part) == part)
+    };
+    block.cards_in(range).filter(same).last().map(|card| card.offset())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::block::SourceFile;
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn repeated_corners_make_triangles_or_nothing() {
+        assert_eq!(distinct_corners([1, 2, 3, 4]), Some([1, 2, 3, 4]));
+        assert_eq!(distinct_corners([1, 2, 3, 3]), Some([1, 2, 3, 3]));
+        assert_eq!(distinct_corners([1, 2, 3, 0]), Some([1, 2, 3, 3]));
+        assert_eq!(distinct_corners([1, 2, 3, 1]), Some([1, 2, 3, 3]));
+        assert_eq!(distinct_corners([1, 1, 2, 3]), Some([1, 2, 3, 3]));
+        assert_eq!(distinct_corners([1, 2, 2, 3]), Some([1, 2, 3, 3]));
+        assert_eq!(distinct_corners([1, 2, 2, 2]), None);
+        assert_eq!(distinct_corners([1, 2, 0, 0]), None);
+        assert_eq!(distinct_corners([1, 2, 1, 2]), Some([1, 2, 1, 2]));
+    }
+
+    #[test]
+    fn large_ids_survive_packing() {
+        let mut first = PackedIds::default();
+        let mut later = PackedIds::default();
+        let ids = [1, 1 << 31, u64::MAX, 7];
+        let a = ids.map(|id| first.pack(id));
+        let b = ids.map(|id| later.pack(id));
+        let moved = first.append(later);
+        assert_eq!(a.map(|packed| first.unpack(packed)), ids);
+        assert_eq!(b.map(|packed| first.unpack(moved(packed))), ids);
+    }
+
+    proptest! {
+        #[test]
+        fn the_fast_way_reads_what_the_general_way_reads(
+            line in "([ ]{0,7}[0-9]{1,7}){0,10}[ 0-9.,&\t]{0,50}",
+        ) {
+            let file = SourceFile::from_text("t.k", line.clone());
+            for layout in [Layout::Standard, Layout::I10, Layout::Long] {
+                let card = Card::new(line.as_bytes(), 0, layout, &file, None);
+                if let Some(fast) = fixed_shell(line.as_bytes(), &columns(TEN_BY_8, layout)) {
+                    prop_assert_eq!(Ok(fast), shell_card(&card));
+                }
+            }
+        }
+    }
+}
