@@ -115,7 +115,7 @@ pub(crate) struct Assembly {
     pub(super) node_ids: Vec<u64>,
     pub(super) positions: Vec<Point3>,
     pub(super) node_origins: Vec<Origin>,
-    /// Nodes are packed ids, parts are indices into `part_ids`.
+    /// Their nodes are packed ids.
     pub(super) shells: Vec<Shell>,
     pub(super) packed: PackedIds,
     pub(super) shell_origins: Vec<Origin>,
@@ -124,6 +124,7 @@ pub(crate) struct Assembly {
     pub(super) solids: Vec<RawSolid>,
     pub(super) solid_origins: Vec<Origin>,
     part_index: HashMap<u64, u32>,
+    part_ids: Vec<u64>,
     pub(super) parts: Vec<Part>,
     pub(super) part_positions: Vec<Option<Position>>,
     pub(super) motions: Vec<Motion>,
@@ -159,14 +160,16 @@ impl Assembly {
         self.tell_tabs(chunk.had_tabs, &origin);
         let parts = self.part_numbers(&chunk.parts);
         let moved = self.packed.append(chunk.packed);
-        self.shells.extend(chunk.shells.into_iter().map(|shell| Shell {
-            id: shell.id,
-            nodes: shell.nodes.map(&moved),
-            part: parts[shell.part as usize],
-        }));
+        self.shells
+            .extend(chunk.shells.into_iter().map(|shell| Shell {
+                id: shell.id,
+                nodes: shell.nodes.map(&moved),
+                part: parts[shell.part as usize],
+            }));
         let by = first as u32;
         let mid_side = chunk.mid_side.into_iter();
-        self.mid_side.extend(mid_side.map(|(shell, nodes)| (shell + by, nodes)));
+        self.mid_side
+            .extend(mid_side.map(|(shell, nodes)| (shell + by, nodes)));
         let extras = chunk.extras.into_iter().map(|extra| ShellExtra {
             shell: extra.shell + by,
             ..extra
@@ -179,10 +182,11 @@ impl Assembly {
     pub(crate) fn add_solids(&mut self, chunk: SolidChunk, mut origin: Origin) {
         origin.first = self.solids.len();
         let parts = self.part_numbers(&chunk.parts);
-        self.solids.extend(chunk.solids.into_iter().map(|solid| RawSolid {
-            part: parts[solid.part as usize],
-            ..solid
-        }));
+        self.solids
+            .extend(chunk.solids.into_iter().map(|solid| RawSolid {
+                part: parts[solid.part as usize],
+                ..solid
+            }));
         self.found.append(chunk.diagnostics);
         self.solid_origins.push(origin);
     }
@@ -195,7 +199,8 @@ impl Assembly {
                 let kind = DiagnosticKind::DuplicatePart;
                 let first = self.part_positions[index].as_ref();
                 self.found.push_with(kind, || {
-                    let before = first.map_or(String::new(), |first| format!(" (first at {first})"));
+                    let before =
+                        first.map_or(String::new(), |first| format!(" (first at {first})"));
                     let message = format!("part {} is defined again{before}", raw.id);
                     Diagnostic::new(kind, message).at(file.position(raw.at))
                 });
@@ -220,6 +225,7 @@ impl Assembly {
                 ..Part::default()
             };
             self.parts.push(part);
+            self.part_ids.push(id);
             self.part_positions.push(None);
             (self.parts.len() - 1) as u32
         })
@@ -243,15 +249,21 @@ impl Assembly {
         origin_of(&self.node_origins, index).map(|origin| origin.node(id))
     }
 
-    pub(super) fn shell_position(&self, index: usize) -> Option<Position> {
-        let shell = &self.shells[index];
-        let part = self.parts[shell.part as usize].id;
+    pub(super) fn shell_position(&self, index: usize, shell: &Shell) -> Option<Position> {
+        let part = self.part_ids[shell.part as usize];
         origin_of(&self.shell_origins, index).map(|origin| origin.element(shell.id, part))
+    }
+
+    /// Tells the origins which shells are left: `n_kept(i)` of the first `i`.
+    pub(super) fn renumber_shells(&mut self, n_kept: impl Fn(usize) -> usize) {
+        for origin in &mut self.shell_origins {
+            origin.first = n_kept(origin.first);
+        }
     }
 
     pub(super) fn solid_position(&self, index: usize) -> Option<Position> {
         let solid = &self.solids[index];
-        let part = self.parts[solid.part as usize].id;
+        let part = self.part_ids[solid.part as usize];
         origin_of(&self.solid_origins, index).map(|origin| origin.element(solid.id, part))
     }
 

@@ -98,7 +98,7 @@ fn pieces(block: &Block<'_>, n_cards: usize) -> Vec<Range<usize>> {
     let Some(counts) = counts else {
         return Vec::new();
     };
-    let mut n_before = 0;
+    let mut n_before = 0usize;
     for (i, count) in counts.into_iter().enumerate() {
         let n_to_skip = n_before.next_multiple_of(n_cards) - n_before;
         if i > 0 && n_to_skip > 0 {

@@ -80,7 +80,10 @@ pub(crate) fn binary_kind(bytes: &[u8]) -> Option<&'static str> {
     if is_lsda {
         return Some("a binary dynain (LSDA)");
     }
-    let n_control = head.iter().filter(|&&b| b < 9 || (14..27).contains(&b)).count();
+    let n_control = head
+        .iter()
+        .filter(|&&b| b < 9 || (14..27).contains(&b))
+        .count();
     (head.contains(&0) && n_control * 20 > head.len()).then_some("a binary file")
 }
 
@@ -147,7 +150,9 @@ impl Reader<'_> {
                 "the including file has another number format; this file's own counts here, but \
                  LS-DYNA takes that of the including file"
             };
-            self.assembly.found.push_with(kind, || block.diagnose(kind, message));
+            self.assembly
+                .found
+                .push_with(kind, || block.diagnose(kind, message));
         }
         if context.layout_is_fixed {
             context.layout
@@ -211,7 +216,9 @@ impl Reader<'_> {
             ElementKeyword::Unknown => {
                 let message = format!("*{} is not known and is skipped", block.name);
                 let kind = DiagnosticKind::Unsupported;
-                assembly.found.push_with(kind, || block.diagnose(kind, message));
+                assembly
+                    .found
+                    .push_with(kind, || block.diagnose(kind, message));
                 Ok(())
             }
             ElementKeyword::Skipped if nodes::holds_nodes(&block.name) => chunks::read(
@@ -300,7 +307,9 @@ impl Reader<'_> {
             name => {
                 let kind = DiagnosticKind::Unsupported;
                 let message = format!("*{name} is not carried out");
-                self.assembly.found.push_with(kind, || block.diagnose(kind, message));
+                self.assembly
+                    .found
+                    .push_with(kind, || block.diagnose(kind, message));
             }
         }
         Ok(())
@@ -383,12 +392,7 @@ impl Reader<'_> {
 }
 
 /// `*NODE_TRANSFORM` and `*NODE_THICKNESS`.
-fn node_keyword(
-    assembly: &mut Assembly,
-    file: &SourceFile,
-    block: &Block<'_>,
-    context: &Context,
-) {
+fn node_keyword(assembly: &mut Assembly, file: &SourceFile, block: &Block<'_>, context: &Context) {
     let offsets = context.offsets;
     if block.name.starts_with("NODE_THICKNESS") {
         let rows =

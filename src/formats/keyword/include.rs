@@ -207,15 +207,25 @@ fn file_name(cards: &mut Cards<'_>) -> Option<(String, usize)> {
         at.get_or_insert(card.offset());
         let text = card.line_text();
         match text.strip_suffix(" +") {
-            Some(piece) => name.push_str(if name.is_empty() { piece.trim_start() } else { piece }),
+            Some(piece) => name.push_str(if name.is_empty() {
+                piece.trim_start()
+            } else {
+                piece
+            }),
             None => {
-                name.push_str(if name.is_empty() { text.trim_start() } else { &text });
+                name.push_str(if name.is_empty() {
+                    text.trim_start()
+                } else {
+                    &text
+                });
                 break;
             }
         }
     }
     let name = name.trim_end();
-    let unquoted = name.strip_prefix('"').and_then(|name| name.strip_suffix('"'));
+    let unquoted = name
+        .strip_prefix('"')
+        .and_then(|name| name.strip_suffix('"'));
     Some((unquoted.unwrap_or(name).to_owned(), at?))
 }
 
@@ -244,7 +254,8 @@ impl SearchPath {
         names.dedup();
         let folders = || {
             let near = [folder, &self.master];
-            near.into_iter().chain(self.folders.iter().map(PathBuf::as_path))
+            near.into_iter()
+                .chain(self.folders.iter().map(PathBuf::as_path))
         };
         for name in names.into_iter().filter(|name| !name.is_empty()) {
             let name = Path::new(name);
@@ -292,8 +303,14 @@ mod tests {
 
     #[test]
     fn names_may_be_several_or_run_over_lines() {
-        assert_eq!(names("*INCLUDE\na b,c.k\n$ comment\nd.k\n"), ["a b,c.k", "d.k"]);
-        assert_eq!(names("*INCLUDE\nlong/ +\n$ c\n path +\n/x.k\ny.k"), ["long/ path/x.k", "y.k"]);
+        assert_eq!(
+            names("*INCLUDE\na b,c.k\n$ comment\nd.k\n"),
+            ["a b,c.k", "d.k"]
+        );
+        assert_eq!(
+            names("*INCLUDE\nlong/ +\n$ c\n path +\n/x.k\ny.k"),
+            ["long/ path/x.k", "y.k"]
+        );
         assert_eq!(names("*INCLUDE\n\"q.k\"\n\n"), ["q.k"]);
         assert!(names("*INCLUDE\n").is_empty());
     }

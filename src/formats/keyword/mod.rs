@@ -1,7 +1,7 @@
 //! LS-DYNA keyword decks.
 //!
-//! [`block`] cuts a file into keyword blocks, [`card`] a line into fields; [`mesh`] reads nodes and
-//! elements; [`deck`] walks the tree of included files and puts the model together.
+//! [`block`] cuts a file into keyword blocks, [`card`] a line into fields; `nodes`, `shells` and `solids`
+//! read the mesh; [`deck`] walks the tree of included files and puts the model together.
 //!
 //! Every reader of a keyword has the same shape: it takes a [`block::Block`], walks its
 //! [`cards`](block::Block::cards), adds to what it fills and pushes a
@@ -17,15 +17,24 @@
 //! - `forming::read_block(&Block, id_offset: u64, &mut Forming, &mut Diagnostics)` reads one
 //!   `*INITIAL_STRESS_SHELL`, `*INITIAL_STRAIN_SHELL` … block.
 
+mod assemble;
 pub mod block;
 pub mod card;
+mod chunks;
 pub mod deck;
 pub mod expression;
 pub mod fixed_width;
 pub mod forming;
-pub mod mesh;
+mod include;
+mod mesh;
+mod nodes;
 pub mod number;
 pub mod parameter;
 mod parameter_card;
+mod parts;
+mod resolve;
+mod sets;
+mod shells;
+mod solids;
 pub mod transform;
 pub mod write;

@@ -147,7 +147,11 @@ pub(crate) fn read_node_thickness(
         let last = shifted(card.id(EIGHT_BY_10, 2)?, by);
         Ok(NodeThickness {
             first,
-            last: if is_range && last > first { last } else { first },
+            last: if is_range && last > first {
+                last
+            } else {
+                first
+            },
             step: card.id(EIGHT_BY_10, 3)?.max(1),
             thickness: card.real_or_zero(EIGHT_BY_10, 1)?,
             is_set,
@@ -189,7 +193,9 @@ pub(crate) fn read_node_transforms(
         match row {
             Ok(row) => rows.push((row, card.offset())),
             Err(error) => {
-                found.push_with(error.kind, || card.diagnose(&error, "the node transformation"));
+                found.push_with(error.kind, || {
+                    card.diagnose(&error, "the node transformation")
+                });
             }
         }
     }

@@ -28,7 +28,13 @@ pub(crate) struct RawPart {
 
 /// Keywords that begin like a part's but define none.
 const NOT_PARTS: &[&str] = &[
-    "MOVE", "MODES", "SENSOR", "DUPLICATE", "ANNEAL", "STACKED", "ADAPTIVE",
+    "MOVE",
+    "MODES",
+    "SENSOR",
+    "DUPLICATE",
+    "ANNEAL",
+    "STACKED",
+    "ADAPTIVE",
 ];
 
 /// Reads `*PART` with its options or `*PART_COMPOSITE`; nothing for keywords that define no parts.
@@ -49,7 +55,9 @@ pub(crate) fn read_parts(
             if !heading.is_blank() {
                 found.push_with(DiagnosticKind::MissingCard, || {
                     let message = "the last part has a heading but no card";
-                    block.diagnose(DiagnosticKind::MissingCard, message).at(heading.position(0))
+                    block
+                        .diagnose(DiagnosticKind::MissingCard, message)
+                        .at(heading.position(0))
                 });
             }
             break;
@@ -161,7 +169,9 @@ pub(crate) fn read_shell_sections(
         let Some(second) = second else {
             found.push_with(DiagnosticKind::MissingCard, || {
                 let message = "the last section has no card with thicknesses";
-                block.diagnose(DiagnosticKind::MissingCard, message).at(first.position(0))
+                block
+                    .diagnose(DiagnosticKind::MissingCard, message)
+                    .at(first.position(0))
             });
             break;
         };
@@ -221,7 +231,11 @@ fn pass_over_section_cards(block: &Block<'_>, first: &Card<'_>, cards: &mut Card
 /// points (five fields), then LMC parameters, eight a card.
 fn pass_over_user_cards(cards: &mut Cards<'_>) {
     let Some(card) = cards.next() else { return };
-    let count = |index| card.int_or_zero(EIGHT_BY_10, index).unwrap_or(0).clamp(0, 1000) as usize;
+    let count = |index| {
+        card.int_or_zero(EIGHT_BY_10, index)
+            .unwrap_or(0)
+            .clamp(0, 1000) as usize
+    };
     for _ in 0..count(0) + count(5).div_ceil(8) {
         cards.next_line();
     }

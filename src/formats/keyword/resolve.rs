@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use rayon::prelude::*;
 
-use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
+use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position};
 use super::super::model::{IdIndex, Model, Nodes, Set, Sets, Shell, ShellExtra, Solid, has_area};
 use super::assemble::{Assembly, Motion};
 use super::sets::{Members, SetKind, resolve_sets};
@@ -35,7 +35,7 @@ pub(super) fn finish(mut assembly: Assembly, monitor: &Monitor) -> Result<Model,
     spread_node_thickness(&assembly, &mut model);
     move_nodes(&mut assembly, &mut model);
     monitor.check()?;
-    tell_flat_shells(&mut model);
+    tell_flat_shells(&assembly, &mut model);
     let mut found = assembly.found;
     found.append(std::mem::take(&mut model.diagnostics));
     model.diagnostics = found;
@@ -67,10 +67,7 @@ fn number_nodes(assembly: &mut Assembly, model: &mut Model) {
     model.nodes = nodes;
 }
 
-fn with_position(
-    finding: Diagnostic,
-    position: Option<super::super::diagnostic::Position>,
-) -> Diagnostic {
+fn with_position(finding: Diagnostic, position: Option<Position>) -> Diagnostic {
     match position {
         Some(position) => finding.at(position),
         None => finding,
@@ -82,7 +79,11 @@ fn link_shells(assembly: &mut Assembly, model: &mut Model) {
     tell_duplicate_shells(assembly);
     let packed = std::mem::take(&mut assembly.packed);
     let nodes = &model.nodes;
-    let link = |shell: &Shell| shell.nodes.map(|p| nodes.index_of(packed.unpack(p)).unwrap_or(MISSING));
+    let link = |shell: &Shell| {
+        shell
+            .nodes
+            .map(|p| nodes.index_of(packed.unpack(p)).unwrap_or(MISSING))
+    };
     let is_broken = |shell: &Shell| link(shell).contains(&MISSING);
     let n_broken: usize = assembly
         .shells
@@ -100,7 +101,7 @@ fn link_shells(assembly: &mut Assembly, model: &mut Model) {
             if broken {
                 found.push_with(DiagnosticKind::MissingNode, || {
                     let ids = shell.nodes.map(|p| packed.unpack(p));
-                    let position = assembly.shell_position(index);
+                    let position = assembly.shell_position(index, shell);
                     missing_node("shell", shell.id, &ids, nodes, position)
                 });
             }
@@ -109,15 +110,19 @@ fn link_shells(assembly: &mut Assembly, model: &mut Model) {
     }
     let mut shells = std::mem::take(&mut assembly.shells);
     if n_broken > 0 {
+        let n_kept = |first: usize| kept[..first].iter().filter(|&&new| new != MISSING).count();
+        assembly.renumber_shells(n_kept);
         let mut index = 0;
         shells.retain(|_| {
             index += 1;
             kept[index - 1] != MISSING
         });
     }
-    shells
-        .par_chunks_mut(PIECE)
-        .for_each(|shells| shells.iter_mut().for_each(|shell| shell.nodes = link(shell)));
+    shells.par_chunks_mut(PIECE).for_each(|shells| {
+        for shell in shells {
+            shell.nodes = link(shell);
+        }
+    });
     model.shells = shells;
     let new_index = |old: u32| match kept.get(old as usize) {
         Some(&MISSING) => None,
@@ -142,7 +147,7 @@ fn missing_node(
     id: u64,
     node_ids: &[u64],
     nodes: &Nodes,
-    position: Option<super::super::diagnostic::Position>,
+    position: Option<Position>,
 ) -> Diagnostic {
     let missing = node_ids.iter().find(|&&id| nodes.index_of(id).is_none());
     let missing = missing.copied().unwrap_or_default();
@@ -154,7 +159,10 @@ fn missing_node(
 }
 
 fn tell_duplicate_shells(assembly: &mut Assembly) {
-    let is_rising = assembly.shells.windows(2).all(|pair| pair[0].id < pair[1].id);
+    let is_rising = assembly
+        .shells
+        .windows(2)
+        .all(|pair| pair[0].id < pair[1].id);
     if is_rising {
         return;
     }
@@ -166,7 +174,7 @@ fn tell_duplicate_shells(assembly: &mut Assembly) {
             let message = format!("shell {} is defined again, both count", ids[index as usize]);
             with_position(
                 Diagnostic::new(DiagnosticKind::DuplicateElement, message),
-                assembly.shell_position(index as usize),
+                assembly.shell_position(index as usize, &assembly.shells[index as usize]),
             )
         });
     }
@@ -186,7 +194,9 @@ fn link_solids(assembly: &mut Assembly, model: &mut Model) {
                 )
             });
         }
-        let nodes = raw.nodes.map(|id| model.nodes.index_of(id).unwrap_or(MISSING));
+        let nodes = raw
+            .nodes
+            .map(|id| model.nodes.index_of(id).unwrap_or(MISSING));
         if nodes.contains(&MISSING) {
             found.push_with(DiagnosticKind::MissingNode, || {
                 let position = assembly.solid_position(index);
@@ -215,7 +225,9 @@ fn give_thickness_to_parts(assembly: &mut Assembly, model: &mut Model) {
         if !part.is_defined {
             let kind = DiagnosticKind::UndefinedPart;
             let message = format!("elements name part {}, which is not defined", part.id);
-            assembly.found.push_with(kind, || Diagnostic::new(kind, message));
+            assembly
+                .found
+                .push_with(kind, || Diagnostic::new(kind, message));
             continue;
         }
         if part.thickness.is_none() {
@@ -252,7 +264,10 @@ impl Members for Model {
                 let mut nodes: Vec<u32> = of_shells.chain(of_solids).collect();
                 nodes.sort_unstable();
                 nodes.dedup();
-                nodes.iter().map(|&n| self.nodes.ids()[n as usize]).collect()
+                nodes
+                    .iter()
+                    .map(|&n| self.nodes.ids()[n as usize])
+                    .collect()
             }
         }
     }
@@ -286,14 +301,20 @@ fn spread_node_thickness(assembly: &Assembly, model: &mut Model) {
     for row in &assembly.node_thickness {
         if row.is_set {
             let set = model.sets.nodes.get(&row.first);
-            set.into_iter().flat_map(|set| &set.ids).for_each(|&id| give(id, row.thickness));
+            set.into_iter()
+                .flat_map(|set| &set.ids)
+                .for_each(|&id| give(id, row.thickness));
         } else {
-            let last = row.last.min(row.first.saturating_add(row.step * 100_000_000));
+            let last = row
+                .last
+                .min(row.first.saturating_add(row.step * 100_000_000));
             let ids = (row.first..=last).step_by(row.step as usize);
             ids.for_each(|id| give(id, row.thickness));
         }
     }
-    let mut own = std::mem::take(&mut model.shell_extras).into_iter().peekable();
+    let mut own = std::mem::take(&mut model.shell_extras)
+        .into_iter()
+        .peekable();
     for (index, shell) in (0u32..).zip(&model.shells) {
         let extra = own.next_if(|extra| extra.shell == index);
         let of_nodes = shell.nodes.map(|node| at_node[node as usize]);
@@ -319,7 +340,9 @@ fn move_nodes(assembly: &mut Assembly, model: &mut Model) {
         let (transformation, position) = match &motion {
             Motion::Scale { nodes, factor } => {
                 let positions = &mut model.nodes.positions_mut()[nodes.clone()];
-                positions.iter_mut().for_each(|point| point.coords *= *factor);
+                positions
+                    .iter_mut()
+                    .for_each(|point| point.coords *= *factor);
                 continue;
             }
             Motion::Include {
@@ -364,7 +387,9 @@ fn apply(model: &mut Model, motion: &Motion, matrix: &Matrix4, assembly: &mut As
     match motion {
         Motion::Scale { .. } => {}
         Motion::Include { nodes, .. } => {
-            model.nodes.positions_mut()[nodes.clone()].iter_mut().for_each(moved);
+            model.nodes.positions_mut()[nodes.clone()]
+                .iter_mut()
+                .for_each(moved);
         }
         Motion::NodeSet { set, position, .. } => {
             let Some(ids) = model.sets.nodes.get(set).map(|set| set.ids.clone()) else {
@@ -373,7 +398,10 @@ fn apply(model: &mut Model, motion: &Motion, matrix: &Matrix4, assembly: &mut As
                 assembly.found.push(finding.at(position.clone()));
                 return;
             };
-            for index in ids.into_iter().filter_map(|id| model.nodes.index_of(id)) {
+            for id in ids {
+                let Some(index) = model.nodes.index_of(id) else {
+                    continue;
+                };
                 moved(&mut model.nodes.positions_mut()[index as usize]);
             }
         }
@@ -381,7 +409,7 @@ fn apply(model: &mut Model, motion: &Motion, matrix: &Matrix4, assembly: &mut As
 }
 
 /// Shells without area stay in the model and are left out of surfaces.
-fn tell_flat_shells(model: &mut Model) {
+fn tell_flat_shells(assembly: &Assembly, model: &mut Model) {
     let positions = model.nodes.positions();
     let is_flat = |shell: &Shell| {
         let [a, b, c, d] = shell.nodes.map(|n| positions[n as usize]);
@@ -393,14 +421,19 @@ fn tell_flat_shells(model: &mut Model) {
         .enumerate()
         .flat_map_iter(|(piece, shells)| {
             let is_flat = &is_flat;
-            let flat = shells.iter().enumerate().filter(move |(_, shell)| is_flat(shell));
+            let flat = shells
+                .iter()
+                .enumerate()
+                .filter(move |(_, shell)| is_flat(shell));
             flat.map(move |(i, _)| piece * PIECE + i)
         })
         .collect();
     for index in flat {
-        let id = model.shells[index].id;
+        let shell = &model.shells[index];
         let kind = DiagnosticKind::ZeroArea;
-        let describe = || Diagnostic::new(kind, format!("shell {id} has no area"));
-        model.diagnostics.push_with(kind, describe);
+        model.diagnostics.push_with(kind, || {
+            let finding = Diagnostic::new(kind, format!("shell {} has no area", shell.id));
+            with_position(finding, assembly.shell_position(index, shell))
+        });
     }
 }

@@ -184,7 +184,11 @@ impl Form {
                 for index in [0, 2, 4, 6] {
                     let (first, last) = (id(index)?, id(index + 1)?);
                     if first != 0 {
-                        into.push(Member::Range { first, last, step: 1 });
+                        into.push(Member::Range {
+                            first,
+                            last,
+                            step: 1,
+                        });
                     }
                 }
             }
@@ -317,12 +321,14 @@ impl Resolver<'_> {
         }
         let Some(definitions) = self.by_id.get(&key) else {
             let message = format!("{} set {id} is not defined", kind.label());
-            self.found.push(Diagnostic::new(DiagnosticKind::BadSet, message));
+            self.found
+                .push(Diagnostic::new(DiagnosticKind::BadSet, message));
             return Vec::new();
         };
         if self.open.contains(&key) {
             let message = format!("{} set {id} contains itself", kind.label());
-            self.found.push(Diagnostic::new(DiagnosticKind::BadSet, message));
+            self.found
+                .push(Diagnostic::new(DiagnosticKind::BadSet, message));
             return Vec::new();
         }
         self.open.push(key);
@@ -368,7 +374,7 @@ impl Resolver<'_> {
             return;
         }
         let mut existing = self.model.all(kind);
-        existing.retain(|id| (first..=last).contains(id) && (id - first) % step == 0);
+        existing.retain(|id| (first..=last).contains(id) && (id - first).is_multiple_of(step));
         existing.sort_unstable();
         existing.dedup();
         ids.extend(existing);

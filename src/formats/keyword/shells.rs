@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Shell, ShellExtra};
 use super::block::{Block, Cards};
-use super::card::{Card, EIGHT_BY_10, FIVE_BY_16, FieldError, Layout, TEN_BY_8, columns};
+use super::card::{Card, EIGHT_BY_10, FIVE_BY_16, FieldError, TEN_BY_8, columns};
 use super::chunks::{Cut, Irregular};
 use super::mesh::ShellCards;
 use super::nodes::shifted;
@@ -53,7 +53,13 @@ impl PackedIds {
     pub(crate) fn append(&mut self, later: Self) -> impl Fn(u32) -> u32 + use<> {
         let shift = self.wide.len() as u32;
         self.wide.extend(later.wide);
-        move |packed| if packed < Self::WIDE { packed } else { packed + shift }
+        move |packed| {
+            if packed < Self::WIDE {
+                packed
+            } else {
+                packed + shift
+            }
+        }
     }
 }
 
@@ -120,7 +126,6 @@ pub(crate) fn read_shells(
 ) -> Result<ShellChunk, Irregular> {
     let mut reader = Reader {
         columns: columns(TEN_BY_8, block.layout),
-        layout: block.layout,
         options: cards,
         offsets,
         must_be_regular,
@@ -142,7 +147,6 @@ pub(crate) fn read_shells(
 
 struct Reader<'a> {
     columns: [usize; 11],
-    layout: Layout,
     options: ShellCards,
     offsets: &'a ElementOffsets,
     must_be_regular: bool,
@@ -405,15 +409,23 @@ pub(crate) fn find_element(
     offsets: &ElementOffsets,
 ) -> Option<usize> {
     let same = |card: &Card<'_>| {
-        card.id(TEN_BY_8, 0).is_ok_and(|i| shifted(i, offsets.element) == id)
-            && card.id(TEN_BY_8, 1).is_ok_and(|p| shifted(p, offsets.part) == part)
+        card.id(TEN_BY_8, 0)
+            .is_ok_and(|i| shifted(i, offsets.element) == id)
+            && card
+                .id(TEN_BY_8, 1)
+                .is_ok_and(|p| shifted(p, offsets.part) == part)
     };
-    block.cards_in(range).filter(same).last().map(|card| card.offset())
+    block
+        .cards_in(range)
+        .filter(same)
+        .last()
+        .map(|card| card.offset())
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::block::SourceFile;
+    use super::super::card::Layout;
     use super::*;
     use proptest::prelude::*;
 

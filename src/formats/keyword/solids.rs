@@ -162,7 +162,10 @@ fn brick(ids: &[u64; 10], cards: SolidCards) -> Option<[u64; 8]> {
     };
     let mut distinct = nodes;
     distinct.sort_unstable();
-    let n_distinct = 1 + distinct.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    let n_distinct = 1 + distinct
+        .windows(2)
+        .filter(|pair| pair[0] != pair[1])
+        .count();
     (n_distinct >= 4 && distinct[0] != 0).then_some(nodes)
 }
 
