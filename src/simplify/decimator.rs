@@ -1,14 +1,12 @@
 //! Cheapest collapse first.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
 use nalgebra::Vector3;
 
 use super::fans::Fans;
 use super::intake::Intake;
 use super::legality::{Kind, Marks, Refusal, keeps_orientation, link_condition};
 use super::quadric::Quadric;
+use super::queue::{Entry, Queue, key_of, later_than};
 use super::settings::{Placement, SimplifySettings, StopReason};
 use crate::monitor::{Cancelled, Monitor};
 
@@ -27,18 +25,6 @@ pub(super) struct Collapse {
     pub(super) position: Vector3<f64>,
     /// The quadrics' mean square distance here, in unit coordinates.
     pub(super) error: f64,
-}
-
-/// An edge in the queue, ordered by price, then by its ends. The price is a lower bound: merging
-/// adds quadrics, which only raises what the neighbouring edges cost. An entry is priced anew when
-/// it comes up and either collapsed or put back, so the order is exact without touching the
-/// neighbours of every collapse.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Entry {
-    key: u32,
-    a: u32,
-    b: u32,
-    stamp: u32,
 }
 
 /// What moving an edge's ends together costs, and where to.
@@ -66,12 +52,8 @@ pub(super) struct Decimator {
     quadrics: Vec<Quadric>,
     versions: Vec<u32>,
     merged_into: Vec<u32>,
-    /// Vertices with an edge that was refused and waits for its neighbourhood to change.
-    waiting: Vec<bool>,
     marks: Marks,
-    sorted: Vec<Entry>,
-    next_sorted: usize,
-    heap: BinaryHeap<Reverse<Entry>>,
+    queue: Queue,
     closing: bool,
     refused: Refused,
     collapses: Vec<Collapse>,
@@ -90,11 +72,8 @@ impl Decimator {
             quadrics: intake.quadrics,
             versions: vec![0; n],
             merged_into: (0..n as u32).collect(),
-            waiting: vec![false; n],
             marks: Marks::new(n),
-            sorted: Vec::new(),
-            next_sorted: 0,
-            heap: BinaryHeap::new(),
+            queue: Queue::new(),
             closing: false,
             refused: Refused::default(),
             collapses: Vec::new(),
@@ -123,7 +102,7 @@ impl Decimator {
                 monitor.progress("simplify", done, Some(to_do));
             }
             n_popped += 1;
-            if let Some(entry) = self.pop() {
+            if let Some(entry) = self.queue.pop() {
                 self.treat(entry);
                 continue;
             }
@@ -156,7 +135,7 @@ impl Decimator {
     /// Prices an entry that came up, and collapses it, puts it back, or sets it aside.
     fn treat(&mut self, entry: Entry) {
         let (a, b) = (self.root(entry.a), self.root(entry.b));
-        if a == b || self.fans.sides(a, b).next().is_none() {
+        if a == b {
             return;
         }
         let (a, b) = (a.min(b), a.max(b));
@@ -171,8 +150,8 @@ impl Decimator {
             b,
             stamp,
         };
-        if now > entry && self.peek().is_some_and(|next| next < now) {
-            self.heap.push(Reverse(now));
+        if now > entry && self.queue.peek().is_some_and(|next| next < now) {
+            self.queue.push(now);
             return;
         }
         match self.refusal(a, b, &price.position) {
@@ -182,8 +161,11 @@ impl Decimator {
                     Refusal::Link => self.refused.link += 1,
                     Refusal::Flip => self.refused.flip += 1,
                 }
-                self.waiting[a as usize] = true;
-                self.waiting[b as usize] = true;
+                // The surroundings may change: it comes up again at a higher price.
+                let key = later_than(entry.key.max(now.key));
+                if key < key_of(1.0) {
+                    self.queue.push(Entry { key, ..now });
+                }
             }
         }
     }
@@ -217,30 +199,6 @@ impl Decimator {
         if let Some(third) = third {
             self.kinds[k] = self.kind_by_count(kept);
             self.kinds[third as usize] = self.kind_by_count(third);
-        }
-        let waited = self.waiting[k] | self.waiting[r];
-        self.waiting[k] = false;
-        self.requeue_around(kept, waited);
-    }
-
-    /// Puts edges of `vertex` back that were refused before its neighbourhood changed.
-    fn requeue_around(&mut self, vertex: u32, all: bool) {
-        for i in 0..self.fans.around(vertex).len() {
-            let t = self.fans.around(vertex)[i];
-            for w in self.fans.triangles[t as usize] {
-                if w == vertex || !(all || self.waiting[w as usize]) {
-                    continue;
-                }
-                let (a, b) = (vertex.min(w), vertex.max(w));
-                if let Some(price) = self.price(a, b) {
-                    self.heap.push(Reverse(Entry {
-                        key: key_of(price.cost),
-                        a,
-                        b,
-                        stamp: self.stamp(a, b),
-                    }));
-                }
-            }
         }
     }
 
@@ -336,13 +294,10 @@ impl Decimator {
 
     fn fill_queue(&mut self, edges: &[[u32; 2]]) {
         self.refused = Refused::default();
-        self.waiting.fill(false);
-        self.sorted.clear();
-        self.next_sorted = 0;
-        self.heap.clear();
+        self.queue.clear();
         for &[a, b] in edges {
             match self.price(a, b) {
-                Some(price) => self.sorted.push(Entry {
+                Some(price) => self.queue.push(Entry {
                     key: key_of(price.cost),
                     a,
                     b,
@@ -351,7 +306,6 @@ impl Decimator {
                 None => self.refused.feature += 1,
             }
         }
-        self.sorted.sort_unstable();
     }
 
     fn edges_left(&self) -> Vec<[u32; 2]> {
@@ -366,28 +320,6 @@ impl Decimator {
         edges.sort_unstable();
         edges.dedup();
         edges
-    }
-
-    fn peek(&self) -> Option<Entry> {
-        let sorted = self.sorted.get(self.next_sorted).copied();
-        let heaped = self.heap.peek().map(|entry| entry.0);
-        match (sorted, heaped) {
-            (Some(s), Some(h)) => Some(s.min(h)),
-            (s, h) => s.or(h),
-        }
-    }
-
-    /// The cheapest entry. Entries that have become equal come up one after the other and count once.
-    fn pop(&mut self) -> Option<Entry> {
-        let entry = self.peek()?;
-        while self.peek() == Some(entry) {
-            if self.sorted.get(self.next_sorted) == Some(&entry) {
-                self.next_sorted += 1;
-            } else {
-                self.heap.pop();
-            }
-        }
-        Some(entry)
     }
 }
 
@@ -421,10 +353,4 @@ fn mean_square(price: &Price) -> f64 {
     } else {
         0.0
     }
-}
-
-/// The cost as an integer that sorts alike. Its last bits are cut off, so that costs which differ
-/// by rounding alone are equal and the vertex numbers decide.
-fn key_of(cost: f64) -> u32 {
-    (cost as f32).to_bits() >> 8
 }

@@ -85,21 +85,31 @@ pub(super) fn take_in(mesh: &TriMesh, parts: &[u32], settings: &SimplifySettings
 
 /// Indices of the triangles with three different vertices that no earlier triangle has as well.
 fn distinct_triangles(mesh: &TriMesh) -> Vec<u32> {
-    let mut keys: Vec<([u32; 3], u32)> = mesh
+    let sorted: Vec<[u32; 3]> = mesh
         .triangles()
         .iter()
-        .zip(0..)
-        .filter(|([a, b, c], _)| a != b && b != c && c != a)
-        .map(|(corners, t)| {
+        .map(|corners| {
             let mut sorted = *corners;
             sorted.sort_unstable();
-            (sorted, t)
+            sorted
         })
         .collect();
-    keys.sort_unstable();
-    keys.dedup_by_key(|(corners, _)| *corners);
-    let mut kept: Vec<u32> = keys.into_iter().map(|(_, t)| t).collect();
-    kept.sort_unstable();
+    // Triangles with the same smallest vertex, chained from the latest to the earliest.
+    let mut last_of = vec![u32::MAX; mesh.n_vertices()];
+    let mut earlier = vec![u32::MAX; sorted.len()];
+    let mut kept = Vec::with_capacity(sorted.len());
+    for (t, corners) in sorted.iter().enumerate() {
+        let head = &mut last_of[corners[0] as usize];
+        let mut other = *head;
+        while other != u32::MAX && sorted[other as usize] != *corners {
+            other = earlier[other as usize];
+        }
+        if other == u32::MAX && corners[0] != corners[1] && corners[1] != corners[2] {
+            kept.push(t as u32);
+            earlier[t] = *head;
+            *head = t as u32;
+        }
+    }
     kept
 }
 
@@ -121,29 +131,18 @@ fn add_face_quadrics(intake: &mut Intake, settings: &SimplifySettings) {
 /// Finds edges and features, gives feature vertices their kind and their constraint.
 fn add_features(intake: &mut Intake, settings: &SimplifySettings) {
     let fans = &intake.fans;
-    let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * fans.triangles.len());
-    for (t, &[a, b, c]) in fans.triangles.iter().enumerate() {
-        for [u, v] in [[a, b], [b, c], [c, a]] {
-            let forward = u32::from(u < v);
-            let key = u64::from(u.min(v)) << 32 | u64::from(u.max(v));
-            sides.push((key, (t as u32) << 1 | forward));
-        }
-    }
-    sides.sort_unstable();
     let mut degree = vec![0_u32; intake.kinds.len()];
-    for around in sides.chunk_by(|x, y| x.0 == y.0) {
-        let [u, v] = [(around[0].0 >> 32) as u32, around[0].0 as u32];
+    for_each_edge(fans, |[u, v], around| {
         intake.edges.push([u, v]);
         let smooth = match around {
             [x, y] => {
-                let same_part = intake.part_of.is_empty()
-                    || intake.part_of[(x.1 >> 1) as usize] == intake.part_of[(y.1 >> 1) as usize];
-                same_part && (x.1 & 1) != (y.1 & 1)
+                let part = |side: &Side| intake.part_of.get(side.triangle as usize);
+                x.forward != y.forward && part(x) == part(y)
             }
             _ => false,
         };
         if smooth {
-            continue;
+            return;
         }
         degree[u as usize] += 1;
         degree[v as usize] += 1;
@@ -154,12 +153,52 @@ fn add_features(intake: &mut Intake, settings: &SimplifySettings) {
             intake.quadrics[u as usize].add(&quadric);
             intake.quadrics[v as usize].add(&quadric);
         }
-    }
+    });
     for (kind, degree) in intake.kinds.iter_mut().zip(degree) {
         *kind = match degree {
             0 => Kind::Free,
             2 => Kind::Line,
             _ => Kind::Corner,
         };
+    }
+}
+
+/// One triangle at an edge, as seen from the edge's smaller vertex.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    other: u32,
+    triangle: u32,
+    /// The triangle runs from the smaller to the larger vertex.
+    forward: bool,
+}
+
+/// Calls `visit` with the ends and sides of every edge, in the order of the ends.
+fn for_each_edge(fans: &Fans, mut visit: impl FnMut([u32; 2], &[Side])) {
+    let mut sides: Vec<Side> = Vec::new();
+    for u in 0..fans.positions.len() as u32 {
+        sides.clear();
+        for &triangle in fans.around(u) {
+            let [a, b, c] = fans.triangles[triangle as usize];
+            let (next, last) = if a == u {
+                (b, c)
+            } else if b == u {
+                (c, a)
+            } else {
+                (a, b)
+            };
+            for (other, forward) in [(next, true), (last, false)] {
+                if other > u {
+                    sides.push(Side {
+                        other,
+                        triangle,
+                        forward,
+                    });
+                }
+            }
+        }
+        sides.sort_unstable_by_key(|side| (side.other, side.triangle));
+        for around in sides.chunk_by(|x, y| x.other == y.other) {
+            visit([u, around[0].other], around);
+        }
     }
 }

@@ -68,6 +68,10 @@ pub(super) fn link_condition(
     for (_, opposite) in fans.sides(a, b) {
         n_sides += 1;
         marks.ends.push(opposite);
+        if fans.around(opposite).len() == 1 {
+            // It would be left without a triangle.
+            return false;
+        }
     }
     if n_sides == 0 || fans.around(a).len() + fans.around(b).len() <= 2 * n_sides {
         // Nothing of the component would be left.

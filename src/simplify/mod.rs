@@ -8,14 +8,17 @@
 //! The result does not depend on the unit of length or on the place of the part, and equal prices
 //! are decided by vertex numbers, so the same mesh always gives the same result.
 
+mod border;
 mod decimator;
 mod fans;
 mod intake;
 mod legality;
 mod quadric;
+mod queue;
 mod sequence;
 mod settings;
 
+pub use border::{BorderDeviation, border_deviation};
 pub use sequence::CollapseSequence;
 pub use settings::{
     Placement, Simplified, SimplifyError, SimplifyReport, SimplifySettings, StopReason,

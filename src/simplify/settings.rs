@@ -38,8 +38,8 @@ impl Default for SimplifySettings {
         Self {
             max_triangles: 1000,
             placement: Placement::Optimal,
-            boundary_weight: 1.0,
-            stiffness: 1e-6,
+            boundary_weight: 10.0,
+            stiffness: 1e-8,
             max_turn_deg: 75.0,
             may_close_loops: true,
         }

@@ -1,0 +1,243 @@
+//! How far borders moved.
+
+use crate::geometry::{Aabb, Point3, Topology, TriMesh, Vector3};
+
+/// Samples per original edge length, at least; long edges get more.
+const SAMPLES_PER_BORDER: usize = 4096;
+
+/// Distances between the border polylines of two meshes, in length units.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BorderDeviation {
+    /// Root mean square over both directions, by length. 0 if neither mesh has a border, infinite
+    /// if only one has.
+    pub rms: f64,
+    /// The largest distance in either direction.
+    pub max: f64,
+    /// Border loops of the first mesh.
+    pub loops_before: usize,
+    /// Border loops of the second mesh.
+    pub loops_after: usize,
+}
+
+/// Measures the borders of `reduced` against those of `original`, both ways: each border is
+/// sampled evenly by length, its vertices included, and each sample looks for the closest point
+/// on the other. O((edges + samples) · log edges).
+pub fn border_deviation(original: &TriMesh, reduced: &TriMesh) -> BorderDeviation {
+    let (before, after) = (Border::of(original), Border::of(reduced));
+    let mut deviation = BorderDeviation {
+        loops_before: before.n_loops,
+        loops_after: after.n_loops,
+        ..BorderDeviation::default()
+    };
+    if before.segments.is_empty() && after.segments.is_empty() {
+        return deviation;
+    }
+    let (mut sum, mut length) = (0.0, 0.0);
+    for (from, to) in [(&before, &after), (&after, &before)] {
+        let tree = SegmentTree::of(&to.segments);
+        let spacing = from.length() / SAMPLES_PER_BORDER as f64;
+        for segment in &from.segments {
+            let n = (segment.length() / spacing.max(f64::MIN_POSITIVE))
+                .ceil()
+                .max(1.0);
+            let mut segment_sum = 0.0;
+            for k in 0..n as usize {
+                let squared = tree.squared_distance(&segment.at((k as f64 + 0.5) / n));
+                segment_sum += squared;
+                deviation.max = deviation.max.max(squared);
+            }
+            sum += segment_sum / n * segment.length();
+            length += segment.length();
+            deviation.max = deviation.max.max(tree.squared_distance(&segment.start));
+        }
+    }
+    deviation.rms = if length > 0.0 {
+        (sum / length).sqrt()
+    } else {
+        0.0
+    };
+    deviation.max = deviation.max.sqrt();
+    deviation
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Segment {
+    start: Point3,
+    along: Vector3,
+}
+
+impl Segment {
+    fn at(&self, t: f64) -> Point3 {
+        self.start + self.along * t
+    }
+
+    fn length(&self) -> f64 {
+        self.along.norm()
+    }
+
+    fn squared_distance(&self, point: &Point3) -> f64 {
+        let from_start = point - self.start;
+        let length2 = self.along.norm_squared();
+        let t = if length2 > 0.0 {
+            (from_start.dot(&self.along) / length2).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        (from_start - self.along * t).norm_squared()
+    }
+}
+
+struct Border {
+    segments: Vec<Segment>,
+    n_loops: usize,
+}
+
+impl Border {
+    fn of(mesh: &TriMesh) -> Self {
+        let topology = Topology::of(mesh);
+        let segments = topology
+            .border_edges()
+            .map(|edge| {
+                let [u, v] = topology.edges[edge].map(|v| mesh.positions()[v as usize]);
+                Segment {
+                    start: u,
+                    along: v - u,
+                }
+            })
+            .collect();
+        Self {
+            segments,
+            n_loops: topology.border_loops(mesh).len(),
+        }
+    }
+
+    fn length(&self) -> f64 {
+        self.segments.iter().map(Segment::length).sum()
+    }
+}
+
+/// A box tree over segments, split at the median of the longest axis. Node `i` has the children
+/// `2 i + 1` and `2 i + 2` and its share of the segments follows from its place.
+struct SegmentTree {
+    segments: Vec<Segment>,
+    boxes: Vec<Aabb>,
+}
+
+const LEAF: usize = 4;
+
+impl SegmentTree {
+    fn of(segments: &[Segment]) -> Self {
+        let mut tree = Self {
+            segments: segments.to_vec(),
+            boxes: Vec::new(),
+        };
+        let mut boxes = vec![Aabb::empty(); 1];
+        build(&mut tree.segments, &mut boxes, 0);
+        tree.boxes = boxes;
+        tree
+    }
+
+    fn squared_distance(&self, point: &Point3) -> f64 {
+        let mut best = f64::INFINITY;
+        self.descend(0, 0, self.segments.len(), point, &mut best);
+        best
+    }
+
+    fn descend(&self, node: usize, start: usize, end: usize, point: &Point3, best: &mut f64) {
+        if end - start <= LEAF {
+            for segment in &self.segments[start..end] {
+                *best = best.min(segment.squared_distance(point));
+            }
+            return;
+        }
+        let middle = start.midpoint(end);
+        let children = [(2 * node + 1, start, middle), (2 * node + 2, middle, end)];
+        let reach = children.map(|(child, _, _)| outside(&self.boxes[child], point));
+        let first = usize::from(reach[1] < reach[0]);
+        for i in [first, 1 - first] {
+            let (child, start, end) = children[i];
+            if reach[i] < *best {
+                self.descend(child, start, end, point, best);
+            }
+        }
+    }
+}
+
+fn build(segments: &mut [Segment], boxes: &mut Vec<Aabb>, node: usize) {
+    if boxes.len() <= node {
+        boxes.resize(node + 1, Aabb::empty());
+    }
+    let ends = segments.iter().flat_map(|s| [s.start, s.at(1.0)]);
+    boxes[node] = ends.fold(Aabb::empty(), |mut aabb, point| {
+        aabb.insert(&point);
+        aabb
+    });
+    if segments.len() <= LEAF {
+        return;
+    }
+    let axis = boxes[node].extents().imax();
+    let middle = segments.len() / 2;
+    segments.select_nth_unstable_by(middle, |s, t| s.at(0.5)[axis].total_cmp(&t.at(0.5)[axis]));
+    let (low, high) = segments.split_at_mut(middle);
+    build(low, boxes, 2 * node + 1);
+    build(high, boxes, 2 * node + 2);
+}
+
+/// Squared distance from a point to a box, 0 inside.
+fn outside(aabb: &Aabb, point: &Point3) -> f64 {
+    let below = (aabb.min - point).sup(&Vector3::zeros());
+    let above = (point - aabb.max).sup(&Vector3::zeros());
+    below.norm_squared() + above.norm_squared()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(size: f64) -> TriMesh {
+        let p = |x: f64, y: f64| Point3::new(x, y, 0.0);
+        let positions = vec![p(0.0, 0.0), p(size, 0.0), p(size, size), p(0.0, size)];
+        TriMesh::new(positions, vec![[0, 1, 2], [0, 2, 3]]).unwrap()
+    }
+
+    #[test]
+    fn a_square_against_a_larger_one() {
+        let deviation = border_deviation(&square(10.0), &square(11.0));
+        assert!((deviation.max - 2.0_f64.sqrt()).abs() < 1e-12);
+        assert!(deviation.rms > 0.6 && deviation.rms < 1.0, "{deviation:?}");
+        assert_eq!((deviation.loops_before, deviation.loops_after), (1, 1));
+        assert_eq!(border_deviation(&square(10.0), &square(10.0)).max, 0.0);
+    }
+
+    #[test]
+    fn a_lost_border_is_infinitely_far() {
+        let deviation = border_deviation(&square(1.0), &TriMesh::default());
+        assert_eq!(deviation.max, f64::INFINITY);
+        assert_eq!(deviation.rms, f64::INFINITY);
+        let none = border_deviation(&TriMesh::default(), &TriMesh::default());
+        assert_eq!(none, BorderDeviation::default());
+    }
+
+    #[test]
+    fn the_tree_agrees_with_the_plain_loop() {
+        let segments: Vec<Segment> = (0..97_u32)
+            .map(|i| {
+                let i = f64::from(i);
+                Segment {
+                    start: Point3::new((i * 7.3) % 11.0, (i * 3.1) % 5.0, (i * 1.7) % 3.0),
+                    along: Vector3::new((i * 0.7) % 1.0 - 0.5, (i * 0.3) % 1.0, 0.1),
+                }
+            })
+            .collect();
+        let tree = SegmentTree::of(&segments);
+        for i in 0..50 {
+            let i = f64::from(i);
+            let query = Point3::new((i * 1.9) % 13.0, (i * 2.3) % 6.0, (i * 0.9) % 4.0);
+            let plain = segments
+                .iter()
+                .map(|s| s.squared_distance(&query))
+                .fold(f64::INFINITY, f64::min);
+            assert_eq!(tree.squared_distance(&query), plain);
+        }
+    }
+}
