@@ -91,7 +91,8 @@ impl Design {
 /// is `x`. Sections and spines are laid out so.
 fn unroll(path: &Path, x: f64) -> f64 {
     let (mut low, mut high) = (-path.length(), 2.0 * path.length());
-    while high - low > 1e-10 {
+    // Eighty halvings leave nothing of any part's length.
+    for _ in 0..80 {
         let middle = (low + high) / 2.0;
         if path.at(middle).0.x < x {
             low = middle;
