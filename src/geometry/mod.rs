@@ -3,6 +3,7 @@
 mod aabb;
 pub mod camera;
 mod mesh;
+mod sampling;
 mod similarity;
 mod topology;
 mod weld;
@@ -10,6 +11,7 @@ mod weld;
 pub use aabb::Aabb;
 pub use camera::{Camera, Projection};
 pub use mesh::{MeshError, TriMesh};
+pub use sampling::{SurfaceSample, sample_surface};
 pub use similarity::{MatrixError, Similarity};
 pub use topology::{BorderLoop, Topology, orient_consistently};
 pub use weld::{Welded, weld};

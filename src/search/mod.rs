@@ -1,11 +1,13 @@
-//! Closest points on triangle meshes.
+//! Closest points and rays on triangle meshes.
 //!
 //! [`Bvh`] is the tree for work, [`BruteForce`] the plain loop that the tests hold it against. Both
 //! decide with the same `f64` function, [`closest_point_on_triangle`], so their answers agree to
 //! the last bit: the smallest squared distance, and of equal ones the lowest triangle index.
+//! [`PointTree`] is the same tree over points. [`Bvh::first_hit`] follows a ray.
 
 mod brute;
 mod bvh;
+mod distance;
 mod pack;
 mod points;
 mod ray;
@@ -15,6 +17,7 @@ mod wide;
 
 pub use brute::BruteForce;
 pub use bvh::Bvh;
+pub use distance::{DistanceStats, SearchLimits, closest_many, surface_distance};
 pub use points::{NearestPoint, PointTree};
 pub use ray::RayHit;
 pub use triangle::{TrianglePoint, closest_point_on_triangle};

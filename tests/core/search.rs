@@ -3,8 +3,12 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use shapematch::geometry::{Point3, TriMesh, Vector3};
-use shapematch::search::{BruteForce, Bvh, ClosestPoint, NormalFilter, PointTree};
+use shapematch::geometry::{Point3, TriMesh, Vector3, sample_surface};
+use shapematch::monitor::Monitor;
+use shapematch::search::{
+    BruteForce, Bvh, ClosestPoint, NormalFilter, PointTree, SearchLimits, closest_many,
+    surface_distance,
+};
 
 /// A number in −1 … 1 that depends on seed and index alone (splitmix64).
 fn noise(seed: u64, i: u64) -> f64 {
@@ -264,6 +268,49 @@ fn rays_meet_what_a_plain_loop_meets() {
         }
         assert!(n_hits > 5, "only {n_hits} rays hit anything");
     }
+}
+
+#[test]
+fn many_at_once_are_the_same_as_one_by_one() {
+    let shape = sheet(16);
+    let points = queries(&shape, 8, 3000);
+    let directions: Vec<Vector3> = (0..3000).map(|i| vector(9, i).normalize()).collect();
+    let tree = Bvh::build(shape);
+    let limits = SearchLimits {
+        max_distance: 20.0,
+        min_cos: Some(0.3),
+    };
+    let silent = Monitor::silent();
+    let found = closest_many(&tree, &points, &directions, &[], limits, &silent).unwrap();
+    for ((point, &direction), found) in points.iter().zip(&directions).zip(&found) {
+        let filter = NormalFilter {
+            direction,
+            min_cos: 0.3,
+        };
+        assert_eq!(&tree.closest(point, 20.0, None, Some(&filter)), found);
+    }
+    silent.request_cancel();
+    assert!(closest_many(&tree, &points, &directions, &[], limits, &silent).is_err());
+}
+
+#[test]
+fn distance_of_two_parallel_plates() {
+    let p = |x: f64, y: f64, z: f64| Point3::new(x, y, z);
+    let plate = |z: f64| {
+        let corners = vec![p(0.0, 0.0, z), p(10.0, 0.0, z), p(0.0, 10.0, z)];
+        mesh(corners, vec![[0, 1, 2]])
+    };
+    let samples = sample_surface(&plate(2.5), 5000, 1);
+    let silent = Monitor::silent();
+    let stats = surface_distance(&samples, &Bvh::build(plate(0.0)), &silent)
+        .unwrap()
+        .unwrap();
+    for value in [stats.rms, stats.mean, stats.p95, stats.max] {
+        assert!((value - 2.5).abs() < 1e-12, "{stats:?}");
+    }
+    assert_eq!(stats.n, 5000);
+    let nothing = Bvh::build(TriMesh::default());
+    assert_eq!(surface_distance(&samples, &nothing, &silent), Ok(None));
 }
 
 proptest! {
