@@ -5,7 +5,8 @@
 //! `crash = c · R · stamped + t` in column vectors. The modules, from the ground up:
 //!
 //! - [`monitor`]: progress, stop and cancel.
-//! - [`geometry`]: points, meshes, topology, poses.
+//! - [`geometry`]: points, meshes, topology, poses, the camera.
+//! - [`colormap`]: colour maps and scales.
 //! - [`formats`]: LS-DYNA keyword decks, STL, OBJ, PLY.
 //! - [`simplify`]: quadric error simplification.
 //! - [`search`]: closest points and rays on triangle meshes.
@@ -18,6 +19,7 @@
 //! `ARCHITECTURE.md` says who may use whom.
 
 pub mod assess;
+pub mod colormap;
 pub mod formats;
 pub mod geometry;
 pub mod monitor;

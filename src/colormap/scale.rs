@@ -1,0 +1,173 @@
+use super::{ColorMap, Rgb};
+
+/// Colour of values inside the tolerance band: the middle of the diverging map.
+pub const NEUTRAL: Rgb = [221, 221, 221];
+/// Colour of places without a value; drawn with a hatch as the second carrier.
+pub const UNMATCHED: Rgb = [138, 141, 146];
+
+/// A colour map with the numbers at its ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ColorScale {
+    /// The colours.
+    pub map: ColorMap,
+    /// Value at the lower end; smaller values take its colour.
+    pub min: f64,
+    /// Value at the upper end; larger values take its colour.
+    pub max: f64,
+    /// Values within ± this are neutral; 0 for no band.
+    pub tolerance: f64,
+    /// Cuts the map into this many plain colours (2 … 32); `None` for a smooth map.
+    pub n_bands: Option<u8>,
+    /// Turns the map round.
+    pub reversed: bool,
+}
+
+impl ColorScale {
+    /// A smooth map from `min` to `max`.
+    pub fn new(map: ColorMap, min: f64, max: f64) -> Self {
+        Self {
+            map,
+            min,
+            max,
+            tolerance: 0.0,
+            n_bands: None,
+            reversed: false,
+        }
+    }
+
+    /// The diverging map from `-limit` to `limit` with a neutral band of ± `tolerance`.
+    pub fn symmetric(limit: f64, tolerance: f64) -> Self {
+        Self {
+            tolerance,
+            ..Self::new(ColorMap::CoolWarm, -limit, limit)
+        }
+    }
+
+    /// Place of a value between the ends, 0 … 1 and clamped; 0.5 if the ends coincide or the value is
+    /// not a number.
+    pub fn position(&self, value: f64) -> f64 {
+        let t = (value - self.min) / (self.max - self.min);
+        if t.is_nan() || self.max == self.min {
+            0.5
+        } else {
+            t.clamp(0.0, 1.0)
+        }
+    }
+
+    /// The value at a place between the ends.
+    pub fn value_at(&self, position: f64) -> f64 {
+        self.min + (self.max - self.min) * position
+    }
+
+    /// Colour of a value; [`UNMATCHED`] for NaN.
+    pub fn color(&self, value: f64) -> Rgb {
+        if value.is_nan() {
+            return UNMATCHED;
+        }
+        if self.tolerance > 0.0 && value.abs() <= self.tolerance {
+            return NEUTRAL;
+        }
+        let mut t = self.position(value);
+        if let Some(n) = self.n_bands {
+            let n = f64::from(n.clamp(2, 32));
+            t = (t * n).floor().min(n - 1.0) / (n - 1.0);
+        }
+        self.map.sample(if self.reversed { 1.0 - t } else { t })
+    }
+
+    /// The colours of `n` equal steps from end to end, sampled in their middles: the texture of the
+    /// graphics card and the picture of the legend.
+    pub fn table(&self, n: usize) -> Vec<Rgb> {
+        (0..n)
+            .map(|i| self.color(self.value_at((i as f64 + 0.5) / n as f64)))
+            .collect()
+    }
+
+    /// Round values for the legend: at most `max_ticks` (at least 2), 1, 2 or 5 times a power of ten
+    /// apart, inside the range. Empty if the range is empty or not finite.
+    pub fn ticks(&self, max_ticks: usize) -> Vec<f64> {
+        let (low, high) = (self.min.min(self.max), self.min.max(self.max));
+        let span = high - low;
+        if !(span.is_finite() && span > 0.0) {
+            return Vec::new();
+        }
+        let step = round_step(span / (max_ticks.max(2) - 1) as f64);
+        let first = (low / step - 1e-9).ceil();
+        let last = (high / step + 1e-9).floor();
+        let n = (last - first) as usize + 1;
+        (0..n).map(|i| (first + i as f64) * step).collect()
+    }
+}
+
+/// The smallest of 1, 2, 5, 10 … that is at least `rough`.
+fn round_step(rough: f64) -> f64 {
+    let power = 10f64.powf(rough.log10().floor());
+    [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|digit| digit * power)
+        .find(|&step| step >= rough * (1.0 - 1e-9))
+        .unwrap_or(10.0 * power)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_find_their_colours() {
+        let scale = ColorScale::symmetric(2.0, 0.1);
+        assert_eq!(scale.color(0.05), NEUTRAL);
+        assert_eq!(scale.color(-0.1), NEUTRAL);
+        assert_eq!(scale.color(9.0), ColorMap::CoolWarm.sample(1.0));
+        assert_eq!(scale.color(-2.0), ColorMap::CoolWarm.sample(0.0));
+        assert_eq!(scale.color(f64::NAN), UNMATCHED);
+        let turned = ColorScale {
+            reversed: true,
+            ..scale
+        };
+        assert_eq!(turned.color(2.0), scale.color(-2.0));
+    }
+
+    #[test]
+    fn bands_have_plain_colours_and_full_ends() {
+        let scale = ColorScale {
+            n_bands: Some(5),
+            ..ColorScale::new(ColorMap::Viridis, 0.0, 10.0)
+        };
+        let mut colors = scale.table(1000);
+        assert_eq!(colors[0], ColorMap::Viridis.sample(0.0));
+        assert_eq!(colors[999], ColorMap::Viridis.sample(1.0));
+        colors.dedup();
+        assert_eq!(colors.len(), 5);
+    }
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        let scale = ColorScale::symmetric(1.7, 0.0);
+        assert_eq!(scale.ticks(6), [-1.0, 0.0, 1.0]);
+        assert_eq!(
+            ColorScale::new(ColorMap::Viridis, 0.0, 100.0).ticks(6),
+            [0.0, 20.0, 40.0, 60.0, 80.0, 100.0]
+        );
+        assert!(
+            ColorScale::new(ColorMap::Viridis, 3.0, 3.0)
+                .ticks(6)
+                .is_empty()
+        );
+        assert!(
+            ColorScale::new(ColorMap::Viridis, 0.0, f64::INFINITY)
+                .ticks(6)
+                .is_empty()
+        );
+        for max_ticks in 2..12 {
+            assert!(ColorScale::symmetric(0.37, 0.0).ticks(max_ticks).len() <= max_ticks);
+        }
+    }
+
+    #[test]
+    fn an_empty_range_still_has_a_colour() {
+        let scale = ColorScale::new(ColorMap::Viridis, 1.0, 1.0);
+        assert_eq!(scale.color(1.0), ColorMap::Viridis.sample(0.5));
+        assert_eq!(scale.position(f64::NAN), 0.5);
+    }
+}
