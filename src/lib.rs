@@ -15,6 +15,7 @@
 //! - [`samples`]: generated pairs of sheet parts with a known pose.
 //! - [`report`]: the matrix in all its forms, LS-DYNA cards, the record of a run.
 //! - [`pipeline`]: load, reduce, match, export, as one call each.
+//! - `render` (feature `gui`): scenes into pictures with wgpu.
 //!
 //! `ARCHITECTURE.md` says who may use whom.
 
@@ -25,6 +26,8 @@ pub mod geometry;
 pub mod monitor;
 pub mod pipeline;
 pub mod registration;
+#[cfg(feature = "gui")]
+pub mod render;
 pub mod report;
 pub mod samples;
 pub mod search;

@@ -225,8 +225,9 @@ impl Camera {
     /// frame so that the depth buffer's digits go where the parts are.
     pub fn depth_range(&self, bounds: &Aabb) -> (f64, f64) {
         let (low, high) = self.view_depths(bounds);
-        // Air for lines pulled towards the viewer; the height keeps flat scenes from a range of zero.
-        let air = 0.01 * (high - low) + 0.01 * self.height;
+        // Air for lines pulled a few pixels towards the viewer, in thumbnails too; it also keeps flat
+        // scenes from a range of zero.
+        let air = 0.01 * (high - low) + 0.1 * self.height;
         let (far, near) = (low - air, high + air);
         match self.eye_distance() {
             None => (far, near),

@@ -1,0 +1,174 @@
+use super::mesh_build::{self, EdgeClasses};
+use crate::geometry::{Aabb, Point3, Topology, TriMesh};
+
+/// What a [`RenderMesh`] is made of.
+#[derive(Debug, Clone, Copy)]
+pub struct MeshInput<'a> {
+    /// The triangles. A mesh without triangles is drawn as points.
+    pub mesh: &'a TriMesh,
+    /// Part index of each triangle; `None` for one part. Missing entries count as part 0.
+    pub part_of_triangle: Option<&'a [u32]>,
+    /// Element index of each triangle: edges inside one element are not drawn, so that a quadrilateral
+    /// split in two looks like one. `None` if every triangle is an element.
+    pub element_of_triangle: Option<&'a [u32]>,
+}
+
+impl<'a> MeshInput<'a> {
+    /// One part whose elements are the triangles.
+    pub fn plain(mesh: &'a TriMesh) -> Self {
+        Self {
+            mesh,
+            part_of_triangle: None,
+            element_of_triangle: None,
+        }
+    }
+}
+
+/// A mesh prepared for drawing: corners with creased normals, edge lines, borders, nodes.
+///
+/// Plain CPU work without a device, meant to run in a job. Corners are not shared between triangles:
+/// each carries its own normal and part, and a triangle's index follows from its corner's, which
+/// keeps flat shading, per-part looks and picking free of features that OpenGL lacks. Coordinates are
+/// `f32` about the centre of the box, so they keep their digits far from the origin.
+#[derive(Debug)]
+pub struct RenderMesh {
+    /// The point that `f32` coordinates are relative to.
+    pub(super) origin: Point3,
+    pub(super) corners: Vec<Corner>,
+    /// Vertex of each corner in the mesh this was made of.
+    pub(super) corner_vertices: Vec<u32>,
+    /// Pairs of corners.
+    pub(super) edge_corners: Vec<[u32; 2]>,
+    pub(super) wide_edges: Vec<WideEdge>,
+    pub(super) nodes: Vec<Node>,
+    /// Mean length of the drawn element edges; 0 without edges.
+    pub(super) mean_edge_length: f64,
+    bounds: Aabb,
+}
+
+/// One corner of a triangle as the graphics card reads it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct Corner {
+    pub(super) position: [f32; 3],
+    /// Octahedral unit vector.
+    pub(super) normal: [i16; 2],
+    pub(super) part: u32,
+}
+
+/// A border or crease edge as the graphics card reads it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct WideEdge {
+    pub(super) from: [f32; 3],
+    pub(super) to: [f32; 3],
+    pub(super) part: u32,
+}
+
+/// A mesh vertex as the graphics card reads it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct Node {
+    pub(super) position: [f32; 3],
+    pub(super) part: u32,
+}
+
+/// Highest bit of [`WideEdge::part`]: set for borders, clear for creases.
+pub(super) const BORDER_BIT: u32 = 1 << 31;
+
+impl RenderMesh {
+    /// Prepares a mesh. O(triangles · log triangles).
+    pub fn new(input: MeshInput<'_>) -> Self {
+        let mesh = input.mesh;
+        let bounds = mesh.aabb();
+        let origin = bounds.center();
+        let near = |p: &Point3| -> [f32; 3] { (p - origin).map(|x| x as f32).into() };
+        let part = |t: usize| {
+            let part = input.part_of_triangle.and_then(|parts| parts.get(t));
+            part.copied().unwrap_or(0) & !BORDER_BIT
+        };
+        let normals = mesh_build::creased_normals(mesh);
+        let corner_vertices: Vec<u32> = mesh.triangles().iter().flatten().copied().collect();
+        let corners = corner_vertices
+            .iter()
+            .enumerate()
+            .map(|(corner, &vertex)| Corner {
+                position: near(&mesh.positions()[vertex as usize]),
+                normal: mesh_build::octahedral(&normals[corner]),
+                part: part(corner / 3),
+            })
+            .collect();
+        let topology = Topology::of(mesh);
+        let classes = EdgeClasses::of(mesh, &topology, input.element_of_triangle);
+        let mut wide_edges = Vec::new();
+        for (edges, bit) in [(&classes.features, 0), (&classes.borders, BORDER_BIT)] {
+            wide_edges.extend(edges.iter().map(|&edge| {
+                let [from, to] = topology.edges[edge].map(|v| near(&mesh.positions()[v as usize]));
+                let part = part(topology.triangles_of(edge)[0] as usize) | bit;
+                WideEdge { from, to, part }
+            }));
+        }
+        Self {
+            origin,
+            corners,
+            edge_corners: mesh_build::corner_pairs(mesh, &topology, &classes.elements),
+            wide_edges,
+            nodes: nodes_of(mesh, near, part),
+            mean_edge_length: mesh_build::mean_length(mesh, &topology, &classes.elements),
+            corner_vertices,
+            bounds,
+        }
+    }
+
+    /// Box around the mesh in its own coordinates.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Number of triangles.
+    pub fn n_triangles(&self) -> usize {
+        self.corners.len() / 3
+    }
+
+    /// Number of element edges that are drawn.
+    pub fn n_element_edges(&self) -> usize {
+        self.edge_corners.len()
+    }
+
+    /// Number of border edges.
+    pub fn n_border_edges(&self) -> usize {
+        let is_border = |edge: &&WideEdge| edge.part & BORDER_BIT != 0;
+        self.wide_edges.iter().filter(is_border).count()
+    }
+
+    /// Number of crease edges.
+    pub fn n_feature_edges(&self) -> usize {
+        self.wide_edges.len() - self.n_border_edges()
+    }
+}
+
+/// Vertices that triangles use, each with the part of its first triangle; all vertices of a mesh
+/// without triangles.
+fn nodes_of(
+    mesh: &TriMesh,
+    near: impl Fn(&Point3) -> [f32; 3],
+    part: impl Fn(usize) -> u32,
+) -> Vec<Node> {
+    const UNUSED: u32 = u32::MAX;
+    let mut parts = vec![if mesh.is_empty() { 0 } else { UNUSED }; mesh.n_vertices()];
+    for (t, corners) in mesh.triangles().iter().enumerate() {
+        for &vertex in corners {
+            let known = &mut parts[vertex as usize];
+            if *known == UNUSED {
+                *known = part(t);
+            }
+        }
+    }
+    let used = mesh.positions().iter().zip(parts);
+    used.filter(|&(_, part)| part != UNUSED)
+        .map(|(p, part)| Node {
+            position: near(p),
+            part,
+        })
+        .collect()
+}

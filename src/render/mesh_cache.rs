@@ -1,0 +1,146 @@
+//! Meshes on the graphics card, uploaded once and kept as long as someone holds the CPU side.
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::sync::{Arc, Weak};
+
+use wgpu::util::DeviceExt as _;
+
+use super::RenderMesh;
+use super::scene::FieldLook;
+
+/// Buffers of one mesh; `None` where there is nothing to draw.
+#[derive(Debug)]
+pub(super) struct GpuMesh {
+    /// Three [`Corner`](super::mesh::Corner)s per triangle.
+    pub(super) corners: Option<Counted>,
+    /// Index pairs into the corners.
+    pub(super) edges: Option<Counted>,
+    /// One [`WideEdge`](super::mesh::WideEdge) per instance.
+    pub(super) wide_edges: Option<Counted>,
+    /// How many of them, at the start, are creases; the rest are borders.
+    pub(super) n_features: u32,
+    /// One [`Node`](super::mesh::Node) per instance.
+    pub(super) nodes: Option<Counted>,
+}
+
+/// A buffer and the number of its elements.
+#[derive(Debug)]
+pub(super) struct Counted {
+    pub(super) buffer: wgpu::Buffer,
+    pub(super) count: u32,
+}
+
+impl Counted {
+    fn new<T: bytemuck::NoUninit>(
+        device: &wgpu::Device,
+        data: &[T],
+        usage: wgpu::BufferUsages,
+    ) -> Option<Self> {
+        if data.is_empty() {
+            return None;
+        }
+        let buffer = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("mesh"),
+            contents: bytemuck::cast_slice(data),
+            usage,
+        });
+        Some(Self {
+            buffer,
+            count: data.len() as u32,
+        })
+    }
+}
+
+impl GpuMesh {
+    fn upload(device: &wgpu::Device, mesh: &RenderMesh) -> Self {
+        let vertex = wgpu::BufferUsages::VERTEX;
+        let mut edges = Counted::new(device, &mesh.edge_corners, wgpu::BufferUsages::INDEX);
+        if let Some(edges) = &mut edges {
+            edges.count *= 2;
+        }
+        Self {
+            corners: Counted::new(device, &mesh.corners, vertex),
+            edges,
+            wide_edges: Counted::new(device, &mesh.wide_edges, vertex),
+            n_features: mesh.n_feature_edges() as u32,
+            nodes: Counted::new(device, &mesh.nodes, vertex),
+        }
+    }
+}
+
+/// Values at every corner of a mesh. Larger than `NO_VALUE` of `surface.wgsl` where there is none,
+/// because shaders may assume that NaN does not happen.
+fn field_at_corners(mesh: &RenderMesh, values: &[f32]) -> Vec<f32> {
+    let value = |&vertex: &u32| {
+        let value = values.get(vertex as usize).copied().unwrap_or(f32::NAN);
+        if value.is_finite() { value } else { f32::MAX }
+    };
+    mesh.corner_vertices.iter().map(value).collect()
+}
+
+/// An upload together with what keeps its key unique: as long as the weak reference lives, no other
+/// allocation can have the same address.
+#[derive(Debug)]
+struct Kept<K: ?Sized, V> {
+    key: Weak<K>,
+    value: Arc<V>,
+}
+
+/// All uploads of one device.
+#[derive(Debug, Default)]
+pub(super) struct MeshCache {
+    meshes: HashMap<usize, Kept<RenderMesh, GpuMesh>>,
+    /// By address of mesh and values.
+    fields: HashMap<(usize, usize), Kept<[f32], wgpu::Buffer>>,
+}
+
+fn address<T: ?Sized>(shared: &Arc<T>) -> usize {
+    Arc::as_ptr(shared).cast::<()>() as usize
+}
+
+impl MeshCache {
+    /// The mesh's buffers, uploaded now if they are not there yet.
+    pub(super) fn mesh(&mut self, device: &wgpu::Device, mesh: &Arc<RenderMesh>) -> Arc<GpuMesh> {
+        let kept = self.meshes.entry(address(mesh)).or_insert_with(|| Kept {
+            key: Arc::downgrade(mesh),
+            value: Arc::new(GpuMesh::upload(device, mesh)),
+        });
+        Arc::clone(&kept.value)
+    }
+
+    /// The field's values by corner; `None` without triangles.
+    pub(super) fn field(
+        &mut self,
+        device: &wgpu::Device,
+        mesh: &Arc<RenderMesh>,
+        field: &FieldLook,
+    ) -> Option<Arc<wgpu::Buffer>> {
+        let key = (address(mesh), address(&field.values));
+        match self.fields.entry(key) {
+            Entry::Occupied(kept) => Some(Arc::clone(&kept.get().value)),
+            Entry::Vacant(free) => {
+                let values = field_at_corners(mesh, &field.values);
+                let counted = Counted::new(device, &values, wgpu::BufferUsages::VERTEX)?;
+                let kept = free.insert(Kept {
+                    key: Arc::downgrade(&field.values),
+                    value: Arc::new(counted.buffer),
+                });
+                Some(Arc::clone(&kept.value))
+            }
+        }
+    }
+
+    /// Frees what nobody holds any more.
+    pub(super) fn sweep(&mut self) {
+        self.meshes.retain(|_, kept| kept.key.strong_count() > 0);
+        let meshes = &self.meshes;
+        self.fields
+            .retain(|key, kept| kept.key.strong_count() > 0 && meshes.contains_key(&key.0));
+    }
+
+    /// Number of meshes on the graphics card.
+    pub(super) fn n_meshes(&self) -> usize {
+        self.meshes.len()
+    }
+}

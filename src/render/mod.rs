@@ -1,0 +1,31 @@
+//! Pictures of meshes: a [`Scene`] and a camera in, a texture or an image out. Knows geometry and
+//! colours, and neither the window nor the program's state.
+//!
+//! A mesh is prepared once on the CPU ([`RenderMesh`], in a job), uploaded once ([`Renderer`] keeps
+//! it as long as someone holds it), and drawn into the multisampled textures of one viewport
+//! ([`ViewTarget`]), again only if something changed. Depth is a 32-bit float, 1 near and 0 far.
+//! Colours are blended in sRGB, which is what the target holds. Nothing beyond the default limits
+//! and features of wgpu is used, so that software drivers and OpenGL draw the same picture.
+
+mod context;
+mod mesh;
+mod mesh_build;
+mod mesh_cache;
+mod pass;
+mod pick;
+mod prepare;
+mod readback;
+mod renderer;
+mod scene;
+mod target;
+mod uniforms;
+
+pub use mesh::{MeshInput, RenderMesh};
+pub use pick::{PickHit, PickRequest};
+pub use readback::ReadbackError;
+pub use renderer::{Frame, Renderer};
+pub use scene::{
+    Background, DepthMode, Drawable, FieldLook, Fill, LineLook, Marker, MarkerShape, Overlay,
+    PartLook, Polyline, Rgba, Scene, Section, Shading, Style, WipeSide,
+};
+pub use target::ViewTarget;

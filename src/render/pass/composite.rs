@@ -1,0 +1,86 @@
+use crate::render::context::{Depth, OVER, PipelineSpec, texture_entry};
+
+/// Lays a finished picture on the window.
+#[derive(Debug)]
+pub(in crate::render) struct Composite {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    sampler: wgpu::Sampler,
+}
+
+impl Composite {
+    pub(in crate::render) fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("composite"),
+            source: wgpu::ShaderSource::Wgsl(include_str!("../shaders/composite.wgsl").into()),
+        });
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("composite"),
+            entries: &[
+                texture_entry(
+                    0,
+                    wgpu::ShaderStages::FRAGMENT,
+                    wgpu::TextureSampleType::Float { filterable: true },
+                ),
+                wgpu::BindGroupLayoutEntry {
+                    binding: 1,
+                    visibility: wgpu::ShaderStages::FRAGMENT,
+                    ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                    count: None,
+                },
+            ],
+        });
+        let fragment = if format.is_srgb() {
+            "fs_linear"
+        } else {
+            "fs_gamma"
+        };
+        let pipeline = PipelineSpec {
+            layouts: &[&layout],
+            fragment,
+            depth: Depth::Absent,
+            blend: OVER,
+            format,
+            samples: 1,
+            ..PipelineSpec::new("composite", &shader)
+        }
+        .build(device);
+        // Nearest: the picture has the window's pixels, and anything else would blur it.
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("composite"),
+            ..Default::default()
+        });
+        Self {
+            pipeline,
+            layout,
+            sampler,
+        }
+    }
+
+    pub(in crate::render) fn bind(
+        &self,
+        device: &wgpu::Device,
+        picture: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("composite"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::TextureView(picture),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::Sampler(&self.sampler),
+                },
+            ],
+        })
+    }
+
+    pub(in crate::render) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, group: &wgpu::BindGroup) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

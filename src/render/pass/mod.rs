@@ -1,0 +1,61 @@
+//! The passes in the order in which [`ViewTarget`](super::ViewTarget) draws them, one file and one
+//! shader each.
+
+pub(super) mod background;
+pub(super) mod composite;
+pub(super) mod edges;
+pub(super) mod outline;
+pub(super) mod overlay;
+pub(super) mod points;
+pub(super) mod surface;
+
+use super::context::Layouts;
+use super::prepare::{Prepared, PreparedDrawable};
+
+/// The pipelines of all passes.
+#[derive(Debug)]
+pub(super) struct Passes {
+    pub(super) background: background::Background,
+    pub(super) surface: surface::Surface,
+    pub(super) edges: edges::Edges,
+    pub(super) points: points::Points,
+    pub(super) overlay: overlay::OverlayPass,
+    pub(super) outline: outline::Outline,
+}
+
+impl Passes {
+    pub(super) fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
+        Self {
+            background: background::Background::new(device, layouts),
+            surface: surface::Surface::new(device, layouts),
+            edges: edges::Edges::new(device, layouts),
+            points: points::Points::new(device, layouts),
+            overlay: overlay::OverlayPass::new(device, layouts),
+            outline: outline::Outline::new(device, layouts),
+        }
+    }
+
+    /// Everything that goes into the multisampled picture.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, prepared: &Prepared) {
+        pass.set_bind_group(0, &prepared.frame, &[]);
+        if prepared.opaque_background {
+            self.background.draw(pass);
+        }
+        for drawable in &prepared.solid {
+            self.surface.draw_solid(pass, drawable);
+        }
+        for drawable in &prepared.solid {
+            self.draw_lines(pass, drawable);
+        }
+        for drawable in &prepared.clear {
+            self.surface.draw_clear(pass, drawable);
+            self.draw_lines(pass, drawable);
+        }
+        self.overlay.draw(pass, &prepared.overlay);
+    }
+
+    fn draw_lines(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &PreparedDrawable) {
+        self.edges.draw(pass, drawable);
+        self.points.draw(pass, drawable);
+    }
+}

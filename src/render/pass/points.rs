@@ -1,0 +1,41 @@
+use crate::render::context::{Depth, Layouts, OVER, PipelineSpec, shader};
+use crate::render::mesh::Node;
+use crate::render::prepare::PreparedDrawable;
+
+/// Nodes as dots.
+#[derive(Debug)]
+pub(in crate::render) struct Points {
+    pipeline: wgpu::RenderPipeline,
+}
+
+const NODE_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: size_of::<Node>() as u64,
+    step_mode: wgpu::VertexStepMode::Instance,
+    attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32],
+};
+
+impl Points {
+    pub(super) fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
+        let shader = shader(device, "points", include_str!("../shaders/points.wgsl"));
+        let pipeline = PipelineSpec {
+            layouts: &[&layouts.frame, &layouts.drawable],
+            buffers: &[Some(NODE_LAYOUT)],
+            depth: Depth::Write,
+            blend: OVER,
+            ..PipelineSpec::new("points", &shader)
+        }
+        .build(device);
+        Self { pipeline }
+    }
+
+    /// Draws the nodes if they are wanted, or if there is nothing else to see of the mesh.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &PreparedDrawable) {
+        let wanted = drawable.style.points || drawable.mesh.corners.is_none();
+        if let (true, Some(nodes)) = (wanted, &drawable.mesh.nodes) {
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(1, &drawable.group, &[]);
+            pass.set_vertex_buffer(0, nodes.buffer.slice(..));
+            pass.draw(0..6, 0..nodes.count);
+        }
+    }
+}

@@ -1,0 +1,115 @@
+use crate::render::context::{
+    Depth, Layouts, MASK_FORMAT, OVER, PICK_FORMAT, PipelineSpec, SAMPLES, shader,
+};
+use crate::render::mesh::Corner;
+use crate::render::prepare::PreparedDrawable;
+
+/// Triangles: lit and solid, as glass, as the mask of the selection, as indices for picking.
+#[derive(Debug)]
+pub(in crate::render) struct Surface {
+    solid: wgpu::RenderPipeline,
+    clear_backs: wgpu::RenderPipeline,
+    clear_fronts: wgpu::RenderPipeline,
+    selected: wgpu::RenderPipeline,
+    pick: wgpu::RenderPipeline,
+}
+
+/// Attributes of [`Corner`].
+pub(super) const CORNER_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: size_of::<Corner>() as u64,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Snorm16x2, 2 => Uint32],
+};
+
+const FIELD_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: 4,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![3 => Float32],
+};
+
+impl Surface {
+    pub(super) fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
+        let shader = shader(device, "surface", include_str!("../shaders/surface.wgsl"));
+        let layouts = [&layouts.frame, &layouts.drawable];
+        let buffers = [Some(CORNER_LAYOUT), Some(FIELD_LAYOUT)];
+        let spec = |label, fragment| PipelineSpec {
+            layouts: &layouts,
+            fragment,
+            buffers: &buffers,
+            biased: true,
+            ..PipelineSpec::new(label, &shader)
+        };
+        let clear = |cull| PipelineSpec {
+            cull: Some(cull),
+            depth: Depth::Test,
+            blend: OVER,
+            ..spec("clear surface", "fs_clear")
+        };
+        Self {
+            solid: spec("solid surface", "fs_opaque").build(device),
+            clear_backs: clear(wgpu::Face::Front).build(device),
+            clear_fronts: clear(wgpu::Face::Back).build(device),
+            selected: PipelineSpec {
+                depth: Depth::Absent,
+                biased: false,
+                format: MASK_FORMAT,
+                samples: SAMPLES,
+                ..spec("selection mask", "fs_selected")
+            }
+            .build(device),
+            pick: PipelineSpec {
+                biased: false,
+                format: PICK_FORMAT,
+                samples: 1,
+                ..spec("pick", "fs_pick")
+            }
+            .build(device),
+        }
+    }
+
+    pub(super) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &PreparedDrawable) {
+        draw_with(&self.solid, pass, drawable);
+    }
+
+    /// Back sides first, so that a part seen through itself looks right without sorting triangles.
+    pub(super) fn draw_clear(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &PreparedDrawable) {
+        draw_with(&self.clear_backs, pass, drawable);
+        draw_with(&self.clear_fronts, pass, drawable);
+    }
+
+    pub(in crate::render) fn draw_selected(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        drawable: &PreparedDrawable,
+    ) {
+        draw_with(&self.selected, pass, drawable);
+    }
+
+    pub(in crate::render) fn draw_pick(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        drawable: &PreparedDrawable,
+    ) {
+        draw_with(&self.pick, pass, drawable);
+    }
+}
+
+fn draw_with(
+    pipeline: &wgpu::RenderPipeline,
+    pass: &mut wgpu::RenderPass<'_>,
+    drawable: &PreparedDrawable,
+) {
+    let Some(corners) = &drawable.mesh.corners else {
+        return;
+    };
+    if !drawable.style.surface {
+        return;
+    }
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(1, &drawable.group, &[]);
+    pass.set_vertex_buffer(0, corners.buffer.slice(..));
+    // Without a field the shader reads no values, but the slot wants a buffer that is long enough.
+    let field = drawable.field.as_deref().unwrap_or(&corners.buffer);
+    pass.set_vertex_buffer(1, field.slice(..));
+    pass.draw(0..corners.count, 0..1);
+}

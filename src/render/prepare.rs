@@ -1,0 +1,206 @@
+//! A scene as bind groups and buffers, ready for the passes.
+
+use std::sync::Arc;
+
+use wgpu::util::DeviceExt as _;
+
+use super::context::Layouts;
+use super::mesh_cache::{GpuMesh, MeshCache};
+use super::pass::overlay::PreparedOverlay;
+use super::renderer::Frame;
+use super::scene::{Drawable, PartLook, Style};
+use super::uniforms::{DrawableUniform, FrameUniform, Region};
+
+/// Parts per row of the table; the smallest largest texture of all backends is 2048 wide and high.
+const PARTS_PER_ROW: usize = 256;
+/// Colours of a field's table; mirrors `FIELD_STEPS` of `surface.wgsl`.
+const FIELD_STEPS: usize = 1024;
+
+/// One frame on the graphics card.
+#[derive(Debug)]
+pub(super) struct Prepared {
+    pub(super) frame: wgpu::BindGroup,
+    /// Solid drawables, then transparent ones from far to near.
+    pub(super) solid: Vec<PreparedDrawable>,
+    pub(super) clear: Vec<PreparedDrawable>,
+    pub(super) overlay: PreparedOverlay,
+    pub(super) has_selection: bool,
+    pub(super) opaque_background: bool,
+}
+
+/// One drawable on the graphics card.
+#[derive(Debug)]
+pub(super) struct PreparedDrawable {
+    pub(super) mesh: Arc<GpuMesh>,
+    pub(super) field: Option<Arc<wgpu::Buffer>>,
+    pub(super) group: wgpu::BindGroup,
+    pub(super) style: Style,
+}
+
+/// The device and the layouts, which every preparation needs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gpu<'a> {
+    pub(super) device: &'a wgpu::Device,
+    pub(super) queue: &'a wgpu::Queue,
+    pub(super) layouts: &'a Layouts,
+}
+
+impl Prepared {
+    /// Uploads what is new and makes the bind groups for drawing `region` of the frame.
+    pub(super) fn new(
+        gpu: Gpu<'_>,
+        cache: &mut MeshCache,
+        frame: &Frame<'_>,
+        region: Region,
+    ) -> Self {
+        let uniform = FrameUniform::new(frame, region);
+        let buffer = uniform_buffer(gpu.device, bytemuck::bytes_of(&uniform));
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("frame"),
+            layout: &gpu.layouts.frame,
+            entries: &[wgpu::BindGroupEntry {
+                binding: 0,
+                resource: buffer.as_entire_binding(),
+            }],
+        });
+        let mut solid = Vec::new();
+        let mut clear = Vec::new();
+        for (index, drawable) in frame.scene.drawables.iter().enumerate() {
+            if drawable.opacity <= 0.0 {
+                continue;
+            }
+            let prepared = prepare_drawable(gpu, cache, frame, index);
+            if drawable.opacity >= 1.0 {
+                solid.push(prepared);
+            } else {
+                let depth = frame.camera.view_point(&drawable.bounds().center()).z;
+                clear.push((depth, prepared));
+            }
+        }
+        clear.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self {
+            frame: group,
+            solid,
+            clear: clear.into_iter().map(|(_, prepared)| prepared).collect(),
+            overlay: PreparedOverlay::new(gpu.device, frame),
+            has_selection: frame.scene.drawables.iter().any(Drawable::has_selection),
+            opaque_background: frame.scene.background != super::Background::Transparent,
+        }
+    }
+
+    /// Solid and transparent drawables.
+    pub(super) fn all(&self) -> impl Iterator<Item = &PreparedDrawable> {
+        self.solid.iter().chain(&self.clear)
+    }
+}
+
+fn prepare_drawable(
+    gpu: Gpu<'_>,
+    cache: &mut MeshCache,
+    frame: &Frame<'_>,
+    index: usize,
+) -> PreparedDrawable {
+    let drawable = &frame.scene.drawables[index];
+    let height = f64::from(frame.size[1].max(1));
+    let uniform = DrawableUniform::new(drawable, index, frame.camera, height);
+    let buffer = uniform_buffer(gpu.device, bytemuck::bytes_of(&uniform));
+    let parts = parts_table(gpu, drawable.parts.as_deref().unwrap_or(&[]));
+    let colors = field_table(gpu, drawable);
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("drawable"),
+        layout: &gpu.layouts.drawable,
+        entries: &[
+            wgpu::BindGroupEntry {
+                binding: 0,
+                resource: buffer.as_entire_binding(),
+            },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: wgpu::BindingResource::TextureView(&parts),
+            },
+            wgpu::BindGroupEntry {
+                binding: 2,
+                resource: wgpu::BindingResource::TextureView(&colors),
+            },
+        ],
+    });
+    let field = drawable.field.as_ref();
+    PreparedDrawable {
+        mesh: cache.mesh(gpu.device, &drawable.mesh),
+        field: field.and_then(|field| cache.field(gpu.device, &drawable.mesh, field)),
+        group,
+        style: drawable.style,
+    }
+}
+
+fn uniform_buffer(device: &wgpu::Device, contents: &[u8]) -> wgpu::Buffer {
+    device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("uniform"),
+        contents,
+        usage: wgpu::BufferUsages::UNIFORM,
+    })
+}
+
+/// Colours and states of the parts as a texture, because OpenGL has no storage buffers.
+fn parts_table(gpu: Gpu<'_>, parts: &[PartLook]) -> wgpu::TextureView {
+    let n_rows = parts.len().div_ceil(PARTS_PER_ROW).max(1);
+    let mut texels: Vec<[u8; 4]> = parts.iter().map(part_texel).collect();
+    texels.resize(n_rows * PARTS_PER_ROW, [0; 4]);
+    let size = [PARTS_PER_ROW as u32, n_rows as u32];
+    table_texture(gpu, size, wgpu::TextureFormat::Rgba8Uint, &texels)
+}
+
+fn part_texel(part: &PartLook) -> [u8; 4] {
+    let [r, g, b] = part.color.unwrap_or_default();
+    let bits = [
+        part.visible,
+        part.selected,
+        part.hovered,
+        part.color.is_some(),
+    ];
+    let bits = bits
+        .iter()
+        .enumerate()
+        .map(|(bit, &on)| u8::from(on) << bit);
+    [r, g, b, bits.sum()]
+}
+
+/// The field's colours from end to end; one texel without a field.
+fn field_table(gpu: Gpu<'_>, drawable: &Drawable) -> wgpu::TextureView {
+    let colors = match &drawable.field {
+        Some(field) => field.scale.table(FIELD_STEPS),
+        None => vec![[0; 3]],
+    };
+    let texels: Vec<[u8; 4]> = colors.iter().map(|&[r, g, b]| [r, g, b, 255]).collect();
+    let size = [texels.len() as u32, 1];
+    table_texture(gpu, size, wgpu::TextureFormat::Rgba8Unorm, &texels)
+}
+
+fn table_texture(
+    gpu: Gpu<'_>,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+    texels: &[[u8; 4]],
+) -> wgpu::TextureView {
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some("table"),
+        size: wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    };
+    let texture = gpu.device.create_texture_with_data(
+        gpu.queue,
+        &descriptor,
+        wgpu::util::TextureDataOrder::LayerMajor,
+        bytemuck::cast_slice(texels),
+    );
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}

@@ -1,0 +1,113 @@
+use super::context::Context;
+use super::mesh_cache::MeshCache;
+use super::pick::PickRequest;
+use super::prepare::Gpu;
+use super::readback::{Download, ReadbackError, unpremultiply};
+use super::{Scene, ViewTarget};
+use crate::geometry::Camera;
+
+/// One picture: what, from where, how large.
+#[derive(Debug, Clone, Copy)]
+pub struct Frame<'a> {
+    /// What there is to see.
+    pub scene: &'a Scene,
+    /// From where.
+    pub camera: &'a Camera,
+    /// Width and height in pixels; zero counts as one, sizes beyond the device's limit are cut.
+    pub size: [u32; 2],
+}
+
+/// Draws scenes on one device. Keeps the pipelines and the uploaded meshes; any number of
+/// [`ViewTarget`]s share them.
+#[derive(Debug)]
+pub struct Renderer {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    context: Context,
+    cache: MeshCache,
+}
+
+impl Renderer {
+    /// Compiles the shaders. `window_format` is the format of the target that [`Renderer::paint`]
+    /// paints to; pictures themselves do not depend on it.
+    pub fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        window_format: wgpu::TextureFormat,
+    ) -> Self {
+        Self {
+            context: Context::new(device, window_format),
+            device: device.clone(),
+            queue: queue.clone(),
+            cache: MeshCache::default(),
+        }
+    }
+
+    /// Records the drawing of a frame into the viewport's textures, if anything changed since the
+    /// last time; returns whether it did. Meshes seen for the first time are uploaded here, and those
+    /// that nobody holds any more are freed.
+    pub fn draw(
+        &mut self,
+        target: &mut ViewTarget,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &Frame<'_>,
+    ) -> bool {
+        let gpu = Gpu {
+            device: &self.device,
+            queue: &self.queue,
+            layouts: &self.context.layouts,
+        };
+        let drawn = target.draw(gpu, &self.context, &mut self.cache, encoder, frame);
+        if drawn {
+            self.cache.sweep();
+        }
+        drawn
+    }
+
+    /// Lays the viewport's picture over the whole of the pass's viewport; nothing before the first
+    /// [`Renderer::draw`]. The pass must have the window format, one sample and no depth.
+    pub fn paint(&self, target: &ViewTarget, pass: &mut wgpu::RenderPass<'_>) {
+        if let Some(group) = target.composite() {
+            self.context.composite.draw(pass, group);
+        }
+    }
+
+    /// Draws a frame and waits for it: for pictures in files. Opacity is not premultiplied.
+    pub fn picture(&mut self, frame: &Frame<'_>) -> Result<image::RgbaImage, ReadbackError> {
+        let mut target = ViewTarget::new();
+        let mut encoder = self
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+                label: Some("picture"),
+            });
+        self.draw(&mut target, &mut encoder, frame);
+        let picture = target.picture().ok_or(ReadbackError::Device)?;
+        let mut download = Download::record(&self.device, &mut encoder, picture);
+        self.queue.submit([encoder.finish()]);
+        download.start();
+        let mut rgba = download.wait(&self.device)?;
+        unpremultiply(&mut rgba);
+        image::RgbaImage::from_raw(picture.width(), picture.height(), rgba)
+            .ok_or(ReadbackError::Device)
+    }
+
+    /// Asks what lies under a pixel (from the top left corner) of a frame; see [`PickRequest`].
+    pub fn pick(&mut self, frame: &Frame<'_>, pixel: [f64; 2]) -> PickRequest {
+        let gpu = Gpu {
+            device: &self.device,
+            queue: &self.queue,
+            layouts: &self.context.layouts,
+        };
+        PickRequest::record(gpu, &self.context, &mut self.cache, frame, pixel)
+    }
+
+    /// The device that everything lives on.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.device
+    }
+
+    /// Number of meshes on the graphics card.
+    pub fn n_meshes(&self) -> usize {
+        self.cache.n_meshes()
+    }
+}

@@ -1,0 +1,463 @@
+//! Plain data for one frame. Two equal scenes give the same picture, which is how a viewport knows
+//! that it need not draw again; meshes and fields are compared by identity.
+
+use std::sync::Arc;
+
+use super::RenderMesh;
+use crate::colormap::{ColorScale, Rgb};
+use crate::geometry::{Aabb, Point3, Similarity, Vector3};
+
+/// An sRGB colour with opacity (not premultiplied), a byte per channel.
+pub type Rgba = [u8; 4];
+
+/// Everything in one picture except the camera.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Scene {
+    /// Meshes, in any order.
+    pub drawables: Vec<Drawable>,
+    /// Lines, markers and fills on top of them.
+    pub overlay: Overlay,
+    /// What is behind everything.
+    pub background: Background,
+    /// Colours and widths of mesh lines.
+    pub lines: LineLook,
+    /// Cuts away one side of a plane.
+    pub section: Option<Section>,
+    /// Place of the wipe line as a share of the picture's width; see [`Drawable::wipe`].
+    pub wipe: Option<f32>,
+    /// Pixels per point of the screen; widths and sizes are in points. Zero counts as one.
+    pub pixels_per_point: f32,
+}
+
+impl Scene {
+    /// World box around all drawables and the overlay's points.
+    pub fn bounds(&self) -> Aabb {
+        let mut bounds = Aabb::empty();
+        for drawable in &self.drawables {
+            bounds = bounds.union(&drawable.bounds());
+        }
+        for point in self.overlay.points() {
+            bounds.insert(point);
+        }
+        bounds
+    }
+
+    /// Pixels per point, at least a little more than nothing.
+    pub(super) fn scale_factor(&self) -> f32 {
+        if self.pixels_per_point > 0.0 {
+            self.pixels_per_point
+        } else {
+            1.0
+        }
+    }
+}
+
+/// The area behind the parts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Background {
+    /// A vertical gradient.
+    Gradient {
+        /// Colour of the upper edge.
+        top: Rgb,
+        /// Colour of the lower edge.
+        bottom: Rgb,
+    },
+    /// Nothing, for pictures that go on paper.
+    Transparent,
+}
+
+impl Background {
+    /// The dark theme's gradient about #1E2126.
+    pub const DARK: Self = Self::Gradient {
+        top: [0x2B, 0x30, 0x37],
+        bottom: [0x17, 0x1A, 0x1E],
+    };
+    /// The light theme's gradient about #ECEEF1.
+    pub const LIGHT: Self = Self::Gradient {
+        top: [0xF7, 0xF8, 0xFA],
+        bottom: [0xDF, 0xE3, 0xE8],
+    };
+}
+
+impl Default for Background {
+    fn default() -> Self {
+        Self::DARK
+    }
+}
+
+/// Lines that belong to meshes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LineLook {
+    /// Edges of elements, one pixel wide; they fade out where they would fill the picture.
+    pub edge: Rgba,
+    /// Creases.
+    pub feature: Rgba,
+    /// Borders and holes.
+    pub border: Rgba,
+    /// Width of creases in points.
+    pub feature_width: f32,
+    /// Width of borders in points.
+    pub border_width: f32,
+    /// Diameter of nodes in points.
+    pub point_size: f32,
+    /// Colour of the outline around selected parts; its rim is the opposite lightness.
+    pub selection: Rgb,
+}
+
+impl LineLook {
+    /// For dark backgrounds.
+    pub const DARK: Self = Self {
+        edge: [10, 14, 20, 120],
+        feature: [10, 14, 20, 190],
+        border: [8, 10, 14, 235],
+        feature_width: 1.2,
+        border_width: 1.7,
+        point_size: 4.0,
+        selection: [255, 255, 255],
+    };
+    /// For light backgrounds.
+    pub const LIGHT: Self = Self {
+        selection: [0, 0, 0],
+        ..Self::DARK
+    };
+}
+
+impl Default for LineLook {
+    fn default() -> Self {
+        Self::DARK
+    }
+}
+
+/// A cutting plane; what lies on the side of the normal is not drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Section {
+    /// A point of the plane.
+    pub point: Point3,
+    /// Direction to the side that is cut away; any length but zero.
+    pub normal: Vector3,
+}
+
+/// On which side of the wipe line something is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum WipeSide {
+    /// On both.
+    #[default]
+    Both,
+    /// Only left of it.
+    Left,
+    /// Only right of it.
+    Right,
+}
+
+/// One mesh in the picture.
+#[derive(Debug, Clone)]
+pub struct Drawable {
+    /// The prepared mesh.
+    pub mesh: Arc<RenderMesh>,
+    /// Its pose.
+    pub world_from_mesh: Similarity,
+    /// A shift for display only, in world units (separation).
+    pub offset: Vector3,
+    /// Colour of parts without one of their own.
+    pub color: Rgb,
+    /// 0 invisible … 1 solid.
+    pub opacity: f32,
+    /// Looks of the parts by part index of the mesh; parts beyond the end look plain. `None`: all plain.
+    pub parts: Option<Arc<[PartLook]>>,
+    /// Values shown as colours instead.
+    pub field: Option<FieldLook>,
+    /// What is drawn of the mesh.
+    pub style: Style,
+    /// Pushes the mesh away from the viewer by so many pixels of world length: of two coincident
+    /// sheets, the one with the smaller value wins everywhere.
+    pub push_back: f32,
+    /// Side of the wipe line.
+    pub wipe: WipeSide,
+    /// True if the section plane cuts it.
+    pub cut_by_section: bool,
+    /// Draws the selection outline around all of it.
+    pub selected: bool,
+    /// Lightens all of it, as under the mouse.
+    pub hovered: bool,
+}
+
+impl Drawable {
+    /// A solid mesh in its own coordinates, plain, with borders and creases.
+    pub fn new(mesh: Arc<RenderMesh>, color: Rgb) -> Self {
+        Self {
+            mesh,
+            world_from_mesh: Similarity::identity(),
+            offset: Vector3::zeros(),
+            color,
+            opacity: 1.0,
+            parts: None,
+            field: None,
+            style: Style::default(),
+            push_back: 0.0,
+            wipe: WipeSide::Both,
+            cut_by_section: true,
+            selected: false,
+            hovered: false,
+        }
+    }
+
+    /// World box of the mesh, hidden parts included.
+    pub fn bounds(&self) -> Aabb {
+        let bounds = self.mesh.bounds();
+        if bounds.is_empty() {
+            return bounds;
+        }
+        let corners = bounds
+            .corners()
+            .map(|corner| self.world_from_mesh.apply(&corner) + self.offset);
+        Aabb::of_points(&corners)
+    }
+
+    /// True if something is selected, so that an outline is needed.
+    pub(super) fn has_selection(&self) -> bool {
+        self.selected || self.parts.iter().flat_map(|p| p.iter()).any(|p| p.selected)
+    }
+}
+
+impl PartialEq for Drawable {
+    fn eq(&self, other: &Self) -> bool {
+        let parts_equal = match (&self.parts, &other.parts) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b) || a == b,
+            (None, None) => true,
+            _ => false,
+        };
+        parts_equal
+            && Arc::ptr_eq(&self.mesh, &other.mesh)
+            && self.world_from_mesh == other.world_from_mesh
+            && self.offset == other.offset
+            && self.color == other.color
+            && self.opacity == other.opacity
+            && self.field == other.field
+            && self.style == other.style
+            && self.push_back == other.push_back
+            && self.wipe == other.wipe
+            && self.cut_by_section == other.cut_by_section
+            && self.selected == other.selected
+            && self.hovered == other.hovered
+    }
+}
+
+/// Look of one part of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PartLook {
+    /// Its colour; `None` for the drawable's.
+    pub color: Option<Rgb>,
+    /// False hides it.
+    pub visible: bool,
+    /// Draws the selection outline around it.
+    pub selected: bool,
+    /// Lightens it, as under the mouse.
+    pub hovered: bool,
+}
+
+impl Default for PartLook {
+    fn default() -> Self {
+        Self {
+            color: None,
+            visible: true,
+            selected: false,
+            hovered: false,
+        }
+    }
+}
+
+/// One number per mesh vertex, shown as colour.
+#[derive(Debug, Clone)]
+pub struct FieldLook {
+    /// Values by vertex of the mesh the [`RenderMesh`] was made of; NaN where there is none, which is
+    /// drawn grey with a hatch. Missing values at the end count as NaN.
+    pub values: Arc<[f32]>,
+    /// Their colours.
+    pub scale: ColorScale,
+}
+
+impl PartialEq for FieldLook {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.values, &other.values) && self.scale == other.scale
+    }
+}
+
+/// How light falls on triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Shading {
+    /// Smooth within 35° between neighbours, creased beyond.
+    #[default]
+    Smooth,
+    /// Every triangle as it is.
+    Flat,
+}
+
+/// What is drawn of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Style {
+    /// The triangles.
+    pub surface: bool,
+    /// Smooth or flat.
+    pub shading: Shading,
+    /// Edges of elements.
+    pub element_edges: bool,
+    /// Creases sharper than 25°.
+    pub feature_edges: bool,
+    /// Borders and holes.
+    pub borders: bool,
+    /// Nodes.
+    pub points: bool,
+    /// A fine hatch on the back of sheets.
+    pub back_hatch: bool,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self {
+            surface: true,
+            shading: Shading::Smooth,
+            element_edges: false,
+            feature_edges: true,
+            borders: true,
+            points: false,
+            back_hatch: true,
+        }
+    }
+}
+
+/// How an overlay meets the parts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DepthMode {
+    /// Hidden where a part is in front.
+    Tested,
+    /// Always visible.
+    OnTop,
+    /// Fully visible in front, faint behind.
+    #[default]
+    Faint,
+}
+
+/// Things that are not meshes. Positions are world coordinates, widths and sizes points on the screen.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Overlay {
+    /// Lines, arrows and rings.
+    pub polylines: Vec<Polyline>,
+    /// Symbols at points.
+    pub markers: Vec<Marker>,
+    /// Plain triangles, both sides visible.
+    pub fills: Vec<Fill>,
+}
+
+impl Overlay {
+    fn points(&self) -> impl Iterator<Item = &Point3> {
+        let lines = self.polylines.iter().flat_map(|line| &line.points);
+        let markers = self.markers.iter().map(|marker| &marker.position);
+        let fills = self
+            .fills
+            .iter()
+            .flat_map(|fill| fill.triangles.iter().flatten());
+        lines.chain(markers).chain(fills)
+    }
+}
+
+/// A line through points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polyline {
+    /// The points; fewer than two draw nothing.
+    pub points: Vec<Point3>,
+    /// Colour and opacity.
+    pub color: Rgba,
+    /// Width in points.
+    pub width: f32,
+    /// Length of dashes and of the gaps between them in points; 0 for a solid line.
+    pub dash: f32,
+    /// Ends in an arrow head.
+    pub arrow: bool,
+    /// How it meets the parts.
+    pub depth: DepthMode,
+}
+
+impl Polyline {
+    /// A solid line that shines faintly through parts.
+    pub fn new(points: Vec<Point3>, color: Rgba, width: f32) -> Self {
+        Self {
+            points,
+            color,
+            width,
+            dash: 0.0,
+            arrow: false,
+            depth: DepthMode::default(),
+        }
+    }
+
+    /// An arrow from `from` to `to`.
+    pub fn arrow(from: Point3, to: Point3, color: Rgba, width: f32) -> Self {
+        Self {
+            arrow: true,
+            ..Self::new(vec![from, to], color, width)
+        }
+    }
+
+    /// A ring about `axis` (any length but zero), drawn as 64 straight pieces.
+    pub fn ring(center: Point3, axis: &Vector3, radius: f64, color: Rgba, width: f32) -> Self {
+        let axis = axis.try_normalize(0.0).unwrap_or_else(Vector3::z);
+        let helper = if axis.x.abs() < 0.9 {
+            Vector3::x()
+        } else {
+            Vector3::y()
+        };
+        let u = axis.cross(&helper).normalize() * radius;
+        let v = axis.cross(&u);
+        let points = (0..=64)
+            .map(|i| {
+                let (sin, cos) = (f64::from(i) / 64.0 * std::f64::consts::TAU).sin_cos();
+                center + u * cos + v * sin
+            })
+            .collect();
+        Self::new(points, color, width)
+    }
+}
+
+/// Outline of a marker.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum MarkerShape {
+    /// A filled circle.
+    #[default]
+    Disc,
+    /// A circle.
+    Ring,
+    /// A filled square: the crash part's mark.
+    Square,
+    /// A filled triangle: the stamped part's mark.
+    Triangle,
+    /// A diagonal cross.
+    Cross,
+}
+
+/// A symbol of constant size on the screen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Marker {
+    /// Its centre.
+    pub position: Point3,
+    /// Its shape.
+    pub shape: MarkerShape,
+    /// Diameter in points.
+    pub size: f32,
+    /// Colour and opacity.
+    pub color: Rgba,
+    /// Colour of the thin rim that keeps it visible on any ground.
+    pub rim: Rgba,
+    /// How it meets the parts.
+    pub depth: DepthMode,
+}
+
+/// Triangles of one colour, without light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fill {
+    /// Corners.
+    pub triangles: Vec<[Point3; 3]>,
+    /// Colour and opacity.
+    pub color: Rgba,
+    /// How it meets the parts.
+    pub depth: DepthMode,
+}

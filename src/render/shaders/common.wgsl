@@ -1,0 +1,207 @@
+// What every shader shares: the uniforms, the way from view space to the screen, and sRGB.
+// View space is centred at the camera's target, x right, y up, z towards the viewer.
+
+struct Frame {
+    clip_from_view: mat4x4<f32>,
+    // Distance of the eye, 1 for perspective, world length of a pixel at the target, pixels per point.
+    eye: vec4<f32>,
+    // Width and height of the drawn region and the pixel it starts at in the whole picture.
+    screen: vec4<f32>,
+    // Plane in view space: kept where dot(xyz, p) + w <= 0.
+    section: vec4<f32>,
+    // 1 if the section cuts, pixel of the wipe line (negative: none), 0, 0.
+    switches: vec4<f32>,
+    background_top: vec4<f32>,
+    background_bottom: vec4<f32>,
+    edge_color: vec4<f32>,
+    feature_color: vec4<f32>,
+    border_color: vec4<f32>,
+    selection_color: vec4<f32>,
+    // Widths of creases and borders and the diameter of nodes, in pixels.
+    widths: vec4<f32>,
+}
+
+struct Drawable {
+    view_from_mesh: mat4x4<f32>,
+    // sRGB colour and opacity.
+    color: vec4<f32>,
+    // Field value at the start of the table, one over the range, pixels pushed back, edge opacity.
+    params: vec4<f32>,
+    // Switches (below), index in the scene, width of the parts table, 0.
+    flags: vec4<u32>,
+}
+
+const HAS_PARTS: u32 = 1u;
+const HAS_FIELD: u32 = 2u;
+const FLAT: u32 = 4u;
+const BACK_HATCH: u32 = 8u;
+const MIRRORED: u32 = 16u;
+const CUT: u32 = 32u;
+const WIPE_LEFT: u32 = 64u;
+const WIPE_RIGHT: u32 = 128u;
+const SELECTED: u32 = 256u;
+const HOVERED: u32 = 512u;
+
+// Bits of a part's look in the parts table.
+const PART_VISIBLE: u32 = 1u;
+const PART_SELECTED: u32 = 2u;
+const PART_HOVERED: u32 = 4u;
+const PART_COLORED: u32 = 8u;
+const PARTS_PER_ROW: u32 = 256u;
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(1) @binding(0) var<uniform> drawable: Drawable;
+@group(1) @binding(1) var parts: texture_2d<u32>;
+@group(1) @binding(2) var field_colors: texture_2d<f32>;
+
+// Outside of the clip volume for every projection.
+const NOWHERE: vec4<f32> = vec4<f32>(2.0, 2.0, 2.0, 1.0);
+
+fn has(bit: u32) -> bool {
+    return (drawable.flags.x & bit) != 0u;
+}
+
+// Colour and state of a part; all of the drawable's own where the table ends.
+fn part_look(part: u32) -> vec4<u32> {
+    if has(HAS_PARTS) && part < drawable.flags.z {
+        return textureLoad(parts, vec2<u32>(part % PARTS_PER_ROW, part / PARTS_PER_ROW), 0);
+    }
+    return vec4<u32>(0u, 0u, 0u, PART_VISIBLE);
+}
+
+fn view_point(position: vec3<f32>) -> vec3<f32> {
+    return (drawable.view_from_mesh * vec4<f32>(position, 1.0)).xyz;
+}
+
+fn to_eye(p: vec3<f32>) -> vec3<f32> {
+    if frame.eye.y > 0.5 {
+        return normalize(vec3<f32>(0.0, 0.0, frame.eye.x) - p);
+    }
+    return vec3<f32>(0.0, 0.0, 1.0);
+}
+
+// World length of a pixel at a view point.
+fn pixel_size(p: vec3<f32>) -> f32 {
+    if frame.eye.y > 0.5 {
+        return frame.eye.z * max(frame.eye.x - p.z, 0.0) / frame.eye.x;
+    }
+    return frame.eye.z;
+}
+
+// A view point moved towards the viewer by some pixels' length, which changes its depth alone.
+fn pulled(p: vec3<f32>, pixels: f32) -> vec3<f32> {
+    return p + to_eye(p) * (pixel_size(p) * pixels);
+}
+
+fn to_clip(p: vec3<f32>) -> vec4<f32> {
+    return frame.clip_from_view * vec4<f32>(p, 1.0);
+}
+
+// Signed distance to the section plane; positive where the scene is cut away.
+fn beyond_section(p: vec3<f32>) -> f32 {
+    return dot(frame.section.xyz, p) + frame.section.w;
+}
+
+// True if the section or the wipe line removes this fragment.
+fn removed(p: vec3<f32>, pixel: vec2<f32>) -> bool {
+    if has(CUT) && frame.switches.x > 0.5 && beyond_section(p) > 0.0 {
+        return true;
+    }
+    let x = pixel.x + frame.screen.z;
+    if frame.switches.y >= 0.0 {
+        if has(WIPE_LEFT) && x >= frame.switches.y {
+            return true;
+        }
+        if has(WIPE_RIGHT) && x < frame.switches.y {
+            return true;
+        }
+    }
+    return false;
+}
+
+// 1 on the lines of a diagonal hatch of the screen, 0 between, smooth at the border.
+fn hatch(pixel: vec2<f32>, slope: f32, spacing: f32, width: f32) -> f32 {
+    let period = spacing * frame.eye.w;
+    let along = fract((pixel.x + slope * pixel.y) / (period * 1.41421356)) - 0.5;
+    let distance = abs(along) * period;
+    let half = 0.5 * width * frame.eye.w;
+    return 1.0 - smoothstep(half - 0.5, half + 0.5, distance);
+}
+
+fn linear_from_srgb(c: vec3<f32>) -> vec3<f32> {
+    return select(pow((c + 0.055) / 1.055, vec3<f32>(2.4)), c / 12.92, c <= vec3<f32>(0.04045));
+}
+
+fn srgb_from_linear(c: vec3<f32>) -> vec3<f32> {
+    let x = clamp(c, vec3<f32>(0.0), vec3<f32>(1.0));
+    return select(1.055 * pow(x, vec3<f32>(1.0 / 2.4)) - 0.055, x * 12.92, x <= vec3<f32>(0.0031308));
+}
+
+fn premultiplied(c: vec4<f32>) -> vec4<f32> {
+    return vec4<f32>(c.rgb * c.a, c.a);
+}
+
+// A screen-space segment with round ends, as a quad of six corners.
+struct Segment {
+    clip: vec4<f32>,
+    // Pixels along the segment from its start, and across.
+    place: vec2<f32>,
+    length: f32,
+    half_width: f32,
+}
+
+fn segment_corner(from_view: vec3<f32>, to_view: vec3<f32>, widths: vec2<f32>, corner: u32) -> Segment {
+    var a = from_view;
+    var b = to_view;
+    if frame.eye.y > 0.5 {
+        // What lies behind the eye is cut off before the division.
+        let limit = frame.eye.x * (1.0 - 1e-4);
+        if a.z > limit && b.z < limit {
+            a = mix(a, b, (a.z - limit) / (a.z - b.z));
+        } else if b.z > limit && a.z < limit {
+            b = mix(b, a, (b.z - limit) / (b.z - a.z));
+        }
+    }
+    var result: Segment;
+    let clip_a = to_clip(a);
+    let clip_b = to_clip(b);
+    if clip_a.w <= 0.0 || clip_b.w <= 0.0 {
+        result.clip = NOWHERE;
+        return result;
+    }
+    let half_screen = 0.5 * frame.screen.xy;
+    let pixel_a = clip_a.xy / clip_a.w * half_screen;
+    let pixel_b = clip_b.xy / clip_b.w * half_screen;
+    let delta = pixel_b - pixel_a;
+    let length = length(delta);
+    let along = select(vec2<f32>(1.0, 0.0), delta / max(length, 1e-6), length > 1e-6);
+    let across = vec2<f32>(-along.y, along.x);
+    let at_end = corner == 1u || corner == 2u || corner == 4u;
+    let side = select(-1.0, 1.0, corner == 2u || corner == 4u || corner == 5u);
+    let half_width = 0.5 * select(widths.x, widths.y, at_end);
+    // One pixel of air for the soft border; arrow heads have flat ends instead of round ones.
+    let reach = half_width + 1.0;
+    let cap = select(0.5, reach, widths.x == widths.y);
+    let beyond = select(-cap, cap, at_end);
+    let pixel = select(pixel_a, pixel_b, at_end) + along * beyond + across * (side * reach);
+    let depth = select(clip_a.z / clip_a.w, clip_b.z / clip_b.w, at_end);
+    // Divided already, so that places interpolate evenly on the screen.
+    result.clip = vec4<f32>(pixel / half_screen, depth, 1.0);
+    result.place = vec2<f32>(select(0.0, length, at_end) + beyond, side * reach);
+    result.length = length;
+    result.half_width = half_width;
+    return result;
+}
+
+// Coverage of a pixel by the segment.
+fn segment_coverage(place: vec2<f32>, length: f32, half_width: f32) -> f32 {
+    let outside = max(max(-place.x, place.x - length), 0.0);
+    let distance = length_2d(vec2<f32>(outside, place.y));
+    // Lines thinner than a pixel fade instead of breaking up.
+    let strength = min(2.0 * half_width, 1.0);
+    return clamp(max(half_width, 0.5) + 0.5 - distance, 0.0, 1.0) * strength;
+}
+
+fn length_2d(v: vec2<f32>) -> f32 {
+    return sqrt(dot(v, v));
+}

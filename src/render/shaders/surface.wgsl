@@ -1,0 +1,168 @@
+struct Varyings {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) view: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    // Field value and 1 where there is one.
+    @location(2) field: vec2<f32>,
+    @location(3) @interpolate(flat) color: vec3<f32>,
+    // Part bits; the triangle's index for picking.
+    @location(4) @interpolate(flat) ids: vec2<u32>,
+}
+
+// Larger field values mean that there is none.
+const NO_VALUE: f32 = 1e37;
+const FIELD_STEPS: f32 = 1024.0;
+
+fn octahedral(e: vec2<f32>) -> vec3<f32> {
+    var n = vec3<f32>(e, 1.0 - abs(e.x) - abs(e.y));
+    let fold = max(-n.z, 0.0);
+    n.x -= select(-fold, fold, n.x >= 0.0);
+    n.y -= select(-fold, fold, n.y >= 0.0);
+    return normalize(n);
+}
+
+fn transformed(position: vec3<f32>, normal: vec2<f32>, part: u32, field: f32, index: u32) -> Varyings {
+    let look = part_look(part);
+    var out: Varyings;
+    if (look.w & PART_VISIBLE) == 0u {
+        out.clip = NOWHERE;
+        return out;
+    }
+    out.view = view_point(position);
+    out.clip = to_clip(pulled(out.view, -drawable.params.z));
+    let turned = (drawable.view_from_mesh * vec4<f32>(octahedral(normal), 0.0)).xyz;
+    out.normal = normalize(turned);
+    let known = abs(field) < NO_VALUE;
+    out.field = select(vec2<f32>(0.0), vec2<f32>(field, 1.0), known);
+    let own = vec3<f32>(look.rgb) / 255.0;
+    out.color = select(drawable.color.rgb, own, (look.w & PART_COLORED) != 0u);
+    out.ids = vec2<u32>(look.w, index / 3u);
+    return out;
+}
+
+@vertex
+fn vs_main(
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec2<f32>,
+    @location(2) part: u32,
+    @location(3) field: f32,
+    @builtin(vertex_index) index: u32,
+) -> Varyings {
+    return transformed(position, normal, part, field, index);
+}
+
+struct Light {
+    diffuse: f32,
+    gloss: f32,
+}
+
+// A soft headlight from the upper left, a fixed fill from the lower right, and light from the sky.
+fn light(n: vec3<f32>, v: vec3<f32>) -> Light {
+    let key = normalize(vec3<f32>(-0.42, 0.55, 0.90));
+    let fill = normalize(vec3<f32>(0.75, -0.35, 0.45));
+    let sky = 0.5 + 0.5 * n.y;
+    let wrapped = clamp((dot(n, key) + 0.15) / 1.15, 0.0, 1.0);
+    var out: Light;
+    out.diffuse = 0.17 + 0.13 * sky + 0.72 * wrapped + 0.12 * max(dot(n, fill), 0.0);
+    let halfway = normalize(key + v);
+    let facing = max(dot(n, halfway), 0.0);
+    // Two lobes: the broad one makes bent sheet read as metal, the narrow one as pressed.
+    out.gloss = 0.055 * pow(facing, 14.0) + 0.085 * pow(facing, 90.0);
+    return out;
+}
+
+fn field_color(value: f32) -> vec3<f32> {
+    let t = clamp((value - drawable.params.x) * drawable.params.y, 0.0, 1.0);
+    let texel = min(i32(t * FIELD_STEPS), i32(FIELD_STEPS) - 1);
+    return textureLoad(field_colors, vec2<i32>(texel, 0), 0).rgb;
+}
+
+const UNMATCHED: vec3<f32> = vec3<f32>(0.541, 0.553, 0.573);
+
+// Opaque colour of a fragment (sRGB), before opacity.
+fn shaded(in: Varyings, front: bool) -> vec3<f32> {
+    let v = to_eye(in.view);
+    var n = normalize(in.normal);
+    if has(FLAT) {
+        // The plane of the triangle, turned to the side of its stored normal.
+        let plane = normalize(cross(dpdx(in.view), dpdy(in.view)));
+        n = select(-plane, plane, dot(plane, n) >= 0.0);
+    }
+    let back = front == has(MIRRORED);
+    n = select(n, -n, back);
+    // Creases aside, smooth normals may point a little away from the viewer near outlines.
+    n = normalize(n + v * max(-dot(n, v), 0.0));
+    let lit = light(n, v);
+    var base = linear_from_srgb(in.color);
+    var diffuse = lit.diffuse;
+    var gloss = lit.gloss;
+    if has(HAS_FIELD) {
+        // Weak light, so that the legend stays true.
+        diffuse = mix(1.0, lit.diffuse, 0.45);
+        gloss *= 0.3;
+        if in.field.y > 0.999 {
+            base = linear_from_srgb(field_color(in.field.x));
+        } else {
+            let stripe = hatch(in.clip.xy + frame.screen.zw, 1.0, 5.0, 1.6);
+            base = linear_from_srgb(UNMATCHED) * (1.0 - 0.62 * stripe);
+        }
+    }
+    var color = base * diffuse + gloss;
+    if back {
+        color *= 0.72;
+        if has(BACK_HATCH) {
+            color *= 1.0 - 0.30 * hatch(in.clip.xy + frame.screen.zw, -1.0, 4.5, 1.0);
+        }
+    }
+    if has(HOVERED) || (in.ids.x & PART_HOVERED) != 0u {
+        color = mix(color, vec3<f32>(1.0), 0.16);
+    }
+    if has(CUT) && frame.switches.x > 0.5 {
+        // The cut itself as a line of two points in the part's own bright colour.
+        let depth = -beyond_section(in.view) / max(fwidth(beyond_section(in.view)), 1e-12);
+        let line = 1.0 - smoothstep(2.0 * frame.eye.w - 0.5, 2.0 * frame.eye.w + 0.5, depth);
+        color = mix(color, linear_from_srgb(mix(in.color, vec3<f32>(1.0), 0.35)), line);
+    }
+    return srgb_from_linear(color);
+}
+
+@fragment
+fn fs_opaque(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    let color = shaded(in, front);
+    if removed(in.view, in.clip.xy) {
+        discard;
+    }
+    return vec4<f32>(color, 1.0);
+}
+
+// Glass: more opaque where it is seen edge on.
+@fragment
+fn fs_clear(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    let color = shaded(in, front);
+    if removed(in.view, in.clip.xy) {
+        discard;
+    }
+    let facing = abs(dot(normalize(in.normal), to_eye(in.view)));
+    let opacity = drawable.color.a;
+    let rim = opacity + (1.0 - opacity) * opacity * pow(1.0 - facing, 2.5);
+    return premultiplied(vec4<f32>(color, rim));
+}
+
+// The selected area for the outline.
+@fragment
+fn fs_selected(in: Varyings) -> @location(0) vec4<f32> {
+    let selected = has(SELECTED) || (in.ids.x & PART_SELECTED) != 0u;
+    if !selected || removed(in.view, in.clip.xy) {
+        discard;
+    }
+    return vec4<f32>(1.0);
+}
+
+// Drawable and triangle, counted from one.
+@fragment
+fn fs_pick(in: Varyings) -> @location(0) vec2<u32> {
+    if removed(in.view, in.clip.xy) {
+        discard;
+    }
+    return vec2<u32>(drawable.flags.y, in.ids.y + 1u);
+}

@@ -1,0 +1,512 @@
+//! Pictures on the software driver. They are small, and what is asserted is what a person would see.
+
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
+
+use eframe::egui_wgpu::{RenderState, RendererOptions};
+use image::RgbaImage;
+use shapematch::colormap::{ColorMap, ColorScale};
+use shapematch::geometry::camera::{ScreenSize, StandardView};
+use shapematch::geometry::{Camera, Point3, Projection, Similarity, TriMesh, Vector3};
+use shapematch::render::{
+    Background, DepthMode, Drawable, FieldLook, Frame, Marker, MarkerShape, MeshInput, PartLook,
+    Polyline, RenderMesh, Renderer, Scene, Section, Style, ViewTarget, WipeSide,
+};
+
+const SIZE: [u32; 2] = [120, 90];
+const BLUE: [u8; 3] = [0x56, 0xB4, 0xE9];
+const ORANGE: [u8; 3] = [0xE6, 0x9F, 0x00];
+
+/// A renderer of its own on the device that all tests share; making a device is slower than any test.
+fn new_renderer() -> Renderer {
+    static STATE: OnceLock<RenderState> = OnceLock::new();
+    let state = STATE.get_or_init(|| {
+        egui_kittest::wgpu::create_render_state(
+            egui_kittest::wgpu::default_wgpu_setup(),
+            RendererOptions::PREDICTABLE,
+        )
+    });
+    Renderer::new(&state.device, &state.queue, state.target_format)
+}
+
+fn renderer() -> MutexGuard<'static, Renderer> {
+    static RENDERER: OnceLock<Mutex<Renderer>> = OnceLock::new();
+    let shared = RENDERER.get_or_init(|| Mutex::new(new_renderer()));
+    shared.lock().unwrap_or_else(|broken| broken.into_inner())
+}
+
+/// A square of 2 × 2 about `center`, its normal along +z.
+fn square(center: Point3) -> TriMesh {
+    let corner = |x, y| center + Vector3::new(x, y, 0.0);
+    let positions = vec![
+        corner(-1.0, -1.0),
+        corner(1.0, -1.0),
+        corner(1.0, 1.0),
+        corner(-1.0, 1.0),
+    ];
+    TriMesh::new(positions, vec![[0, 1, 2], [0, 2, 3]]).unwrap()
+}
+
+fn plain(mesh: &TriMesh, color: [u8; 3]) -> Drawable {
+    let prepared = Arc::new(RenderMesh::new(MeshInput::plain(mesh)));
+    let style = Style {
+        feature_edges: false,
+        borders: false,
+        back_hatch: false,
+        ..Style::default()
+    };
+    Drawable {
+        style,
+        ..Drawable::new(prepared, color)
+    }
+}
+
+fn scene(drawables: Vec<Drawable>) -> Scene {
+    Scene {
+        drawables,
+        background: Background::Transparent,
+        ..Scene::default()
+    }
+}
+
+/// From above, 4 units high.
+fn from(view: StandardView, target: Point3) -> Camera {
+    Camera {
+        target,
+        world_from_view: view.world_from_view(),
+        height: 4.0,
+        projection: Projection::Orthographic,
+    }
+}
+
+fn picture(scene: &Scene, camera: &Camera) -> RgbaImage {
+    let frame = Frame {
+        scene,
+        camera,
+        size: SIZE,
+    };
+    renderer().picture(&frame).unwrap()
+}
+
+/// Colour at a world point.
+fn color_at(picture: &RgbaImage, camera: &Camera, point: &Point3) -> [u8; 4] {
+    let seen = camera
+        .project(point, ScreenSize::new(SIZE[0], SIZE[1]))
+        .unwrap();
+    picture.get_pixel(seen.x as u32, seen.y as u32).0
+}
+
+fn brightness(color: [u8; 4]) -> u32 {
+    color[..3].iter().map(|&c| u32::from(c)).sum()
+}
+
+fn difference(a: [u8; 4], b: [u8; 4]) -> u8 {
+    (0..4).map(|i| a[i].abs_diff(b[i])).max().unwrap()
+}
+
+#[test]
+fn a_square_covers_what_the_camera_says() {
+    let camera = from(StandardView::Top, Point3::origin());
+    let picture = picture(
+        &scene(vec![plain(&square(Point3::origin()), BLUE)]),
+        &camera,
+    );
+    let at = |x, y| color_at(&picture, &camera, &Point3::new(x, y, 0.0));
+    assert_eq!(at(1.2, 0.0)[3], 0);
+    assert_eq!(at(0.0, -1.2)[3], 0);
+    for (x, y) in [(0.0, 0.0), (0.9, 0.9), (-0.9, 0.9), (0.9, -0.9)] {
+        assert_eq!(at(x, y)[3], 255);
+    }
+    let [r, g, b, _] = at(0.0, 0.0);
+    assert!(b > g && g > r && b > 150, "blue stays blue: {r} {g} {b}");
+}
+
+#[test]
+fn back_sides_are_darker_and_hatched() {
+    let mut drawable = plain(&square(Point3::origin()), BLUE);
+    let above = from(StandardView::Top, Point3::origin());
+    let below = from(StandardView::Bottom, Point3::origin());
+    let front = picture(&scene(vec![drawable.clone()]), &above);
+    let back = picture(&scene(vec![drawable.clone()]), &below);
+    let middle = Point3::origin();
+    let (front, plain_back) = (
+        brightness(color_at(&front, &above, &middle)),
+        brightness(color_at(&back, &below, &middle)),
+    );
+    assert!(plain_back * 10 < front * 9, "{plain_back} {front}");
+    drawable.style.back_hatch = true;
+    let hatched = picture(&scene(vec![drawable]), &below);
+    let shades: std::collections::BTreeSet<u32> = (50..70)
+        .map(|x| brightness(hatched.get_pixel(x, 45).0))
+        .collect();
+    assert!(shades.len() > 2, "{shades:?}");
+}
+
+#[test]
+fn a_mirrored_pose_shows_the_other_side() {
+    let mut drawable = plain(&square(Point3::origin()), BLUE);
+    let camera = from(StandardView::Top, Point3::origin());
+    let before = picture(&scene(vec![drawable.clone()]), &camera);
+    drawable.world_from_mesh = Similarity::mirror_x();
+    let after = picture(&scene(vec![drawable]), &camera);
+    let middle = Point3::origin();
+    let (a, b) = (
+        color_at(&before, &camera, &middle),
+        color_at(&after, &camera, &middle),
+    );
+    // A mirror about a plane that holds the normal keeps the upper side up.
+    assert!(difference(a, b) <= 2, "{a:?} {b:?}");
+}
+
+#[test]
+fn far_from_the_origin_nothing_changes() {
+    let far = Vector3::new(5.0e6, -3.0e6, 2.0e6);
+    for projection in [Projection::Orthographic, Projection::perspective()] {
+        let shot = |shift: Vector3| {
+            let mut drawable = plain(&square(Point3::origin() + shift), BLUE);
+            drawable.style = Style {
+                element_edges: true,
+                ..Style::default()
+            };
+            let camera = Camera {
+                projection,
+                ..from(StandardView::Isometric, Point3::origin() + shift)
+            };
+            picture(&scene(vec![drawable]), &camera)
+        };
+        let (near, far) = (shot(Vector3::zeros()), shot(far));
+        let differing = near
+            .pixels()
+            .zip(far.pixels())
+            .filter(|(a, b)| difference(a.0, b.0) > 3)
+            .count();
+        assert_eq!(differing, 0, "{projection:?}");
+    }
+}
+
+#[test]
+fn the_nearer_of_coincident_sheets_wins_everywhere() {
+    let below = Drawable {
+        push_back: 2.0,
+        ..plain(&square(Point3::origin()), BLUE)
+    };
+    let above = plain(&square(Point3::origin()), ORANGE);
+    let camera = from(StandardView::Isometric, Point3::origin());
+    let both = picture(&scene(vec![above.clone(), below.clone()]), &camera);
+    let turned = picture(&scene(vec![below, above.clone()]), &camera);
+    let alone = picture(&scene(vec![above]), &camera);
+    for other in [both, turned] {
+        let inner = alone
+            .pixels()
+            .zip(other.pixels())
+            .filter(|(a, _)| a.0[3] == 255);
+        assert!(inner.clone().count() > 1000);
+        let differing = inner.filter(|(a, b)| difference(a.0, b.0) > 2).count();
+        assert_eq!(differing, 0);
+    }
+}
+
+#[test]
+fn glass_blends_with_what_is_behind() {
+    let camera = from(StandardView::Top, Point3::origin());
+    let behind = plain(&square(Point3::new(0.0, 0.0, -1.0)), BLUE);
+    let glass = Drawable {
+        opacity: 0.5,
+        ..plain(&square(Point3::origin()), ORANGE)
+    };
+    let middle = Point3::origin();
+    let shot = |drawables| color_at(&picture(&scene(drawables), &camera), &camera, &middle);
+    let only_behind = shot(vec![behind.clone()]);
+    let only_glass = shot(vec![glass.clone()]);
+    let both = shot(vec![glass, behind]);
+    assert!((120..=136).contains(&only_glass[3]), "{only_glass:?}");
+    for channel in 0..3 {
+        let (a, b) = (
+            f64::from(only_behind[channel]),
+            f64::from(only_glass[channel]),
+        );
+        assert!((f64::from(both[channel]) - (a + b) / 2.0).abs() < 4.0);
+    }
+    assert_eq!(both[3], 255);
+}
+
+#[test]
+fn the_section_cuts_one_side_away() {
+    let camera = from(StandardView::Top, Point3::origin());
+    let mut scene = scene(vec![plain(&square(Point3::origin()), BLUE)]);
+    scene.section = Some(Section {
+        point: Point3::new(0.2, 0.0, 0.0),
+        normal: Vector3::x() * 7.0,
+    });
+    let cut = picture(&scene, &camera);
+    assert_eq!(color_at(&cut, &camera, &Point3::new(0.4, 0.0, 0.0))[3], 0);
+    assert_eq!(
+        color_at(&cut, &camera, &Point3::new(-0.4, 0.0, 0.0))[3],
+        255
+    );
+    scene.drawables[0].cut_by_section = false;
+    let whole = picture(&scene, &camera);
+    assert_eq!(
+        color_at(&whole, &camera, &Point3::new(0.4, 0.0, 0.0))[3],
+        255
+    );
+}
+
+#[test]
+fn the_wipe_line_divides_the_picture() {
+    let camera = from(StandardView::Top, Point3::origin());
+    let side = |wipe, color| Drawable {
+        wipe,
+        ..plain(&square(Point3::origin()), color)
+    };
+    let mut scene = scene(vec![
+        side(WipeSide::Left, BLUE),
+        side(WipeSide::Right, ORANGE),
+    ]);
+    scene.wipe = Some(0.5);
+    let picture = picture(&scene, &camera);
+    let [r, _, b, _] = color_at(&picture, &camera, &Point3::new(-0.3, 0.0, 0.0));
+    assert!(b > r);
+    let [r, _, b, _] = color_at(&picture, &camera, &Point3::new(0.3, 0.0, 0.0));
+    assert!(r > b);
+}
+
+#[test]
+fn parts_have_colours_and_can_be_hidden() {
+    let mesh = square(Point3::origin());
+    let input = MeshInput {
+        part_of_triangle: Some(&[0, 300]),
+        ..MeshInput::plain(&mesh)
+    };
+    let mut parts = vec![PartLook::default(); 301];
+    parts[300].color = Some(ORANGE);
+    let mut drawable = plain(&mesh, BLUE);
+    drawable.mesh = Arc::new(RenderMesh::new(input));
+    drawable.parts = Some(parts.clone().into());
+    let camera = from(StandardView::Top, Point3::origin());
+    let lower = Point3::new(0.5, -0.5, 0.0);
+    let upper = Point3::new(-0.5, 0.5, 0.0);
+    let both = picture(&scene(vec![drawable.clone()]), &camera);
+    let [r, _, b, _] = color_at(&both, &camera, &upper);
+    assert!(r > b, "the second part is orange");
+    let [r, _, b, _] = color_at(&both, &camera, &lower);
+    assert!(b > r, "the first is plain");
+    parts[300].visible = false;
+    drawable.parts = Some(parts.into());
+    let one = picture(&scene(vec![drawable]), &camera);
+    assert_eq!(color_at(&one, &camera, &upper)[3], 0);
+    assert_eq!(color_at(&one, &camera, &lower)[3], 255);
+}
+
+#[test]
+fn fields_take_the_colours_of_their_scale() {
+    let mut drawable = plain(&square(Point3::origin()), BLUE);
+    let scale = ColorScale::new(ColorMap::Rainbow, 0.0, 1.0);
+    drawable.field = Some(FieldLook {
+        values: vec![0.0, 1.0, 1.0, 0.0].into(),
+        scale,
+    });
+    let camera = from(StandardView::Top, Point3::origin());
+    let shot = picture(&scene(vec![drawable.clone()]), &camera);
+    for x in [-0.9, -0.4, 0.1, 0.6, 0.9] {
+        let shown = color_at(&shot, &camera, &Point3::new(x, 0.3, 0.0));
+        let [r, g, b] = scale.color((x + 1.0) / 2.0);
+        assert!(
+            difference(shown, [r, g, b, 255]) < 24,
+            "{x}: {shown:?} {r} {g} {b}"
+        );
+    }
+    // Values that are missing or not numbers are grey and hatched.
+    drawable.field = Some(FieldLook {
+        values: vec![0.0, f32::NAN].into(),
+        scale,
+    });
+    let shot = picture(&scene(vec![drawable]), &camera);
+    let colors: Vec<[u8; 4]> = (45..75).map(|x| shot.get_pixel(x, 45).0).collect();
+    assert!(colors.iter().all(|c| c[0].abs_diff(c[2]) < 16), "grey");
+    let (low, high) = (
+        colors.iter().map(|&c| brightness(c)).min().unwrap(),
+        colors.iter().map(|&c| brightness(c)).max().unwrap(),
+    );
+    assert!(high > low + 60, "hatched");
+}
+
+#[test]
+fn picking_names_the_triangle_in_front() {
+    let size = SIZE;
+    let mut drawables = vec![
+        plain(&square(Point3::new(0.0, 0.0, -1.0)), BLUE),
+        plain(&square(Point3::origin()), ORANGE),
+    ];
+    drawables[0].world_from_mesh.scale = 1.6;
+    let scene = scene(drawables);
+    let camera = from(StandardView::Top, Point3::origin());
+    let mut renderer = renderer();
+    let device = renderer.device().clone();
+    let mut pick = |x: f64, y: f64| {
+        let screen = ScreenSize::new(size[0], size[1]);
+        let seen = camera.project(&Point3::new(x, y, 0.0), screen).unwrap();
+        let frame = Frame {
+            scene: &scene,
+            camera: &camera,
+            size,
+        };
+        renderer
+            .pick(&frame, [seen.x, seen.y])
+            .wait(&device)
+            .unwrap()
+    };
+    let ids = |hit: Option<shapematch::render::PickHit>| hit.map(|h| (h.drawable, h.triangle));
+    assert_eq!(ids(pick(0.5, -0.5)), Some((1, 0)));
+    assert_eq!(ids(pick(-0.5, 0.5)), Some((1, 1)));
+    assert_eq!(ids(pick(-1.3, 0.5)), Some((0, 1)));
+    assert_eq!(ids(pick(1.9, 1.9)), None);
+    let beside = pick(1.65, -0.5).unwrap();
+    assert!(!beside.exact && beside.drawable == 0);
+}
+
+#[test]
+fn equal_frames_are_drawn_once() {
+    let mut renderer = renderer();
+    let mut target = ViewTarget::new();
+    let mut encoder = renderer
+        .device()
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut scene = scene(vec![plain(&square(Point3::origin()), BLUE)]);
+    let mut camera = from(StandardView::Top, Point3::origin());
+    let mut draw = |scene: &Scene, camera: &Camera, size| {
+        let frame = Frame {
+            scene,
+            camera,
+            size,
+        };
+        renderer.draw(&mut target, &mut encoder, &frame)
+    };
+    assert!(draw(&scene, &camera, SIZE));
+    assert!(!draw(&scene.clone(), &camera, SIZE));
+    assert!(draw(&scene, &camera, [64, 64]));
+    camera.height = 3.0;
+    assert!(draw(&scene, &camera, [64, 64]));
+    scene.drawables[0].hovered = true;
+    assert!(draw(&scene, &camera, [64, 64]));
+    assert!(!draw(&scene, &camera, [64, 64]));
+    assert!(
+        draw(&scene, &camera, [0, 0]),
+        "a view without area does not fail"
+    );
+}
+
+#[test]
+fn meshes_leave_the_graphics_card_with_their_last_owner() {
+    let camera = from(StandardView::Top, Point3::origin());
+    let mut renderer = new_renderer();
+    let mut n_meshes_with = |scene: &Scene| {
+        let frame = Frame {
+            scene,
+            camera: &camera,
+            size: SIZE,
+        };
+        renderer.picture(&frame).unwrap();
+        renderer.n_meshes()
+    };
+    let first = scene(vec![plain(&square(Point3::origin()), BLUE)]);
+    assert_eq!(n_meshes_with(&first), 1);
+    drop(first);
+    assert_eq!(n_meshes_with(&Scene::default()), 0);
+}
+
+#[test]
+fn selection_draws_a_line_around_and_not_over() {
+    let mut drawable = plain(&square(Point3::origin()), BLUE);
+    let camera = from(StandardView::Top, Point3::origin());
+    let before = picture(&scene(vec![drawable.clone()]), &camera);
+    drawable.selected = true;
+    let after = picture(&scene(vec![drawable]), &camera);
+    let middle = Point3::origin();
+    assert_eq!(
+        color_at(&before, &camera, &middle),
+        color_at(&after, &camera, &middle)
+    );
+    let outside = color_at(&after, &camera, &Point3::new(1.06, 0.0, 0.0));
+    assert!(brightness(outside) > 600 && outside[3] > 200, "{outside:?}");
+    assert_eq!(color_at(&after, &camera, &Point3::new(1.4, 0.0, 0.0))[3], 0);
+}
+
+#[test]
+fn overlays_know_what_is_in_front() {
+    let camera = from(StandardView::Top, Point3::origin());
+    let mut scene = scene(vec![plain(&square(Point3::origin()), BLUE)]);
+    let line = |y: f64, depth| Polyline {
+        depth,
+        ..Polyline::new(
+            vec![Point3::new(-1.5, y, -0.5), Point3::new(1.5, y, -0.5)],
+            [255, 0, 0, 255],
+            4.0,
+        )
+    };
+    scene.overlay.polylines = vec![
+        line(0.6, DepthMode::Tested),
+        line(0.0, DepthMode::Faint),
+        line(-0.6, DepthMode::OnTop),
+    ];
+    let dot = |x| Marker {
+        position: Point3::new(x, 1.6, 0.0),
+        shape: MarkerShape::Disc,
+        size: 8.0,
+        color: [0, 255, 0, 255],
+        rim: [0, 0, 0, 255],
+        depth: DepthMode::Tested,
+    };
+    scene.overlay.markers = vec![dot(0.5)];
+    let shot = picture(&scene, &camera);
+    let red = |x, y| color_at(&shot, &camera, &Point3::new(x, y, 0.0))[0];
+    for y in [0.6, 0.0, -0.6] {
+        assert_eq!(red(1.3, y), 255, "beside the square all are fully visible");
+    }
+    assert!(red(0.0, 0.6) < 110, "hidden");
+    assert!(
+        (110..200).contains(&red(0.0, 0.0)),
+        "faint: {}",
+        red(0.0, 0.0)
+    );
+    assert_eq!(red(0.0, -0.6), 255, "on top");
+    let [r, g, b, _] = color_at(&shot, &camera, &Point3::new(0.5, 1.6, 0.0));
+    assert_eq!([r, g, b], [0, 255, 0]);
+}
+
+#[test]
+fn scenes_without_size_draw_nothing_and_fail_nowhere() {
+    let camera = Camera::default();
+    picture(&Scene::default(), &camera);
+    let point = TriMesh::new(vec![Point3::origin()], vec![[0, 0, 0]]).unwrap();
+    picture(&scene(vec![plain(&point, BLUE)]), &camera);
+    let cloud = TriMesh::new(vec![Point3::origin()], vec![]).unwrap();
+    let dots = picture(&scene(vec![plain(&cloud, BLUE)]), &camera);
+    assert!(
+        dots.get_pixel(60, 45).0[3] > 200,
+        "a cloud is drawn as points"
+    );
+    let eye_inside = Camera {
+        projection: Projection::perspective(),
+        height: 1e-3,
+        ..camera
+    };
+    picture(
+        &scene(vec![plain(&square(Point3::origin()), BLUE)]),
+        &eye_inside,
+    );
+}
+
+#[test]
+fn gradients_run_from_top_to_bottom() {
+    let scene = Scene {
+        background: Background::LIGHT,
+        ..Scene::default()
+    };
+    let shot = picture(&scene, &Camera::default());
+    let (top, bottom) = (shot.get_pixel(60, 0).0, shot.get_pixel(60, 89).0);
+    assert!(difference(top, [0xF7, 0xF8, 0xFA, 255]) <= 2, "{top:?}");
+    assert!(
+        difference(bottom, [0xDF, 0xE3, 0xE8, 255]) <= 2,
+        "{bottom:?}"
+    );
+}
