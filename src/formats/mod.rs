@@ -7,7 +7,11 @@ pub mod diagnostic;
 pub mod keyword;
 pub mod model;
 pub mod moved;
+pub mod obj;
+pub mod ply;
+mod polygon;
 pub mod source;
+pub mod stl;
 
 use std::path::{Path, PathBuf};
 
@@ -77,16 +81,25 @@ pub struct ReadOptions {
 pub enum Format {
     /// LS-DYNA keyword deck, also a dynain.
     Keyword,
+    /// STL, binary or ASCII.
+    Stl,
+    /// Wavefront OBJ.
+    Obj,
+    /// PLY, binary or ASCII.
+    Ply,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: &[Self] = &[Self::Keyword];
+    pub const ALL: &[Self] = &[Self::Keyword, Self::Stl, Self::Obj, Self::Ply];
 
     /// Its name for people.
     pub fn label(self) -> &'static str {
         match self {
             Self::Keyword => "LS-DYNA keyword",
+            Self::Stl => "STL",
+            Self::Obj => "Wavefront OBJ",
+            Self::Ply => "PLY",
         }
     }
 
@@ -94,7 +107,31 @@ impl Format {
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Keyword => &["k", "key", "dyn", "inc", "asc", "gz"],
+            Self::Stl => &["stl"],
+            Self::Obj => &["obj"],
+            Self::Ply => &["ply"],
         }
+    }
+
+    /// Finds the format by name and content. `.gz` does not count as an extension.
+    pub fn of(path: &Path, bytes: &[u8]) -> Self {
+        let head = &bytes[..bytes.len().min(256)];
+        if head.starts_with(b"ply\n") || head.starts_with(b"ply\r") {
+            return Self::Ply;
+        }
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let name = name.to_lowercase();
+        let name = name.strip_suffix(".gz").unwrap_or(&name);
+        let has_extension = |format: &&Self| {
+            let known = name.rsplit_once('.').map(|(_, extension)| extension);
+            known.is_some_and(|extension| format.extensions().contains(&extension))
+        };
+        if let Some(&format) = Self::ALL.iter().find(has_extension) {
+            return format;
+        }
+        // A dynain often has no extension at all, so what is nothing else is a deck.
+        let is_solid = head.trim_ascii_start().starts_with(b"solid ");
+        if is_solid { Self::Stl } else { Self::Keyword }
     }
 }
 
@@ -110,5 +147,11 @@ pub fn read_from(
     options: &ReadOptions,
     monitor: &Monitor,
 ) -> Result<Model, FormatError> {
-    keyword::deck::read(source, path, options, monitor)
+    let bytes = source::open_unpacked(source, path).map_err(|e| FormatError::open(path, &e))?;
+    match Format::of(path, &bytes) {
+        Format::Keyword => keyword::deck::read(source, path, options, monitor),
+        Format::Stl => stl::read(&bytes, path),
+        Format::Obj => obj::read(&bytes, path),
+        Format::Ply => ply::read(&bytes, path),
+    }
 }

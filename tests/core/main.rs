@@ -4,6 +4,7 @@
 
 mod keyword;
 mod layering;
+mod mesh_files;
 mod pan;
 mod registration;
 mod samples;
