@@ -1,6 +1,6 @@
 use super::correspondence::{Correspondence, MatchRules, Sample, correspond};
 use super::metric::{StepRules, step};
-use super::result::IterationRecord;
+use super::result::{IterationRecord, Side};
 use super::select::{SelectRules, Selected, select};
 use super::surface::Surface;
 use super::termination::Termination;
@@ -112,6 +112,15 @@ pub(crate) struct Frames {
 }
 
 impl Frames {
+    /// Which mesh supplies the points.
+    pub(crate) fn data_side(&self) -> Side {
+        if self.data_is_target {
+            Side::Target
+        } else {
+            Side::Source
+        }
+    }
+
     /// The pose as the outside sees it.
     pub(crate) fn target_from_source(&self, model_from_data: &Similarity) -> Similarity {
         if self.data_is_target {

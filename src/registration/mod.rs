@@ -110,6 +110,11 @@ pub fn match_surfaces(
         contest.run(monitor)?;
         contests.push(contest);
     }
+    if !contests.iter().any(Contest::convinces) {
+        for contest in &mut contests {
+            contest.widen(monitor)?;
+        }
+    }
     outcome::decide(input, settings, contests, monitor).map(|mut outcome| {
         outcome.timings.total = begin.elapsed();
         outcome

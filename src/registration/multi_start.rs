@@ -27,6 +27,15 @@ pub(crate) struct Pairing<'a> {
     pub(crate) model: &'a Surface,
 }
 
+impl Pairing<'_> {
+    pub(crate) fn swapped(self) -> Self {
+        Self {
+            data: self.model,
+            model: self.data,
+        }
+    }
+}
+
 /// One choice of hand and of data and model.
 pub(crate) struct Leg<'a> {
     /// The meshes of the race.
@@ -39,11 +48,7 @@ pub(crate) struct Leg<'a> {
 
 impl Leg<'_> {
     pub(crate) fn data_side(&self) -> Side {
-        if self.frames.data_is_target {
-            Side::Target
-        } else {
-            Side::Source
-        }
+        self.frames.data_side()
     }
 
     /// Turns a start (a motion of the possibly mirrored source) into a motion of the data.

@@ -5,9 +5,8 @@ use super::icp::Run;
 use super::result::{
     Alternative, Fate, MatchOutcome, MatchTimings, MirrorCheck, Side, StartRecord,
 };
-use super::search::{Contender, Contest};
+use super::search::{Contender, Contest, Finished};
 use super::settings::{Hand, MatchSettings};
-use super::stages::{Stage, stage_rules};
 use super::starts::StartKind;
 use super::surface::Surface;
 use super::termination::Termination;
@@ -29,27 +28,22 @@ pub(super) fn decide(
 ) -> Result<MatchOutcome, RegistrationError> {
     let ranked = rank(&contests);
     let &(home, winner) = ranked.first().ok_or(RegistrationError::NoPairs)?;
-    let begin = Instant::now();
-    let run = contests[home].finish(&winner, monitor)?;
-    let finish = begin.elapsed();
     let convinced = contests[home].convinces();
+    let begin = Instant::now();
+    let finished = contests[home].finish(&winner, monitor)?;
+    let finish = begin.elapsed();
     let mirror_ratio = if convinced || settings.hand != Hand::Same || monitor.stop_requested() {
         None
     } else {
         opposite_hand(input, settings, &winner.scores, monitor)?
     };
-    let (leg, entrants) = &contests[home].legs[winner.leg];
-    let target_from_source = leg.frames.target_from_source(&run.model_from_data);
-    let data_side = leg.data_side();
-    let normals_opposed = entrants[winner.entrant].start.flipped;
-    let stage = if settings.finish {
-        Stage::Finish
-    } else {
-        Stage::Refine
-    };
-    let floor = stage_rules(stage, settings, leg.fine.data, leg.fine.model)
-        .selection
-        .floor;
+    let Finished {
+        target_from_source,
+        run,
+        data_side,
+        flipped,
+        floor,
+    } = finished;
     let alternatives = alternatives(input, &ranked, &target_from_source, &contests);
     let pairs = fit_kept(&run);
     let (p95, max) = spread(&run);
@@ -68,7 +62,7 @@ pub(super) fn decide(
         max,
         fraction: run.fraction,
         data_side,
-        normals_opposed,
+        normals_opposed: flipped,
         objective: run.score,
         floor,
         alternatives,
@@ -138,11 +132,9 @@ fn opposite_hand(
 ) -> Result<Option<f64>, RegistrationError> {
     let mirrored = Mirrored::of(input)?;
     // What the mirrored part does is not part of the story of this match.
-    let mut settings = settings.clone();
-    settings.starts.widen = false;
     let quiet = monitor.without_observer();
     let mirror = Some(Similarity::mirror_x());
-    let mut contest = Contest::new(mirrored.input(input), &settings, mirror, 0);
+    let mut contest = Contest::new(mirrored.input(input), settings, mirror, 0);
     contest.run(&quiet)?;
     let found = contest.contenders();
     Ok(found.first().map(|c| c.scores.score() / best.score()))

@@ -7,7 +7,7 @@ use super::problem::all_nodes;
 use super::result::{Fate, Side};
 use super::select::Selection;
 use super::settings::{DataSide, MatchSettings, Search};
-use super::stages::{Stage, stage_rules};
+use super::stages::{Stage, natural_floor, stage_rules};
 use super::starts::{Start, further_starts, patch_starts, starts};
 use super::surface::Surface;
 use super::{MatchInput, RegistrationError};
@@ -47,6 +47,15 @@ pub(crate) struct Contender {
     pub(crate) scores: TwoSided,
 }
 
+/// The winner after its last stage.
+pub(crate) struct Finished {
+    pub(crate) target_from_source: Similarity,
+    pub(crate) run: Run,
+    pub(crate) data_side: Side,
+    pub(crate) flipped: bool,
+    pub(crate) floor: f64,
+}
+
 impl<'a> Contest<'a> {
     /// `input` holds the source already mirrored where `mirror` says so; `n_before` starts were
     /// numbered before.
@@ -69,8 +78,7 @@ impl<'a> Contest<'a> {
         }
     }
 
-    /// Runs the starts, the other choice of data where the data overhangs, and wider starts where
-    /// nothing convinces.
+    /// Runs the starts, and the other choice of data where the data overhangs.
     pub(crate) fn run(&mut self, monitor: &Monitor) -> Result<(), RegistrationError> {
         let begin = Instant::now();
         let first = starts(self.input.source, self.input.target, &self.settings.starts)?;
@@ -88,10 +96,15 @@ impl<'a> Contest<'a> {
             });
             self.compete(1, &first, monitor)?;
         }
+        Ok(())
+    }
+
+    /// Runs wider starts, for when nothing convinces.
+    pub(crate) fn widen(&mut self, monitor: &Monitor) -> Result<(), RegistrationError> {
         let widens = self.settings.starts.widen
             && self.settings.search == Search::Race
             && self.settings.selection != Selection::All;
-        if widens && !self.convinces() && !monitor.stop_requested() {
+        if widens && !monitor.stop_requested() {
             let begin = Instant::now();
             let (source, target) = (self.input.source, self.input.target);
             let mut wider = further_starts(source, target);
@@ -184,7 +197,8 @@ impl<'a> Contest<'a> {
 
     /// True if a pose lays a fair share of the data within a few floors of the model.
     pub(crate) fn convinces(&self) -> bool {
-        let limit = CONVINCING_RMSE * self.judge.floor();
+        let limit = CONVINCING_RMSE * natural_floor(self.input.source, self.input.target)
+            + self.settings.allowance;
         self.legs.iter().any(|(_, entrants)| {
             ranking(entrants).first().is_some_and(|&i| {
                 let run = &entrants[i].run;
@@ -213,31 +227,59 @@ impl<'a> Contest<'a> {
         found
     }
 
-    /// Runs the winner on all points of the fine meshes and returns it with its data's sign.
+    /// Runs the winner on all points of the fine meshes.
     pub(crate) fn finish(
         &mut self,
         winner: &Contender,
         monitor: &Monitor,
-    ) -> Result<Run, Cancelled> {
+    ) -> Result<Finished, Cancelled> {
         let (leg, entrants) = &mut self.legs[winner.leg];
         let entrant = &mut entrants[winner.entrant];
         entrant.fate = Some(Fate::Won);
-        if self.settings.finish {
-            let Pairing { data, model } = leg.fine;
-            let rules = stage_rules(Stage::Finish, self.settings, data, model);
-            let points = Data::new(all_nodes(data, true));
-            let points = if entrant.start.flipped {
-                points.flipped()
-            } else {
-                points
-            };
-            entrant.run.enter_stage();
-            monitor.progress("finish", 0, None);
-            let cap = rules.max_iterations;
-            let run = &mut entrant.run;
-            advance(run, &points, (model, &rules), cap, &leg.frames, monitor)?;
+        let flipped = entrant.start.flipped;
+        if !self.settings.finish {
+            let rules = stage_rules(Stage::Refine, self.settings, leg.fine.data, leg.fine.model);
+            return Ok(Finished {
+                target_from_source: winner.target_from_source,
+                run: entrant.run.clone(),
+                data_side: leg.data_side(),
+                flipped,
+                floor: rules.selection.floor,
+            });
         }
-        Ok(entrant.run.clone())
+        let swaps = self.settings.data_side == DataSide::Auto && finishes_swapped(leg.fine);
+        let (pairing, mut frames) = (leg.fine, leg.frames);
+        let pairing = if swaps {
+            frames.data_is_target = !frames.data_is_target;
+            pairing.swapped()
+        } else {
+            pairing
+        };
+        let rules = stage_rules(Stage::Finish, self.settings, pairing.data, pairing.model);
+        let mut points = Data::new(all_nodes(pairing.data, true));
+        if flipped {
+            points = points.flipped();
+        }
+        let run = &mut entrant.run;
+        run.enter_stage();
+        if swaps {
+            run.model_from_data = run.model_from_data.inverse();
+        }
+        monitor.progress("finish", 0, None);
+        let cap = rules.max_iterations;
+        advance(run, &points, (pairing.model, &rules), cap, &frames, monitor)?;
+        let finished = Finished {
+            target_from_source: frames.target_from_source(&run.model_from_data),
+            run: run.clone(),
+            data_side: frames.data_side(),
+            flipped,
+            floor: rules.selection.floor,
+        };
+        // The story of the start is told in the roles it was run in.
+        if swaps {
+            run.model_from_data = run.model_from_data.inverse();
+        }
+        Ok(finished)
     }
 
     pub(crate) fn n_starts(&self) -> usize {
@@ -259,4 +301,12 @@ fn natural_data_side(source: &Surface, target: &Surface) -> Side {
     } else {
         Side::Target
     }
+}
+
+/// True if the finish is more exact with the roles exchanged: facets of the finer mesh lie closer
+/// to the smooth surface, so the coarser mesh should be the data, as long as half of it is covered.
+fn finishes_swapped(pairing: Pairing<'_>) -> bool {
+    let (data, model) = (pairing.data.measures(), pairing.model.measures());
+    let model_is_coarser = model.mean_edge_length > 1.2 * data.mean_edge_length;
+    model_is_coarser && data.area > 0.5 * model.area
 }

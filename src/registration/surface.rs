@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::RegistrationError;
 use crate::geometry::{Matrix3, Point3, Topology, TriMesh, Vector3, orient_consistently, weld};
-use crate::search::{Bvh, ClosestPoint, Feature, SurfaceHit};
+use crate::search::{Bvh, Feature, PointTree, SurfaceHit};
 
 /// Triangles that meet at more than this angle form a sharp edge, which stays flat-sided.
 const SHARP_EDGE_DEG: f64 = 40.0;
@@ -15,8 +15,8 @@ const SHARP_EDGE_DEG: f64 = 40.0;
 pub struct Surface {
     mesh: Arc<TriMesh>,
     bvh: Bvh,
-    /// One degenerate triangle per vertex: the tree for nearest nodes, made when first asked for.
-    node_bvh: OnceLock<Bvh>,
+    /// The tree for nearest nodes, made when first asked for.
+    nodes: OnceLock<PointTree>,
     vertex_of: Vec<u32>,
     n_turned: usize,
     vertex_normals: Vec<Vector3>,
@@ -70,7 +70,7 @@ impl Surface {
         let (border_edges, border_vertices) = borders(&mesh, &topology);
         Ok(Self {
             bvh,
-            node_bvh: OnceLock::new(),
+            nodes: OnceLock::new(),
             vertex_of: welded.vertex_of,
             n_turned,
             vertex_normals: mesh.vertex_normals(),
@@ -169,14 +169,11 @@ impl Surface {
         max_distance: f64,
         hint: Option<u32>,
     ) -> Option<(u32, f64)> {
-        let tree = self.node_bvh.get_or_init(|| {
-            let points = (0..self.mesh.n_vertices() as u32).map(|v| [v; 3]).collect();
-            let cloud = TriMesh::new(self.mesh.positions().to_vec(), points)
-                .expect("every index names a vertex");
-            Bvh::build(cloud)
-        });
-        let hit = tree.closest(query, max_distance, hint, None)?;
-        Some((hit.triangle, hit.distance_sq))
+        let tree = self
+            .nodes
+            .get_or_init(|| PointTree::build(self.mesh.positions().to_vec()));
+        let found = tree.nearest(query, max_distance, hint)?;
+        Some((found.index, found.distance_sq))
     }
 }
 

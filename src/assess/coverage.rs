@@ -1,0 +1,125 @@
+use rayon::prelude::*;
+
+use crate::geometry::{Point3, Similarity};
+use crate::monitor::{Cancelled, Monitor};
+use crate::registration::Surface;
+use crate::search::ClosestPoint;
+
+/// Distances of the nodes of one mesh from the triangles of the other, weighted by area.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OneSided {
+    /// Share of this mesh's area that lies within the limit of the other mesh; the denominator is
+    /// this mesh's own area.
+    pub overlap: f64,
+    /// Root mean square distance within the overlap.
+    pub rmse: f64,
+    /// Distance below which 95 % of the overlap's area lies.
+    pub p95: f64,
+    /// Largest distance within the overlap.
+    pub max: f64,
+    /// Largest distance of any node, overlap or not.
+    pub max_anywhere: f64,
+}
+
+/// Both directions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coverage {
+    /// Source nodes against target triangles.
+    pub source_on_target: OneSided,
+    /// Target nodes against source triangles.
+    pub target_on_source: OneSided,
+    /// Distance up to which a place counts as covered, in target length units.
+    pub limit: f64,
+}
+
+impl Coverage {
+    /// Overlap of the part that is covered better: 1 if one contains the other.
+    pub fn better_overlap(&self) -> f64 {
+        let (a, b) = (self.source_on_target.overlap, self.target_on_source.overlap);
+        a.max(b)
+    }
+
+    /// The larger root mean square distance of both directions.
+    pub fn rmse(&self) -> f64 {
+        self.source_on_target.rmse.max(self.target_on_source.rmse)
+    }
+
+    /// The larger 95th percentile of both directions.
+    pub fn p95(&self) -> f64 {
+        self.source_on_target.p95.max(self.target_on_source.p95)
+    }
+}
+
+/// Half the mean edge length of the coarser mesh, at least three times the faceting: beyond it a
+/// carried value would come from the wrong element.
+pub fn overlap_limit(source: &Surface, target: &Surface, allowance: f64) -> f64 {
+    let (a, b) = (source.measures(), target.measures());
+    let edge = a.mean_edge_length.max(b.mean_edge_length);
+    let chordal = a.chordal_error.max(b.chordal_error);
+    (0.5 * edge).max(3.0 * chordal) + allowance
+}
+
+/// Measures all nodes of both meshes under a pose.
+pub fn coverage(
+    source: &Surface,
+    target: &Surface,
+    target_from_source: &Similarity,
+    limit: f64,
+    monitor: &Monitor,
+) -> Result<Coverage, Cancelled> {
+    let back = target_from_source.inverse();
+    let scale = target_from_source.scale;
+    Ok(Coverage {
+        source_on_target: one_sided(source, target, target_from_source, limit, 1.0, monitor)?,
+        target_on_source: one_sided(target, source, &back, limit, scale, monitor)?,
+        limit,
+    })
+}
+
+/// Nodes per question to the monitor.
+const CHUNK: usize = 4096;
+
+/// `unit` turns distances measured in the model's frame into target lengths.
+fn one_sided(
+    data: &Surface,
+    model: &Surface,
+    model_from_data: &Similarity,
+    limit: f64,
+    unit: f64,
+    monitor: &Monitor,
+) -> Result<OneSided, Cancelled> {
+    let distance = |point: &Point3| {
+        let moved = model_from_data.apply(point);
+        let hit = model.bvh().closest(&moved, f64::INFINITY, None, None);
+        hit.map_or(f64::INFINITY, |hit| hit.distance_sq.sqrt() * unit)
+    };
+    let mut measured: Vec<(f64, f64)> = Vec::with_capacity(data.mesh().n_vertices());
+    let nodes = data.mesh().positions().chunks(CHUNK);
+    for (points, areas) in nodes.zip(data.vertex_areas().chunks(CHUNK)) {
+        monitor.check()?;
+        let found: Vec<f64> = points.par_iter().with_min_len(256).map(distance).collect();
+        measured.extend(found.into_iter().zip(areas.iter().copied()));
+    }
+    measured.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let total: f64 = measured.iter().map(|(_, area)| area).sum();
+    let n_within = measured.partition_point(|(distance, _)| *distance <= limit);
+    let within = &measured[..n_within];
+    let covered: f64 = within.iter().map(|(_, area)| area).sum();
+    let sum_sq: f64 = within.iter().map(|(d, area)| d * d * area).sum();
+    let mut running = 0.0;
+    let p95 = within.iter().find(|(_, area)| {
+        running += area;
+        running >= 0.95 * covered
+    });
+    Ok(OneSided {
+        overlap: if total > 0.0 { covered / total } else { 0.0 },
+        rmse: if covered > 0.0 {
+            (sum_sq / covered).sqrt()
+        } else {
+            0.0
+        },
+        p95: p95.map_or(0.0, |(distance, _)| *distance),
+        max: within.last().map_or(0.0, |(distance, _)| *distance),
+        max_anywhere: measured.last().map_or(0.0, |(distance, _)| *distance),
+    })
+}
