@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
 
+mod deck_out;
 mod keyword;
 mod layering;
 mod mesh_files;

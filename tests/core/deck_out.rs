@@ -1,0 +1,183 @@
+//! A model written as a deck and read again is the same model, in every width of columns.
+
+use std::path::Path;
+
+use proptest::prelude::*;
+use shapematch::formats::keyword::write::{WriteOptions, write};
+use shapematch::formats::model::{
+    Nodes, Part, Section, Set, Shell, ShellExtra, Solid, SolidKind, StrainPoint, StressPoint,
+};
+use shapematch::formats::moved::moved;
+use shapematch::formats::{Memory, Model, ReadOptions, read_from};
+use shapematch::geometry::{Point3, Pose, Similarity, Vector3};
+use shapematch::monitor::Monitor;
+
+fn again(model: &Model) -> Model {
+    let bytes = write(model, &WriteOptions::default(), &Monitor::silent()).unwrap();
+    let source = Memory::new().with("out.k", bytes);
+    let options = ReadOptions::default();
+    let back = read_from(&source, Path::new("out.k"), &options, &Monitor::silent()).unwrap();
+    let findings: Vec<String> = back.diagnostics.iter().map(ToString::to_string).collect();
+    assert!(findings.is_empty(), "{}", findings.join("\n"));
+    back
+}
+
+/// One of everything; ids begin at `first`.
+fn everything(first: u64) -> Model {
+    let positions: Vec<Point3> = (0..16)
+        .map(|i| {
+            Point3::new(
+                f64::from(i) * 0.1,
+                f64::from(i * i) * 1e-3,
+                1.0 / f64::from(i + 3),
+            )
+        })
+        .collect();
+    let ids = (first..first + 16).collect();
+    let mut model = Model {
+        title: "all there is".into(),
+        nodes: Nodes::new(ids, positions).0,
+        ..Model::default()
+    };
+    let part = |id: u64| Part {
+        id,
+        title: format!("part {id}"),
+        section_id: 3,
+        thickness: Some([1.25, 1.25, 1.5, 1.25]),
+        is_defined: true,
+    };
+    model.parts = vec![part(1), part(2)];
+    model.parts[1].section_id = 0;
+    model.parts[1].thickness = None;
+    model.sections = vec![Section {
+        id: 3,
+        thickness: [1.25, 1.25, 1.5, 1.25],
+    }];
+    let shell = |n: u64, nodes: [u32; 4]| Shell {
+        id: first + n,
+        nodes,
+        part: 0,
+    };
+    model.shells = vec![
+        shell(0, [0, 1, 2, 3]),
+        shell(1, [4, 5, 6, 6]),
+        shell(2, [8, 9, 10, 11]),
+        shell(3, [1, 2, 3, 3]),
+    ];
+    model.mid_side = vec![(2, [12, 13, 14, 15])];
+    let extra = |shell: u32, beta: f64| ShellExtra {
+        shell,
+        thickness: [1.1, 1.2, 1.3, 1.4],
+        beta,
+    };
+    model.shell_extras = vec![extra(0, 0.0), extra(2, 30.0)];
+    let solid = |n: u64, kind: SolidKind| Solid {
+        id: first + n,
+        nodes: [0, 1, 2, 3, 4, 5, 6, 7],
+        part: 1,
+        kind,
+    };
+    model.solids = vec![
+        solid(10, SolidKind::Solid),
+        solid(11, SolidKind::ThickShell),
+    ];
+    let set = |ids: &[u64]| Set {
+        title: "a set".into(),
+        ids: ids.to_vec(),
+    };
+    model.sets.parts.insert(5, set(&[1, 2]));
+    model
+        .sets
+        .nodes
+        .insert(6, set(&(first..first + 11).collect::<Vec<_>>()));
+    model.sets.shells.insert(7, set(&[first, first + 1]));
+    let stress = |t: f64| StressPoint {
+        t,
+        stress: [1.5, -2.25e-4, 3e7, 0.1, 1.0 / 3.0, -1e-12],
+        plastic_strain: 0.123,
+    };
+    let history: Vec<f64> = (0..14).map(|i| f64::from(i) / 7.0).collect();
+    model
+        .forming
+        .add_stress(first, 1, &[stress(-1.0), stress(1.0)], &history)
+        .unwrap();
+    let strain = StrainPoint {
+        t: 1.0,
+        strain: [0.01, 0.02, -0.03, 1e-5, 0.0, 0.5],
+    };
+    model.forming.add_strain(first + 1, 1, &[strain; 3]);
+    model
+}
+
+#[track_caller]
+fn same(a: &Model, b: &Model) {
+    assert_eq!(a.title, b.title);
+    assert_eq!(a.nodes.ids(), b.nodes.ids());
+    for (a, b) in a.nodes.positions().iter().zip(b.nodes.positions()) {
+        assert!(
+            (a - b).norm() <= 1e-14 * a.coords.norm().max(1.0),
+            "{a} {b}"
+        );
+    }
+    assert_eq!(a.shells, b.shells);
+    assert_eq!(a.shell_extras, b.shell_extras);
+    assert_eq!(a.mid_side, b.mid_side);
+    assert_eq!(a.solids, b.solids);
+    assert_eq!(a.parts, b.parts);
+    assert_eq!(a.sets, b.sets);
+    assert_eq!(a.forming.n_stress(), b.forming.n_stress());
+    assert_eq!(a.forming.n_strain(), b.forming.n_strain());
+    for (a, b) in a.forming.stresses().zip(b.forming.stresses()) {
+        assert_eq!(
+            (a.element_id, a.n_plane, a.n_history),
+            (b.element_id, b.n_plane, b.n_history)
+        );
+        for (a, b) in a.points.iter().zip(b.points) {
+            assert_eq!((a.t, a.plastic_strain), (b.t, b.plastic_strain));
+            for (a, b) in a.stress.iter().zip(b.stress) {
+                assert!((a - b).abs() <= 1e-14 * a.abs().max(1.0), "{a} {b}");
+            }
+        }
+        for (a, b) in a.history.iter().zip(b.history) {
+            assert!((a - b).abs() <= 1e-14, "{a} {b}");
+        }
+    }
+    for (a, b) in a.forming.strains().zip(b.forming.strains()) {
+        assert_eq!(a, b);
+    }
+}
+
+#[test]
+fn everything_comes_back_in_every_width() {
+    for first in [1, 100_000_000, 20_000_000_000] {
+        let model = everything(first);
+        same(&model, &again(&model));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn a_moved_deck_read_again_is_the_moved_model(
+        shift in proptest::array::uniform3(-5000.0..5000.0f64),
+        turn in proptest::array::uniform3(-3.0..3.0f64),
+    ) {
+        let motion = Similarity::from(Pose::new(Vector3::from(shift), Vector3::from(turn)));
+        let expected = moved(&everything(1), &motion);
+        let back = again(&expected);
+        prop_assert_eq!(expected.nodes.ids(), back.nodes.ids());
+        for (a, b) in expected.nodes.positions().iter().zip(back.nodes.positions()) {
+            prop_assert!((a - b).norm() <= 1e-10, "{} {}", a, b);
+        }
+        let home = moved(&back, &motion.inverse());
+        let before = everything(1);
+        for (a, b) in home.forming.stresses().zip(before.forming.stresses()) {
+            for (a, b) in a.points.iter().zip(b.points) {
+                for (a, b) in a.stress.iter().zip(b.stress) {
+                    prop_assert!((a - b).abs() <= 1e-6, "{} {}", a, b);
+                }
+            }
+        }
+    }
+}
