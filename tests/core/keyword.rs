@@ -41,11 +41,11 @@ impl FileSource for DataFolder {
 }
 
 pub fn read_text(text: impl Into<Vec<u8>>) -> Model {
-    read_files(Memory::new().with("main.k", text))
+    read_files(&Memory::new().with("main.k", text))
 }
 
-fn read_files(files: Memory) -> Model {
-    try_read(&files, "main.k").unwrap()
+fn read_files(files: &Memory) -> Model {
+    try_read(files, "main.k").unwrap()
 }
 
 fn try_read(source: &dyn FileSource, path: &str) -> Result<Model, FormatError> {
@@ -111,6 +111,10 @@ fn dump(model: &Model) -> String {
             writeln!(text, "{kind} set {id} {:?} {:?}", set.title, set.ids).unwrap();
         }
     }
+    for motion in &model.motions {
+        let (at, id, n) = (&motion.position, motion.transformation, motion.n_nodes);
+        writeln!(text, "moved by {id}: {n} nodes, {at}").unwrap();
+    }
     for stress in model.forming.stresses() {
         writeln!(text, "stress {stress:?}").unwrap();
     }
@@ -175,4 +179,369 @@ fn a_deck_cut_off_anywhere_is_read_without_panic() {
             }
         }
     }
+}
+
+/// The cases in which public readers hang, drop elements or give wrong numbers.
+mod gaps {
+    use super::*;
+
+    const SHELL: &str = "*ELEMENT_SHELL\n       1       1       1       2       3       4\n";
+
+    fn check(nodes: &str) {
+        let model = read_text(format!("*KEYWORD\n{nodes}{SHELL}*END\n"));
+        assert_eq!(
+            kinds(&model),
+            [DiagnosticKind::UndefinedPart],
+            "{}",
+            dump(&model)
+        );
+        assert_eq!(model.nodes.ids(), [1, 2, 3, 4]);
+        let surface = model.surface(&Selection::All).unwrap();
+        assert_eq!(surface.mesh.n_triangles(), 2);
+        assert!((surface.mesh.area() - 1.5e-3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn fortran_exponents() {
+        check(concat!(
+            "*NODE\n       1           0.0-3           0.0d0           0.0+0\n",
+            "       2           1.5-3           0.0d0           0.0+0\n",
+            "       3           1.5-3           1.0d0           0.0+0\n",
+            "       4             0.0          10.d-1              0.\n",
+        ));
+    }
+
+    #[test]
+    fn comma_lines() {
+        check("*NODE\n1,0,0,0\n2,1.5e-3,,\n3, 1.5e-3, 1.0, 0.0, 0, 0\n4,,1.\n");
+    }
+
+    #[test]
+    fn i10_suffix() {
+        check(concat!(
+            "*NODE %\n         1             0.0             0.0             0.0\n",
+            "         2          1.5E-3             0.0             0.0         0         0\n",
+            "         3          1.5E-3             1.0             0.0\n",
+            "         4             0.0             1.0             0.0\n",
+        ));
+    }
+
+    #[test]
+    fn long_keyword_line() {
+        let wide = |values: &[&str]| -> String {
+            let fields: String = values.iter().map(|v| format!("{v:>20}")).collect();
+            fields + "\n"
+        };
+        let nodes = [
+            ["1", "0", "0", "0"],
+            ["2", "1.5e-3", "0", "0"],
+            ["3", "1.5e-3", "1", "0"],
+        ];
+        let mut deck = "*KEYWORD LONG=Y\n*NODE\n".to_owned();
+        nodes.iter().for_each(|node| deck += &wide(node));
+        deck += &wide(&["4", "0", "1", "0"]);
+        deck += "*ELEMENT_SHELL\n";
+        deck += &wide(&["1", "1", "1", "2", "3", "4"]);
+        let model = read_text(deck);
+        assert_eq!(model.shells.len(), 1);
+        assert!((model.surface(&Selection::All).unwrap().mesh.area() - 1.5e-3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn keywords_in_lower_case() {
+        let deck = "*keyword\n*node\n1,0,0,0\n2,1,0,0\n3,1,1,0\n*element_shell\n1,1,1,2,3\n*end\n";
+        let model = read_text(deck);
+        assert_eq!((model.nodes.len(), model.shells.len()), (3, 1));
+    }
+
+    #[test]
+    fn thickness_cards_are_no_elements_and_none_is_dropped() {
+        let nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n";
+        let shells =
+            "1,1,1,2,3,4\n1.0,1.0,1.0,1.0\n$ between\n2,1,1,2,3\n2.0,2.0,2.0\n3,1,2,3,4\n1,1,1,1\n";
+        let model = read_text(format!("{nodes}*ELEMENT_SHELL_THICKNESS\n{shells}"));
+        let ids: Vec<u64> = model.shells.iter().map(|shell| shell.id).collect();
+        assert_eq!(ids, [1, 2, 3]);
+        assert_eq!(model.shell_thickness(1), Some([2.0, 2.0, 2.0, 0.0]));
+    }
+
+    #[test]
+    fn line_ends_comments_and_missing_constraints() {
+        check(concat!(
+            "*NODE\r\n$ one\r\n       1             0.0             0.0             0.0\r\n$ two\r\n",
+            "       2          0.0015             0.0             0.0       0       0\r\n",
+            "       3          0.0015             1.0             0.0\r\n",
+            "       4             0.0             1.0\r\n",
+        ));
+    }
+}
+
+/// A deck of `n` strips of quads, large enough to be read in pieces.
+fn large_deck(n: usize, thickness: bool, mid_side_at: Option<usize>) -> String {
+    let mut deck = "*KEYWORD\n*NODE\n".to_owned();
+    for i in 0..=n {
+        let x = i as f64 * 0.37;
+        for (row, y) in [0.0, 1.25].into_iter().enumerate() {
+            let id = 2 * i + row + 1;
+            writeln!(deck, "{id:8}{x:16.7}{y:16.7}{:16.7}{:8}{:8}", x.sin(), 0, 0).unwrap();
+            if i % 97 == 0 {
+                deck += "$ a comment between the nodes\n";
+            }
+        }
+    }
+    deck += if thickness {
+        "*ELEMENT_SHELL_THICKNESS\n"
+    } else {
+        "*ELEMENT_SHELL\n"
+    };
+    for i in 0..n {
+        let (a, part) = (2 * i + 1, 1 + i / 1000);
+        write!(
+            deck,
+            "{:8}{part:8}{a:8}{:8}{:8}{:8}",
+            i + 1,
+            a + 2,
+            a + 3,
+            a + 1
+        )
+        .unwrap();
+        let has_mid_side = mid_side_at == Some(i);
+        deck += if has_mid_side {
+            "       1       2       3       4\n"
+        } else {
+            "\n"
+        };
+        if thickness {
+            if i % 53 == 0 {
+                deck += "$#         thic1           thic2\n";
+            }
+            let t = 1.0 + i as f64 * 1e-5;
+            writeln!(deck, "{t:16.9}{t:16.9}{t:16.9}{t:16.9}").unwrap();
+            if has_mid_side {
+                writeln!(deck, "{t:16.9}{t:16.9}{t:16.9}{t:16.9}").unwrap();
+            }
+        }
+    }
+    deck += "\n*END\n";
+    deck
+}
+
+#[test]
+fn large_blocks_are_read_in_pieces_and_nothing_is_lost_at_the_cuts() {
+    let n = 30_000;
+    for (thickness, mid_side) in [(false, None), (true, None), (true, Some(17_123))] {
+        let deck = large_deck(n, thickness, mid_side);
+        assert!(deck.len() > 3 << 20);
+        let model = read_text(deck);
+        assert_eq!(kinds(&model), [DiagnosticKind::UndefinedPart; 20]);
+        assert_eq!((model.nodes.len(), model.shells.len()), (2 * n + 2, n));
+        assert_eq!(model.mid_side.len(), usize::from(mid_side.is_some()));
+        assert_eq!(model.shell_extras.len(), if thickness { n } else { 0 });
+        for (i, shell) in model.shells.iter().enumerate() {
+            let a = 2 * i as u32;
+            assert_eq!(
+                (shell.id, shell.nodes),
+                (i as u64 + 1, [a, a + 2, a + 3, a + 1])
+            );
+            assert_eq!(model.parts[shell.part as usize].id, 1 + i as u64 / 1000);
+            if thickness {
+                let expected = format!("{:.9}", 1.0 + i as f64 * 1e-5).parse().unwrap();
+                assert_eq!(model.shell_thickness(i as u32), Some([expected; 4]));
+            }
+        }
+        let last = model.nodes.positions()[2 * n];
+        assert_eq!(
+            last.x,
+            format!("{:.7}", n as f64 * 0.37).parse::<f64>().unwrap()
+        );
+    }
+}
+
+#[test]
+fn findings_in_large_blocks_have_their_line() {
+    let mut deck = large_deck(30_000, true, None);
+    let wanted = format!("{:8}{:8}{:8}", 25_001, 26, 50_001);
+    let at = deck.find(&wanted).unwrap();
+    deck.replace_range(at + 16..at + 24, "99999999");
+    let line = deck[..at].lines().count() as u64 + 1;
+    let model = read_text(deck);
+    let finding = first(&model, DiagnosticKind::MissingNode);
+    assert_eq!(finding.position.as_ref().unwrap().line, line);
+    assert!(finding.message.contains("25001") && finding.message.contains("99999999"));
+    assert_eq!(model.shells.len(), 29_999);
+    // The thickness stays with its shell when a shell before it is left out.
+    let last = model.shell_thickness(29_998).unwrap();
+    assert_eq!(
+        last[0],
+        format!("{:.9}", 1.0 + 29_999.0 * 1e-5)
+            .parse::<f64>()
+            .unwrap()
+    );
+}
+
+#[test]
+fn a_million_broken_lines_cost_no_memory() {
+    let deck = format!("*NODE\n{}", "       x\n".repeat(200_000));
+    let model = read_text(deck);
+    assert_eq!(model.diagnostics.count(DiagnosticKind::BadField), 200_000);
+    assert_eq!(model.diagnostics.iter().count(), 20);
+    assert_eq!(
+        first(&model, DiagnosticKind::BadField)
+            .position
+            .as_ref()
+            .unwrap()
+            .line,
+        2
+    );
+}
+
+#[test]
+fn reading_can_be_cancelled() {
+    let monitor = Monitor::silent();
+    monitor.request_cancel();
+    let files = Memory::new().with("main.k", large_deck(100, false, None));
+    let read = formats::read_from(
+        &files,
+        Path::new("main.k"),
+        &ReadOptions::default(),
+        &monitor,
+    );
+    assert!(matches!(read, Err(FormatError::Cancelled(_))));
+}
+
+#[test]
+fn a_missing_or_binary_file_is_named() {
+    let files = Memory::new().with("dynain", [8u8, 8, 8, 1, 1, 0, 0, 0].repeat(9));
+    let missing = try_read(&files, "none.k").unwrap_err();
+    assert!(missing.to_string().contains("none.k"), "{missing}");
+    let binary = try_read(&files, "dynain").unwrap_err();
+    assert!(binary.to_string().contains("binary dynain"), "{binary}");
+}
+
+#[test]
+fn includes_that_double_at_every_level_come_to_an_end() {
+    let mut files = Memory::new().with("main.k", "*INCLUDE\n1.k\n1.k\n");
+    for level in 1..40 {
+        let text = format!("*INCLUDE\n{n}.k\n{n}.k\n", n = level + 1);
+        files = files.with(format!("{level}.k"), text);
+    }
+    let model = read_files(&files);
+    assert!(model.diagnostics.count(DiagnosticKind::IncludeCycle) > 0);
+}
+
+#[test]
+fn selections_choose_what_they_name() {
+    let model = try_read(&DataFolder, "sets.k").unwrap();
+    let area = |selection| model.surface(&selection).map(|surface| surface.mesh.area());
+    assert_eq!(area(Selection::Parts(vec![7])), Ok(200.0));
+    assert_eq!(area(Selection::Parts(vec![7, 8])), Ok(400.0));
+    assert_eq!(area(Selection::PartSet(3)), Ok(200.0));
+    assert_eq!(area(Selection::ShellSet(1)), Ok(200.0));
+    assert_eq!(area(Selection::NodeSet(3)), Ok(400.0));
+    let refused = [
+        (Selection::Parts(vec![9]), "there is no part 9"),
+        (Selection::PartSet(9), "there is no part set 9"),
+        (
+            Selection::PartTitle("no".into()),
+            "there is no part with the title \"no\"",
+        ),
+        (
+            Selection::NodeSet(1),
+            "the selection holds no shell or solid with area",
+        ),
+    ];
+    for (selection, message) in refused {
+        assert_eq!(area(selection).unwrap_err().to_string(), message);
+    }
+    let titled = try_read(&DataFolder, "standard.k").unwrap();
+    let by_title = titled
+        .surface(&Selection::PartTitle(" floor PANEL ".into()))
+        .unwrap();
+    assert_eq!(by_title.mesh.n_triangles(), 4);
+    assert_eq!(by_title.triangle_element, [0, 0, 1, 1]);
+}
+
+#[test]
+fn solids_show_a_closed_skin_that_looks_outward() {
+    for deck in ["solids_old_layout.k", "thick_shells.k"] {
+        let model = try_read(&DataFolder, deck).unwrap();
+        let mesh = model.surface(&Selection::All).unwrap().mesh;
+        let volume: f64 = (0..mesh.n_triangles())
+            .map(|t| {
+                let [a, b, c] = mesh.corners(t).map(|p| p.coords);
+                a.dot(&b.cross(&c)) / 6.0
+            })
+            .sum();
+        assert!((volume - 2.0).abs() < 1e-12, "{deck}: {volume}");
+    }
+}
+
+/// Public decks, where a checkout has them.
+fn public_decks() -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
+    let root = std::env::var_os("SHAPEMATCH_TEST_DATA").map_or(beside, PathBuf::from);
+    Some(root.join("lsdyna")).filter(|folder| folder.is_dir())
+}
+
+/// Path below the folder, nodes and shells as its README counts them.
+fn counts_of_readme(folder: &Path) -> Vec<(String, usize, usize)> {
+    let readme = std::fs::read_to_string(folder.join("README.md")).unwrap();
+    let mut rows = Vec::new();
+    for line in readme.lines() {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let [_, file, _, nodes, shells, ..] = cells[..] else {
+            continue;
+        };
+        let shells = shells.split(' ').next().unwrap_or_default();
+        if let (Some((_, path)), Ok(nodes), Ok(shells)) =
+            (file.split_once(": "), nodes.parse(), shells.parse())
+        {
+            rows.push((path.to_owned(), nodes, shells));
+        }
+    }
+    rows
+}
+
+#[test]
+fn public_decks_are_read_with_their_nodes_and_shells() {
+    let Some(folder) = public_decks() else {
+        return;
+    };
+    let counts = counts_of_readme(&folder);
+    assert!(counts.len() > 40, "the README's table is understood");
+    let mut todo = vec![folder];
+    let mut wrong = Vec::new();
+    while let Some(path) = todo.pop() {
+        if path.is_dir() {
+            todo.extend(
+                std::fs::read_dir(path)
+                    .unwrap()
+                    .map(|entry| entry.unwrap().path()),
+            );
+            continue;
+        }
+        // Each file by itself: the table counts what stands in it.
+        let name = path.file_name().unwrap().to_str().unwrap();
+        let files = Memory::new().with(name, std::fs::read(&path).unwrap());
+        let Ok(model) = try_read(&files, name) else {
+            continue;
+        };
+        let _ = model.surface(&Selection::All);
+        let _ = formats::read(&path, &ReadOptions::default(), &Monitor::silent());
+        let text = path.to_str().unwrap();
+        let row = counts
+            .iter()
+            .find(|row| text.ends_with(&format!("/{}", row.0)));
+        let count = |kind| model.diagnostics.count(kind) as usize;
+        let broken = count(DiagnosticKind::MissingNode) + count(DiagnosticKind::DegenerateElement);
+        let got = (model.nodes.len(), model.shells.len() + broken);
+        if row.is_some_and(|row| row.1 != got.0 || row.2 > got.1) {
+            let found: Vec<String> = model.diagnostics.iter().map(ToString::to_string).collect();
+            wrong.push(format!(
+                "{text}: {got:?}, not {row:?}\n{}",
+                found.join("\n")
+            ));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

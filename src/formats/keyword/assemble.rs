@@ -27,6 +27,8 @@ pub(crate) struct Origin {
     range: Range<usize>,
     layout: Layout,
     elements: ElementOffsets,
+    /// Where the block ends of which the run is a piece.
+    block_end: usize,
     /// Index of the run's first node or element.
     first: usize,
 }
@@ -38,6 +40,7 @@ impl Origin {
             range: block.body.clone(),
             layout: block.layout,
             elements: context.elements(),
+            block_end: block.body.end,
             first: 0,
         }
     }
@@ -48,6 +51,14 @@ impl Origin {
             range,
             ..self.clone()
         }
+    }
+
+    /// How many more there will be in the block if it goes on as in this run, which has `n`.
+    fn n_expected(&self, n: usize) -> usize {
+        let rest = self.block_end.saturating_sub(self.range.start);
+        // One in fifty more than that, so that the estimate does not fail by a hair.
+        let n = (n as f64 * rest as f64 / self.range.len().max(1) as f64 * 1.02).ceil();
+        n as usize
     }
 
     fn block(&self) -> Block<'_> {
@@ -76,6 +87,13 @@ impl Origin {
     }
 }
 
+/// Makes room for the rest of a block at once: doubling would copy and hold up to twice as much.
+fn make_room<T>(list: &mut Vec<T>, n: usize, n_expected: usize) {
+    if list.capacity() - list.len() < n {
+        list.reserve(n_expected.max(n));
+    }
+}
+
 /// The origin of the node or element at `index`.
 fn origin_of(origins: &[Origin], index: usize) -> Option<&Origin> {
     let after = origins.partition_point(|origin| origin.first <= index);
@@ -86,7 +104,11 @@ fn origin_of(origins: &[Origin], index: usize) -> Option<&Origin> {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Motion {
     /// A unit factor on the coordinates of a file and those it includes.
-    Scale { nodes: Range<usize>, factor: f64 },
+    Scale {
+        nodes: Range<usize>,
+        factor: f64,
+        position: Position,
+    },
     /// The transformation of an include.
     Include {
         nodes: Range<usize>,
@@ -144,12 +166,11 @@ impl Assembly {
     pub(crate) fn add_nodes(&mut self, chunk: NodeChunk, mut origin: Origin) {
         origin.first = self.node_ids.len();
         self.tell_tabs(chunk.had_tabs, &origin);
-        if self.node_ids.is_empty() {
-            (self.node_ids, self.positions) = (chunk.ids, chunk.positions);
-        } else {
-            self.node_ids.extend(chunk.ids);
-            self.positions.extend(chunk.positions);
-        }
+        let n_expected = origin.n_expected(chunk.ids.len());
+        make_room(&mut self.node_ids, chunk.ids.len(), n_expected);
+        make_room(&mut self.positions, chunk.ids.len(), n_expected);
+        self.node_ids.extend(chunk.ids);
+        self.positions.extend(chunk.positions);
         self.found.append(chunk.diagnostics);
         self.node_origins.push(origin);
     }
@@ -158,6 +179,10 @@ impl Assembly {
         let first = self.shells.len();
         origin.first = first;
         self.tell_tabs(chunk.had_tabs, &origin);
+        let n_expected = origin.n_expected(chunk.shells.len());
+        make_room(&mut self.shells, chunk.shells.len(), n_expected);
+        let n_expected = origin.n_expected(chunk.extras.len());
+        make_room(&mut self.extras, chunk.extras.len(), n_expected);
         let parts = self.part_numbers(&chunk.parts);
         let moved = self.packed.append(chunk.packed);
         self.shells

@@ -26,7 +26,7 @@ use crate::monitor::{Cancelled, Monitor};
 /// Includes may be nested this deep.
 const MAX_DEPTH: usize = 64;
 /// So many files may be included; a deck that includes twice in each of many levels asks for more.
-const MAX_FILES: usize = 20_000;
+const MAX_FILES: usize = 5_000;
 
 /// Reads the deck at `path` and everything it includes. What cannot be understood is told in the
 /// model's diagnostics.
@@ -337,6 +337,7 @@ impl Reader<'_> {
             self.assembly.add_motion(Motion::Scale {
                 nodes: nodes.clone(),
                 factor: include.length,
+                position: file.position(include.at),
             });
         }
         if include.transformation != 0 {

@@ -5,10 +5,12 @@ use std::collections::{BTreeMap, HashMap};
 use rayon::prelude::*;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position};
-use super::super::model::{IdIndex, Model, Nodes, Set, Sets, Shell, ShellExtra, Solid, has_area};
+use super::super::model::{
+    AppliedMotion, IdIndex, Model, Nodes, Set, Sets, Shell, ShellExtra, Solid, has_area,
+};
 use super::assemble::{Assembly, Motion};
 use super::sets::{Members, SetKind, resolve_sets};
-use crate::geometry::{Matrix4, Point3};
+use crate::geometry::Matrix4;
 use crate::monitor::{Cancelled, Monitor};
 
 /// Marks a node that does not exist.
@@ -337,36 +339,58 @@ fn spread_node_thickness(assembly: &Assembly, model: &mut Model) {
 /// Carries out unit factors and transformations, the innermost include first.
 fn move_nodes(assembly: &mut Assembly, model: &mut Model) {
     for motion in std::mem::take(&mut assembly.motions) {
-        let (transformation, position) = match &motion {
-            Motion::Scale { nodes, factor } => {
-                let positions = &mut model.nodes.positions_mut()[nodes.clone()];
-                positions
-                    .iter_mut()
-                    .for_each(|point| point.coords *= *factor);
-                continue;
-            }
-            Motion::Include {
-                transformation,
-                position,
-                ..
-            }
-            | Motion::NodeSet {
-                transformation,
-                position,
-                ..
-            } => (*transformation, position.clone()),
-        };
-        let matrix = match matrix(assembly, model, transformation) {
-            Ok(matrix) => matrix,
-            Err(reason) => {
-                let message = format!("transformation {transformation} {reason}");
-                let finding = Diagnostic::new(DiagnosticKind::BadTransformation, message);
-                assembly.found.push(finding.at(position));
-                continue;
-            }
-        };
-        apply(model, &motion, &matrix, assembly);
+        if let Err(finding) = move_some(assembly, model, &motion) {
+            assembly.found.push(finding);
+        }
     }
+}
+
+fn move_some(assembly: &Assembly, model: &mut Model, motion: &Motion) -> Result<(), Diagnostic> {
+    let (position, id, matrix) = match motion {
+        Motion::Scale {
+            factor, position, ..
+        } => (position, 0, Ok(Matrix4::new_scaling(*factor))),
+        Motion::Include {
+            transformation: id,
+            position,
+            ..
+        }
+        | Motion::NodeSet {
+            transformation: id,
+            position,
+            ..
+        } => (position, *id, matrix(assembly, model, *id)),
+    };
+    let failed = |kind, message: String| Diagnostic::new(kind, message).at(position.clone());
+    let matrix = matrix.map_err(|reason| {
+        let message = format!("transformation {id} {reason}");
+        failed(DiagnosticKind::BadTransformation, message)
+    })?;
+    let indices: Vec<usize> = match motion {
+        Motion::Scale { nodes, .. } | Motion::Include { nodes, .. } => nodes.clone().collect(),
+        Motion::NodeSet { set, .. } => {
+            let members = model.sets.nodes.get(set).ok_or_else(|| {
+                let message = format!("node set {set} is not defined");
+                failed(DiagnosticKind::BadSet, message)
+            })?;
+            let known = members
+                .ids
+                .iter()
+                .filter_map(|&id| model.nodes.index_of(id));
+            known.map(|index| index as usize).collect()
+        }
+    };
+    let positions = model.nodes.positions_mut();
+    for &index in &indices {
+        positions[index] = matrix.transform_point(&positions[index]);
+    }
+    model.motions.push(AppliedMotion {
+        position: position.clone(),
+        transformation: id,
+        matrix,
+        n_nodes: indices.len(),
+    });
+    Ok(())
 }
 
 fn matrix(assembly: &Assembly, model: &Model, id: u64) -> Result<Matrix4, String> {
@@ -379,32 +403,6 @@ fn matrix(assembly: &Assembly, model: &Model, id: u64) -> Result<Matrix4, String
         Ok(matrix)
     } else {
         Err("cannot be carried out: it is not finite".to_owned())
-    }
-}
-
-fn apply(model: &mut Model, motion: &Motion, matrix: &Matrix4, assembly: &mut Assembly) {
-    let moved = |point: &mut Point3| *point = matrix.transform_point(point);
-    match motion {
-        Motion::Scale { .. } => {}
-        Motion::Include { nodes, .. } => {
-            model.nodes.positions_mut()[nodes.clone()]
-                .iter_mut()
-                .for_each(moved);
-        }
-        Motion::NodeSet { set, position, .. } => {
-            let Some(ids) = model.sets.nodes.get(set).map(|set| set.ids.clone()) else {
-                let message = format!("node set {set} is not defined");
-                let finding = Diagnostic::new(DiagnosticKind::BadSet, message);
-                assembly.found.push(finding.at(position.clone()));
-                return;
-            };
-            for id in ids {
-                let Some(index) = model.nodes.index_of(id) else {
-                    continue;
-                };
-                moved(&mut model.nodes.positions_mut()[index as usize]);
-            }
-        }
     }
 }
 

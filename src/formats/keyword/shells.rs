@@ -1,5 +1,6 @@
 //! `*ELEMENT_SHELL` with all its options.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
@@ -67,6 +68,7 @@ impl PackedIds {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct PartIds {
     pub ids: Vec<u64>,
+    index_of: HashMap<u64, u32>,
     last: u32,
 }
 
@@ -74,11 +76,11 @@ impl PartIds {
     #[inline]
     pub(crate) fn index(&mut self, id: u64) -> u32 {
         if self.ids.get(self.last as usize) != Some(&id) {
-            let known = self.ids.iter().position(|&known| known == id);
-            self.last = known.unwrap_or_else(|| {
-                self.ids.push(id);
-                self.ids.len() - 1
-            }) as u32;
+            let ids = &mut self.ids;
+            self.last = *self.index_of.entry(id).or_insert_with(|| {
+                ids.push(id);
+                (ids.len() - 1) as u32
+            });
         }
         self.last
     }

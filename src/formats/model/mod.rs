@@ -12,8 +12,8 @@ pub use index::IdIndex;
 pub(crate) use surface::has_area;
 pub use surface::{PartSummary, Selection, SelectionError, Surface};
 
-use super::diagnostic::Diagnostics;
-use crate::geometry::{Point3, TriMesh};
+use super::diagnostic::{Diagnostics, Position};
+use crate::geometry::{Matrix4, Point3, TriMesh};
 
 /// Nodes in the order of the files, found by id.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -183,6 +183,19 @@ pub struct Sets {
     pub nodes: BTreeMap<u64, Set>,
 }
 
+/// A motion of nodes that the deck asked for and that was carried out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AppliedMotion {
+    /// Where the deck asks for it.
+    pub position: Position,
+    /// `TRANID`; 0 for the unit factor of an include.
+    pub transformation: u64,
+    /// What was done to the nodes, for column vectors.
+    pub matrix: Matrix4,
+    /// How many nodes were moved.
+    pub n_nodes: usize,
+}
+
 /// A file that was read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReadFile {
@@ -216,8 +229,10 @@ pub struct Model {
     pub sections: Vec<Section>,
     /// Sets of parts, shells and nodes.
     pub sets: Sets,
-    /// Forming results.
+    /// Forming results, as the files have them: tensors are in the frame of their file.
     pub forming: Forming,
+    /// Motions that includes and `*NODE_TRANSFORM` brought, in the order they were carried out.
+    pub motions: Vec<AppliedMotion>,
     /// What could not be understood.
     pub diagnostics: Diagnostics,
     /// The files that were read, the one asked for first.
