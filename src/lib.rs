@@ -15,14 +15,18 @@
 //! - [`samples`]: generated pairs of sheet parts with a known pose.
 //! - [`report`]: the matrix in all its forms, LS-DYNA cards, the record of a run.
 //! - [`pipeline`]: load, reduce, match, export, as one call each.
+//! - [`jobs`]: the worker thread of the window: stop, cancel, events.
+//! - [`app`]: the window without the window: state, commands, undo.
 //! - `render` (feature `gui`): scenes into pictures with wgpu.
 //!
 //! `ARCHITECTURE.md` says who may use whom.
 
+pub mod app;
 pub mod assess;
 pub mod colormap;
 pub mod formats;
 pub mod geometry;
+pub mod jobs;
 pub mod monitor;
 pub mod pipeline;
 pub mod registration;

@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
 
+mod app;
 mod deck_out;
+mod jobs;
 mod keyword;
 mod layering;
 mod mesh_files;

@@ -1,0 +1,258 @@
+use crate::app::state::Starts;
+use crate::app::{AppState, BottomTab, Effect, MatchCommand, MatchResult, NoticeLevel, facts};
+use crate::jobs::{
+    JobKey, JobKind, MatchInput, MatchRecipe, MatchRun, MeasureInput, Measurement, Stamp,
+    StartPose, SweepSettings, SweepTable,
+};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A run that took longer is worth a word to the desktop.
+const LONG_RUN: Duration = Duration::from_secs(10);
+
+impl AppState {
+    pub(super) fn apply_match(&mut self, command: MatchCommand) -> Vec<Effect> {
+        match command {
+            MatchCommand::SetRecipe(recipe) => self.set_recipe(*recipe),
+            MatchCommand::Align => return self.start_with_input(JobKind::Align),
+            MatchCommand::ShowStart(index) => self.show_start(index),
+            MatchCommand::StepStart(direction) => self.step_start(direction),
+            MatchCommand::UseStart(index) => self.use_start(index),
+            MatchCommand::Run => return self.run_match(),
+            MatchCommand::Stop => return self.stop_run(),
+            MatchCommand::Cancel => return self.cancel_run(),
+            MatchCommand::ShowAlternative(index) => self.show_alternative(index),
+            MatchCommand::FlipAlternative => self.flip_alternative(),
+            MatchCommand::Measure => return self.measure(),
+            MatchCommand::Sweep(settings) => return self.run_sweep(settings),
+        }
+        Vec::new()
+    }
+
+    fn set_recipe(&mut self, recipe: MatchRecipe) {
+        if self.is_unlocked().is_ok() {
+            // A slider sends many recipes; they are one step until something else happens.
+            let gesture = self.recipe_gesture();
+            self.commit_in("Match settings", Some(gesture), |d| d.recipe = recipe);
+        }
+    }
+
+    /// The inputs of a match: the settings with the ceilings of the chosen levels.
+    fn match_input(&self) -> Option<MatchInput> {
+        self.can_match().ok()?;
+        let (crash, stamped) = self.document.both()?;
+        let mut recipe = self.document.recipe.clone();
+        recipe.reduce_to = [crash.wanted_level, stamped.wanted_level];
+        Some(MatchInput {
+            crash: crash.loaded.to_arc(),
+            stamped: stamped.loaded.to_arc(),
+            recipe,
+            initial: *self.document.crash_from_stamped(),
+        })
+    }
+
+    fn start_with_input(&mut self, kind: impl FnOnce(MatchInput) -> JobKind) -> Vec<Effect> {
+        let Some(input) = self.match_input() else {
+            return Vec::new();
+        };
+        self.drop_previews();
+        vec![self.start(kind(input))]
+    }
+
+    fn run_match(&mut self) -> Vec<Effect> {
+        let effects = self.start_with_input(JobKind::Match);
+        if !effects.is_empty() {
+            self.convergence.clear();
+            self.live_pose = None;
+        }
+        effects
+    }
+
+    fn run_sweep(&mut self, settings: SweepSettings) -> Vec<Effect> {
+        let effects = self.start_with_input(|input| JobKind::Sweep(input, settings));
+        if !effects.is_empty() {
+            self.view.tab = BottomTab::Sweep;
+        }
+        effects
+    }
+
+    fn measure(&mut self) -> Vec<Effect> {
+        let Some((crash, stamped)) = self.document.both() else {
+            return Vec::new();
+        };
+        let input = MeasureInput {
+            crash: crash.loaded.to_arc(),
+            stamped: stamped.loaded.to_arc(),
+            crash_from_stamped: *self.document.crash_from_stamped(),
+        };
+        let mut effects = self.cancel_job(JobKey::Measure);
+        effects.push(self.start(JobKind::Measure(input)));
+        effects
+    }
+
+    fn stop_run(&mut self) -> Vec<Effect> {
+        let Some(key) = self.locking_job() else {
+            return Vec::new();
+        };
+        self.jobs.ending(key, false);
+        vec![Effect::StopJob(key)]
+    }
+
+    fn cancel_run(&mut self) -> Vec<Effect> {
+        let key = self.locking_job();
+        key.map_or_else(Vec::new, |key| self.cancel_job(key))
+    }
+
+    /// Asks a job to go. The window shows the old state at once; the worker follows.
+    pub(super) fn cancel_job(&mut self, key: JobKey) -> Vec<Effect> {
+        if !self.jobs.is_active(key) {
+            return Vec::new();
+        }
+        self.jobs.ending(key, true);
+        if key == JobKey::Match {
+            self.live_pose = None;
+        }
+        vec![Effect::CancelJob(key)]
+    }
+
+    fn show_start(&mut self, index: Option<usize>) {
+        self.view.scrubbed_iteration = None;
+        if self.is_unlocked().is_err() {
+            return;
+        }
+        if let Some(starts) = &mut self.starts {
+            let n_starts = starts.poses.len();
+            starts.shown = index.filter(|i| *i < n_starts);
+        }
+    }
+
+    fn step_start(&mut self, direction: i32) {
+        let Some(starts) = self.current_starts().filter(|s| !s.poses.is_empty()) else {
+            return;
+        };
+        let n_starts = starts.poses.len();
+        let next = match starts.shown {
+            None if direction > 0 => 0,
+            None => n_starts - 1,
+            Some(shown) if direction > 0 => (shown + 1) % n_starts,
+            Some(shown) => (shown + n_starts - 1) % n_starts,
+        };
+        self.show_start(Some(next));
+    }
+
+    fn use_start(&mut self, index: usize) {
+        let start = self.current_starts().and_then(|s| s.poses.get(index));
+        let Some(pose) = start.map(|s| s.crash_from_stamped) else {
+            return;
+        };
+        if self.can_move().is_ok() {
+            self.commit_pose(format!("Start pose {}", index + 1), None, pose);
+            self.drop_previews();
+        }
+    }
+
+    fn show_alternative(&mut self, alternative: Option<usize>) {
+        let Some(result) = self.document.result.clone() else {
+            return;
+        };
+        let is_same_pair = result.stamp.parts == self.document.stamp().parts;
+        let pose = facts::match_pose(&result.run, alternative);
+        let Some(crash_from_stamped) = pose.filter(|_| is_same_pair) else {
+            return;
+        };
+        if self.can_move().is_err() {
+            return;
+        }
+        let name = match alternative {
+            None => "Best pose".to_owned(),
+            Some(index) => format!("Alternative {}", index + 1),
+        };
+        self.take_pose_as_result(name, crash_from_stamped, |stamp| MatchResult {
+            alternative,
+            stamp,
+            ..result
+        });
+    }
+
+    fn flip_alternative(&mut self) {
+        let Some(result) = &self.document.result else {
+            return;
+        };
+        let n_alternatives = facts::n_alternatives(&result.run);
+        let next = result.alternative.map_or(0, |index| index + 1);
+        let next = (next < n_alternatives).then_some(next);
+        self.show_alternative(next);
+    }
+
+    /// Pose and result as one undo step.
+    fn take_pose_as_result(
+        &mut self,
+        name: String,
+        crash_from_stamped: crate::geometry::Similarity,
+        result: impl FnOnce(Stamp) -> MatchResult,
+    ) {
+        let revision = self.next_revision();
+        self.drop_previews();
+        self.commit(name, |document| {
+            document.pose.crash_from_stamped = crash_from_stamped;
+            document.pose.revision = revision;
+            document.result = Some(result(document.stamp()));
+        });
+    }
+
+    pub(super) fn take_matched(&mut self, run: Arc<MatchRun>, took: Duration) -> Vec<Effect> {
+        let line = facts::match_line(&run);
+        self.live_pose = None;
+        let pose = run.crash_from_stamped;
+        self.take_pose_as_result("Match".to_owned(), pose, |stamp| MatchResult {
+            run: run.into(),
+            alternative: None,
+            stamp,
+        });
+        self.log_at(
+            NoticeLevel::Success,
+            "match",
+            None,
+            line.clone(),
+            Some(took),
+        );
+        if took >= LONG_RUN {
+            vec![Effect::NotifyDesktop(line)]
+        } else {
+            Vec::new()
+        }
+    }
+
+    pub(super) fn take_aligned(&mut self, poses: Arc<Vec<StartPose>>, took: Duration) {
+        let n_poses = poses.len();
+        let text = facts::counted(n_poses, "start pose");
+        self.log_step("align", None, text, Some(took));
+        self.starts = Some(Starts {
+            parts: self.document.stamp().parts,
+            poses: poses.into(),
+            shown: (n_poses > 0).then_some(0),
+        });
+    }
+
+    pub(super) fn take_measured(
+        &mut self,
+        measurement: Arc<Measurement>,
+        stamp: Stamp,
+        took: Duration,
+    ) {
+        let line = facts::measure_line(&measurement);
+        self.log_step("measure", None, line, Some(took));
+        self.measurement = Some((stamp, measurement.into()));
+    }
+
+    pub(super) fn take_swept(&mut self, table: Arc<SweepTable>, took: Duration) {
+        self.sweep = Some(table.into());
+        self.log_at(
+            NoticeLevel::Success,
+            "sweep",
+            None,
+            "sweep finished",
+            Some(took),
+        );
+    }
+}

@@ -1,0 +1,117 @@
+use crate::app::{AppState, Effect, Part, PartCommand, PartRef};
+use crate::formats::Selection;
+use crate::jobs::Role;
+
+impl AppState {
+    pub(super) fn apply_part(&mut self, command: PartCommand) -> Vec<Effect> {
+        match command {
+            PartCommand::Select(part) => self.view.selected = part.filter(|p| self.knows(*p)),
+            PartCommand::Hover(part) => self.view.hovered = part,
+            PartCommand::SetVisible(part, is_visible) => self.set_visible(part, is_visible),
+            PartCommand::ShowOnly(part) => self.show_only(part),
+            PartCommand::ShowAll => self.show_all(),
+            PartCommand::SetColor(part, color) => self.set_color(part, color),
+            PartCommand::SetUsed(part, is_used) => return self.set_used(part, is_used),
+            PartCommand::UseOnly(part) => {
+                return self.use_parts(part.role, Selection::Parts(vec![part.id]));
+            }
+            PartCommand::UseAll(role) => return self.use_parts(role, Selection::All),
+        }
+        Vec::new()
+    }
+
+    fn knows(&self, part: PartRef) -> bool {
+        let has = |p: &Part| p.facts.parts.iter().any(|row| row.id == part.id);
+        self.document.part(part.role).is_some_and(has)
+    }
+
+    /// Title of a part of a deck, or its number.
+    fn part_name(&self, part: PartRef) -> String {
+        let rows = self.document.part(part.role).map(|p| &p.facts.parts);
+        let row = rows.and_then(|rows| rows.iter().find(|row| row.id == part.id));
+        match row {
+            Some(row) if !row.title.is_empty() => row.title.clone(),
+            _ => format!("part {}", part.id),
+        }
+    }
+
+    fn change_part(&mut self, name: String, role: Role, change: impl FnOnce(&mut Part)) {
+        self.commit(name, |document| {
+            if let Some(part) = document.parts.get_mut(role) {
+                change(part);
+            }
+        });
+    }
+
+    fn set_visible(&mut self, part: PartRef, is_visible: bool) {
+        if !self.knows(part) {
+            return;
+        }
+        let verb = if is_visible { "Show" } else { "Hide" };
+        let name = format!("{verb} {}", self.part_name(part));
+        self.change_part(name, part.role, |p| {
+            if is_visible {
+                p.hidden.remove(&part.id);
+            } else {
+                p.hidden.insert(part.id);
+            }
+        });
+    }
+
+    fn show_only(&mut self, part: PartRef) {
+        if !self.knows(part) {
+            return;
+        }
+        let name = format!("Isolate {}", self.part_name(part));
+        self.change_part(name, part.role, |p| {
+            let others = p.facts.parts.iter().map(|row| row.id);
+            p.hidden = others.filter(|id| *id != part.id).collect();
+        });
+    }
+
+    fn show_all(&mut self) {
+        self.commit("Show all parts", |document| {
+            for role in Role::ALL {
+                if let Some(part) = document.parts.get_mut(role) {
+                    part.hidden.clear();
+                }
+            }
+        });
+    }
+
+    fn set_color(&mut self, part: PartRef, color: Option<[u8; 3]>) {
+        if !self.knows(part) {
+            return;
+        }
+        let name = format!("Colour of {}", self.part_name(part));
+        self.change_part(name, part.role, |p| {
+            match color {
+                Some(color) => p.colors.insert(part.id, color),
+                None => p.colors.remove(&part.id),
+            };
+        });
+    }
+
+    fn set_used(&mut self, part: PartRef, is_used: bool) -> Vec<Effect> {
+        let Some(loaded) = self.document.part(part.role) else {
+            return Vec::new();
+        };
+        let mut used = loaded.facts.used.clone();
+        let has_changed = if is_used {
+            used.insert(part.id)
+        } else {
+            used.remove(&part.id)
+        };
+        if !has_changed || used.is_empty() {
+            return Vec::new();
+        }
+        self.use_parts(part.role, Selection::Parts(used.into_iter().collect()))
+    }
+
+    fn use_parts(&mut self, role: Role, selection: Selection) -> Vec<Effect> {
+        if self.is_unlocked().is_err() {
+            return Vec::new();
+        }
+        self.reselect(role, |settings| settings.selection = selection)
+    }
+}

@@ -1,0 +1,175 @@
+use crate::app::{AppState, BottomTab, Effect, ViewCommand};
+use crate::geometry::Aabb;
+use crate::jobs::Role;
+
+impl AppState {
+    pub(super) fn apply_view(&mut self, command: ViewCommand) -> Vec<Effect> {
+        match command {
+            ViewCommand::SetCamera(..)
+            | ViewCommand::Standard(..)
+            | ViewCommand::PreviousCamera(_)
+            | ViewCommand::ToggleProjection(_)
+            | ViewCommand::FitAll(_)
+            | ViewCommand::Focus(_)
+            | ViewCommand::ToggleLink => self.apply_camera(&command),
+            ViewCommand::SetOrbitStyle(style) => self.view.orbit_style = style,
+            ViewCommand::SetPivot(role, pivot) => *self.view.pivot.get_mut(role) = pivot,
+            ViewCommand::SetFocus(role) => self.view.focus = role,
+            ViewCommand::SetAspect(role, aspect) => *self.view.aspects.get_mut(role) = aspect,
+            ViewCommand::ToggleMoveOver => self.toggle_move_over(),
+            ViewCommand::SetShown(shown) => self.view.shown = shown,
+            ViewCommand::SetBlinking(is_blinking) => self.view.is_blinking = is_blinking,
+            ViewCommand::SetDisplay(display) => self.view.display = *display,
+            ViewCommand::SetTab(tab) => self.set_tab(tab),
+            ViewCommand::ToggleSection(index) => {
+                if let Some(is_open) = self.view.open_sections.get_mut(index) {
+                    *is_open = !*is_open;
+                }
+            }
+            ViewCommand::ToggleGraphicsOnly => {
+                self.view.is_graphics_only = !self.view.is_graphics_only;
+            }
+            ViewCommand::SetDialog(dialog) => self.view.dialog = dialog,
+            ViewCommand::ToggleGizmo => self.view.has_gizmo = !self.view.has_gizmo,
+            ViewCommand::SetMoveAxes(axes) => self.view.move_axes = axes,
+            ViewCommand::ScrubIteration(index) => {
+                self.view.scrubbed_iteration = index.filter(|i| *i < self.convergence.len());
+            }
+        }
+        Vec::new()
+    }
+
+    fn apply_camera(&mut self, command: &ViewCommand) {
+        match *command {
+            ViewCommand::SetCamera(role, camera) => self.view.set_camera(role, camera),
+            ViewCommand::Standard(role, view) => {
+                self.view.remember_camera(role);
+                let mut camera = *self.view.cameras.get(role);
+                camera.set_standard_view(view);
+                self.view.set_camera(role, camera);
+            }
+            ViewCommand::PreviousCamera(role) => {
+                let previous = *self.view.previous_cameras.get(role);
+                self.view.remember_camera(role);
+                self.view.set_camera(role, previous);
+            }
+            ViewCommand::ToggleProjection(role) => {
+                let mut camera = *self.view.cameras.get(role);
+                camera.toggle_projection();
+                self.view.set_camera(role, camera);
+            }
+            ViewCommand::FitAll(role) => {
+                let bounds = self.visible_bounds(role);
+                self.fit(role, &bounds);
+            }
+            ViewCommand::Focus(role) => {
+                let bounds = self.selected_bounds(role);
+                let bounds = bounds.unwrap_or_else(|| self.visible_bounds(role));
+                self.fit(role, &bounds);
+            }
+            ViewCommand::ToggleLink => self.toggle_link(),
+            _ => {}
+        }
+    }
+
+    fn toggle_link(&mut self) {
+        self.view.are_linked = !self.view.are_linked;
+        let (role, camera) = (self.view.focus, *self.view.cameras.get(self.view.focus));
+        self.view.set_camera(role, camera);
+    }
+
+    fn fit(&mut self, role: Role, bounds: &Aabb) {
+        let aspect = *self.view.aspects.get(role);
+        self.view.fit(role, bounds, aspect);
+    }
+
+    /// What a window shows, in its own space: the left one that of the crash model, the right one
+    /// that of the crash model too, with the stamped part at its pose.
+    pub fn visible_bounds(&self, role: Role) -> Aabb {
+        let is_over = self.view.is_moved_over;
+        let mut bounds = Aabb::empty();
+        if role == Role::Crash {
+            bounds = bounds.union(&self.bounds_of(Role::Crash));
+        }
+        if role == Role::Stamped || is_over {
+            bounds = bounds.union(&self.bounds_of(Role::Stamped));
+        }
+        bounds
+    }
+
+    fn bounds_of(&self, role: Role) -> Aabb {
+        let Some(part) = self.document.part(role) else {
+            return Aabb::empty();
+        };
+        match role {
+            Role::Crash => part.bounds(),
+            Role::Stamped => moved_box(&part.bounds(), &self.shown_pose()),
+        }
+    }
+
+    /// Box of the selected part of a deck, if it belongs to this window.
+    fn selected_bounds(&self, role: Role) -> Option<Aabb> {
+        let selected = self.view.selected.filter(|part| part.role == role)?;
+        let part = self.document.part(role)?;
+        let bounds = *part.facts.part_bounds.get(&selected.id)?;
+        let pose = self.shown_pose();
+        (!bounds.is_empty()).then(|| match role {
+            Role::Crash => bounds,
+            Role::Stamped => moved_box(&bounds, &pose),
+        })
+    }
+
+    fn toggle_move_over(&mut self) {
+        let can_move_over = self.has_both_parts().is_ok();
+        if self.view.is_moved_over {
+            self.view.is_moved_over = false;
+            self.view.focus = Role::Stamped;
+        } else if can_move_over {
+            self.view.is_moved_over = true;
+            self.view.focus = Role::Crash;
+        }
+        let bounds = self.visible_bounds(Role::Crash);
+        self.fit(Role::Crash, &bounds);
+    }
+
+    fn set_tab(&mut self, tab: BottomTab) {
+        self.view.tab = tab;
+        self.view.is_graphics_only = false;
+    }
+
+    /// The first look at a part: its own camera, or both windows when moved over.
+    pub(super) fn fit_after_load(&mut self, role: Role) {
+        if role == Role::Stamped {
+            self.look_at_sheet();
+        }
+        let bounds = self.visible_bounds(role);
+        self.fit(role, &bounds);
+        if self.view.is_moved_over {
+            let bounds = self.visible_bounds(Role::Crash);
+            self.fit(Role::Crash, &bounds);
+        }
+    }
+
+    /// A stamped part comes in the axes of its die: look along its mean normal.
+    fn look_at_sheet(&mut self) {
+        let Some(part) = self.document.part(Role::Stamped) else {
+            return;
+        };
+        let normal = part.facts.mean_normal;
+        if self.view.are_linked || normal.norm() == 0.0 {
+            return;
+        }
+        let pose = *self.document.crash_from_stamped();
+        let corners = part.bounds().corners().map(|corner| pose.apply(&corner));
+        let direction = -pose.rotate(&normal);
+        self.view.cameras.stamped.look_along(&direction, &corners);
+    }
+}
+
+/// Box around a moved box.
+fn moved_box(bounds: &Aabb, pose: &crate::geometry::Similarity) -> Aabb {
+    if bounds.is_empty() {
+        return *bounds;
+    }
+    Aabb::of_points(&bounds.corners().map(|corner| pose.apply(&corner)))
+}

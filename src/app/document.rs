@@ -1,0 +1,154 @@
+use super::Shared;
+use crate::geometry::{Aabb, Similarity, TriMesh};
+use crate::jobs::{
+    MatchRecipe, MatchRun, MeasuredLevel, PartFacts, PartSource, PerRole, Role, Stamp,
+};
+use crate::pipeline::load::LoadedPart;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// What undo covers: a value that is cheap to clone, because all geometry is shared.
+///
+/// There is no pose for the crash part anywhere, so nothing can move it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Document {
+    /// The loaded parts.
+    pub parts: PerRole<Option<Part>>,
+    /// Where the stamped part lies.
+    pub pose: StampedPose,
+    /// Every setting of the match.
+    pub recipe: MatchRecipe,
+    /// The last match that was taken over.
+    pub result: Option<MatchResult>,
+}
+
+/// The pose of the stamped part with the number of its state.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct StampedPose {
+    /// `crash = c · R · stamped + t`.
+    pub crash_from_stamped: Similarity,
+    /// Never given twice; see [`Stamp`].
+    pub revision: u64,
+}
+
+/// A loaded part with everything the user chose about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// What was read.
+    pub loaded: Shared<LoadedPart>,
+    /// Where it came from.
+    pub source: PartSource,
+    /// What was counted and measured about it.
+    pub facts: Shared<PartFacts>,
+    /// Never given twice; see [`Stamp`].
+    pub revision: u64,
+    /// The ceiling of triangles the user asked for; stays when the part is read again.
+    pub wanted_level: Option<usize>,
+    /// The level reached, `None` while the full mesh is used.
+    pub level: Option<Shared<MeasuredLevel>>,
+    /// Ids of hidden parts of the deck.
+    pub hidden: BTreeSet<u64>,
+    /// Colours the user gave, sRGB.
+    pub colors: BTreeMap<u64, [u8; 3]>,
+}
+
+/// A match that was taken over, with the choice among its poses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MatchResult {
+    /// What the match found.
+    pub run: Shared<MatchRun>,
+    /// The alternative that is shown instead of the best pose.
+    pub alternative: Option<usize>,
+    /// The state of the document right after the result was taken over.
+    pub stamp: Stamp,
+}
+
+impl Part {
+    /// A freshly read part: all shown, nothing reduced.
+    pub fn new(
+        loaded: Arc<LoadedPart>,
+        facts: Arc<PartFacts>,
+        source: PartSource,
+        revision: u64,
+    ) -> Self {
+        Self {
+            loaded: loaded.into(),
+            facts: facts.into(),
+            source,
+            revision,
+            wanted_level: None,
+            level: None,
+            hidden: BTreeSet::new(),
+            colors: BTreeMap::new(),
+        }
+    }
+
+    /// The mesh at the chosen level, or the full one.
+    pub fn reduced_mesh(&self) -> &Arc<TriMesh> {
+        match &self.level {
+            Some(measured) => &measured.level.mesh,
+            None => &self.loaded.mesh,
+        }
+    }
+
+    /// True if this part of the deck is shown.
+    pub fn is_visible(&self, id: u64) -> bool {
+        !self.hidden.contains(&id)
+    }
+
+    /// True if this part of the deck is matched.
+    pub fn is_used(&self, id: u64) -> bool {
+        self.facts.used.contains(&id)
+    }
+
+    /// The factor its coordinates were multiplied by at loading.
+    pub fn length_factor(&self) -> f64 {
+        self.loaded.settings.length_factor
+    }
+
+    /// Bounds in the part's own space.
+    pub fn bounds(&self) -> Aabb {
+        self.facts.bounds
+    }
+}
+
+impl Document {
+    /// One of the two parts.
+    pub fn part(&self, role: Role) -> Option<&Part> {
+        self.parts.get(role).as_ref()
+    }
+
+    /// Both parts, if both are there.
+    pub fn both(&self) -> Option<(&Part, &Part)> {
+        Some((self.parts.crash.as_ref()?, self.parts.stamped.as_ref()?))
+    }
+
+    /// The numbers of the present state of the inputs; 0 stands for "no part".
+    pub fn stamp(&self) -> Stamp {
+        let revision = |part: &Option<Part>| part.as_ref().map_or(0, |p| p.revision);
+        Stamp {
+            parts: PerRole {
+                crash: revision(&self.parts.crash),
+                stamped: revision(&self.parts.stamped),
+            },
+            pose: self.pose.revision,
+        }
+    }
+
+    /// The pose of the stamped part.
+    pub fn crash_from_stamped(&self) -> &Similarity {
+        &self.pose.crash_from_stamped
+    }
+
+    /// The result, if parts and pose are still those it stands for.
+    pub fn current_result(&self) -> Option<&MatchResult> {
+        self.result.as_ref().filter(|r| r.stamp == self.stamp())
+    }
+
+    /// Centre of the box of the stamped part at its pose, the pivot of moves by hand.
+    pub fn stamped_center(&self) -> Option<crate::geometry::Point3> {
+        let part = self.parts.stamped.as_ref()?;
+        let bounds = part.bounds();
+        (!bounds.is_empty()).then(|| self.pose.crash_from_stamped.apply(&bounds.center()))
+    }
+}

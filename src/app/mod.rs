@@ -1,0 +1,44 @@
+//! The window without the window: what it knows, what can be asked of it, and what follows.
+//!
+//! Panels read [`AppState`] and queue [`Command`]s; the shell hands each to [`AppState::apply`] and
+//! carries out the [`Effect`]s that come back. Nothing here draws, waits or touches the disk, so
+//! every behaviour of the window has a test without one.
+
+mod action;
+mod apply;
+mod command;
+mod document;
+mod effect;
+mod facts;
+mod history;
+mod job_board;
+mod log;
+mod modal_move;
+mod motion;
+mod notice;
+mod settings;
+mod shared;
+mod state;
+mod status;
+mod units;
+mod view;
+
+pub use action::{Action, ActionInfo, Key, Menu, Reason, Shortcut};
+pub use command::{
+    Command, ExportCommand, FileCommand, HistoryCommand, MatchCommand, MoveCommand, NoticeCommand,
+    PartCommand, ReduceCommand, ViewCommand,
+};
+pub use document::{Document, MatchResult, Part, StampedPose};
+pub use effect::Effect;
+pub use history::{GestureId, History};
+pub use job_board::{JobBoard, RunningJob};
+pub use log::{Log, LogRow, duration_text};
+pub use modal_move::{Constraint, ModalInput, ModalMove, ModalOutcome, MotionKind};
+pub use motion::{Axis, AxisFrame, MoveFrame, rotation_about, translation_along};
+pub use notice::{Notice, NoticeId, NoticeLevel, Notices};
+pub use settings::{MouseScheme, Settings, StartupOptions, Theme};
+pub use shared::Shared;
+pub use state::{AppState, Starts};
+pub use status::{Section, Stale};
+pub use units::UnitHint;
+pub use view::{BottomTab, ColorBy, Dialog, Display, MoveTool, PartRef, ShownGeometry, ViewState};

@@ -1,0 +1,143 @@
+use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
+
+/// One of three axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Axis {
+    /// The first.
+    X,
+    /// The second.
+    Y,
+    /// The third.
+    Z,
+}
+
+impl Axis {
+    /// All three.
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+
+    /// Its letter.
+    pub fn letter(self) -> char {
+        match self {
+            Self::X => 'X',
+            Self::Y => 'Y',
+            Self::Z => 'Z',
+        }
+    }
+
+    /// 0, 1 or 2.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// Whose axes a move follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum AxisFrame {
+    /// Those of the crash model.
+    #[default]
+    Global,
+    /// The stamped part's own, as it lies now.
+    Part,
+    /// Those of the screen: right, up, towards the viewer.
+    View,
+}
+
+impl AxisFrame {
+    /// All, in the order they are cycled through.
+    pub const ALL: [Self; 3] = [Self::Global, Self::Part, Self::View];
+
+    /// Its name.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Global => "global",
+            Self::Part => "part",
+            Self::View => "view",
+        }
+    }
+}
+
+/// Pivot and the axes of all three frames at the moment a move begins. Columns are unit vectors in
+/// the space the move happens in (that of the crash model).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MoveFrame {
+    /// The point rotations leave where it is.
+    pub pivot: Point3,
+    /// The part's own axes.
+    pub part: Matrix3,
+    /// Right, up and towards the viewer.
+    pub view: Matrix3,
+}
+
+impl MoveFrame {
+    /// The frame of a part at its pose, seen with these view axes. A mirrored pose gives axes of
+    /// the other hand, as the part shows them.
+    pub fn new(pivot: Point3, crash_from_stamped: &Similarity, view: Matrix3) -> Self {
+        Self {
+            pivot,
+            part: crash_from_stamped.rotation,
+            view,
+        }
+    }
+
+    /// Unit vector of an axis.
+    pub fn axis(&self, axis: Axis, frame: AxisFrame) -> Vector3 {
+        match frame {
+            AxisFrame::Global => Matrix3::identity().column(axis.index()).into(),
+            AxisFrame::Part => self.part.column(axis.index()).into(),
+            AxisFrame::View => self.view.column(axis.index()).into(),
+        }
+    }
+}
+
+/// The motion by `distance` along a direction, which need not be a unit vector; zero gives none.
+pub fn translation_along(direction: &Vector3, distance: f64) -> Similarity {
+    let norm = direction.norm();
+    if norm == 0.0 || !distance.is_finite() {
+        return Similarity::identity();
+    }
+    Similarity {
+        translation: direction * (distance / norm),
+        ..Similarity::identity()
+    }
+}
+
+/// The rotation by `angle` radians about an axis through `pivot`, right-handed; a zero axis gives
+/// no motion.
+pub fn rotation_about(pivot: &Point3, axis: &Vector3, angle: f64) -> Similarity {
+    let Some(axis) = nalgebra::Unit::try_new(*axis, 0.0).filter(|_| angle.is_finite()) else {
+        return Similarity::identity();
+    };
+    let rotation = *Rotation::from_axis_angle(&axis, angle)
+        .to_rotation_matrix()
+        .matrix();
+    Similarity {
+        rotation,
+        translation: pivot.coords - rotation * pivot.coords,
+        scale: 1.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn a_rotation_leaves_its_pivot_and_follows_the_right_hand() {
+        let pivot = Point3::new(1000.0, 2.0, -3.0);
+        let turn = rotation_about(&pivot, &Vector3::new(0.0, 0.0, 5.0), FRAC_PI_2);
+        assert!((turn.apply(&pivot) - pivot).norm() < 1e-12);
+        let moved = turn.apply(&(pivot + Vector3::x()));
+        assert!((moved - (pivot + Vector3::y())).norm() < 1e-12);
+    }
+
+    #[test]
+    fn degenerate_axes_move_nothing() {
+        let zero = Vector3::zeros();
+        assert_eq!(translation_along(&zero, 3.0), Similarity::identity());
+        assert_eq!(
+            rotation_about(&Point3::origin(), &zero, 1.0),
+            Similarity::identity()
+        );
+    }
+}

@@ -1,0 +1,167 @@
+use crate::jobs::{PartSource, PerRole};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// Most entries in the list of recent files.
+const MAX_RECENT: usize = 10;
+
+/// Dark, light, or as the desktop says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Theme {
+    /// As the desktop says.
+    #[default]
+    System,
+    /// Dark.
+    Dark,
+    /// Light.
+    Light,
+}
+
+/// Which mouse habits the 3D windows follow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum MouseScheme {
+    /// Plain left, middle, right; the same with Shift or Ctrl held.
+    #[default]
+    LsPrePost,
+    /// HyperWorks.
+    HyperWorks,
+    /// ANSA.
+    Ansa,
+    /// Middle button turns, as CAD programs do.
+    Cad,
+    /// Middle button turns, Shift pans.
+    Blender,
+}
+
+impl MouseScheme {
+    /// All, in the order of the menu.
+    pub const ALL: [Self; 5] = [
+        Self::LsPrePost,
+        Self::HyperWorks,
+        Self::Ansa,
+        Self::Cad,
+        Self::Blender,
+    ];
+
+    /// Name in the menu.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::LsPrePost => "LS-PrePost / Oasys",
+            Self::HyperWorks => "HyperWorks",
+            Self::Ansa => "ANSA",
+            Self::Cad => "CAD",
+            Self::Blender => "Blender",
+        }
+    }
+
+    /// The scheme in two lines.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::LsPrePost => {
+                "Left turns, middle pans, right zooms.\nHolding Shift or Ctrl does the same."
+            }
+            Self::HyperWorks => "Ctrl + left turns, Ctrl + right pans.\nPlain left turns too.",
+            Self::Ansa => "Ctrl + left turns, Ctrl + middle pans.\nCtrl + right zooms.",
+            Self::Cad => "Middle turns, Ctrl + middle pans.\nShift + middle zooms.",
+            Self::Blender => "Middle turns, Shift + middle pans.\nCtrl + middle zooms.",
+        }
+    }
+}
+
+/// Preferences: kept between runs. Every field has a default, so an older file still loads.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Colours of the window.
+    pub theme: Theme,
+    /// Size of everything, 0.75 to 2.5.
+    pub ui_scale: f32,
+    /// Mouse habits.
+    pub mouse: MouseScheme,
+    /// True once the question about the mouse was answered or closed.
+    pub is_mouse_asked: bool,
+    /// No animations.
+    pub reduce_motion: bool,
+    /// Files opened last, newest first.
+    pub recent: Vec<PathBuf>,
+    /// Marked reduction levels, largest first.
+    pub marked_levels: Vec<usize>,
+    /// What stands in the field "max triangles".
+    pub max_triangles: usize,
+    /// Which parts the reduction is applied to.
+    pub reduce_roles: PerRole<bool>,
+    /// Name of the form of the matrix that was copied last.
+    pub matrix_form: Option<String>,
+    /// No toasts for successes and notes.
+    pub are_toasts_muted: bool,
+    /// The log runs under the left column too.
+    pub is_log_wide: bool,
+    /// Width of the left column and height of the log, in points, as the user dragged them.
+    pub pane_sizes: [Option<f32>; 2],
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            theme: Theme::default(),
+            ui_scale: 1.0,
+            mouse: MouseScheme::default(),
+            is_mouse_asked: false,
+            reduce_motion: false,
+            recent: Vec::new(),
+            marked_levels: vec![50_000, 20_000, 8_000, 4_000, 2_000, 1_000, 500],
+            max_triangles: 2_000,
+            reduce_roles: PerRole {
+                crash: true,
+                stamped: true,
+            },
+            matrix_form: None,
+            are_toasts_muted: false,
+            is_log_wide: false,
+            pane_sizes: [None, None],
+        }
+    }
+}
+
+impl Settings {
+    /// Smallest and largest size of the window's text.
+    pub const UI_SCALES: std::ops::RangeInclusive<f32> = 0.75..=2.5;
+
+    /// Puts a file first in the list of recent files.
+    pub fn remember(&mut self, source: &PartSource) {
+        if let PartSource::File(path) = source {
+            self.recent.retain(|known| known != path);
+            self.recent.insert(0, path.clone());
+            self.recent.truncate(MAX_RECENT);
+        }
+    }
+
+    /// Brings values from a file that someone edited back into their ranges.
+    pub fn sanitized(mut self) -> Self {
+        let (low, high) = Self::UI_SCALES.into_inner();
+        self.ui_scale = if self.ui_scale.is_finite() {
+            self.ui_scale.clamp(low, high)
+        } else {
+            1.0
+        };
+        self.marked_levels.retain(|&n| n > 0);
+        self.marked_levels.sort_unstable_by(|a, b| b.cmp(a));
+        self.marked_levels.dedup();
+        self.max_triangles = self.max_triangles.max(1);
+        self.recent.truncate(MAX_RECENT);
+        self
+    }
+}
+
+/// What the command line asked for. Never saved.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StartupOptions {
+    /// The crash part.
+    pub crash: Option<PathBuf>,
+    /// The stamped part.
+    pub stamped: Option<PathBuf>,
+    /// Open the example pair.
+    pub example: bool,
+    /// Neither read nor write preferences.
+    pub forget_settings: bool,
+}

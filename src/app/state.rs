@@ -1,0 +1,264 @@
+use super::{
+    Document, GestureId, History, JobBoard, Log, LogRow, NoticeLevel, Notices, Settings, Shared,
+    StampedPose, ViewState,
+};
+use crate::geometry::Similarity;
+use crate::jobs::{JobKind, Measurement, PerRole, Recording, Role, Stamp, StartPose, SweepTable};
+use crate::monitor::IterationReport;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The first poses of the last alignment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Starts {
+    /// The parts they were made for.
+    pub parts: PerRole<u64>,
+    /// The poses, in the order they are stepped through.
+    pub poses: Shared<Vec<StartPose>>,
+    /// The one that is shown instead of the real pose.
+    pub shown: Option<usize>,
+}
+
+/// Everything the window knows. Panels read it; only [`AppState::apply`] changes it.
+#[derive(Debug, Clone, Default)]
+pub struct AppState {
+    /// What undo covers.
+    pub document: Document,
+    /// What is shown and how.
+    pub view: ViewState,
+    /// Preferences.
+    pub settings: Settings,
+    /// Undo and redo.
+    pub history: History,
+    /// The rows of the log pane.
+    pub log: Log,
+    /// Toasts and bell.
+    pub notices: Notices,
+    /// What runs and what waits.
+    pub jobs: JobBoard,
+    /// The first poses of the last alignment.
+    pub starts: Option<Starts>,
+    /// The best pose of the running match, for the preview.
+    pub live_pose: Option<Similarity>,
+    /// The iterations of the running or last match.
+    pub convergence: Vec<IterationReport>,
+    /// Distances and overlap with the state they were measured in.
+    pub measurement: Option<(Stamp, Shared<Measurement>)>,
+    /// The tables of the last sweep.
+    pub sweep: Option<Shared<SweepTable>>,
+    /// Time since the program began, as the shell last told.
+    pub now: Duration,
+    pub(super) recordings: PerRole<Option<(u64, Arc<Recording>)>>,
+    pub(super) guess: Guess,
+    /// The pose at the beginning of the drag or move by keys that is under way.
+    pub(super) grab: Option<(GestureId, StampedPose)>,
+    pub(super) unit_hint_dismissed_for: Option<PerRole<u64>>,
+    pub(super) open_recipe_gesture: Option<GestureId>,
+    n_revisions: u64,
+    n_gestures: u64,
+}
+
+/// Roles that were not said but have to be found out from the content.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Guess {
+    /// Loads of this guess that have not ended.
+    pub n_pending: usize,
+}
+
+impl AppState {
+    /// A window without parts.
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            settings: settings.sanitized(),
+            ..Self::default()
+        }
+    }
+
+    /// Tells how long the program runs; ends toasts whose time is over. To be called once a frame.
+    pub fn tick(&mut self, now: Duration) {
+        self.now = now;
+        self.notices.expire(now);
+    }
+
+    /// The pose the stamped part is drawn at: that of the running match, of a shown start, of a
+    /// scrubbed iteration, or the real one.
+    pub fn shown_pose(&self) -> Similarity {
+        if let Some(pose) = self.live_pose {
+            return pose;
+        }
+        if let Some(start) = self.shown_start() {
+            return start.crash_from_stamped;
+        }
+        if let Some(pose) = self.scrubbed_pose() {
+            return pose;
+        }
+        self.document.pose.crash_from_stamped
+    }
+
+    /// True while something else than the real pose is drawn.
+    pub fn is_preview(&self) -> bool {
+        self.live_pose.is_some() || self.shown_start().is_some() || self.scrubbed_pose().is_some()
+    }
+
+    /// The first pose that is shown instead of the real one.
+    pub fn shown_start(&self) -> Option<&StartPose> {
+        let starts = self.current_starts()?;
+        starts.poses.get(starts.shown?)
+    }
+
+    /// The first poses, if they belong to the parts that are loaded.
+    pub fn current_starts(&self) -> Option<&Starts> {
+        let parts = self.document.stamp().parts;
+        self.starts.as_ref().filter(|s| s.parts == parts)
+    }
+
+    fn scrubbed_pose(&self) -> Option<Similarity> {
+        let iteration = self.convergence.get(self.view.scrubbed_iteration?)?;
+        pose_of(iteration)
+    }
+
+    /// The measurement, if parts and pose are still those it was made at.
+    pub fn current_measurement(&self) -> Option<&Measurement> {
+        let stamp = self.document.stamp();
+        let (at, measurement) = self.measurement.as_ref()?;
+        (*at == stamp).then_some(&**measurement)
+    }
+
+    /// The recording of a part's reduction, if one was made.
+    pub fn recording(&self, role: Role) -> Option<&Arc<Recording>> {
+        let revision = self.document.part(role)?.revision;
+        let known = [&self.recordings.crash, &self.recordings.stamped];
+        let of_part = |(of, _): &&(u64, _)| *of == revision;
+        let found = known.into_iter().flatten().find(of_part);
+        found.map(|(_, recording)| recording)
+    }
+
+    /// A number that was never given before.
+    pub(super) fn next_revision(&mut self) -> u64 {
+        self.n_revisions += 1;
+        self.n_revisions
+    }
+
+    /// A name for a series of commands that is one undo step.
+    pub(super) fn next_gesture(&mut self) -> GestureId {
+        self.n_gestures += 1;
+        // Panels count their own drags from 0; ours must not meet them.
+        GestureId(u64::MAX - self.n_gestures)
+    }
+
+    /// The gesture of a series of changes of the match settings.
+    pub(super) fn recipe_gesture(&mut self) -> GestureId {
+        let open = self.open_recipe_gesture;
+        let gesture = match open.filter(|gesture| self.history.is_open(*gesture)) {
+            Some(gesture) => gesture,
+            None => self.next_gesture(),
+        };
+        *self.open_recipe_gesture.insert(gesture)
+    }
+
+    /// Changes the document as one undo step; says whether anything changed.
+    pub(super) fn commit(
+        &mut self,
+        name: impl Into<String>,
+        change: impl FnOnce(&mut Document),
+    ) -> bool {
+        self.commit_in(name, None, change)
+    }
+
+    /// [`AppState::commit`] within a gesture.
+    pub(super) fn commit_in(
+        &mut self,
+        name: impl Into<String>,
+        gesture: Option<GestureId>,
+        change: impl FnOnce(&mut Document),
+    ) -> bool {
+        let before = self.document.clone();
+        change(&mut self.document);
+        let has_changed = self.document != before;
+        if has_changed {
+            self.history.push(name.into(), before, gesture);
+        }
+        has_changed
+    }
+
+    /// Moves the stamped part as one undo step (or a part of one).
+    pub(super) fn commit_pose(
+        &mut self,
+        name: impl Into<String>,
+        gesture: Option<GestureId>,
+        crash_from_stamped: Similarity,
+    ) -> bool {
+        if crash_from_stamped == self.document.pose.crash_from_stamped {
+            return false;
+        }
+        let revision = self.next_revision();
+        self.drop_previews();
+        self.commit_in(name, gesture, |document| {
+            document.pose = StampedPose {
+                crash_from_stamped,
+                revision,
+            };
+        })
+    }
+
+    /// Shows the real pose again.
+    pub(super) fn drop_previews(&mut self) {
+        self.view.scrubbed_iteration = None;
+        if let Some(starts) = &mut self.starts {
+            starts.shown = None;
+        }
+    }
+
+    /// Adds a row to the log.
+    pub(super) fn log_step(
+        &mut self,
+        step: &'static str,
+        role: Option<Role>,
+        text: impl Into<String>,
+        took: Option<Duration>,
+    ) {
+        self.log_at(NoticeLevel::Info, step, role, text, took);
+    }
+
+    /// Adds a row to the log with a level, and a toast if the level has one.
+    pub(super) fn log_at(
+        &mut self,
+        level: NoticeLevel,
+        step: &'static str,
+        role: Option<Role>,
+        text: impl Into<String>,
+        took: Option<Duration>,
+    ) {
+        let text = text.into();
+        self.notify(level, text.clone());
+        self.log.push(LogRow {
+            at: self.now,
+            step,
+            role,
+            text,
+            took,
+            level,
+        });
+    }
+
+    /// Shows a toast, unless the user muted its level.
+    pub(super) fn notify(&mut self, level: NoticeLevel, text: impl Into<String>) {
+        let is_muted = self.settings.are_toasts_muted && level < NoticeLevel::Warning;
+        if !is_muted {
+            self.notices.push(level, text.into(), self.now);
+        }
+    }
+
+    /// A job for the worker, stamped with the present state.
+    pub(super) fn start(&mut self, kind: JobKind) -> super::Effect {
+        self.jobs.submitted(kind.key());
+        super::Effect::StartJob(Box::new(kind), self.document.stamp())
+    }
+}
+
+/// The pose of an iteration, if its matrix is one.
+pub(super) fn pose_of(iteration: &IterationReport) -> Option<Similarity> {
+    let rows = &iteration.target_from_source;
+    let matrix = crate::geometry::Matrix4::from_fn(|row, column| rows[row][column]);
+    Similarity::from_matrix4(&matrix, 1e-6).ok()
+}

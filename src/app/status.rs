@@ -1,0 +1,125 @@
+//! What a section says about itself, and what stands in the way of an action.
+
+use super::{AppState, Part, Reason, UnitHint};
+use crate::jobs::{JobKey, Role};
+
+/// The paper's three sections.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Section {
+    /// 1 Load & display.
+    Load,
+    /// 2 Reduce.
+    Reduce,
+    /// 3 Match.
+    Match,
+}
+
+/// Why what a section shows no longer fits the rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stale {
+    /// In words, for the tooltip.
+    pub reason: &'static str,
+}
+
+impl AppState {
+    /// The mark "out of date — rerun" of a section.
+    pub fn stale(&self, section: Section) -> Option<Stale> {
+        let reason = match section {
+            Section::Load => None,
+            Section::Reduce => Role::ALL
+                .into_iter()
+                .any(|role| self.is_reduction_stale(role))
+                .then_some("the part was read anew after it was reduced"),
+            Section::Match => self.match_stale_reason(),
+        };
+        reason.map(|reason| Stale { reason })
+    }
+
+    fn is_reduction_stale(&self, role: Role) -> bool {
+        let is_stale = |part: &Part| part.wanted_level.is_some() && part.level.is_none();
+        self.document.part(role).is_some_and(is_stale) && !self.jobs.is_active(JobKey::Reduce(role))
+    }
+
+    fn match_stale_reason(&self) -> Option<&'static str> {
+        let result = self.document.result.as_ref()?;
+        let stamp = self.document.stamp();
+        if result.stamp.parts != stamp.parts {
+            Some("a part was exchanged after the match")
+        } else if result.stamp.pose != stamp.pose {
+            Some("the stamped part was moved after the match")
+        } else {
+            None
+        }
+    }
+
+    /// The hint about units, until it is answered.
+    pub fn unit_hint(&self) -> Option<UnitHint> {
+        let (crash, stamped) = self.document.both()?;
+        if self.unit_hint_dismissed_for == Some(self.document.stamp().parts) {
+            return None;
+        }
+        UnitHint::of(&crash.bounds(), &stamped.bounds())
+    }
+
+    /// The length factor that follows the hint: that of the stamped file times the hint's.
+    pub fn hinted_length_factor(&self) -> Option<f64> {
+        let hint = self.unit_hint()?;
+        let part = self.document.part(Role::Stamped)?;
+        Some(part.length_factor() * hint.factor)
+    }
+
+    /// The job that keeps files, levels and poses as they are, if one runs.
+    pub fn locking_job(&self) -> Option<JobKey> {
+        let locks = [JobKey::Match, JobKey::Align, JobKey::Sweep];
+        locks.into_iter().find(|key| self.jobs.is_active(*key))
+    }
+
+    /// `Ok` unless a match or sweep holds the inputs.
+    pub(super) fn is_unlocked(&self) -> Result<(), Reason> {
+        match self.locking_job() {
+            None => Ok(()),
+            Some(JobKey::Sweep) => Err(Reason("a sweep is running")),
+            Some(JobKey::Align) => Err(Reason("the surface normals are being aligned")),
+            Some(_) => Err(Reason("a match is running")),
+        }
+    }
+
+    pub(super) fn has_part(&self, role: Role) -> Result<(), Reason> {
+        match (self.document.part(role), role) {
+            (Some(_), _) => Ok(()),
+            (None, Role::Crash) => Err(Reason("load the crash part first")),
+            (None, Role::Stamped) => Err(Reason("load the stamped part first")),
+        }
+    }
+
+    pub(super) fn has_any_part(&self) -> Result<(), Reason> {
+        self.has_part(Role::Crash)
+            .or_else(|_| self.has_part(Role::Stamped))
+            .map_err(|_| Reason("load a part first"))
+    }
+
+    pub(super) fn has_both_parts(&self) -> Result<(), Reason> {
+        let any = self.has_any_part();
+        any.map_err(|_| Reason("load both parts first"))?;
+        self.has_part(Role::Crash)?;
+        self.has_part(Role::Stamped)
+    }
+
+    /// `Ok` if the stamped part may be moved now.
+    pub fn can_move(&self) -> Result<(), Reason> {
+        self.has_part(Role::Stamped)?;
+        self.is_unlocked()
+    }
+
+    /// `Ok` if the match may start now.
+    pub fn can_match(&self) -> Result<(), Reason> {
+        self.has_both_parts()?;
+        self.is_unlocked()
+    }
+
+    /// `Ok` if a part may be reduced now.
+    pub fn can_reduce(&self) -> Result<(), Reason> {
+        self.has_any_part()?;
+        self.is_unlocked()
+    }
+}

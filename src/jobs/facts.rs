@@ -1,0 +1,66 @@
+use crate::formats::PartSummary;
+use crate::geometry::{Aabb, Vector3};
+use crate::pipeline::load::LoadedPart;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What the window shows about a part, counted once by the worker so that no frame has to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartFacts {
+    /// The parts of the deck, for the tree.
+    pub parts: Vec<PartSummary>,
+    /// Ids of the parts that are matched.
+    pub used: BTreeSet<u64>,
+    /// Box around each of them, in the crash model's unit.
+    pub part_bounds: BTreeMap<u64, Aabb>,
+    /// Box around the mesh.
+    pub bounds: Aabb,
+    /// Area of the mesh.
+    pub area: f64,
+    /// Mean edge length of the mesh, the natural size of everything that is measured on it.
+    pub edge_length: f64,
+    /// Area-weighted mean normal; its length says how flat the part is.
+    pub mean_normal: Vector3,
+    /// Mean thickness of the matched elements, if known.
+    pub thickness: Option<f64>,
+    /// How much the file looks like the end of a forming simulation: 0 not at all, 1 one part with
+    /// thickness per element, 2 with stresses or strains.
+    pub formed: u8,
+}
+
+impl PartFacts {
+    /// Counts and measures. O(elements).
+    pub fn of(part: &LoadedPart) -> Self {
+        let model = &part.model;
+        let formed = if !model.forming.is_empty() {
+            2
+        } else {
+            u8::from(model.parts.len() == 1 && !model.shell_extras.is_empty())
+        };
+        Self {
+            parts: model.part_summaries(),
+            used: part.chosen_part_ids().into_iter().collect(),
+            part_bounds: part_bounds(part),
+            bounds: part.mesh.aabb(),
+            area: part.mesh.area(),
+            edge_length: part.mesh.mean_edge_length(),
+            mean_normal: part.mesh.mean_normal(),
+            thickness: part.mean_thickness(),
+            formed,
+        }
+    }
+}
+
+fn part_bounds(part: &LoadedPart) -> BTreeMap<u64, Aabb> {
+    let mut bounds = vec![Aabb::empty(); part.model.parts.len()];
+    for (triangle, &of_surface) in part.triangle_of.iter().enumerate() {
+        let part_idx = part.surface.triangle_part[of_surface as usize] as usize;
+        for corner in part.mesh.corners(triangle) {
+            bounds[part_idx].insert(&corner);
+        }
+    }
+    let boxes = part.model.parts.iter().zip(bounds);
+    boxes
+        .filter(|(_, bounds)| !bounds.is_empty())
+        .map(|(part, bounds)| (part.id, bounds))
+        .collect()
+}

@@ -1,0 +1,326 @@
+use super::{
+    ExportRequest, MatchRecipe, MatchRun, Measurement, PartFacts, StartPose, SweepSettings,
+    SweepTable,
+};
+use crate::geometry::Similarity;
+use crate::pipeline::load::{LoadSettings, LoadedPart};
+use crate::pipeline::reduce::{Deviation, Level, Levels};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use std::sync::{Arc, OnceLock};
+
+/// Which of the two parts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum Role {
+    /// The part of the crash model: fixed, shown left, the target of the match.
+    Crash,
+    /// The part of the stamping simulation: moves, shown right, the source of the match.
+    Stamped,
+}
+
+impl Role {
+    /// Both, crash first.
+    pub const ALL: [Self; 2] = [Self::Crash, Self::Stamped];
+
+    /// The other part.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Crash => Self::Stamped,
+            Self::Stamped => Self::Crash,
+        }
+    }
+
+    /// Lower-case word for sentences.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Crash => "crash",
+            Self::Stamped => "stamped",
+        }
+    }
+
+    /// The mark shown beside everything that belongs to this part: colour is never the only sign.
+    pub fn mark(self) -> &'static str {
+        match self {
+            Self::Crash => "■",
+            Self::Stamped => "▲",
+        }
+    }
+}
+
+/// One value for each part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct PerRole<T> {
+    /// For the crash part.
+    pub crash: T,
+    /// For the stamped part.
+    pub stamped: T,
+}
+
+impl<T> PerRole<T> {
+    /// The value of one part.
+    pub fn get(&self, role: Role) -> &T {
+        match role {
+            Role::Crash => &self.crash,
+            Role::Stamped => &self.stamped,
+        }
+    }
+
+    /// The value of one part, to be changed.
+    pub fn get_mut(&mut self, role: Role) -> &mut T {
+        match role {
+            Role::Crash => &mut self.crash,
+            Role::Stamped => &mut self.stamped,
+        }
+    }
+
+    /// Both values, crash first.
+    pub fn iter(&self) -> impl Iterator<Item = (Role, &T)> {
+        [(Role::Crash, &self.crash), (Role::Stamped, &self.stamped)].into_iter()
+    }
+
+    /// Exchanges the two values.
+    pub fn swap(&mut self) {
+        std::mem::swap(&mut self.crash, &mut self.stamped);
+    }
+}
+
+/// Name of one submitted job, counted from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct JobId(pub u64);
+
+/// A job's place in the queue: of each key at most one job waits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum JobKey {
+    /// Reading a part.
+    Load(Role),
+    /// Taking other parts of a deck, or another unit, without reading it again.
+    Reselect(Role),
+    /// Reducing a part.
+    Reduce(Role),
+    /// Measuring how far a level lies from the full mesh.
+    MeasureLevel(Role),
+    /// First poses from the mean normals.
+    Align,
+    /// The match.
+    Match,
+    /// Distances and overlap at a pose.
+    Measure,
+    /// The paper's tables.
+    Sweep,
+    /// Writing files.
+    Export,
+}
+
+impl JobKey {
+    /// What the running job does, for the status line.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Load(Role::Crash) => "Loading the crash part",
+            Self::Load(Role::Stamped) => "Loading the stamped part",
+            Self::Reselect(_) => "Taking the chosen parts",
+            Self::Reduce(Role::Crash) => "Reducing the crash part",
+            Self::Reduce(Role::Stamped) => "Reducing the stamped part",
+            Self::MeasureLevel(_) => "Measuring the reduction",
+            Self::Align => "Aligning surface normals",
+            Self::Match => "Matching",
+            Self::Measure => "Measuring distances",
+            Self::Sweep => "Running the sweep",
+            Self::Export => "Writing",
+        }
+    }
+}
+
+/// The state of the inputs a job was asked for. Numbers are never given twice; undo brings back
+/// the old number together with the old value, so a result that fits again is welcome again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Stamp {
+    /// The loaded part of each role.
+    pub parts: PerRole<u64>,
+    /// The pose of the stamped part.
+    pub pose: u64,
+}
+
+/// Where a part comes from.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum PartSource {
+    /// A file on disk.
+    File(PathBuf),
+    /// The example pair, generated.
+    Example,
+}
+
+/// A recorded reduction and how far down it was to go.
+pub struct Recording {
+    /// Every level from full down.
+    pub levels: Levels,
+    /// The ceiling the recording aimed at.
+    pub down_to: usize,
+}
+
+impl std::fmt::Debug for Recording {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Recording")
+            .field("down_to", &self.down_to)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A level with what was measured about it.
+#[derive(Debug, Clone)]
+pub struct MeasuredLevel {
+    /// The ceiling that was asked for.
+    pub max_triangles: usize,
+    /// Mesh and report of the reduction.
+    pub level: Level,
+    /// Measured distance to the full mesh; comes a moment later, because a slider does not wait.
+    pub deviation: OnceLock<Deviation>,
+}
+
+/// Input of the measurement of a level.
+#[derive(Debug, Clone)]
+pub struct MeasureLevelInput {
+    /// Which part it is.
+    pub role: Role,
+    /// Where the level was taken from.
+    pub recording: Arc<Recording>,
+    /// The level.
+    pub level: Arc<MeasuredLevel>,
+}
+
+/// Input of a reduction.
+#[derive(Debug, Clone)]
+pub struct ReduceInput {
+    /// Which part it is.
+    pub role: Role,
+    /// The part.
+    pub part: Arc<LoadedPart>,
+    /// The recording made before, if there is one; makes any level cheap.
+    pub recording: Option<Arc<Recording>>,
+    /// Ceiling of the number of triangles.
+    pub max_triangles: usize,
+}
+
+/// Input of an alignment or a match.
+#[derive(Debug, Clone)]
+pub struct MatchInput {
+    /// The target.
+    pub crash: Arc<LoadedPart>,
+    /// The source.
+    pub stamped: Arc<LoadedPart>,
+    /// Every setting.
+    pub recipe: MatchRecipe,
+    /// The pose the stamped part has now.
+    pub initial: Similarity,
+}
+
+/// Input of a measurement.
+#[derive(Debug, Clone)]
+pub struct MeasureInput {
+    /// The target.
+    pub crash: Arc<LoadedPart>,
+    /// The source.
+    pub stamped: Arc<LoadedPart>,
+    /// Where the source lies.
+    pub crash_from_stamped: Similarity,
+}
+
+/// Everything the worker can do. A closed list, so that jobs can be listed, logged and tested.
+#[derive(Debug, Clone)]
+pub enum JobKind {
+    /// Reads a part.
+    Load {
+        /// Which part it is meant to be.
+        role: Role,
+        /// Where it comes from.
+        source: PartSource,
+        /// Units and chosen parts.
+        settings: LoadSettings,
+    },
+    /// Makes the surface of a part again from the model in memory.
+    Reselect {
+        /// Which part it is.
+        role: Role,
+        /// The part as it is.
+        part: Arc<LoadedPart>,
+        /// What is to be taken.
+        settings: LoadSettings,
+    },
+    /// Reduces a part to a maximum number of triangles.
+    Reduce(ReduceInput),
+    /// Measures how far a level lies from the full mesh.
+    MeasureLevel(MeasureLevelInput),
+    /// First poses, surface normal on surface normal.
+    Align(MatchInput),
+    /// The match.
+    Match(MatchInput),
+    /// Distances and overlap at a pose.
+    Measure(MeasureInput),
+    /// Levels × match.
+    Sweep(MatchInput, SweepSettings),
+    /// Writes files.
+    Export(ExportRequest),
+}
+
+impl JobKind {
+    /// The place in the queue.
+    pub fn key(&self) -> JobKey {
+        match self {
+            Self::Load { role, .. } => JobKey::Load(*role),
+            Self::Reselect { role, .. } => JobKey::Reselect(*role),
+            Self::Reduce(input) => JobKey::Reduce(input.role),
+            Self::MeasureLevel(input) => JobKey::MeasureLevel(input.role),
+            Self::Align(_) => JobKey::Align,
+            Self::Match(_) => JobKey::Match,
+            Self::Measure(_) => JobKey::Measure,
+            Self::Sweep(..) => JobKey::Sweep,
+            Self::Export(_) => JobKey::Export,
+        }
+    }
+}
+
+/// What a finished job brings.
+#[derive(Debug, Clone)]
+pub enum JobOutput {
+    /// A part was read or taken anew.
+    Loaded {
+        /// Which part it was meant to be.
+        role: Role,
+        /// Where it came from.
+        source: PartSource,
+        /// The part.
+        part: Arc<LoadedPart>,
+        /// What the window shows about it.
+        facts: Arc<PartFacts>,
+    },
+    /// A part was reduced.
+    Reduced {
+        /// Which part.
+        role: Role,
+        /// For the next level.
+        recording: Arc<Recording>,
+        /// The level.
+        level: Arc<MeasuredLevel>,
+    },
+    /// The deviation of a level is now known.
+    LevelMeasured {
+        /// Which part.
+        role: Role,
+        /// The level that was measured.
+        level: Arc<MeasuredLevel>,
+    },
+    /// First poses, most promising first.
+    Aligned(Arc<Vec<StartPose>>),
+    /// The match ended, by itself or stopped.
+    Matched(Arc<MatchRun>),
+    /// Distances and overlap.
+    Measured(Arc<Measurement>),
+    /// The tables.
+    Swept(Arc<SweepTable>),
+    /// Files were written.
+    Exported {
+        /// Which.
+        paths: Vec<PathBuf>,
+        /// What the writing found out, for example the rounding error of a card.
+        notes: Vec<String>,
+    },
+}

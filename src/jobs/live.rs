@@ -1,0 +1,162 @@
+use super::{JobId, Waker};
+use crate::monitor::{IterationReport, Observer, Progress};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Shortest time between two wake-ups for progress: 30 a second.
+const WAKE_INTERVAL: Duration = Duration::from_millis(33);
+/// Iterations kept while nobody looks; older ones are dropped from the live curve only.
+const MAX_ITERATIONS: usize = 20_000;
+
+/// What is going on right now: overwritten, not queued.
+#[derive(Debug, Clone, Default)]
+pub struct Live {
+    /// The running job.
+    pub job: Option<JobId>,
+    /// The latest phase and count.
+    pub progress: Option<Progress>,
+    /// The best pose of the current phase so far, for the preview.
+    pub best: Option<IterationReport>,
+    /// The latest iteration, for the status line.
+    pub latest: Option<IterationReport>,
+    /// Iterations since the last look, in the order they were told, for the convergence curve.
+    pub iterations: Vec<IterationReport>,
+}
+
+/// The slot between the worker's threads, which write, and the window, which reads when it draws.
+pub struct LiveSlot {
+    inner: Mutex<(Live, Option<Instant>)>,
+    waker: Waker,
+}
+
+impl LiveSlot {
+    /// An empty slot that calls `waker` at most 30 times a second.
+    pub fn new(waker: Waker) -> Self {
+        Self {
+            inner: Mutex::default(),
+            waker,
+        }
+    }
+
+    /// Empties the slot for the next job.
+    pub fn begin(&self, job: Option<JobId>) {
+        let (live, _) = &mut *self.lock();
+        *live = Live {
+            job,
+            ..Live::default()
+        };
+    }
+
+    /// The present state; takes the iterations out, leaves the rest.
+    pub fn take(&self) -> Live {
+        let (live, _) = &mut *self.lock();
+        let iterations = std::mem::take(&mut live.iterations);
+        Live {
+            iterations,
+            ..live.clone()
+        }
+    }
+
+    /// Changes the state under the lock, then wakes the window if the last time is long enough
+    /// ago. A new phase always wakes, so that a long quiet phase does not hide behind the old one.
+    fn update(&self, change: impl FnOnce(&mut Live) -> bool) {
+        let wake = {
+            let (live, last_wake) = &mut *self.lock();
+            let at_once = change(live);
+            let now = Instant::now();
+            let due = last_wake.is_none_or(|last| now.duration_since(last) >= WAKE_INTERVAL);
+            if at_once || due {
+                *last_wake = Some(now);
+            }
+            at_once || due
+        };
+        if wake {
+            (self.waker)();
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, (Live, Option<Instant>)> {
+        // Every write leaves a whole state, so a poisoned lock still guards a usable one.
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Observer for LiveSlot {
+    fn progress(&self, progress: Progress) {
+        self.update(|live| {
+            let new_phase = live.progress.is_none_or(|old| old.phase != progress.phase);
+            if new_phase {
+                // Objectives of a coarse and a fine phase do not compare.
+                live.best = None;
+            }
+            live.progress = Some(progress);
+            new_phase
+        });
+    }
+
+    fn iteration(&self, report: &IterationReport) {
+        self.update(|live| {
+            let better = live
+                .best
+                .is_none_or(|best| report.objective <= best.objective);
+            if better {
+                live.best = Some(*report);
+            }
+            live.latest = Some(*report);
+            if live.iterations.len() < MAX_ITERATIONS {
+                live.iterations.push(*report);
+            }
+            false
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    fn report(objective: f64) -> IterationReport {
+        IterationReport {
+            start_idx: 0,
+            iteration: 0,
+            target_from_source: [[0.0; 4]; 4],
+            objective,
+            rmse: objective,
+            fraction: 1.0,
+        }
+    }
+
+    #[test]
+    fn the_best_pose_is_shown_and_no_iteration_is_told_twice() {
+        let n_wakes = Arc::new(AtomicUsize::new(0));
+        let counter = Arc::clone(&n_wakes);
+        let slot = LiveSlot::new(Arc::new(move || {
+            counter.fetch_add(1, Ordering::Relaxed);
+        }));
+        for objective in [3.0, 1.0, 2.0] {
+            slot.iteration(&report(objective));
+        }
+        let live = slot.take();
+        assert_eq!(live.best.unwrap().objective, 1.0);
+        assert_eq!(live.latest.unwrap().objective, 2.0);
+        assert_eq!(live.iterations.len(), 3);
+        assert!(slot.take().iterations.is_empty());
+        assert_eq!(slot.take().best.unwrap().objective, 1.0);
+        assert!(n_wakes.load(Ordering::Relaxed) >= 1);
+    }
+
+    #[test]
+    fn a_new_phase_starts_a_new_best() {
+        let slot = LiveSlot::new(Arc::new(|| {}));
+        slot.iteration(&report(1.0));
+        slot.progress(Progress {
+            phase: "refine",
+            done: 0,
+            total: None,
+        });
+        slot.iteration(&report(5.0));
+        assert_eq!(slot.take().best.unwrap().objective, 5.0);
+    }
+}

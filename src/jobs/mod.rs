@@ -1,0 +1,24 @@
+//! Work off the window's thread: one worker, a queue with one place per kind of work, events back.
+//!
+//! The window submits a [`JobKind`] and goes on drawing. [`Worker::events`] tells without waiting
+//! what has started and ended, and none of that is ever lost; [`Worker::live`] is a slot that
+//! holds only the latest progress and pose, for which a slow window simply sees fewer pictures.
+
+mod event;
+mod facts;
+mod job;
+mod live;
+mod run;
+mod seam;
+mod worker;
+
+pub use event::{JobEvent, JobStage};
+pub use facts::PartFacts;
+pub use job::{
+    JobId, JobKey, JobKind, JobOutput, MatchInput, MeasureInput, MeasureLevelInput, MeasuredLevel,
+    PartSource, PerRole, Recording, ReduceInput, Role, Stamp,
+};
+pub use live::{Live, LiveSlot};
+pub use run::{JobError, PipelineRunner, Runner};
+pub use seam::*;
+pub use worker::{Waker, Worker};

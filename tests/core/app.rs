@@ -1,0 +1,646 @@
+//! The window without the window: commands in, state and effects out.
+
+use shapematch::app::*;
+use shapematch::formats::Model;
+use shapematch::geometry::{Point3, Similarity, TriMesh, Vector3};
+use shapematch::jobs::*;
+use shapematch::monitor::Monitor;
+use shapematch::pipeline::load::{LoadSettings, prepare};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A bent strip of n × 4 cells, so that its three sizes differ.
+fn strip(n: u32, size: f64) -> TriMesh {
+    let mut positions = Vec::new();
+    for i in 0..=n {
+        for j in 0..=4 {
+            let (x, y) = (f64::from(i), f64::from(j));
+            let z = 0.02 * x * x;
+            positions.push(Point3::new(x, y, z) * size);
+        }
+    }
+    let cell = |k: u32| {
+        let a = k / 4 * 5 + k % 4;
+        [[a, a + 5, a + 6], [a, a + 6, a + 1]]
+    };
+    TriMesh::new(positions, (0..4 * n).flat_map(cell).collect()).unwrap()
+}
+
+/// A model of two parts, 11 and 12; `formed` gives its shells a thickness of their own.
+fn model(n: u32, size: f64, formed: bool) -> Model {
+    let mut model = Model::from_mesh(&strip(n, size), "strip");
+    model.parts[0].id = 11;
+    if formed {
+        model
+            .shell_extras
+            .push(shapematch::formats::model::ShellExtra {
+                shell: 0,
+                thickness: [1.0; 4],
+                beta: 0.0,
+            });
+    } else {
+        let mut second = model.parts[0].clone();
+        second.id = 12;
+        second.title = "rest".to_owned();
+        model.parts.push(second);
+        let half = model.shells.len() / 2;
+        for shell in &mut model.shells[half..] {
+            shell.part = 1;
+        }
+    }
+    model
+}
+
+/// What the files of these tests hold, by name.
+fn read(source: &PartSource, settings: &LoadSettings) -> Result<LoadedPartAndFacts, String> {
+    let PartSource::File(path) = source else {
+        return Err("no example here".to_owned());
+    };
+    let model = match path.to_str().unwrap() {
+        "crash.k" => model(24, 1.0, false),
+        "stamped.k" => model(20, 1.0, true),
+        "metres.k" => model(20, 0.001, true),
+        other => return Err(format!("cannot read the file: {other:?}")),
+    };
+    prepared(path, Arc::new(model), settings)
+}
+
+type LoadedPartAndFacts = (Arc<shapematch::pipeline::load::LoadedPart>, Arc<PartFacts>);
+
+fn prepared(
+    path: &Path,
+    model: Arc<Model>,
+    settings: &LoadSettings,
+) -> Result<LoadedPartAndFacts, String> {
+    let part = prepare(path, model, settings, &Monitor::silent()).map_err(|e| e.to_string())?;
+    let facts = PartFacts::of(&part);
+    Ok((Arc::new(part), Arc::new(facts)))
+}
+
+fn shifted(x: f64) -> Similarity {
+    Similarity {
+        translation: Vector3::new(x, 0.0, 0.0),
+        ..Similarity::identity()
+    }
+}
+
+/// A window whose worker answers at once.
+#[derive(Default)]
+struct Window {
+    state: AppState,
+    /// Jobs that are not answered at once.
+    held: Vec<(JobId, JobKind, Stamp)>,
+    holds: bool,
+    n_jobs: u64,
+    effects: Vec<Effect>,
+}
+
+impl Window {
+    fn new() -> Self {
+        Self {
+            state: AppState::new(Settings::default()),
+            ..Self::default()
+        }
+    }
+
+    fn with_both() -> Self {
+        let mut window = Self::new();
+        window.open("crash.k", Role::Crash);
+        window.open("stamped.k", Role::Stamped);
+        window
+    }
+
+    fn open(&mut self, name: &str, role: Role) {
+        self.apply(FileCommand::Open {
+            paths: vec![PathBuf::from(name)],
+            role: Some(role),
+        });
+    }
+
+    fn apply(&mut self, command: impl Into<Command>) {
+        let effects = self.state.apply(command);
+        for effect in effects {
+            match effect {
+                Effect::StartJob(kind, stamp) => self.submit(*kind, stamp),
+                Effect::CancelJob(key) => self.cancel(key),
+                other => self.effects.push(other),
+            }
+        }
+    }
+
+    fn act(&mut self, action: Action) {
+        for command in action.to_commands(&self.state) {
+            self.apply(command);
+        }
+    }
+
+    fn submit(&mut self, kind: JobKind, stamp: Stamp) {
+        self.n_jobs += 1;
+        let id = JobId(self.n_jobs);
+        if self.holds {
+            self.tell(id, kind.key(), stamp, JobStage::Started);
+            self.held.push((id, kind, stamp));
+        } else {
+            self.tell(id, kind.key(), stamp, JobStage::Started);
+            self.finish(id, kind, stamp);
+        }
+    }
+
+    fn cancel(&mut self, key: JobKey) {
+        let (gone, kept) = std::mem::take(&mut self.held)
+            .into_iter()
+            .partition(|(_, kind, _)| kind.key() == key);
+        self.held = kept;
+        for (id, kind, stamp) in gone {
+            self.tell(id, kind.key(), stamp, JobStage::Cancelled);
+        }
+    }
+
+    fn finish_held(&mut self) {
+        self.holds = false;
+        for (id, kind, stamp) in std::mem::take(&mut self.held) {
+            self.finish(id, kind, stamp);
+        }
+    }
+
+    fn finish(&mut self, id: JobId, kind: JobKind, stamp: Stamp) {
+        let key = kind.key();
+        let stage = match run(kind) {
+            Ok(output) => JobStage::Finished(output),
+            Err(message) => JobStage::Failed(message),
+        };
+        self.tell(id, key, stamp, stage);
+    }
+
+    fn tell(&mut self, id: JobId, key: JobKey, stamp: Stamp, stage: JobStage) {
+        let elapsed = Duration::from_millis(5);
+        self.apply(JobEvent {
+            id,
+            key,
+            stamp,
+            elapsed,
+            stage,
+        });
+    }
+
+    fn pose(&self) -> Similarity {
+        *self.state.document.crash_from_stamped()
+    }
+
+    fn mesh(&self, role: Role) -> Arc<TriMesh> {
+        Arc::clone(&self.state.document.part(role).unwrap().loaded.mesh)
+    }
+
+    fn part(&self, role: Role) -> &Part {
+        self.state.document.part(role).unwrap()
+    }
+}
+
+/// Reductions are real, files and matches are made up.
+fn run(kind: JobKind) -> Result<JobOutput, String> {
+    match kind {
+        JobKind::Load {
+            role,
+            source,
+            settings,
+        } => {
+            let (part, facts) = read(&source, &settings)?;
+            Ok(JobOutput::Loaded {
+                role,
+                source,
+                part,
+                facts,
+            })
+        }
+        JobKind::Match(_) => Ok(JobOutput::Matched(Arc::new(MatchRun {
+            crash_from_stamped: shifted(1.0),
+            alternatives: vec![shifted(2.0), shifted(3.0)],
+            verdict: "good".to_owned(),
+        }))),
+        JobKind::Align(_) => {
+            let start = |x: f64| StartPose {
+                crash_from_stamped: shifted(x),
+                label: format!("{x}"),
+            };
+            Ok(JobOutput::Aligned(Arc::new(vec![start(10.0), start(20.0)])))
+        }
+        other => PipelineRunner
+            .run(other, &Monitor::silent())
+            .map_err(|error| error.to_string()),
+    }
+}
+
+#[test]
+fn two_files_without_roles_are_sorted_by_content() {
+    let mut window = Window::new();
+    let paths = ["stamped.k", "crash.k"].map(PathBuf::from).to_vec();
+    window.apply(FileCommand::Open { paths, role: None });
+    assert_eq!(window.part(Role::Crash).facts.parts.len(), 2);
+    assert_eq!(window.part(Role::Stamped).facts.formed, 1);
+    assert!(
+        window
+            .state
+            .notices
+            .toasts()
+            .any(|n| n.text.contains("Swap"))
+    );
+    let before = window.mesh(Role::Crash);
+    window.apply(FileCommand::Swap);
+    assert!(
+        Arc::ptr_eq(&before, &window.mesh(Role::Stamped)),
+        "nothing reloads"
+    );
+}
+
+#[test]
+fn one_formed_file_without_a_role_is_the_stamped_part() {
+    let mut window = Window::new();
+    let paths = vec![PathBuf::from("stamped.k")];
+    window.apply(FileCommand::Open { paths, role: None });
+    assert!(window.state.document.part(Role::Stamped).is_some());
+    assert!(window.state.document.part(Role::Crash).is_none());
+}
+
+#[test]
+fn a_file_that_cannot_be_read_is_a_message_and_the_old_part_stays() {
+    let mut window = Window::with_both();
+    let before = window.state.document.clone();
+    window.open("missing.k", Role::Crash);
+    assert_eq!(window.state.document, before);
+    let toast = window.state.notices.toasts().next().unwrap();
+    assert_eq!(toast.level, NoticeLevel::Error);
+    assert!(toast.text.contains("missing.k"));
+}
+
+#[test]
+fn units_are_hinted_once_and_the_factor_is_one_undo_step() {
+    let mut window = Window::new();
+    window.open("crash.k", Role::Crash);
+    window.open("metres.k", Role::Stamped);
+    assert_eq!(window.state.hinted_length_factor(), Some(1000.0));
+    let before = window.state.document.clone();
+    window.apply(FileCommand::SetLengthFactor {
+        role: Role::Stamped,
+        factor: 1000.0,
+    });
+    assert_eq!(window.part(Role::Stamped).length_factor(), 1000.0);
+    assert_eq!(window.state.unit_hint(), None);
+    window.act(Action::Undo);
+    assert_eq!(window.state.document, before);
+    window.apply(FileCommand::DismissUnitHint);
+    assert_eq!(window.state.unit_hint(), None);
+}
+
+#[test]
+fn reducing_is_one_step_per_part_and_levels_follow_the_keys() {
+    let mut window = Window::with_both();
+    let settings = Settings {
+        marked_levels: vec![100, 60, 30],
+        ..window.state.settings.clone()
+    };
+    window.apply(Command::Settings(Box::new(settings)));
+    let n_done = window.state.history.n_done();
+    window.act(Action::NextLevel);
+    for role in Role::ALL {
+        assert!(window.part(role).reduced_mesh().n_triangles() <= 100);
+        let level = window.part(role).level.as_ref().unwrap();
+        assert!(level.deviation.get().is_some(), "measured");
+    }
+    assert_eq!(window.state.history.n_done(), n_done + 2);
+    window.act(Action::NextLevel);
+    assert_eq!(window.part(Role::Crash).wanted_level, Some(60));
+    window.act(Action::PreviousLevel);
+    window.act(Action::PreviousLevel);
+    assert!(window.part(Role::Crash).level.is_none());
+    assert_eq!(
+        Action::PreviousLevel.enabled(&window.state),
+        Err(Reason("this is the full mesh"))
+    );
+}
+
+#[test]
+fn a_part_left_out_makes_the_surface_anew_and_reduces_it_again() {
+    let mut window = Window::with_both();
+    window.apply(ReduceCommand::To {
+        roles: PerRole {
+            crash: true,
+            stamped: false,
+        },
+        max_triangles: 50,
+    });
+    let (crash, id) = (Role::Crash, 12);
+    let n_before = window.mesh(crash).n_triangles();
+    window.apply(PartCommand::SetUsed(PartRef { role: crash, id }, false));
+    assert!(window.mesh(crash).n_triangles() < n_before);
+    assert!(!window.part(crash).is_used(12));
+    assert!(window.part(crash).level.is_some());
+    let last = PartRef {
+        role: crash,
+        id: 11,
+    };
+    let before = window.state.document.clone();
+    window.apply(PartCommand::SetUsed(last, false));
+    assert_eq!(window.state.document, before, "the last part stays");
+}
+
+#[test]
+fn a_drag_is_one_undo_step_from_the_pose_at_the_grab() {
+    let mut window = Window::with_both();
+    let n_done = window.state.history.n_done();
+    let gesture = GestureId(1);
+    for x in [0.1, 0.5, 2.0] {
+        window.apply(MoveCommand::Drag {
+            gesture,
+            delta: shifted(x),
+            name: format!("Move {x} along X"),
+        });
+    }
+    window.apply(MoveCommand::EndDrag);
+    assert_eq!(window.pose(), shifted(2.0));
+    assert_eq!(window.state.history.n_done(), n_done + 1);
+    assert_eq!(window.state.history.undo_name(), Some("Move 2 along X"));
+    window.act(Action::Undo);
+    assert_eq!(window.pose(), Similarity::identity());
+}
+
+#[test]
+fn a_drag_that_comes_back_leaves_no_step() {
+    let mut window = Window::with_both();
+    let before = window.state.document.clone();
+    let n_done = window.state.history.n_done();
+    for x in [1.0, 0.0] {
+        window.apply(MoveCommand::Drag {
+            gesture: GestureId(1),
+            delta: shifted(x),
+            name: "Move".to_owned(),
+        });
+    }
+    window.apply(MoveCommand::EndDrag);
+    assert_eq!(window.state.document, before);
+    assert_eq!(window.state.history.n_done(), n_done);
+}
+
+#[test]
+fn another_step_during_a_drag_does_not_move_the_part_twice() {
+    let mut window = Window::with_both();
+    let drag = |x| MoveCommand::Drag {
+        gesture: GestureId(1),
+        delta: shifted(x),
+        name: "Move".to_owned(),
+    };
+    window.apply(drag(1.0));
+    let part = PartRef {
+        role: Role::Crash,
+        id: 12,
+    };
+    window.apply(PartCommand::SetVisible(part, false));
+    window.apply(drag(2.0));
+    assert_eq!(window.pose(), shifted(2.0));
+    window.apply(MoveCommand::AbandonDrag(GestureId(1)));
+    assert_eq!(window.pose(), Similarity::identity());
+    window.act(Action::Undo);
+    assert_eq!(window.pose(), shifted(1.0));
+    assert!(!window.part(Role::Crash).is_visible(12));
+}
+
+#[test]
+fn keys_move_along_an_axis_by_a_typed_value() {
+    let mut window = Window::with_both();
+    window.act(Action::MoveTool);
+    let axis = ModalInput::Axis {
+        axis: Axis::Z,
+        is_plane: false,
+    };
+    window.apply(MoveCommand::Input(axis));
+    for c in "12.5".chars() {
+        window.apply(MoveCommand::Input(ModalInput::Character(c)));
+    }
+    let tool = window.state.view.move_tool.as_ref().unwrap();
+    assert_eq!(tool.modal.header(&tool.frame), "Move 12.5 along Z   [12.5]");
+    window.apply(MoveCommand::Input(ModalInput::Accept));
+    assert_eq!(window.pose().translation, Vector3::new(0.0, 0.0, 12.5));
+    assert_eq!(window.state.history.undo_name(), Some("Move 12.5 along Z"));
+}
+
+#[test]
+fn escape_takes_a_move_by_keys_back_without_a_trace() {
+    let mut window = Window::with_both();
+    let before = window.state.document.clone();
+    let n_done = window.state.history.n_done();
+    window.act(Action::RotateTool);
+    for c in "-90".chars() {
+        window.apply(MoveCommand::Input(ModalInput::Character(c)));
+    }
+    assert_ne!(window.state.document, before);
+    window.apply(Command::Escape);
+    assert_eq!(window.state.document, before);
+    assert_eq!(window.state.history.n_done(), n_done);
+    assert!(window.state.view.move_tool.is_none());
+}
+
+#[test]
+fn turning_over_twice_comes_back() {
+    for action in [Action::TurnOverX, Action::TurnOverY, Action::TurnOverZ] {
+        let mut window = Window::with_both();
+        window.act(action);
+        let center = window.part(Role::Stamped).bounds().center();
+        assert!((window.pose().apply(&center) - center).norm() < 1e-12);
+        assert!(
+            (window.pose().angle_to(&Similarity::identity()) - std::f64::consts::PI).abs() < 1e-9
+        );
+        window.act(action);
+        let back = window.pose().to_matrix4() - Similarity::identity().to_matrix4();
+        assert!(back.amax() < 1e-12);
+    }
+}
+
+#[test]
+fn centers_meet() {
+    let mut window = Window::with_both();
+    window.act(Action::BringCentersTogether);
+    let here = window.state.document.stamped_center().unwrap();
+    let there = window.part(Role::Crash).bounds().center();
+    assert!((here - there).norm() < 1e-12);
+}
+
+#[test]
+fn a_match_is_one_step_and_its_alternatives_are_one_key_away() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    assert_eq!(window.pose(), shifted(1.0));
+    assert!(window.state.document.current_result().is_some());
+    for x in [2.0, 3.0, 1.0] {
+        window.act(Action::FlipAlternative);
+        assert_eq!(window.pose(), shifted(x));
+        assert!(window.state.document.current_result().is_some());
+    }
+    window.apply(MoveCommand::TurnOver(Axis::X));
+    assert!(window.state.stale(Section::Match).is_some());
+    for _ in 0..5 {
+        window.act(Action::Undo);
+    }
+    assert_eq!(window.pose(), Similarity::identity());
+    assert!(window.state.document.result.is_none());
+}
+
+#[test]
+fn while_a_match_runs_inputs_are_locked_and_cancel_restores() {
+    let mut window = Window::with_both();
+    window.holds = true;
+    window.act(Action::MatchOrStop);
+    let before = window.state.document.clone();
+    assert_eq!(
+        Action::OpenCrash.enabled(&window.state),
+        Err(Reason("a match is running"))
+    );
+    assert_eq!(Action::MatchOrStop.enabled(&window.state), Ok(()));
+    window.apply(MoveCommand::TurnOver(Axis::X));
+    window.act(Action::Undo);
+    assert_eq!(window.state.document, before);
+    let live = Live {
+        job: window.state.jobs.running().map(|job| job.id),
+        best: Some(iteration(5.0)),
+        iterations: vec![iteration(5.0)],
+        ..Live::default()
+    };
+    window.apply(Command::Live(Box::new(live)));
+    assert_eq!(window.state.shown_pose(), shifted(5.0));
+    window.apply(Command::Escape);
+    assert_eq!(window.state.shown_pose(), Similarity::identity());
+    assert_eq!(window.state.document, before);
+    assert!(!window.state.jobs.is_busy());
+    assert_eq!(window.state.convergence.len(), 1);
+}
+
+fn iteration(x: f64) -> shapematch::monitor::IterationReport {
+    shapematch::monitor::IterationReport {
+        start_idx: 0,
+        iteration: 0,
+        target_from_source: shifted(x).to_rows(),
+        objective: 1.0,
+        rmse: 1.0,
+        fraction: 1.0,
+    }
+}
+
+#[test]
+fn a_result_for_parts_that_are_gone_is_dropped_with_a_line() {
+    let mut window = Window::with_both();
+    window.holds = true;
+    window.act(Action::Reduce);
+    let held = std::mem::take(&mut window.held);
+    window.holds = false;
+    window.open("stamped.k", Role::Crash);
+    window.held = held;
+    window.finish_held();
+    assert!(window.part(Role::Crash).level.is_none());
+    assert!(window.part(Role::Stamped).level.is_some());
+    let dropped = window.state.log.rows().iter();
+    assert!(dropped.into_iter().any(|row| row.text.contains("dropped")));
+}
+
+#[test]
+fn starts_are_stepped_through_without_moving_the_part() {
+    let mut window = Window::with_both();
+    window.act(Action::Align);
+    assert_eq!(window.state.shown_pose(), shifted(10.0));
+    window.act(Action::NextStart);
+    assert_eq!(window.state.shown_pose(), shifted(20.0));
+    window.act(Action::NextStart);
+    assert_eq!(window.state.shown_pose(), shifted(10.0));
+    assert_eq!(window.pose(), Similarity::identity());
+    window.act(Action::PreviousStart);
+    window.act(Action::UseStart);
+    assert_eq!(window.pose(), shifted(20.0));
+    assert!(!window.state.is_preview());
+}
+
+#[test]
+fn moving_over_fifty_times_changes_nothing_but_the_view() {
+    let mut window = Window::with_both();
+    let before = window.state.document.clone();
+    for _ in 0..50 {
+        window.act(Action::ToggleMoveOver);
+        assert!(window.state.view.is_moved_over);
+        window.act(Action::ToggleMoveOver);
+    }
+    assert!(!window.state.view.is_moved_over);
+    assert_eq!(window.state.document, before);
+}
+
+#[test]
+fn every_action_says_why_it_is_not_possible() {
+    let window = Window::new();
+    for &action in Action::ALL {
+        if action.enabled(&window.state).is_err() {
+            assert!(action.to_commands(&window.state).is_empty());
+        }
+    }
+    let reason = |action: Action| action.enabled(&window.state).unwrap_err().0;
+    assert_eq!(reason(Action::MatchOrStop), "load both parts first");
+    assert_eq!(reason(Action::ToggleMoveOver), "load both parts first");
+    assert_eq!(reason(Action::Undo), "nothing to undo");
+    assert_eq!(reason(Action::MoveTool), "load the stamped part first");
+}
+
+#[test]
+fn every_enabled_action_does_something() {
+    let mut window = Window::with_both();
+    window.act(Action::Reduce);
+    window.act(Action::MatchOrStop);
+    window.act(Action::Align);
+    window.apply(PartCommand::Select(Some(PartRef {
+        role: Role::Crash,
+        id: 11,
+    })));
+    for &action in Action::ALL {
+        let is_enabled = action.enabled(&window.state).is_ok();
+        let does = !action.to_commands(&window.state).is_empty();
+        assert_eq!(is_enabled, does, "{action:?}");
+    }
+}
+
+#[test]
+fn labels_and_keys_are_unique() {
+    let mut labels = std::collections::BTreeSet::new();
+    let mut keys = std::collections::HashMap::new();
+    for &action in Action::ALL {
+        let info = action.info();
+        assert!(labels.insert(info.label), "{:?}", info.label);
+        assert!(!info.tooltip.is_empty() && !info.tooltip.ends_with('.'));
+        for shortcut in [info.shortcut, info.other_shortcut].into_iter().flatten() {
+            let other = keys.insert(shortcut, action);
+            assert_eq!(other, None, "{shortcut} is taken by {action:?}");
+            assert_eq!(Action::of_shortcut(shortcut), Some(action));
+        }
+    }
+}
+
+#[test]
+fn equal_messages_count_up_and_short_ones_end() {
+    let mut window = Window::new();
+    let tell = |level| NoticeCommand::Tell(level, "disk full".to_owned());
+    for _ in 0..12 {
+        window.apply(tell(NoticeLevel::Error));
+    }
+    window.apply(NoticeCommand::Tell(NoticeLevel::Success, "copied".into()));
+    let counts: Vec<usize> = window.state.notices.toasts().map(|n| n.count).collect();
+    assert_eq!(counts, [1, 12]);
+    window.state.tick(Duration::from_secs(5));
+    let texts: Vec<&str> = window.state.notices.toasts().map(|n| &*n.text).collect();
+    assert_eq!(texts, ["disk full"]);
+    assert_eq!(window.state.notices.n_unread(), 1);
+}
+
+#[test]
+fn settings_of_an_older_program_still_load() {
+    let settings: Settings = serde_json::from_str(r#"{"theme":"Dark","gone":1}"#).unwrap();
+    assert_eq!(settings.theme, Theme::Dark);
+    assert_eq!(settings.ui_scale, 1.0);
+    let wild: Settings = serde_json::from_str(r#"{"ui_scale":99.0}"#).unwrap();
+    assert_eq!(wild.sanitized().ui_scale, 2.5);
+    let text = serde_json::to_string(&Settings::default()).unwrap();
+    let back: Settings = serde_json::from_str(&text).unwrap();
+    assert_eq!(back, Settings::default());
+}
