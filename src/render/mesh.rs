@@ -87,7 +87,8 @@ impl RenderMesh {
             let part = input.part_of_triangle.and_then(|parts| parts.get(t));
             part.copied().unwrap_or(0) & !BORDER_BIT
         };
-        let normals = mesh_build::creased_normals(mesh);
+        let faces = mesh_build::face_normals(mesh);
+        let normals = mesh_build::creased_normals(mesh, &faces);
         let corner_vertices: Vec<u32> = mesh.triangles().iter().flatten().copied().collect();
         let corners = corner_vertices
             .iter()
@@ -99,7 +100,7 @@ impl RenderMesh {
             })
             .collect();
         let topology = Topology::of(mesh);
-        let classes = EdgeClasses::of(mesh, &topology, input.element_of_triangle);
+        let classes = EdgeClasses::of(&topology, &faces, input.element_of_triangle);
         let mut wide_edges = Vec::new();
         for (edges, bit) in [(&classes.features, 0), (&classes.borders, BORDER_BIT)] {
             wide_edges.extend(edges.iter().map(|&edge| {

@@ -8,16 +8,23 @@ use crate::geometry::{Topology, TriMesh, Vector3};
 const SMOOTH_COS: f64 = 0.819_152_044_288_991_8;
 /// Edges that turn by more are drawn as creases: cos 25°.
 const FEATURE_COS: f64 = 0.906_307_787_036_650;
+/// Creases sharper than this are drawn however short they are: cos 50°.
+const SHARP_COS: f64 = 0.642_787_609_686_539_4;
+/// Softer creases are drawn where at least so many edges hang together. Radii meshed with two or three
+/// elements bend by about 25° per row, and a few edges above the limit would look like stitches.
+const MIN_CHAIN: u32 = 8;
+
+/// Unit normal of each triangle.
+pub(super) fn face_normals(mesh: &TriMesh) -> Vec<Vector3> {
+    let triangles = (0..mesh.n_triangles()).into_par_iter();
+    triangles.map(|t| mesh.normal(t)).collect()
+}
 
 /// Normal at each corner of each triangle: the mean of the triangles around the vertex that turn by
 /// less than 35° against this one, weighted by their angle at the vertex (Thürmer and Wüthrich 1998).
 /// Flat areas do not depend on how they are cut, and bends of pressed sheets stay crisp.
-pub(super) fn creased_normals(mesh: &TriMesh) -> Vec<Vector3> {
+pub(super) fn creased_normals(mesh: &TriMesh, faces: &[Vector3]) -> Vec<Vector3> {
     let n_triangles = mesh.n_triangles();
-    let faces: Vec<Vector3> = (0..n_triangles)
-        .into_par_iter()
-        .map(|t| mesh.normal(t))
-        .collect();
     let weights: Vec<[f64; 3]> = (0..n_triangles)
         .into_par_iter()
         .map(|t| corner_angles(mesh, t))
@@ -96,35 +103,78 @@ pub(super) struct EdgeClasses {
 }
 
 impl EdgeClasses {
-    pub(super) fn of(mesh: &TriMesh, topology: &Topology, elements: Option<&[u32]>) -> Self {
+    pub(super) fn of(topology: &Topology, faces: &[Vector3], elements: Option<&[u32]>) -> Self {
         let mut classes = Self::default();
+        let mut soft = Vec::new();
+        let mut sharp = Vec::new();
         for edge in 0..topology.edges.len() {
             let around = topology.triangles_of(edge);
-            let inside = elements.is_some_and(|elements| {
-                let element = |t: u32| elements.get(t as usize);
-                around.len() == 2
-                    && element(around[0]).is_some()
-                    && element(around[0]) == element(around[1])
-            });
-            if inside {
+            if is_inside_element(around, elements) {
                 continue;
             }
             classes.elements.push(edge);
             match around {
                 [_] => classes.borders.push(edge),
                 [a, b] => {
-                    let (a, b) = (mesh.normal(*a as usize), mesh.normal(*b as usize));
+                    let (a, b) = (faces[*a as usize], faces[*b as usize]);
                     // Neighbours of opposite winding are as flat as those of equal winding.
-                    let flat = a.dot(&b).abs() >= FEATURE_COS;
-                    if !flat && a != Vector3::zeros() && b != Vector3::zeros() {
-                        classes.features.push(edge);
+                    let cos = a.dot(&b).abs();
+                    let degenerate = a == Vector3::zeros() || b == Vector3::zeros();
+                    if cos < FEATURE_COS && !degenerate {
+                        let list = if cos < SHARP_COS {
+                            &mut sharp
+                        } else {
+                            &mut soft
+                        };
+                        list.push(edge);
                     }
                 }
-                _ => classes.features.push(edge),
+                _ => sharp.push(edge),
             }
         }
+        classes.features = long_chains(topology, &sharp, &soft);
         classes
     }
+}
+
+fn is_inside_element(around: &[u32], elements: Option<&[u32]>) -> bool {
+    let (Some(elements), [a, b]) = (elements, around) else {
+        return false;
+    };
+    let element = |t: &u32| elements.get(*t as usize);
+    element(a).is_some() && element(a) == element(b)
+}
+
+/// All sharp edges, and the soft ones that hang together with at least [`MIN_CHAIN`] of either kind;
+/// in ascending order.
+fn long_chains(topology: &Topology, sharp: &[usize], soft: &[usize]) -> Vec<usize> {
+    let mut all: Vec<usize> = sharp.iter().chain(soft).copied().collect();
+    all.sort_unstable();
+    let mut ends: Vec<u32> = all.iter().flat_map(|&e| topology.edges[e]).collect();
+    ends.sort_unstable();
+    ends.dedup();
+    // Union–find over the ends of the candidates.
+    let mut parent: Vec<usize> = (0..ends.len()).collect();
+    let place = |vertex: u32| ends.partition_point(|&v| v < vertex);
+    for &edge in &all {
+        let [a, b] = topology.edges[edge].map(|v| root(&mut parent, place(v)));
+        parent[a.max(b)] = a.min(b);
+    }
+    let mut n_edges = vec![0u32; ends.len()];
+    let mut chain_of = |edge: usize| root(&mut parent, place(topology.edges[edge][0]));
+    for &edge in &all {
+        n_edges[chain_of(edge)] += 1;
+    }
+    all.retain(|&edge| n_edges[chain_of(edge)] >= MIN_CHAIN || sharp.binary_search(&edge).is_ok());
+    all
+}
+
+fn root(parent: &mut [usize], mut node: usize) -> usize {
+    while parent[node] != node {
+        parent[node] = parent[parent[node]];
+        node = parent[node];
+    }
+    node
 }
 
 /// The corners at both ends of each edge, taken from its first triangle.
@@ -176,6 +226,37 @@ mod tests {
         TriMesh::new(positions, triangles).unwrap()
     }
 
+    fn normals_of(mesh: &TriMesh) -> Vec<Vector3> {
+        creased_normals(mesh, &face_normals(mesh))
+    }
+
+    /// A sheet of `n` elements along a bend of `angle`.
+    fn long_bend(n: u32, angle: f64) -> TriMesh {
+        let (sin, cos) = angle.sin_cos();
+        let rows = [(-1.0, 0.0), (0.0, 0.0), (cos, sin)];
+        let positions = (0..=n)
+            .flat_map(|i| rows.map(|(y, z)| Point3::new(f64::from(i), y, z)))
+            .collect();
+        let quad = |a: u32, b: u32| [[a, b, b + 1], [a, b + 1, a + 1]];
+        let triangles = (0..n)
+            .flat_map(|i| [quad(3 * i, 3 * i + 3), quad(3 * i + 1, 3 * i + 4)].concat())
+            .collect();
+        TriMesh::new(positions, triangles).unwrap()
+    }
+
+    #[test]
+    fn soft_creases_need_company() {
+        let n_features = |n, angle| {
+            let mesh = long_bend(n, angle);
+            let classes = EdgeClasses::of(&Topology::of(&mesh), &face_normals(&mesh), None);
+            classes.features.len()
+        };
+        assert_eq!(n_features(3, 0.6), 0, "three soft edges are noise");
+        assert_eq!(n_features(12, 0.6), 12);
+        assert_eq!(n_features(3, 1.2), 3, "sharp ones always count");
+        assert_eq!(n_features(12, 0.3), 0);
+    }
+
     #[test]
     fn packed_normals_keep_their_direction() {
         for i in 0..200 {
@@ -188,11 +269,11 @@ mod tests {
 
     #[test]
     fn gentle_bends_are_smooth_and_sharp_ones_creased() {
-        let smooth = creased_normals(&bent(0.3));
+        let smooth = normals_of(&bent(0.3));
         // Corner 2 of triangle 0 and corner 1 of triangle 2 are the same vertex.
         assert!((smooth[2] - smooth[7]).norm() < 1e-12);
         assert!(smooth[2].angle(&Vector3::z()) > 0.05);
-        let sharp = creased_normals(&bent(1.0));
+        let sharp = normals_of(&bent(1.0));
         assert!((sharp[2] - Vector3::z()).norm() < 1e-12);
         assert!(sharp[7].angle(&Vector3::z()) > 0.9);
     }
@@ -201,13 +282,14 @@ mod tests {
     fn edges_fall_into_their_classes() {
         let mesh = bent(1.0);
         let topology = Topology::of(&mesh);
-        let plain = EdgeClasses::of(&mesh, &topology, None);
+        let faces = face_normals(&mesh);
+        let plain = EdgeClasses::of(&topology, &faces, None);
         assert_eq!((plain.elements.len(), plain.borders.len()), (9, 6));
         assert_eq!(plain.features.len(), 1);
-        let quads = EdgeClasses::of(&mesh, &topology, Some(&[0, 0, 1, 1]));
+        let quads = EdgeClasses::of(&topology, &faces, Some(&[0, 0, 1, 1]));
         assert_eq!(quads.elements.len(), 7);
         let flat = bent(0.1);
-        let classes = EdgeClasses::of(&flat, &Topology::of(&flat), None);
+        let classes = EdgeClasses::of(&Topology::of(&flat), &face_normals(&flat), None);
         assert!(classes.features.is_empty());
     }
 

@@ -108,9 +108,9 @@ impl LineLook {
     /// For dark backgrounds.
     pub const DARK: Self = Self {
         edge: [10, 14, 20, 120],
-        feature: [10, 14, 20, 190],
+        feature: [10, 14, 20, 150],
         border: [8, 10, 14, 235],
-        feature_width: 1.2,
+        feature_width: 1.1,
         border_width: 1.7,
         point_size: 4.0,
         selection: [255, 255, 255],
@@ -171,6 +171,9 @@ pub struct Drawable {
     /// Pushes the mesh away from the viewer by so many pixels of world length: of two coincident
     /// sheets, the one with the smaller value wins everywhere.
     pub push_back: f32,
+    /// The same in world units, added to it. Two meshes of one curved sheet cut through each other by
+    /// their chord heights, about element size² / (4 · radius), at any zoom.
+    pub push_back_length: f64,
     /// Side of the wipe line.
     pub wipe: WipeSide,
     /// True if the section plane cuts it.
@@ -194,6 +197,7 @@ impl Drawable {
             field: None,
             style: Style::default(),
             push_back: 0.0,
+            push_back_length: 0.0,
             wipe: WipeSide::Both,
             cut_by_section: true,
             selected: false,
@@ -235,6 +239,7 @@ impl PartialEq for Drawable {
             && self.field == other.field
             && self.style == other.style
             && self.push_back == other.push_back
+            && self.push_back_length == other.push_back_length
             && self.wipe == other.wipe
             && self.cut_by_section == other.cut_by_section
             && self.selected == other.selected
@@ -301,7 +306,7 @@ pub struct Style {
     pub shading: Shading,
     /// Edges of elements.
     pub element_edges: bool,
-    /// Creases sharper than 25°.
+    /// Creases sharper than 25°, short ones only if sharper than 50°.
     pub feature_edges: bool,
     /// Borders and holes.
     pub borders: bool,

@@ -112,14 +112,19 @@ impl DrawableUniform {
             (first - 1e30, 0.5e-30)
         };
         let [r, g, b, _] = opaque(drawable.color);
+        let screen = ScreenSize {
+            width: height_px,
+            height: height_px,
+        };
+        let pixel = camera.pixel_size(screen, &origin);
         Self {
             view_from_mesh: columns(&view_from_mesh(drawable, camera, &origin)),
             color: [r, g, b, drawable.opacity.clamp(0.0, 1.0)],
             params: [
                 first as f32,
                 per_step as f32,
-                drawable.push_back,
-                edge_opacity(drawable, camera, height_px, &origin),
+                drawable.push_back + (drawable.push_back_length / pixel) as f32,
+                edge_opacity(drawable, pixel),
             ],
             flags: [
                 switches(drawable),
@@ -149,14 +154,9 @@ fn view_from_mesh(drawable: &Drawable, camera: &Camera, origin: &Point3) -> Matr
 
 /// Element edges closer together than a few pixels would hide the part behind a grey veil: full from
 /// 9 pixels, gone below 2.5.
-fn edge_opacity(drawable: &Drawable, camera: &Camera, height_px: f64, origin: &Point3) -> f32 {
-    let screen = ScreenSize {
-        width: height_px,
-        height: height_px,
-    };
+fn edge_opacity(drawable: &Drawable, pixel: f64) -> f32 {
     let length = drawable.mesh.mean_edge_length * drawable.world_from_mesh.scale;
-    let pixels = length / camera.pixel_size(screen, origin);
-    ((pixels - 2.5) / 6.5).clamp(0.0, 1.0) as f32
+    ((length / pixel - 2.5) / 6.5).clamp(0.0, 1.0) as f32
 }
 
 fn switches(drawable: &Drawable) -> u32 {

@@ -56,18 +56,22 @@ struct Light {
     gloss: f32,
 }
 
-// A soft headlight from the upper left, a fixed fill from the lower right, and light from the sky.
+// A soft key light from the upper left that travels with the viewer, a weak light from the viewer's
+// eye, a fill from the lower right, and light from the sky. Steep enough that gentle bends of a sheet
+// show, and never black.
 fn light(n: vec3<f32>, v: vec3<f32>) -> Light {
-    let key = normalize(vec3<f32>(-0.42, 0.55, 0.90));
+    let key = normalize(vec3<f32>(-0.55, 0.50, 0.70));
     let fill = normalize(vec3<f32>(0.75, -0.35, 0.45));
     let sky = 0.5 + 0.5 * n.y;
     let wrapped = clamp((dot(n, key) + 0.15) / 1.15, 0.0, 1.0);
+    let eye = dot(n, v);
     var out: Light;
-    out.diffuse = 0.17 + 0.13 * sky + 0.72 * wrapped + 0.12 * max(dot(n, fill), 0.0);
+    out.diffuse = 0.09 + 0.10 * sky + 0.74 * pow(wrapped, 1.6) + 0.22 * eye * eye
+        + 0.12 * max(dot(n, fill), 0.0);
     let halfway = normalize(key + v);
     let facing = max(dot(n, halfway), 0.0);
     // Two lobes: the broad one makes bent sheet read as metal, the narrow one as pressed.
-    out.gloss = 0.055 * pow(facing, 14.0) + 0.085 * pow(facing, 90.0);
+    out.gloss = 0.07 * pow(facing, 12.0) + 0.10 * pow(facing, 80.0);
     return out;
 }
 
