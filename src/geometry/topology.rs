@@ -24,31 +24,49 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// Sorts all edges. O(triangles · log triangles); the result depends on the mesh alone.
+    /// Lists the edges at their smaller vertices, then sorts each short list.
+    /// O(vertices + triangles); the result depends on the mesh alone.
     pub fn of(mesh: &TriMesh) -> Self {
-        let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * mesh.n_triangles());
-        for (t, &[a, b, c]) in mesh.triangles().iter().enumerate() {
-            for [u, v] in [[a, b], [b, c], [c, a]] {
-                if u != v {
-                    sides.push(([u.min(v), u.max(v)], t as u32));
+        let sides = |&[a, b, c]: &[u32; 3]| {
+            [[a, b], [b, c], [c, a]]
+                .into_iter()
+                .filter(|[u, v]| u != v)
+                .map(|[u, v]| (u.min(v), u.max(v)))
+        };
+        // Where the list of each vertex ends; filling it from behind turns that into its start.
+        let mut start = vec![0_u32; mesh.n_vertices() + 1];
+        for (low, _) in mesh.triangles().iter().flat_map(sides) {
+            start[low as usize] += 1;
+        }
+        let mut total = 0;
+        for count in &mut start {
+            total += *count;
+            *count = total;
+        }
+        let mut listed = vec![(0_u32, 0_u32); total as usize];
+        for (t, corners) in mesh.triangles().iter().enumerate() {
+            for (low, high) in sides(corners) {
+                start[low as usize] -= 1;
+                listed[start[low as usize] as usize] = (high, t as u32);
+            }
+        }
+        let mut edges = Vec::with_capacity(listed.len() / 2);
+        let mut edge_start = Vec::with_capacity(listed.len() / 2 + 1);
+        for (low, range) in start.windows(2).enumerate() {
+            let list = &mut listed[range[0] as usize..range[1] as usize];
+            list.sort_unstable();
+            for (i, &(high, _)) in list.iter().enumerate() {
+                if i == 0 || list[i - 1].0 != high {
+                    edges.push([low as u32, high]);
+                    edge_start.push(range[0] + i as u32);
                 }
             }
         }
-        sides.sort_unstable();
-        let mut edges = Vec::new();
-        let mut edge_start = Vec::new();
-        for (i, (edge, _)) in sides.iter().enumerate() {
-            if edges.last() != Some(edge) {
-                edges.push(*edge);
-                edge_start.push(i as u32);
-            }
-        }
-        edge_start.push(sides.len() as u32);
-        let edge_triangles = sides.into_iter().map(|(_, t)| t).collect();
+        edge_start.push(total);
         Self {
             edges,
             edge_start,
-            edge_triangles,
+            edge_triangles: listed.into_iter().map(|(_, t)| t).collect(),
         }
     }
 
@@ -138,20 +156,29 @@ fn find(parent: &mut [u32], mut node: u32) -> u32 {
 /// Turns triangles so that neighbours over manifold edges agree, component by component, each kept
 /// on the side that most of its area already faces. Returns the mesh and how many were turned.
 ///
-/// A Möbius strip cannot be oriented; there one seam stays. O(triangles · log triangles).
+/// A Möbius strip cannot be oriented; there one seam stays. O(vertices + triangles).
 pub fn orient_consistently(mesh: &TriMesh) -> (TriMesh, usize) {
     let topology = Topology::of(mesh);
     let n = mesh.n_triangles();
-    let mut neighbours: Vec<Vec<(u32, bool)>> = vec![Vec::new(); n];
+    // A triangle has at most three manifold edges; what stays at its own index is none.
+    let mut neighbours: Vec<[(u32, bool); 3]> = (0..n as u32).map(|t| [(t, false); 3]).collect();
+    let mut join = |from: u32, to: u32, disagree: bool| {
+        let free = neighbours[from as usize].iter_mut().find(|n| n.0 == from);
+        if let Some(place) = free {
+            *place = (to, disagree);
+        }
+    };
     for (edge, &[u, v]) in topology.edges.iter().enumerate() {
-        if let &[s, t] = topology.triangles_of(edge) {
+        if let &[s, t] = topology.triangles_of(edge)
+            && s != t
+        {
             let runs_forward = |triangle: u32| {
                 let corners = mesh.triangles()[triangle as usize];
                 (0..3).any(|i| corners[i] == u && corners[(i + 1) % 3] == v)
             };
             let disagree = runs_forward(s) == runs_forward(t);
-            neighbours[s as usize].push((t, disagree));
-            neighbours[t as usize].push((s, disagree));
+            join(s, t, disagree);
+            join(t, s, disagree);
         }
     }
     let mut turn: Vec<Option<bool>> = vec![None; n];
@@ -220,6 +247,30 @@ mod tests {
             }
         }
         TriMesh::new(positions, triangles).unwrap()
+    }
+
+    #[test]
+    fn edges_are_those_of_a_plain_sort() {
+        let (positions, mut triangles) = plate_with_hole(6).into_parts();
+        triangles.reverse();
+        triangles.extend([[3, 3, 9], [0, 1, 8], [8, 1, 0]]);
+        let mesh = TriMesh::new(positions, triangles).unwrap();
+        let mut sides = Vec::new();
+        for (t, &[a, b, c]) in mesh.triangles().iter().enumerate() {
+            for [u, v] in [[a, b], [b, c], [c, a]] {
+                if u != v {
+                    sides.push(([u.min(v), u.max(v)], t as u32));
+                }
+            }
+        }
+        sides.sort_unstable();
+        let topology = Topology::of(&mesh);
+        let listed: Vec<([u32; 2], u32)> = (0..topology.edges.len())
+            .flat_map(|e| topology.triangles_of(e).iter().map(move |&t| (e, t)))
+            .map(|(e, t)| (topology.edges[e], t))
+            .collect();
+        assert_eq!(listed, sides);
+        assert!(topology.edges.windows(2).all(|pair| pair[0] < pair[1]));
     }
 
     #[test]

@@ -1,4 +1,5 @@
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 use super::{Point3, TriMesh};
 
@@ -13,10 +14,41 @@ pub struct Welded {
     pub triangle_of: Vec<u32>,
 }
 
+/// No vertex.
+const NONE: u32 = u32::MAX;
+
+/// Mixes the three numbers of a grid cell; the standard hasher's guard against chosen keys is
+/// not needed here and costs more than all the rest. Nothing depends on the order of the table.
+#[derive(Default)]
+struct CellHasher(u64);
+
+impl Hasher for CellHasher {
+    fn finish(&self) -> u64 {
+        self.0 ^ self.0 >> 32
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for chunk in bytes.chunks(8) {
+            let mut word = [0; 8];
+            word[..chunk.len()].copy_from_slice(chunk);
+            self.write_u64(u64::from_ne_bytes(word));
+        }
+    }
+
+    fn write_u64(&mut self, word: u64) {
+        let mixed = (self.0.rotate_left(23) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self.0 = mixed ^ mixed >> 29;
+    }
+
+    fn write_i64(&mut self, word: i64) {
+        self.write_u64(word as u64);
+    }
+}
+
 /// Joins vertices closer than `tolerance` (0 joins only equal positions) and drops unused vertices
 /// and triangles that name a vertex twice.
 ///
-/// Grid hashing: a vertex joins the first earlier vertex within `tolerance`, so the result does not
+/// Grid hashing: a vertex joins the first of all kept vertices within `tolerance`, so the result does not
 /// depend on anything but the order of the input. O(vertices + triangles).
 pub fn weld(mesh: &TriMesh, tolerance: f64) -> Welded {
     let mut used = vec![false; mesh.n_vertices()];
@@ -36,25 +68,33 @@ pub fn weld(mesh: &TriMesh, tolerance: f64) -> Welded {
             std::array::from_fn(|i| (p[i] + 0.0).to_bits() as i64)
         }
     };
-    let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::with_capacity(mesh.n_vertices());
+    // Each cell names its latest vertex, and each vertex the one before it in its cell.
+    let mut latest: HashMap<[i64; 3], u32, BuildHasherDefault<CellHasher>> =
+        HashMap::with_capacity_and_hasher(mesh.n_vertices(), BuildHasherDefault::default());
+    let mut previous: Vec<u32> = Vec::with_capacity(mesh.n_vertices());
     let mut positions: Vec<Point3> = Vec::with_capacity(mesh.n_vertices());
     let mut vertex_of = vec![u32::MAX; mesh.n_vertices()];
     for (vertex, point) in mesh.positions().iter().enumerate() {
         if !used[vertex] {
             continue;
         }
-        let found = neighbours(point, cell, tolerance).find_map(|offset| {
-            let cell = cells.get(&key(point, offset))?;
-            cell.iter()
-                .copied()
-                .find(|&v| (positions[v as usize] - point).norm() <= tolerance)
-        });
-        vertex_of[vertex] = found.unwrap_or_else(|| {
-            let new = positions.len() as u32;
+        let mut first = NONE;
+        for offset in neighbours(point, cell, tolerance) {
+            let mut at = latest.get(&key(point, offset)).copied().unwrap_or(NONE);
+            while at != NONE {
+                if (positions[at as usize] - point).norm() <= tolerance {
+                    first = first.min(at);
+                }
+                at = previous[at as usize];
+            }
+        }
+        if first == NONE {
+            first = positions.len() as u32;
             positions.push(*point);
-            cells.entry(key(point, [0; 3])).or_default().push(new);
-            new
-        });
+            let before = latest.insert(key(point, [0; 3]), first);
+            previous.push(before.unwrap_or(NONE));
+        }
+        vertex_of[vertex] = first;
     }
     let mut triangles = Vec::with_capacity(mesh.n_triangles());
     let mut triangle_of = Vec::with_capacity(mesh.n_triangles());
