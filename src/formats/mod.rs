@@ -149,7 +149,7 @@ pub fn read_from(
 ) -> Result<Model, FormatError> {
     let bytes = source::open_unpacked(source, path).map_err(|e| FormatError::open(path, &e))?;
     match Format::of(path, &bytes) {
-        Format::Keyword => keyword::deck::read(source, path, options, monitor),
+        Format::Keyword => keyword::deck::read_opened(source, path, bytes, options, monitor),
         Format::Stl => stl::read(&bytes, path),
         Format::Obj => obj::read(&bytes, path),
         Format::Ply => ply::read(&bytes, path),
