@@ -23,6 +23,6 @@ if [ $# -eq 0 ]; then
     folder=$(mktemp -d)
     trap 'rm -rf "$folder"' EXIT
     target/release/shapematch sample "$folder" --bundled >&2
-    set -- "$folder/crash.k" "$folder/stamped.dynain"
+    set -- "$folder/crash.k.gz" "$folder/stamped.dynain.gz"
 fi
 target/release/shapematch match "$@"

@@ -23,6 +23,7 @@
 
 pub mod app;
 pub mod assess;
+pub mod cli;
 pub mod colormap;
 pub mod formats;
 pub mod geometry;

@@ -1,3 +1,40 @@
 //! The program: arguments in, exit code out.
 
-fn main() {}
+use std::process::ExitCode;
+
+use clap::{CommandFactory as _, Parser as _};
+use shapematch::cli::{self, Cli};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    start_logging(cli.quiet);
+    if let Err(error) = rayon::ThreadPoolBuilder::new()
+        .num_threads(cli.threads)
+        .build_global()
+    {
+        log::warn!("the number of threads could not be set: {error}");
+    }
+    let outcome = match &cli.command {
+        Some(task) => cli::run(task, cli.quiet),
+        None => open_window(&cli),
+    };
+    outcome.unwrap_or_else(|error| {
+        log::error!("{error:#}");
+        ExitCode::FAILURE
+    })
+}
+
+/// Messages go to standard error; `RUST_LOG` says more.
+fn start_logging(quiet: bool) {
+    let level = if quiet { "error" } else { "warn" };
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(level))
+        .format_timestamp(None)
+        .format_target(false)
+        .init();
+}
+
+/// This build has no window: says so and shows the help.
+fn open_window(_cli: &Cli) -> anyhow::Result<ExitCode> {
+    Cli::command().print_help()?;
+    anyhow::bail!("this build has no window; name a subcommand")
+}

@@ -25,7 +25,7 @@ pub(super) fn load_line(part: &LoadedPart, facts: &PartFacts) -> String {
 
 /// "12 findings in bp.dynain", if the reader had any.
 pub(super) fn diagnostics_line(part: &LoadedPart) -> Option<String> {
-    let n = part.report.n_diagnostics;
+    let n = part.report.n_findings;
     let counted = counted(usize::try_from(n).unwrap_or(usize::MAX), "finding");
     (n > 0).then(|| format!("{counted} in {}, see the tab Diagnostics", part.file_name()))
 }

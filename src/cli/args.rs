@@ -36,7 +36,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Task {
     /// Match a stamped part to a crash part and print the matrix.
-    Match(MatchArgs),
+    Match(Box<MatchArgs>),
     /// Reduce a mesh to a maximum number of triangles.
     Reduce(ReduceArgs),
     /// Tell what a file holds.
@@ -178,9 +178,17 @@ pub struct StartArgs {
     /// A text file with a 4×4 matrix (crash from stamped) to start from; implies --start current.
     #[arg(long, value_name = "FILE")]
     pub initial_pose: Option<PathBuf>,
-    /// Seed of the point samples.
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
+}
+
+/// The cards by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CardName {
+    /// *INCLUDE_STAMPED_PART_MATRIX: the solver maps the forming results.
+    Stamped,
+    /// *INCLUDE_STAMPED_PART_MATRIX_INVERSE: the same from the matrix of the way back.
+    StampedInverse,
+    /// *DEFINE_TRANSFORMATION and *INCLUDE_TRANSFORM: the stamped mesh joins the crash model.
+    Transform,
 }
 
 /// What is written.
@@ -196,6 +204,9 @@ pub struct OutputArgs {
     /// Write LS-DYNA cards that use the pose.
     #[arg(long, value_name = "FILE")]
     pub cards: Option<PathBuf>,
+    /// Which cards.
+    #[arg(long, value_enum, value_name = "FORM", default_value_t = CardName::Stamped)]
+    pub card_form: CardName,
     /// Write the stamped mesh moved onto the crash part; the ending chooses the format
     /// (.k, .dynain, .stl, .ply, .obj).
     #[arg(long, value_name = "FILE")]
@@ -238,11 +249,12 @@ pub struct InfoArgs {
 #[derive(Debug, Args)]
 pub struct SampleArgs {
     /// Folder to write to; made if it does not exist.
-    pub folder: PathBuf,
+    #[arg(required_unless_present = "list")]
+    pub folder: Option<PathBuf>,
     /// The part: floor, rail, pillar, fender or bracket.
     #[arg(long, value_name = "NAME", default_value = "floor")]
     pub part: String,
-    /// A variant of it; `shapematch sample --list x` names them.
+    /// A variant of it; `shapematch sample --list` names them.
     #[arg(long, value_name = "NAME", default_value = "plain")]
     pub variant: String,
     /// Seed of the meshes and of the stamped part's place.

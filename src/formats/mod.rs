@@ -106,7 +106,7 @@ impl Format {
     /// Usual file extensions in lower case, without the dot.
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
-            Self::Keyword => &["k", "key", "dyn", "inc", "asc", "gz"],
+            Self::Keyword => &["k", "key", "dyn", "dynain", "inc", "asc", "gz"],
             Self::Stl => &["stl"],
             Self::Obj => &["obj"],
             Self::Ply => &["ply"],

@@ -2,6 +2,8 @@ use std::path::PathBuf;
 
 use crate::formats::{FormatError, SelectionError};
 use crate::monitor::Cancelled;
+use crate::registration::RegistrationError;
+use crate::report::CardError;
 use crate::simplify::SimplifyError;
 
 /// Why a stage of the pipeline has no result.
@@ -21,6 +23,35 @@ pub enum PipelineError {
     /// A unit factor that is not a positive number.
     #[error("the unit factor {0} is not a positive number")]
     BadUnitFactor(f64),
+    /// The ending of a path names no format that can be written.
+    #[error("the ending is none of .k, .dynain, .stl, .ply, .obj: {0:?}")]
+    UnknownEnding(PathBuf),
+    /// A file cannot be written.
+    #[error("cannot write the file ({reason}): {path:?}")]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+    /// The cards name one part or one set, but several parts were matched.
+    #[error(
+        "the cards need one crash part or one part set, but {0} parts were matched; choose one \
+         part id or a part set on the crash side"
+    )]
+    SeveralReceivers(usize),
+    /// The stamped file is in another unit, which the cards cannot say.
+    #[error(
+        "the stamped file was scaled by {0}, which the cards cannot hold; write the moved or \
+         converted stamped file instead and use that"
+    )]
+    CardsNeedOneUnit(f64),
+    /// The cards cannot be written.
+    #[error(transparent)]
+    Card(#[from] CardError),
+    /// The match failed.
+    #[error(transparent)]
+    Registration(#[from] RegistrationError),
     /// The reduction failed.
     #[error(transparent)]
     Simplify(#[from] SimplifyError),
@@ -36,6 +67,7 @@ impl PipelineError {
             self,
             Self::Cancelled(_)
                 | Self::Format(FormatError::Cancelled(_))
+                | Self::Registration(RegistrationError::Cancelled(_))
                 | Self::Simplify(SimplifyError::Cancelled(_))
         )
     }

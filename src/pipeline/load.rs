@@ -1,13 +1,16 @@
 //! From a file to a mesh that can be shown, reduced and matched.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use super::{PipelineError, millis_since};
-use crate::formats::{self, Model, ReadOptions, Selection, Surface};
+use crate::formats::{
+    self, Diagnostics, Disk, FileSource, Model, ReadOptions, Selection, Severity, Surface,
+};
 use crate::geometry::{Point3, TriMesh, orient_consistently, weld};
 use crate::monitor::Monitor;
+use crate::registration::{self, RegistrationError};
 
 /// Choices for loading one side.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,8 +48,8 @@ pub struct LoadReport {
     pub n_joined: usize,
     /// Triangles that were turned to agree with their neighbours.
     pub n_turned: usize,
-    /// Findings of the reader.
-    pub n_diagnostics: u64,
+    /// Warnings and errors of the reader; notes are not counted.
+    pub n_findings: u64,
     /// Time to read, in milliseconds; 0 if the model was at hand.
     pub read_ms: f64,
     /// Time to choose, join and orient, in milliseconds.
@@ -73,9 +76,31 @@ pub struct LoadedPart {
     pub vertex_of: Arc<Vec<u32>>,
     /// What loading did.
     pub report: LoadReport,
+    /// The mesh prepared for matching, made when first asked for and shared by all clones.
+    for_match: ForMatch,
+}
+
+/// A registration surface that is made when first asked for.
+#[derive(Clone, Default)]
+struct ForMatch(Arc<OnceLock<Result<Arc<registration::Surface>, RegistrationError>>>);
+
+impl std::fmt::Debug for ForMatch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(if self.0.get().is_some() {
+            "made"
+        } else {
+            "not made"
+        })
+    }
 }
 
 impl LoadedPart {
+    /// The mesh with its tree and normals, as matching needs it. Made once; later calls are free.
+    pub fn surface_for_match(&self) -> Result<Arc<registration::Surface>, RegistrationError> {
+        let make = || registration::Surface::new(&self.mesh, "chosen").map(Arc::new);
+        self.for_match.0.get_or_init(make).clone()
+    }
+
     /// The file name without its folder.
     pub fn file_name(&self) -> String {
         self.path
@@ -112,14 +137,24 @@ impl LoadedPart {
     }
 }
 
-/// Reads a file and prepares the chosen part.
+/// Reads a file from disk and prepares the chosen part.
 pub fn load(
     path: &Path,
     settings: &LoadSettings,
     monitor: &Monitor,
 ) -> Result<LoadedPart, PipelineError> {
+    load_from(&Disk, path, settings, monitor)
+}
+
+/// [`load`] from any source of files, for example the bundled pair.
+pub fn load_from(
+    source: &dyn FileSource,
+    path: &Path,
+    settings: &LoadSettings,
+    monitor: &Monitor,
+) -> Result<LoadedPart, PipelineError> {
     let start = Instant::now();
-    let model = Arc::new(formats::read(path, &settings.read, monitor)?);
+    let model = Arc::new(formats::read_from(source, path, &settings.read, monitor)?);
     let read_ms = millis_since(start);
     let mut part = prepare(path, model, settings, monitor)?;
     part.report.read_ms = read_ms;
@@ -158,7 +193,7 @@ pub fn prepare(
         n_triangles: mesh.n_triangles(),
         n_joined: surface.mesh.n_vertices() - mesh.n_vertices(),
         n_turned,
-        n_diagnostics: model.diagnostics.total() + surface.diagnostics.total(),
+        n_findings: findings(&model.diagnostics) + findings(&surface.diagnostics),
         read_ms: 0.0,
         prepare_ms: millis_since(start),
     };
@@ -171,7 +206,16 @@ pub fn prepare(
         triangle_of: Arc::new(welded.triangle_of),
         vertex_of: Arc::new(welded.vertex_of),
         report,
+        for_match: ForMatch::default(),
     })
+}
+
+/// How many findings are more than notes.
+fn findings(diagnostics: &Diagnostics) -> u64 {
+    let graver = diagnostics
+        .counts()
+        .filter(|(kind, _)| kind.severity() > Severity::Note);
+    graver.map(|(_, count)| count).sum()
 }
 
 fn scaled(mesh: &TriMesh, factor: f64) -> TriMesh {

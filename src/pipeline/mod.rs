@@ -3,8 +3,13 @@
 //! From here up the two meshes have roles: the *crash* part is fixed (target), the *stamped* part
 //! moves (source). Each stage returns what it did and how long it took; nothing here prints.
 
+pub mod cards;
+pub mod export;
 pub mod load;
+pub mod match_parts;
+pub mod record;
 pub mod reduce;
+pub mod sweep;
 
 mod error;
 

@@ -141,6 +141,24 @@ impl SampleVariant {
         Self::ALL.into_iter().find(|variant| variant.name() == name)
     }
 
+    /// One line of help.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Plain => "The same outline on both sides",
+            Self::Addendum => "The stamped side carries its addendum and lacks half of the holes",
+            Self::MissingFlanges => "The stamped side has no flanges yet",
+            Self::Cut => "The crash side is cut off",
+            Self::AddendumAndCut => {
+                "Addendum on the stamped side, crash side cut off: both overhang"
+            }
+            Self::OppositeHand => "The stamped side is the part of the car's other side",
+            Self::Metres => "The stamped side is in metres",
+            Self::Inches => "The stamped side is in inches",
+            Self::FlippedNormals => "The stamped normals point to the other side of the sheet",
+            Self::WholeModel => "The crash deck holds neighbouring parts too",
+        }
+    }
+
     /// Millimetres in the stamped side's unit of length.
     fn unit(self) -> f64 {
         match self {

@@ -1,0 +1,216 @@
+//! `shapematch bench`: the paper's tables with its column beside ours.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::process::ExitCode;
+
+use serde::Serialize;
+
+use super::args::BenchArgs;
+use super::text::{count, short};
+use super::{print, progress, takes_stdout, write_json};
+use crate::formats::{Disk, FileSource, Memory};
+use crate::geometry::Similarity;
+use crate::monitor::Monitor;
+use crate::pipeline::load::{LoadSettings, LoadedPart, load_from};
+use crate::pipeline::sweep::{MatchingRow, ReductionRow, Sweep, SweepSettings, sweep};
+use crate::samples::{self, SampleSettings};
+
+/// Measures and prints both tables.
+pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
+    let monitor = progress::monitor(quiet);
+    let (crash, stamped, truth) = parts(args, &monitor)?;
+    let settings = SweepSettings::default();
+    let tables = sweep(
+        &crash,
+        &stamped,
+        truth.as_ref(),
+        &settings,
+        &monitor,
+        |_| {},
+    )?;
+    drop(monitor);
+    if !takes_stdout(args.json.as_deref()) {
+        print(&describe(&tables, &crash, &stamped))?;
+    }
+    if let Some(path) = &args.json {
+        write_json(path, &record(&tables))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The files named, or the generated car floor with its known pose.
+fn parts(
+    args: &BenchArgs,
+    monitor: &Monitor,
+) -> anyhow::Result<(LoadedPart, LoadedPart, Option<Similarity>)> {
+    let load = |source: &dyn FileSource, path: &Path| {
+        load_from(source, path, &LoadSettings::default(), monitor)
+    };
+    if let (Some(crash), Some(stamped)) = (&args.crash, &args.stamped) {
+        return Ok((load(&Disk, crash)?, load(&Disk, stamped)?, None));
+    }
+    let pair = samples::generate(&SampleSettings {
+        seed: 1,
+        ..SampleSettings::default()
+    });
+    let mut source = Memory::new();
+    for file in samples::files(&pair) {
+        source = source.with(file.name, file.bytes);
+    }
+    let crash = load(&source, Path::new("crash.k"))?;
+    let stamped = load(&source, Path::new("stamped.dynain"))?;
+    Ok((crash, stamped, Some(pair.crash_from_stamped)))
+}
+
+fn describe(tables: &Sweep, crash: &LoadedPart, stamped: &LoadedPart) -> String {
+    let mut text = format!(
+        "Crash    {}, {} triangles\nStamped  {}, {} triangles\nThreads  {}\n\n",
+        crash.file_name(),
+        count(crash.mesh.n_triangles()),
+        stamped.file_name(),
+        count(stamped.mesh.n_triangles()),
+        rayon::current_num_threads()
+    );
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "Reduction of {} triangles\n{:>10}{:>12}{:>10}{:>10}{:>10}{:>10}{:>12}{:>8}",
+        count(tables.n_triangles),
+        "maximum",
+        "paper ms",
+        "here ms",
+        "faster",
+        "rms",
+        "max",
+        "border max",
+        "loops"
+    );
+    for row in &tables.reduction {
+        let _ = writeln!(
+            text,
+            "{:>10}{:>12}{:>10.1}{:>10}{:>10}{:>10}{:>12}{:>8}",
+            count(row.max_triangles),
+            paper(row.paper_ms),
+            row.time_ms,
+            faster(row.paper_ms, row.time_ms),
+            short(row.rms),
+            short(row.max),
+            short(row.border_max),
+            row.loops
+        );
+    }
+    let reference = if tables.has_truth {
+        "the known pose"
+    } else {
+        "the match of the full meshes"
+    };
+    let _ = writeln!(
+        text,
+        "\nMatching, node errors against {reference}\n{:>10}{:>12}{:>10}{:>10}{:>11}{:>11}{:>14}{:>15}",
+        "triangles",
+        "paper ms",
+        "here ms",
+        "faster",
+        "node rms",
+        "node max",
+        "finished ms",
+        "finished rms"
+    );
+    for row in &tables.matching {
+        let _ = writeln!(
+            text,
+            "{:>10}{:>12}{:>10.1}{:>10}{:>11}{:>11}{:>14.1}{:>15}",
+            row.max_triangles.map_or_else(|| "full".into(), count),
+            paper(row.paper_ms),
+            row.time_ms,
+            faster(row.paper_ms, row.time_ms),
+            short(row.node_rms),
+            short(row.node_max),
+            row.finished_ms,
+            short(row.finished_node_rms)
+        );
+    }
+    text
+}
+
+fn paper(ms: Option<f64>) -> String {
+    ms.map_or_else(|| "-".into(), |ms| count(ms as usize))
+}
+
+fn faster(paper_ms: Option<f64>, ms: f64) -> String {
+    paper_ms.map_or_else(|| "-".into(), |paper| format!("{:.0} x", paper / ms))
+}
+
+#[derive(Serialize)]
+struct BenchRecord {
+    schema: &'static str,
+    threads: usize,
+    triangles: usize,
+    reduction: Vec<ReductionEntry>,
+    matching: Vec<MatchingEntry>,
+    reference: &'static str,
+    build: String,
+}
+
+#[derive(Serialize)]
+struct ReductionEntry {
+    max_triangles: usize,
+    triangles: usize,
+    time_ms: f64,
+    paper_ms: Option<f64>,
+    rms: f64,
+    max: f64,
+    border_max: f64,
+    border_loops: usize,
+}
+
+#[derive(Serialize)]
+struct MatchingEntry {
+    max_triangles: Option<usize>,
+    crash_triangles: usize,
+    stamped_triangles: usize,
+    time_ms: f64,
+    paper_ms: Option<f64>,
+    node_rms: f64,
+    node_max: f64,
+    finished_ms: f64,
+    finished_node_rms: f64,
+}
+
+fn record(tables: &Sweep) -> BenchRecord {
+    let reduction = |row: &ReductionRow| ReductionEntry {
+        max_triangles: row.max_triangles,
+        triangles: row.triangles,
+        time_ms: row.time_ms,
+        paper_ms: row.paper_ms,
+        rms: row.rms,
+        max: row.max,
+        border_max: row.border_max,
+        border_loops: row.loops,
+    };
+    let matching = |row: &MatchingRow| MatchingEntry {
+        max_triangles: row.max_triangles,
+        crash_triangles: row.triangles[0],
+        stamped_triangles: row.triangles[1],
+        time_ms: row.time_ms,
+        paper_ms: row.paper_ms,
+        node_rms: row.node_rms,
+        node_max: row.node_max,
+        finished_ms: row.finished_ms,
+        finished_node_rms: row.finished_node_rms,
+    };
+    BenchRecord {
+        schema: "shapematch.bench/1",
+        threads: rayon::current_num_threads(),
+        triangles: tables.n_triangles,
+        reduction: tables.reduction.iter().map(reduction).collect(),
+        matching: tables.matching.iter().map(matching).collect(),
+        reference: if tables.has_truth {
+            "known pose"
+        } else {
+            "match of the full meshes"
+        },
+        build: crate::report::build_id(),
+    }
+}

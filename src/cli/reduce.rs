@@ -1,0 +1,119 @@
+//! `shapematch reduce`: a mesh with fewer triangles, and how far it is from the original.
+
+use std::process::ExitCode;
+
+use serde::Serialize;
+
+use super::args::ReduceArgs;
+use super::text::{count, millis, short};
+use super::{print, progress, takes_stdout, write_json};
+use crate::pipeline::export;
+use crate::pipeline::load::{LoadSettings, load, parse_selection};
+use crate::pipeline::reduce::{Deviation, Level, Levels};
+use crate::simplify::{SimplifySettings, StopReason};
+
+/// The figures of a reduction.
+#[derive(Debug, Serialize)]
+struct ReduceRecord {
+    schema: &'static str,
+    triangles_before: usize,
+    triangles_after: usize,
+    max_triangles: usize,
+    reached: bool,
+    stopped_by: String,
+    time_ms: f64,
+    rms: f64,
+    max: f64,
+    border_rms: f64,
+    border_max: f64,
+    border_loops_before: usize,
+    border_loops_after: usize,
+    build: String,
+}
+
+/// Reduces the file's part and writes it.
+pub fn run(args: &ReduceArgs, quiet: bool) -> anyhow::Result<ExitCode> {
+    let monitor = progress::monitor(quiet);
+    let selection = args
+        .part
+        .as_deref()
+        .map(parse_selection)
+        .unwrap_or_default();
+    let part = load(
+        &args.input,
+        &LoadSettings {
+            selection,
+            ..LoadSettings::default()
+        },
+        &monitor,
+    )?;
+    let settings = settings(args);
+    let levels = Levels::record(&part, &settings, &monitor)?;
+    let level = levels.level(args.triangles);
+    let deviation = levels.measure(&level.mesh, &monitor)?;
+    export::write_mesh(&args.out, &level.mesh, &part.file_name(), &monitor)?;
+    let record = record(args, &levels, &level, &deviation);
+    if !takes_stdout(args.json.as_deref()) {
+        print(&describe(&record))?;
+    }
+    if let Some(path) = &args.json {
+        write_json(path, &record)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn settings(args: &ReduceArgs) -> SimplifySettings {
+    SimplifySettings::to_triangles(args.triangles)
+}
+
+fn record(
+    args: &ReduceArgs,
+    levels: &Levels,
+    level: &Level,
+    deviation: &Deviation,
+) -> ReduceRecord {
+    ReduceRecord {
+        schema: "shapematch.reduce/1",
+        triangles_before: level.report.triangles_before,
+        triangles_after: level.report.triangles_after,
+        max_triangles: args.triangles,
+        reached: level.report.stop_reason == StopReason::Reached,
+        stopped_by: level.report.stop_reason.to_string(),
+        time_ms: levels.record_ms,
+        rms: deviation.rms,
+        max: deviation.max,
+        border_rms: deviation.border_rms,
+        border_max: deviation.border_max,
+        border_loops_before: deviation.loops_before,
+        border_loops_after: deviation.loops_after,
+        build: crate::report::build_id(),
+    }
+}
+
+fn describe(record: &ReduceRecord) -> String {
+    let mut text = format!(
+        "{} of {} triangles (maximum {}) in {}\n",
+        count(record.triangles_after),
+        count(record.triangles_before),
+        count(record.max_triangles),
+        millis(record.time_ms),
+    );
+    if !record.reached {
+        text.push_str(&format!("Above the maximum: {}\n", record.stopped_by));
+    }
+    text.push_str(&format!(
+        "Deviation, both ways: rms {}, largest {}\n",
+        short(record.rms),
+        short(record.max)
+    ));
+    if record.border_loops_before > 0 {
+        text.push_str(&format!(
+            "Borders moved: rms {}, largest {}; {} of {} loops kept\n",
+            short(record.border_rms),
+            short(record.border_max),
+            record.border_loops_after,
+            record.border_loops_before
+        ));
+    }
+    text
+}

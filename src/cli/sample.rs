@@ -1,0 +1,62 @@
+//! `shapematch sample`: writes a generated pair of parts.
+
+use std::process::ExitCode;
+
+use anyhow::{Context as _, bail};
+
+use super::args::SampleArgs;
+use super::print;
+use crate::pipeline::export::write_sample;
+use crate::samples::{self, SamplePart, SampleSettings, SampleVariant};
+
+/// Generates the pair and writes its files.
+pub fn run(args: &SampleArgs) -> anyhow::Result<ExitCode> {
+    if args.list {
+        print(&list())?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let folder = args.folder.as_deref().context("no folder was named")?;
+    let files = if args.bundled {
+        samples::bundled()
+    } else {
+        samples::files(&pair(args)?)
+    };
+    for path in write_sample(folder, &files)? {
+        print(&format!("{}\n", path.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn pair(args: &SampleArgs) -> anyhow::Result<samples::SamplePair> {
+    let Some(part) = SamplePart::from_name(&args.part) else {
+        bail!(
+            "there is no sample part {:?}; `shapematch sample --list` names them",
+            args.part
+        );
+    };
+    let Some(variant) = SampleVariant::from_name(&args.variant) else {
+        bail!(
+            "there is no variant {:?}; `shapematch sample --list` names them",
+            args.variant
+        );
+    };
+    let settings = SampleSettings {
+        part,
+        variant,
+        seed: args.seed,
+        ..SampleSettings::default()
+    };
+    Ok(samples::generate(&settings))
+}
+
+fn list() -> String {
+    let mut text = String::from("Parts:\n");
+    for part in SamplePart::ALL {
+        text.push_str(&format!("  {:<17} {}\n", part.name(), part.title()));
+    }
+    text.push_str("Variants:\n");
+    for variant in SampleVariant::ALL {
+        text.push_str(&format!("  {:<17} {}\n", variant.name(), variant.help()));
+    }
+    text
+}
