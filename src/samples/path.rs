@@ -27,6 +27,39 @@ struct Piece {
     length: f64,
 }
 
+impl Piece {
+    /// Distance of a point; something not below `enough` if it is not below that.
+    fn distance(&self, p: &Flat, enough: f64) -> f64 {
+        match self.shape {
+            Shape::Line { from, direction } => {
+                let along = (p - from).dot(&direction).clamp(0.0, self.length);
+                (p - (from + direction * along)).norm()
+            }
+            Shape::Arc {
+                center,
+                radius,
+                start_angle,
+                sense,
+            } => {
+                let arm = p - center;
+                let to_circle = (arm.norm() - radius).abs();
+                if to_circle >= enough {
+                    return to_circle;
+                }
+                let turned = sense * (arm.y.atan2(arm.x) - start_angle);
+                if turned.rem_euclid(std::f64::consts::TAU) * radius <= self.length {
+                    return to_circle;
+                }
+                let end = |angle: f64| {
+                    let (sin, cos) = angle.sin_cos();
+                    (arm - Vector2::new(cos, sin) * radius).norm()
+                };
+                end(start_angle).min(end(start_angle + sense * self.length / radius))
+            }
+        }
+    }
+}
+
 /// A curve of lines and arcs, parametrised by its arc length.
 #[derive(Debug, Clone)]
 pub(super) struct Path {
@@ -180,33 +213,11 @@ impl Path {
 
     /// Distance of a point to the curve. O(pieces).
     pub(super) fn distance(&self, p: &Flat) -> f64 {
-        let to_piece = |piece: &Piece| match piece.shape {
-            Shape::Line { from, direction } => {
-                let along = (p - from).dot(&direction).clamp(0.0, piece.length);
-                (p - (from + direction * along)).norm()
-            }
-            Shape::Arc {
-                center,
-                radius,
-                start_angle,
-                sense,
-            } => {
-                let arm = p - center;
-                let turned = sense * (arm.y.atan2(arm.x) - start_angle);
-                if turned.rem_euclid(std::f64::consts::TAU) * radius <= piece.length {
-                    return (arm.norm() - radius).abs();
-                }
-                let end = |angle: f64| {
-                    let (sin, cos) = angle.sin_cos();
-                    (arm - Vector2::new(cos, sin) * radius).norm()
-                };
-                end(start_angle).min(end(start_angle + sense * piece.length / radius))
-            }
-        };
-        self.pieces
-            .iter()
-            .map(to_piece)
-            .fold(f64::INFINITY, f64::min)
+        let mut least = f64::INFINITY;
+        for piece in &self.pieces {
+            least = least.min(piece.distance(p, least));
+        }
+        least
     }
 
     /// Nodes of a closed curve about `spacing` apart, with one on every sharp corner.

@@ -43,8 +43,13 @@ pub(super) struct Emboss {
 
 impl Emboss {
     fn at(&self, p: &Flat) -> f64 {
-        let (sin, cos) = self.angle.sin_cos();
         let (x, y) = (p.x - self.center.0, p.y - self.center.1);
+        // Most embosses are far from most points.
+        let reach = self.half.0 + self.half.1 + self.radius + self.ramp;
+        if x.abs().max(y.abs()) > reach {
+            return 0.0;
+        }
+        let (sin, cos) = self.angle.sin_cos();
         let outside_x = ((x * cos + y * sin).abs() - self.half.0).max(0.0);
         let outside_y = ((y * cos - x * sin).abs() - self.half.1).max(0.0);
         let outside = outside_x.hypot(outside_y) - self.radius;
