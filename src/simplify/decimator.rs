@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::fans::Fans;
 use super::intake::Intake;
 use super::legality::{Kind, Marks, Refusal, keeps_orientation, link_condition};
-use super::quadric::Quadric;
+use super::quadric::{EdgeQuadric, Quadric};
 use super::queue::{Entry, Queue, key_of, later_than};
 use super::settings::{Placement, SimplifySettings, StopReason};
 use crate::monitor::{Cancelled, Monitor};
@@ -31,8 +31,13 @@ pub(super) struct Collapse {
 struct Price {
     cost: f64,
     position: Vector3<f64>,
-    quadric: Quadric,
+    /// Sum of the weights behind the cost.
+    weight: f64,
 }
+
+/// With fewer triangles than this, the edges around a collapse are priced anew at once. A price can
+/// fall, and where few edges are left each of them matters.
+const EAGER_BELOW: usize = 3000;
 
 /// Counts of edges that cannot be collapsed, by reason.
 #[derive(Debug, Clone, Copy, Default)]
@@ -46,11 +51,12 @@ pub(super) struct Decimator {
     placement: Placement,
     min_cosine: f64,
     may_close_loops: bool,
+    boundary_weight: f64,
+    stiffness: f64,
     fans: Fans,
     part_of: Vec<u32>,
     kinds: Vec<Kind>,
     quadrics: Vec<Quadric>,
-    versions: Vec<u32>,
     merged_into: Vec<u32>,
     marks: Marks,
     queue: Queue,
@@ -66,11 +72,12 @@ impl Decimator {
             placement: settings.placement,
             min_cosine: settings.max_turn_deg.to_radians().cos(),
             may_close_loops: settings.may_close_loops,
+            boundary_weight: settings.boundary_weight,
+            stiffness: settings.stiffness,
             fans: intake.fans,
             part_of: intake.part_of,
             kinds: intake.kinds,
             quadrics: intake.quadrics,
-            versions: vec![0; n],
             merged_into: (0..n as u32).collect(),
             marks: Marks::new(n),
             queue: Queue::new(),
@@ -139,7 +146,6 @@ impl Decimator {
             return;
         }
         let (a, b) = (a.min(b), a.max(b));
-        let stamp = self.stamp(a, b);
         let Some(price) = self.price(a, b) else {
             self.refused.feature += 1;
             return;
@@ -148,7 +154,6 @@ impl Decimator {
             key: key_of(price.cost),
             a,
             b,
-            stamp,
         };
         if now > entry && self.queue.peek().is_some_and(|next| next < now) {
             self.queue.push(now);
@@ -183,22 +188,103 @@ impl Decimator {
     fn collapse(&mut self, kept: u32, removed: u32, price: &Price) {
         let (k, r) = (kept as usize, removed as usize);
         let third = self.third_of_loop(kept, removed);
+        self.take_old_quadrics(kept, removed);
         self.fans.collapse(kept, removed, price.position);
-        self.quadrics[k] = price.quadric;
         self.kinds[k] = self.kinds[k].max(self.kinds[r]);
         self.merged_into[r] = kept;
-        self.versions[k] = self.versions[k].max(self.versions[r]) + 1;
         self.collapses.push(Collapse {
             kept,
             removed,
             n_triangles: self.fans.n_triangles as u32,
             closes: u32::from(third.is_some()),
             position: price.position,
-            error: mean_square(price),
+            error: if price.weight > 0.0 {
+                price.cost / price.weight
+            } else {
+                0.0
+            },
         });
         if let Some(third) = third {
             self.kinds[k] = self.kind_by_count(kept);
             self.kinds[third as usize] = self.kind_by_count(third);
+        }
+        self.add_new_quadrics(kept);
+        if self.fans.n_triangles < EAGER_BELOW {
+            self.requeue_around(kept);
+        }
+    }
+
+    /// Takes the triangles around an edge out of the quadrics of their other vertices.
+    fn take_old_quadrics(&mut self, a: u32, b: u32) {
+        for end in [a, b] {
+            for &t in self.fans.around(end) {
+                let corners = self.fans.triangles[t as usize];
+                if end == b && corners.contains(&a) {
+                    continue;
+                }
+                let quadric = Quadric::triangle(&self.fans.corners(t), self.stiffness);
+                for v in corners {
+                    self.quadrics[v as usize].subtract(&quadric);
+                }
+            }
+        }
+    }
+
+    /// Adds the triangles around a merged vertex to the quadrics of all their vertices.
+    fn add_new_quadrics(&mut self, vertex: u32) {
+        self.quadrics[vertex as usize] = Quadric::default();
+        for &t in self.fans.around(vertex) {
+            let quadric = Quadric::triangle(&self.fans.corners(t), self.stiffness);
+            for v in self.fans.triangles[t as usize] {
+                self.quadrics[v as usize].add(&quadric);
+            }
+        }
+        if self.kinds[vertex as usize] == Kind::Free {
+            return;
+        }
+        // Feature edges have changed here and with them the lines of the neighbours on features.
+        self.quadrics[vertex as usize] = self.quadric_of(vertex);
+        for i in 0..self.fans.around(vertex).len() {
+            let t = self.fans.around(vertex)[i];
+            for v in self.fans.triangles[t as usize] {
+                if v != vertex && self.kinds[v as usize] != Kind::Free {
+                    self.quadrics[v as usize] = self.quadric_of(v);
+                }
+            }
+        }
+    }
+
+    /// The quadric of a vertex from its triangles and its feature edges.
+    fn quadric_of(&self, vertex: u32) -> Quadric {
+        let mut quadric = Quadric::default();
+        for &t in self.fans.around(vertex) {
+            quadric.add(&Quadric::triangle(&self.fans.corners(t), self.stiffness));
+            for v in self.fans.triangles[t as usize] {
+                let on_feature = v != vertex && self.kinds[v as usize] != Kind::Free;
+                if on_feature && self.is_feature(vertex, v) {
+                    // Seen once from each triangle at the edge, and to count once in all.
+                    let n_sides = self.fans.sides(vertex, v).count() as f64;
+                    let edge = self.positions(v) - self.positions(vertex);
+                    quadric.add(&Quadric::line(&edge, self.boundary_weight / n_sides));
+                }
+            }
+        }
+        quadric
+    }
+
+    /// Prices the edges of `vertex` at once rather than when they come up.
+    fn requeue_around(&mut self, vertex: u32) {
+        for i in 0..self.fans.around(vertex).len() {
+            let t = self.fans.around(vertex)[i];
+            for w in self.fans.triangles[t as usize] {
+                let (a, b) = (vertex.min(w), vertex.max(w));
+                if a != b
+                    && let Some(price) = self.price(a, b)
+                {
+                    let key = key_of(price.cost);
+                    self.queue.push(Entry { key, a, b });
+                }
+            }
         }
     }
 
@@ -212,8 +298,8 @@ impl Decimator {
         }
         let origin = self.positions(a);
         let across = self.positions(b) - origin;
-        let mut quadric = self.quadrics[b as usize].moved_to(&-across);
-        quadric.add(&self.quadrics[a as usize]);
+        let (quadric_a, quadric_b) = (&self.quadrics[a as usize], &self.quadrics[b as usize]);
+        let quadric = EdgeQuadric::new(quadric_a, quadric_b, across);
         let shift = if kind_a == Kind::Corner {
             Vector3::zeros()
         } else if kind_b == Kind::Corner {
@@ -221,11 +307,10 @@ impl Decimator {
         } else {
             place(&quadric, &across, self.placement)
         };
-        let quadric_there = quadric.moved_to(&shift);
         Some(Price {
             cost: quadric.at(&shift),
             position: origin + shift,
-            quadric: quadric_there,
+            weight: quadric.weight(),
         })
     }
 
@@ -278,11 +363,6 @@ impl Decimator {
             .find(|&x| x != a && x != b && x != opposite && is_border(a, x) && is_border(b, x))
     }
 
-    /// Sum of two counters that only grow, so equal sums mean that neither end has changed.
-    fn stamp(&self, a: u32, b: u32) -> u32 {
-        self.versions[a as usize] + self.versions[b as usize]
-    }
-
     fn root(&mut self, mut vertex: u32) -> u32 {
         while self.merged_into[vertex as usize] != vertex {
             let above = self.merged_into[self.merged_into[vertex as usize] as usize];
@@ -301,7 +381,6 @@ impl Decimator {
                     key: key_of(price.cost),
                     a,
                     b,
-                    stamp: self.stamp(a, b),
                 }),
                 None => self.refused.feature += 1,
             }
@@ -324,7 +403,7 @@ impl Decimator {
 }
 
 /// The shift from the first end to where the merged vertex goes.
-fn place(quadric: &Quadric, across: &Vector3<f64>, placement: Placement) -> Vector3<f64> {
+fn place(quadric: &EdgeQuadric, across: &Vector3<f64>, placement: Placement) -> Vector3<f64> {
     if placement == Placement::Optimal
         && let Some(least) = quadric.minimum()
     {
@@ -343,14 +422,4 @@ fn place(quadric: &Quadric, across: &Vector3<f64>, placement: Placement) -> Vect
         }
     }
     best
-}
-
-/// Mean over the quadric's weight instead of the sum.
-fn mean_square(price: &Price) -> f64 {
-    let weight = price.quadric.weight();
-    if weight > 0.0 {
-        price.cost / weight
-    } else {
-        0.0
-    }
 }

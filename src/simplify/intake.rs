@@ -115,15 +115,9 @@ fn distinct_triangles(mesh: &TriMesh) -> Vec<u32> {
 
 fn add_face_quadrics(intake: &mut Intake, settings: &SimplifySettings) {
     for t in 0..intake.fans.triangles.len() {
-        let [a, b, c] = intake.fans.corners(t as u32);
-        let twice_area = (b - a).cross(&(c - a));
-        let area = 0.5 * twice_area.norm();
-        if let Some(normal) = twice_area.try_normalize(0.0) {
-            let mut quadric = Quadric::plane(&normal, area);
-            quadric.add(&Quadric::point(area * settings.stiffness));
-            for v in intake.fans.triangles[t] {
-                intake.quadrics[v as usize].add(&quadric);
-            }
+        let quadric = Quadric::triangle(&intake.fans.corners(t as u32), settings.stiffness);
+        for v in intake.fans.triangles[t] {
+            intake.quadrics[v as usize].add(&quadric);
         }
     }
 }
@@ -147,12 +141,9 @@ fn add_features(intake: &mut Intake, settings: &SimplifySettings) {
         degree[u as usize] += 1;
         degree[v as usize] += 1;
         let along = fans.positions[v as usize] - fans.positions[u as usize];
-        let weight = settings.boundary_weight * along.norm_squared();
-        if let Some(direction) = along.try_normalize(0.0) {
-            let quadric = Quadric::line(&direction, weight);
-            intake.quadrics[u as usize].add(&quadric);
-            intake.quadrics[v as usize].add(&quadric);
-        }
+        let quadric = Quadric::line(&along, settings.boundary_weight);
+        intake.quadrics[u as usize].add(&quadric);
+        intake.quadrics[v as usize].add(&quadric);
     });
     for (kind, degree) in intake.kinds.iter_mut().zip(degree) {
         *kind = match degree {

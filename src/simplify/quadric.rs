@@ -1,12 +1,13 @@
 //! Quadrics: sums of weighted squared distances to planes, lines and points.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
-/// The function `xᵀA x + 2 bᵀx + c` of a position `x` relative to an origin that the owner knows,
-/// in practice the vertex that carries the quadric (Garland and Heckbert 1997).
+/// The function `xᵀA x` of a position `x` relative to the vertex that carries the quadric: the
+/// weighted squared distance to planes, lines and points through that vertex.
 ///
-/// The local origin keeps all terms as small as the neighbourhood, so that `c` does not drown in
-/// rounding, however far the part lies from the origin of its coordinates.
+/// Quadrics are made from the current mesh and carry no memory of earlier collapses (Lindstrom and
+/// Turk 1998; Hoppe 1999), so all their planes pass through the vertex and no constant or linear
+/// term is left to drown in rounding, however far the part lies from the origin.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Quadric {
     xx: f64,
@@ -15,29 +16,39 @@ pub(super) struct Quadric {
     yy: f64,
     yz: f64,
     zz: f64,
-    bx: f64,
-    by: f64,
-    bz: f64,
-    c: f64,
 }
 
 impl Quadric {
-    /// `weight` times the squared distance to the plane through the origin with this unit normal.
-    pub(super) fn plane(normal: &Vector3<f64>, weight: f64) -> Self {
-        let w = normal * weight;
+    /// `weight` times the squared distance to the plane with the normal direction `vector`, for
+    /// `weight` = `factor · |vector|²`.
+    fn outer(vector: &Vector3<f64>, factor: f64) -> Self {
+        let w = vector * factor;
         Self {
-            xx: w.x * normal.x,
-            xy: w.x * normal.y,
-            xz: w.x * normal.z,
-            yy: w.y * normal.y,
-            yz: w.y * normal.z,
-            zz: w.z * normal.z,
-            ..Self::default()
+            xx: w.x * vector.x,
+            xy: w.x * vector.y,
+            xz: w.x * vector.z,
+            yy: w.y * vector.y,
+            yz: w.y * vector.z,
+            zz: w.z * vector.z,
         }
     }
 
-    /// `weight` times the squared distance to the origin.
-    pub(super) fn point(weight: f64) -> Self {
+    /// Squared distance to the plane of a triangle times its area, and `stiffness` times as much to
+    /// the vertex itself. Nothing for a triangle without area.
+    pub(super) fn triangle(corners: &[Vector3<f64>; 3], stiffness: f64) -> Self {
+        let [a, b, c] = corners;
+        let twice_area = (b - a).cross(&(c - a));
+        let length = twice_area.norm();
+        if length <= f64::MIN_POSITIVE {
+            return Self::default();
+        }
+        let mut quadric = Self::outer(&twice_area, 0.5 / length);
+        quadric.add(&Self::point(0.5 * length * stiffness));
+        quadric
+    }
+
+    /// `weight` times the squared distance to the vertex.
+    fn point(weight: f64) -> Self {
         Self {
             xx: weight,
             yy: weight,
@@ -46,14 +57,14 @@ impl Quadric {
         }
     }
 
-    /// `weight` times the squared distance to the line through the origin in a unit direction.
-    pub(super) fn line(direction: &Vector3<f64>, weight: f64) -> Self {
-        let mut quadric = Self::point(weight);
-        quadric.add(&Self::plane(direction, -weight));
+    /// Squared distance to the line along `edge`, times the edge's squared length and `weight`.
+    pub(super) fn line(edge: &Vector3<f64>, weight: f64) -> Self {
+        let mut quadric = Self::point(weight * edge.norm_squared());
+        quadric.subtract(&Self::outer(edge, weight));
         quadric
     }
 
-    /// Adds a quadric with the same origin.
+    /// Adds a quadric of the same vertex.
     pub(super) fn add(&mut self, other: &Self) {
         self.xx += other.xx;
         self.xy += other.xy;
@@ -61,29 +72,16 @@ impl Quadric {
         self.yy += other.yy;
         self.yz += other.yz;
         self.zz += other.zz;
-        self.bx += other.bx;
-        self.by += other.by;
-        self.bz += other.bz;
-        self.c += other.c;
     }
 
-    /// The same function seen from the origin `origin + shift`.
-    pub(super) fn moved_to(&self, shift: &Vector3<f64>) -> Self {
-        let a_shift = self.a_times(shift);
-        let b = Vector3::new(self.bx, self.by, self.bz);
-        Self {
-            bx: self.bx + a_shift.x,
-            by: self.by + a_shift.y,
-            bz: self.bz + a_shift.z,
-            c: self.c + shift.dot(&(a_shift + 2.0 * b)),
-            ..*self
-        }
-    }
-
-    /// The value at `x`, never below zero.
-    pub(super) fn at(&self, x: &Vector3<f64>) -> f64 {
-        let b = Vector3::new(self.bx, self.by, self.bz);
-        (x.dot(&(self.a_times(x) + 2.0 * b)) + self.c).max(0.0)
+    /// Takes away a quadric that was added before.
+    pub(super) fn subtract(&mut self, other: &Self) {
+        self.xx -= other.xx;
+        self.xy -= other.xy;
+        self.xz -= other.xz;
+        self.yy -= other.yy;
+        self.yz -= other.yz;
+        self.zz -= other.zz;
     }
 
     /// Sum of the weights of its planes, where a line counts as two planes and a point as three.
@@ -91,11 +89,20 @@ impl Quadric {
         self.xx + self.yy + self.zz
     }
 
-    /// Where the function is least, or `None` if it is flat in some direction.
+    /// `A x`.
+    fn times(&self, x: &Vector3<f64>) -> Vector3<f64> {
+        Vector3::new(
+            self.xx * x.x + self.xy * x.y + self.xz * x.z,
+            self.xy * x.x + self.yy * x.y + self.yz * x.z,
+            self.xz * x.x + self.yz * x.y + self.zz * x.z,
+        )
+    }
+
+    /// The `x` with `A x = right`, or `None` if there is not exactly one.
     ///
-    /// LDLᵀ without pivoting. A pivot counts as zero relative to the trace, so the answer does not
+    /// LDLᵀ without pivoting. A pivot counts as zero relative to the weight, so the answer does not
     /// depend on the unit of length.
-    pub(super) fn minimum(&self) -> Option<Vector3<f64>> {
+    fn solve(&self, right: &Vector3<f64>) -> Option<Vector3<f64>> {
         let smallest = 1e-12 * self.weight();
         let d0 = self.xx;
         if d0 <= smallest {
@@ -103,28 +110,56 @@ impl Quadric {
         }
         let (l10, l20) = (self.xy / d0, self.xz / d0);
         let d1 = self.yy - l10 * self.xy;
-        let u12 = self.yz - l10 * self.xz;
         if d1 <= smallest {
             return None;
         }
+        let u12 = self.yz - l10 * self.xz;
         let l21 = u12 / d1;
         let d2 = self.zz - l20 * self.xz - l21 * u12;
         if d2 <= smallest {
             return None;
         }
-        let y0 = -self.bx;
-        let y1 = -self.by - l10 * y0;
-        let y2 = -self.bz - l20 * y0 - l21 * y1;
-        let z = y2 / d2;
+        let y1 = right.y - l10 * right.x;
+        let z = (right.z - l20 * right.x - l21 * y1) / d2;
         let y = y1 / d1 - l21 * z;
-        let x = y0 / d0 - l10 * y - l20 * z;
+        let x = right.x / d0 - l10 * y - l20 * z;
         Some(Vector3::new(x, y, z))
     }
+}
 
-    fn a_times(&self, x: &Vector3<f64>) -> Vector3<f64> {
-        Matrix3::new(
-            self.xx, self.xy, self.xz, self.xy, self.yy, self.yz, self.xz, self.yz, self.zz,
-        ) * x
+/// The sum of the quadrics of an edge's two ends, as a function of the place relative to the first.
+pub(super) struct EdgeQuadric {
+    sum: Quadric,
+    across: Vector3<f64>,
+    second_times_across: Vector3<f64>,
+}
+
+impl EdgeQuadric {
+    /// For quadrics `a` and `b` of two vertices, the second one lying at `across` from the first.
+    pub(super) fn new(a: &Quadric, b: &Quadric, across: Vector3<f64>) -> Self {
+        let mut sum = *a;
+        sum.add(b);
+        Self {
+            sum,
+            across,
+            second_times_across: b.times(&across),
+        }
+    }
+
+    /// The value at `x`, never below zero.
+    pub(super) fn at(&self, x: &Vector3<f64>) -> f64 {
+        let from_first = x.dot(&(self.sum.times(x) - 2.0 * self.second_times_across));
+        (from_first + self.across.dot(&self.second_times_across)).max(0.0)
+    }
+
+    /// Where the value is least, or `None` if it is flat in some direction.
+    pub(super) fn minimum(&self) -> Option<Vector3<f64>> {
+        self.sum.solve(&self.second_times_across)
+    }
+
+    /// Sum of both ends' weights.
+    pub(super) fn weight(&self) -> f64 {
+        self.sum.weight()
     }
 }
 
@@ -132,53 +167,52 @@ impl Quadric {
 mod tests {
     use super::*;
 
+    fn plane(normal: Vector3<f64>) -> Quadric {
+        Quadric::outer(&normal, 1.0)
+    }
+
     #[test]
     fn three_planes_meet_in_their_corner() {
-        let corner = Vector3::new(1.0, -2.0, 0.5);
-        let mut sum = Quadric::default();
-        for normal in [
-            Vector3::x(),
-            Vector3::new(0.6, 0.8, 0.0),
-            Vector3::new(0.0, 0.6, 0.8),
-        ] {
-            sum.add(&Quadric::plane(&normal, 3.0).moved_to(&-corner));
-        }
-        assert!((sum.minimum().unwrap() - corner).norm() < 1e-12);
-        assert!(sum.at(&corner) < 1e-15);
-        assert!((sum.at(&(corner + Vector3::x())) - 3.0 * 1.36).abs() < 1e-12);
+        // Two planes through the origin, one through (3, 1, 2).
+        let mut a = plane(Vector3::x());
+        a.add(&plane(Vector3::new(0.6, 0.8, 0.0)));
+        let b = plane(Vector3::new(0.0, 0.6, 0.8));
+        let across = Vector3::new(3.0, 1.0, 2.0);
+        let edge = EdgeQuadric::new(&a, &b, across);
+        let corner = Vector3::new(0.0, 0.0, 2.2 / 0.8);
+        assert!((edge.minimum().unwrap() - corner).norm() < 1e-12);
+        assert!(edge.at(&corner) < 1e-12);
+        assert!((edge.at(&across) - (9.0 + 2.6 * 2.6)).abs() < 1e-12);
+        assert!((edge.at(&Vector3::zeros()) - 2.2 * 2.2).abs() < 1e-12);
     }
 
     #[test]
     fn a_line_is_as_far_as_it_looks() {
-        let direction = Vector3::new(1.0, 2.0, 2.0) / 3.0;
-        let quadric = Quadric::line(&direction, 2.0);
+        let edge = Vector3::new(1.0, 2.0, 2.0);
+        let quadric = Quadric::line(&edge, 2.0);
         let x = Vector3::new(0.3, -1.0, 4.0);
-        let distance2 = x.cross(&direction).norm_squared();
-        assert!((quadric.at(&x) - 2.0 * distance2).abs() < 1e-12);
+        let distance2 = x.cross(&edge).norm_squared() / 9.0;
+        assert!((x.dot(&quadric.times(&x)) - 2.0 * 9.0 * distance2).abs() < 1e-10);
+    }
+
+    #[test]
+    fn a_triangle_pulls_with_its_area() {
+        let corners = [Vector3::zeros(), 2.0 * Vector3::x(), 3.0 * Vector3::y()];
+        let quadric = Quadric::triangle(&corners, 0.0);
+        let x = Vector3::new(7.0, 8.0, 2.0);
+        assert!((x.dot(&quadric.times(&x)) - 3.0 * 4.0).abs() < 1e-12);
+        let nothing = Quadric::triangle(&[Vector3::zeros(); 3], 1e-6);
+        assert_eq!(nothing, Quadric::default());
     }
 
     #[test]
     fn flatness_does_not_depend_on_the_unit() {
-        let mut edge = Quadric::plane(&Vector3::x(), 1.0);
-        edge.add(&Quadric::plane(&Vector3::y(), 1.0));
         for unit in [1e-9, 1.0, 1e9] {
-            let mut scaled = Quadric::default();
-            for normal in [Vector3::x(), Vector3::y()] {
-                scaled.add(&Quadric::plane(&normal, unit));
-            }
-            assert_eq!(scaled.minimum(), None);
-            scaled.add(&Quadric::plane(&Vector3::z(), unit));
-            assert_eq!(scaled.minimum(), Some(Vector3::zeros()));
+            let mut groove = Quadric::outer(&Vector3::x(), unit);
+            groove.add(&Quadric::outer(&Vector3::y(), unit));
+            assert_eq!(groove.solve(&Vector3::zeros()), None);
+            groove.add(&Quadric::outer(&Vector3::z(), unit));
+            assert_eq!(groove.solve(&Vector3::zeros()), Some(Vector3::zeros()));
         }
-        assert_eq!(edge.minimum(), None);
-    }
-
-    #[test]
-    fn moving_the_origin_changes_no_value() {
-        let mut quadric = Quadric::plane(&Vector3::new(0.6, 0.0, 0.8), 2.0);
-        quadric.add(&Quadric::point(0.5));
-        let (shift, x) = (Vector3::new(3.0, 1.0, -2.0), Vector3::new(0.1, 0.2, 0.3));
-        let moved = quadric.moved_to(&shift);
-        assert!((moved.at(&x) - quadric.at(&(x + shift))).abs() < 1e-12);
     }
 }

@@ -12,17 +12,12 @@ pub(super) struct Entry {
     pub(super) a: u32,
     /// The larger end.
     pub(super) b: u32,
-    /// Tells whether an end has changed since the price was found.
-    pub(super) stamp: u32,
 }
 
 impl Entry {
     /// All fields as one number that sorts like them.
     fn rank(self) -> u128 {
-        u128::from(self.key) << 96
-            | u128::from(self.a) << 64
-            | u128::from(self.b) << 32
-            | u128::from(self.stamp)
+        u128::from(self.key) << 64 | u128::from(self.a) << 32 | u128::from(self.b)
     }
 }
 
@@ -130,7 +125,6 @@ mod tests {
             key: key_of(f64::from(i * 7919 % 1000) * 1e-9),
             a: i % 3,
             b: i,
-            stamp: 0,
         };
         let mut queue = Queue::new();
         let mut plain = std::collections::BTreeSet::new();
@@ -149,12 +143,7 @@ mod tests {
 
     #[test]
     fn equal_entries_come_up_once() {
-        let entry = Entry {
-            key: 5,
-            a: 0,
-            b: 1,
-            stamp: 0,
-        };
+        let entry = Entry { key: 5, a: 0, b: 1 };
         let mut queue = Queue::new();
         queue.push(entry);
         queue.push(entry);
