@@ -20,7 +20,7 @@ const FIELD_STEPS: usize = 1024;
 #[derive(Debug)]
 pub(super) struct Prepared {
     pub(super) frame: wgpu::BindGroup,
-    /// Solid drawables, then transparent ones from far to near.
+    /// Solid drawables, the one pushed back furthest first; then transparent ones from far to near.
     pub(super) solid: Vec<PreparedDrawable>,
     pub(super) clear: Vec<PreparedDrawable>,
     pub(super) overlay: PreparedOverlay,
@@ -63,6 +63,7 @@ impl Prepared {
                 resource: buffer.as_entire_binding(),
             }],
         });
+        let pixel = frame.camera.height / f64::from(frame.size[1].max(1));
         let mut solid = Vec::new();
         let mut clear = Vec::new();
         for (index, drawable) in frame.scene.drawables.iter().enumerate() {
@@ -71,16 +72,18 @@ impl Prepared {
             }
             let prepared = prepare_drawable(gpu, cache, frame, index);
             if drawable.opacity >= 1.0 {
-                solid.push(prepared);
+                let push = drawable.push_back_length + f64::from(drawable.push_back) * pixel;
+                solid.push((push, prepared));
             } else {
                 let depth = frame.camera.view_point(&drawable.bounds().center()).z;
                 clear.push((depth, prepared));
             }
         }
+        solid.sort_by(|a, b| b.0.total_cmp(&a.0));
         clear.sort_by(|a, b| a.0.total_cmp(&b.0));
         Self {
             frame: group,
-            solid,
+            solid: solid.into_iter().map(|(_, prepared)| prepared).collect(),
             clear: clear.into_iter().map(|(_, prepared)| prepared).collect(),
             overlay: PreparedOverlay::new(gpu.device, frame),
             has_selection: frame.scene.drawables.iter().any(Drawable::has_selection),

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 use eframe::egui_wgpu::{RenderState, RendererOptions};
 use image::RgbaImage;
 use shapematch::colormap::{ColorMap, ColorScale};
-use shapematch::geometry::camera::{ScreenSize, StandardView};
+use shapematch::geometry::camera::{OrbitStyle, ScreenSize, StandardView};
 use shapematch::geometry::{Camera, Point3, Projection, Similarity, TriMesh, Vector3};
 use shapematch::render::{
     Background, DepthMode, Drawable, FieldLook, Frame, Marker, MarkerShape, MeshInput, PartLook,
@@ -185,12 +185,17 @@ fn far_from_the_origin_nothing_changes() {
 
 #[test]
 fn the_nearer_of_coincident_sheets_wins_everywhere() {
-    let below = Drawable {
-        push_back: 2.0,
+    let mut below = Drawable {
+        push_back: 1.0,
+        push_back_length: 0.01,
         ..plain(&square(Point3::origin()), BLUE)
     };
+    below.style.element_edges = true;
     let above = plain(&square(Point3::origin()), ORANGE);
-    let camera = from(StandardView::Isometric, Point3::origin());
+    // Seen almost edge on, where lines of the lower sheet would shine through first.
+    let mut camera = from(StandardView::Front, Point3::origin());
+    camera.orbit(OrbitStyle::Turntable, &Point3::origin(), 0.3, -0.35);
+    camera.height = 1.2;
     let both = picture(&scene(vec![above.clone(), below.clone()]), &camera);
     let turned = picture(&scene(vec![below, above.clone()]), &camera);
     let alone = picture(&scene(vec![above]), &camera);

@@ -41,10 +41,10 @@ impl Passes {
         if prepared.opaque_background {
             self.background.draw(pass);
         }
+        // Lines leave no depth behind: drawn right after their own surface, those of a sheet that lies
+        // behind another are covered by it, however steep both are.
         for drawable in &prepared.solid {
             self.surface.draw_solid(pass, drawable);
-        }
-        for drawable in &prepared.solid {
             self.draw_lines(pass, drawable);
         }
         for drawable in &prepared.clear {
