@@ -5,7 +5,10 @@ use super::{
 };
 use crate::geometry::camera::{OrbitStyle, StandardView};
 use crate::geometry::{Camera, Point3, Similarity};
-use crate::jobs::{JobEvent, Live, MatchRecipe, PartSource, PerRole, Role, SweepSettings};
+use crate::jobs::{JobEvent, Live, PartSource, PerRole, Role};
+use crate::pipeline::match_parts::MatchRecipe;
+use crate::pipeline::sweep::SweepSettings;
+use crate::report::{CardForm, MatrixForm};
 use std::path::PathBuf;
 
 /// Everything that can happen to the window, with its data.
@@ -154,6 +157,8 @@ pub enum MoveCommand {
         /// Name of the undo step.
         name: String,
     },
+    /// A pose as text, in any common layout.
+    Paste(String),
     /// Turn by 180° about one of the part's own axes through its centre.
     TurnOver(Axis),
     /// Lay the centres of the two boxes on each other.
@@ -197,12 +202,53 @@ pub enum MatchCommand {
     /// Measure distances and overlap at the present pose.
     Measure,
     /// Run the paper's tables.
-    Sweep(SweepSettings),
+    Sweep(Box<SweepSettings>),
+}
+
+/// What can be written to a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExportKind {
+    /// The matrix as text.
+    Matrix(MatrixForm),
+    /// The whole record of the match as JSON.
+    Record,
+    /// LS-DYNA cards.
+    Cards(CardForm),
+    /// The stamped part, moved onto the crash part.
+    Moved,
+    /// The log as text.
+    Log,
+}
+
+impl ExportKind {
+    /// A file name to start from.
+    pub fn suggested_name(self) -> &'static str {
+        match self {
+            Self::Matrix(MatrixForm::Json) => "matrix.json",
+            Self::Matrix(MatrixForm::Csv) => "matrix.csv",
+            Self::Matrix(_) => "matrix.txt",
+            Self::Record => "match.json",
+            Self::Cards(_) => "stamped_part.k",
+            Self::Moved => "moved.k",
+            Self::Log => "log.txt",
+        }
+    }
 }
 
 /// What leaves the program.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ExportCommand {
+    /// The matrix on the clipboard.
+    CopyMatrix(MatrixForm),
+    /// Ask where to write something.
+    AskSave(ExportKind),
+    /// Write something.
+    Write {
+        /// What.
+        kind: ExportKind,
+        /// Where.
+        path: PathBuf,
+    },
     /// The log as text.
     CopyLog,
     /// A text that a panel shows.

@@ -1,9 +1,8 @@
 use super::Shared;
 use crate::geometry::{Aabb, Similarity, TriMesh};
-use crate::jobs::{
-    MatchRecipe, MatchRun, MeasuredLevel, PartFacts, PartSource, PerRole, Role, Stamp,
-};
+use crate::jobs::{MeasuredLevel, PartFacts, PartSource, PerRole, Role, Stamp};
 use crate::pipeline::load::LoadedPart;
+use crate::pipeline::match_parts::{MatchRecipe, MatchRun};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 

@@ -1,3 +1,4 @@
+use super::ExportKind;
 use crate::jobs::{JobKey, JobKind, Role, Stamp};
 
 /// What the shell has to do after a command.
@@ -11,6 +12,8 @@ pub enum Effect {
     CancelJob(JobKey),
     /// Ask for a file; answer with `FileCommand::Open`.
     AskOpen(Role),
+    /// Ask where to write; answer with `ExportCommand::Write`.
+    AskSave(ExportKind),
     /// Put a text on the clipboard.
     CopyText(String),
     /// Write the preferences.

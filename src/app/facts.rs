@@ -1,8 +1,15 @@
 //! What the log says about the results of the pipeline, in one line each.
 
+use super::NoticeLevel;
+use crate::assess::{Coverage, Verdict};
 use crate::geometry::Similarity;
-use crate::jobs::{MatchRun, MeasuredLevel, Measurement, PartFacts};
+use crate::jobs::{MeasuredLevel, PartFacts};
 use crate::pipeline::load::LoadedPart;
+use crate::pipeline::match_parts::MatchRun;
+use std::time::Duration;
+
+/// A pose this much worse than the best is worth a key: above it, it is simply another pose.
+const NEARLY_AS_GOOD: f64 = 1.3;
 
 /// "41,208 triangles, 3 parts".
 pub(super) fn load_line(part: &LoadedPart, facts: &PartFacts) -> String {
@@ -59,20 +66,79 @@ pub(super) fn deviation_line(measured: &MeasuredLevel) -> String {
 pub(super) fn match_pose(run: &MatchRun, alternative: Option<usize>) -> Option<Similarity> {
     match alternative {
         None => Some(run.crash_from_stamped),
-        Some(index) => run.alternatives.get(index).copied(),
+        Some(index) => {
+            let found = run.outcome.alternatives.get(index);
+            found.map(|alternative| alternative.target_from_source)
+        }
     }
 }
 
+/// Alternatives that fit nearly as well as the best; they come first in the list.
 pub(super) fn n_alternatives(run: &MatchRun) -> usize {
-    run.alternatives.len()
+    let alternatives = run.outcome.alternatives.iter();
+    alternatives
+        .take_while(|alternative| alternative.score_ratio < NEARLY_AS_GOOD)
+        .count()
 }
 
+/// "GOOD: overlap 87 %, rmse 0.38; the reason".
 pub(super) fn match_line(run: &MatchRun) -> String {
-    run.verdict.clone()
+    let assessment = &run.assessment;
+    let mut line = format!(
+        "{}: overlap {:.1} %, rmse {:.4}, p95 {:.4}",
+        assessment.verdict.label(),
+        100.0 * assessment.coverage.better_overlap(),
+        assessment.coverage.rmse(),
+        assessment.coverage.p95(),
+    );
+    if let Some(reason) = assessment.reasons.first() {
+        line += &format!("; {reason}");
+    }
+    line
 }
 
-pub(super) fn measure_line(measurement: &Measurement) -> String {
-    format!("overlap {:.1} %", 100.0 * measurement.overlap)
+/// How loud the end of a match is.
+pub(super) fn match_level(run: &MatchRun) -> NoticeLevel {
+    match run.assessment.verdict {
+        Verdict::Good => NoticeLevel::Success,
+        Verdict::Check | Verdict::Poor => NoticeLevel::Warning,
+    }
+}
+
+/// The phases of a match before its last one, for the log.
+pub(super) fn match_steps(run: &MatchRun) -> Vec<(&'static str, String, Duration)> {
+    let took = |ms: f64| Duration::try_from_secs_f64(ms / 1e3).unwrap_or_default();
+    let [crash, stamped] = run.n_triangles.map(grouped);
+    let times = &run.times;
+    let n_starts = counted(run.outcome.starts.len(), "start");
+    let iterations = run.outcome.starts.iter().map(|s| s.iterations.len()).sum();
+    let iterations = counted(iterations, "iteration");
+    let searched = format!("{iterations} on {crash} and {stamped} triangles");
+    let mut steps = vec![
+        ("align", n_starts, took(times.align_ms)),
+        ("match", searched, took(times.match_ms)),
+        (
+            "verify",
+            "on the full meshes".to_owned(),
+            took(times.verify_ms),
+        ),
+    ];
+    if times.reduce_ms > 0.0 {
+        let text = format!("{crash} and {stamped} triangles");
+        steps.insert(0, ("reduce", text, took(times.reduce_ms)));
+    }
+    steps
+}
+
+/// "stamped → crash 87.0 % within 1.5, crash → stamped 96.0 %, rmse 0.38".
+pub(super) fn measure_line(coverage: &Coverage) -> String {
+    format!(
+        "stamped → crash {:.1} %, crash → stamped {:.1} % within {:.3}; rmse {:.4}",
+        100.0 * coverage.source_on_target.overlap,
+        100.0 * coverage.target_on_source.overlap,
+        coverage.limit,
+        coverage.rmse(),
+    )
 }
 
 /// "1 triangle", "12,345 triangles".

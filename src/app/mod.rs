@@ -25,15 +25,15 @@ mod view;
 
 pub use action::{Action, ActionInfo, Key, Menu, Reason, Shortcut};
 pub use command::{
-    Command, ExportCommand, FileCommand, HistoryCommand, MatchCommand, MoveCommand, NoticeCommand,
-    PartCommand, ReduceCommand, ViewCommand,
+    Command, ExportCommand, ExportKind, FileCommand, HistoryCommand, MatchCommand, MoveCommand,
+    NoticeCommand, PartCommand, ReduceCommand, ViewCommand,
 };
 pub use document::{Document, MatchResult, Part, StampedPose};
 pub use effect::Effect;
 pub use history::{GestureId, History};
 pub use job_board::{JobBoard, RunningJob};
 pub use log::{Log, LogRow, duration_text};
-pub use modal_move::{Constraint, ModalInput, ModalMove, ModalOutcome, MotionKind};
+pub use modal_move::{Constraint, ModalInput, ModalMove, ModalOutcome, MotionKind, short_number};
 pub use motion::{Axis, AxisFrame, MoveFrame, rotation_about, translation_along};
 pub use notice::{Notice, NoticeId, NoticeLevel, Notices};
 pub use settings::{MouseScheme, Settings, StartupOptions, Theme};

@@ -218,7 +218,7 @@ impl ModalMove {
     pub fn name(&self, frame: &MoveFrame) -> String {
         let motion = match self.kind {
             MotionKind::Rotate => {
-                format!("Rotate {}°", short(self.radians(frame).to_degrees()))
+                format!("Rotate {}°", short_number(self.radians(frame).to_degrees()))
             }
             MotionKind::Move => {
                 let signed = match self.constraint {
@@ -227,7 +227,7 @@ impl ModalMove {
                     }
                     _ => self.translation(frame).norm(),
                 };
-                format!("Move {}", short(signed))
+                format!("Move {}", short_number(signed))
             }
         };
         format!("{motion}{}", self.constraint_text())
@@ -266,7 +266,7 @@ impl ModalMove {
 }
 
 /// A number for a name: at most four digits behind the point, no trailing zeros, no "-0".
-pub(super) fn short(value: f64) -> String {
+pub fn short_number(value: f64) -> String {
     let text = format!("{value:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" {

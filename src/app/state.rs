@@ -2,9 +2,12 @@ use super::{
     Document, GestureId, History, JobBoard, Log, LogRow, NoticeLevel, Notices, Settings, Shared,
     StampedPose, ViewState,
 };
+use crate::assess::Coverage;
 use crate::geometry::Similarity;
-use crate::jobs::{JobKind, Measurement, PerRole, Recording, Role, Stamp, StartPose, SweepTable};
+use crate::jobs::{JobKind, PerRole, Recording, Role, Stamp};
 use crate::monitor::IterationReport;
+use crate::pipeline::sweep::Sweep;
+use crate::registration::starts::Start;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -14,7 +17,7 @@ pub struct Starts {
     /// The parts they were made for.
     pub parts: PerRole<u64>,
     /// The poses, in the order they are stepped through.
-    pub poses: Shared<Vec<StartPose>>,
+    pub poses: Shared<Vec<Start>>,
     /// The one that is shown instead of the real pose.
     pub shown: Option<usize>,
 }
@@ -43,9 +46,9 @@ pub struct AppState {
     /// The iterations of the running or last match.
     pub convergence: Vec<IterationReport>,
     /// Distances and overlap with the state they were measured in.
-    pub measurement: Option<(Stamp, Shared<Measurement>)>,
+    pub measurement: Option<(Stamp, Shared<Coverage>)>,
     /// The tables of the last sweep.
-    pub sweep: Option<Shared<SweepTable>>,
+    pub sweep: Option<Shared<Sweep>>,
     /// Time since the program began, as the shell last told.
     pub now: Duration,
     pub(super) recordings: PerRole<Option<(u64, Arc<Recording>)>>,
@@ -87,7 +90,7 @@ impl AppState {
             return pose;
         }
         if let Some(start) = self.shown_start() {
-            return start.crash_from_stamped;
+            return start.target_from_source;
         }
         if let Some(pose) = self.scrubbed_pose() {
             return pose;
@@ -101,7 +104,7 @@ impl AppState {
     }
 
     /// The first pose that is shown instead of the real one.
-    pub fn shown_start(&self) -> Option<&StartPose> {
+    pub fn shown_start(&self) -> Option<&Start> {
         let starts = self.current_starts()?;
         starts.poses.get(starts.shown?)
     }
@@ -118,7 +121,7 @@ impl AppState {
     }
 
     /// The measurement, if parts and pose are still those it was made at.
-    pub fn current_measurement(&self) -> Option<&Measurement> {
+    pub fn current_measurement(&self) -> Option<&Coverage> {
         let stamp = self.document.stamp();
         let (at, measurement) = self.measurement.as_ref()?;
         (*at == stamp).then_some(&**measurement)

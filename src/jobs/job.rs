@@ -1,10 +1,11 @@
-use super::{
-    ExportRequest, MatchRecipe, MatchRun, Measurement, PartFacts, StartPose, SweepSettings,
-    SweepTable,
-};
+use super::{ExportRequest, PartFacts};
+use crate::assess::Coverage;
 use crate::geometry::Similarity;
 use crate::pipeline::load::{LoadSettings, LoadedPart};
+use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
 use crate::pipeline::reduce::{Deviation, Level, Levels};
+use crate::pipeline::sweep::{Sweep, SweepSettings};
+use crate::registration::starts::Start;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
@@ -207,10 +208,23 @@ pub struct MatchInput {
     pub crash: Arc<LoadedPart>,
     /// The source.
     pub stamped: Arc<LoadedPart>,
+    /// The levels the search runs on; `None` where nothing is reduced.
+    pub reduced: Option<ReducedPair>,
     /// Every setting.
     pub recipe: MatchRecipe,
     /// The pose the stamped part has now.
-    pub initial: Similarity,
+    pub current: Similarity,
+}
+
+/// Input of a sweep.
+#[derive(Debug, Clone)]
+pub struct SweepInput {
+    /// The target.
+    pub crash: Arc<LoadedPart>,
+    /// The source.
+    pub stamped: Arc<LoadedPart>,
+    /// Levels and settings.
+    pub settings: SweepSettings,
 }
 
 /// Input of a measurement.
@@ -256,7 +270,7 @@ pub enum JobKind {
     /// Distances and overlap at a pose.
     Measure(MeasureInput),
     /// Levels × match.
-    Sweep(MatchInput, SweepSettings),
+    Sweep(SweepInput),
     /// Writes files.
     Export(ExportRequest),
 }
@@ -272,7 +286,7 @@ impl JobKind {
             Self::Align(_) => JobKey::Align,
             Self::Match(_) => JobKey::Match,
             Self::Measure(_) => JobKey::Measure,
-            Self::Sweep(..) => JobKey::Sweep,
+            Self::Sweep(_) => JobKey::Sweep,
             Self::Export(_) => JobKey::Export,
         }
     }
@@ -308,14 +322,14 @@ pub enum JobOutput {
         /// The level that was measured.
         level: Arc<MeasuredLevel>,
     },
-    /// First poses, most promising first.
-    Aligned(Arc<Vec<StartPose>>),
+    /// First poses, in the order they are tried.
+    Aligned(Arc<Vec<Start>>),
     /// The match ended, by itself or stopped.
     Matched(Arc<MatchRun>),
     /// Distances and overlap.
-    Measured(Arc<Measurement>),
+    Measured(Arc<Coverage>),
     /// The tables.
-    Swept(Arc<SweepTable>),
+    Swept(Arc<Sweep>),
     /// Files were written.
     Exported {
         /// Which.

@@ -5,20 +5,20 @@
 //! holds only the latest progress and pose, for which a slow window simply sees fewer pictures.
 
 mod event;
+mod export;
 mod facts;
 mod job;
 mod live;
 mod run;
-mod seam;
 mod worker;
 
 pub use event::{JobEvent, JobStage};
+pub use export::ExportRequest;
 pub use facts::PartFacts;
 pub use job::{
     JobId, JobKey, JobKind, JobOutput, MatchInput, MeasureInput, MeasureLevelInput, MeasuredLevel,
-    PartSource, PerRole, Recording, ReduceInput, Role, Stamp,
+    PartSource, PerRole, Recording, ReduceInput, Role, Stamp, SweepInput,
 };
 pub use live::{Live, LiveSlot};
 pub use run::{JobError, PipelineRunner, Runner};
-pub use seam::*;
 pub use worker::{Waker, Worker};

@@ -1,12 +1,20 @@
+use super::export::export;
 use super::{
     JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource, Recording,
     ReduceInput, Role,
 };
+use super::{MatchInput, MeasureInput, SweepInput};
+use crate::assess::{coverage, overlap_limit};
+use crate::formats::{Memory, read_from};
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::PipelineError;
-use crate::pipeline::load::{self, LoadedPart};
+use crate::pipeline::load::{self, LoadSettings, LoadedPart};
+use crate::pipeline::match_parts::{self, match_parts};
 use crate::pipeline::reduce::Levels;
+use crate::pipeline::sweep::sweep;
+use crate::samples;
 use crate::simplify::SimplifySettings;
+use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 /// How a job ended without a result.
@@ -57,11 +65,14 @@ impl Runner for PipelineRunner {
         match kind {
             JobKind::Load {
                 role,
-                source: PartSource::File(path),
+                source,
                 settings,
             } => {
-                let part = load::load(&path, &settings, monitor)?;
-                Ok(loaded(role, PartSource::File(path), part))
+                let part = match &source {
+                    PartSource::File(path) => load::load(path, &settings, monitor)?,
+                    PartSource::Example => example(role, &settings, monitor)?,
+                };
+                Ok(loaded(role, source, part))
             }
             JobKind::Reselect {
                 role,
@@ -74,9 +85,14 @@ impl Runner for PipelineRunner {
             }
             JobKind::Reduce(input) => reduce(input, monitor),
             JobKind::MeasureLevel(input) => measure_level(input, monitor),
-            other => {
-                let what = other.key().label();
-                Err(JobError::Failed(format!("{what} is not possible yet")))
+            JobKind::Align(input) => align(&input, monitor),
+            JobKind::Match(input) => run_match(&input, monitor),
+            JobKind::Measure(input) => measure(&input, monitor),
+            JobKind::Sweep(input) => run_sweep(&input, monitor),
+            JobKind::Export(request) => {
+                let (path, notes) = export(request, monitor)?;
+                let paths = vec![path];
+                Ok(JobOutput::Exported { paths, notes })
             }
         }
     }
@@ -133,4 +149,69 @@ fn measure_level(input: MeasureLevelInput, monitor: &Monitor) -> Result<JobOutpu
     // A second measurement of the same level finds the same numbers.
     let _ = level.deviation.set(deviation);
     Ok(JobOutput::LevelMeasured { role, level })
+}
+
+/// One side of the pair that comes with the program.
+fn example(role: Role, settings: &LoadSettings, monitor: &Monitor) -> Result<LoadedPart, JobError> {
+    let starts = match role {
+        Role::Crash => "crash",
+        Role::Stamped => "stamped",
+    };
+    let files = samples::bundled();
+    let file = files.into_iter().find(|file| file.name.starts_with(starts));
+    let Some(file) = file else {
+        return Err(JobError::Failed("the example is not in this build".into()));
+    };
+    let path = Path::new(file.name);
+    let memory = Memory::new().with(path, file.bytes);
+    let model = read_from(&memory, path, &settings.read, monitor).map_err(PipelineError::from)?;
+    Ok(load::prepare(path, Arc::new(model), settings, monitor)?)
+}
+
+fn align(input: &MatchInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
+    monitor.progress("align", 0, None);
+    let settings = &input.recipe.settings.starts;
+    let starts = match_parts::align(&input.crash, &input.stamped, settings)?;
+    Ok(JobOutput::Aligned(Arc::new(starts)))
+}
+
+fn run_match(input: &MatchInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
+    let run = match_parts(
+        &input.crash,
+        &input.stamped,
+        input.reduced.as_ref(),
+        &input.recipe,
+        &input.current,
+        monitor,
+    )?;
+    Ok(JobOutput::Matched(Arc::new(run)))
+}
+
+fn measure(input: &MeasureInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
+    monitor.progress("measure", 0, None);
+    let surface = |part: &LoadedPart| part.surface_for_match().map_err(PipelineError::from);
+    let (target, source) = (surface(&input.crash)?, surface(&input.stamped)?);
+    let limit = overlap_limit(&source, &target, 0.0);
+    let pose = &input.crash_from_stamped;
+    let coverage = coverage(&source, &target, pose, limit, monitor)?;
+    Ok(JobOutput::Measured(Arc::new(coverage)))
+}
+
+fn run_sweep(input: &SweepInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
+    let settings = &input.settings;
+    let n_rows = (settings.reduction.len() + settings.matching.len() + 1) as u64;
+    let mut n_done = 0;
+    monitor.progress("sweep", n_done, Some(n_rows));
+    let table = sweep(
+        &input.crash,
+        &input.stamped,
+        None,
+        settings,
+        monitor,
+        |_| {
+            n_done += 1;
+            monitor.progress("sweep", n_done, Some(n_rows));
+        },
+    )?;
+    Ok(JobOutput::Swept(Arc::new(table)))
 }

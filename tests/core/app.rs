@@ -6,6 +6,10 @@ use shapematch::geometry::{Point3, Similarity, TriMesh, Vector3};
 use shapematch::jobs::*;
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::load::{LoadSettings, prepare};
+use shapematch::pipeline::match_parts::MatchRun;
+use shapematch::registration::starts::{Start, StartKind};
+use shapematch::registration::{Alternative, MatchOutcome};
+use shapematch::report::MatrixForm;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -213,22 +217,47 @@ fn run(kind: JobKind) -> Result<JobOutput, String> {
                 facts,
             })
         }
-        JobKind::Match(_) => Ok(JobOutput::Matched(Arc::new(MatchRun {
-            crash_from_stamped: shifted(1.0),
-            alternatives: vec![shifted(2.0), shifted(3.0)],
-            verdict: "good".to_owned(),
-        }))),
-        JobKind::Align(_) => {
-            let start = |x: f64| StartPose {
-                crash_from_stamped: shifted(x),
-                label: format!("{x}"),
-            };
-            Ok(JobOutput::Aligned(Arc::new(vec![start(10.0), start(20.0)])))
-        }
+        JobKind::Match(_) => Ok(JobOutput::Matched(made_up_match(kind)?)),
+        JobKind::Align(_) => Ok(JobOutput::Aligned(Arc::new(vec![
+            given_start(10.0),
+            given_start(20.0),
+        ]))),
         other => PipelineRunner
             .run(other, &Monitor::silent())
             .map_err(|error| error.to_string()),
     }
+}
+
+fn given_start(x: f64) -> Start {
+    Start {
+        kind: StartKind::Given { index: 0 },
+        flipped: false,
+        target_from_source: shifted(x),
+    }
+}
+
+/// A real match whose poses are replaced by ones that a test can tell apart.
+fn made_up_match(kind: JobKind) -> Result<Arc<MatchRun>, String> {
+    let output = PipelineRunner
+        .run(kind, &Monitor::silent())
+        .map_err(|error| error.to_string())?;
+    let JobOutput::Matched(run) = output else {
+        return Err("no match".to_owned());
+    };
+    let alternative = |x: f64| Alternative {
+        target_from_source: shifted(x),
+        score_ratio: 1.0 + 0.01 * x,
+        start: 0,
+    };
+    let outcome = MatchOutcome {
+        alternatives: vec![alternative(2.0), alternative(3.0), alternative(90.0)],
+        ..MatchOutcome::clone(&run.outcome)
+    };
+    Ok(Arc::new(MatchRun {
+        crash_from_stamped: shifted(1.0),
+        outcome: Arc::new(outcome),
+        ..MatchRun::clone(&run)
+    }))
 }
 
 #[test]
@@ -643,4 +672,202 @@ fn settings_of_an_older_program_still_load() {
     let text = serde_json::to_string(&Settings::default()).unwrap();
     let back: Settings = serde_json::from_str(&text).unwrap();
     assert_eq!(back, Settings::default());
+}
+
+#[test]
+fn a_copied_matrix_pastes_back_to_the_same_bits() {
+    for &form in MatrixForm::ALL {
+        let mut window = Window::with_both();
+        window.apply(MoveCommand::Rotate {
+            axis: Axis::Y,
+            frame: AxisFrame::Global,
+            degrees: 33.3,
+        });
+        window.apply(ExportCommand::CopyMatrix(form));
+        let copied = window.effects.iter().find_map(|effect| match effect {
+            Effect::CopyText(text) => Some(text.clone()),
+            _ => None,
+        });
+        let before = window.pose();
+        window.act(Action::ResetPose);
+        window.apply(MoveCommand::Paste(copied.unwrap()));
+        let is_same_layout = matches!(form, MatrixForm::Rows | MatrixForm::Columns);
+        if is_same_layout {
+            assert_eq!(window.pose(), before, "{form:?}");
+        } else {
+            let expected = match form {
+                MatrixForm::Inverse => before.inverse(),
+                _ => before,
+            };
+            let off = window.pose().to_matrix4() - expected.to_matrix4();
+            assert!(off.amax() < 1e-12, "{form:?}");
+        }
+        assert_eq!(
+            window.state.settings.matrix_form.as_deref(),
+            Some(form.name())
+        );
+    }
+}
+
+#[test]
+fn nonsense_that_is_pasted_is_a_message() {
+    let mut window = Window::with_both();
+    let before = window.state.document.clone();
+    window.apply(MoveCommand::Paste("1 2 3".to_owned()));
+    assert_eq!(window.state.document, before);
+    assert!(
+        window
+            .state
+            .notices
+            .toasts()
+            .next()
+            .unwrap()
+            .text
+            .contains("3 numbers")
+    );
+}
+
+#[test]
+fn the_example_loads_from_the_program_itself() {
+    let mut window = Window::new();
+    for role in Role::ALL {
+        let kind = JobKind::Load {
+            role,
+            source: PartSource::Example,
+            settings: LoadSettings::default(),
+        };
+        let output = PipelineRunner.run(kind, &Monitor::silent()).unwrap();
+        let JobOutput::Loaded { part, facts, .. } = output else {
+            panic!("not loaded");
+        };
+        assert!(part.mesh.n_triangles() > 1000);
+        assert_eq!(facts.formed > 0, role == Role::Stamped);
+        window.apply(FileCommand::DismissUnitHint);
+    }
+}
+
+mod random {
+    //! Whatever is done: the crash part stays, and undo and redo are exact.
+
+    use super::*;
+    use proptest::prelude::*;
+
+    fn any_command() -> impl Strategy<Value = Command> {
+        let part = (any::<bool>(), 11u64..13).prop_map(|(is_crash, id)| PartRef {
+            role: if is_crash { Role::Crash } else { Role::Stamped },
+            id,
+        });
+        let axis = (0usize..3).prop_map(|i| Axis::ALL[i]);
+        let frame = (0usize..3).prop_map(|i| AxisFrame::ALL[i]);
+        let roles =
+            (any::<bool>(), any::<bool>()).prop_map(|(crash, stamped)| PerRole { crash, stamped });
+        let drag = (0u64..3, -5i32..5).prop_map(|(gesture, x)| MoveCommand::Drag {
+            gesture: GestureId(gesture),
+            delta: shifted(f64::from(x)),
+            name: "Drag".to_owned(),
+        });
+        let moves = prop_oneof![
+            drag,
+            Just(MoveCommand::EndDrag),
+            (0u64..3).prop_map(|g| MoveCommand::AbandonDrag(GestureId(g))),
+            (axis.clone(), frame.clone(), -9i32..9).prop_map(|(axis, frame, d)| {
+                MoveCommand::Translate {
+                    axis,
+                    frame,
+                    distance: f64::from(d),
+                }
+            }),
+            (axis.clone(), frame, -9i32..9).prop_map(|(axis, frame, d)| MoveCommand::Rotate {
+                axis,
+                frame,
+                degrees: f64::from(10 * d),
+            }),
+            axis.clone().prop_map(MoveCommand::TurnOver),
+            Just(MoveCommand::BringCentersTogether),
+            Just(MoveCommand::Reset),
+            axis.prop_map(|axis| MoveCommand::Input(ModalInput::Axis {
+                axis,
+                is_plane: false
+            })),
+            "[-0-9.]".prop_map(|c| {
+                MoveCommand::Input(ModalInput::Character(c.chars().next().unwrap()))
+            }),
+            Just(MoveCommand::Input(ModalInput::Accept)),
+            Just(MoveCommand::Input(ModalInput::Reject)),
+        ];
+        prop_oneof![
+            6 => moves.prop_map(Command::from),
+            1 => (roles, 20usize..200).prop_map(|(roles, max_triangles)| {
+                ReduceCommand::To { roles, max_triangles }.into()
+            }),
+            2 => (part.clone(), any::<bool>())
+                .prop_map(|(part, on)| PartCommand::SetVisible(part, on).into()),
+            1 => (part.clone(), any::<bool>())
+                .prop_map(|(part, on)| PartCommand::SetUsed(part, on).into()),
+            1 => part.prop_map(|part| PartCommand::ShowOnly(part).into()),
+            1 => Just(ViewCommand::ToggleMoveOver.into()),
+            1 => Just(HistoryCommand::Undo.into()),
+            1 => Just(HistoryCommand::Redo.into()),
+            1 => Just(HistoryCommand::BackToAsLoaded.into()),
+            1 => Just(Command::Escape),
+        ]
+    }
+
+    fn action() -> impl Strategy<Value = Action> {
+        prop_oneof![
+            Just(Action::MoveTool),
+            Just(Action::RotateTool),
+            Just(Action::Align),
+            Just(Action::NextStart),
+            Just(Action::UseStart),
+            Just(Action::FlipAlternative),
+        ]
+    }
+
+    fn bits(mesh: &TriMesh) -> Vec<u64> {
+        let coordinates = mesh.positions().iter().flat_map(|p| p.iter().copied());
+        coordinates.map(f64::to_bits).collect()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+
+        #[test]
+        fn undo_and_redo_are_exact_and_the_crash_part_stays(
+            steps in prop::collection::vec(
+                prop_oneof![
+                    4 => any_command().prop_map(Ok),
+                    1 => action().prop_map(Err),
+                ],
+                1..40,
+            )
+        ) {
+            let mut window = Window::with_both();
+            let loaded = window.state.document.clone();
+            let before = bits(&window.mesh(Role::Crash));
+            for step in steps {
+                match step {
+                    // The two loads stay, so that there is something to compare.
+                    Ok(Command::History(HistoryCommand::Undo))
+                        if window.state.history.n_done() <= 2 => {}
+                    Ok(command) => window.apply(command),
+                    Err(action) => window.act(action),
+                }
+                let all_used = window.part(Role::Crash).facts.used.len() == 2;
+                if all_used {
+                    prop_assert_eq!(&bits(&window.mesh(Role::Crash)), &before);
+                }
+            }
+            window.apply(Command::Escape);
+            window.apply(MoveCommand::EndDrag);
+            let end = window.state.document.clone();
+            let n_done = window.state.history.n_done();
+            window.apply(HistoryCommand::JumpTo(2));
+            prop_assert_eq!(&window.state.document, &loaded);
+            prop_assert_eq!(&bits(&window.mesh(Role::Crash)), &before);
+            window.apply(HistoryCommand::JumpTo(n_done));
+            // Steps that were undone before the end may follow; the end itself is exact.
+            prop_assert_eq!(&window.state.document, &end);
+        }
+    }
 }

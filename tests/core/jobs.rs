@@ -12,7 +12,10 @@ use std::time::Duration;
 const PATIENCE: Duration = Duration::from_secs(30);
 
 fn export() -> JobKind {
-    JobKind::Export(ExportRequest)
+    JobKind::Export(ExportRequest::Text {
+        path: "nowhere.txt".into(),
+        text: String::new(),
+    })
 }
 
 fn other_kind() -> JobKind {

@@ -62,6 +62,11 @@ impl Action {
             A::CancelRun => require(state.locking_job().is_some(), "nothing is running"),
             A::FlipAlternative => has_alternative(state),
             A::ToggleDeviation => state.has_both_parts(),
+            A::CopyMatrix | A::SaveMatrix | A::SaveMoved => state.has_part(Role::Stamped),
+            A::SaveRecord | A::SaveCards => {
+                let has_result = state.document.current_result().is_some();
+                require(has_result, "run a match first")
+            }
             A::ClearPivot => require(
                 state.view.pivot.get(state.view.focus).is_some(),
                 "no pivot was picked",

@@ -215,6 +215,16 @@ actions! {
     FlipAlternative,
     /// Distances and overlap at the present pose.
     Measure,
+    /// The matrix on the clipboard.
+    CopyMatrix,
+    /// The matrix into a file.
+    SaveMatrix,
+    /// The record of the match into a file.
+    SaveRecord,
+    /// LS-DYNA cards into a file.
+    SaveCards,
+    /// The moved stamped part into a file.
+    SaveMoved,
     /// The log as text.
     CopyLog,
     /// A picture.

@@ -370,6 +370,27 @@ impl Action {
 
     fn export_row(self) -> Row {
         match self {
+            Self::CopyMatrix => (
+                "Copy matrix",
+                "Copy the pose (stamped → crash) in the form used last",
+                Some(Shortcut::ctrl_shift(Key::Letter('C'))),
+            ),
+            Self::SaveMatrix => ("Save matrix…", "Write the pose as text", None),
+            Self::SaveRecord => (
+                "Save record…",
+                "Write the whole match as JSON: matrix, verdict, settings, times",
+                Some(ctrl('S')),
+            ),
+            Self::SaveCards => (
+                "Save LS-DYNA cards…",
+                "Write the cards that map the stamped part, and read them back",
+                None,
+            ),
+            Self::SaveMoved => (
+                "Save moved part…",
+                "Write the stamped part where it lies on the crash part",
+                None,
+            ),
             Self::CopyLog => ("Copy log", "Copy the rows of the log as text", None),
             Self::TakePicture => (
                 "Picture…",

@@ -1,11 +1,12 @@
 use super::Action;
 use crate::app::{
-    AppState, Axis, AxisFrame, ColorBy, Command, Dialog, Display, ExportCommand, FileCommand,
-    HistoryCommand, MatchCommand, MotionKind, MoveCommand, PartCommand, ReduceCommand, Settings,
-    ShownGeometry, ViewCommand,
+    AppState, Axis, AxisFrame, ColorBy, Command, Dialog, Display, ExportCommand, ExportKind,
+    FileCommand, HistoryCommand, MatchCommand, MotionKind, MoveCommand, PartCommand, ReduceCommand,
+    Settings, ShownGeometry, ViewCommand,
 };
 use crate::geometry::camera::{OrbitStyle, StandardView};
 use crate::jobs::{JobKey, PerRole, Role};
+use crate::report::{CardForm, MatrixForm};
 
 const BOTH: PerRole<bool> = PerRole {
     crash: true,
@@ -155,6 +156,7 @@ impl Action {
             let is_open = state.view.dialog == Some(dialog);
             ViewCommand::SetDialog((!is_open).then_some(dialog))
         };
+        let save = |kind| Command::from(ExportCommand::AskSave(kind));
         let picture = |is_transparent| ExportCommand::TakePicture { is_transparent };
         let command = match self {
             Self::Preferences => dialog(Dialog::Preferences).into(),
@@ -165,6 +167,11 @@ impl Action {
             Self::ScaleUp => scaled(|scale| scale + 0.125),
             Self::ScaleDown => scaled(|scale| scale - 0.125),
             Self::ScaleReset => scaled(|_| 1.0),
+            Self::CopyMatrix => ExportCommand::CopyMatrix(last_form(state)).into(),
+            Self::SaveMatrix => save(ExportKind::Matrix(last_form(state))),
+            Self::SaveRecord => save(ExportKind::Record),
+            Self::SaveCards => save(ExportKind::Cards(CardForm::ALL[0])),
+            Self::SaveMoved => save(ExportKind::Moved),
             Self::CopyLog => ExportCommand::CopyLog.into(),
             Self::TakePicture => picture(false).into(),
             Self::TakePictureTransparent => picture(true).into(),
@@ -174,6 +181,14 @@ impl Action {
         };
         Some(command)
     }
+}
+
+/// The form of the matrix that was copied last.
+fn last_form(state: &AppState) -> MatrixForm {
+    let name = state.settings.matrix_form.as_deref();
+    let of_name = |form: &&MatrixForm| Some(form.name()) == name;
+    let found = MatrixForm::ALL.iter().find(of_name);
+    found.copied().unwrap_or(MatrixForm::Rows)
 }
 
 fn toggled(line: Option<f32>) -> Option<f32> {

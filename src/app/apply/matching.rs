@@ -1,9 +1,10 @@
 use crate::app::state::Starts;
 use crate::app::{AppState, BottomTab, Effect, MatchCommand, MatchResult, NoticeLevel, facts};
-use crate::jobs::{
-    JobKey, JobKind, MatchInput, MatchRecipe, MatchRun, MeasureInput, Measurement, Stamp,
-    StartPose, SweepSettings, SweepTable,
-};
+use crate::assess::Coverage;
+use crate::jobs::{JobKey, JobKind, MatchInput, MeasureInput, Stamp, SweepInput};
+use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
+use crate::pipeline::sweep::{Sweep, SweepSettings};
+use crate::registration::starts::Start;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -24,7 +25,7 @@ impl AppState {
             MatchCommand::ShowAlternative(index) => self.show_alternative(index),
             MatchCommand::FlipAlternative => self.flip_alternative(),
             MatchCommand::Measure => return self.measure(),
-            MatchCommand::Sweep(settings) => return self.run_sweep(settings),
+            MatchCommand::Sweep(settings) => return self.run_sweep(*settings),
         }
         Vec::new()
     }
@@ -37,17 +38,21 @@ impl AppState {
         }
     }
 
-    /// The inputs of a match: the settings with the ceilings of the chosen levels.
+    /// The inputs of a match: the levels that are shown, the settings, the pose.
     fn match_input(&self) -> Option<MatchInput> {
         self.can_match().ok()?;
         let (crash, stamped) = self.document.both()?;
-        let mut recipe = self.document.recipe.clone();
-        recipe.reduce_to = [crash.wanted_level, stamped.wanted_level];
+        let is_reduced = crash.level.is_some() || stamped.level.is_some();
+        let reduced = is_reduced.then(|| ReducedPair {
+            crash: Arc::clone(crash.reduced_mesh()),
+            stamped: Arc::clone(stamped.reduced_mesh()),
+        });
         Some(MatchInput {
             crash: crash.loaded.to_arc(),
             stamped: stamped.loaded.to_arc(),
-            recipe,
-            initial: *self.document.crash_from_stamped(),
+            reduced,
+            recipe: self.document.recipe.clone(),
+            current: *self.document.crash_from_stamped(),
         })
     }
 
@@ -69,7 +74,13 @@ impl AppState {
     }
 
     fn run_sweep(&mut self, settings: SweepSettings) -> Vec<Effect> {
-        let effects = self.start_with_input(|input| JobKind::Sweep(input, settings));
+        let effects = self.start_with_input(|input| {
+            JobKind::Sweep(SweepInput {
+                crash: input.crash,
+                stamped: input.stamped,
+                settings,
+            })
+        });
         if !effects.is_empty() {
             self.view.tab = BottomTab::Sweep;
         }
@@ -142,7 +153,7 @@ impl AppState {
 
     fn use_start(&mut self, index: usize) {
         let start = self.current_starts().and_then(|s| s.poses.get(index));
-        let Some(pose) = start.map(|s| s.crash_from_stamped) else {
+        let Some(pose) = start.map(|s| s.target_from_source) else {
             return;
         };
         if self.can_move().is_ok() {
@@ -201,7 +212,10 @@ impl AppState {
     }
 
     pub(super) fn take_matched(&mut self, run: Arc<MatchRun>, took: Duration) -> Vec<Effect> {
-        let line = facts::match_line(&run);
+        let (line, level) = (facts::match_line(&run), facts::match_level(&run));
+        for (step, text, took) in facts::match_steps(&run) {
+            self.log_step(step, None, text, Some(took));
+        }
         self.live_pose = None;
         let pose = run.crash_from_stamped;
         self.take_pose_as_result("Match".to_owned(), pose, |stamp| MatchResult {
@@ -209,13 +223,8 @@ impl AppState {
             alternative: None,
             stamp,
         });
-        self.log_at(
-            NoticeLevel::Success,
-            "match",
-            None,
-            line.clone(),
-            Some(took),
-        );
+        // Its phases have their own rows; counting the whole again would double the total.
+        self.log_at(level, "result", None, line.clone(), None);
         if took >= LONG_RUN {
             vec![Effect::NotifyDesktop(line)]
         } else {
@@ -223,7 +232,7 @@ impl AppState {
         }
     }
 
-    pub(super) fn take_aligned(&mut self, poses: Arc<Vec<StartPose>>, took: Duration) {
+    pub(super) fn take_aligned(&mut self, poses: Arc<Vec<Start>>, took: Duration) {
         let n_poses = poses.len();
         let text = facts::counted(n_poses, "start pose");
         self.log_step("align", None, text, Some(took));
@@ -236,7 +245,7 @@ impl AppState {
 
     pub(super) fn take_measured(
         &mut self,
-        measurement: Arc<Measurement>,
+        measurement: Arc<Coverage>,
         stamp: Stamp,
         took: Duration,
     ) {
@@ -245,7 +254,7 @@ impl AppState {
         self.measurement = Some((stamp, measurement.into()));
     }
 
-    pub(super) fn take_swept(&mut self, table: Arc<SweepTable>, took: Duration) {
+    pub(super) fn take_swept(&mut self, table: Arc<Sweep>, took: Duration) {
         self.sweep = Some(table.into());
         self.log_at(
             NoticeLevel::Success,

@@ -1,10 +1,10 @@
-use crate::app::modal_move::short;
 use crate::app::view::MoveTool;
 use crate::app::{
     AppState, Axis, AxisFrame, Effect, GestureId, ModalInput, ModalMove, ModalOutcome, MotionKind,
-    MoveCommand, MoveFrame, rotation_about, translation_along,
+    MoveCommand, MoveFrame, NoticeLevel, rotation_about, short_number, translation_along,
 };
 use crate::geometry::{Point3, Similarity};
+use crate::report::parse_matrix;
 use std::f64::consts::PI;
 
 impl AppState {
@@ -40,6 +40,7 @@ impl AppState {
             } => {
                 self.commit_pose(name, None, crash_from_stamped);
             }
+            MoveCommand::Paste(text) => self.paste(&text),
             MoveCommand::TurnOver(axis) => self.turn_over(axis),
             MoveCommand::BringCentersTogether => self.bring_centers_together(),
             MoveCommand::Reset => {
@@ -103,7 +104,11 @@ impl AppState {
             return;
         };
         let delta = translation_along(&frame.axis(axis, of), distance);
-        let name = format!("Move {} along {}", short(distance), axis_name(axis, of));
+        let name = format!(
+            "Move {} along {}",
+            short_number(distance),
+            axis_name(axis, of)
+        );
         self.move_by(name, &delta);
     }
 
@@ -113,8 +118,29 @@ impl AppState {
         };
         let axis_vector = frame.axis(axis, of);
         let delta = rotation_about(&frame.pivot, &axis_vector, degrees.to_radians());
-        let name = format!("Rotate {}° about {}", short(degrees), axis_name(axis, of));
+        let name = format!(
+            "Rotate {}° about {}",
+            short_number(degrees),
+            axis_name(axis, of)
+        );
         self.move_by(name, &delta);
+    }
+
+    fn paste(&mut self, text: &str) {
+        match parse_matrix(text) {
+            Ok(parsed) => {
+                self.commit_pose("Pasted pose", None, parsed.motion);
+                let understood = format!("pasted: {}", parsed.layout.label());
+                self.log_at(NoticeLevel::Success, "move", None, understood, None);
+                for note in parsed.notes {
+                    self.log_at(NoticeLevel::Note, "move", None, note, None);
+                }
+            }
+            Err(error) => {
+                let text = format!("nothing pasted: {error}");
+                self.log_at(NoticeLevel::Error, "move", None, text, None);
+            }
+        }
     }
 
     fn turn_over(&mut self, axis: Axis) {
