@@ -40,6 +40,9 @@ const LEAST_OVERLAP: f64 = 0.45;
 const POOR_RMSE: f64 = 0.5;
 /// Distances up to so many times the faceting are unremarkable.
 const FACETING: f64 = 3.0;
+/// Distance of the kept pairs, as a share of the overlap limit, above which parts that overhang
+/// each other are different parts. A rail against a bracket measures 0.7.
+const DIFFERENT_P95: f64 = 0.4;
 /// Scales of the final pairs farther from 1 than this hint at different sizes.
 const SCALE_TOLERANCE: f64 = 0.005;
 
@@ -58,6 +61,7 @@ pub(super) fn decide(
     reasons.extend(unit(assessment));
     reasons.extend(distances(assessment, outcome, source, target));
     reasons.extend(overlap(assessment));
+    reasons.extend(mismatch(assessment, outcome));
     reasons.extend(freedom(assessment));
     reasons.extend(ambiguity(assessment));
     reasons.extend(ending(outcome));
@@ -155,6 +159,18 @@ fn overlap(assessment: &Assessment) -> Option<Reason> {
     (better < FULL_OVERLAP).then(|| {
         let words = format!("neither part contains the other: {both} are covered");
         (Verdict::Check, words)
+    })
+}
+
+/// Parts that overhang each other may be the same sheet, and parts whose shapes differ may be so
+/// because of springback; both together are two different parts that happen to touch.
+fn mismatch(assessment: &Assessment, outcome: &MatchOutcome) -> Option<Reason> {
+    let coverage = &assessment.coverage;
+    let overhang = coverage.better_overlap() < FULL_OVERLAP;
+    (overhang && outcome.p95 > DIFFERENT_P95 * coverage.limit).then(|| {
+        let words = "the parts neither cover each other nor agree where they meet: are they the \
+                     same part?";
+        (Verdict::Poor, words.to_owned())
     })
 }
 

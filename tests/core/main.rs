@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
 
 mod app;
+mod cli;
 mod deck_out;
 mod jobs;
 mod keyword;

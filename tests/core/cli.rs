@@ -1,0 +1,271 @@
+//! The program as it is typed: exit status, standard output, files.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use shapematch::formats::{ReadOptions, read};
+use shapematch::geometry::{Matrix4, Similarity};
+use shapematch::monitor::Monitor;
+use shapematch::pipeline::sweep::node_distance;
+use shapematch::report::{cards::read_back, parse_matrix};
+
+fn shapematch(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_shapematch"))
+        .args(args)
+        .output()
+        .unwrap()
+}
+
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap()
+}
+
+/// A folder with the bundled pair and a shorthand for paths in it.
+struct Pair {
+    folder: tempfile::TempDir,
+}
+
+impl Pair {
+    fn bundled() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let output = shapematch(&["sample", folder.path().to_str().unwrap(), "--bundled"]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        Self { folder }
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.folder.path().join(name).to_str().unwrap().to_owned()
+    }
+
+    fn run(&self, options: &[&str]) -> Output {
+        let (crash, stamped) = (self.path("crash.k.gz"), self.path("stamped.dynain.gz"));
+        shapematch(&[&["match", &crash, &stamped], options].concat())
+    }
+
+    fn truth(&self) -> Similarity {
+        let json: Value =
+            serde_json::from_slice(&std::fs::read(self.path("truth.json")).unwrap()).unwrap();
+        similarity(&json["crash_from_stamped"])
+    }
+}
+
+fn similarity(rows: &Value) -> Similarity {
+    let matrix = Matrix4::from_fn(|row, col| rows[row][col].as_f64().unwrap());
+    Similarity::from_matrix4(&matrix, 1e-6).unwrap()
+}
+
+fn mesh(path: &str) -> shapematch::geometry::TriMesh {
+    let model = read(Path::new(path), &ReadOptions::default(), &Monitor::silent()).unwrap();
+    model.surface(&Default::default()).unwrap().mesh
+}
+
+#[test]
+fn the_bundled_pair_is_matched_and_everything_is_written() {
+    let pair = Pair::bundled();
+    let [json, matrix, cards, moved] =
+        ["r.json", "m.txt", "c.k", "moved.k"].map(|name| pair.path(name));
+    let options = [
+        "--json", &json, "--matrix", &matrix, "--cards", &cards, "--moved", &moved,
+    ];
+    let output = pair.run(&options);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let report = text(&output.stdout);
+    assert!(report.starts_with("GOOD\n"), "{report}");
+    assert!(report.contains("crash = c · R · stamped + t (column vectors)"));
+
+    let record: Value = serde_json::from_slice(&std::fs::read(&json).unwrap()).unwrap();
+    let found = similarity(&record["matrix"]);
+    let stamped = mesh(&pair.path("stamped.dynain.gz"));
+    let (_, worst) = node_distance(&stamped, &found, &pair.truth());
+    assert!(
+        worst < 0.1 * stamped.mean_edge_length(),
+        "worst node is {worst} off"
+    );
+
+    // Text and JSON carry the same bits; the cards what ten columns can hold.
+    let typed = parse_matrix(&std::fs::read_to_string(&matrix).unwrap()).unwrap();
+    assert_eq!(typed.motion.to_rows(), found.to_rows());
+    let on_cards = read_back(&std::fs::read_to_string(&cards).unwrap()).unwrap();
+    assert!(node_distance(&stamped, &on_cards, &found).1 < 1e-3);
+
+    // The moved deck lies where the matrix puts the stamped one, node by node.
+    let there = mesh(&moved);
+    let expected = stamped.transformed(&found);
+    for (a, b) in there.positions().iter().zip(expected.positions()) {
+        assert!((a - b).norm() < 1e-5);
+    }
+}
+
+#[test]
+fn the_record_has_its_keys() {
+    let pair = Pair::bundled();
+    let output = pair.run(&["--json", "-"]);
+    let record: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let keys = [
+        "schema",
+        "direction",
+        "matrix",
+        "rotation",
+        "translation",
+        "scale",
+        "verdict",
+        "reasons",
+        "ambiguous",
+        "alternatives",
+        "rmse",
+        "p95",
+        "max",
+        "overlap",
+        "method",
+        "parameters",
+        "starts",
+        "timings_ms",
+        "warnings",
+        "files",
+        "build",
+    ];
+    for key in keys {
+        assert!(record.get(key).is_some(), "no key {key}");
+    }
+    for key in ["read", "reduce", "align", "match", "verify", "total"] {
+        assert!(record["timings_ms"][key].is_f64(), "no time {key}");
+    }
+    for key in ["stamped", "crash", "limit"] {
+        assert!(record["overlap"][key].is_f64(), "no overlap {key}");
+    }
+    assert_eq!(record["schema"], "shapematch.match/1");
+    assert_eq!(record["verdict"], "good");
+    assert_eq!(record["rotation"].as_array().unwrap().len(), 3);
+    assert_eq!(record["translation"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn the_number_of_threads_does_not_change_the_matrix() {
+    let pair = Pair::bundled();
+    let matrix = |threads: &str| -> Value {
+        let output = pair.run(&["--json", "-", "--threads", threads]);
+        let record: Value = serde_json::from_slice(&output.stdout).unwrap();
+        record["matrix"].clone()
+    };
+    assert_eq!(matrix("1"), matrix("3"));
+}
+
+#[test]
+fn another_part_is_poor_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |part: &str| -> PathBuf {
+        let to = folder.path().join(part);
+        let output = shapematch(&["sample", to.to_str().unwrap(), "--part", part]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        to
+    };
+    let crash = write("rail").join("crash.k");
+    let stamped = write("bracket").join("stamped.dynain");
+    let output = shapematch(&["match", crash.to_str().unwrap(), stamped.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(3), "{}", text(&output.stdout));
+    assert!(text(&output.stdout).starts_with("POOR\n"));
+}
+
+#[test]
+fn a_part_of_a_whole_model_is_chosen_by_id_title_and_set() {
+    let folder = tempfile::tempdir().unwrap();
+    let to = folder.path().to_str().unwrap();
+    let sample = [
+        "sample",
+        to,
+        "--part",
+        "bracket",
+        "--variant",
+        "whole-model",
+    ];
+    assert!(shapematch(&sample).status.success());
+    let [crash, stamped] = ["crash.k", "stamped.dynain"]
+        .map(|name| folder.path().join(name).to_str().unwrap().to_owned());
+    let info = shapematch(&["info", &crash, "--json", "-"]);
+    let info: Value = serde_json::from_slice(&info.stdout).unwrap();
+    let parts = info["parts"].as_array().unwrap();
+    assert!(parts.len() > 1);
+    let id = parts[0]["id"].to_string();
+    let title = parts[0]["title"].as_str().unwrap();
+    for choice in [id.as_str(), title, "set:2000000"] {
+        let output = shapematch(&[
+            "match",
+            &crash,
+            &stamped,
+            "--crash-part",
+            choice,
+            "--json",
+            "-",
+        ]);
+        let record: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(
+            record["files"]["crash"]["parts"][0].to_string(),
+            id,
+            "chosen by {choice}"
+        );
+        assert_ne!(record["verdict"], "poor", "chosen by {choice}");
+    }
+    let missing = shapematch(&["match", &crash, &stamped, "--crash-part", "77"]);
+    assert_eq!(missing.status.code(), Some(1));
+    assert!(text(&missing.stderr).contains("there is no part 77"));
+}
+
+#[test]
+fn reduction_keeps_the_ceiling_and_its_figures() {
+    let pair = Pair::bundled();
+    let [out, json] = ["small.stl", "small.json"].map(|name| pair.path(name));
+    let input = pair.path("stamped.dynain.gz");
+    let output = shapematch(&[
+        "reduce",
+        &input,
+        "--triangles",
+        "1000",
+        "--out",
+        &out,
+        "--json",
+        &json,
+    ]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let record: Value = serde_json::from_slice(&std::fs::read(&json).unwrap()).unwrap();
+    let after = record["triangles_after"].as_u64().unwrap();
+    assert!(after <= 1000);
+    assert_eq!(mesh(&out).n_triangles() as u64, after);
+    for key in ["triangles_before", "time_ms", "rms", "max", "border_max"] {
+        assert!(record[key].is_number(), "no key {key}");
+    }
+}
+
+#[test]
+fn info_counts_the_forming_results() {
+    let pair = Pair::bundled();
+    let output = shapematch(&["info", &pair.path("stamped.dynain.gz"), "--json", "-"]);
+    let info: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for key in [
+        "nodes",
+        "shells",
+        "parts",
+        "bounds",
+        "forming",
+        "diagnostics",
+    ] {
+        assert!(info.get(key).is_some(), "no key {key}");
+    }
+    assert_eq!(info["forming"]["thickness"], info["shells"]);
+    assert_eq!(info["forming"]["stress"], info["shells"]);
+    let people = shapematch(&["info", &pair.path("crash.k.gz")]);
+    assert!(text(&people.stdout).contains("FLOOR PAN FRONT"));
+}
+
+#[test]
+fn wrong_usage_and_missing_files_have_their_own_status() {
+    assert_eq!(shapematch(&["match", "only-one.k"]).status.code(), Some(2));
+    assert_eq!(shapematch(&["no-such-task", "--x"]).status.code(), Some(2));
+    let missing = shapematch(&["info", "no-such-file.k"]);
+    assert_eq!(missing.status.code(), Some(1));
+    assert!(text(&missing.stderr).contains("no-such-file.k"));
+    let pair = Pair::bundled();
+    let wide = pair.run(&["--angle-segment", "90"]);
+    assert_eq!(wide.status.code(), Some(1));
+    assert!(text(&wide.stderr).contains("60°"), "{}", text(&wide.stderr));
+}
