@@ -17,6 +17,7 @@
 //! - [`pipeline`]: load, reduce, match, export, as one call each.
 //! - [`jobs`]: the worker thread of the window: stop, cancel, events.
 //! - [`app`]: the window without the window: state, commands, undo.
+//! - `ui` (feature `gui`): the window; draws the state, emits commands.
 //! - `render` (feature `gui`): scenes into pictures with wgpu.
 //!
 //! `ARCHITECTURE.md` says who may use whom.
@@ -37,3 +38,5 @@ pub mod report;
 pub mod samples;
 pub mod search;
 pub mod simplify;
+#[cfg(feature = "gui")]
+pub mod ui;
