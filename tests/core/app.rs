@@ -871,3 +871,142 @@ mod random {
         }
     }
 }
+
+/// Runs the real worker until nothing runs or waits.
+fn settle(state: &mut AppState, worker: &Worker, effects: Vec<Effect>) {
+    let carry_out = |effects: Vec<Effect>| {
+        for effect in effects {
+            match effect {
+                Effect::StartJob(kind, stamp) => {
+                    worker.submit(*kind, stamp);
+                }
+                Effect::CancelJob(key) => worker.cancel(key),
+                Effect::StopJob(key) => worker.stop(key),
+                _ => {}
+            }
+        }
+    };
+    carry_out(effects);
+    while state.jobs.is_busy() {
+        let event = worker.wait_event(Duration::from_secs(300)).unwrap();
+        state.apply(Command::Live(Box::new(worker.live())));
+        carry_out(state.apply(event));
+    }
+}
+
+#[test]
+fn the_papers_story_with_the_real_worker() {
+    let worker = Worker::spawn(PipelineRunner, Arc::new(|| {})).unwrap();
+    let mut state = AppState::new(Settings::default());
+    let actions = [
+        Action::OpenExample,
+        Action::Reduce,
+        Action::ToggleMoveOver,
+        Action::Align,
+        Action::MatchOrStop,
+    ];
+    for action in actions {
+        assert_eq!(action.enabled(&state), Ok(()), "{action:?}");
+        for command in action.to_commands(&state) {
+            let effects = state.apply(command);
+            settle(&mut state, &worker, effects);
+        }
+    }
+    let rows: Vec<&str> = state.log.rows().iter().map(|row| row.step).collect();
+    for step in [
+        "load", "reduce", "measure", "align", "match", "verify", "result",
+    ] {
+        assert!(rows.contains(&step), "{step} is not in {rows:?}");
+    }
+    let truth = shapematch::samples::bundled();
+    let truth = truth.iter().find(|file| file.name == "truth.json").unwrap();
+    let truth: serde_json::Value = serde_json::from_slice(&truth.bytes).unwrap();
+    let rows: [[f64; 4]; 4] = serde_json::from_value(truth["crash_from_stamped"].clone()).unwrap();
+    let matrix = shapematch::geometry::Matrix4::from_fn(|row, column| rows[row][column]);
+    let truth = Similarity::from_matrix4(&matrix, 1e-9).unwrap();
+    let part = state.document.part(Role::Stamped).unwrap();
+    let found = state.document.crash_from_stamped();
+    let off = found.max_displacement(&truth, part.loaded.mesh.positions());
+    assert!(off < 0.5, "the worst node is {off} off");
+    assert!(state.document.current_result().is_some());
+}
+
+mod modal {
+    //! Moves by keys, input by input.
+
+    use super::*;
+    use shapematch::geometry::Matrix3;
+
+    fn frame() -> MoveFrame {
+        let quarter = rotation_about(&Point3::origin(), &Vector3::z(), 90f64.to_radians());
+        MoveFrame::new(Point3::new(1.0, 0.0, 0.0), &quarter, Matrix3::identity())
+    }
+
+    /// Types a line: `x`, `y`, `z` bind an axis, `X`, `Y`, `Z` the plane across it.
+    fn typed(kind: MotionKind, keys: &str) -> (Similarity, String) {
+        let mut tool = ModalMove::new(kind);
+        let offset = Vector3::new(3.0, 4.0, 5.0);
+        tool.input(ModalInput::Pointer { offset, angle: 0.5 }, &frame());
+        for key in keys.chars() {
+            let axis = "xyz".find(key.to_ascii_lowercase());
+            let input = match axis {
+                Some(index) => ModalInput::Axis {
+                    axis: Axis::ALL[index],
+                    is_plane: key.is_ascii_uppercase(),
+                },
+                None if key == '<' => ModalInput::Backspace,
+                None => ModalInput::Character(key),
+            };
+            tool.input(input, &frame());
+        }
+        match tool.input(ModalInput::Accept, &frame()) {
+            ModalOutcome::Accepted(motion, name) => (motion, name),
+            other => panic!("{keys:?}: {other:?}"),
+        }
+    }
+
+    fn moved(keys: &str) -> (Vector3, String) {
+        let (motion, name) = typed(MotionKind::Move, keys);
+        let rounded = motion.translation.map(|x| (x * 1e9).round() / 1e9);
+        (rounded, name)
+    }
+
+    #[test]
+    fn axes_planes_and_values() {
+        let check = |keys: &str, at: [f64; 3], name: &str| {
+            assert_eq!(
+                moved(keys),
+                (Vector3::from(at), name.to_owned()),
+                "{keys:?}"
+            );
+        };
+        check("", [3.0, 4.0, 5.0], "Move 7.0711");
+        check("x", [3.0, 0.0, 0.0], "Move 3 along X");
+        check("xx", [0.0, 4.0, 0.0], "Move 4 along X (part)");
+        check("xxx", [3.0, 4.0, 5.0], "Move 7.0711");
+        check("Z", [3.0, 4.0, 0.0], "Move 5 across Z");
+        check("Z10", [6.0, 8.0, 0.0], "Move 10 across Z");
+        check("y-2,5", [0.0, -2.5, 0.0], "Move -2.5 along Y");
+        check("y25-<<3-", [0.0, 3.0, 0.0], "Move 3 along Y");
+        check("12", [12.0, 0.0, 0.0], "Move 12");
+        check("xx2", [0.0, 2.0, 0.0], "Move 2 along X (part)");
+    }
+
+    #[test]
+    fn rotations_leave_the_pivot() {
+        for (keys, name) in [
+            ("z90", "Rotate 90° about Z"),
+            ("Z90", "Rotate 90° about Z"),
+            ("xx-30", "Rotate -30° about X (part)"),
+            ("", "Rotate 28.6479° about the view axis"),
+        ] {
+            let (motion, said) = typed(MotionKind::Rotate, keys);
+            assert_eq!(said, name);
+            let pivot = frame().pivot;
+            assert!((motion.apply(&pivot) - pivot).norm() < 1e-12);
+        }
+        let (motion, _) = typed(MotionKind::Rotate, "z90");
+        let end = motion.apply(&Point3::new(2.0, 0.0, 0.0));
+        assert!((end - Point3::new(1.0, 1.0, 0.0)).norm() < 1e-12);
+    }
+}
