@@ -7,7 +7,7 @@ use super::intake::Intake;
 use super::legality::{Kind, Marks, Refusal, keeps_orientation, link_condition};
 use super::quadric::{EdgeQuadric, Quadric};
 use super::queue::{Entry, Queue, key_of, later_than};
-use super::settings::{Placement, SimplifySettings, StopReason};
+use super::settings::{Placement, SimplifySettings, Speed, StopReason};
 use crate::monitor::{Cancelled, Monitor};
 
 /// One collapse as it is remembered.
@@ -37,7 +37,7 @@ struct Price {
 
 /// With fewer triangles than this, the edges around a collapse are priced anew at once. A price can
 /// fall, and where few edges are left each of them matters.
-const EAGER_BELOW: usize = 3000;
+const EAGER_BELOW: usize = 1000;
 
 /// Counts of edges that cannot be collapsed, by reason.
 #[derive(Debug, Clone, Copy, Default)]
@@ -49,6 +49,7 @@ struct Refused {
 
 pub(super) struct Decimator {
     placement: Placement,
+    speed: Speed,
     min_cosine: f64,
     may_close_loops: bool,
     boundary_weight: f64,
@@ -70,6 +71,7 @@ impl Decimator {
         let n = intake.kinds.len();
         let mut decimator = Self {
             placement: settings.placement,
+            speed: settings.speed,
             min_cosine: settings.max_turn_deg.to_radians().cos(),
             may_close_loops: settings.may_close_loops,
             boundary_weight: settings.boundary_weight,
@@ -188,7 +190,9 @@ impl Decimator {
     fn collapse(&mut self, kept: u32, removed: u32, price: &Price) {
         let (k, r) = (kept as usize, removed as usize);
         let third = self.third_of_loop(kept, removed);
-        self.take_old_quadrics(kept, removed);
+        if self.speed == Speed::Exact {
+            self.take_old_quadrics(kept, removed);
+        }
         self.fans.collapse(kept, removed, price.position);
         self.kinds[k] = self.kinds[k].max(self.kinds[r]);
         self.merged_into[r] = kept;
@@ -208,7 +212,10 @@ impl Decimator {
             self.kinds[k] = self.kind_by_count(kept);
             self.kinds[third as usize] = self.kind_by_count(third);
         }
-        self.add_new_quadrics(kept);
+        match self.speed {
+            Speed::Exact => self.add_new_quadrics(kept),
+            Speed::Fast => self.quadrics[k] = self.quadric_of(kept),
+        }
         if self.fans.n_triangles < EAGER_BELOW {
             self.requeue_around(kept);
         }

@@ -13,6 +13,16 @@ pub enum Placement {
     Endpoint,
 }
 
+/// How much is kept up to date after each collapse.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Speed {
+    /// The quadrics of the merged vertex and of all its neighbours.
+    #[default]
+    Exact,
+    /// The merged vertex's quadric only: less time for a larger error.
+    Fast,
+}
+
 /// Choices of a simplification. `Default` is the exact one with everything protected.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimplifySettings {
@@ -20,6 +30,8 @@ pub struct SimplifySettings {
     pub max_triangles: usize,
     /// Where merged vertices go.
     pub placement: Placement,
+    /// Exactness against time.
+    pub speed: Speed,
     /// Weight of the squared distance to a border or seam edge, times the edge's squared length,
     /// against the area-weighted squared distance to the triangles' planes. 0 leaves borders to
     /// the planes alone.
@@ -38,7 +50,8 @@ impl Default for SimplifySettings {
         Self {
             max_triangles: 1000,
             placement: Placement::Optimal,
-            boundary_weight: 10.0,
+            speed: Speed::Exact,
+            boundary_weight: 5.0,
             stiffness: 1e-8,
             max_turn_deg: 75.0,
             may_close_loops: true,

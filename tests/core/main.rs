@@ -14,4 +14,5 @@ mod registration;
 mod samples;
 mod search;
 mod simplify;
+mod textbook_qem;
 mod tidy;

@@ -3,11 +3,14 @@
 use proptest::prelude::*;
 use shapematch::geometry::{Point3, Topology, TriMesh};
 use shapematch::monitor::Monitor;
+use shapematch::search::{Bvh, ClosestPoint};
 use shapematch::simplify::{
-    CollapseSequence, Simplified, SimplifyError, SimplifySettings, StopReason, simplify,
+    CollapseSequence, Simplified, SimplifyError, SimplifySettings, Speed, StopReason,
+    border_deviation, simplify,
 };
 
 use super::pan::pan;
+use super::textbook_qem;
 
 fn reduce(mesh: &TriMesh, max_triangles: usize) -> Simplified {
     let settings = SimplifySettings::to_triangles(max_triangles);
@@ -247,4 +250,53 @@ proptest! {
         prop_assert!(widest_edge(&result.mesh) <= widest_edge(&mesh).max(2));
         prop_assert_eq!(&reduce(&mesh, max_triangles), &result);
     }
+}
+
+/// Two-sided rms distance over triangle centres and corners, by brute force.
+fn rms(a: &TriMesh, b: &TriMesh) -> f64 {
+    let one_way = |from: &TriMesh, to: &TriMesh| {
+        let tree = Bvh::build(to.clone());
+        let mut sum = 0.0;
+        for t in 0..from.n_triangles() {
+            let [p, q, r] = from.corners(t);
+            for (u, v) in [(0.33, 0.33), (0.6, 0.2), (0.2, 0.6), (0.2, 0.2)] {
+                let point = p + (q - p) * u + (r - p) * v;
+                let hit = tree.closest(&point, f64::INFINITY, None, None).unwrap();
+                sum += hit.distance_sq * from.triangle_area(t) / 4.0;
+            }
+        }
+        sum / from.area()
+    };
+    ((one_way(a, b) + one_way(b, a)) / 2.0).sqrt()
+}
+
+#[test]
+fn no_worse_than_the_textbook() {
+    let mesh = shapematch::geometry::weld(&pan(70.0), 0.0).mesh;
+    for (n, speed, factor) in [
+        (250, Speed::Exact, 1.05),
+        (120, Speed::Exact, 1.05),
+        (120, Speed::Fast, 1.2),
+    ] {
+        let settings = SimplifySettings {
+            speed,
+            ..SimplifySettings::to_triangles(n)
+        };
+        let ours = simplify(&mesh, &settings, &Monitor::silent()).unwrap().mesh;
+        let plain = textbook_qem::reduce(&mesh, n);
+        assert!((n - 1..=n).contains(&plain.n_triangles()));
+        let (ours, plain) = (rms(&mesh, &ours), rms(&mesh, &plain));
+        assert!(
+            ours <= factor * plain,
+            "{n} {speed:?}: {ours} against {plain}"
+        );
+    }
+}
+
+#[test]
+fn borders_of_a_pan_hardly_move() {
+    let mesh = pan(16.0);
+    let deviation = border_deviation(&mesh, &reduce(&mesh, 1000).mesh);
+    assert_eq!((deviation.loops_before, deviation.loops_after), (13, 13));
+    assert!(deviation.max < 4.0 && deviation.rms < 1.0, "{deviation:?}");
 }
