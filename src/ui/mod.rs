@@ -1,3 +1,4 @@
 //! The window: draws the state, emits commands.
 
 pub mod gizmo;
+pub mod viewport;
