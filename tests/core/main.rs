@@ -9,6 +9,7 @@ mod jobs;
 mod keyword;
 mod layering;
 mod mesh_files;
+mod mirrored;
 mod pan;
 mod registration;
 mod samples;
