@@ -7,6 +7,7 @@ mod cli;
 mod deck_out;
 mod jobs;
 mod keyword;
+mod keyword_large;
 mod layering;
 mod mesh_files;
 mod mirrored;
