@@ -10,7 +10,7 @@ use super::{print, progress, takes_stdout, write_json};
 use crate::pipeline::export;
 use crate::pipeline::load::{LoadSettings, load, parse_selection};
 use crate::pipeline::reduce::{Deviation, Level, Levels};
-use crate::simplify::{SimplifySettings, StopReason};
+use crate::simplify::{SimplifySettings, Speed, StopReason};
 
 /// The figures of a reduction.
 #[derive(Debug, Serialize)]
@@ -63,7 +63,11 @@ pub fn run(args: &ReduceArgs, quiet: bool) -> anyhow::Result<ExitCode> {
 }
 
 fn settings(args: &ReduceArgs) -> SimplifySettings {
-    SimplifySettings::to_triangles(args.triangles)
+    let speed = if args.fast { Speed::Fast } else { Speed::Exact };
+    SimplifySettings {
+        speed,
+        ..SimplifySettings::to_triangles(args.triangles)
+    }
 }
 
 fn record(
