@@ -77,6 +77,14 @@ impl Monitor {
         }
     }
 
+    /// The same flags with `observer` watching.
+    pub fn observed_by(&self, observer: Arc<dyn Observer>) -> Self {
+        Self {
+            flags: self.flags.clone(),
+            observer: Some(observer),
+        }
+    }
+
     /// The same flags without anybody watching, for side work that is not part of the story.
     pub fn without_observer(&self) -> Self {
         Self {

@@ -37,7 +37,7 @@ pub use result::{
     Alternative, Fate, IterationRecord, MatchOutcome, MatchTimings, MirrorCheck, Side, StartRecord,
 };
 pub use select::{Floor, Selection};
-pub use settings::{Acceleration, DataSide, Hand, MatchSettings, Method, Search};
+pub use settings::{DataSide, Hand, MatchSettings, Method, Search};
 pub use starts::{StartKind, StartMethod, StartSettings, align_surface_normals};
 pub use surface::{Measures, Surface};
 pub use termination::Termination;

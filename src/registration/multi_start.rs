@@ -18,7 +18,7 @@ const SAME_SHIFT: f64 = 0.02;
 /// After so many iterations only the better ones go on: (iterations, share kept, least kept).
 const HEATS: [(usize, f64, usize); 3] = [(5, 0.5, 10), (5, 0.5, 6), (10, 0.5, 4)];
 /// A start this much worse than the best one drops out at the end of a heat.
-const HOPELESS: f64 = 5.0;
+const HOPELESS: f64 = 8.0;
 
 /// The surfaces of one stage in their roles.
 #[derive(Clone, Copy)]

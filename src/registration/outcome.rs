@@ -28,11 +28,11 @@ pub(super) fn decide(
 ) -> Result<MatchOutcome, RegistrationError> {
     let ranked = rank(&contests);
     let &(home, winner) = ranked.first().ok_or(RegistrationError::NoPairs)?;
-    let convinced = contests[home].convinces();
+    let certain = contests[home].is_certain();
     let begin = Instant::now();
     let finished = contests[home].finish(&winner, monitor)?;
     let finish = begin.elapsed();
-    let mirror_ratio = if convinced || settings.hand != Hand::Same || monitor.stop_requested() {
+    let mirror_ratio = if certain || settings.hand != Hand::Same || monitor.stop_requested() {
         None
     } else {
         opposite_hand(input, settings, &winner.scores, monitor)?

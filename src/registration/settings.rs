@@ -180,38 +180,6 @@ impl DataSide {
     }
 }
 
-/// Speed-up of the point-to-point iteration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Acceleration {
-    /// Plain iteration.
-    #[default]
-    None,
-    /// Anderson extrapolation over the last five steps, only where it lowers the objective (Zhang,
-    /// Yao, Deng 2022). About ten times fewer iterations; point to point only.
-    Anderson,
-}
-
-impl Acceleration {
-    /// Every choice, in the order of menus.
-    pub const ALL: [Self; 2] = [Self::None, Self::Anderson];
-
-    /// Short name for menus.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::None => "None",
-            Self::Anderson => "Anderson",
-        }
-    }
-
-    /// One line of help.
-    pub fn help(self) -> &'static str {
-        match self {
-            Self::None => "Plain iteration",
-            Self::Anderson => "Extrapolates point-to-point steps; about ten times fewer iterations",
-        }
-    }
-}
-
 /// Everything a match depends on besides the meshes. The defaults just work.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MatchSettings {
@@ -236,8 +204,6 @@ pub struct MatchSettings {
     pub finish: bool,
     /// Which mesh supplies the points.
     pub data_side: DataSide,
-    /// Speed-up of the point-to-point iteration.
-    pub acceleration: Acceleration,
     /// Deviation of the real shapes that is to be expected besides faceting, such as springback;
     /// added to the floor. In length units.
     pub allowance: f64,
@@ -267,7 +233,6 @@ impl Default for MatchSettings {
             search: Search::Race,
             finish: true,
             data_side: DataSide::Auto,
-            acceleration: Acceleration::None,
             allowance: 0.0,
             max_normal_angle_deg: 60.0,
             n_race_points: 500,

@@ -69,14 +69,15 @@ pub(crate) fn stage_rules(
     let on_triangles = settings.pair_with == PairWith::Triangle;
     let min_cos = settings.max_normal_angle_deg.to_radians().cos();
     let min_cos = if catching { min_cos.min(0.0) } else { min_cos };
-    let max_overhang = if stage == Stage::Finish && on_triangles {
-        0.1 * edge
-    } else {
-        f64::INFINITY
+    // Points beyond the rim pull towards it, which is right far away and wrong near the pose.
+    let max_overhang = match stage {
+        Stage::Finish if on_triangles => 0.1 * edge,
+        Stage::Refine if on_triangles => edge,
+        _ => f64::INFINITY,
     };
     let cap = match stage {
         Stage::Race => 20,
-        Stage::Refine if second_order => 20,
+        Stage::Refine if second_order => 60,
         Stage::Finish if second_order => 15,
         _ => settings.max_iterations,
     };
@@ -104,7 +105,11 @@ pub(crate) fn stage_rules(
             curved: on_triangles && !catching,
         },
         selection: SelectRules {
-            selection: catching_selection(settings.selection, catching),
+            // Point to point is still far from settled when the race ends.
+            selection: catching_selection(
+                settings.selection,
+                catching || (stage == Stage::Refine && !second_order),
+            ),
             floor: if catching && floor > 0.0 {
                 floor.max(CATCHING_FLOOR * edge)
             } else {
@@ -128,6 +133,10 @@ fn catching_selection(selection: Selection, catching: bool) -> Selection {
         Selection::Fractional { lambda, floor } if catching => Selection::Fractional {
             lambda: lambda.max(CATCHING_LAMBDA),
             floor,
+        },
+        Selection::TrimmedSearch if catching => Selection::Fractional {
+            lambda: CATCHING_LAMBDA,
+            floor: Floor::Auto,
         },
         other => other,
     }

@@ -1,4 +1,3 @@
 //! The window: draws the state, emits commands.
 
 pub mod gizmo;
-pub mod viewport;

@@ -24,31 +24,21 @@ fn again(model: &Model) -> Model {
 
 /// One of everything; ids begin at `first`.
 fn everything(first: u64) -> Model {
+    let positions: Vec<Point3> = (0..16)
+        .map(|i| {
+            Point3::new(
+                f64::from(i) * 0.1,
+                f64::from(i * i) * 1e-3,
+                1.0 / f64::from(i + 3),
+            )
+        })
+        .collect();
     let ids = (first..first + 16).collect();
     let mut model = Model {
         title: "all there is".into(),
-        nodes: Nodes::new(ids, positions()).0,
+        nodes: Nodes::new(ids, positions).0,
         ..Model::default()
     };
-    add_parts(&mut model);
-    add_elements(&mut model, first);
-    add_sets(&mut model, first);
-    add_forming(&mut model, first);
-    model
-}
-
-fn positions() -> Vec<Point3> {
-    let at = |i: i32| {
-        Point3::new(
-            f64::from(i) * 0.1,
-            f64::from(i * i) * 1e-3,
-            1.0 / f64::from(i + 3),
-        )
-    };
-    (0..16).map(at).collect()
-}
-
-fn add_parts(model: &mut Model) {
     let part = |id: u64| Part {
         id,
         title: format!("part {id}"),
@@ -63,9 +53,6 @@ fn add_parts(model: &mut Model) {
         id: 3,
         thickness: [1.25, 1.25, 1.5, 1.25],
     }];
-}
-
-fn add_elements(model: &mut Model, first: u64) {
     let shell = |n: u64, nodes: [u32; 4]| Shell {
         id: first + n,
         nodes,
@@ -94,9 +81,6 @@ fn add_elements(model: &mut Model, first: u64) {
         solid(10, SolidKind::Solid),
         solid(11, SolidKind::ThickShell),
     ];
-}
-
-fn add_sets(model: &mut Model, first: u64) {
     let set = |ids: &[u64]| Set {
         title: "a set".into(),
         ids: ids.to_vec(),
@@ -107,9 +91,6 @@ fn add_sets(model: &mut Model, first: u64) {
         .nodes
         .insert(6, set(&(first..first + 11).collect::<Vec<_>>()));
     model.sets.shells.insert(7, set(&[first, first + 1]));
-}
-
-fn add_forming(model: &mut Model, first: u64) {
     let stress = |t: f64| StressPoint {
         t,
         stress: [1.5, -2.25e-4, 3e7, 0.1, 1.0 / 3.0, -1e-12],
@@ -125,6 +106,7 @@ fn add_forming(model: &mut Model, first: u64) {
         strain: [0.01, 0.02, -0.03, 1e-5, 0.0, 0.5],
     };
     model.forming.add_strain(first + 1, 1, &[strain; 3]);
+    model
 }
 
 #[track_caller]

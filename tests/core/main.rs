@@ -3,14 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
 
 mod app;
+mod assess;
 mod cli;
 mod deck_out;
+mod drawn_pan;
 mod jobs;
 mod keyword;
-mod keyword_large;
 mod layering;
 mod mesh_files;
-mod mirrored;
 mod pan;
 mod registration;
 mod samples;

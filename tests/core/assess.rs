@@ -1,0 +1,145 @@
+//! The assessment of poses: free motions, coverage, ambiguity, verdict.
+
+use shapematch::assess::*;
+use shapematch::geometry::{Point3, Pose, Similarity, TriMesh, Vector3};
+use shapematch::monitor::Monitor;
+use shapematch::registration::*;
+
+use super::drawn_pan::{everywhere, pan, placement};
+
+/// An n × n grid over the unit square, mapped by `place`.
+fn sheet(n: u32, place: impl Fn(f64, f64) -> Point3) -> TriMesh {
+    let mut positions = Vec::new();
+    for j in 0..=n {
+        for i in 0..=n {
+            positions.push(place(
+                f64::from(i) / f64::from(n),
+                f64::from(j) / f64::from(n),
+            ));
+        }
+    }
+    let mut triangles = Vec::new();
+    for j in 0..n {
+        for i in 0..n {
+            let a = j * (n + 1) + i;
+            triangles.push([a, a + 1, a + n + 2]);
+            triangles.push([a, a + n + 2, a + n + 1]);
+        }
+    }
+    TriMesh::new(positions, triangles).unwrap()
+}
+
+fn freedom(mesh: &TriMesh) -> Freedom {
+    let surface = Surface::new(mesh, "target").unwrap();
+    free_motions(&surface, &surface, &Similarity::identity(), 1.0)
+}
+
+#[test]
+fn free_motions_are_named_with_their_axis() {
+    let flat = freedom(&sheet(12, |u, v| Point3::new(300.0 * u, 200.0 * v, 7.0)));
+    let motion = flat.motion.unwrap();
+    assert_eq!((motion.kind, flat.n_free), (FreeMotionKind::Flat, 3));
+    assert!(motion.words().contains("the z axis"), "{}", motion.words());
+
+    let cylinder = freedom(&sheet(24, |u, v| {
+        let angle = 2.0 * u;
+        Point3::new(50.0 * angle.sin(), 300.0 * v, 50.0 * angle.cos())
+    }));
+    let motion = cylinder.motion.unwrap();
+    assert_eq!(motion.kind, FreeMotionKind::Cylindrical);
+    assert!(motion.direction.y > 0.999);
+    assert!(motion.point.x.abs() < 0.5 && motion.point.z.abs() < 0.5);
+
+    let groove = freedom(&sheet(40, |u, v| {
+        let x = 200.0 * (u - 0.5);
+        Point3::new(x, 300.0 * v, 20.0 * (x / 30.0).sin() + 0.1 * x)
+    }));
+    assert_eq!(groove.motion.unwrap().kind, FreeMotionKind::Extruded);
+
+    let dome = freedom(&sheet(40, |u, v| {
+        let (radius, angle) = (20.0 + 80.0 * u, 5.0 * v);
+        let height = 0.004 * radius * radius + 3.0 * (radius / 12.0).sin();
+        Point3::new(radius * angle.cos(), radius * angle.sin(), height)
+    }));
+    assert_eq!(dome.motion.unwrap().kind, FreeMotionKind::Revolved);
+    assert!(dome.motion.unwrap().direction.z > 0.999);
+
+    assert_eq!(freedom(&pan(9.0, 0.0, everywhere)).motion, None);
+}
+
+fn judge(source: &TriMesh, target: &TriMesh) -> (MatchOutcome, Assessment) {
+    let surfaces = [source, target].map(|mesh| Surface::new(mesh, "source").unwrap());
+    let input = MatchInput {
+        source: &surfaces[0],
+        target: &surfaces[1],
+        reduced: None,
+    };
+    let monitor = Monitor::silent();
+    let outcome = match_surfaces(&input, &MatchSettings::default(), &monitor).unwrap();
+    let settings = AssessSettings::default();
+    let assessed = assess(&surfaces[0], &surfaces[1], &outcome, &settings, &monitor).unwrap();
+    (outcome, assessed)
+}
+
+#[test]
+fn a_right_pose_is_good_and_covers_everything() {
+    let source = pan(6.0, 0.0, everywhere).transformed(&placement(3));
+    let (_, assessed) = judge(&source, &pan(9.0, 0.35, everywhere));
+    assert_eq!(assessed.verdict, Verdict::Good, "{:?}", assessed.reasons);
+    assert!(assessed.coverage.source_on_target.overlap > 0.98);
+    assert!(assessed.coverage.target_on_source.overlap > 0.98);
+}
+
+#[test]
+fn overlap_names_both_denominators() {
+    let half = pan(9.0, 0.35, |x, _| x < 0.0);
+    let (_, assessed) = judge(&pan(6.0, 0.0, everywhere), &half);
+    let coverage = &assessed.coverage;
+    assert!((coverage.source_on_target.overlap - 0.5).abs() < 0.05);
+    assert!(coverage.target_on_source.overlap > 0.97);
+    assert_eq!(assessed.verdict, Verdict::Good, "{:?}", assessed.reasons);
+}
+
+#[test]
+fn a_flat_plate_is_not_good() {
+    let plate = |n| sheet(n, |u, v| Point3::new(300.0 * u, 200.0 * v, 0.0));
+    let turn = Pose::new(Vector3::new(10.0, 20.0, 30.0), Vector3::new(0.5, 0.1, 0.2));
+    let (_, assessed) = judge(&plate(20).transformed(&turn.into()), &plate(14));
+    assert_ne!(assessed.verdict, Verdict::Good);
+    assert_eq!(assessed.freedom.motion.unwrap().kind, FreeMotionKind::Flat);
+}
+
+#[test]
+fn a_symmetric_part_is_ambiguous() {
+    let hat = |n| {
+        sheet(n, |u, v| {
+            let (x, y) = (300.0 * (u - 0.5), 200.0 * (v - 0.5));
+            Point3::new(
+                x,
+                y,
+                30.0 * (-(x / 90.0).powi(2) - (y / 50.0).powi(2)).exp(),
+            )
+        })
+    };
+    let (outcome, assessed) = judge(&hat(30).transformed(&placement(2)), &hat(23));
+    assert_eq!(
+        assessed.ambiguity.clarity,
+        Clarity::Ambiguous,
+        "{:?}",
+        assessed.ambiguity
+    );
+    assert_ne!(assessed.verdict, Verdict::Good);
+    let alternative = outcome.alternatives[0].target_from_source;
+    assert!(alternative.angle_to(&outcome.target_from_source) > 3.0);
+}
+
+#[test]
+fn parts_that_have_nothing_in_common_are_poor() {
+    let wave = sheet(30, |u, v| {
+        let (x, y) = (400.0 * u, 250.0 * v);
+        Point3::new(x, y, 40.0 * (x / 40.0).sin() * (y / 30.0).cos())
+    });
+    let (_, assessed) = judge(&wave, &pan(9.0, 0.0, everywhere));
+    assert_eq!(assessed.verdict, Verdict::Poor, "{:?}", assessed.reasons);
+    assert!(!assessed.reasons.is_empty());
+}
