@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use clap::{CommandFactory as _, Parser as _};
+use clap::Parser as _;
 use shapematch::cli::{self, Cli};
 
 fn main() -> ExitCode {
@@ -33,8 +33,22 @@ fn start_logging(quiet: bool) {
         .init();
 }
 
+/// Opens the window with what was named.
+#[cfg(feature = "gui")]
+fn open_window(cli: &Cli) -> anyhow::Result<ExitCode> {
+    let mut files = cli.files.iter().cloned();
+    shapematch::ui::run(shapematch::app::StartupOptions {
+        crash: files.next(),
+        stamped: files.next(),
+        example: cli.example,
+        forget_settings: false,
+    })
+}
+
 /// This build has no window: says so and shows the help.
+#[cfg(not(feature = "gui"))]
 fn open_window(_cli: &Cli) -> anyhow::Result<ExitCode> {
+    use clap::CommandFactory as _;
     Cli::command().print_help()?;
     anyhow::bail!("this build has no window; name a subcommand")
 }

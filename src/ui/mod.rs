@@ -1,3 +1,18 @@
-//! The window: draws the state, emits commands.
+//! The window: panels that draw the state and queue commands, and the shell that carries them out.
+//!
+//! Panels have the form `fn xxx_ui(ui, state, commands)`. They hold no logic: what may be done and
+//! what follows is decided in [`crate::app`], and everything numeric runs on the worker.
 
+pub mod dialogs;
 pub mod gizmo;
+pub mod keyboard;
+pub mod overlays;
+pub mod panels;
+pub mod shell;
+pub mod storage;
+pub mod theme;
+pub mod toasts;
+pub mod viewport;
+pub mod widgets;
+
+pub use shell::{Shell, run};

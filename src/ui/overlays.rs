@@ -1,0 +1,269 @@
+//! What lies over the window: help sheet, command search, preferences, messages, about.
+
+use super::theme::{Palette, ROW, UNIT};
+use super::widgets::{
+    caption, chip, draft, form_row, level_color, paragraph, secondary, set_draft,
+};
+use crate::app::{
+    Action, AppState, Command, Dialog, Menu, MouseScheme, NoticeCommand, Settings, Theme,
+    ViewCommand,
+};
+use egui::{Align, Layout, Modal, RichText, ScrollArea, Ui, vec2};
+
+/// Draws the open dialog, if any.
+pub fn overlays_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(dialog) = state.view.dialog else {
+        return;
+    };
+    let modal = Modal::new(egui::Id::unique(("dialog", dialog as u8)));
+    let response = modal.show(ctx, |ui| {
+        ui.spacing_mut().item_spacing.y = UNIT;
+        let room = ctx.content_rect().size() - vec2(96.0, 160.0);
+        match dialog {
+            Dialog::Help => help_ui(ui, room),
+            Dialog::Palette => palette_ui(ui, state, room, commands),
+            Dialog::Preferences => preferences_ui(ui, state, commands),
+            Dialog::Messages => messages_ui(ui, state, room, commands),
+            Dialog::About => about_ui(ui),
+        }
+    });
+    let by_pointer = response.backdrop_response.clicked();
+    if by_pointer {
+        commands.push(ViewCommand::SetDialog(None).into());
+    }
+}
+
+fn title(ui: &mut Ui, text: &str, commands: Option<&mut Vec<Command>>) {
+    ui.horizontal(|ui| {
+        ui.heading(text);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            match commands {
+                Some(commands) => {
+                    if ui.button("Close").clicked() {
+                        commands.push(ViewCommand::SetDialog(None).into());
+                    }
+                }
+                None => {
+                    caption(ui, "Esc closes");
+                }
+            };
+        });
+    });
+    ui.separator();
+}
+
+/// All keys, menu by menu, and the mouse.
+fn help_ui(ui: &mut Ui, room: egui::Vec2) {
+    let width = room.x.min(940.0);
+    ui.set_width(width);
+    title(ui, "Keys and mouse", None);
+    ScrollArea::vertical().max_height(room.y).show(ui, |ui| {
+        ui.columns(3, |columns| {
+            let menus: [&[Menu]; 3] = [
+                &[Menu::File, Menu::Edit],
+                &[Menu::View],
+                &[Menu::Match, Menu::Export, Menu::Help],
+            ];
+            for (column, menus) in columns.iter_mut().zip(menus) {
+                for menu in menus {
+                    help_menu(column, *menu);
+                }
+            }
+            let last = &mut columns[2];
+            group_title(last, "Mouse");
+            for (what, how) in [
+                ("Left drag", "turn"),
+                ("Middle drag", "pan"),
+                ("Wheel, right drag", "zoom to the pointer"),
+                ("Click", "select a part"),
+                ("Double click", "bring the part into view"),
+            ] {
+                key_row(last, how, what);
+            }
+        });
+    });
+}
+
+fn group_title(ui: &mut Ui, text: &str) {
+    ui.add_space(UNIT);
+    let color = Palette::of(ui).accent_text;
+    ui.label(RichText::new(text).color(color));
+}
+
+fn help_menu(ui: &mut Ui, menu: Menu) {
+    let with_key = |a: &Action| a.info().shortcut.is_some();
+    if !Action::in_menu(menu).any(|a| with_key(&a)) {
+        return;
+    }
+    group_title(ui, menu.label());
+    for action in Action::in_menu(menu).filter(with_key) {
+        let info = action.info();
+        if let Some(shortcut) = info.shortcut {
+            key_row(ui, info.label, &shortcut.to_string());
+        }
+    }
+}
+
+fn key_row(ui: &mut Ui, what: &str, keys: &str) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().interact_size.y = 18.0;
+        ui.label(what);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            secondary(ui, keys);
+        });
+    });
+}
+
+/// Search over all actions.
+fn palette_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mut Vec<Command>) {
+    ui.set_width(480.0);
+    let id = egui::Id::unique("palette search");
+    let mut text = draft(ui, id);
+    let field = egui::TextEdit::singleline(&mut text)
+        .hint_text("Search commands")
+        .desired_width(f32::INFINITY)
+        .margin(egui::Margin::symmetric(8, 6));
+    let field = ui.add(field).accessible_name("Search commands");
+    if !field.has_focus() && !field.lost_focus() {
+        field.request_focus();
+    }
+    let is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+    let wanted = text.to_lowercase();
+    let fits = |action: &&Action| {
+        let info = action.info();
+        let all = format!("{} {}", info.label, info.tooltip).to_lowercase();
+        wanted.split_whitespace().all(|word| all.contains(word))
+    };
+    let found: Vec<Action> = Action::ALL.iter().filter(fits).copied().collect();
+    let mut chosen = None;
+    if is_entered {
+        chosen = found.iter().find(|a| a.enabled(state).is_ok()).copied();
+    }
+    ScrollArea::vertical()
+        .max_height(room.y.min(400.0))
+        .auto_shrink([false, true])
+        .show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            if found.is_empty() {
+                secondary(ui, "No command of that name");
+            }
+            for action in found {
+                let info = action.info();
+                let enabled = action.enabled(state);
+                let keys = info.shortcut.map_or_else(String::new, |s| s.to_string());
+                let button = egui::Button::new(info.label)
+                    .shortcut_text(keys)
+                    .frame_when_inactive(false)
+                    .min_size(vec2(ui.available_width(), ROW));
+                let response = ui.add_enabled(enabled.is_ok(), button);
+                let response = response.on_hover_text(info.tooltip);
+                let response = match enabled {
+                    Ok(()) => response,
+                    Err(reason) => response.on_disabled_hover_text(format!("Not now: {reason}")),
+                };
+                if response.clicked() {
+                    chosen = Some(action);
+                }
+            }
+        });
+    set_draft(ui, id, text);
+    if let Some(action) = chosen {
+        set_draft(ui, id, String::new());
+        commands.push(ViewCommand::SetDialog(None).into());
+        commands.extend(action.to_commands(state));
+    }
+}
+
+fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.set_width(440.0);
+    title(ui, "Preferences", Some(commands));
+    let mut settings: Settings = state.settings.clone();
+    let label = 120.0;
+    form_row(ui, "Theme", label, |ui| {
+        for (theme, name) in [
+            (Theme::System, "As the desktop"),
+            (Theme::Dark, "Dark"),
+            (Theme::Light, "Light"),
+        ] {
+            if chip(ui, name, settings.theme == theme).clicked() {
+                settings.theme = theme;
+            }
+        }
+    });
+    form_row(ui, "Size of the text", label, |ui| {
+        for scale in [0.875_f32, 1.0, 1.25, 1.5, 2.0] {
+            let is_on = (settings.ui_scale - scale).abs() < 1e-3;
+            if chip(ui, &format!("{:.0} %", scale * 100.0), is_on).clicked() {
+                settings.ui_scale = scale;
+            }
+        }
+    });
+    form_row(ui, "Mouse like", label, |ui| {
+        mouse_choice(ui, &mut settings)
+    });
+    ui.horizontal(|ui| {
+        ui.add_space(label + UNIT);
+        paragraph(ui, settings.mouse.help());
+    });
+    ui.add_space(UNIT);
+    ui.checkbox(&mut settings.reduce_motion, "No animations");
+    ui.checkbox(
+        &mut settings.are_toasts_muted,
+        "No messages for successes and notes",
+    );
+    ui.checkbox(&mut settings.is_log_wide, "Log under the left column too");
+    if settings != state.settings {
+        commands.push(Command::Settings(Box::new(settings)));
+    }
+}
+
+/// A menu of mouse habits.
+pub fn mouse_choice(ui: &mut Ui, settings: &mut Settings) {
+    egui::ComboBox::from_id_salt("mouse scheme")
+        .selected_text(settings.mouse.label())
+        .width(200.0)
+        .show_ui(ui, |ui| {
+            for scheme in MouseScheme::ALL {
+                ui.selectable_value(&mut settings.mouse, scheme, scheme.label())
+                    .on_hover_text(scheme.help());
+            }
+        });
+}
+
+fn messages_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mut Vec<Command>) {
+    ui.set_width(520.0);
+    title(ui, "Messages", Some(commands));
+    if state.notices.n_unread() > 0 {
+        commands.push(NoticeCommand::MarkRead.into());
+    }
+    ScrollArea::vertical()
+        .max_height(room.y.min(480.0))
+        .auto_shrink([false, true])
+        .show(ui, |ui| {
+            let mut is_empty = true;
+            for notice in state.notices.kept() {
+                is_empty = false;
+                ui.horizontal_top(|ui| {
+                    let color = level_color(Palette::of(ui), notice.level);
+                    ui.label(RichText::new(notice.level.mark()).color(color));
+                    let count = match notice.count {
+                        1 => String::new(),
+                        n => format!(" (×{n})"),
+                    };
+                    ui.add(egui::Label::new(format!("{}{count}", notice.text)).wrap());
+                });
+            }
+            if is_empty {
+                secondary(ui, "Nothing to tell");
+            }
+        });
+}
+
+fn about_ui(ui: &mut Ui) {
+    ui.set_width(440.0);
+    title(ui, "shapematch", None);
+    ui.label(format!("Version {}", env!("CARGO_PKG_VERSION")));
+    secondary(ui, format!("Build {}", crate::report::build_id()));
+    paragraph(ui, env!("CARGO_PKG_DESCRIPTION"));
+    paragraph(ui, "MIT or Apache-2.0, as you like");
+}

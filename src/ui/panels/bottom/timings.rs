@@ -1,0 +1,69 @@
+//! Times of the steps as bars.
+
+use crate::app::{AppState, LogRow, duration_text};
+use crate::ui::theme::Palette;
+use crate::ui::widgets::nothing_yet;
+use egui::{Align2, Rect, ScrollArea, Sense, TextStyle, Ui, pos2, vec2};
+
+/// One bar for each step that took time, in order; lengths share one scale.
+pub fn timings_ui(ui: &mut Ui, state: &AppState) {
+    let rows: Vec<&LogRow> = state
+        .log
+        .rows()
+        .iter()
+        .filter(|r| r.took.is_some())
+        .collect();
+    let longest = rows.iter().filter_map(|row| row.took).max();
+    let Some(longest) = longest.filter(|longest| !longest.is_zero()) else {
+        nothing_yet(
+            ui,
+            "No times yet",
+            "Load, reduce and match to see where the time goes",
+        );
+        return;
+    };
+    ScrollArea::vertical()
+        .id_salt("timings")
+        .auto_shrink([false, false])
+        .stick_to_bottom(true)
+        .show_rows(ui, 20.0, rows.len(), |ui, range| {
+            for row in &rows[range] {
+                let took = row.took.unwrap_or_default();
+                bar_ui(ui, row, (took.as_secs_f64() / longest.as_secs_f64()) as f32);
+            }
+        });
+}
+
+fn bar_ui(ui: &mut Ui, row: &LogRow, share: f32) {
+    let palette = Palette::of(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
+    let font = TextStyle::Body.resolve(ui.style());
+    let middle = rect.center().y;
+    let role = row.role.map_or("", crate::jobs::Role::mark);
+    let name = format!("{role} {}", row.step);
+    let color = row
+        .role
+        .map_or(palette.accent_text, |role| palette.role(role));
+    let painter = ui.painter();
+    let left = pos2(rect.left(), middle);
+    painter.text(
+        left,
+        Align2::LEFT_CENTER,
+        name.trim(),
+        font.clone(),
+        palette.text,
+    );
+    let bars = rect.left() + 96.0;
+    let room = (rect.right() - bars - 96.0).max(16.0);
+    let bar = Rect::from_min_max(
+        pos2(bars, middle - 5.0),
+        pos2(bars + (share * room).max(2.0), middle + 5.0),
+    );
+    painter.rect_filled(bar, 2.0, color);
+    let text = duration_text(row.took.unwrap_or_default());
+    let at = pos2(bar.right() + 8.0, middle);
+    painter.text(at, Align2::LEFT_CENTER, &text, font, palette.secondary);
+    let spoken = format!("{} {text}", name.trim());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &spoken));
+    response.on_hover_text(&row.text);
+}

@@ -1,0 +1,308 @@
+//! The two 3D windows with what stands in them while there is nothing to draw.
+
+use crate::app::{Action, AppState, Command, FileCommand, Settings};
+use crate::jobs::{JobKey, Role};
+use crate::ui::overlays::mouse_choice;
+use crate::ui::theme::{Palette, TALL, UNIT};
+use crate::ui::viewport::Viewports;
+use crate::ui::widgets::{Look, action_button, card, paragraph, role_mark, secondary};
+use egui::{Align, CursorIcon, Layout, Rect, RichText, Sense, Shape, Stroke, Ui, UiBuilder, vec2};
+
+/// Where the windows lay in the last frame, for drops and toasts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Place {
+    crash: Rect,
+    stamped: Rect,
+}
+
+fn place(ctx: &egui::Context) -> Option<Place> {
+    ctx.data(|data| data.get_temp(egui::Id::unique("graphics place")))
+}
+
+/// The window a dropped file is meant for.
+pub fn role_under_pointer(ctx: &egui::Context) -> Option<Role> {
+    let at = ctx.pointer_latest_pos()?;
+    let place = place(ctx)?;
+    if place.crash.contains(at) {
+        Some(Role::Crash)
+    } else if place.stamped.contains(at) {
+        Some(Role::Stamped)
+    } else {
+        None
+    }
+}
+
+/// The rectangle of both windows.
+pub fn place_of_both(ctx: &egui::Context) -> Option<Rect> {
+    place(ctx).map(|place| place.crash.union(place.stamped))
+}
+
+/// Where the windows end and the bottom pane begins.
+pub fn bottom_edge(ctx: &egui::Context) -> f32 {
+    place(ctx).map_or_else(|| ctx.content_rect().bottom(), |p| p.crash.bottom())
+}
+
+/// Both windows side by side, crash left.
+pub fn graphics_ui(
+    ui: &mut Ui,
+    state: &AppState,
+    viewports: &mut Viewports,
+    commands: &mut Vec<Command>,
+) {
+    let room = ui.available_rect_before_wrap();
+    let share = splitter(ui, room);
+    let middle = room.left() + share * room.width();
+    let crash = Rect::from_min_max(room.min, egui::pos2(middle - 1.0, room.bottom()));
+    let stamped = Rect::from_min_max(egui::pos2(middle + 1.0, room.top()), room.max);
+    let line = Stroke::new(2.0, Palette::of(ui).bar);
+    ui.painter().vline(middle, room.y_range(), line);
+    for (role, rect) in [(Role::Crash, crash), (Role::Stamped, stamped)] {
+        let mut child = ui.new_child(UiBuilder::new().max_rect(rect).id_salt(role.word()));
+        child.set_clip_rect(rect.intersect(ui.clip_rect()));
+        child.spacing_mut().item_spacing = vec2(0.0, 0.0);
+        pane_ui(&mut child, role, state, viewports, commands);
+    }
+    ui.data_mut(|data| {
+        data.insert_temp(egui::Id::unique("graphics place"), Place { crash, stamped });
+    });
+    ui.advance_cursor_after_rect(room);
+    drop_hint(ui, crash, stamped);
+}
+
+/// The line between the windows can be dragged; a double click puts it back.
+fn splitter(ui: &Ui, room: Rect) -> f32 {
+    let id = egui::Id::unique("graphics splitter");
+    let mut share: f32 = ui.data(|data| data.get_temp(id)).unwrap_or(0.5);
+    let x = room.left() + share * room.width();
+    let grip = Rect::from_x_y_ranges(x - 4.0..=x + 4.0, room.y_range());
+    let response = ui.interact(grip, id.with("grip"), Sense::CLICK | Sense::DRAG);
+    response.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::Splitter, true, "Between the 3D windows")
+    });
+    if response.hovered() || response.dragged() {
+        ui.ctx().set_cursor_icon(CursorIcon::ResizeHorizontal);
+    }
+    if let Some(at) = response
+        .interact_pointer_pos()
+        .filter(|_| response.dragged())
+    {
+        share = ((at.x - room.left()) / room.width()).clamp(0.15, 0.85);
+    }
+    if response.double_clicked() {
+        share = 0.5;
+    }
+    ui.data_mut(|data| data.insert_temp(id, share));
+    share
+}
+
+fn pane_ui(
+    ui: &mut Ui,
+    role: Role,
+    state: &AppState,
+    viewports: &mut Viewports,
+    commands: &mut Vec<Command>,
+) {
+    let is_away = role == Role::Stamped && state.view.is_moved_over;
+    let has_part = state.document.part(role).is_some();
+    if has_part && !is_away {
+        viewports.show(ui, role, state, commands);
+        return;
+    }
+    let rect = ui.max_rect();
+    let palette = Palette::of(ui);
+    ui.painter().rect_filled(rect, 0.0, palette.ground);
+    if is_away {
+        away_ui(ui, rect, state, commands);
+    } else {
+        empty_ui(ui, rect, role, state, commands);
+    }
+}
+
+/// The stamped part is shown in the left window.
+fn away_ui(ui: &mut Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>) {
+    let size = vec2(280.0_f32.min(rect.width() - 32.0), 120.0);
+    centered(ui, rect, size, |ui| {
+        ui.vertical_centered(|ui| {
+            role_mark(ui, Role::Stamped);
+            ui.label("Moved to the left window");
+            ui.add_space(UNIT);
+            let look = ("Move back", Look::Plain, vec2(128.0, TALL));
+            action_button(ui, state, Action::ToggleMoveOver, look, commands);
+        });
+    });
+}
+
+/// Dashed frame, what to drop here, and the other ways in.
+fn empty_ui(ui: &mut Ui, rect: Rect, role: Role, state: &AppState, commands: &mut Vec<Command>) {
+    let palette = Palette::of(ui);
+    let frame = rect.shrink(24.0);
+    let corners = [
+        frame.left_top(),
+        frame.right_top(),
+        frame.right_bottom(),
+        frame.left_bottom(),
+        frame.left_top(),
+    ];
+    let stroke = Stroke::new(1.0, palette.secondary.gamma_multiply(0.5));
+    ui.painter()
+        .extend(Shape::dashed_line(&corners, stroke, 6.0, 6.0));
+    let is_loading = state.jobs.is_active(JobKey::Load(role));
+    let size = vec2(
+        320.0_f32.min(frame.width() - 16.0),
+        320.0_f32.min(frame.height() - 16.0),
+    );
+    centered(ui, rect, size, |ui| {
+        ui.vertical_centered(|ui| {
+            let (mark, _) = ui.allocate_exact_size(vec2(32.0, 32.0), Sense::hover());
+            crate::ui::widgets::paint_role_mark(ui.painter(), mark, role, palette.role(role));
+            ui.add_space(UNIT);
+            if is_loading {
+                loading_ui(ui, role, state, commands);
+            } else {
+                invitation_ui(ui, role, state, commands);
+            }
+        });
+    });
+}
+
+fn loading_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
+    ui.label(RichText::new(format!("Loading the {} part", role.word())).size(16.0));
+    ui.add_space(UNIT);
+    let running = state
+        .jobs
+        .running()
+        .filter(|job| job.key == JobKey::Load(role));
+    match running.and_then(|job| job.progress) {
+        Some(progress) => {
+            let text = progress.phase.to_owned();
+            if let Some(total) = progress.total.filter(|total| *total > 0) {
+                let share = progress.done as f32 / total as f32;
+                let bar = egui::ProgressBar::new(share)
+                    .desired_width(240.0)
+                    .desired_height(6.0);
+                ui.add(bar).accessible_name("Loading");
+                ui.add_space(UNIT);
+            }
+            secondary(ui, text);
+        }
+        None if running.is_some() => {
+            secondary(ui, "Reading");
+        }
+        None => {
+            secondary(ui, "Waiting for the file before it");
+        }
+    }
+    if running.is_some() {
+        ui.add_space(UNIT);
+        if ui.button("Cancel loading").clicked() {
+            commands.push(Command::Escape);
+        }
+    }
+}
+
+fn invitation_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
+    let (title, text, action) = match role {
+        Role::Crash => (
+            "Drop the crash model here",
+            "Fixed. It keeps its place.",
+            Action::OpenCrash,
+        ),
+        Role::Stamped => (
+            "Drop the stamped part here",
+            "Moves. It is laid on the crash part.",
+            Action::OpenStamped,
+        ),
+    };
+    ui.label(RichText::new(title).size(16.0));
+    ui.add_space(4.0);
+    secondary(ui, text);
+    ui.add_space(2.0 * UNIT);
+    let is_empty = state.document.parts.iter().all(|(_, part)| part.is_none());
+    let look = if role == Role::Crash && is_empty {
+        Look::Primary
+    } else {
+        Look::Plain
+    };
+    let name = match role {
+        Role::Crash => "Open crash model…",
+        Role::Stamped => "Open stamped part…",
+    };
+    action_button(ui, state, action, (name, look, vec2(208.0, TALL)), commands);
+    if role == Role::Crash && is_empty {
+        ui.add_space(UNIT);
+        let example = ("Open the example pair", Look::Plain, vec2(208.0, TALL));
+        action_button(ui, state, Action::OpenExample, example, commands);
+    }
+    recent_ui(ui, role, state, commands);
+    if role == Role::Stamped && is_empty && !state.settings.is_mouse_asked {
+        ui.add_space(2.0 * UNIT);
+        mouse_card(ui, state, commands);
+    }
+}
+
+fn recent_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
+    let recent = state.settings.recent.iter().take(3);
+    if recent.len() == 0 {
+        return;
+    }
+    ui.add_space(2.0 * UNIT);
+    secondary(ui, "Recent");
+    for path in recent {
+        let name = path.file_name().unwrap_or(path.as_os_str());
+        let link = ui.link(name.to_string_lossy());
+        if link.on_hover_text(path.display().to_string()).clicked() {
+            let (paths, role) = (vec![path.clone()], Some(role));
+            commands.push(FileCommand::Open { paths, role }.into());
+        }
+    }
+}
+
+/// The one question of the first start.
+fn mouse_card(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut settings: Settings = state.settings.clone();
+    let mut is_done = false;
+    ui.with_layout(Layout::top_down(Align::Min), |ui| {
+        card(ui, |ui| {
+            ui.spacing_mut().item_spacing = vec2(UNIT, 6.0);
+            ui.horizontal(|ui| {
+                ui.label("Mouse like");
+                ui.name_inputs("Mouse like", |ui| mouse_choice(ui, &mut settings));
+            });
+            paragraph(ui, settings.mouse.help());
+            is_done = ui.button("Use this").clicked();
+        });
+    });
+    if is_done || settings.mouse != state.settings.mouse {
+        settings.is_mouse_asked = is_done;
+        commands.push(Command::Settings(Box::new(settings)));
+    }
+}
+
+/// A child in the middle of a rectangle.
+fn centered(ui: &mut Ui, rect: Rect, size: egui::Vec2, add: impl FnOnce(&mut Ui)) {
+    let inner = Rect::from_center_size(rect.center(), size);
+    let mut child = ui.new_child(UiBuilder::new().max_rect(inner));
+    child.spacing_mut().item_spacing = vec2(UNIT, 4.0);
+    add(&mut child);
+}
+
+/// While a file hangs over the window: where it would go.
+fn drop_hint(ui: &Ui, crash: Rect, stamped: Rect) {
+    let n_files = ui.input(|input| input.raw.hovered_files.len());
+    if n_files == 0 {
+        return;
+    }
+    let palette = Palette::of(ui);
+    let at = ui.ctx().pointer_latest_pos();
+    for (role, rect) in [(Role::Crash, crash), (Role::Stamped, stamped)] {
+        let is_meant = n_files > 1 || at.is_none_or(|at| rect.contains(at));
+        if is_meant {
+            let color = palette.role(role);
+            ui.painter()
+                .rect_filled(rect, 0.0, color.gamma_multiply(0.12));
+            let stroke = Stroke::new(2.0, color);
+            ui.painter()
+                .rect_stroke(rect.shrink(2.0), 4.0, stroke, egui::StrokeKind::Inside);
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! Section 1: files, their parts, how they are shown.
+
+use super::part_list::part_list_ui;
+use super::section::{elided, section_ui};
+use crate::app::{
+    Action, AppState, BottomTab, ColorBy, Command, Display, FileCommand, Part, Section, ViewCommand,
+};
+use crate::jobs::{JobKey, Role};
+use crate::ui::theme::{Palette, ROW, UNIT};
+use crate::ui::widgets::{
+    Look, action_button, caption, card, chip, grouped, icon_button, role_mark,
+};
+use egui::{Align, Layout, Sense, TextStyle, Ui, vec2};
+
+/// The section.
+pub fn load_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let summary = summary(state);
+    section_ui(
+        ui,
+        state,
+        Section::Load,
+        &summary,
+        commands,
+        |ui, commands| {
+            for role in Role::ALL {
+                file_ui(ui, role, state, commands);
+            }
+            unit_question_ui(ui, state, commands);
+            if state.document.parts.iter().any(|(_, part)| part.is_some()) {
+                tools_ui(ui, state, commands);
+                part_list_ui(ui, state, commands);
+                display_ui(ui, state, commands);
+            }
+        },
+    );
+}
+
+fn summary(state: &AppState) -> String {
+    let count = |role| {
+        let part = state.document.part(role);
+        part.map_or_else(|| "–".to_owned(), |p| grouped(p.loaded.report.n_triangles))
+    };
+    if state.document.parts.iter().all(|(_, part)| part.is_none()) {
+        return "nothing loaded".to_owned();
+    }
+    format!("■ {}  ▲ {}", count(Role::Crash), count(Role::Stamped))
+}
+
+/// One file: name, size, findings, open, more.
+fn file_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        role_mark(ui, role);
+        match state.document.part(role) {
+            Some(part) => loaded_ui(ui, role, part, state, commands),
+            None => {
+                let (text, action) = match role {
+                    Role::Crash => ("Open crash…", Action::OpenCrash),
+                    Role::Stamped => ("Open stamped…", Action::OpenStamped),
+                };
+                if state.jobs.is_active(JobKey::Load(role)) {
+                    caption(ui, format!("Loading the {} part…", role.word()));
+                } else {
+                    let size = vec2(ui.available_width(), ROW);
+                    action_button(ui, state, action, (text, Look::Plain, size), commands);
+                }
+            }
+        }
+    });
+}
+
+fn loaded_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState, commands: &mut Vec<Command>) {
+    let palette = Palette::of(ui);
+    let name = part.loaded.file_name();
+    let room = ui.available_width() - ROW - UNIT;
+    let (rect, response) = ui.allocate_exact_size(vec2(room, 36.0), Sense::hover());
+    let body = TextStyle::Body.resolve(ui.style());
+    let small = TextStyle::Small.resolve(ui.style());
+    let title = elided(ui, &name, body, palette.text, room);
+    ui.painter()
+        .galley(rect.left_top() + vec2(0.0, 1.0), title, palette.text);
+    let detail = elided(ui, &detail(part), small, palette.secondary, room);
+    ui.painter()
+        .galley(rect.left_top() + vec2(0.0, 19.0), detail, palette.secondary);
+    let spoken = format!("{} part: {name}", role.word());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &spoken));
+    response.on_hover_text(part.loaded.path.display().to_string());
+    let label = format!("{} file", role.word());
+    let menu = egui::Button::new("…").min_size(vec2(ROW, ROW));
+    let (button, _) = egui::containers::menu::MenuButton::from_button(menu).ui(ui, |ui| {
+        file_menu_ui(ui, role, part, state, commands);
+    });
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
+    button.on_hover_text("Open another, reload, close, findings");
+}
+
+fn detail(part: &Part) -> String {
+    let report = &part.loaded.report;
+    let mut text = format!("{} triangles", grouped(report.n_triangles));
+    if report.n_parts > 1 {
+        text += &format!(" · {} of {} parts", part.facts.used.len(), report.n_parts);
+    }
+    if let Some(thickness) = part.facts.thickness {
+        text += &format!(" · t {thickness:.2}");
+    }
+    if part.length_factor() != 1.0 {
+        text += &format!(" · lengths × {}", part.length_factor());
+    }
+    if report.n_findings > 0 {
+        text += &format!(" · ⚠ {}", report.n_findings);
+    }
+    text
+}
+
+fn file_menu_ui(
+    ui: &mut Ui,
+    role: Role,
+    part: &Part,
+    state: &AppState,
+    commands: &mut Vec<Command>,
+) {
+    ui.set_min_width(184.0);
+    let (open, close) = match role {
+        Role::Crash => (Action::OpenCrash, Action::CloseCrash),
+        Role::Stamped => (Action::OpenStamped, Action::CloseStamped),
+    };
+    let is_free = open.enabled(state).is_ok();
+    if ui
+        .add_enabled(is_free, egui::Button::new("Open another…"))
+        .clicked()
+    {
+        commands.extend(open.to_commands(state));
+    }
+    if ui
+        .add_enabled(is_free, egui::Button::new("Reload"))
+        .clicked()
+    {
+        commands.push(FileCommand::Reload(role).into());
+    }
+    let n_findings = part.loaded.report.n_findings;
+    let findings = match n_findings {
+        0 => "Diagnostics".to_owned(),
+        n => format!("Diagnostics: {n} findings"),
+    };
+    if ui.button(findings).clicked() {
+        commands.push(ViewCommand::SetTab(BottomTab::Diagnostics).into());
+    }
+    ui.separator();
+    if ui
+        .add_enabled(is_free, egui::Button::new("Close"))
+        .clicked()
+    {
+        commands.extend(close.to_commands(state));
+    }
+}
+
+/// The sizes of the two files hint at different units.
+fn unit_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let (Some(hint), Some(factor)) = (state.unit_hint(), state.hinted_length_factor()) else {
+        return;
+    };
+    card(ui, |ui| {
+        let palette = Palette::of(ui);
+        let text = egui::RichText::new(format!("⚠ {}.", hint.text())).color(palette.check);
+        ui.add(egui::Label::new(text).wrap());
+        let multiply = format!("Multiply stamped lengths by {factor}");
+        if ui.button(multiply).clicked() {
+            let role = Role::Stamped;
+            commands.push(FileCommand::SetLengthFactor { role, factor }.into());
+        }
+        if ui.button("They are really different").clicked() {
+            commands.push(FileCommand::DismissUnitHint.into());
+        }
+    });
+}
+
+fn tools_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let swap = ("⇄ Swap", Look::Plain, vec2(72.0, ROW));
+        action_button(ui, state, Action::Swap, swap, commands);
+        let look = if state.view.are_linked {
+            Look::On
+        } else {
+            Look::Plain
+        };
+        let link = ("🔗 Link views", look, vec2(104.0, ROW));
+        action_button(ui, state, Action::ToggleLink, link, commands);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let response = icon_button(ui, "⟳", "Reload both files", true);
+            if response.clicked() {
+                commands.extend(Action::ReloadAll.to_commands(state));
+            }
+        });
+    });
+}
+
+fn display_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut display: Display = state.view.display.clone();
+    ui.horizontal(|ui| {
+        caption(ui, "Colour");
+        ui.name_inputs("Colour by", |ui| {
+            egui::ComboBox::from_id_salt("colour by")
+                .selected_text(display.color_by.label())
+                .width(128.0)
+                .show_ui(ui, |ui| {
+                    for by in ColorBy::ALL {
+                        ui.selectable_value(&mut display.color_by, by, by.label());
+                    }
+                });
+        });
+        if chip(ui, "Edges", display.has_edges).clicked() {
+            display.has_edges ^= true;
+        }
+        if chip(ui, "Nodes", display.has_points).clicked() {
+            display.has_points ^= true;
+        }
+    });
+    if display != state.view.display {
+        commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
+    }
+}

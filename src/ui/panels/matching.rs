@@ -1,0 +1,271 @@
+//! Section 3: first poses, the match, what came out.
+
+use super::section::section_ui;
+use super::{manual_move, recipe, result};
+use crate::app::{Action, AppState, Command, MatchCommand, Section, ShownGeometry, duration_text};
+use crate::jobs::{JobKey, Role};
+use crate::registration::{Method, StartMethod};
+use crate::ui::theme::{Palette, ROW, TALL, UNIT};
+use crate::ui::widgets::{
+    Look, action_button, caption, chip, form_row, length, paragraph, percent, secondary,
+};
+use egui::{Button, ComboBox, ProgressBar, RichText, Ui, vec2};
+
+/// Width of the label column of this section.
+const LABEL: f32 = 56.0;
+
+/// The section.
+pub fn matching_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let summary = summary(state);
+    section_ui(
+        ui,
+        state,
+        Section::Match,
+        &summary,
+        commands,
+        |ui, commands| {
+            if state.document.both().is_none() {
+                paragraph(ui, "Not now: load both parts first.");
+                if state.document.part(Role::Stamped).is_some() {
+                    manual_move::manual_move_ui(ui, state, commands);
+                }
+                return;
+            }
+            align_ui(ui, state, commands);
+            chain_ui(ui, state, commands);
+            run_ui(ui, state, commands);
+            result::result_ui(ui, state, commands);
+            compare_ui(ui, state, commands);
+            manual_move::manual_move_ui(ui, state, commands);
+        },
+    );
+}
+
+fn summary(state: &AppState) -> String {
+    if state.jobs.is_active(JobKey::Match) {
+        return "running".to_owned();
+    }
+    match state.document.current_result() {
+        Some(result) => {
+            let assessment = &result.run.assessment;
+            format!(
+                "{} · rmse {}",
+                assessment.verdict.label(),
+                length(assessment.coverage.rmse())
+            )
+        }
+        None if state.document.both().is_none() => "load both parts first".to_owned(),
+        None => state.document.recipe.settings.method.label().to_owned(),
+    }
+}
+
+/// "Align surface normal", and stepping through the first poses it made.
+fn align_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let size = vec2(ui.available_width(), ROW + 4.0);
+    let look = ("Align surface normal", Look::Plain, size);
+    action_button(ui, state, Action::Align, look, commands);
+    let Some(starts) = state.current_starts().filter(|s| !s.poses.is_empty()) else {
+        return;
+    };
+    ui.horizontal(|ui| {
+        let square = vec2(ROW, ROW);
+        let previous = ("◀", Look::Plain, square);
+        action_button(ui, state, Action::PreviousStart, previous, commands)
+            .widget_info(|| named_button("Previous start"));
+        let text = match starts.shown {
+            Some(index) => format!("start {} of {}", index + 1, starts.poses.len()),
+            None => format!("{} starts", starts.poses.len()),
+        };
+        let label = ui.add_sized(vec2(104.0, ROW), egui::Label::new(text));
+        label.on_hover_text("The first poses are shown one by one; the real pose stays");
+        let next = ("▶", Look::Plain, square);
+        action_button(ui, state, Action::NextStart, next, commands)
+            .widget_info(|| named_button("Next start"));
+        if starts.shown.is_some() {
+            let look = ("Use", Look::Plain, vec2(48.0, ROW));
+            action_button(ui, state, Action::UseStart, look, commands);
+            if ui
+                .add(Button::new("Back").min_size(vec2(48.0, ROW)))
+                .clicked()
+            {
+                commands.push(MatchCommand::ShowStart(None).into());
+            }
+        }
+    });
+}
+
+fn named_button(name: &str) -> egui::WidgetInfo {
+    egui::WidgetInfo::labeled(egui::Role::Button, true, name)
+}
+
+/// Start, then method: the two links of the chain, and the gear for the rest.
+fn chain_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut recipe = state.document.recipe.clone();
+    let is_free = state.locking_job().is_none();
+    ui.add_enabled_ui(is_free, |ui| {
+        form_row(ui, "Start", LABEL, |ui| {
+            ComboBox::from_id_salt("start")
+                .selected_text(recipe.settings.starts.method.label())
+                .width(ui.available_width())
+                .show_ui(ui, |ui| {
+                    for method in StartMethod::ALL {
+                        if method == StartMethod::GivenPoses {
+                            continue;
+                        }
+                        let value = &mut recipe.settings.starts.method;
+                        ui.selectable_value(value, method, method.label())
+                            .on_hover_text(method.help());
+                    }
+                });
+        });
+        form_row(ui, "Then", LABEL, |ui| {
+            let room = ui.available_width() - ROW - UNIT;
+            ComboBox::from_id_salt("method")
+                .selected_text(recipe.settings.method.label())
+                .width(room)
+                .show_ui(ui, |ui| {
+                    for method in Method::ALL {
+                        let is_on = recipe.settings.method == method;
+                        let response = ui.selectable_label(is_on, method.label());
+                        if response.on_hover_text(method.help()).clicked() && !is_on {
+                            recipe::set_method(&mut recipe.settings, method);
+                        }
+                    }
+                });
+            recipe::gear_ui(ui);
+        });
+        recipe::recipe_ui(ui, state, &mut recipe);
+    });
+    if recipe != state.document.recipe {
+        commands.push(MatchCommand::SetRecipe(Box::new(recipe)).into());
+    }
+}
+
+/// The run: match, or stop and cancel with what is going on.
+fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.add_space(2.0);
+    let width = ui.available_width();
+    if !state.jobs.is_active(JobKey::Match) {
+        let look = ("▶  Match", Look::Primary, vec2(width, TALL));
+        action_button(ui, state, Action::MatchOrStop, look, commands)
+            .widget_info(|| named_button("Match the parts"));
+        return;
+    }
+    let is_stopping = state.jobs.running().is_some_and(|job| job.is_stopping);
+    ui.horizontal(|ui| {
+        let stop = if is_stopping {
+            "Stopping…"
+        } else {
+            "Stop (keep best)"
+        };
+        let look = (stop, Look::Primary, vec2(width - 88.0 - UNIT, TALL));
+        action_button(ui, state, Action::MatchOrStop, look, commands);
+        let look = ("Cancel", Look::Plain, vec2(88.0, TALL));
+        action_button(ui, state, Action::CancelRun, look, commands);
+    });
+    status_ui(ui, state);
+}
+
+/// One live line under the buttons, and a bar only for what can be counted.
+fn status_ui(ui: &mut Ui, state: &AppState) {
+    let Some(job) = state.jobs.running().filter(|job| job.key == JobKey::Match) else {
+        secondary(ui, "waiting for the work before it");
+        return;
+    };
+    let mut text = String::new();
+    if let Some(progress) = job.progress {
+        text += progress.phase;
+        if let Some(total) = progress.total.filter(|total| *total > 0) {
+            text += &format!(" {}/{total}", progress.done);
+            let share = progress.done as f32 / total as f32;
+            ui.add(ProgressBar::new(share).desired_height(4.0))
+                .accessible_name("Share of the starts");
+        }
+        text += " · ";
+    }
+    if let Some(latest) = job.latest {
+        text += &format!(
+            "start {} · iteration {} · rmse {} · overlap {} · ",
+            latest.start_idx + 1,
+            latest.iteration + 1,
+            length(latest.rmse),
+            percent(latest.fraction)
+        );
+    }
+    text += &duration_text(state.now.saturating_sub(job.since));
+    let color = Palette::of(ui).secondary;
+    let label = ui.add(egui::Label::new(RichText::new(text).small().color(color)).wrap());
+    ui.ctx().accesskit_node_builder(label.id, |node| {
+        node.set_live(egui::accesskit::Live::Polite);
+    });
+    ui.ctx()
+        .request_repaint_after(std::time::Duration::from_millis(100));
+}
+
+/// Move over, reduced or detailed, gizmo.
+fn compare_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.add_space(2.0);
+    ui.horizontal(|ui| {
+        let label = if state.view.is_moved_over {
+            "Move back"
+        } else {
+            "Move over"
+        };
+        let half = (ui.available_width() - UNIT) / 2.0;
+        let look = (label, Look::Plain, vec2(half, ROW + 4.0));
+        action_button(ui, state, Action::ToggleMoveOver, look, commands);
+        for (shown, label) in [
+            (ShownGeometry::Reduced, "Reduced"),
+            (ShownGeometry::Detailed, "Detailed"),
+        ] {
+            let is_on = state.view.shown == shown;
+            let can = is_on || Action::ToggleDetailed.enabled(state).is_ok();
+            ui.add_enabled_ui(can, |ui| {
+                let response = chip(ui, label, is_on);
+                if response.clicked() && !is_on {
+                    commands.push(crate::app::ViewCommand::SetShown(shown).into());
+                }
+            });
+        }
+    });
+    if state.view.is_moved_over {
+        over_ui(ui, state, commands);
+    } else if state.view.shown == ShownGeometry::Detailed {
+        caption(ui, "The windows show the full meshes");
+    }
+}
+
+/// How the two parts lie in one window.
+fn over_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut display = state.view.display.clone();
+    for (role, name) in [(Role::Crash, "■ opacity"), (Role::Stamped, "▲ opacity")] {
+        form_row(ui, name, 72.0, |ui| {
+            ui.spacing_mut().slider_width = ui.available_width() - 64.0;
+            let value = display.opacity.get_mut(role);
+            ui.add(egui::Slider::new(value, 0.0..=1.0).fixed_decimals(2));
+        });
+    }
+    form_row(ui, "separation", 72.0, |ui| {
+        let size = state
+            .document
+            .part(Role::Stamped)
+            .map_or(1.0, |p| p.bounds().diagonal());
+        ui.spacing_mut().slider_width = ui.available_width() - 64.0;
+        ui.add(egui::Slider::new(&mut display.separation, 0.0..=0.25 * size).max_decimals(1))
+            .on_hover_text("Draws the stamped part apart from where it is; the matrix stays");
+    });
+    ui.horizontal(|ui| {
+        for action in [Action::ToggleSeeThrough, Action::ToggleWipe] {
+            let is_on = match action {
+                Action::ToggleWipe => display.wipe.is_some(),
+                _ => display.is_see_through,
+            };
+            let look = if is_on { Look::On } else { Look::Plain };
+            let label = (action.info().label, look, vec2(0.0, ROW));
+            action_button(ui, state, action, label, commands);
+        }
+    });
+    if display != state.view.display {
+        commands.push(crate::app::ViewCommand::SetDisplay(Box::new(display)).into());
+    }
+}

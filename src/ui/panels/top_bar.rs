@@ -1,0 +1,200 @@
+//! Menus, search, unit, bell.
+
+use crate::app::{Action, AppState, Command, Dialog, ExportCommand, ExportKind, Menu, ViewCommand};
+use crate::jobs::Role;
+use crate::report::{CardForm, MatrixForm};
+use crate::ui::theme::{Palette, ROW};
+use crate::ui::widgets::{caption, secondary};
+use egui::{Align, Button, Layout, MenuBar, RichText, Ui, vec2};
+
+/// The bar at the top.
+pub fn top_bar_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    MenuBar::new().ui(ui, |ui| {
+        for menu in Menu::ALL {
+            ui.menu_button(menu.label(), |ui| {
+                ui.set_min_width(248.0);
+                menu_ui(ui, state, menu, commands);
+            });
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            bell_ui(ui, state, commands);
+            unit_ui(ui, state);
+            search_ui(ui, commands);
+        });
+    });
+}
+
+/// The items of a menu; the table of actions says which.
+fn menu_ui(ui: &mut Ui, state: &AppState, menu: Menu, commands: &mut Vec<Command>) {
+    for action in Action::in_menu(menu) {
+        if action == Action::Escape || begins_group(action) {
+            ui.separator();
+        }
+        item_ui(ui, state, action, commands);
+    }
+    if menu == Menu::Export {
+        ui.separator();
+        export_forms_ui(ui, state, commands);
+    }
+    if menu == Menu::File && !state.settings.recent.is_empty() {
+        ui.separator();
+        recent_ui(ui, state, commands);
+    }
+}
+
+/// Where a line in a menu helps the eye.
+fn begins_group(action: Action) -> bool {
+    use Action as A;
+    matches!(
+        action,
+        A::ReloadAll
+            | A::Preferences
+            | A::BackToAsLoaded
+            | A::HideSelected
+            | A::MoveTool
+            | A::ToggleDetailed
+            | A::ToggleEdges
+            | A::FitAll
+            | A::ViewFront
+            | A::ToggleProjection
+            | A::ToggleGraphicsOnly
+            | A::Align
+            | A::MatchOrStop
+            | A::FlipAlternative
+            | A::CopyLog
+            | A::About
+    )
+}
+
+fn item_ui(ui: &mut Ui, state: &AppState, action: Action, commands: &mut Vec<Command>) {
+    let info = action.info();
+    let enabled = action.enabled(state);
+    let label = match (action, state.history.undo_name(), state.history.redo_name()) {
+        (Action::Undo, Some(name), _) => format!("Undo “{name}”"),
+        (Action::Redo, _, Some(name)) => format!("Redo “{name}”"),
+        _ => info.label.to_owned(),
+    };
+    let mut button = Button::new(label);
+    if let Some(shortcut) = info.shortcut {
+        button = button.shortcut_text(shortcut.to_string());
+    }
+    let response = ui.add_enabled(enabled.is_ok(), button);
+    let response = match enabled {
+        Ok(()) => response.on_hover_text(info.tooltip),
+        Err(reason) => {
+            response.on_disabled_hover_text(format!("{}\nNot now: {reason}", info.tooltip))
+        }
+    };
+    if response.clicked() {
+        commands.extend(action.to_commands(state));
+        ui.close();
+    }
+}
+
+/// Every form of matrix and card.
+fn export_forms_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let can_copy = Action::CopyMatrix.enabled(state).is_ok();
+    ui.add_enabled_ui(can_copy, |ui| {
+        ui.menu_button("Copy matrix as", |ui| {
+            for form in MatrixForm::ALL {
+                if ui.button(form.label()).clicked() {
+                    commands.push(ExportCommand::CopyMatrix(*form).into());
+                    ui.close();
+                }
+            }
+        });
+        ui.menu_button("Write matrix as", |ui| {
+            for form in MatrixForm::ALL {
+                if ui.button(form.label()).clicked() {
+                    commands.push(ExportCommand::AskSave(ExportKind::Matrix(*form)).into());
+                    ui.close();
+                }
+            }
+        });
+    });
+    let can_write = Action::SaveCards.enabled(state).is_ok();
+    ui.add_enabled_ui(can_write, |ui| {
+        ui.menu_button("Write cards", |ui| {
+            for form in CardForm::ALL {
+                if ui.button(form.label()).clicked() {
+                    commands.push(ExportCommand::AskSave(ExportKind::Cards(*form)).into());
+                    ui.close();
+                }
+            }
+        });
+    });
+}
+
+fn recent_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    use crate::app::FileCommand;
+    ui.menu_button("Recent files", |ui| {
+        for path in &state.settings.recent {
+            let name = path.file_name().unwrap_or(path.as_os_str());
+            ui.menu_button(name.to_string_lossy(), |ui| {
+                caption(ui, path.display().to_string());
+                for role in Role::ALL {
+                    let label = format!("Open as the {} part", role.word());
+                    if ui.button(label).clicked() {
+                        let (paths, role) = (vec![path.clone()], Some(role));
+                        commands.push(FileCommand::Open { paths, role }.into());
+                        ui.close();
+                    }
+                }
+                if ui.button("Remove from the list").clicked() {
+                    commands.push(FileCommand::ForgetRecent(path.clone()).into());
+                    ui.close();
+                }
+            });
+        }
+    });
+}
+
+fn bell_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let n_unread = state.notices.n_unread();
+    let palette = Palette::of(ui);
+    let text = if n_unread > 0 {
+        RichText::new(format!("🔔 {n_unread}")).color(palette.check)
+    } else {
+        RichText::new("🔔").color(palette.secondary)
+    };
+    let name = match n_unread {
+        0 => "Messages".to_owned(),
+        n => format!("Messages, {n} unread"),
+    };
+    let response = ui.add(Button::new(text).min_size(vec2(ROW, ROW)));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    if response.on_hover_text(&name).clicked() {
+        commands.push(ViewCommand::SetDialog(Some(Dialog::Messages)).into());
+    }
+}
+
+/// The files say no unit; lengths are those of the crash deck.
+fn unit_ui(ui: &mut Ui, state: &AppState) {
+    let factor = state
+        .document
+        .part(Role::Stamped)
+        .map(|part| part.length_factor());
+    let text = match factor {
+        Some(factor) if factor != 1.0 => {
+            format!("Lengths as in the crash deck, stamped × {factor}")
+        }
+        _ => "Lengths as in the crash deck".to_owned(),
+    };
+    secondary(ui, text).on_hover_text(
+        "LS-DYNA decks carry no unit. Every length in this window is in the unit of the crash deck.",
+    );
+}
+
+fn search_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
+    let palette = Palette::of(ui);
+    let text = RichText::new("Search commands").color(palette.secondary);
+    let button = Button::new(text)
+        .shortcut_text("Ctrl+K")
+        .fill(palette.field)
+        .min_size(vec2(208.0, ROW));
+    let response = ui.add(button);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Search commands"));
+    if response.clicked() {
+        commands.push(ViewCommand::SetDialog(Some(Dialog::Palette)).into());
+    }
+}

@@ -1,0 +1,351 @@
+//! The program behind the panels: worker, dialogs, clipboard, preferences, and the frame.
+
+use super::dialogs::{Dialogs, PictureRequest};
+use super::storage::{Kept, Storage, WindowPlace};
+use super::viewport::Viewports;
+use super::{keyboard, overlays, panels, theme, toasts};
+use crate::app::{
+    AppState, Command, Effect, FileCommand, NoticeCommand, NoticeLevel, Settings, StartupOptions,
+    Theme,
+};
+use crate::jobs::{PipelineRunner, Role, Worker};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Instant;
+
+/// Least size of the window, in points.
+const MIN_SIZE: [f32; 2] = [960.0, 600.0];
+/// Size at the first start.
+const FIRST_SIZE: [f32; 2] = [1400.0, 900.0];
+
+/// Opens the window and returns when it is closed.
+///
+/// Fails, before anything is drawn, if there is no display or no graphics adapter.
+pub fn run(options: StartupOptions) -> anyhow::Result<ExitCode> {
+    let storage = if options.forget_settings {
+        Storage::none()
+    } else {
+        Storage::of_user()
+    };
+    let kept = storage.read();
+    let native = eframe::NativeOptions {
+        viewport: window(&kept),
+        renderer: eframe::Renderer::Wgpu,
+        ..eframe::NativeOptions::default()
+    };
+    let make: eframe::AppCreator<'_> = Box::new(move |cc| {
+        let shell = Shell::new(cc, options, storage, kept)?;
+        Ok(Box::new(shell))
+    });
+    eframe::run_native("shapematch", native, make).map_err(|error| {
+        anyhow::anyhow!(
+            "the window could not be opened: {error}\n\
+             It needs a display and a graphics adapter for Vulkan, Metal, DirectX 12 or OpenGL \
+             (a software one will do; WGPU_BACKEND chooses).\n\
+             Everything but the window works without: see shapematch --help"
+        )
+    })?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn window(kept: &Kept) -> egui::ViewportBuilder {
+    let window = egui::ViewportBuilder::default()
+        .with_title("shapematch")
+        .with_app_id("shapematch")
+        .with_min_inner_size(MIN_SIZE);
+    let Some(place) = kept.window else {
+        return window.with_inner_size(FIRST_SIZE);
+    };
+    let size = place.size.map(|s| {
+        if s.is_finite() {
+            s.clamp(400.0, 16_384.0)
+        } else {
+            900.0
+        }
+    });
+    let window = window
+        .with_inner_size(size)
+        .with_maximized(place.is_maximized);
+    match place.corner {
+        Some(corner) if corner.iter().all(|c| c.is_finite()) => window.with_position(corner),
+        _ => window,
+    }
+}
+
+/// The application as eframe sees it.
+pub struct Shell {
+    state: AppState,
+    worker: Worker,
+    viewports: Viewports,
+    dialogs: Dialogs,
+    storage: Storage,
+    place: Option<WindowPlace>,
+    is_unsaved: bool,
+    begin: Instant,
+    title: String,
+    told: (Sender<News>, Receiver<News>),
+}
+
+/// Something a thread of the shell has to say.
+type News = (NoticeLevel, String);
+
+impl Shell {
+    /// Starts the worker and opens what the command line named.
+    pub fn new(
+        cc: &eframe::CreationContext<'_>,
+        options: StartupOptions,
+        storage: Storage,
+        kept: Kept,
+    ) -> std::io::Result<Self> {
+        theme::install(&cc.egui_ctx);
+        let ctx = cc.egui_ctx.clone();
+        let worker = Worker::spawn(PipelineRunner, Arc::new(move || ctx.request_repaint()))?;
+        let mut shell = Self {
+            state: AppState::new(kept.settings),
+            worker,
+            viewports: Viewports::new(cc.wgpu_render_state.as_ref()),
+            dialogs: Dialogs::default(),
+            storage,
+            place: kept.window,
+            is_unsaved: false,
+            begin: Instant::now(),
+            title: String::new(),
+            told: channel(),
+        };
+        shell.apply_settings(&cc.egui_ctx);
+        shell.open_at_start(options, &cc.egui_ctx);
+        Ok(shell)
+    }
+
+    /// What the window knows.
+    pub fn state(&self) -> &AppState {
+        &self.state
+    }
+
+    /// True while the worker has nothing to do.
+    pub fn is_idle(&self) -> bool {
+        self.worker.is_idle()
+    }
+
+    /// Applies commands as if they came from a panel.
+    pub fn run_commands(&mut self, commands: Vec<Command>, ctx: &egui::Context) {
+        for command in commands {
+            let effects = self.state.apply(command);
+            for effect in effects {
+                self.carry_out(effect, ctx);
+            }
+        }
+    }
+
+    fn open_at_start(&mut self, options: StartupOptions, ctx: &egui::Context) {
+        let mut commands: Vec<Command> = Vec::new();
+        match (options.crash, options.stamped) {
+            (Some(crash), Some(stamped)) => {
+                for (path, role) in [(crash, Role::Crash), (stamped, Role::Stamped)] {
+                    let (paths, role) = (vec![path], Some(role));
+                    commands.push(FileCommand::Open { paths, role }.into());
+                }
+            }
+            (Some(path), None) | (None, Some(path)) => {
+                let (paths, role) = (vec![path], None);
+                commands.push(FileCommand::Open { paths, role }.into());
+            }
+            (None, None) if options.example => commands.push(FileCommand::OpenExample.into()),
+            (None, None) => {}
+        }
+        self.run_commands(commands, ctx);
+    }
+
+    fn carry_out(&mut self, effect: Effect, ctx: &egui::Context) {
+        match effect {
+            Effect::StartJob(kind, stamp) => {
+                self.worker.submit(*kind, stamp);
+            }
+            Effect::StopJob(key) => self.worker.stop(key),
+            Effect::CancelJob(key) => self.worker.cancel(key),
+            Effect::AskOpen(role) => self.dialogs.ask_open(role, ctx),
+            Effect::AskSave(kind) => self.dialogs.ask_save(kind, ctx),
+            Effect::TakePicture { is_transparent } => {
+                self.dialogs.ask_picture(is_transparent, ctx);
+            }
+            Effect::CopyText(text) => ctx.copy_text(text),
+            Effect::SaveSettings => {
+                self.is_unsaved = true;
+                self.apply_settings(ctx);
+            }
+            Effect::NotifyDesktop(_) => {
+                let ask = egui::UserAttentionType::Informational;
+                ctx.send_viewport_cmd(egui::ViewportCommand::RequestUserAttention(ask));
+            }
+            Effect::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+        }
+    }
+
+    fn apply_settings(&self, ctx: &egui::Context) {
+        let Settings {
+            theme, ui_scale, ..
+        } = self.state.settings;
+        ctx.set_theme(match theme {
+            Theme::System => egui::ThemePreference::System,
+            Theme::Dark => egui::ThemePreference::Dark,
+            Theme::Light => egui::ThemePreference::Light,
+        });
+        if (ctx.zoom_factor() - ui_scale).abs() > 1e-4 {
+            ctx.set_zoom_factor(ui_scale);
+        }
+    }
+
+    fn save(&mut self) {
+        if !std::mem::take(&mut self.is_unsaved) {
+            return;
+        }
+        let kept = Kept {
+            settings: self.state.settings.clone(),
+            window: self.place,
+        };
+        if let Err(error) = self.storage.write(&kept) {
+            let text = format!("the preferences could not be written: {error}");
+            self.state
+                .apply(NoticeCommand::Tell(NoticeLevel::Note, text));
+        }
+    }
+
+    /// Asks for a picture of the window where one is wanted; a thread of its own writes it.
+    fn take_pictures(&mut self, ctx: &egui::Context) {
+        for PictureRequest { path, .. } in self.dialogs.take_pictures() {
+            let place = panels::graphics::place_of_both(ctx);
+            let scale = ctx.pixels_per_point();
+            let (sender, waking) = (self.told.0.clone(), ctx.clone());
+            ctx.request_screenshot(move |window| {
+                let write = move || {
+                    let picture = place.map(|place| window.region(&place, Some(scale)));
+                    let news = match write_picture(picture.as_ref().unwrap_or(&window), &path) {
+                        Ok(()) => (NoticeLevel::Success, format!("written: {}", path.display())),
+                        Err(error) => (
+                            NoticeLevel::Error,
+                            format!("the picture could not be written: {error}"),
+                        ),
+                    };
+                    // The window may have closed meanwhile.
+                    let _ = sender.send(news);
+                    waking.request_repaint();
+                };
+                std::thread::spawn(write);
+            });
+        }
+        let news: Vec<_> = self.told.1.try_iter().collect();
+        for (level, text) in news {
+            self.state.apply(NoticeCommand::Tell(level, text));
+        }
+    }
+
+    /// Files that were dropped; over one of the 3D windows they are meant for it.
+    fn dropped(&self, ctx: &egui::Context) -> Vec<Command> {
+        let files = ctx.input(|input| input.raw.dropped_files.clone());
+        let paths: Vec<_> = files
+            .iter()
+            .map(|file| file.path().to_owned())
+            .filter(|path| !path.as_os_str().is_empty())
+            .collect();
+        if paths.is_empty() {
+            return Vec::new();
+        }
+        let role = if paths.len() == 1 {
+            panels::graphics::role_under_pointer(ctx)
+        } else {
+            None
+        };
+        vec![FileCommand::Open { paths, role }.into()]
+    }
+
+    fn remember_place(&mut self, ctx: &egui::Context) {
+        let (inner, outer, is_maximized) = ctx.input(|input| {
+            let window = input.viewport();
+            (window.inner_rect, window.outer_rect, window.maximized)
+        });
+        let Some(inner) = inner else { return };
+        let is_maximized = is_maximized.unwrap_or(false);
+        let zoom = ctx.zoom_factor();
+        let place = WindowPlace {
+            size: [inner.width() * zoom, inner.height() * zoom],
+            corner: outer.map(|rect| [rect.left() * zoom, rect.top() * zoom]),
+            is_maximized,
+        };
+        // The size before it was maximized is worth more than the screen's.
+        self.place = match self.place {
+            Some(old) if is_maximized => Some(WindowPlace {
+                is_maximized,
+                ..old
+            }),
+            _ => Some(place),
+        };
+    }
+
+    fn update_title(&mut self, ctx: &egui::Context) {
+        let name = |role| {
+            let part = self.state.document.part(role);
+            part.map(|part| part.loaded.file_name())
+        };
+        let title = match (name(Role::Crash), name(Role::Stamped)) {
+            (Some(crash), Some(stamped)) => format!("{stamped} on {crash} – shapematch"),
+            (Some(one), None) | (None, Some(one)) => format!("{one} – shapematch"),
+            (None, None) => "shapematch".to_owned(),
+        };
+        if title != self.title {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+}
+
+/// Writes pixels as a PNG, or what the ending says.
+fn write_picture(picture: &egui::ColorImage, path: &std::path::Path) -> Result<(), String> {
+    let [width, height] = picture.size.map(|n| u32::try_from(n).unwrap_or(0));
+    let bytes = picture.pixels.iter().flat_map(|p| p.to_array()).collect();
+    image::RgbaImage::from_raw(width, height, bytes)
+        .ok_or_else(|| "the picture is incomplete".to_owned())?
+        .save(path)
+        .map_err(|error| error.to_string())
+}
+
+impl eframe::App for Shell {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.state.tick(self.begin.elapsed());
+        let live = self.worker.live();
+        let mut commands: Vec<Command> = Vec::new();
+        if live.job.is_some() {
+            commands.push(Command::Live(Box::new(live)));
+        }
+        commands.extend(self.worker.events().map(Command::from));
+        commands.extend(self.dialogs.answers());
+        commands.extend(self.dropped(ctx));
+        self.run_commands(commands, ctx);
+        self.take_pictures(ctx);
+        self.update_title(ctx);
+        self.remember_place(ctx);
+        self.save();
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        let mut commands = keyboard::commands(&ctx, &self.state);
+        panels::window_ui(ui, &self.state, &mut self.viewports, &mut commands);
+        toasts::toasts_ui(&ctx, &self.state, &mut commands);
+        overlays::overlays_ui(&ctx, &self.state, &mut commands);
+        self.dialogs.show(&ctx, &mut commands);
+        if !commands.is_empty() {
+            self.run_commands(commands, &ctx);
+            ctx.request_repaint();
+        }
+        if let Some(expiry) = self.state.notices.next_expiry() {
+            ctx.request_repaint_after(expiry.saturating_sub(self.state.now));
+        }
+    }
+
+    fn on_exit(&mut self) {
+        self.is_unsaved = true;
+        self.save();
+        self.worker.cancel_all();
+    }
+}

@@ -1,0 +1,307 @@
+//! Small pieces that every panel uses, so that they look alike everywhere.
+
+use super::theme::{Palette, ROW, TALL, UNIT};
+use crate::app::{Action, AppState, Command, NoticeLevel};
+use crate::jobs::Role;
+use egui::{
+    Align, Button, Color32, CornerRadius, Frame, Layout, Margin, Rect, Response, RichText, Sense,
+    Stroke, Ui, Vec2, pos2, vec2,
+};
+
+/// A count with thin groups of three: 41 208.
+pub fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A length with three digits that count: 0.0412, 1.35, 128.
+pub fn length(value: f64) -> String {
+    let magnitude = value.abs();
+    let decimals = if magnitude >= 100.0 || value == 0.0 {
+        0
+    } else if magnitude >= 10.0 {
+        1
+    } else if magnitude >= 1.0 {
+        2
+    } else if magnitude >= 0.1 {
+        3
+    } else {
+        4
+    };
+    format!("{value:.decimals$}")
+}
+
+/// A share in percent: 87.0 %.
+pub fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// A count on a chip: full, 50k, 2k, 500.
+pub fn short_count(n: usize) -> String {
+    if n >= 1000 && n.is_multiple_of(1000) {
+        format!("{}k", n / 1000)
+    } else if n >= 10_000 {
+        format!("{}k", n / 1000)
+    } else {
+        grouped(n)
+    }
+}
+
+/// Draws the mark of a part, ■ or ▲, in its colour.
+pub fn paint_role_mark(painter: &egui::Painter, rect: Rect, role: Role, color: Color32) {
+    match role {
+        Role::Crash => {
+            let square = Rect::from_center_size(rect.center(), Vec2::splat(rect.width() * 0.78));
+            painter.rect_filled(square, 1.0, color);
+        }
+        Role::Stamped => {
+            let (left, right) = (rect.left(), rect.right());
+            let points = vec![
+                pos2(rect.center().x, rect.top() + rect.height() * 0.06),
+                pos2(right, rect.bottom() - rect.height() * 0.08),
+                pos2(left, rect.bottom() - rect.height() * 0.08),
+            ];
+            painter.add(egui::Shape::convex_polygon(points, color, Stroke::NONE));
+        }
+    }
+}
+
+/// The mark of a part as a widget.
+pub fn role_mark(ui: &mut Ui, role: Role) -> Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(12.0, ROW), Sense::hover());
+    let mark = Rect::from_center_size(rect.center(), Vec2::splat(11.0));
+    paint_role_mark(ui.painter(), mark, role, Palette::of(ui).role(role));
+    let name = match role {
+        Role::Crash => "Crash, fixed",
+        Role::Stamped => "Stamped, moves",
+    };
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, role.word()));
+    response.on_hover_text(name)
+}
+
+/// Quiet text.
+pub fn secondary(ui: &mut Ui, text: impl Into<String>) -> Response {
+    let color = Palette::of(ui).secondary;
+    ui.label(RichText::new(text).color(color))
+}
+
+/// Small quiet text.
+pub fn caption(ui: &mut Ui, text: impl Into<String>) -> Response {
+    let color = Palette::of(ui).secondary;
+    ui.label(RichText::new(text).small().color(color))
+}
+
+/// Quiet text that wraps within the column.
+pub fn paragraph(ui: &mut Ui, text: impl Into<String>) -> Response {
+    let color = Palette::of(ui).secondary;
+    ui.add(egui::Label::new(RichText::new(text).color(color)).wrap())
+}
+
+/// Tooltip of an action: what it does and its key.
+pub fn action_tooltip(action: Action) -> String {
+    let info = action.info();
+    match info.shortcut {
+        Some(shortcut) => format!("{}   {shortcut}", info.tooltip),
+        None => info.tooltip.to_owned(),
+    }
+}
+
+/// How a button of an action looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Look {
+    /// Like all others.
+    #[default]
+    Plain,
+    /// The one thing to do next.
+    Primary,
+    /// A choice that is on.
+    On,
+}
+
+/// A button that does an action; disabled with the reason where the action is.
+pub fn action_button(
+    ui: &mut Ui,
+    state: &AppState,
+    action: Action,
+    button: (&str, Look, Vec2),
+    commands: &mut Vec<Command>,
+) -> Response {
+    let (label, look, size) = button;
+    let palette = Palette::of(ui);
+    let enabled = action.enabled(state);
+    let mut text = RichText::new(label);
+    let mut widget_fill = None;
+    match look {
+        Look::Plain => {}
+        Look::Primary => {
+            text = text.color(palette.on_accent);
+            widget_fill = Some(palette.accent);
+        }
+        Look::On => {
+            text = text.color(palette.on_accent);
+            widget_fill = Some(palette.accent);
+        }
+    }
+    let mut button = Button::new(text).min_size(size);
+    if let Some(fill) = widget_fill.filter(|_| enabled.is_ok()) {
+        button = button.fill(fill);
+    }
+    let response = ui.add_enabled(enabled.is_ok(), button);
+    let response = match enabled {
+        Ok(()) => response.on_hover_text(action_tooltip(action)),
+        Err(reason) => response
+            .on_disabled_hover_text(format!("{}\nNot now: {reason}", action_tooltip(action))),
+    };
+    if response.clicked() {
+        commands.extend(action.to_commands(state));
+    }
+    response
+}
+
+/// [`action_button`] with the action's own label.
+pub fn plain_action(
+    ui: &mut Ui,
+    state: &AppState,
+    action: Action,
+    commands: &mut Vec<Command>,
+) -> Response {
+    let label = action.info().label;
+    action_button(
+        ui,
+        state,
+        action,
+        (label, Look::Plain, vec2(0.0, ROW)),
+        commands,
+    )
+}
+
+/// A small square button with one sign on it, named for those who cannot see the sign.
+pub fn icon_button(ui: &mut Ui, sign: &str, name: &str, is_enabled: bool) -> Response {
+    let button = Button::new(RichText::new(sign).size(14.0)).min_size(Vec2::splat(ROW));
+    let response = ui.add_enabled(is_enabled, button.frame_when_inactive(false));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, is_enabled, name));
+    response.on_hover_text(name)
+}
+
+/// A chip: one of several choices side by side.
+pub fn chip(ui: &mut Ui, label: &str, is_on: bool) -> Response {
+    let palette = Palette::of(ui);
+    let text = RichText::new(label).color(if is_on {
+        palette.on_accent
+    } else {
+        palette.text
+    });
+    let fill = if is_on {
+        palette.accent
+    } else {
+        palette.widget
+    };
+    let response = ui.add(Button::new(text).fill(fill).min_size(vec2(0.0, ROW)));
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, label));
+    response
+}
+
+/// A raised area that belongs together.
+pub fn card<R>(ui: &mut Ui, add_contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let palette = Palette::of(ui);
+    Frame::new()
+        .fill(palette.card)
+        .stroke(Stroke::new(1.0, palette.line))
+        .corner_radius(CornerRadius::same(6))
+        .inner_margin(Margin::symmetric(12, 8))
+        .show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            add_contents(ui)
+        })
+        .inner
+}
+
+/// A label in the left column of a form and its widget in the right one.
+pub fn form_row<R>(
+    ui: &mut Ui,
+    label: &str,
+    width: f32,
+    add_contents: impl FnOnce(&mut Ui) -> R,
+) -> R {
+    ui.horizontal(|ui| {
+        ui.set_min_height(ROW);
+        let (rect, response) = ui.allocate_exact_size(vec2(width, ROW), Sense::hover());
+        let palette = Palette::of(ui);
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let galley = ui
+            .painter()
+            .layout_no_wrap(label.to_owned(), font, palette.secondary);
+        let at = pos2(rect.left(), rect.center().y - galley.size().y / 2.0);
+        ui.painter().galley(at, galley, palette.secondary);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, label));
+        ui.name_inputs(label, add_contents)
+    })
+    .inner
+}
+
+/// A name on the left and a value on the right edge, for lists of figures.
+pub fn figure(ui: &mut Ui, name: &str, value: &str) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().interact_size.y = 18.0;
+        secondary(ui, name);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(value);
+        });
+    });
+}
+
+/// Colour and sign of a level of loudness.
+pub fn level_color(palette: &Palette, level: NoticeLevel) -> Color32 {
+    match level {
+        NoticeLevel::Info => palette.text,
+        NoticeLevel::Success => palette.good,
+        NoticeLevel::Note => palette.accent_text,
+        NoticeLevel::Warning => palette.check,
+        NoticeLevel::Error => palette.poor,
+    }
+}
+
+/// A text that a panel keeps between frames, for example a filter.
+pub fn draft(ui: &Ui, id: egui::Id) -> String {
+    ui.data(|data| data.get_temp(id)).unwrap_or_default()
+}
+
+/// Puts a [`draft`] back.
+pub fn set_draft(ui: &Ui, id: egui::Id, text: String) {
+    ui.data_mut(|data| data.insert_temp(id, text));
+}
+
+/// Centre-aligned message with a title, for tabs that have nothing to show yet.
+pub fn nothing_yet(ui: &mut Ui, title: &str, hint: &str) {
+    ui.vertical_centered(|ui| {
+        ui.add_space((ui.available_height() / 2.0 - TALL).max(UNIT));
+        ui.label(title);
+        caption(ui, hint);
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        assert_eq!(grouped(41_208), "41,208");
+        assert_eq!(grouped(999), "999");
+        assert_eq!(length(0.041_23), "0.0412");
+        assert_eq!(length(1.349), "1.35");
+        assert_eq!(length(-128.4), "-128");
+        assert_eq!(length(0.0), "0");
+        assert_eq!(percent(0.8704), "87.0 %");
+        assert_eq!(short_count(50_000), "50k");
+        assert_eq!(short_count(500), "500");
+        assert_eq!(short_count(34_808), "34k");
+    }
+}
