@@ -95,7 +95,13 @@ fn hand(assessment: &Assessment) -> Option<Reason> {
         );
         return Some((Verdict::Poor, words));
     }
-    None
+    (ratio < 0.98).then(|| {
+        let words = format!(
+            "the part is nearly its own mirror image, and the opposite hand fits a little better \
+             (its score is {ratio:.2} of this one's)"
+        );
+        (Verdict::Check, words)
+    })
 }
 
 fn unit(assessment: &Assessment) -> Option<Reason> {

@@ -281,6 +281,24 @@ fn merge(leg: &Leg<'_>, entrants: &mut [Entrant]) {
     }
 }
 
+/// The pose of `entrant` mirrored in each principal plane of the data: where a part that is nearly
+/// its own mirror image lies if it is of the opposite hand.
+pub(crate) fn mirror_images(leg: &Leg<'_>, entrant: &Entrant) -> Vec<Start> {
+    let measures = leg.fine.data.measures();
+    (0..3)
+        .map(|axis| {
+            let normal: crate::geometry::Vector3 = measures.principal_axes.column(axis).into();
+            let rotation = crate::geometry::Matrix3::identity() - normal * normal.transpose() * 2.0;
+            let mirror = Similarity {
+                rotation,
+                translation: measures.centroid.coords - rotation * measures.centroid.coords,
+                scale: 1.0,
+            };
+            variation(leg, entrant, &mirror, axis)
+        })
+        .collect()
+}
+
 /// The pose of `entrant` turned by 180° about each principal axis of the data: where parts that
 /// are nearly symmetric have their twins.
 pub(crate) fn twins(leg: &Leg<'_>, entrant: &Entrant) -> Vec<Start> {
@@ -296,19 +314,24 @@ pub(crate) fn twins(leg: &Leg<'_>, entrant: &Entrant) -> Vec<Start> {
                 translation: shift,
                 scale: 1.0,
             };
-            let pose = entrant.run.model_from_data.after(&turn);
-            Start {
-                kind: StartKind::Twin { axis },
-                // Turning a sheet over shows its other side.
-                flipped: entrant.start.flipped != turns_over(&turn, leg),
-                target_from_source: if leg.frames.data_is_target {
-                    pose.inverse()
-                } else {
-                    pose
-                },
-            }
+            variation(leg, entrant, &turn, axis)
         })
         .collect()
+}
+
+/// The pose of `entrant` after the data was moved by `motion`.
+fn variation(leg: &Leg<'_>, entrant: &Entrant, motion: &Similarity, axis: usize) -> Start {
+    let pose = entrant.run.model_from_data.after(motion);
+    Start {
+        kind: StartKind::Twin { axis },
+        // Turning a sheet over shows its other side.
+        flipped: entrant.start.flipped != turns_over(motion, leg),
+        target_from_source: if leg.frames.data_is_target {
+            pose.inverse()
+        } else {
+            pose
+        },
+    }
 }
 
 /// True if `turn` reverses the mean normal of the data.

@@ -32,8 +32,10 @@ pub(super) fn decide(
     let begin = Instant::now();
     let finished = contests[home].finish(&winner, monitor)?;
     let finish = begin.elapsed();
-    let mirror_ratio = if certain || settings.hand != Hand::Same || monitor.stop_requested() {
+    let mirror_ratio = if settings.hand == Hand::Either || monitor.stop_requested() {
         None
+    } else if certain || settings.hand == Hand::Mirrored {
+        contests[home].mirror_ratio(&winner, &monitor.without_observer())?
     } else {
         opposite_hand(input, settings, &winner.scores, monitor)?
     };

@@ -106,8 +106,9 @@ pub struct MirrorCheck {
     /// Root mean square distance of the final pairs under the best mirrored motion; compare with
     /// the outcome's `rmse`. Equal for a flat part, which has no hand.
     pub mirrored_rmse: f64,
-    /// Score of a search with the mirrored source relative to the result's, where one was made
-    /// (when the result did not convince): below 1 the opposite hand fits better.
+    /// Score of the opposite hand relative to the result's: below 1 it fits better. From the mirror
+    /// images of the result, or from a search of its own where the result was not certain. `None`
+    /// where both hands competed anyway, or the match was stopped.
     pub score_ratio: Option<f64>,
 }
 

@@ -2,7 +2,9 @@ use std::time::{Duration, Instant};
 
 use super::compare::{Judge, TwoSided};
 use super::icp::{Data, Frames, Run, advance};
-use super::multi_start::{Entrant, Leg, Pairing, race, ranking, refine, run_every_start, twins};
+use super::multi_start::{
+    Entrant, Leg, Pairing, mirror_images, race, ranking, refine, run_every_start, twins,
+};
 use super::problem::all_nodes;
 use super::result::{Fate, Side};
 use super::select::Selection;
@@ -208,6 +210,29 @@ impl<'a> Contest<'a> {
                 run.rmse <= floor && run.fraction >= CERTAIN_FRACTION * bound
             })
         })
+    }
+
+    /// Score of the best mirror image of `winner` over its own score: a part that is nearly its own
+    /// mirror image fits well with the wrong hand, and only the comparison tells. `None` if no
+    /// mirror image found a place.
+    pub(crate) fn mirror_ratio(
+        &self,
+        winner: &Contender,
+        monitor: &Monitor,
+    ) -> Result<Option<f64>, Cancelled> {
+        let (leg, entrants) = &self.legs[winner.leg];
+        let images = mirror_images(leg, &entrants[winner.entrant]);
+        let entrant = |start: &Start| Entrant::new(leg, *start, 0);
+        let mut images: Vec<Entrant> = images.iter().map(entrant).collect();
+        race(leg, &mut images, self.settings, monitor)?;
+        refine(leg, &mut images, 1, self.settings, monitor)?;
+        let best = ranking(&images).first().map(|&i| {
+            let image = &images[i];
+            let pose = leg.frames.target_from_source(&image.run.model_from_data);
+            let bare = pose.after(&leg.frames.mirror.inverse());
+            self.judge.score(&bare, image.start.flipped)
+        });
+        Ok(best.map(|scores| scores.score() / winner.scores.score()))
     }
 
     /// True if a pose lays a fair share of the data within a few floors of the model.

@@ -39,7 +39,7 @@ fn matching(c: &mut Criterion) {
         };
         let name = part.name();
         group.bench_function(format!("{name}: prepare"), |b| {
-            b.iter(|| black_box(prepare()))
+            b.iter(|| black_box(prepare()));
         });
         for method in [Method::Fractional, Method::Icp] {
             let settings = MatchSettings::of(method);

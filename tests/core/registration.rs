@@ -287,6 +287,32 @@ fn the_opposite_hand_is_found_on_request_and_hinted_at_otherwise() {
     assert!(ratio.is_some_and(|ratio| ratio < 0.8), "{ratio:?}");
 }
 
+/// A hat that is nearly its own mirror image fits with either hand; only one fits exactly.
+#[test]
+fn a_nearly_symmetric_part_of_the_wrong_hand_is_hinted_at() {
+    use shapematch::samples::{SamplePart, SampleSettings, SampleVariant, generate};
+    let ratio = |variant| {
+        let pair = generate(&SampleSettings {
+            part: SamplePart::Pillar,
+            variant,
+            stamped_size: Some(12.0),
+            crash_size: Some(14.0),
+            ..SampleSettings::default()
+        });
+        let outcome = run(
+            &pair.stamped.to_trimesh(),
+            &pair.crash.to_trimesh(),
+            &MatchSettings::default(),
+        );
+        outcome.mirror_check.score_ratio.unwrap()
+    };
+    let (wrong, right) = (
+        ratio(SampleVariant::OppositeHand),
+        ratio(SampleVariant::Plain),
+    );
+    assert!(wrong < 0.98 && right > 1.0, "wrong {wrong}, right {right}");
+}
+
 #[test]
 fn reduced_meshes_carry_the_search_and_the_full_ones_the_result() {
     let (full, coarse) = (pan(6.0, 0.35, everywhere), pan(20.0, 0.2, everywhere));
