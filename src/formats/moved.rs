@@ -1,15 +1,25 @@
 //! A model laid elsewhere.
 
-use super::model::{Forming, Model, Nodes, StrainPoint, StressPoint};
+use super::model::{Forming, Model, ShellStress, Solid, StrainPoint, StressPoint};
 use crate::geometry::{Matrix3, Similarity};
 
+/// Which old corner each corner of a mirrored quad is: the first edge stays, reversed.
+const REVERSED: [usize; 4] = [1, 0, 3, 2];
+
 /// The model under `motion`: nodes moved, stress and strain tensors turned with them (they are in
-/// the global frame), thicknesses scaled. Ids and the order of corners stay, so a mirrored sheet
-/// has its normals on the other side. History variables are kept as they are, also those that
-/// hold tensors. Nodes whose id is repeated are moved like all others. O(model).
+/// the global frame), thicknesses scaled. Ids stay. Nodes whose id is repeated are moved like all
+/// others. History variables are kept as they are, also those that hold tensors. O(model).
+///
+/// Under a mirror the corners of shells and solids change to the order 2 1 4 3, and with them
+/// corner thicknesses, mid-side nodes and integration points in the plane. The mirrored sheet then
+/// has the same material on the side of its normal as before, so places through the thickness keep
+/// their sign, and the first edge is the same one, so material angles only change theirs. Corner
+/// thicknesses of parts and sections are exchanged as those of quads.
 pub fn moved(model: &Model, motion: &Similarity) -> Model {
     let mut result = model.clone();
-    move_nodes(&mut result.nodes, motion);
+    for position in result.nodes.positions_mut() {
+        *position = motion.apply(position);
+    }
     for extra in &mut result.shell_extras {
         extra.thickness = extra.thickness.map(|t| t * motion.scale);
     }
@@ -19,37 +29,113 @@ pub fn moved(model: &Model, motion: &Similarity) -> Model {
     for section in &mut result.sections {
         section.thickness = section.thickness.map(|t| t * motion.scale);
     }
-    result.forming = turned(&model.forming, &motion.rotation);
+    turn(&mut result.forming, &motion.rotation);
+    if motion.is_mirrored() {
+        reverse(&mut result);
+    }
     result
 }
 
-fn move_nodes(nodes: &mut Nodes, motion: &Similarity) {
-    for position in nodes.positions_mut() {
-        *position = motion.apply(position);
+fn turn(forming: &mut Forming, rotation: &Matrix3) {
+    for index in 0..forming.n_stress() {
+        for point in forming.stress_points_mut(index) {
+            point.stress = turn_tensor(&point.stress, rotation);
+        }
+    }
+    for index in 0..forming.n_strain() {
+        for point in forming.strain_points_mut(index) {
+            point.strain = turn_tensor(&point.strain, rotation);
+        }
     }
 }
 
-fn turned(forming: &Forming, rotation: &Matrix3) -> Forming {
-    let mut result = Forming::default();
-    for shell in forming.stresses() {
-        let turn = |point: &StressPoint| StressPoint {
-            stress: turn_tensor(&point.stress, rotation),
-            ..*point
+/// Reverses the order of corners and all that goes with them.
+fn reverse(model: &mut Model) {
+    for shell in &mut model.shells {
+        let [a, b, c, d] = shell.nodes;
+        shell.nodes = if shell.is_triangle() {
+            [b, a, c, c]
+        } else {
+            [b, a, d, c]
         };
-        let points: Vec<StressPoint> = shell.points.iter().map(turn).collect();
+    }
+    for extra in &mut model.shell_extras {
+        let is_triangle = model.shells[extra.shell as usize].is_triangle();
+        let [a, b, c, d] = extra.thickness;
+        extra.thickness = if is_triangle {
+            [b, a, c, d]
+        } else {
+            [b, a, d, c]
+        };
+        extra.beta = 0.0 - extra.beta;
+    }
+    for (shell, nodes) in &mut model.mid_side {
+        let [of_first, of_second, of_third, of_fourth] = *nodes;
+        *nodes = if !model.shells[*shell as usize].is_triangle() {
+            [of_first, of_fourth, of_third, of_second]
+        } else if of_fourth == of_third {
+            [of_first, of_third, of_second, of_second]
+        } else {
+            [of_first, of_third, of_second, of_fourth]
+        };
+    }
+    for solid in &mut model.solids {
+        solid.nodes = reversed_solid(solid);
+    }
+    let thicknesses = model.parts.iter_mut().filter_map(|p| p.thickness.as_mut());
+    let of_sections = model.sections.iter_mut().map(|s| &mut s.thickness);
+    for corners in thicknesses.chain(of_sections) {
+        *corners = REVERSED.map(|i| corners[i]);
+    }
+    model.forming = reversed_points(&model.forming);
+}
+
+/// Both faces reversed; a tetrahedron whose top is one node stays written as one.
+fn reversed_solid(solid: &Solid) -> [u32; 8] {
+    let [a, b, c, d, e, f, g, h] = solid.nodes;
+    if [e, f, g, h] == [d; 4] {
+        [b, a, c, d, d, d, d, d]
+    } else {
+        [b, a, d, c, f, e, h, g]
+    }
+}
+
+/// Results whose points in the plane follow the corners: three or four for each layer.
+fn reversed_points(forming: &Forming) -> Forming {
+    let mut result = Forming::default();
+    result.others = forming.others;
+    for shell in forming.stresses() {
+        let order = layer_order(shell.n_plane, shell.points, |point| point.t);
+        let points: Vec<StressPoint> = order.iter().map(|&i| shell.points[i]).collect();
+        let history = order.iter().flat_map(|&i| history_of(&shell, i));
+        let history: Vec<f64> = history.copied().collect();
         result
-            .add_stress(shell.element_id, shell.n_plane, &points, shell.history)
+            .add_stress(shell.element_id, shell.n_plane, &points, &history)
             .expect("history has as many values as before");
     }
     for shell in forming.strains() {
-        let turn = |point: &StrainPoint| StrainPoint {
-            strain: turn_tensor(&point.strain, rotation),
-            ..*point
-        };
-        let points: Vec<StrainPoint> = shell.points.iter().map(turn).collect();
+        let order = layer_order(shell.n_plane, shell.points, |point| point.t);
+        let points: Vec<StrainPoint> = order.iter().map(|&i| shell.points[i]).collect();
         result.add_strain(shell.element_id, shell.n_plane, &points);
     }
     result
+}
+
+fn history_of<'a>(shell: &ShellStress<'a>, point: usize) -> &'a [f64] {
+    &shell.history[point * shell.n_history..][..shell.n_history]
+}
+
+/// The old index of each point. Points keep their order unless each run of `n_plane` is a layer.
+fn layer_order<T>(n_plane: usize, points: &[T], t: impl Fn(&T) -> f64) -> Vec<usize> {
+    let is_layer =
+        |layer: &[T]| layer.len() == n_plane && layer.iter().all(|p| t(p) == t(&layer[0]));
+    let has_layers = matches!(n_plane, 3 | 4) && points.chunks(n_plane).all(is_layer);
+    let old = |i: usize| match (has_layers, i % n_plane.max(1)) {
+        (true, in_plane @ 0..2) => i - in_plane + REVERSED[in_plane],
+        (true, in_plane) if n_plane == 4 => i - in_plane + REVERSED[in_plane],
+        _ => i,
+    };
+    (0..points.len()).map(old).collect()
 }
 
 /// R·S·Rᵀ of a symmetric tensor xx, yy, zz, xy, yz, zx; shear components are those of the tensor.
@@ -69,6 +155,7 @@ pub fn turn_tensor(tensor: &[f64; 6], rotation: &Matrix3) -> [f64; 6] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::model::SolidKind;
     use super::*;
     use crate::geometry::{Point3, Pose, TriMesh, Vector3};
 
@@ -104,5 +191,21 @@ mod tests {
         let back = moved(&result, &motion.inverse());
         let third = back.nodes.position_of(3).unwrap();
         assert!((third - mesh.positions()[2]).norm() < 1e-12);
+    }
+
+    #[test]
+    fn tetrahedra_and_wedges_stay_what_they_are() {
+        let reversed = |nodes| {
+            let solid = Solid {
+                id: 1,
+                nodes,
+                part: 0,
+                kind: SolidKind::Solid,
+            };
+            reversed_solid(&solid)
+        };
+        assert_eq!(reversed([0, 1, 2, 3, 3, 3, 3, 3]), [1, 0, 2, 3, 3, 3, 3, 3]);
+        assert_eq!(reversed([0, 1, 2, 3, 4, 4, 5, 5]), [1, 0, 3, 2, 4, 4, 5, 5]);
+        assert_eq!(reversed([0, 1, 2, 2, 3, 4, 5, 5]), [1, 0, 2, 2, 4, 3, 5, 5]);
     }
 }

@@ -24,21 +24,31 @@ fn again(model: &Model) -> Model {
 
 /// One of everything; ids begin at `first`.
 fn everything(first: u64) -> Model {
-    let positions: Vec<Point3> = (0..16)
-        .map(|i| {
-            Point3::new(
-                f64::from(i) * 0.1,
-                f64::from(i * i) * 1e-3,
-                1.0 / f64::from(i + 3),
-            )
-        })
-        .collect();
     let ids = (first..first + 16).collect();
     let mut model = Model {
         title: "all there is".into(),
-        nodes: Nodes::new(ids, positions).0,
+        nodes: Nodes::new(ids, positions()).0,
         ..Model::default()
     };
+    add_parts(&mut model);
+    add_elements(&mut model, first);
+    add_sets(&mut model, first);
+    add_forming(&mut model, first);
+    model
+}
+
+fn positions() -> Vec<Point3> {
+    let at = |i: i32| {
+        Point3::new(
+            f64::from(i) * 0.1,
+            f64::from(i * i) * 1e-3,
+            1.0 / f64::from(i + 3),
+        )
+    };
+    (0..16).map(at).collect()
+}
+
+fn add_parts(model: &mut Model) {
     let part = |id: u64| Part {
         id,
         title: format!("part {id}"),
@@ -53,6 +63,9 @@ fn everything(first: u64) -> Model {
         id: 3,
         thickness: [1.25, 1.25, 1.5, 1.25],
     }];
+}
+
+fn add_elements(model: &mut Model, first: u64) {
     let shell = |n: u64, nodes: [u32; 4]| Shell {
         id: first + n,
         nodes,
@@ -81,6 +94,9 @@ fn everything(first: u64) -> Model {
         solid(10, SolidKind::Solid),
         solid(11, SolidKind::ThickShell),
     ];
+}
+
+fn add_sets(model: &mut Model, first: u64) {
     let set = |ids: &[u64]| Set {
         title: "a set".into(),
         ids: ids.to_vec(),
@@ -91,6 +107,9 @@ fn everything(first: u64) -> Model {
         .nodes
         .insert(6, set(&(first..first + 11).collect::<Vec<_>>()));
     model.sets.shells.insert(7, set(&[first, first + 1]));
+}
+
+fn add_forming(model: &mut Model, first: u64) {
     let stress = |t: f64| StressPoint {
         t,
         stress: [1.5, -2.25e-4, 3e7, 0.1, 1.0 / 3.0, -1e-12],
@@ -106,7 +125,6 @@ fn everything(first: u64) -> Model {
         strain: [0.01, 0.02, -0.03, 1e-5, 0.0, 0.5],
     };
     model.forming.add_strain(first + 1, 1, &[strain; 3]);
-    model
 }
 
 #[track_caller]
@@ -178,6 +196,50 @@ proptest! {
                     prop_assert!((a - b).abs() <= 1e-6, "{} {}", a, b);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_deck_included_under_a_transformation_is_the_moved_model(
+        shift in proptest::array::uniform3(-5000.0..5000.0f64),
+        axis in proptest::array::uniform3(0.1..1.0f64),
+        angle in -180.0..180.0f64,
+        toward in proptest::array::uniform3(0.1..1.0f64),
+        is_mirrored: bool,
+    ) {
+        let model = everything(1);
+        let deck = write(&model, &WriteOptions::default(), &Monitor::silent()).unwrap();
+        let list = |v: [f64; 3]| format!("{},{},{}", v[0], v[1], v[2]);
+        let mut rows = format!("TRANSL,{}\nROTATE,{},0,0,1.5,{angle}\n", list(shift), list(axis));
+        if is_mirrored {
+            rows += &format!("MIRROR,0,0,0,{}\n", list(toward));
+        }
+        let master = format!(
+            "*KEYWORD\n*DEFINE_TRANSFORMATION+\n7\n{rows}*INCLUDE_TRANSFORM\nout.k\n,-0\n\n\n7\n"
+        );
+        let source = Memory::new().with("main.k", master).with("out.k", deck);
+        let options = ReadOptions::default();
+        let found = read_from(&source, Path::new("main.k"), &options, &Monitor::silent()).unwrap();
+        prop_assert_eq!(found.motions.len(), 1);
+        let motion = Similarity::from_matrix4(&found.motions[0].matrix, 1e-9).unwrap();
+        prop_assert_eq!(motion.is_mirrored(), is_mirrored);
+        let expected = moved(&model, &motion);
+        for (a, b) in expected.nodes.positions().iter().zip(found.nodes.positions()) {
+            prop_assert!((a - b).norm() <= 1e-8, "{} {}", a, b);
+        }
+        let stresses = |model: &Model| -> Vec<[f64; 6]> {
+            let shells = model.forming.stresses();
+            shells.flat_map(|shell| shell.points.iter().map(|p| p.stress)).collect()
+        };
+        let strains = |model: &Model| -> Vec<[f64; 6]> {
+            let shells = model.forming.strains();
+            shells.flat_map(|shell| shell.points.iter().map(|p| p.strain)).collect()
+        };
+        let expected = [stresses(&expected), strains(&expected)].concat();
+        let found = [stresses(&found), strains(&found)].concat();
+        prop_assert_eq!(expected.len(), found.len());
+        for (a, b) in expected.iter().flatten().zip(found.iter().flatten()) {
+            prop_assert!((a - b).abs() <= 1e-6, "{} {}", a, b);
         }
     }
 }

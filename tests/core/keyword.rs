@@ -5,6 +5,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use shapematch::formats::model::{Forming, ShellStrain, ShellStress, StrainPoint, StressPoint};
 use shapematch::formats::{
     self, Diagnostic, DiagnosticKind, Disk, FileSource, FormatError, Memory, Model, ReadOptions,
     Selection, source::Bytes,
@@ -62,6 +63,33 @@ fn first(model: &Model, kind: DiagnosticKind) -> &Diagnostic {
     all.find(|d| d.kind == kind).expect("a finding of the kind")
 }
 
+/// Turned tensors may differ in their last digit from machine to machine.
+fn rounded(tensor: [f64; 6]) -> [f64; 6] {
+    tensor.map(|x| (x * 1e9).round() / 1e9 + 0.0)
+}
+
+fn dump_forming(forming: &Forming, text: &mut String) {
+    for stress in forming.stresses() {
+        let turned = stress.points.iter().map(|point| StressPoint {
+            stress: rounded(point.stress),
+            ..*point
+        });
+        let points: &[StressPoint] = &turned.collect::<Vec<_>>();
+        writeln!(text, "stress {:?}", ShellStress { points, ..stress }).unwrap();
+    }
+    for strain in forming.strains() {
+        let turned = strain.points.iter().map(|point| StrainPoint {
+            strain: rounded(point.strain),
+            ..*point
+        });
+        let points: &[StrainPoint] = &turned.collect::<Vec<_>>();
+        writeln!(text, "strain {:?}", ShellStrain { points, ..strain }).unwrap();
+    }
+    if !forming.others.is_empty() {
+        writeln!(text, "{:?}", forming.others).unwrap();
+    }
+}
+
 /// Everything in a model, as text.
 fn dump(model: &Model) -> String {
     let mut text = String::new();
@@ -115,12 +143,7 @@ fn dump(model: &Model) -> String {
         let (at, id, n) = (&motion.position, motion.transformation, motion.n_nodes);
         writeln!(text, "moved by {id}: {n} nodes, {at}").unwrap();
     }
-    for stress in model.forming.stresses() {
-        writeln!(text, "stress {stress:?}").unwrap();
-    }
-    for strain in model.forming.strains() {
-        writeln!(text, "strain {strain:?}").unwrap();
-    }
+    dump_forming(&model.forming, &mut text);
     if let Ok(surface) = model.surface(&Selection::All) {
         let (n, area) = (surface.mesh.n_triangles(), surface.mesh.area());
         writeln!(text, "surface {n} triangles, area {area:.6}").unwrap();

@@ -67,6 +67,11 @@ fn content_tells_the_format_where_the_name_does_not() {
         ("part.STL.gz", b"", Format::Stl),
         ("x", b"solid a\n", Format::Stl),
         ("x.Obj", b"", Format::Obj),
+        ("floor.dynain", b"$ results", Format::Keyword),
+        ("floor.DYNAIN.gz", b"", Format::Keyword),
+        ("dynain_ini", b"*INITIAL_STRESS_SHELL\n", Format::Keyword),
+        ("floor.dyn", b"", Format::Keyword),
+        ("no_extension", b"", Format::Keyword),
     ];
     for (name, bytes, format) in cases {
         assert_eq!(Format::of(Path::new(name), bytes), format, "{name}");
@@ -187,6 +192,69 @@ fn a_file_cut_anywhere_is_no_panic() {
             if let Ok(model) = read(name, &bytes[..end]) {
                 assert!(model.shells.len() <= strip().n_triangles());
             }
+        }
+    }
+}
+
+#[test]
+fn numbers_that_are_no_place_and_indices_of_no_point_are_named() {
+    let stl = "solid\nfacet\nvertex 0 0 0\nvertex 1e999 0 0\nvertex 0 1 0\nendfacet\n\
+        facet\nvertex 0 0 0\nvertex nan 0 0\nvertex 0 1 0\nendfacet\n\
+        facet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\n";
+    let obj = "v 0 0 0\nv inf 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 1 4 3\n";
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+        property float z\nelement face 4\nproperty list uchar int vertex_index\nend_header\n\
+        0 0 0\n1 0 0\n0 1 0\n";
+    let ply = format!("{header}3 0 1 2\n3 0 1 7\n3 0 1 -1\n2 0 1\n");
+    for (name, text, n_found) in [("a.stl", stl, 4), ("a.obj", obj, 2), ("a.ply", &ply, 3)] {
+        let model = read(name, text).unwrap();
+        assert_eq!(model.shells.len(), 1, "{name}");
+        let found: Vec<String> = model.diagnostics.iter().map(ToString::to_string).collect();
+        assert_eq!(found.len(), n_found, "{name}: {found:?}");
+        let mesh = model.surface(&Selection::All).unwrap().mesh;
+        assert!(
+            mesh.positions()
+                .iter()
+                .all(|p| p.iter().all(|x| x.is_finite()))
+        );
+    }
+}
+
+#[test]
+fn a_count_beyond_the_file_takes_no_memory() {
+    let mut bytes = b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n\
+        element face 1\nproperty list uint uint vertex_indices\nend_header\n"
+        .to_vec();
+    bytes.extend([0; 4]);
+    bytes.extend(u32::MAX.to_le_bytes());
+    assert!(matches!(
+        read("a.ply", bytes),
+        Err(FormatError::Broken { .. })
+    ));
+    let mut bytes = vec![b' '; 80];
+    bytes.extend(u32::MAX.to_le_bytes());
+    assert!(matches!(
+        read("a.stl", bytes),
+        Err(FormatError::Broken { .. })
+    ));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn any_bytes_are_no_panic(
+        name in prop::sample::select(vec!["a.stl", "a.obj", "a.ply", "a.dynain", "a"]),
+        head in prop::sample::select(vec![
+            "", "solid x\nfacet\n", "v 0 0 0\nf ", "*NODE\n", "*ELEMENT_SHELL\n",
+            "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nend_header\n",
+            "ply\nformat binary_little_endian 1.0\nelement face 3\n\
+             property list char int vertex_index\nend_header\n",
+        ]),
+        tail in proptest::collection::vec(any::<u8>(), 0..300),
+    ) {
+        if let Ok(model) = read(name, [head.as_bytes(), &tail].concat()) {
+            let _ = model.surface(&Selection::All);
         }
     }
 }

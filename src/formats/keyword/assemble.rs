@@ -6,13 +6,15 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position};
-use super::super::model::{Forming, Model, Part, ReadFile, Section, Shell, ShellExtra};
+use super::super::model::{Model, Part, ReadFile, Section, Shell, ShellExtra};
 use super::block::{Block, SourceFile};
 use super::card::Layout;
+use super::forming::RawForming;
 use super::include::Context;
 use super::nodes::{NodeChunk, NodeThickness, find_node};
 use super::parts::RawPart;
 use super::resolve;
+use super::results::FormingCount;
 use super::sets::RawSet;
 use super::shells::{ElementOffsets, PackedIds, PartIds, ShellChunk, find_element};
 use super::solids::{RawSolid, SolidChunk};
@@ -112,12 +114,17 @@ pub(crate) enum Motion {
     /// The transformation of an include.
     Include {
         nodes: Range<usize>,
+        /// The forming results in the file and those it includes.
+        results: Range<FormingCount>,
         transformation: u64,
         position: Position,
     },
     /// `*NODE_TRANSFORM`.
     NodeSet {
         set: u64,
+        /// How many nodes were read before, if only these are moved, and at once; all motions of
+        /// includes come first otherwise.
+        at_once: Option<usize>,
         transformation: u64,
         position: Position,
     },
@@ -129,7 +136,7 @@ pub(crate) struct Assembly {
     pub title: String,
     pub files: Vec<ReadFile>,
     pub found: Diagnostics,
-    pub forming: Forming,
+    pub forming: RawForming,
     pub sections: Vec<Section>,
     pub sets: Vec<RawSet>,
     pub transformations: BTreeMap<u64, Transformation>,
@@ -150,8 +157,13 @@ pub(crate) struct Assembly {
     pub(super) parts: Vec<Part>,
     pub(super) part_positions: Vec<Option<Position>>,
     pub(super) motions: Vec<Motion>,
+    /// Parts with a text label in place of an id.
+    labelled: Vec<(String, Position, RawPart)>,
     told_tabs: bool,
 }
+
+/// What to do about a text label.
+const NUMBER_INSTEAD: &str = "a number in place of the text label";
 
 impl Assembly {
     /// Number of nodes so far.
@@ -218,7 +230,11 @@ impl Assembly {
 
     /// Adds parts; of parts with the same id the first counts.
     pub(crate) fn add_parts(&mut self, parts: Vec<RawPart>, file: &SourceFile) {
-        for raw in parts {
+        for mut raw in parts {
+            if let Some(label) = raw.label.take() {
+                self.labelled.push((label, file.position(raw.at), raw));
+                continue;
+            }
             let index = self.part_number(raw.id) as usize;
             if self.parts[index].is_defined {
                 let kind = DiagnosticKind::DuplicatePart;
@@ -231,9 +247,57 @@ impl Assembly {
                 });
                 continue;
             }
+            if let Some(label) = &raw.section_label {
+                let kind = DiagnosticKind::Unsupported;
+                let message = format!(
+                    "part {} names its section by a text label and has no thickness",
+                    raw.id
+                );
+                self.found.push_with(kind, || {
+                    let finding = Diagnostic::new(kind, message).at(file.position(raw.at));
+                    finding.found(label).expected(NUMBER_INSTEAD)
+                });
+            }
             self.part_positions[index] = Some(file.position(raw.at));
             self.parts[index] = Part {
                 id: raw.id,
+                title: raw.title,
+                section_id: raw.section_id,
+                thickness: raw.thickness.map(|sum| [sum; 4]),
+                is_defined: true,
+            };
+        }
+    }
+
+    /// Gives the parts with text labels ids that no other part has, now that all are known.
+    pub(super) fn number_labelled_parts(&mut self) {
+        let mut seen: HashMap<String, Position> = HashMap::new();
+        for (label, position, raw) in std::mem::take(&mut self.labelled) {
+            if let Some(first) = seen.get(&label) {
+                let message = format!("part {label:?} is defined again (first at {first})");
+                let finding = Diagnostic::new(DiagnosticKind::DuplicatePart, message);
+                self.found.push(finding.at(position));
+                continue;
+            }
+            seen.insert(label.clone(), position.clone());
+            let id = self
+                .part_ids
+                .iter()
+                .max()
+                .map_or(1, |&id| id.saturating_add(1));
+            let index = self.part_number(id) as usize;
+            let kind = DiagnosticKind::Unsupported;
+            let message = format!(
+                "part {:?} has a text label for an id; it is kept as part {id}, but elements can \
+                 name it by a number only",
+                raw.title
+            );
+            let finding = Diagnostic::new(kind, message).at(position.clone());
+            self.found
+                .push(finding.found(label).expected(NUMBER_INSTEAD));
+            self.part_positions[index] = Some(position);
+            self.parts[index] = Part {
+                id,
                 title: raw.title,
                 section_id: raw.section_id,
                 thickness: raw.thickness.map(|sum| [sum; 4]),

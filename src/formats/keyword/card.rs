@@ -390,6 +390,9 @@ impl<'a> Card<'a> {
         let message = match error.kind {
             DiagnosticKind::UnresolvedParameter => format!("{what} uses an undefined parameter"),
             DiagnosticKind::NotFinite => format!("{what} holds a number that is not finite"),
+            DiagnosticKind::Unsupported => {
+                format!("{what} has an option that is not carried out")
+            }
             _ => format!("{what} cannot be read"),
         };
         Diagnostic::new(error.kind, message)

@@ -18,6 +18,7 @@ use super::include::{
 use super::mesh::{ElementKeyword, element_keyword};
 use super::parameter::ParameterTable;
 use super::parts::{read_parts, read_shell_sections};
+use super::results::FormingCount;
 use super::sets::{SetKind, read_set};
 use super::transform::Transformation;
 use super::{chunks, nodes, shells, solids};
@@ -266,8 +267,8 @@ impl Reader<'_> {
                 assembly.transformations.insert(id, transformation);
             }
         } else if is_forming(name) {
-            let offset = u64::try_from(context.offsets.element).unwrap_or(0);
-            read_block(block, offset, &mut assembly.forming, &mut assembly.found);
+            let units = context.results();
+            read_block(block, units, &mut assembly.forming, &mut assembly.found);
         }
     }
 
@@ -327,6 +328,7 @@ impl Reader<'_> {
             return Ok(());
         };
         let first_node = self.assembly.n_nodes();
+        let first_result = FormingCount::of(&self.assembly.forming);
         self.parameters.push_scope();
         let read = self.file(&child, context.inside(include, block.suffix));
         self.parameters.pop_scope();
@@ -343,6 +345,7 @@ impl Reader<'_> {
         if include.transformation != 0 {
             self.assembly.add_motion(Motion::Include {
                 nodes,
+                results: first_result..FormingCount::of(&self.assembly.forming),
                 transformation: include.transformation,
                 position: file.position(include.at),
             });
@@ -405,7 +408,9 @@ fn node_keyword(assembly: &mut Assembly, file: &SourceFile, block: &Block<'_>, c
         assembly.node_thickness.extend(scaled);
     } else if block.name == "NODE_TRANSFORM" {
         for (row, at) in nodes::read_node_transforms(block, &mut assembly.found) {
+            let n_nodes = assembly.n_nodes();
             assembly.add_motion(Motion::NodeSet {
+                at_once: row.at_once.then_some(n_nodes),
                 set: nodes::shifted(row.node_set, offsets.set),
                 transformation: nodes::shifted(row.transformation, offsets.define),
                 position: file.position(at),

@@ -1,40 +1,88 @@
-//! Results of a forming simulation: `*INITIAL_STRESS_SHELL` and `*INITIAL_STRAIN_SHELL`.
+//! Results of a forming simulation: `*INITIAL_STRESS_SHELL` and `*INITIAL_STRAIN_SHELL`, also for
+//! sets; those of solids and thick shells are read past and counted.
 
 use std::iter::Peekable;
 
-use super::super::diagnostic::{DiagnosticKind, Diagnostics};
+use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Forming, StrainPoint, StressPoint};
 use super::block::{Block, Cards};
 use super::card::{Card, EIGHT_BY_10, FIVE_BY_16, FieldError};
+use super::nodes::shifted;
 
 /// More points or history variables than any solver writes for one shell; such a count means that
 /// the cards are out of step.
 const MAX_COUNT: i64 = 10_000;
 
-/// Reads one `*INITIAL_STRESS_…` or `*INITIAL_STRAIN_…` block; `id_offset` is added to element
-/// ids. Results of other elements than shells are named and left out. An element that cannot be
-/// read is named and left out; counts that make no sense end the block.
-pub fn read_block(
+/// What an include does to the results in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ResultUnits {
+    /// Added to element ids.
+    pub element: i64,
+    /// Added to set ids.
+    pub set: i64,
+    /// Factor on stresses: mass / (length · time²).
+    pub stress: f64,
+}
+
+/// Results as the blocks have them.
+#[derive(Debug, Default)]
+pub(crate) struct RawForming {
+    /// Results of single shells.
+    pub of_shells: Forming,
+    /// Results for all shells of a set; the set's id stands in place of the element's.
+    pub of_sets: Forming,
+}
+
+/// The forms of results that are understood.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Results {
+    Stress,
+    Strain,
+    SetStress,
+    SetStrain,
+    SolidStress,
+    SolidStrain,
+    ThickShellStress,
+    ThickShellStrain,
+}
+
+impl Results {
+    fn of_keyword(name: &str) -> Option<Self> {
+        Some(match name.strip_prefix("INITIAL_")? {
+            "STRESS_SHELL" => Self::Stress,
+            "STRAIN_SHELL" => Self::Strain,
+            "STRESS_SHELL_SET" => Self::SetStress,
+            "STRAIN_SHELL_SET" => Self::SetStrain,
+            "STRESS_SOLID" => Self::SolidStress,
+            "STRAIN_SOLID" => Self::SolidStrain,
+            "STRESS_TSHELL" => Self::ThickShellStress,
+            "STRAIN_TSHELL" => Self::ThickShellStrain,
+            _ => return None,
+        })
+    }
+}
+
+/// Reads one `*INITIAL_STRESS_…` or `*INITIAL_STRAIN_…` block. Results of beams and others that
+/// are not understood are named and left out. An element that cannot be read is named and left
+/// out; counts that make no sense end the block.
+pub(crate) fn read_block(
     block: &Block<'_>,
-    id_offset: u64,
-    into: &mut Forming,
+    units: ResultUnits,
+    into: &mut RawForming,
     diagnostics: &mut Diagnostics,
 ) {
-    let is_stress = match block.name.as_str() {
-        "INITIAL_STRESS_SHELL" => true,
-        "INITIAL_STRAIN_SHELL" => false,
-        name if is_forming(name) => {
+    let Some(results) = Results::of_keyword(&block.name) else {
+        if is_forming(&block.name) {
             let kind = DiagnosticKind::Unsupported;
-            let message = || format!("the results in {name} are left out");
+            let message = || format!("the results in *{} are left out", block.name);
             diagnostics.push_with(kind, || block.diagnose(kind, message()));
-            return;
         }
-        _ => return,
+        return;
     };
     let mut reader = Reader {
         block,
         cards: block.cards().peekable(),
-        id_offset,
+        units,
         diagnostics,
         values: Vec::new(),
         bad_field: None,
@@ -43,10 +91,18 @@ pub fn read_block(
         if card.is_blank() {
             continue;
         }
-        let read = if is_stress {
-            reader.stress(&card, into)
-        } else {
-            reader.strain(&card, into)
+        let others = &mut into.of_shells.others;
+        let read = match results {
+            Results::Stress => reader.stress(&card, units.element, &mut into.of_shells),
+            Results::Strain => reader.strain(&card, units.element, &mut into.of_shells),
+            Results::SetStress => reader.stress(&card, units.set, &mut into.of_sets),
+            Results::SetStrain => reader.strain(&card, units.set, &mut into.of_sets),
+            Results::SolidStress => reader.solid_stress(&card, &mut others.solid_stress),
+            Results::SolidStrain => reader.tensors(&card, 1, &mut others.solid_strain),
+            Results::ThickShellStress => {
+                reader.thick_shell_stress(&card, &mut others.thick_shell_stress)
+            }
+            Results::ThickShellStrain => reader.tensors(&card, 2, &mut others.thick_shell_strain),
         };
         if let Err(Stop) = read {
             return;
@@ -55,7 +111,7 @@ pub fn read_block(
 }
 
 /// True for keywords that carry results of an earlier simulation.
-pub fn is_forming(name: &str) -> bool {
+pub(crate) fn is_forming(name: &str) -> bool {
     name.starts_with("INITIAL_STRESS_") || name.starts_with("INITIAL_STRAIN_")
 }
 
@@ -65,7 +121,7 @@ struct Stop;
 struct Reader<'a, 'd> {
     block: &'a Block<'a>,
     cards: Peekable<Cards<'a>>,
-    id_offset: u64,
+    units: ResultUnits,
     diagnostics: &'d mut Diagnostics,
     /// Values of the element at hand.
     values: Vec<f64>,
@@ -94,7 +150,7 @@ const LARGE: Lines = Lines {
 };
 
 impl Reader<'_, '_> {
-    fn stress(&mut self, head: &Card<'_>, into: &mut Forming) -> Result<(), Stop> {
+    fn stress(&mut self, head: &Card<'_>, offset: i64, into: &mut Forming) -> Result<(), Stop> {
         let [
             id,
             n_plane,
@@ -132,28 +188,27 @@ impl Reader<'_, '_> {
             (LARGE, LARGE)
         };
         let n_points = n_plane.max(1) * n_thick.max(1);
+        let factor = self.units.stress;
         let mut points = Vec::with_capacity(n_points);
         let mut history = Vec::with_capacity(n_points * n_history);
         for _ in 0..n_points {
             let values = self.take(8, lines)?;
             points.push(StressPoint {
                 t: values[0],
-                stress: std::array::from_fn(|i| values[i + 1]),
+                stress: std::array::from_fn(|i| values[i + 1] * factor),
                 plastic_strain: values[7],
             });
             history.extend_from_slice(self.take(n_history, lines)?);
             self.take(n_tensor, tensor_lines)?;
         }
-        for _ in 0..n_thermal_points {
-            self.take(n_thermal, lines)?;
-        }
-        if let Some(id) = self.finish_element(head, id) {
+        self.thermal(n_thermal_points, n_thermal, large)?;
+        if let Some(id) = self.finish_element(head, id, offset) {
             into.add_stress(id, n_plane.max(1), &points, &history);
         }
         Ok(())
     }
 
-    fn strain(&mut self, head: &Card<'_>, into: &mut Forming) -> Result<(), Stop> {
+    fn strain(&mut self, head: &Card<'_>, offset: i64, into: &mut Forming) -> Result<(), Stop> {
         let [id, n_plane, n_thick, large, _, _, _, is_local] = self.header(head)?;
         let [n_plane, n_thick] = self.counts(head, [n_plane, n_thick])?;
         let lines = if large == 0 { SMALL } else { LARGE };
@@ -170,18 +225,92 @@ impl Reader<'_, '_> {
                 strain: std::array::from_fn(|i| values[i]),
             });
         }
-        let Some(id) = self.finish_element(head, id) else {
+        let Some(id) = self.finish_element(head, id, offset) else {
             return Ok(());
         };
         if is_local == 0 {
             into.add_strain(id, n_plane, &points);
         } else {
             let kind = DiagnosticKind::Unsupported;
-            let message = "strains in the axes of the element are left out";
-            self.diagnostics
-                .push_with(kind, || self.block.diagnose(kind, message));
+            let what = if self.block.has_option("SET") {
+                "shell set"
+            } else {
+                "shell"
+            };
+            let message =
+                format!("the strains of {what} {id} are in the element's own axes and left out");
+            let column = head.field(EIGHT_BY_10, 7).column;
+            self.diagnostics.push_with(kind, || {
+                let finding = Diagnostic::new(kind, message).at(head.position(column));
+                let found = format!("ILOCAL = {is_local}");
+                finding.found(found).expected("0 for the global axes")
+            });
         }
         Ok(())
+    }
+
+    /// `EID NINT NHISV LARGE IVEFLG IALEGP NTHINT NTHHSV`. The initial volume that `IVEFLG` asks
+    /// for is one of the history variables. Large data run on over the lines of a point.
+    fn solid_stress(&mut self, head: &Card<'_>, counter: &mut usize) -> Result<(), Stop> {
+        let [
+            id,
+            n_points,
+            n_history,
+            large,
+            _,
+            _,
+            n_thermal_points,
+            n_thermal,
+        ] = self.header(head)?;
+        let [n_points, n_history, n_thermal_points, n_thermal] =
+            self.counts(head, [n_points, n_history, n_thermal_points, n_thermal])?;
+        for _ in 0..n_points.max(1) {
+            if large == 0 {
+                self.take(7, SMALL)?;
+                self.take(n_history, SMALL)?;
+            } else {
+                self.take(7 + n_history, LARGE)?;
+            }
+        }
+        self.thermal(n_thermal_points, n_thermal, large)?;
+        self.count_element(head, id, counter);
+        Ok(())
+    }
+
+    /// `EID NPLANE NTHICK NHISV LARGE`, then points as those of a shell.
+    fn thick_shell_stress(&mut self, head: &Card<'_>, counter: &mut usize) -> Result<(), Stop> {
+        let [id, n_plane, n_thick, n_history, large, ..] = self.header(head)?;
+        let [n_plane, n_thick, n_history] = self.counts(head, [n_plane, n_thick, n_history])?;
+        let lines = if large == 0 { SMALL } else { LARGE };
+        for _ in 0..n_plane.max(1) * n_thick.max(1) {
+            self.take(8, lines)?;
+            self.take(n_history, lines)?;
+        }
+        self.count_element(head, id, counter);
+        Ok(())
+    }
+
+    /// `EID` and lines of one tensor each.
+    fn tensors(&mut self, head: &Card<'_>, n: usize, counter: &mut usize) -> Result<(), Stop> {
+        let [id, ..] = self.header(head)?;
+        for _ in 0..n {
+            self.take(6, SMALL_TENSOR)?;
+        }
+        self.count_element(head, id, counter);
+        Ok(())
+    }
+
+    fn thermal(&mut self, n_points: usize, n_values: usize, large: i64) -> Result<(), Stop> {
+        let lines = if large == 0 { SMALL } else { LARGE };
+        for _ in 0..n_points {
+            self.take(n_values, lines)?;
+        }
+        Ok(())
+    }
+
+    fn count_element(&mut self, head: &Card<'_>, id: i64, counter: &mut usize) {
+        let is_good = self.finish_element(head, id, self.units.element).is_some();
+        *counter += usize::from(is_good);
     }
 
     fn header(&mut self, card: &Card<'_>) -> Result<[i64; 8], Stop> {
@@ -281,13 +410,13 @@ impl Reader<'_, '_> {
         n_found
     }
 
-    /// The element's id, unless one of its fields could not be read.
-    fn finish_element(&mut self, head: &Card<'_>, id: i64) -> Option<u64> {
+    /// The element's or set's id, unless one of its fields could not be read.
+    fn finish_element(&mut self, head: &Card<'_>, id: i64, offset: i64) -> Option<u64> {
         if self.bad_field.take().is_some() {
             return None;
         }
         match u64::try_from(id) {
-            Ok(id) if id > 0 => Some(id + self.id_offset),
+            Ok(id) if id > 0 => Some(shifted(id, offset)),
             _ => {
                 let kind = DiagnosticKind::BadForming;
                 let message = "results name no element";
@@ -302,18 +431,25 @@ impl Reader<'_, '_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::model::OtherResults;
     use super::super::block::{Blocks, SourceFile};
     use super::super::card::Layout;
     use super::*;
 
     fn read(text: &str) -> (Forming, Diagnostics) {
         let file = SourceFile::from_text("dynain", text);
-        let (mut forming, mut diagnostics) = (Forming::default(), Diagnostics::default());
+        let (mut forming, mut diagnostics) = (RawForming::default(), Diagnostics::default());
         for block in Blocks::new(&file, Layout::Standard) {
-            read_block(&block, 0, &mut forming, &mut diagnostics);
+            read_block(&block, AS_IT_IS, &mut forming, &mut diagnostics);
         }
-        (forming, diagnostics)
+        (forming.of_shells, diagnostics)
     }
+
+    const AS_IT_IS: ResultUnits = ResultUnits {
+        element: 0,
+        set: 0,
+        stress: 1.0,
+    };
 
     fn clean(text: &str) -> Forming {
         let (forming, diagnostics) = read(text);
@@ -450,7 +586,7 @@ mod tests {
     #[test]
     fn what_cannot_be_used_is_said() {
         let (forming, diagnostics) =
-            read("*INITIAL_STRESS_SOLID\n1\n*INITIAL_STRESS_SHELL_SET\n2\n");
+            read("*INITIAL_STRESS_BEAM\n1\n*INITIAL_STRESS_SOLID_SET\n2\n");
         assert!(forming.is_empty());
         assert_eq!(diagnostics.count(DiagnosticKind::Unsupported), 2);
         let (_, diagnostics) = read("*INITIAL_STRESS_SHELL\n1,99999,99999\n");
@@ -460,6 +596,66 @@ mod tests {
         assert_eq!((forming.n_stress(), diagnostics.total()), (1, 1));
         let (_, diagnostics) = read("*INITIAL_STRAIN_SHELL\n1,1,1,0,,,,1\n0,1,1,1,1,1,1\n");
         assert_eq!(diagnostics.count(DiagnosticKind::Unsupported), 1);
+    }
+
+    #[test]
+    fn ids_are_shifted_either_way_and_stresses_scaled() {
+        let deck = "*INITIAL_STRESS_SHELL\n100,1,1\n-.5,1.,2.,3.,4.,5.,6.,.25\n\
+            *INITIAL_STRESS_SHELL_SET\n9,1,1\n-.5,1.,2.,3.,4.,5.,6.,.25\n";
+        let file = SourceFile::from_text("dynain", deck);
+        let (mut forming, mut diagnostics) = (RawForming::default(), Diagnostics::default());
+        let units = ResultUnits {
+            element: -40,
+            set: 1,
+            stress: 10.0,
+        };
+        for block in Blocks::new(&file, Layout::Standard) {
+            read_block(&block, units, &mut forming, &mut diagnostics);
+        }
+        let of_set = forming.of_sets.stress(0);
+        let of_shell = forming.of_shells.stress(0);
+        assert_eq!((of_shell.element_id, of_set.element_id), (60, 10));
+        assert_eq!(of_shell.points, of_set.points);
+        assert_eq!(
+            of_set.points[0].stress,
+            [10.0, 20.0, 30.0, 40.0, 50.0, 60.0]
+        );
+        assert_eq!(of_set.points[0].plastic_strain, 0.25);
+    }
+
+    #[test]
+    fn results_of_solids_and_thick_shells_are_counted() {
+        let values: Vec<f64> = (1..=30).map(f64::from).collect();
+        let mut deck = String::from("*INITIAL_STRESS_SOLID\n");
+        for id in [1, 2] {
+            // Two points with four history variables run on over three lines each.
+            deck += &ints(10, &[id, 2, 4, 1, 1, 0, 1, 6]);
+            for _ in 0..2 {
+                deck += &(row(16, &values[..5]) + &row(16, &values[5..10]) + &row(16, &[11.0]));
+            }
+            deck += &(row(16, &values[..5]) + &row(16, &[6.0]));
+        }
+        deck += &(ints(10, &[3, 1]) + &row(10, &values[..7]));
+        deck += "*INITIAL_STRAIN_SOLID\n";
+        deck += &(ints(10, &[1]) + &row(10, &values[..6]));
+        deck += &(ints(10, &[2]) + &row(10, &values[..6]));
+        deck += "*INITIAL_STRESS_TSHELL\n";
+        deck += &ints(10, &[1, 1, 2, 3, 1]);
+        for _ in 0..2 {
+            deck += &(row(16, &values[..5]) + &row(16, &values[..3]) + &row(16, &values[..3]));
+        }
+        deck += &(ints(10, &[2, 1, 1]) + &row(10, &POINT));
+        deck += "*INITIAL_STRAIN_TSHELL\n";
+        deck += &(ints(10, &[7]) + &row(10, &values[..6]) + &row(10, &values[..6]));
+        let forming = clean(&deck);
+        assert!(forming.is_empty());
+        let expected = OtherResults {
+            solid_stress: 3,
+            solid_strain: 2,
+            thick_shell_stress: 2,
+            thick_shell_strain: 1,
+        };
+        assert_eq!(forming.others, expected);
     }
 
     #[test]

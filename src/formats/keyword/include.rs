@@ -6,6 +6,7 @@ use super::super::diagnostic::Diagnostics;
 use super::super::source::{FileSource, tidy};
 use super::block::{Block, Cards};
 use super::card::{Card, EIGHT_BY_10, Layout};
+use super::forming::ResultUnits;
 use super::nodes::shifted;
 use super::parts::PartOffsets;
 use super::sets::SetOffsets;
@@ -51,6 +52,8 @@ pub(crate) struct Context {
     pub offsets: Offsets,
     /// Factor on lengths that are not coordinates: thicknesses.
     pub length: f64,
+    /// Factor on stresses.
+    pub stress: f64,
 }
 
 impl Default for Context {
@@ -60,11 +63,20 @@ impl Default for Context {
             layout_is_fixed: false,
             offsets: Offsets::default(),
             length: 1.0,
+            stress: 1.0,
         }
     }
 }
 
 impl Context {
+    pub(crate) fn results(&self) -> ResultUnits {
+        ResultUnits {
+            element: self.offsets.element,
+            set: self.offsets.set,
+            stress: self.stress,
+        }
+    }
+
     pub(crate) fn elements(&self) -> ElementOffsets {
         ElementOffsets {
             element: self.offsets.element,
@@ -98,6 +110,7 @@ impl Context {
             layout_is_fixed: suffix.is_some(),
             offsets: self.offsets.plus(include.offsets),
             length: self.length * include.length,
+            stress: self.stress * include.stress,
         }
     }
 }
@@ -112,6 +125,8 @@ pub(crate) struct Include {
     pub offsets: Offsets,
     /// FCTLEN: factor on coordinates and thicknesses.
     pub length: f64,
+    /// FCTMAS / (FCTLEN · FCTTIM²): factor on stresses.
+    pub stress: f64,
     /// TRANID with the including file's offset, or 0.
     pub transformation: u64,
 }
@@ -123,6 +138,7 @@ impl Include {
             at,
             offsets: Offsets::default(),
             length: 1.0,
+            stress: 1.0,
             transformation: 0,
         }
     }
@@ -181,11 +197,16 @@ pub(crate) fn read_include_transform(
         }
     }
     if let Some(card) = cards.next() {
-        match card.real_or_zero(EIGHT_BY_10, 2) {
-            Ok(0.0) => {}
-            Ok(value) => include.length = value,
-            Err(error) => report(&card, error),
-        }
+        let [mass, time, length] = [0, 1, 2].map(|index| {
+            let factor = card.real_or_zero(EIGHT_BY_10, index);
+            let factor = factor.unwrap_or_else(|error| {
+                report(&card, error);
+                1.0
+            });
+            if factor == 0.0 { 1.0 } else { factor }
+        });
+        include.length = length;
+        include.stress = mass / (length * time * time);
     }
     if let Some(card) = cards.next() {
         match card.id(EIGHT_BY_10, 0) {

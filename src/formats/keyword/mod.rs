@@ -14,8 +14,8 @@
 //! - `transform::Transformation::from_block(&Block, &mut Diagnostics) -> Option<(u64, Self)>` reads
 //!   one `*DEFINE_TRANSFORMATION`; `matrix(&dyn Fn(u64) -> Option<Point3>) -> Result<Matrix4, _>`
 //!   carries it out, with node positions by id.
-//! - `forming::read_block(&Block, id_offset: u64, &mut Forming, &mut Diagnostics)` reads one
-//!   `*INITIAL_STRESS_SHELL`, `*INITIAL_STRAIN_SHELL` … block.
+//! - `forming` reads one `*INITIAL_STRESS_…` or `*INITIAL_STRAIN_…` block; `results` spreads what
+//!   was given to sets and turns tensors with the motions of includes.
 
 mod assemble;
 pub mod block;
@@ -24,7 +24,7 @@ mod chunks;
 pub mod deck;
 pub mod expression;
 pub mod fixed_width;
-pub mod forming;
+mod forming;
 mod include;
 mod mesh;
 mod nodes;
@@ -33,6 +33,7 @@ pub mod parameter;
 mod parameter_card;
 mod parts;
 mod resolve;
+mod results;
 mod sets;
 mod shells;
 mod solids;

@@ -174,6 +174,8 @@ pub(crate) fn read_node_thickness(
 pub(crate) struct NodeTransform {
     pub transformation: u64,
     pub node_set: u64,
+    /// IMMED: carried out as soon as it is read, on the nodes read so far.
+    pub at_once: bool,
 }
 
 /// Reads `*NODE_TRANSFORM`. Ids are those of the file, without offsets.
@@ -188,6 +190,7 @@ pub(crate) fn read_node_transforms(
             Ok(NodeTransform {
                 transformation,
                 node_set,
+                at_once: card.int_or_zero(EIGHT_BY_10, 2)? != 0,
             })
         });
         match row {

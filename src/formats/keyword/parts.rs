@@ -20,6 +20,10 @@ pub(crate) struct RawPart {
     pub id: u64,
     pub title: String,
     pub section_id: u64,
+    /// The text that stands in place of the part's id, which is 0 then.
+    pub label: Option<String>,
+    /// The text that stands in place of the section's id, which is 0 then.
+    pub section_label: Option<String>,
     /// Sum of the plies of `*PART_COMPOSITE`.
     pub thickness: Option<f64>,
     /// Byte offset of its card.
@@ -94,13 +98,30 @@ fn part(
         pass_over_options(block, cards);
         None
     };
+    let (id, label) = or_label(id)?;
+    let (section, section_label) = or_label(section)?;
     Ok(RawPart {
-        id: shifted(id?, offsets.part),
+        id: shifted(id, offsets.part),
         title: heading.line_text().trim().to_owned(),
-        section_id: shifted(section?, offsets.section),
+        section_id: shifted(section, offsets.section),
+        label,
+        section_label,
         thickness: thickness.filter(|&sum| sum > 0.0),
         at: card.offset(),
     })
+}
+
+/// An id, or 0 and the text that newer decks may have in its place.
+fn or_label(id: Result<u64, FieldError>) -> Result<(u64, Option<String>), FieldError> {
+    let is_text = |error: &FieldError| {
+        error.kind == DiagnosticKind::BadField
+            && error.found.starts_with(|c: char| c.is_ascii_alphabetic())
+    };
+    match id {
+        Ok(id) => Ok((id, None)),
+        Err(error) if is_text(&error) => Ok((0, Some(error.found))),
+        Err(error) => Err(error),
+    }
 }
 
 /// Passes over the cards that the options of `*PART` bring, in the order of the manual.

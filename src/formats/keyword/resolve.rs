@@ -9,6 +9,7 @@ use super::super::model::{
     AppliedMotion, IdIndex, Model, Nodes, Set, Sets, Shell, ShellExtra, Solid, has_area,
 };
 use super::assemble::{Assembly, Motion};
+use super::results::{Results, Turned};
 use super::sets::{Members, SetKind, resolve_sets};
 use crate::geometry::Matrix4;
 use crate::monitor::{Cancelled, Monitor};
@@ -23,7 +24,6 @@ pub(super) fn finish(mut assembly: Assembly, monitor: &Monitor) -> Result<Model,
     let mut model = Model {
         title: std::mem::take(&mut assembly.title),
         files: std::mem::take(&mut assembly.files),
-        forming: std::mem::take(&mut assembly.forming),
         ..Model::default()
     };
     number_nodes(&mut assembly, &mut model);
@@ -32,10 +32,14 @@ pub(super) fn finish(mut assembly: Assembly, monitor: &Monitor) -> Result<Model,
     monitor.check()?;
     link_solids(&mut assembly, &mut model);
     monitor.check()?;
+    assembly.number_labelled_parts();
     give_thickness_to_parts(&mut assembly, &mut model);
     collect_sets(&mut assembly, &mut model);
     spread_node_thickness(&assembly, &mut model);
-    move_nodes(&mut assembly, &mut model);
+    let raw = std::mem::take(&mut assembly.forming);
+    let mut results = Results::new(raw, &model, &mut assembly.found);
+    carry_out_motions(&mut assembly, &mut model, &mut results);
+    model.forming = results.finish();
     monitor.check()?;
     tell_flat_shells(&assembly, &mut model);
     let mut found = assembly.found;
@@ -336,16 +340,24 @@ fn spread_node_thickness(assembly: &Assembly, model: &mut Model) {
     }
 }
 
-/// Carries out unit factors and transformations, the innermost include first.
-fn move_nodes(assembly: &mut Assembly, model: &mut Model) {
-    for motion in std::mem::take(&mut assembly.motions) {
-        if let Err(finding) = move_some(assembly, model, &motion) {
+/// Carries out unit factors and transformations, the innermost include first. `*NODE_TRANSFORM`
+/// waits for all of them unless it asks to be carried out at once.
+fn carry_out_motions(assembly: &mut Assembly, model: &mut Model, results: &mut Results) {
+    let mut motions = std::mem::take(&mut assembly.motions);
+    motions.sort_by_key(|motion| matches!(motion, Motion::NodeSet { at_once: None, .. }));
+    for motion in motions {
+        if let Err(finding) = carry_out(assembly, model, results, &motion) {
             assembly.found.push(finding);
         }
     }
 }
 
-fn move_some(assembly: &Assembly, model: &mut Model, motion: &Motion) -> Result<(), Diagnostic> {
+fn carry_out(
+    assembly: &mut Assembly,
+    model: &mut Model,
+    results: &mut Results,
+    motion: &Motion,
+) -> Result<(), Diagnostic> {
     let (position, id, matrix) = match motion {
         Motion::Scale {
             factor, position, ..
@@ -368,21 +380,33 @@ fn move_some(assembly: &Assembly, model: &mut Model, motion: &Motion) -> Result<
     })?;
     let indices: Vec<usize> = match motion {
         Motion::Scale { nodes, .. } | Motion::Include { nodes, .. } => nodes.clone().collect(),
-        Motion::NodeSet { set, .. } => {
+        Motion::NodeSet { set, at_once, .. } => {
             let members = model.sets.nodes.get(set).ok_or_else(|| {
                 let message = format!("node set {set} is not defined");
                 failed(DiagnosticKind::BadSet, message)
             })?;
-            let known = members
-                .ids
-                .iter()
-                .filter_map(|&id| model.nodes.index_of(id));
-            known.map(|index| index as usize).collect()
+            let ids = members.ids.iter();
+            let known = ids.filter_map(|&id| model.nodes.index_of(id));
+            let n_read = at_once.unwrap_or(usize::MAX);
+            known
+                .map(|index| index as usize)
+                .filter(|&index| index < n_read)
+                .collect()
         }
     };
     let positions = model.nodes.positions_mut();
     for &index in &indices {
         positions[index] = matrix.transform_point(&positions[index]);
+    }
+    let turned = match motion {
+        Motion::Scale { .. } => Turned::default(),
+        Motion::Include { results: span, .. } => results.turn_span(span, &matrix),
+        Motion::NodeSet { .. } => results.turn_moved(model, &indices, &matrix),
+    };
+    for what in turned.complaints(id) {
+        assembly
+            .found
+            .push(failed(DiagnosticKind::Unsupported, what));
     }
     model.motions.push(AppliedMotion {
         position: position.clone(),

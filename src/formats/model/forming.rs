@@ -65,11 +65,33 @@ pub struct ShellStrain<'a> {
     pub points: &'a [StrainPoint],
 }
 
+/// Elements other than shells that carry results. These are counted, their values are not kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct OtherResults {
+    /// Solids with stresses.
+    pub solid_stress: usize,
+    /// Solids with strains.
+    pub solid_strain: usize,
+    /// Thick shells with stresses.
+    pub thick_shell_stress: usize,
+    /// Thick shells with strains.
+    pub thick_shell_strain: usize,
+}
+
+impl OtherResults {
+    /// True if there are none.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// Forming results of the shells, in the order of the file and stored without gaps.
 ///
 /// The corner thickness of the elements is in [`Model::shell_extras`](super::Model::shell_extras).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Forming {
+    /// What other elements have.
+    pub others: OtherResults,
     stress: Vec<StressRecord>,
     stress_points: Vec<StressPoint>,
     history: Vec<f64>,
@@ -149,6 +171,18 @@ impl Forming {
         }
     }
 
+    /// The points of the `index`-th shell with stresses, to be turned or scaled.
+    pub fn stress_points_mut(&mut self, index: usize) -> &mut [StressPoint] {
+        let record = &self.stress[index];
+        &mut self.stress_points[record.first_point..][..record.n_points as usize]
+    }
+
+    /// The points of the `index`-th shell with strains, to be turned.
+    pub fn strain_points_mut(&mut self, index: usize) -> &mut [StrainPoint] {
+        let record = &self.strain[index];
+        &mut self.strain_points[record.first_point..][..record.n_points as usize]
+    }
+
     /// All stresses in the order of the file.
     pub fn stresses(&self) -> impl ExactSizeIterator<Item = ShellStress<'_>> {
         (0..self.n_stress()).map(|index| self.stress(index))
@@ -159,7 +193,7 @@ impl Forming {
         (0..self.n_strain()).map(|index| self.strain(index))
     }
 
-    /// True if no shell has stresses or strains.
+    /// True if no shell has stresses or strains; other elements may have.
     pub fn is_empty(&self) -> bool {
         self.stress.is_empty() && self.strain.is_empty()
     }

@@ -7,7 +7,7 @@ mod surface;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-pub use forming::{Forming, ShellStrain, ShellStress, StrainPoint, StressPoint};
+pub use forming::{Forming, OtherResults, ShellStrain, ShellStress, StrainPoint, StressPoint};
 pub use index::IdIndex;
 pub(crate) use surface::has_area;
 pub use surface::{PartSummary, Selection, SelectionError, Surface};
@@ -229,7 +229,9 @@ pub struct Model {
     pub sections: Vec<Section>,
     /// Sets of parts, shells and nodes.
     pub sets: Sets,
-    /// Forming results, as the files have them: tensors are in the frame of their file.
+    /// Forming results. Tensors are in the global frame: those of a file that was included under a
+    /// transformation, or of shells that `*NODE_TRANSFORM` moved, are turned with its rotation.
+    /// The sides of a shell are those of its corner order, as in the deck, also after a mirror.
     pub forming: Forming,
     /// Motions that includes and `*NODE_TRANSFORM` brought, in the order they were carried out.
     pub motions: Vec<AppliedMotion>,
