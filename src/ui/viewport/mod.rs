@@ -1,29 +1,390 @@
-//! The two 3D windows.
+//! The two 3D windows: crash left, stamped right. They draw what the state says and turn mouse and
+//! keys into commands.
 
-use crate::app::{AppState, Command};
-use crate::jobs::Role;
+mod background;
+mod cast;
+mod fields;
+mod gpu;
+mod look;
+mod meshes;
+mod motion;
+mod navigation;
+mod overlay;
+mod pointing;
+mod snapshot;
+mod stage;
+mod tools;
 
-/// What the 3D windows keep between frames.
-pub struct Viewports;
+use std::sync::Arc;
+
+use eframe::egui_wgpu::RenderState;
+use egui::{EventFilter, Rect, Response, Sense, Ui, WidgetInfo};
+
+use crate::app::{AppState, Command, ViewCommand};
+use crate::geometry::{Camera, Point3};
+use crate::jobs::{PerRole, Role};
+use cast::Stage;
+use fields::{FieldKind, FieldStore};
+use gpu::{Gpu, ViewCallback};
+use look::Look;
+use meshes::{MeshSource, MeshStore, ShownMesh};
+use motion::{Crossing, SmoothCamera, SmoothPose};
+use navigation::{Navigator, View};
+use pointing::{Pointing, Target};
+use snapshot::Shot;
+use stage::{Layer, Picture};
+use tools::{Bench, Tools};
+
+/// The 3D windows with everything they remember between frames.
+pub struct Viewports {
+    render_state: Option<RenderState>,
+    meshes: MeshStore,
+    fields: FieldStore,
+    crossing: Crossing,
+    pose: SmoothPose,
+    windows: PerRole<Window>,
+}
+
+/// What one window remembers.
+#[derive(Default)]
+struct Window {
+    camera: SmoothCamera,
+    navigator: Navigator,
+    tools: Tools,
+    pointing: Pointing,
+    /// The meshes that were drawn last, shown until newer ones are ready.
+    shown: PerRole<Option<Arc<ShownMesh>>>,
+    /// Revision of the pose the camera has followed the part to.
+    followed: u64,
+    /// What was drawn last, for pictures in files.
+    shot: Option<Shot>,
+    has_picture: bool,
+}
 
 impl Viewports {
-    /// Without a render state nothing but the ground is drawn.
-    pub fn new(_render_state: Option<&eframe::egui_wgpu::RenderState>) -> Self {
-        Self
+    /// Compiles the shaders. Without a render state (tests of logic) pictures are left out and a
+    /// text stands in their place.
+    pub fn new(render_state: Option<&RenderState>) -> Self {
+        if let Some(render_state) = render_state {
+            Gpu::install(render_state);
+        }
+        Self {
+            render_state: render_state.cloned(),
+            meshes: MeshStore::new(),
+            fields: FieldStore::new(),
+            crossing: Crossing::default(),
+            pose: SmoothPose::default(),
+            windows: PerRole::default(),
+        }
     }
 
-    /// Draws one window into the space that is left.
-    pub fn show(
-        &mut self,
-        ui: &mut egui::Ui,
-        role: Role,
-        _state: &AppState,
-        _commands: &mut Vec<Command>,
-    ) {
-        let (rect, response) = ui.allocate_exact_size(ui.available_size(), egui::Sense::drag());
-        let palette = crate::ui::theme::Palette::of(ui);
-        ui.painter().rect_filled(rect, 0.0, palette.ground);
-        let name = format!("3D window of the {} part", role.word());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
+    /// Shows one window in the rest of `ui`.
+    pub fn show(&mut self, ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
+        let rect = ui.available_rect_before_wrap();
+        ui.advance_cursor_after_rect(rect);
+        if rect.width() < 1.0 || rect.height() < 1.0 {
+            return;
+        }
+        let id = ui.make_persistent_id(("viewport", role.word()));
+        let response = ui.interact(rect, id, Sense::click_and_drag());
+        response
+            .widget_info(|| WidgetInfo::labeled(egui::Role::Canvas, true, summary(state, role)));
+        let look = Look::of(ui.visuals().dark_mode);
+        tell_state(&response, role, state, commands);
+        let stage = self.stage(ui, role, state, rect, commands);
+        let picture = self.picture_of(ui, &stage, state, &look);
+        let camera = self.navigate(ui, &response, state, &stage, &picture, commands);
+        let stage = Stage { camera, ..stage };
+        let frame = InFrame {
+            response: &response,
+            state,
+            stage: &stage,
+            picture: &picture,
+            look: &look,
+        };
+        self.paint(ui, &frame);
+        self.interact(ui, &frame, commands);
+        self.keep_moving(ui, role);
     }
+
+    /// True while meshes or colours are being made that a window wants to show. For tests and
+    /// pictures that must not be taken too early.
+    pub fn is_waiting(&self) -> bool {
+        self.meshes.is_waiting() || self.fields.is_waiting()
+    }
+
+    /// Cameras and poses as they are shown in this frame.
+    fn stage(
+        &mut self,
+        ui: &Ui,
+        role: Role,
+        state: &AppState,
+        rect: Rect,
+        commands: &mut Vec<Command>,
+    ) -> Stage {
+        let now = ui.input(|i| i.time);
+        let may_move = !state.settings.reduce_motion;
+        let bounds = state.document.part(Role::Stamped).map(|part| part.bounds());
+        let bounds = bounds.filter(|bounds| !bounds.is_empty());
+        let center = bounds.map_or(Point3::origin(), |bounds| bounds.center());
+        // What the hand or the running match moves must not lag behind.
+        let is_driven = state.live_pose.is_some()
+            || state.view.move_tool.is_some()
+            || state.view.scrubbed_iteration.is_some()
+            || self
+                .windows
+                .iter()
+                .any(|(_, window)| window.tools.is_moving());
+        let may_glide = may_move && !is_driven;
+        let pose = self
+            .pose
+            .follow(&state.shown_pose(), &center, now, may_glide);
+        let over = self
+            .crossing
+            .follow(state.view.is_moved_over, now, may_move);
+        let is_linked_drag =
+            state.view.are_linked && self.windows.get(role.other()).navigator.drag().is_some();
+        let window = self.windows.get_mut(role);
+        let mut camera = *state.view.cameras.get(role);
+        if let Some(followed) = window.follow_part(role, state, rect, is_driven) {
+            camera = followed;
+            commands.push(ViewCommand::SetCamera(role, camera).into());
+        }
+        let may_fly = may_move && window.has_picture && !is_linked_drag;
+        Stage {
+            window: role,
+            camera: window.camera.follow(&camera, now, may_fly),
+            aspect: f64::from(rect.width() / rect.height()),
+            pose,
+            over,
+        }
+    }
+
+    /// The window's scene, from the meshes that are ready.
+    fn picture_of(&mut self, ui: &Ui, stage: &Stage, state: &AppState, look: &Look) -> Picture {
+        let actors: Vec<_> = cast::cast(state, stage)
+            .into_iter()
+            .filter_map(|actor| Some((state.document.part(actor.role)?, actor)))
+            .collect();
+        let sources: Vec<_> = actors
+            .iter()
+            .map(|(part, actor)| MeshSource::of(part, actor.is_detailed))
+            .collect();
+        let ready = self.meshes.get(stage.window, &sources, ui.ctx());
+        let shown = &mut self.windows.get_mut(stage.window).shown;
+        let drawn = ready
+            .into_iter()
+            .zip(actors)
+            .filter_map(|(mesh, (part, actor))| {
+                let last = shown.get_mut(actor.role);
+                if mesh.is_some() {
+                    last.clone_from(&mesh);
+                }
+                let loaded = part.loaded.to_arc();
+                let is_same_part = |mesh: &&Arc<ShownMesh>| Arc::ptr_eq(&mesh.source.part, &loaded);
+                let mesh = mesh.or_else(|| last.as_ref().filter(is_same_part).cloned())?;
+                Some((mesh, actor))
+            });
+        let drawn: Vec<_> = drawn.collect();
+        let meshes: Vec<_> = drawn
+            .iter()
+            .map(|(mesh, actor)| (actor.role, Arc::clone(mesh)))
+            .collect();
+        let fields = self.fields.get(stage.window, state, &meshes, ui.ctx());
+        let layers = drawn
+            .into_iter()
+            .zip(fields)
+            .map(|((mesh, actor), field)| Layer {
+                role: actor.role,
+                mesh,
+                field,
+                actor,
+            });
+        Picture::new(state, stage, look, layers.collect(), ui.pixels_per_point())
+    }
+
+    /// The camera after this frame's input.
+    fn navigate(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        state: &AppState,
+        stage: &Stage,
+        picture: &Picture,
+        commands: &mut Vec<Command>,
+    ) -> Camera {
+        let role = stage.window;
+        let view = View {
+            rect: response.rect,
+            camera: stage.camera,
+            picture,
+            pivot: *state.view.pivot.get(role),
+            style: state.view.orbit_style,
+            scheme: state.settings.mouse,
+        };
+        let window = self.windows.get_mut(role);
+        window.has_picture = !picture.is_empty();
+        let is_left_taken = window.tools.takes_left();
+        match window.navigator.update(ui, response, &view, is_left_taken) {
+            Some(camera) => {
+                window.camera.jump(camera);
+                commands.push(ViewCommand::SetCamera(role, camera).into());
+                camera
+            }
+            None => stage.camera,
+        }
+    }
+
+    fn paint(&mut self, ui: &Ui, frame: &InFrame<'_>) {
+        let rect = frame.response.rect;
+        if self.render_state.is_none() {
+            overlay::placeholder(ui, rect, frame.look);
+            return;
+        }
+        let role = frame.stage.window;
+        let callback = ViewCallback {
+            role,
+            scene: Arc::clone(&frame.picture.scene),
+            camera: frame.stage.camera,
+            rect,
+        };
+        let size = rect.size() * ui.pixels_per_point();
+        self.windows.get_mut(role).shot = Some(Shot {
+            scene: Arc::clone(&frame.picture.scene),
+            camera: frame.stage.camera,
+            size: [size.x.round() as u32, size.y.round() as u32],
+        });
+        ui.painter_at(rect).add(callback.shape());
+    }
+
+    /// Tools, pointing, and what lies over the picture.
+    fn interact(&mut self, ui: &mut Ui, frame: &InFrame<'_>, commands: &mut Vec<Command>) {
+        let InFrame {
+            response,
+            state,
+            stage,
+            picture,
+            look,
+        } = *frame;
+        let window = self.windows.get_mut(stage.window);
+        let bench = Bench {
+            ui,
+            response,
+            state,
+            stage,
+        };
+        window.tools.update(&bench, commands);
+        let target = Target {
+            ui,
+            response,
+            state,
+            stage,
+            picture,
+            is_busy: window.navigator.drag().is_some() || window.tools.takes_left(),
+        };
+        let hit = window.pointing.update(&target, commands);
+        window.tools.paint(&bench);
+        let kind = FieldKind::of(state.view.display.color_by);
+        let view = overlay::Overlay {
+            rect: response.rect,
+            look,
+            state,
+            stage,
+            picture,
+            drag: window.navigator.drag(),
+            hit: hit.as_ref(),
+            scale: kind.and_then(|kind| Some((kind.label(), self.fields.scale(state)?))),
+            hint: window.tools.hint(state),
+            is_focused: response.has_focus(),
+        };
+        overlay::show(ui, &view, commands);
+    }
+
+    fn keep_moving(&self, ui: &Ui, role: Role) {
+        let now = ui.input(|i| i.time);
+        let is_moving = self.windows.get(role).camera.is_moving(now)
+            || self.crossing.is_moving(now)
+            || self.pose.is_moving(now);
+        if is_moving {
+            ui.ctx().request_repaint();
+        }
+    }
+}
+
+/// What a window shows in one frame.
+struct InFrame<'a> {
+    response: &'a Response,
+    state: &'a AppState,
+    stage: &'a Stage,
+    picture: &'a Picture,
+    look: &'a Look,
+}
+
+impl Window {
+    /// A match may take the stamped part far away; where it would leave its own window, the camera
+    /// goes with it.
+    fn follow_part(
+        &mut self,
+        role: Role,
+        state: &AppState,
+        rect: Rect,
+        is_driven: bool,
+    ) -> Option<Camera> {
+        let revision = state.document.pose.revision;
+        let is_alone = role == Role::Stamped && !state.view.is_moved_over;
+        if !is_alone || is_driven || revision == self.followed {
+            return None;
+        }
+        self.followed = revision;
+        let center = state.document.stamped_center()?;
+        let camera = *state.view.cameras.get(role);
+        let seen = navigation::pos_of(rect, &camera, &center);
+        let is_inside = seen.is_some_and(|at| rect.shrink2(rect.size() * 0.2).contains(at));
+        (self.has_picture && !is_inside).then_some(Camera {
+            target: center,
+            ..camera
+        })
+    }
+}
+
+/// Tells the state what it needs to know about a window.
+fn tell_state(response: &Response, role: Role, state: &AppState, commands: &mut Vec<Command>) {
+    let aspect = f64::from(response.rect.width() / response.rect.height());
+    if (*state.view.aspects.get(role) - aspect).abs() > 1e-3 {
+        commands.push(ViewCommand::SetAspect(role, aspect).into());
+    }
+    let is_pressed = response.is_pointer_button_down_on();
+    if is_pressed {
+        response.request_focus();
+    }
+    if (is_pressed || response.gained_focus()) && state.view.focus != role {
+        commands.push(ViewCommand::SetFocus(role).into());
+    }
+    if response.has_focus() {
+        let filter = EventFilter {
+            horizontal_arrows: true,
+            vertical_arrows: true,
+            ..EventFilter::default()
+        };
+        let set_filter = |m: &mut egui::Memory| m.set_focus_lock_filter(response.id, filter);
+        response.ctx.memory_mut(set_filter);
+    }
+}
+
+/// What a screen reader says about a window.
+fn summary(state: &AppState, role: Role) -> String {
+    let name = match role {
+        Role::Crash => "Crash part",
+        Role::Stamped => "Stamped part",
+    };
+    let Some(part) = state.document.part(role) else {
+        return format!("{name}, nothing loaded");
+    };
+    let n = overlay::grouped(part.reduced_mesh().n_triangles());
+    let with = match role {
+        Role::Crash if state.view.is_moved_over => ", with the stamped part",
+        Role::Stamped if state.view.is_moved_over => ", moved to the left window",
+        _ => "",
+    };
+    format!("{name}, {n} triangles{with}")
 }

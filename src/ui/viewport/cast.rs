@@ -1,0 +1,215 @@
+//! Which parts a window shows, where, and how they look: from the state, without a mesh in sight.
+
+use crate::app::{AppState, ColorBy, Part, ShownGeometry};
+use crate::geometry::{Camera, Similarity, Vector3};
+use crate::jobs::Role;
+use crate::render::{PartLook, Style, WipeSide};
+
+use super::look::Look;
+
+/// Opacity of the crash part when one sees through it.
+const SEE_THROUGH: f32 = 0.3;
+/// Opacity of the stamped part while something else than its real pose is shown.
+const PREVIEW: f32 = 0.62;
+
+/// What a window's picture depends on beside the state.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stage {
+    /// The window.
+    pub window: Role,
+    /// Its camera as it is shown, on its way or not.
+    pub camera: Camera,
+    /// Width over height.
+    pub aspect: f64,
+    /// The pose of the stamped part as it is shown, gliding or not.
+    pub pose: Similarity,
+    /// How far the stamped part has flown from the right window (0) to the left one (1).
+    pub over: f64,
+}
+
+/// One part in one window.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Actor {
+    pub role: Role,
+    pub world_from_part: Similarity,
+    /// Shift for display only.
+    pub offset: Vector3,
+    pub opacity: f32,
+    pub is_detailed: bool,
+    pub wipe: WipeSide,
+}
+
+/// What a line across the window separates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Divider {
+    /// Crash left, stamped right.
+    Wipe(f32),
+    /// Reduced left, full right.
+    Split(f32),
+}
+
+impl Divider {
+    /// Place of the line as a share of the width.
+    pub fn share(self) -> f32 {
+        match self {
+            Self::Wipe(share) | Self::Split(share) => share,
+        }
+    }
+}
+
+/// The line across a window, if it has one: the wipe where both parts are, else the split.
+pub(super) fn divider(state: &AppState, stage: &Stage) -> Option<Divider> {
+    let display = &state.view.display;
+    let is_shared = stage.window == Role::Crash && state.view.is_moved_over;
+    let wipe = display.wipe.filter(|_| is_shared).map(Divider::Wipe);
+    let split = display.split.filter(|_| has_level(state, stage.window));
+    wipe.or(split.map(Divider::Split))
+}
+
+fn has_level(state: &AppState, window: Role) -> bool {
+    let reduced = |role| state.document.part(role).is_some_and(|p| p.level.is_some());
+    reduced(window) || (state.view.is_moved_over && reduced(Role::Stamped))
+}
+
+/// The parts of a window, crash first.
+pub(super) fn cast(state: &AppState, stage: &Stage) -> Vec<Actor> {
+    let mut actors = Vec::new();
+    if stage.window == Role::Crash && state.document.part(Role::Crash).is_some() {
+        actors.push(crash(state));
+    }
+    if state.document.part(Role::Stamped).is_some() {
+        actors.extend(stamped(state, stage));
+    }
+    match divider(state, stage) {
+        Some(Divider::Wipe(_)) => {
+            for actor in &mut actors {
+                actor.wipe = match actor.role {
+                    Role::Crash => WipeSide::Left,
+                    Role::Stamped => WipeSide::Right,
+                };
+            }
+            actors
+        }
+        Some(Divider::Split(_)) => actors.into_iter().flat_map(both_sides).collect(),
+        None => actors,
+    }
+}
+
+/// A part as reduced on the left of the line and as full mesh on its right.
+fn both_sides(actor: Actor) -> [Actor; 2] {
+    let side = |is_detailed, wipe| Actor {
+        is_detailed,
+        wipe,
+        ..actor.clone()
+    };
+    [side(false, WipeSide::Left), side(true, WipeSide::Right)]
+}
+
+fn crash(state: &AppState) -> Actor {
+    let mut opacity = state.view.display.opacity.crash;
+    if state.view.display.is_see_through {
+        opacity = opacity.min(SEE_THROUGH);
+    }
+    Actor {
+        role: Role::Crash,
+        world_from_part: Similarity::identity(),
+        offset: Vector3::zeros(),
+        opacity,
+        is_detailed: is_detailed(state),
+        wipe: WipeSide::Both,
+    }
+}
+
+fn stamped(state: &AppState, stage: &Stage) -> Option<Actor> {
+    let is_left = stage.window == Role::Crash;
+    let is_over = state.view.is_moved_over;
+    let is_previewed_left = is_left && !is_over && stage.over <= 0.0 && state.is_preview();
+    let is_here = if is_left {
+        stage.over > 0.0
+    } else {
+        stage.over < 1.0
+    };
+    let is_blinked_away = is_left && is_over && state.view.is_blinking;
+    if is_blinked_away || !(is_here || is_previewed_left) {
+        return None;
+    }
+    let mut opacity = state.view.display.opacity.stamped;
+    let mut offset = Vector3::zeros();
+    if is_left {
+        if state.is_preview() {
+            opacity = opacity.min(PREVIEW);
+        }
+        offset += separation(state, stage);
+    }
+    if !is_previewed_left {
+        offset += flight_offset(stage);
+    }
+    Some(Actor {
+        role: Role::Stamped,
+        world_from_part: stage.pose,
+        offset,
+        opacity,
+        is_detailed: is_detailed(state),
+        wipe: WipeSide::Both,
+    })
+}
+
+fn is_detailed(state: &AppState) -> bool {
+    let is_blinking = state.view.is_blinking && !state.view.is_moved_over;
+    is_blinking || state.view.shown == ShownGeometry::Detailed
+}
+
+/// The part leaves one window through the edge between them and enters the other there.
+fn flight_offset(stage: &Stage) -> Vector3 {
+    let width = stage.camera.height * stage.aspect;
+    let share = match stage.window {
+        Role::Crash => 1.0 - stage.over,
+        Role::Stamped => -stage.over,
+    };
+    stage.camera.right() * (width * share)
+}
+
+/// The shift that lets one look between the sheets: along the mean normal, or towards the viewer
+/// for parts without one.
+fn separation(state: &AppState, stage: &Stage) -> Vector3 {
+    let distance = state.view.display.separation;
+    let Some(part) = state.document.part(Role::Stamped) else {
+        return Vector3::zeros();
+    };
+    let normal = stage.pose.rotate(&part.facts.mean_normal);
+    let direction = normal
+        .try_normalize(0.05)
+        .unwrap_or(-stage.camera.forward());
+    direction * distance
+}
+
+/// Looks of the parts of a deck, by their index.
+pub(super) fn part_looks(state: &AppState, part: &Part, role: Role, look: &Look) -> Vec<PartLook> {
+    let is_by_part = state.view.display.color_by == ColorBy::Part;
+    let is_ref =
+        |of: Option<crate::app::PartRef>, id| of.is_some_and(|p| p.role == role && p.id == id);
+    let model_parts = part.loaded.model.parts.iter().enumerate();
+    let looks = model_parts.map(|(index, model_part)| {
+        let id = model_part.id;
+        let given = part.colors.get(&id).copied();
+        PartLook {
+            color: given.or_else(|| is_by_part.then(|| look.part(index))),
+            visible: part.is_visible(id),
+            selected: is_ref(state.view.selected, id),
+            hovered: is_ref(state.view.hovered, id),
+        }
+    });
+    looks.collect()
+}
+
+/// What is drawn of a mesh.
+pub(super) fn style(state: &AppState) -> Style {
+    let display = &state.view.display;
+    Style {
+        element_edges: display.has_edges,
+        feature_edges: display.has_feature_edges,
+        borders: display.has_feature_edges,
+        points: display.has_points,
+        ..Style::default()
+    }
+}

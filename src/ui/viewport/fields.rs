@@ -1,0 +1,347 @@
+//! Numbers shown as colours: thickness, error of the reduction, distance between the parts. Made
+//! off the frame and kept while they are shown.
+
+use std::sync::Arc;
+
+use super::background::{Background, Task};
+use super::meshes::{MeshKey, ShownMesh};
+use crate::app::{AppState, ColorBy};
+use crate::colormap::{ColorMap, ColorScale};
+use crate::geometry::{Point3, Similarity, TriMesh, Vector3};
+use crate::jobs::{PerRole, Role};
+use crate::monitor::Monitor;
+use crate::render::FieldLook;
+use crate::search::{Bvh, SearchLimits, closest_many};
+
+/// Distances beyond this share of the crash part's size are none: the part is elsewhere.
+const REACH: f64 = 0.05;
+/// Share of the values on either end that may lie beyond the colours.
+const TAIL: f64 = 0.005;
+/// Fields kept although nothing shows them now.
+const KEPT: usize = 6;
+
+/// What a field says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FieldKind {
+    Thickness,
+    ReductionError,
+    Deviation,
+}
+
+impl FieldKind {
+    /// The field that is asked for, if it is one.
+    pub fn of(color_by: ColorBy) -> Option<Self> {
+        match color_by {
+            ColorBy::Thickness => Some(Self::Thickness),
+            ColorBy::ReductionError => Some(Self::ReductionError),
+            ColorBy::Deviation => Some(Self::Deviation),
+            ColorBy::Role | ColorBy::Part => None,
+        }
+    }
+
+    /// Title of the legend.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Thickness => "Thickness",
+            Self::ReductionError => "Distance reduced to full",
+            Self::Deviation => "Stamped to crash",
+        }
+    }
+}
+
+/// A field by what it was made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct FieldKey {
+    kind: FieldKind,
+    mesh: MeshKey,
+    /// The pose a deviation was measured at and the parts it was measured between.
+    pose: Option<(crate::jobs::Stamp, Similarity)>,
+    /// The other mesh of a reduction error, by identity.
+    other: usize,
+}
+
+/// A finished field.
+struct Field {
+    values: Arc<[f32]>,
+    /// What the colours should span.
+    range: [f64; 2],
+    /// Keeps what the key names by its address.
+    _key: (Arc<ShownMesh>, Option<Arc<TriMesh>>),
+}
+
+/// The fields of both windows.
+pub(super) struct FieldStore {
+    background: Background<FieldKey, Field>,
+    /// Most recently used last.
+    ready: Vec<(FieldKey, Arc<Field>)>,
+    failed: Vec<FieldKey>,
+    /// Ranges of what each window shows, so that both have one scale.
+    ranges: PerRole<Option<(FieldKind, [f64; 2])>>,
+}
+
+impl FieldStore {
+    pub fn new() -> Self {
+        Self {
+            background: Background::new("fields"),
+            ready: Vec::new(),
+            failed: Vec::new(),
+            ranges: PerRole::default(),
+        }
+    }
+
+    /// The fields of a window's meshes; `None` where there is none, or none yet.
+    pub fn get(
+        &mut self,
+        window: Role,
+        state: &AppState,
+        meshes: &[(Role, Arc<ShownMesh>)],
+        wake: &egui::Context,
+    ) -> Vec<Option<FieldLook>> {
+        let kind = FieldKind::of(state.view.display.color_by);
+        let orders: Vec<_> = meshes
+            .iter()
+            .map(|(role, mesh)| Order::new(kind?, state, *role, mesh))
+            .collect();
+        let is_missing = |order: &&Order| {
+            let is_ready = self.ready.iter().any(|(key, _)| *key == order.key);
+            !is_ready && !self.failed.contains(&order.key)
+        };
+        let wanted = orders.iter().flatten().filter(is_missing);
+        let wanted = wanted.map(|order| order.clone().task()).collect();
+        for (key, field) in self.background.exchange(window, wanted, wake) {
+            match field {
+                Some(field) => self.ready.push((key, Arc::new(field))),
+                None => self.failed.push(key),
+            }
+        }
+        let found = orders.iter().map(|order| self.find(order.as_ref()?));
+        let found: Vec<_> = found.collect();
+        let ranges = found.iter().flatten().map(|field| field.range);
+        *self.ranges.get_mut(window) = kind.zip(ranges.reduce(union));
+        let n = self.ready.len().saturating_sub(KEPT);
+        self.ready.drain(..n);
+        let scale = self.scale(state);
+        let look = |field: Arc<Field>| {
+            Some(FieldLook {
+                values: Arc::clone(&field.values),
+                scale: scale?,
+            })
+        };
+        found.into_iter().map(|field| look(field?)).collect()
+    }
+
+    /// True while fields are being made.
+    pub fn is_waiting(&self) -> bool {
+        self.background.is_waiting()
+    }
+
+    /// The scale of what both windows show.
+    pub fn scale(&self, state: &AppState) -> Option<ColorScale> {
+        let kind = FieldKind::of(state.view.display.color_by)?;
+        let ranges = self.ranges.iter().filter_map(|(_, range)| *range);
+        let ranges = ranges.filter(|(of, _)| *of == kind).map(|(_, range)| range);
+        let [low, high] = ranges.reduce(union)?;
+        Some(match kind {
+            FieldKind::Thickness => ColorScale::new(ColorMap::Viridis, low, high),
+            FieldKind::ReductionError => ColorScale::new(ColorMap::Viridis, 0.0, high),
+            FieldKind::Deviation => {
+                let limit = high.abs().max(low.abs());
+                ColorScale::symmetric(limit, 0.05 * limit)
+            }
+        })
+    }
+
+    /// The field, or the last one of this mesh and kind, which is shown until the new one is there.
+    fn find(&mut self, order: &Order) -> Option<Arc<Field>> {
+        let newest =
+            |is_it: &dyn Fn(&FieldKey) -> bool| self.ready.iter().rposition(|(key, _)| is_it(key));
+        let same = |key: &FieldKey| key.kind == order.key.kind && key.mesh == order.key.mesh;
+        let at = newest(&|key| *key == order.key).or_else(|| newest(&same))?;
+        let found = self.ready.remove(at);
+        let field = Arc::clone(&found.1);
+        self.ready.push(found);
+        Some(field)
+    }
+}
+
+fn union(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// A field that is asked for, with everything it is made of.
+#[derive(Clone)]
+struct Order {
+    key: FieldKey,
+    mesh: Arc<ShownMesh>,
+    /// What distances are measured to.
+    other: Option<Arc<TriMesh>>,
+    world_from_mesh: Similarity,
+}
+
+impl Order {
+    fn new(kind: FieldKind, state: &AppState, role: Role, mesh: &Arc<ShownMesh>) -> Option<Self> {
+        let part = state.document.part(role)?;
+        let (other, pose) = match kind {
+            FieldKind::Thickness => (None, None),
+            FieldKind::ReductionError => {
+                let level = &part.level.as_ref()?.level.mesh;
+                let is_full = mesh.source.level.is_none();
+                let other = if is_full { level } else { &part.loaded.mesh };
+                (Some(Arc::clone(other)), None)
+            }
+            FieldKind::Deviation => {
+                let crash = state.document.part(Role::Crash)?;
+                let at = (state.document.stamp(), state.shown_pose());
+                if role == Role::Crash {
+                    return None;
+                }
+                (Some(Arc::clone(&crash.loaded.mesh)), Some(at))
+            }
+        };
+        let key = FieldKey {
+            kind,
+            mesh: mesh.key(),
+            pose,
+            other: other.as_ref().map_or(0, |mesh| Arc::as_ptr(mesh).addr()),
+        };
+        Some(Self {
+            key,
+            mesh: Arc::clone(mesh),
+            other,
+            world_from_mesh: pose.map_or_else(Similarity::identity, |(_, pose)| pose),
+        })
+    }
+
+    fn task(self) -> Task<FieldKey, Field> {
+        Task {
+            key: self.key,
+            work: Box::new(move || self.make()),
+        }
+    }
+
+    fn make(self) -> Field {
+        let values = match (self.key.kind, &self.other) {
+            (FieldKind::Deviation, Some(other)) => self.deviation(other),
+            (_, Some(other)) => self.distance(other),
+            (_, None) => thickness(&self.mesh),
+        };
+        Field {
+            range: robust_range(&values),
+            values: values.into(),
+            _key: (self.mesh, self.other),
+        }
+    }
+
+    fn distance(&self, other: &Arc<TriMesh>) -> Vec<f32> {
+        let signed = closest(other, self.mesh.mesh().positions(), f64::INFINITY);
+        signed.into_iter().map(f32::abs).collect()
+    }
+
+    /// Positive on the side of the crash part's normals.
+    fn deviation(&self, crash: &Arc<TriMesh>) -> Vec<f32> {
+        let points = self.mesh.mesh().positions().iter();
+        let points: Vec<Point3> = points.map(|p| self.world_from_mesh.apply(p)).collect();
+        closest(crash, &points, REACH * crash.aabb().diagonal())
+    }
+}
+
+/// Signed distances to a surface; NaN beyond the reach.
+fn closest(target: &Arc<TriMesh>, points: &[Point3], reach: f64) -> Vec<f32> {
+    let tree = Bvh::build(Arc::clone(target));
+    let limits = SearchLimits {
+        max_distance: reach,
+        min_cos: None,
+    };
+    let found = closest_many(&tree, points, &[], &[], limits, &Monitor::silent());
+    // A silent monitor is never cancelled.
+    let found = found.unwrap_or_default();
+    let signed = found.iter().zip(points).map(|(hit, point)| {
+        let Some(hit) = hit else {
+            return f32::NAN;
+        };
+        let away: Vector3 = point - hit.point;
+        let side = away.dot(&target.normal(hit.triangle as usize));
+        (away.norm() * if side < 0.0 { -1.0 } else { 1.0 }) as f32
+    });
+    signed.collect()
+}
+
+/// Mean over the elements around each vertex, in the crash model's unit; NaN where no thickness is known.
+fn thickness(shown: &ShownMesh) -> Vec<f32> {
+    let part = &shown.source.part;
+    let mesh = shown.mesh();
+    let mut sums = vec![[0.0_f64; 2]; mesh.n_vertices()];
+    for (triangle, corners) in mesh.triangles().iter().enumerate() {
+        let element = shown.source.element(triangle);
+        if (element as usize) >= part.model.shells.len() {
+            continue;
+        }
+        let Some(of_corners) = part.model.shell_thickness(element) else {
+            continue;
+        };
+        let mean = of_corners.iter().sum::<f64>() / 4.0 * part.settings.length_factor;
+        let area = mesh.triangle_area(triangle);
+        for &vertex in corners {
+            let [sum, weight] = &mut sums[vertex as usize];
+            *sum += area * mean;
+            *weight += area;
+        }
+    }
+    let means = sums.into_iter();
+    means
+        .map(|[sum, weight]| (sum / weight) as f32)
+        .map(known)
+        .collect()
+}
+
+/// A thickness of zero is one that was not given.
+fn known(value: f32) -> f32 {
+    if value > 0.0 { value } else { f32::NAN }
+}
+
+/// Smallest and largest value without the tails; widened if they coincide.
+fn robust_range(values: &[f32]) -> [f64; 2] {
+    let mut finite: Vec<f32> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    if finite.is_empty() {
+        return [0.0, 1.0];
+    }
+    finite.sort_unstable_by(f32::total_cmp);
+    let tail = (TAIL * finite.len() as f64) as usize;
+    let (low, high) = (
+        f64::from(finite[tail]),
+        f64::from(finite[finite.len() - 1 - tail]),
+    );
+    if high - low > 1e-6 * high.abs() {
+        [low, high]
+    } else {
+        let air = if high == 0.0 { 1.0 } else { 0.05 * high.abs() };
+        [low - air, high + air]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_leave_out_tails_and_what_is_missing() {
+        let mut values: Vec<f32> = (0..1000).map(|i| i as f32 / 1000.0).collect();
+        values.extend([f32::NAN, 1e9]);
+        let [low, high] = robust_range(&values);
+        assert!((0.0..0.01).contains(&low) && (0.99..1.0).contains(&high));
+        assert_eq!(robust_range(&[]), [0.0, 1.0]);
+        let [low, high] = robust_range(&[2.0, 2.0]);
+        assert!(low < 2.0 && high > 2.0);
+    }
+
+    #[test]
+    fn distances_have_the_sign_of_the_side() {
+        let corners = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]];
+        let positions = corners.map(|[x, y]| Point3::new(x, y, 0.0)).to_vec();
+        let mesh = Arc::new(TriMesh::new(positions, vec![[0, 1, 2]]).unwrap());
+        let points = [0.5, -0.25, 9.0].map(|z| Point3::new(1.0, 1.0, z));
+        let found = closest(&mesh, &points, 2.0);
+        assert_eq!(found[..2], [0.5, -0.25]);
+        assert!(found[2].is_nan());
+    }
+}

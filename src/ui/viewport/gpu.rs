@@ -1,0 +1,86 @@
+//! Between egui and the renderer: draws a viewport's picture before egui's pass and lays it into it.
+
+use std::sync::Arc;
+
+use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
+use egui::epaint::ViewportInPixels;
+
+use crate::geometry::Camera;
+use crate::jobs::{PerRole, Role};
+use crate::render::{Frame, Renderer, Scene, ViewTarget};
+
+/// What lives on the graphics card, kept among egui's own resources.
+pub(super) struct Gpu {
+    pub renderer: Renderer,
+    targets: PerRole<ViewTarget>,
+}
+
+impl Gpu {
+    /// Compiles the shaders and leaves everything with egui.
+    pub fn install(state: &RenderState) {
+        let gpu = Self {
+            renderer: Renderer::new(&state.device, &state.queue, state.target_format),
+            targets: PerRole {
+                crash: ViewTarget::new(),
+                stamped: ViewTarget::new(),
+            },
+        };
+        state.renderer.write().callback_resources.insert(gpu);
+    }
+}
+
+/// One viewport's picture in one frame. The renderer itself notices if nothing has changed.
+pub(super) struct ViewCallback {
+    pub role: Role,
+    pub scene: Arc<Scene>,
+    pub camera: Camera,
+    pub rect: egui::Rect,
+}
+
+impl ViewCallback {
+    /// As a shape for egui's painter.
+    pub fn shape(self) -> egui::Shape {
+        let rect = self.rect;
+        eframe::egui_wgpu::Callback::new_paint_callback(rect, self).into()
+    }
+}
+
+impl CallbackTrait for ViewCallback {
+    fn prepare(
+        &self,
+        _: &wgpu::Device,
+        _: &wgpu::Queue,
+        screen: &ScreenDescriptor,
+        encoder: &mut wgpu::CommandEncoder,
+        resources: &mut CallbackResources,
+    ) -> Vec<wgpu::CommandBuffer> {
+        let Some(Gpu { renderer, targets }) = resources.get_mut::<Gpu>() else {
+            return Vec::new();
+        };
+        // The very rounding of egui, so that one texel is one pixel.
+        let area = ViewportInPixels::from_points(
+            &self.rect,
+            screen.pixels_per_point,
+            screen.size_in_pixels,
+        );
+        let size = [area.width_px, area.height_px].map(|side| side.max(1).unsigned_abs());
+        let frame = Frame {
+            scene: &self.scene,
+            camera: &self.camera,
+            size,
+        };
+        renderer.draw(targets.get_mut(self.role), encoder, &frame);
+        Vec::new()
+    }
+
+    fn paint(
+        &self,
+        _: egui::PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        resources: &CallbackResources,
+    ) {
+        if let Some(gpu) = resources.get::<Gpu>() {
+            gpu.renderer.paint(gpu.targets.get(self.role), pass);
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Colours of the 3D windows in the dark and the light theme.
+
+use egui::Color32;
+
+use crate::colormap::Rgb;
+use crate::jobs::{PerRole, Role};
+use crate::render::{Background, LineLook};
+
+/// Colours of one theme.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Look {
+    /// Crash and stamped.
+    pub roles: PerRole<Rgb>,
+    pub background: Background,
+    pub lines: LineLook,
+    /// Text over the picture, and the same fainter.
+    pub text: Color32,
+    pub weak: Color32,
+    /// Ground of texts, buttons and cards over the picture.
+    pub plate: Color32,
+    pub plate_line: Color32,
+    /// Accent of tools: pivot ring, picked node, wipe line.
+    pub tool: Color32,
+    pub is_dark: bool,
+}
+
+impl Look {
+    pub const DARK: Self = Self {
+        roles: PerRole {
+            crash: [0x56, 0xB4, 0xE9],
+            stamped: [0xE6, 0x9F, 0x00],
+        },
+        background: Background::DARK,
+        lines: LineLook::DARK,
+        text: Color32::from_rgb(0xEC, 0xEF, 0xF3),
+        weak: Color32::from_rgb(0xA9, 0xB2, 0xBD),
+        plate: Color32::from_rgba_unmultiplied_const(0x16, 0x19, 0x1D, 0xC8),
+        plate_line: Color32::from_rgba_unmultiplied_const(0xFF, 0xFF, 0xFF, 0x1E),
+        tool: Color32::from_rgb(0xFF, 0xFF, 0xFF),
+        is_dark: true,
+    };
+    pub const LIGHT: Self = Self {
+        roles: PerRole {
+            crash: [0x00, 0x72, 0xB2],
+            stamped: [0xB2, 0x6B, 0x00],
+        },
+        background: Background::LIGHT,
+        lines: LineLook::LIGHT,
+        text: Color32::from_rgb(0x1B, 0x20, 0x26),
+        weak: Color32::from_rgb(0x4E, 0x58, 0x63),
+        plate: Color32::from_rgba_unmultiplied_const(0xFF, 0xFF, 0xFF, 0xD2),
+        plate_line: Color32::from_rgba_unmultiplied_const(0x00, 0x00, 0x00, 0x22),
+        tool: Color32::from_rgb(0x10, 0x14, 0x18),
+        is_dark: false,
+    };
+
+    /// The look of the theme a window has.
+    pub fn of(is_dark: bool) -> Self {
+        if is_dark { Self::DARK } else { Self::LIGHT }
+    }
+
+    /// Colour of a role for egui.
+    pub fn role(&self, role: Role) -> Color32 {
+        let [r, g, b] = *self.roles.get(role);
+        Color32::from_rgb(r, g, b)
+    }
+
+    /// Colour of the n-th part of a deck, if parts are told apart: ten colours that differ in
+    /// lightness too, away from those of the roles.
+    pub fn part(&self, index: usize) -> Rgb {
+        const PARTS: [Rgb; 10] = [
+            [0x77, 0xAA, 0xDD],
+            [0xEE, 0x88, 0x66],
+            [0xEE, 0xDD, 0x88],
+            [0x44, 0xBB, 0x99],
+            [0xFF, 0xAA, 0xBB],
+            [0x99, 0xDD, 0xFF],
+            [0xBB, 0xCC, 0x33],
+            [0xB0, 0x8C, 0xD8],
+            [0xAA, 0xAA, 0x00],
+            [0xDD, 0xDD, 0xDD],
+        ];
+        let color = PARTS[index % PARTS.len()];
+        if self.is_dark {
+            color
+        } else {
+            color.map(|c| (f32::from(c) * 0.78) as u8)
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! Meshes prepared for drawing and picking, made off the frame and kept while they are used.
+
+use std::sync::Arc;
+
+use super::background::{Background, Task};
+use crate::app::Part;
+use crate::geometry::{Point3, TriMesh};
+use crate::jobs::{MeasuredLevel, Role};
+use crate::pipeline::load::LoadedPart;
+use crate::render::{MeshInput, RenderMesh};
+use crate::search::{Bvh, RayHit};
+
+/// Meshes up to this size are prepared within the frame, which costs a few milliseconds, so that
+/// scrubbing the levels never shows an old one.
+const AT_ONCE: usize = 4_000;
+/// Meshes kept although no window shows them now: the levels one flips between.
+const KEPT: usize = 8;
+
+/// Which mesh of a part: the full one or a level.
+#[derive(Debug, Clone)]
+pub(super) struct MeshSource {
+    pub part: Arc<LoadedPart>,
+    pub level: Option<Arc<MeasuredLevel>>,
+}
+
+impl MeshSource {
+    /// The chosen level of a part, or the full mesh.
+    pub fn of(part: &Part, is_detailed: bool) -> Self {
+        let level = part.level.as_ref().filter(|_| !is_detailed);
+        Self {
+            part: part.loaded.to_arc(),
+            level: level.map(|level| level.to_arc()),
+        }
+    }
+
+    pub fn mesh(&self) -> &Arc<TriMesh> {
+        match &self.level {
+            Some(level) => &level.level.mesh,
+            None => &self.part.mesh,
+        }
+    }
+
+    /// Triangle of the full mesh that a triangle is or descends from.
+    pub fn full_triangle(&self, triangle: usize) -> usize {
+        match &self.level {
+            Some(level) => level.level.triangle_of[triangle] as usize,
+            None => triangle,
+        }
+    }
+
+    /// Element of the deck that a triangle is or descends from.
+    pub fn element(&self, triangle: usize) -> u32 {
+        let of_surface = self.part.triangle_of[self.full_triangle(triangle)];
+        self.part.surface.triangle_element[of_surface as usize]
+    }
+
+    fn part_index(&self, triangle: usize) -> u32 {
+        let of_surface = self.part.triangle_of[self.full_triangle(triangle)];
+        self.part.surface.triangle_part[of_surface as usize]
+    }
+
+    fn key(&self) -> MeshKey {
+        MeshKey(Arc::as_ptr(self.mesh()).addr())
+    }
+}
+
+/// A mesh by identity. Whoever holds a key holds the mesh too, so addresses are not given twice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct MeshKey(usize);
+
+/// A mesh that can be drawn and picked.
+pub(super) struct ShownMesh {
+    pub source: MeshSource,
+    pub drawn: Arc<RenderMesh>,
+    pub part_of_triangle: Vec<u32>,
+    tree: Bvh,
+    /// Deck numbers of the vertices; empty for levels, whose vertices are not nodes.
+    nodes: Vec<u64>,
+}
+
+impl ShownMesh {
+    /// Prepares a mesh. O(triangles · log triangles).
+    pub fn new(source: MeshSource) -> Self {
+        let mesh = source.mesh();
+        let triangles = 0..mesh.n_triangles();
+        let part_of_triangle: Vec<u32> = triangles.clone().map(|t| source.part_index(t)).collect();
+        // A level's triangles are its elements; the full mesh shows its quadrilaterals.
+        let elements = source.level.is_none();
+        let elements: Option<Vec<u32>> =
+            elements.then(|| triangles.map(|t| source.element(t)).collect());
+        let drawn = RenderMesh::new(MeshInput {
+            mesh,
+            part_of_triangle: Some(&part_of_triangle),
+            element_of_triangle: elements.as_deref(),
+        });
+        Self {
+            drawn: Arc::new(drawn),
+            tree: Bvh::build(Arc::clone(mesh)),
+            nodes: node_numbers(&source),
+            part_of_triangle,
+            source,
+        }
+    }
+
+    pub fn key(&self) -> MeshKey {
+        self.source.key()
+    }
+
+    pub fn mesh(&self) -> &TriMesh {
+        self.source.mesh()
+    }
+
+    /// Tree for rays and closest points.
+    pub fn tree(&self) -> &Bvh {
+        &self.tree
+    }
+
+    /// Deck number of a part by its index.
+    pub fn part_id(&self, index: u32) -> Option<u64> {
+        let parts = &self.source.part.model.parts;
+        parts.get(index as usize).map(|part| part.id)
+    }
+
+    /// The corner of the met triangle next to the hit: its position and, on the full mesh, its
+    /// number in the deck.
+    pub fn nearest_node(&self, hit: &RayHit) -> (Point3, Option<u64>) {
+        let corners = self.mesh().triangles()[hit.triangle as usize];
+        let distance = |v: u32| (self.mesh().positions()[v as usize] - hit.point).norm_squared();
+        let [first, others @ ..] = corners;
+        let mut nearest = first;
+        for vertex in others {
+            if distance(vertex) < distance(nearest) {
+                nearest = vertex;
+            }
+        }
+        let position = self.mesh().positions()[nearest as usize];
+        (position, self.nodes.get(nearest as usize).copied())
+    }
+}
+
+/// For each vertex of a full mesh the number of the first node that became it.
+fn node_numbers(source: &MeshSource) -> Vec<u64> {
+    if source.level.is_some() {
+        return Vec::new();
+    }
+    let part = &source.part;
+    let ids = part.model.nodes.ids();
+    let mut numbers = vec![0; source.mesh().n_vertices()];
+    let vertices = part.vertex_of.iter().zip(&part.surface.vertex_node);
+    for (&vertex, &node) in vertices.rev() {
+        numbers[vertex as usize] = ids[node as usize];
+    }
+    numbers
+}
+
+/// The prepared meshes.
+pub(super) struct MeshStore {
+    background: Background<MeshKey, ShownMesh>,
+    /// Most recently used last.
+    ready: Vec<Arc<ShownMesh>>,
+    failed: Vec<MeshKey>,
+}
+
+impl MeshStore {
+    pub fn new() -> Self {
+        Self {
+            background: Background::new("meshes"),
+            ready: Vec::new(),
+            failed: Vec::new(),
+        }
+    }
+
+    /// The meshes of a window; `None` for those that are not ready yet.
+    pub fn get(
+        &mut self,
+        role: Role,
+        sources: &[MeshSource],
+        wake: &egui::Context,
+    ) -> Vec<Option<Arc<ShownMesh>>> {
+        let (small, large): (Vec<_>, Vec<_>) = sources
+            .iter()
+            .filter(|source| !self.is_known(source.key()))
+            .partition(|source| source.mesh().n_triangles() <= AT_ONCE);
+        let made: Vec<_> = small
+            .into_iter()
+            .map(|source| Arc::new(ShownMesh::new(source.clone())))
+            .collect();
+        let wanted = large.into_iter().map(|source| {
+            let source = source.clone();
+            Task {
+                key: source.key(),
+                work: Box::new(move || ShownMesh::new(source)),
+            }
+        });
+        let wanted = wanted.collect();
+        for (key, mesh) in self.background.exchange(role, wanted, wake) {
+            match mesh {
+                Some(mesh) => self.ready.push(Arc::new(mesh)),
+                None => self.failed.push(key),
+            }
+        }
+        self.ready.extend(made);
+        let found = sources.iter().map(|source| self.take(source.key()));
+        let found = found.collect();
+        self.forget();
+        found
+    }
+
+    /// True while meshes are being made.
+    pub fn is_waiting(&self) -> bool {
+        self.background.is_waiting()
+    }
+
+    fn is_known(&self, key: MeshKey) -> bool {
+        self.failed.contains(&key) || self.ready.iter().any(|mesh| mesh.key() == key)
+    }
+
+    /// Finds a mesh and makes it the most recently used.
+    fn take(&mut self, key: MeshKey) -> Option<Arc<ShownMesh>> {
+        let at = self.ready.iter().position(|mesh| mesh.key() == key)?;
+        let mesh = self.ready.remove(at);
+        self.ready.push(Arc::clone(&mesh));
+        Some(mesh)
+    }
+
+    fn forget(&mut self) {
+        let n = self.ready.len().saturating_sub(KEPT);
+        self.ready.drain(..n);
+    }
+}

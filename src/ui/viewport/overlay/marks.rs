@@ -1,0 +1,188 @@
+//! Axes, scale bar, readout, pivot.
+
+use egui::{Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
+
+use super::{MARGIN, Overlay};
+use crate::geometry::Point3;
+use crate::geometry::camera::scale_bar;
+use crate::ui::viewport::navigation::{DragKind, pos_of, screen_of};
+
+/// Length of an axis of the triad.
+const AXIS: f32 = 26.0;
+/// Longest scale bar.
+const MAX_BAR: f64 = 150.0;
+
+/// Axes, scale bar, readout.
+pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
+    let painter = over.painter(ui);
+    let display = &over.state.view.display;
+    if display.has_axes {
+        triad(&painter, over);
+    }
+    if display.has_scale_bar && !over.picture.is_empty() {
+        bar(&painter, over);
+    }
+    readout(&painter, over);
+}
+
+/// Axes with their letters, those that point away fainter and drawn first.
+fn triad(painter: &Painter, over: &Overlay<'_>) {
+    let corner = over.rect.left_bottom();
+    let center = corner + vec2(MARGIN + 34.0, -MARGIN - 34.0);
+    let colors = if over.look.is_dark {
+        [
+            Color32::from_rgb(0xF2, 0x6D, 0x6D),
+            Color32::from_rgb(0x7C, 0xD6, 0x7C),
+            Color32::from_rgb(0x7D, 0xB4, 0xFF),
+        ]
+    } else {
+        [
+            Color32::from_rgb(0xC6, 0x28, 0x28),
+            Color32::from_rgb(0x1E, 0x7B, 0x34),
+            Color32::from_rgb(0x1D, 0x4E, 0xC4),
+        ]
+    };
+    let axes = over.stage.camera.axes_in_view();
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| axes[a].z.total_cmp(&axes[b].z));
+    painter.circle_filled(center, 36.0, over.look.plate.gamma_multiply(0.55));
+    for axis in order {
+        let direction = vec2(axes[axis].x as f32, -axes[axis].y as f32);
+        let is_behind = axes[axis].z < -0.05;
+        let color = if is_behind {
+            colors[axis].gamma_multiply(0.6)
+        } else {
+            colors[axis]
+        };
+        let end = center + direction * AXIS;
+        painter.line_segment([center, end], Stroke::new(2.0, color));
+        // An axis that points at the viewer keeps its letter beside the middle.
+        let out = direction.normalized() * 9.0;
+        let letter = if direction.length() < 0.15 {
+            center + vec2(9.0, -9.0)
+        } else {
+            end + out
+        };
+        let text = ["X", "Y", "Z"][axis];
+        painter.text(
+            letter,
+            Align2::CENTER_CENTER,
+            text,
+            FontId::proportional(11.5),
+            color,
+        );
+    }
+    painter.circle_filled(center, 2.0, over.look.weak);
+}
+
+fn bar(painter: &Painter, over: &Overlay<'_>) {
+    let camera = &over.stage.camera;
+    let size = camera.pixel_size(screen_of(over.rect), &camera.target);
+    let Some(bar) = scale_bar(size, MAX_BAR) else {
+        return;
+    };
+    let left = over.rect.left_bottom() + vec2(MARGIN + 84.0, -MARGIN - 8.0);
+    let right = left + vec2(bar.pixels as f32, 0.0);
+    let text = length_text(bar.length);
+    let galley = painter.layout_no_wrap(text, FontId::proportional(11.5), over.look.text);
+    let ground = Rect::from_min_max(left + vec2(-8.0, -21.0), right + vec2(8.0, 8.0));
+    painter.rect_filled(
+        ground,
+        CornerRadius::same(5),
+        over.look.plate.gamma_multiply(0.7),
+    );
+    let stroke = Stroke::new(1.5, over.look.text);
+    painter.line_segment([left, right], stroke);
+    for end in [left, right] {
+        painter.line_segment([end - vec2(0.0, 4.0), end + vec2(0.0, 4.0)], stroke);
+    }
+    let middle = left + (right - left) * 0.5 - vec2(galley.size().x * 0.5, 18.0);
+    painter.galley(middle, galley, over.look.text);
+}
+
+/// A round length without needless digits.
+fn length_text(length: f64) -> String {
+    if (1e-3..1e6).contains(&length) {
+        // The shortest text of 1, 2 or 5 times a power of ten, free of rounding.
+        let digits = (-length.log10().floor()).max(0.0) as usize;
+        format!("{length:.digits$}")
+    } else {
+        format!("{length:e}")
+    }
+}
+
+/// What lies under the cursor, bottom right.
+fn readout(painter: &Painter, over: &Overlay<'_>) {
+    let Some(hit) = over.hit else {
+        return;
+    };
+    let place = |p: &Point3| format!("({:.1}, {:.1}, {:.1})", p.x, p.y, p.z);
+    let mut text = match hit.node_id {
+        Some(id) => format!("node {id}  {}", place(&hit.node)),
+        None => place(&hit.point),
+    };
+    if let Some(part) = hit.part {
+        text = format!("part {}   {text}", part.id);
+    }
+    if let Some(value) = hit.value {
+        text = format!("{value:.3}   {text}");
+    }
+    let galley = painter.layout_no_wrap(text, FontId::monospace(11.0), over.look.text);
+    let size = galley.size() + vec2(14.0, 8.0);
+    let corner = over.rect.right_bottom() - Vec2::splat(MARGIN) - size;
+    let ground = Rect::from_min_size(corner, size);
+    painter.rect_filled(ground, CornerRadius::same(5), over.look.plate);
+    painter.galley(corner + vec2(7.0, 4.0), galley, over.look.text);
+}
+
+/// A ring about the point a rotation turns about, and a cross at the picked pivot.
+pub(super) fn pivot(ui: &Ui, over: &Overlay<'_>) {
+    let painter = over.painter(ui);
+    let camera = &over.stage.camera;
+    if let Some(pivot) = over.state.view.pivot.get(over.role())
+        && let Some(at) = pos_of(over.rect, camera, pivot)
+    {
+        for way in [vec2(6.0, 0.0), vec2(0.0, 6.0)] {
+            ringed_line(&painter, over, [at - way, at + way]);
+        }
+    }
+    let turning =
+        |drag: &&super::CameraDrag| matches!(drag.kind, DragKind::Rotate | DragKind::Roll);
+    if let Some(drag) = over.drag.filter(turning)
+        && let Some(at) = pos_of(over.rect, camera, &drag.anchor)
+    {
+        ring(&painter, over, at, 7.0);
+    }
+}
+
+/// A small ring at the node under the cursor.
+pub(super) fn node(ui: &Ui, over: &Overlay<'_>) {
+    let Some(hit) = over.hit.filter(|hit| hit.node_id.is_some()) else {
+        return;
+    };
+    if let Some(at) = pos_of(over.rect, &over.stage.camera, &hit.node) {
+        ring(&over.painter(ui), over, at, 3.5);
+    }
+}
+
+/// A ring that is seen on any ground.
+fn ring(painter: &Painter, over: &Overlay<'_>, at: Pos2, radius: f32) {
+    painter.circle_stroke(at, radius, Stroke::new(3.0, over.look.plate));
+    painter.circle_stroke(at, radius, Stroke::new(1.5, over.look.tool));
+}
+
+fn ringed_line(painter: &Painter, over: &Overlay<'_>, ends: [Pos2; 2]) {
+    painter.line_segment(ends, Stroke::new(4.0, over.look.plate));
+    painter.line_segment(ends, Stroke::new(1.5, over.look.tool));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_written_without_needless_digits() {
+        let texts = [200.0, 5.0, 0.5, 0.02, 1e-5].map(length_text);
+        assert_eq!(texts, ["200", "5", "0.5", "0.02", "1e-5"]);
+    }
+}

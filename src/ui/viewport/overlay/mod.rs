@@ -1,0 +1,93 @@
+//! What egui draws over a window's picture: names, buttons, marks, cards.
+
+mod apart;
+mod cards;
+mod divider;
+mod header;
+mod legend;
+mod marks;
+
+use egui::{Align2, FontId, Painter, Rect, Ui};
+
+use super::cast::Stage;
+use super::look::Look;
+use super::navigation::CameraDrag;
+use super::stage::{Hit, Picture};
+use crate::app::{AppState, Command};
+use crate::colormap::ColorScale;
+use crate::jobs::Role;
+
+/// Air between the edge of the window and what lies over it.
+const MARGIN: f32 = 10.0;
+
+/// A window and what is over it in one frame.
+pub(super) struct Overlay<'a> {
+    pub rect: Rect,
+    pub look: &'a Look,
+    pub state: &'a AppState,
+    pub stage: &'a Stage,
+    pub picture: &'a Picture,
+    pub drag: Option<&'a CameraDrag>,
+    pub hit: Option<&'a Hit>,
+    /// Colours of the shown field and what they say.
+    pub scale: Option<(&'static str, ColorScale)>,
+    /// What the handle under the pointer does.
+    pub hint: Option<String>,
+    pub is_focused: bool,
+}
+
+impl Overlay<'_> {
+    fn role(&self) -> Role {
+        self.stage.window
+    }
+
+    fn painter(&self, ui: &Ui) -> Painter {
+        ui.painter_at(self.rect)
+    }
+}
+
+/// Draws everything over the picture.
+pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
+    marks::pivot(ui, over);
+    marks::node(ui, over);
+    if cards::show(ui, over, commands) {
+        header::show(ui, over);
+        return;
+    }
+    apart::show(ui, over, commands);
+    divider::show(ui, over, commands);
+    legend::show(ui, over);
+    marks::show(ui, over);
+    header::show(ui, over);
+    header::buttons(ui, over, commands);
+}
+
+/// A text in the place of the picture.
+pub(super) fn placeholder(ui: &Ui, rect: Rect, look: &Look) {
+    let painter = ui.painter_at(rect);
+    let [r, g, b] = match look.background {
+        crate::render::Background::Gradient { bottom, .. } => bottom,
+        crate::render::Background::Transparent => [0; 3],
+    };
+    painter.rect_filled(rect, 0.0, egui::Color32::from_rgb(r, g, b));
+    painter.text(
+        rect.center(),
+        Align2::CENTER_CENTER,
+        "no graphics adapter",
+        FontId::proportional(13.0),
+        look.weak,
+    );
+}
+
+/// A count with narrow gaps between the thousands.
+pub(super) fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}

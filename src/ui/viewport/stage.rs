@@ -1,0 +1,187 @@
+//! A window's scene together with what is needed to find the part under the cursor.
+
+use std::sync::Arc;
+
+use super::cast::{self, Actor, Stage};
+use super::look::Look;
+use super::meshes::ShownMesh;
+use crate::app::{AppState, PartRef};
+use crate::geometry::camera::{ScreenSize, ViewRay};
+use crate::geometry::{Aabb, Camera, Point3};
+use crate::jobs::Role;
+use crate::render::{Drawable, FieldLook, PartLook, Scene};
+
+/// How far the crash sheet lies back when two sheets coincide, in pixels and in element sizes: about
+/// the chord heights of two meshes of one curved sheet.
+const PUSH_BACK_PIXELS: f32 = 1.0;
+const PUSH_BACK_ELEMENTS: f64 = 0.03;
+/// Parts fainter than this are looked through when picking.
+const PICKED_OPACITY: f32 = 0.15;
+/// Hidden sheets a ray passes before it gives up.
+const MAX_PASSED: usize = 64;
+
+/// What is drawn in one window in one frame.
+pub(super) struct Picture {
+    pub scene: Arc<Scene>,
+    /// One for each drawable of the scene.
+    layers: Vec<Layer>,
+    /// Box around what is visible.
+    pub bounds: Aabb,
+}
+
+/// What stands behind a drawable.
+pub(super) struct Layer {
+    pub role: Role,
+    pub mesh: Arc<ShownMesh>,
+    pub field: Option<FieldLook>,
+    pub actor: Actor,
+}
+
+/// What lies under the cursor.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Hit {
+    /// On the surface, in the space of the window.
+    pub point: Point3,
+    pub part: Option<PartRef>,
+    /// The nearest corner, and its number in the deck if it is a node.
+    pub node: Point3,
+    pub node_id: Option<u64>,
+    /// Shown value at the hit.
+    pub value: Option<f64>,
+}
+
+impl Picture {
+    /// Puts the scene together.
+    pub fn new(
+        state: &AppState,
+        stage: &Stage,
+        look: &Look,
+        layers: Vec<Layer>,
+        pixels_per_point: f32,
+    ) -> Self {
+        let drawables: Vec<Drawable> = layers
+            .iter()
+            .map(|layer| drawable(state, look, layer))
+            .collect();
+        let scene = Scene {
+            drawables,
+            background: look.background,
+            lines: look.lines,
+            wipe: cast::divider(state, stage).map(cast::Divider::share),
+            pixels_per_point,
+            ..Scene::default()
+        };
+        let mut bounds = Aabb::empty();
+        for drawable in &scene.drawables {
+            bounds = bounds.union(&drawable.bounds());
+        }
+        Self {
+            scene: Arc::new(scene),
+            layers,
+            bounds,
+        }
+    }
+
+    /// True if nothing is drawn.
+    pub fn is_empty(&self) -> bool {
+        self.layers.is_empty()
+    }
+
+    /// What lies under a point of the window; sheets that are hidden or hardly visible do not count.
+    /// A few microseconds per sheet.
+    pub fn hit(&self, camera: &Camera, pixel: [f64; 2], screen: ScreenSize) -> Option<Hit> {
+        let ray = camera.ray(pixel, screen, &self.bounds);
+        let is_left = self
+            .scene
+            .wipe
+            .map(|share| pixel[0] < f64::from(share) * screen.width);
+        let layers = self.layers.iter().zip(&self.scene.drawables);
+        let hits = layers
+            .filter(|(_, drawable)| drawable.opacity > PICKED_OPACITY)
+            .filter(|(_, drawable)| is_on_side(drawable.wipe, is_left))
+            .filter_map(|(layer, drawable)| hit_layer(layer, drawable, &ray));
+        let nearest = hits.min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.map(|(_, hit)| hit)
+    }
+}
+
+fn is_on_side(wipe: crate::render::WipeSide, is_left: Option<bool>) -> bool {
+    use crate::render::WipeSide;
+    match (wipe, is_left) {
+        (WipeSide::Both, _) | (_, None) => true,
+        (WipeSide::Left, Some(is_left)) => is_left,
+        (WipeSide::Right, Some(is_left)) => !is_left,
+    }
+}
+
+fn drawable(state: &AppState, look: &Look, layer: &Layer) -> Drawable {
+    let Actor { role, .. } = layer.actor;
+    let (push_back, push_back_length) = match role {
+        Role::Crash => {
+            let part = state.document.part(role);
+            let element = part.map_or(0.0, |part| part.facts.edge_length);
+            (PUSH_BACK_PIXELS, PUSH_BACK_ELEMENTS * element)
+        }
+        Role::Stamped => (0.0, 0.0),
+    };
+    let part = state.document.part(role);
+    let parts = part.map(|part| Arc::from(cast::part_looks(state, part, role, look)));
+    Drawable {
+        world_from_mesh: layer.actor.world_from_part,
+        offset: layer.actor.offset,
+        opacity: layer.actor.opacity,
+        wipe: layer.actor.wipe,
+        style: cast::style(state),
+        field: layer.field.clone(),
+        parts,
+        push_back,
+        push_back_length,
+        ..Drawable::new(Arc::clone(&layer.mesh.drawn), *look.roles.get(role))
+    }
+}
+
+/// Distance along the ray and what is there.
+fn hit_layer(layer: &Layer, drawable: &Drawable, ray: &ViewRay) -> Option<(f64, Hit)> {
+    let pose = &drawable.world_from_mesh;
+    let back = pose.inverse();
+    let mut origin = back.apply(&(ray.origin - drawable.offset));
+    let direction = back.rotate(&ray.direction);
+    for _ in 0..MAX_PASSED {
+        let hit = layer.mesh.tree().first_hit(&origin, &direction)?;
+        let index = layer.mesh.part_of_triangle[hit.triangle as usize];
+        let looks = drawable.parts.as_deref().unwrap_or(&[]);
+        let look = looks.get(index as usize).copied();
+        if look.unwrap_or(PartLook::default()).visible {
+            let to_world = |p: &Point3| pose.apply(p) + drawable.offset;
+            let point = to_world(&hit.point);
+            let (node, node_id) = layer.mesh.nearest_node(&hit);
+            let part = layer.mesh.part_id(index);
+            let hit = Hit {
+                point,
+                part: part.map(|id| PartRef {
+                    role: layer.role,
+                    id,
+                }),
+                node: pose.apply(&node),
+                node_id,
+                value: value_at(layer, &hit),
+            };
+            return Some(((point - ray.origin).norm(), hit));
+        }
+        // On past the hidden sheet: rounding is relative to the coordinates.
+        let step = 1e-9 * (hit.point.coords.norm() + hit.distance) + f64::MIN_POSITIVE;
+        origin = hit.point + direction * (step / direction.norm());
+    }
+    None
+}
+
+/// The field between the corners of the met triangle.
+fn value_at(layer: &Layer, hit: &crate::search::RayHit) -> Option<f64> {
+    let field = layer.field.as_ref()?;
+    let corners = layer.mesh.mesh().triangles()[hit.triangle as usize];
+    let values = corners.map(|v| field.values.get(v as usize).copied().unwrap_or(f32::NAN));
+    let sum = (0..3)
+        .map(|i| f64::from(values[i]) * hit.barycentric[i])
+        .sum::<f64>();
+    sum.is_finite().then_some(sum)
+}

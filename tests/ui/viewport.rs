@@ -1,0 +1,408 @@
+//! The 3D windows: real mouse events in, commands and pictures out. All but one need no adapter.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use eframe::egui_wgpu::{RenderState, RendererOptions};
+use egui::{Event, MouseWheelUnit, PointerButton, Pos2, Rect, Vec2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use shapematch::app::{
+    AppState, Command, Effect, FileCommand, MoveCommand, PartCommand, Settings, ViewCommand,
+};
+use shapematch::formats::Model;
+use shapematch::geometry::camera::ScreenSize;
+use shapematch::geometry::{Camera, Point3, TriMesh};
+use shapematch::jobs::{
+    JobEvent, JobId, JobKind, JobOutput, JobStage, PartFacts, PartSource, PipelineRunner, Role,
+    Runner as _,
+};
+use shapematch::monitor::Monitor;
+use shapematch::pipeline::load::prepare;
+use shapematch::ui::viewport::Viewports;
+
+const SIZE: Vec2 = vec2(640.0, 320.0);
+
+/// A gently bent sheet of 12 × 8 cells.
+fn sheet() -> TriMesh {
+    let mut positions = Vec::new();
+    for i in 0..=12 {
+        for j in 0..=8 {
+            let (x, y) = (f64::from(i), f64::from(j));
+            positions.push(Point3::new(10.0 * x, 10.0 * y, 0.4 * x * x + 0.2 * y));
+        }
+    }
+    let cell = |k: u32| {
+        let a = k / 8 * 9 + k % 8;
+        [[a, a + 9, a + 10], [a, a + 10, a + 1]]
+    };
+    TriMesh::new(positions, (0..96).flat_map(cell).collect()).unwrap()
+}
+
+/// A program without shell and panels: two windows side by side over a state.
+pub struct Desk {
+    pub state: AppState,
+    pub viewports: Viewports,
+    seen: Vec<Command>,
+    n_jobs: u64,
+}
+
+impl Desk {
+    pub fn new(render_state: Option<&RenderState>) -> Self {
+        let settings = Settings {
+            reduce_motion: true,
+            ..Settings::default()
+        };
+        Self {
+            state: AppState::new(settings),
+            viewports: Viewports::new(render_state),
+            seen: Vec::new(),
+            n_jobs: 0,
+        }
+    }
+
+    fn with_sheets(render_state: Option<&RenderState>) -> Self {
+        let mut desk = Self::new(render_state);
+        for role in Role::ALL {
+            let paths = vec![PathBuf::from("sheet.k")];
+            let role = Some(role);
+            desk.apply(FileCommand::Open { paths, role }.into());
+        }
+        desk
+    }
+
+    /// Applies a command and does its jobs at once.
+    pub fn apply(&mut self, command: Command) {
+        for effect in self.state.apply(command) {
+            let Effect::StartJob(kind, stamp) = effect else {
+                continue;
+            };
+            self.n_jobs += 1;
+            let (id, key) = (JobId(self.n_jobs), kind.key());
+            let tell = |stage| JobEvent {
+                id,
+                key,
+                stamp,
+                elapsed: std::time::Duration::ZERO,
+                stage,
+            };
+            let started = self.state.apply(tell(JobStage::Started));
+            assert!(started.is_empty());
+            let output = done(*kind);
+            self.apply(tell(JobStage::Finished(output)).into());
+        }
+    }
+
+    fn camera(&self, role: Role) -> Camera {
+        *self.state.view.cameras.get(role)
+    }
+}
+
+/// Files are made up, the rest is real.
+fn done(kind: JobKind) -> JobOutput {
+    match kind {
+        JobKind::Load {
+            role,
+            source: source @ PartSource::File(_),
+            settings,
+        } => {
+            let model = Arc::new(Model::from_mesh(&sheet(), "sheet"));
+            let path = PathBuf::from("sheet.k");
+            let part = prepare(&path, model, &settings, &Monitor::silent()).unwrap();
+            let facts = Arc::new(PartFacts::of(&part));
+            JobOutput::Loaded {
+                role,
+                source,
+                part: Arc::new(part),
+                facts,
+            }
+        }
+        other => PipelineRunner.run(other, &Monitor::silent()).unwrap(),
+    }
+}
+
+pub fn show(ui: &mut egui::Ui, desk: &mut Desk) {
+    let whole = ui.max_rect();
+    let mut commands = Vec::new();
+    for role in Role::ALL {
+        let area = window(whole, role);
+        let builder = egui::UiBuilder::new().max_rect(area).id_salt(role.word());
+        ui.scope_builder(builder, |ui| {
+            desk.viewports.show(ui, role, &desk.state, &mut commands);
+        });
+    }
+    for command in commands {
+        desk.seen.push(command.clone());
+        desk.apply(command);
+    }
+}
+
+/// The left or right half.
+fn window(whole: Rect, role: Role) -> Rect {
+    let (left, right) = whole.split_left_right_at_fraction(0.5);
+    match role {
+        Role::Crash => left,
+        Role::Stamped => right,
+    }
+}
+
+fn harness(desk: Desk) -> Harness<'static, Desk> {
+    let mut harness = Harness::builder()
+        .with_size(SIZE)
+        .build_ui_state(show, desk);
+    harness.run_steps(4);
+    harness
+}
+
+fn press(harness: &Harness<'_, Desk>, pos: Pos2, button: PointerButton, pressed: bool) {
+    harness.event(Event::PointerButton {
+        pos,
+        button,
+        pressed,
+        modifiers: egui::Modifiers::NONE,
+    });
+}
+
+fn drag(harness: &mut Harness<'_, Desk>, button: PointerButton, from: Pos2, to: Pos2) {
+    harness.event(Event::PointerMoved(from));
+    harness.step();
+    press(harness, from, button, true);
+    harness.step();
+    for step in 1..=4 {
+        harness.event(Event::PointerMoved(
+            from + (to - from) * (step as f32 / 4.0),
+        ));
+        harness.step();
+    }
+    press(harness, to, button, false);
+    harness.run_steps(2);
+}
+
+fn screen_of(area: Rect) -> ScreenSize {
+    ScreenSize {
+        width: f64::from(area.width()),
+        height: f64::from(area.height()),
+    }
+}
+
+/// Where the kittest harness draws: its panel keeps a margin.
+fn area(harness: &Harness<'_, Desk>, role: Role) -> Rect {
+    let name = match role {
+        Role::Crash => "Crash part",
+        Role::Stamped => "Stamped part",
+    };
+    harness
+        .get_by(|node| node.label().is_some_and(|l| l.starts_with(name)))
+        .rect()
+}
+
+#[test]
+fn a_drag_orbits_and_the_grabbed_point_stays() {
+    let mut harness = harness(Desk::with_sheets(None));
+    let area = area(&harness, Role::Crash);
+    let from = area.center();
+    let before = harness.state().camera(Role::Crash);
+    drag(
+        &mut harness,
+        PointerButton::Primary,
+        from,
+        from + vec2(60.0, 20.0),
+    );
+    let after = harness.state().camera(Role::Crash);
+    assert!(after.world_from_view.angle_to(&before.world_from_view) > 0.3);
+    assert_eq!(after.height, before.height);
+    let other = harness.state().camera(Role::Stamped);
+    drag(
+        &mut harness,
+        PointerButton::Primary,
+        from,
+        from - vec2(60.0, 20.0),
+    );
+    let back = harness.state().camera(Role::Crash);
+    assert!(
+        back.world_from_view.angle_to(&before.world_from_view) < 0.2,
+        "the way back"
+    );
+    assert_eq!(
+        other,
+        harness.state().camera(Role::Stamped),
+        "windows are not linked"
+    );
+}
+
+#[test]
+fn the_wheel_zooms_to_the_cursor() {
+    let mut harness = harness(Desk::with_sheets(None));
+    let area = area(&harness, Role::Crash);
+    let at = area.center() + vec2(20.0, 10.0);
+    let before = harness.state().camera(Role::Crash);
+    let pixel = [f64::from(at.x - area.left()), f64::from(at.y - area.top())];
+    let anchor = before.unproject(pixel, screen_of(area), &before.target);
+    harness.event(Event::PointerMoved(at));
+    harness.step();
+    harness.event(Event::MouseWheel {
+        unit: MouseWheelUnit::Line,
+        delta: vec2(0.0, 2.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: egui::Modifiers::NONE,
+    });
+    harness.run_steps(30);
+    let after = harness.state().camera(Role::Crash);
+    assert!(after.height < 0.9 * before.height, "closer");
+    let seen = after.project(&anchor, screen_of(area)).unwrap();
+    let off = (seen.x - pixel[0]).hypot(seen.y - pixel[1]);
+    assert!(
+        off < 1.0,
+        "the point under the cursor moved by {off} points"
+    );
+}
+
+#[test]
+fn the_middle_button_pans_and_the_right_one_zooms() {
+    let mut harness = harness(Desk::with_sheets(None));
+    let from = area(&harness, Role::Stamped).center();
+    let before = harness.state().camera(Role::Stamped);
+    drag(
+        &mut harness,
+        PointerButton::Middle,
+        from,
+        from + vec2(40.0, 0.0),
+    );
+    let panned = harness.state().camera(Role::Stamped);
+    assert_eq!(panned.world_from_view, before.world_from_view);
+    assert_eq!(panned.height, before.height);
+    assert!((panned.target - before.target).norm() > 0.01 * before.height);
+    drag(
+        &mut harness,
+        PointerButton::Secondary,
+        from,
+        from - vec2(0.0, 60.0),
+    );
+    let zoomed = harness.state().camera(Role::Stamped);
+    assert!(zoomed.height < 0.8 * panned.height, "upwards comes closer");
+}
+
+#[test]
+fn a_click_selects_the_part_and_beside_it_nothing() {
+    let mut harness = harness(Desk::with_sheets(None));
+    let area = area(&harness, Role::Crash);
+    let mut click = |pos: Pos2| {
+        harness.event(Event::PointerMoved(pos));
+        harness.step();
+        press(&harness, pos, PointerButton::Primary, true);
+        press(&harness, pos, PointerButton::Primary, false);
+        harness.run_steps(2);
+        let view = &harness.state().state.view;
+        (view.selected, view.focus)
+    };
+    let (selected, focus) = click(area.center());
+    assert_eq!(selected.map(|part| part.role), Some(Role::Crash));
+    assert_eq!(focus, Role::Crash);
+    assert_eq!(click(area.left_bottom() + vec2(6.0, -110.0)).0, None);
+}
+
+#[test]
+fn moved_over_the_right_window_offers_the_way_back() {
+    let mut desk = Desk::with_sheets(None);
+    desk.apply(ViewCommand::ToggleMoveOver.into());
+    let mut harness = harness(desk);
+    harness.get_by_label("Move the stamped part back").click();
+    harness.run_steps(3);
+    assert!(!harness.state().state.view.is_moved_over);
+    assert!(
+        harness
+            .query_by_label("Move the stamped part back")
+            .is_none()
+    );
+}
+
+#[test]
+fn an_empty_window_invites() {
+    let mut harness = harness(Desk::new(None));
+    harness.get_by_label("Open the stamped part…").click();
+    harness.run_steps(2);
+    let asked = |c: &Command| matches!(c, Command::File(FileCommand::AskOpen(Role::Stamped)));
+    assert!(harness.state().seen.iter().any(asked));
+}
+
+#[test]
+fn hovering_names_the_part_and_says_nothing_twice() {
+    let mut harness = harness(Desk::with_sheets(None));
+    let center = area(&harness, Role::Stamped).center();
+    for step in 0..4 {
+        harness.event(Event::PointerMoved(center + vec2(step as f32, 0.0)));
+        harness.step();
+    }
+    let hovers = |c: &&Command| matches!(c, Command::Part(PartCommand::Hover(Some(_))));
+    assert_eq!(harness.state().seen.iter().filter(hovers).count(), 1);
+}
+
+#[test]
+fn the_gizmo_moves_the_part_in_one_step() {
+    let mut desk = Desk::with_sheets(None);
+    desk.apply(ViewCommand::ToggleGizmo.into());
+    let mut harness = harness(desk);
+    let before = *harness.state().state.document.crash_from_stamped();
+    let camera = harness.state().camera(Role::Stamped);
+    // The dot lies at the centre of the part.
+    let area = area(&harness, Role::Stamped);
+    let pivot = harness.state().state.document.stamped_center().unwrap();
+    let seen = camera.project(&pivot, screen_of(area)).unwrap();
+    let dot = area.min + vec2(seen.x as f32, seen.y as f32);
+    let n_steps = harness.state().state.history.n_done();
+    drag(
+        &mut harness,
+        PointerButton::Primary,
+        dot,
+        dot + vec2(30.0, 0.0),
+    );
+    let desk = harness.state();
+    assert_eq!(
+        desk.camera(Role::Stamped),
+        camera,
+        "the camera leaves the button alone"
+    );
+    assert_ne!(*desk.state.document.crash_from_stamped(), before);
+    assert_eq!(desk.state.history.n_done(), n_steps + 1);
+    let ended = |c: &Command| matches!(c, Command::Move(MoveCommand::EndDrag));
+    assert!(desk.seen.iter().any(ended));
+}
+
+#[test]
+fn move_over_draws_the_stamped_part_in_the_left_picture() {
+    let state = egui_kittest::wgpu::create_render_state(
+        egui_kittest::wgpu::default_wgpu_setup(),
+        RendererOptions::PREDICTABLE,
+    );
+    let renderer = egui_kittest::wgpu::WgpuTestRenderer::from_render_state(state.clone());
+    let desk = Desk::with_sheets(Some(&state));
+    let builder = Harness::builder()
+        .with_size(vec2(360.0, 180.0))
+        .renderer(renderer);
+    let mut harness = builder.build_ui_state(show, desk);
+    harness.run_steps(4);
+    let counts = |harness: &mut Harness<'_, Desk>| {
+        let picture = harness
+            .state_mut()
+            .viewports
+            .window_picture(Role::Crash, true)
+            .unwrap();
+        let (mut blue, mut orange) = (0, 0);
+        for pixel in picture.pixels().filter(|p| p.0[3] == 255) {
+            let [red, _, b, _] = pixel.0;
+            orange += usize::from(red > b.saturating_add(40));
+            blue += usize::from(b > red.saturating_add(40));
+        }
+        (blue, orange)
+    };
+    let (blue, orange) = counts(&mut harness);
+    assert!(blue > 2000 && orange == 0, "{blue} blue, {orange} orange");
+    harness
+        .state_mut()
+        .apply(ViewCommand::ToggleMoveOver.into());
+    harness.run_steps(3);
+    let (_, orange) = counts(&mut harness);
+    assert!(orange > 2000, "{orange} orange");
+    harness.render().unwrap();
+}
