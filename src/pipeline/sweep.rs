@@ -46,10 +46,18 @@ impl Default for SweepSettings {
         Self {
             reduction: PAPER_REDUCTION.map(|(n, _)| n).to_vec(),
             matching: PAPER_MATCHING.map(|(n, _)| n).to_vec(),
-            settings: MatchSettings::default(),
+            settings: nine_starts(),
             n_repeats: 3,
         }
     }
+}
+
+/// The paper's starts, with both directions of the normal: never more than these, so that the
+/// times of all levels compare.
+fn nine_starts() -> MatchSettings {
+    let mut settings = MatchSettings::default();
+    settings.starts.widen = false;
+    settings
 }
 
 /// One row of the reduction table.

@@ -142,6 +142,10 @@ impl Decimator {
     }
 
     /// Prices an entry that came up, and collapses it, puts it back, or sets it aside.
+    ///
+    /// An entry carries the price of the time it was made. Pricing it anew here rather than after
+    /// every collapse nearby takes a third of the work for almost the same order: a price that has
+    /// risen sends the entry back, one that has fallen is only seen late.
     fn treat(&mut self, entry: Entry) {
         let (a, b) = (self.root(entry.a), self.root(entry.b));
         if a == b {

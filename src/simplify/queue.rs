@@ -1,4 +1,4 @@
-//! A priority queue for prices that only rise.
+//! A priority queue for prices that seldom fall.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -22,7 +22,7 @@ pub struct CollapseSequence {
 
 impl CollapseSequence {
     /// Collapses `mesh` down to `settings.max_triangles`, or until nothing legal is left, and
-    /// remembers every step. 40 bytes or so per vertex beside the mesh.
+    /// remembers every step. 56 bytes or so per vertex beside the mesh.
     pub fn record(
         mesh: &TriMesh,
         settings: &SimplifySettings,
