@@ -15,7 +15,10 @@ pub fn overlays_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Com
     let Some(dialog) = state.view.dialog else {
         return;
     };
-    let modal = Modal::new(egui::Id::unique(("dialog", dialog as u8)));
+    let frame = egui::Frame::popup(&ctx.global_style())
+        .inner_margin(24)
+        .corner_radius(8);
+    let modal = Modal::new(egui::Id::unique(("dialog", dialog as u8))).frame(frame);
     let response = modal.show(ctx, |ui| {
         ui.spacing_mut().item_spacing.y = UNIT;
         let room = ctx.content_rect().size() - vec2(96.0, 160.0);
@@ -54,10 +57,14 @@ fn title(ui: &mut Ui, text: &str, commands: Option<&mut Vec<Command>>) {
 
 /// All keys, menu by menu, and the mouse.
 fn help_ui(ui: &mut Ui, room: egui::Vec2) {
-    let width = room.x.min(940.0);
+    let width = room.x.min(1040.0);
     ui.set_width(width);
     title(ui, "Keys and mouse", None);
-    ScrollArea::vertical().max_height(room.y).show(ui, |ui| {
+    let sheet = ScrollArea::vertical()
+        .max_height(room.y)
+        .min_scrolled_height(room.y);
+    sheet.show(ui, |ui| {
+        ui.spacing_mut().item_spacing = vec2(40.0, 2.0);
         ui.columns(3, |columns| {
             let menus: [&[Menu]; 3] = [
                 &[Menu::File, Menu::Edit],
@@ -105,8 +112,8 @@ fn help_menu(ui: &mut Ui, menu: Menu) {
 }
 
 fn key_row(ui: &mut Ui, what: &str, keys: &str) {
+    ui.spacing_mut().interact_size.y = 18.0;
     ui.horizontal(|ui| {
-        ui.spacing_mut().interact_size.y = 18.0;
         ui.label(what);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             secondary(ui, keys);

@@ -2,8 +2,8 @@
 
 use crate::jobs::Role;
 use egui::{
-    Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Shadow, Stroke,
-    Style, TextStyle, Visuals, vec2,
+    Color32, CornerRadius, FontDefinitions, FontFamily, FontId, Margin, Shadow, Stroke, Style,
+    TextStyle, Visuals, vec2,
 };
 
 /// The step everything is spaced by.
@@ -13,7 +13,7 @@ pub const ROW: f32 = 24.0;
 /// Height of a primary button.
 pub const TALL: f32 = 32.0;
 /// Width of the label column of a form.
-pub const LABEL: f32 = 96.0;
+pub const LABEL: f32 = 88.0;
 
 /// The colours of one theme. Pairs of text and ground keep a contrast of at least 4.5.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,9 +139,6 @@ fn fonts() -> FontDefinitions {
     if let Some(family) = fonts.families.get_mut(&FontFamily::Proportional) {
         family.insert(1, "Hack".to_owned());
     }
-    if let Some(data) = fonts.font_data.get_mut("Ubuntu-Light") {
-        *data = FontData::clone(data).into();
-    }
     fonts
 }
 
@@ -227,6 +224,7 @@ fn visuals(palette: &Palette, is_dark: bool) -> Visuals {
     visuals.warn_fg_color = palette.check;
     visuals.error_fg_color = palette.poor;
     visuals.slider_trailing_fill = true;
+    visuals.handle_shape = egui::style::HandleShape::Circle;
     visuals.disabled_alpha = 0.55;
     let shadow = Shadow {
         offset: [0, 4],

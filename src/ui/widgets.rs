@@ -75,7 +75,8 @@ pub fn paint_role_mark(painter: &egui::Painter, rect: Rect, role: Role, color: C
 
 /// The mark of a part as a widget.
 pub fn role_mark(ui: &mut Ui, role: Role) -> Response {
-    let (rect, response) = ui.allocate_exact_size(vec2(12.0, ROW), Sense::hover());
+    let height = ui.spacing().interact_size.y;
+    let (rect, response) = ui.allocate_exact_size(vec2(12.0, height), Sense::hover());
     let mark = Rect::from_center_size(rect.center(), Vec2::splat(11.0));
     paint_role_mark(ui.painter(), mark, role, Palette::of(ui).role(role));
     let name = match role {
@@ -165,6 +166,74 @@ pub fn action_button(
     response
 }
 
+/// [`action_button`] over the whole width of a column.
+pub fn wide_action(
+    ui: &mut Ui,
+    state: &AppState,
+    action: Action,
+    (label, look, height): (&str, Look, f32),
+    commands: &mut Vec<Command>,
+) -> Response {
+    let size = vec2(ui.available_width(), height);
+    ui.horizontal(|ui| action_button(ui, state, action, (label, look, size), commands))
+        .inner
+}
+
+/// A square button with a sign, for menus and steps; as wide as it is high.
+pub fn square(sign: &str, height: f32) -> Button<'static> {
+    let text = RichText::new(sign.to_owned()).size(14.0);
+    Button::new(text).min_size(vec2(ROW, height))
+}
+
+/// Runs `add` with buttons that need no room left and right of their sign.
+pub fn tight<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let before = ui.spacing().button_padding.x;
+    ui.spacing_mut().button_padding.x = 4.0;
+    let result = add(ui);
+    ui.spacing_mut().button_padding.x = before;
+    result
+}
+
+/// Choices side by side in one frame, all of the same width; the index of the one clicked.
+pub fn segments(ui: &mut Ui, labels: &[(&str, bool, bool)], width: f32) -> Option<usize> {
+    let palette = Palette::of(ui);
+    let (rect, _) = ui.allocate_exact_size(vec2(width, ROW + 4.0), Sense::hover());
+    let radius = CornerRadius::same(4);
+    ui.painter().rect_filled(rect, radius, palette.field);
+    let stroke = Stroke::new(1.0, palette.line);
+    ui.painter()
+        .rect_stroke(rect, radius, stroke, egui::StrokeKind::Inside);
+    let step = rect.width() / labels.len().max(1) as f32;
+    let mut clicked = None;
+    for (index, (label, is_on, can)) in labels.iter().enumerate() {
+        let left = rect.left() + step * index as f32;
+        let cell = Rect::from_min_size(pos2(left, rect.top()), vec2(step, rect.height()));
+        let id = ui.unique_id().with(("segment", *label));
+        let sense = if *can { Sense::click() } else { Sense::hover() };
+        let response = ui.interact(cell, id, sense);
+        let inner = cell.shrink(2.0);
+        if *is_on {
+            ui.painter().rect_filled(inner, 3.0, palette.accent);
+        } else if *can && (response.hovered() || response.has_focus()) {
+            ui.painter().rect_filled(inner, 3.0, palette.hovered);
+        }
+        let color = match (*is_on, *can) {
+            (true, _) => palette.on_accent,
+            (false, true) => palette.text,
+            (false, false) => palette.secondary.gamma_multiply(0.7),
+        };
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let middle = egui::Align2::CENTER_CENTER;
+        ui.painter().text(cell.center(), middle, label, font, color);
+        response
+            .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, *can, *is_on, label));
+        if response.clicked() {
+            clicked = Some(index);
+        }
+    }
+    clicked
+}
+
 /// [`action_button`] with the action's own label.
 pub fn plain_action(
     ui: &mut Ui,
@@ -184,8 +253,7 @@ pub fn plain_action(
 
 /// A small square button with one sign on it, named for those who cannot see the sign.
 pub fn icon_button(ui: &mut Ui, sign: &str, name: &str, is_enabled: bool) -> Response {
-    let button = Button::new(RichText::new(sign).size(14.0)).min_size(Vec2::splat(ROW));
-    let response = ui.add_enabled(is_enabled, button.frame_when_inactive(false));
+    let response = tight(ui, |ui| ui.add_enabled(is_enabled, square(sign, ROW)));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, is_enabled, name));
     response.on_hover_text(name)
 }
@@ -193,11 +261,7 @@ pub fn icon_button(ui: &mut Ui, sign: &str, name: &str, is_enabled: bool) -> Res
 /// A chip: one of several choices side by side.
 pub fn chip(ui: &mut Ui, label: &str, is_on: bool) -> Response {
     let palette = Palette::of(ui);
-    let text = RichText::new(label).color(if is_on {
-        palette.on_accent
-    } else {
-        palette.text
-    });
+    let text = RichText::new(label);
     let fill = if is_on {
         palette.accent
     } else {
@@ -248,8 +312,8 @@ pub fn form_row<R>(
 
 /// A name on the left and a value on the right edge, for lists of figures.
 pub fn figure(ui: &mut Ui, name: &str, value: &str) {
+    ui.spacing_mut().interact_size.y = 18.0;
     ui.horizontal(|ui| {
-        ui.spacing_mut().interact_size.y = 18.0;
         secondary(ui, name);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.label(value);

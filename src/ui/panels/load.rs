@@ -8,7 +8,7 @@ use crate::app::{
 use crate::jobs::{JobKey, Role};
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
-    Look, action_button, caption, card, chip, grouped, icon_button, role_mark,
+    Look, action_button, caption, card, chip, grouped, icon_button, role_mark, square, tight,
 };
 use egui::{Align, Layout, Sense, TextStyle, Ui, vec2};
 
@@ -41,7 +41,7 @@ fn summary(state: &AppState) -> String {
         part.map_or_else(|| "–".to_owned(), |p| grouped(p.loaded.report.n_triangles))
     };
     if state.document.parts.iter().all(|(_, part)| part.is_none()) {
-        return "nothing loaded".to_owned();
+        return String::new();
     }
     format!("■ {}  ▲ {}", count(Role::Crash), count(Role::Stamped))
 }
@@ -85,9 +85,9 @@ fn loaded_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState, commands: &
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &spoken));
     response.on_hover_text(part.loaded.path.display().to_string());
     let label = format!("{} file", role.word());
-    let menu = egui::Button::new("…").min_size(vec2(ROW, ROW));
-    let (button, _) = egui::containers::menu::MenuButton::from_button(menu).ui(ui, |ui| {
-        file_menu_ui(ui, role, part, state, commands);
+    let menu = egui::containers::menu::MenuButton::from_button(square("…", ROW));
+    let (button, _) = tight(ui, |ui| {
+        menu.ui(ui, |ui| file_menu_ui(ui, role, part, state, commands))
     });
     button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
     button.on_hover_text("Open another, reload, close, findings");
@@ -182,7 +182,7 @@ fn tools_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         } else {
             Look::Plain
         };
-        let link = ("🔗 Link views", look, vec2(104.0, ROW));
+        let link = ("Link views", look, vec2(88.0, ROW));
         action_button(ui, state, Action::ToggleLink, link, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let response = icon_button(ui, "⟳", "Reload both files", true);

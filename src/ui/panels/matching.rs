@@ -2,12 +2,15 @@
 
 use super::section::section_ui;
 use super::{manual_move, recipe, result};
-use crate::app::{Action, AppState, Command, MatchCommand, Section, ShownGeometry, duration_text};
+use crate::app::{
+    Action, AppState, Command, MatchCommand, Section, ShownGeometry, ViewCommand, duration_text,
+};
 use crate::jobs::{JobKey, Role};
 use crate::registration::{Method, StartMethod};
 use crate::ui::theme::{Palette, ROW, TALL, UNIT};
 use crate::ui::widgets::{
-    Look, action_button, caption, chip, form_row, length, paragraph, percent, secondary,
+    Look, action_button, caption, form_row, length, paragraph, percent, secondary, segments, tight,
+    wide_action,
 };
 use egui::{Button, ComboBox, ProgressBar, RichText, Ui, vec2};
 
@@ -54,24 +57,25 @@ fn summary(state: &AppState) -> String {
                 length(assessment.coverage.rmse())
             )
         }
-        None if state.document.both().is_none() => "load both parts first".to_owned(),
+        None if state.document.both().is_none() => String::new(),
         None => state.document.recipe.settings.method.label().to_owned(),
     }
 }
 
 /// "Align surface normal", and stepping through the first poses it made.
 fn align_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let size = vec2(ui.available_width(), ROW + 4.0);
-    let look = ("Align surface normal", Look::Plain, size);
-    action_button(ui, state, Action::Align, look, commands);
+    let look = ("Align surface normal", Look::Plain, ROW + 4.0);
+    wide_action(ui, state, Action::Align, look, commands);
     let Some(starts) = state.current_starts().filter(|s| !s.poses.is_empty()) else {
         return;
     };
     ui.horizontal(|ui| {
         let square = vec2(ROW, ROW);
         let previous = ("◀", Look::Plain, square);
-        action_button(ui, state, Action::PreviousStart, previous, commands)
-            .widget_info(|| named_button("Previous start"));
+        tight(ui, |ui| {
+            action_button(ui, state, Action::PreviousStart, previous, commands)
+                .widget_info(|| named_button("Previous start"));
+        });
         let text = match starts.shown {
             Some(index) => format!("start {} of {}", index + 1, starts.poses.len()),
             None => format!("{} starts", starts.poses.len()),
@@ -79,8 +83,10 @@ fn align_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let label = ui.add_sized(vec2(104.0, ROW), egui::Label::new(text));
         label.on_hover_text("The first poses are shown one by one; the real pose stays");
         let next = ("▶", Look::Plain, square);
-        action_button(ui, state, Action::NextStart, next, commands)
-            .widget_info(|| named_button("Next start"));
+        tight(ui, |ui| {
+            action_button(ui, state, Action::NextStart, next, commands)
+                .widget_info(|| named_button("Next start"));
+        });
         if starts.shown.is_some() {
             let look = ("Use", Look::Plain, vec2(48.0, ROW));
             action_button(ui, state, Action::UseStart, look, commands);
@@ -146,8 +152,8 @@ fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.add_space(2.0);
     let width = ui.available_width();
     if !state.jobs.is_active(JobKey::Match) {
-        let look = ("▶  Match", Look::Primary, vec2(width, TALL));
-        action_button(ui, state, Action::MatchOrStop, look, commands)
+        let look = ("▶  Match", Look::Primary, TALL);
+        wide_action(ui, state, Action::MatchOrStop, look, commands)
             .widget_info(|| named_button("Match the parts"));
         return;
     }
@@ -214,18 +220,12 @@ fn compare_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let half = (ui.available_width() - UNIT) / 2.0;
         let look = (label, Look::Plain, vec2(half, ROW + 4.0));
         action_button(ui, state, Action::ToggleMoveOver, look, commands);
-        for (shown, label) in [
-            (ShownGeometry::Reduced, "Reduced"),
-            (ShownGeometry::Detailed, "Detailed"),
-        ] {
-            let is_on = state.view.shown == shown;
-            let can = is_on || Action::ToggleDetailed.enabled(state).is_ok();
-            ui.add_enabled_ui(can, |ui| {
-                let response = chip(ui, label, is_on);
-                if response.clicked() && !is_on {
-                    commands.push(crate::app::ViewCommand::SetShown(shown).into());
-                }
-            });
+        let can = Action::ToggleDetailed.enabled(state).is_ok();
+        let choices = [ShownGeometry::Reduced, ShownGeometry::Detailed];
+        let is_on = |index: usize| can && state.view.shown == choices[index];
+        let labels = [("Reduced", is_on(0), can), ("Detailed", is_on(1), can)];
+        if let Some(index) = segments(ui, &labels, half) {
+            commands.push(ViewCommand::SetShown(choices[index]).into());
         }
     });
     if state.view.is_moved_over {
@@ -266,6 +266,6 @@ fn over_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
     });
     if display != state.view.display {
-        commands.push(crate::app::ViewCommand::SetDisplay(Box::new(display)).into());
+        commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
     }
 }

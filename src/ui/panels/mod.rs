@@ -16,7 +16,7 @@ pub mod top_bar;
 use super::theme::{Palette, UNIT};
 use super::viewport::Viewports;
 use crate::app::{AppState, Command, Settings};
-use egui::{Frame, Margin, Panel, ScrollArea, Ui};
+use egui::{Frame, Margin, Panel, ScrollArea, Sense, Ui, UiBuilder, vec2};
 
 /// Width of the left column at the first start.
 const COLUMN: f32 = 344.0;
@@ -74,11 +74,17 @@ fn left_column_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         .id_salt("left column")
         .auto_shrink([false, false])
         .show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = 0.0;
-            load::load_ui(ui, state, commands);
-            reduce::reduce_ui(ui, state, commands);
-            matching::matching_ui(ui, state, commands);
-            ui.add_space(UNIT);
+            // A child of fixed width: nothing in it may push the edge of the column outwards.
+            let room = ui.available_rect_before_wrap();
+            let width = room.width();
+            let mut column = ui.new_child(UiBuilder::new().max_rect(room));
+            column.spacing_mut().item_spacing.y = 0.0;
+            load::load_ui(&mut column, state, commands);
+            reduce::reduce_ui(&mut column, state, commands);
+            matching::matching_ui(&mut column, state, commands);
+            column.add_space(UNIT);
+            let height = column.min_rect().height();
+            ui.allocate_exact_size(vec2(width, height), Sense::hover());
         });
 }
 

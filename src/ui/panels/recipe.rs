@@ -7,7 +7,7 @@ use crate::registration::{
     StartMethod,
 };
 use crate::ui::theme::{ROW, UNIT};
-use crate::ui::widgets::{caption, card, form_row};
+use crate::ui::widgets::{caption, card, form_row, tight};
 use egui::{ComboBox, DragValue, Ui, Vec2};
 
 const LABEL: f32 = 104.0;
@@ -31,7 +31,7 @@ pub fn gear_ui(ui: &mut Ui) {
     let button = egui::Button::new("⚙")
         .selected(is_open)
         .min_size(Vec2::splat(ROW));
-    let response = ui.add(button);
+    let response = tight(ui, |ui| ui.add(button));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
     if response.on_hover_text(name).clicked() {
         ui.data_mut(|data| data.insert_temp(gear_id(), !is_open));

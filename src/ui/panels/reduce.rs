@@ -51,7 +51,7 @@ fn summary(state: &AppState) -> String {
     };
     let levels: Vec<String> = Role::ALL.into_iter().filter_map(level).collect();
     if levels.is_empty() {
-        "load a part first".to_owned()
+        String::new()
     } else {
         levels.join("  ")
     }
@@ -71,8 +71,9 @@ fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 let digits: String = text.chars().filter(char::is_ascii_digit).collect();
                 digits.parse().ok()
             })
-            .min_size(vec2(88.0, ROW));
+            .min_size(vec2(80.0, ROW));
         let field = ui.add(field);
+        ui.spacing_mut().button_padding.x = 8.0;
         is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         let roles = settings.reduce_roles;
         for (label, name, chosen) in [
@@ -181,8 +182,8 @@ fn strip_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 /// What one part got and how far it is from the full mesh.
 fn achieved_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState) {
+    ui.spacing_mut().interact_size.y = 18.0;
     ui.horizontal(|ui| {
-        ui.spacing_mut().interact_size.y = 18.0;
         role_mark(ui, role);
         let Some(level) = &part.level else {
             let n = part.loaded.report.n_triangles;
@@ -203,7 +204,7 @@ fn achieved_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState) {
     });
     let Some(level) = &part.level else { return };
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().interact_size.y = 16.0;
+        ui.spacing_mut().item_spacing = vec2(4.0, 0.0);
         ui.add_space(12.0 + UNIT);
         match level.deviation.get() {
             Some(d) => {
@@ -245,7 +246,10 @@ fn achieved_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState) {
 fn views_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let is_error = state.view.display.color_by == ColorBy::ReductionError;
-        let response = chip(ui, "Error colours", is_error);
+        let can = Action::ReduceToFull.enabled(state).is_ok() || is_error;
+        let response = ui
+            .add_enabled_ui(can, |ui| chip(ui, "Error colours", is_error))
+            .inner;
         if response
             .on_hover_text("Colour by the distance to the full mesh")
             .clicked()

@@ -5,7 +5,7 @@ use crate::assess::Verdict;
 use crate::report::{MatrixForm, number};
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
-    Look, action_button, caption, card, chip, figure, length, paragraph, percent,
+    Look, action_button, caption, card, chip, figure, length, paragraph, percent, square, tight,
 };
 use egui::{Color32, RichText, Ui, vec2};
 
@@ -16,11 +16,21 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     ui.add_space(2.0);
     let is_current = state.document.current_result().is_some();
+    let top = ui.cursor().top();
     card(ui, |ui| {
         verdict_ui(ui, result, is_current);
         figures_ui(ui, result);
         alternatives_ui(ui, state, result, commands);
     });
+    // A new result comes into sight by itself.
+    let id = egui::Id::unique("stamp of the result in sight");
+    let seen: Option<crate::jobs::Stamp> = ui.data(|data| data.get_temp(id));
+    if seen != Some(result.stamp) {
+        ui.data_mut(|data| data.insert_temp(id, result.stamp));
+        let bottom = ui.cursor().top() + 3.0 * ROW;
+        let x = ui.max_rect().x_range();
+        ui.scroll_to_rect(egui::Rect::from_x_y_ranges(x, top..=bottom), None);
+    }
     if is_current {
         matrix_ui(ui, state, commands);
     }
@@ -142,14 +152,8 @@ fn matrix_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             commands.push(ExportCommand::CopyMatrix(last).into());
         }
         response.on_hover_text(format!("As {}", last.label()));
-        let menu = egui::Button::new("▾").min_size(vec2(ROW, ROW + 4.0));
-        let (button, _) = egui::containers::menu::MenuButton::from_button(menu).ui(ui, |ui| {
-            for form in MatrixForm::ALL {
-                if ui.button(form.label()).clicked() {
-                    commands.push(ExportCommand::CopyMatrix(*form).into());
-                }
-            }
-        });
+        let menu = egui::containers::menu::MenuButton::from_button(square("▾", ROW + 4.0));
+        let (button, _) = tight(ui, |ui| menu.ui(ui, |ui| copy_menu_ui(ui, commands)));
         button
             .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Copy matrix as"));
     });
@@ -160,6 +164,15 @@ fn matrix_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             grid_ui(ui, &pose.to_rows());
             moved_ui(ui, state);
         });
+}
+
+/// Every form of the matrix.
+fn copy_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
+    for form in MatrixForm::ALL {
+        if ui.button(form.label()).clicked() {
+            commands.push(ExportCommand::CopyMatrix(*form).into());
+        }
+    }
 }
 
 /// The form that was copied last.

@@ -3,7 +3,7 @@
 use crate::app::{AppState, Command, Section, ViewCommand};
 use crate::ui::theme::{Palette, TALL, UNIT};
 use egui::{
-    Align2, CornerRadius, FontId, Frame, Margin, Rect, Sense, Stroke, TextStyle, Ui, pos2, vec2,
+    Align2, CornerRadius, FontId, Margin, Rect, Sense, Stroke, TextStyle, Ui, UiBuilder, pos2, vec2,
 };
 
 /// A section: its header is always there, its body while it is unfolded.
@@ -33,11 +33,13 @@ pub fn section_ui(
         top: 4,
         bottom: 12,
     };
-    Frame::new().inner_margin(margin).show(ui, |ui| {
-        ui.spacing_mut().item_spacing = vec2(UNIT, 6.0);
-        ui.set_width(ui.available_width());
-        body(ui, commands);
-    });
+    // A child of fixed width: nothing in it may push the edges of those below outwards.
+    let room = ui.available_rect_before_wrap() - margin;
+    let mut inner = ui.new_child(UiBuilder::new().max_rect(room).id_salt(title));
+    inner.spacing_mut().item_spacing = vec2(UNIT, 6.0);
+    body(&mut inner, commands);
+    let height = inner.min_rect().height() + margin.sum().y;
+    ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
 }
 
 /// Draws the header; true if it was clicked.

@@ -5,7 +5,7 @@ use crate::jobs::Role;
 use crate::report::{CardForm, MatrixForm};
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{caption, secondary};
-use egui::{Align, Button, Layout, MenuBar, RichText, Ui, vec2};
+use egui::{Align, Button, Layout, MenuBar, RichText, Sense, Ui, pos2, vec2};
 
 /// The bar at the top.
 pub fn top_bar_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -152,20 +152,52 @@ fn recent_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 fn bell_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let n_unread = state.notices.n_unread();
     let palette = Palette::of(ui);
-    let text = if n_unread > 0 {
-        RichText::new(format!("🔔 {n_unread}")).color(palette.check)
+    let color = if n_unread > 0 {
+        palette.check
     } else {
-        RichText::new("🔔").color(palette.secondary)
+        palette.secondary
     };
     let name = match n_unread {
         0 => "Messages".to_owned(),
         n => format!("Messages, {n} unread"),
     };
-    let response = ui.add(Button::new(text).min_size(vec2(ROW, ROW)));
+    let width = if n_unread > 0 { 40.0 } else { ROW };
+    let (rect, response) = ui.allocate_exact_size(vec2(width, ROW), Sense::click());
+    if response.hovered() || response.has_focus() {
+        ui.painter().rect_filled(rect, 4.0, palette.hovered);
+    }
+    let at = pos2(rect.left() + ROW / 2.0, rect.center().y);
+    paint_bell(ui.painter(), at, color);
+    if n_unread > 0 {
+        let font = egui::TextStyle::Small.resolve(ui.style());
+        let place = pos2(rect.right() - 6.0, rect.center().y);
+        let text = n_unread.to_string();
+        ui.painter()
+            .text(place, egui::Align2::RIGHT_CENTER, text, font, color);
+    }
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     if response.on_hover_text(&name).clicked() {
         commands.push(ViewCommand::SetDialog(Some(Dialog::Messages)).into());
     }
+}
+
+/// A bell: dome, rim, clapper.
+fn paint_bell(painter: &egui::Painter, at: egui::Pos2, color: egui::Color32) {
+    let outline = [
+        (-6.0, 3.5),
+        (-4.5, 1.5),
+        (-4.5, -1.5),
+        (-3.0, -4.5),
+        (0.0, -6.0),
+        (3.0, -4.5),
+        (4.5, -1.5),
+        (4.5, 1.5),
+        (6.0, 3.5),
+    ];
+    let points = outline.map(|(x, y)| at + vec2(x, y)).to_vec();
+    let stroke = egui::Stroke::new(1.3, color);
+    painter.add(egui::Shape::closed_line(points, stroke));
+    painter.circle_filled(at + vec2(0.0, 5.6), 1.6, color);
 }
 
 /// The files say no unit; lengths are those of the crash deck.
@@ -187,10 +219,13 @@ fn unit_ui(ui: &mut Ui, state: &AppState) {
 
 fn search_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     let palette = Palette::of(ui);
+    ui.spacing_mut().button_padding.x = 8.0;
     let text = RichText::new("Search commands").color(palette.secondary);
     let button = Button::new(text)
         .shortcut_text("Ctrl+K")
-        .fill(palette.field)
+        .fill(palette.panel)
+        .stroke(egui::Stroke::new(1.0, palette.line))
+        .frame_when_inactive(true)
         .min_size(vec2(208.0, ROW));
     let response = ui.add(button);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Search commands"));

@@ -1,0 +1,87 @@
+//! Panels clicked by name, with the keyboard, at several sizes.
+
+use super::story::{click, finish, window};
+use egui_kittest::kittest::Queryable as _;
+use shapematch::app::{BottomTab, Dialog};
+use shapematch::jobs::Role;
+
+#[test]
+fn an_empty_window_invites_and_says_why_the_rest_waits() {
+    let window = window();
+    for name in [
+        "Drop the crash model here",
+        "Drop the stamped part here",
+        "Open crash model…",
+        "Open stamped part…",
+        "Not now: load a part first.",
+        "Not now: load both parts first.",
+    ] {
+        assert!(window.query_by_label(name).is_some(), "{name}");
+    }
+}
+
+#[test]
+fn sections_fold_tabs_turn_and_dialogs_open_by_key() {
+    let mut window = window();
+    click(&mut window, "2 Reduce");
+    assert_eq!(
+        window.state().state().view.open_sections,
+        [true, false, true]
+    );
+    for tab in [
+        BottomTab::Timings,
+        BottomTab::Starts,
+        BottomTab::Convergence,
+        BottomTab::Sweep,
+        BottomTab::History,
+        BottomTab::Diagnostics,
+        BottomTab::Log,
+    ] {
+        click(&mut window, tab.label());
+        assert_eq!(window.state().state().view.tab, tab);
+    }
+    window.key_press(egui::Key::F1);
+    window.run_steps(2);
+    assert_eq!(window.state().state().view.dialog, Some(Dialog::Help));
+    assert!(window.query_by_label("Esc closes").is_some());
+    window.key_press(egui::Key::Escape);
+    window.run_steps(2);
+    assert_eq!(window.state().state().view.dialog, None);
+}
+
+#[test]
+fn parts_hide_swap_and_come_back_by_undo() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    click(&mut window, "Show Part 1");
+    let hidden = |window: &egui_kittest::Harness<'static, shapematch::ui::Shell>| {
+        let part = window.state().state().document.part(Role::Stamped);
+        part.expect("loaded").hidden.len()
+    };
+    assert_eq!(hidden(&window), 1);
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    window.run_steps(2);
+    assert_eq!(hidden(&window), 0);
+    let name = |window: &egui_kittest::Harness<'static, shapematch::ui::Shell>| {
+        let part = window.state().state().document.part(Role::Crash);
+        part.expect("loaded").loaded.file_name()
+    };
+    let before = name(&window);
+    click(&mut window, "⇄ Swap");
+    assert_ne!(name(&window), before);
+}
+
+#[test]
+fn every_state_of_the_window_has_names_at_every_size() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    click(&mut window, "Settings of the match");
+    click(&mut window, "Move by hand");
+    for size in [[1280.0, 720.0], [700.0, 450.0], [2560.0, 1440.0]] {
+        window.set_size(egui::Vec2::from(size));
+        window.run_steps(3);
+        window.check_accessibility();
+    }
+}
