@@ -2,12 +2,12 @@
 
 use nalgebra::Vector3;
 
-use super::fans::Fans;
 use super::intake::Intake;
-use super::legality::{Kind, Marks, Refusal, keeps_orientation, link_condition};
-use super::quadric::{EdgeQuadric, Quadric};
+use super::legality::{Marks, Refusal, keeps_orientation, link_condition};
+use super::quadric::{EdgeQuadric, Quadric, pull_of};
 use super::queue::{Entry, Queue, key_of, later_than};
 use super::settings::{Placement, SimplifySettings, Speed, StopReason};
+use super::surface::{Kind, Surface};
 use crate::monitor::{Cancelled, Monitor};
 
 /// One collapse as it is remembered.
@@ -54,12 +54,10 @@ pub(super) struct Decimator {
     may_close_loops: bool,
     boundary_weight: f64,
     stiffness: f64,
-    fans: Fans,
-    part_of: Vec<u32>,
-    kinds: Vec<Kind>,
-    quadrics: Vec<Quadric>,
-    merged_into: Vec<u32>,
+    surface: Surface,
     marks: Marks,
+    /// The triangles around the edge at hand that stay, with their normals after the collapse.
+    turned: Vec<(u32, Vector3<f64>)>,
     queue: Queue,
     closing: bool,
     refused: Refused,
@@ -68,7 +66,7 @@ pub(super) struct Decimator {
 
 impl Decimator {
     pub(super) fn new(intake: Intake, settings: &SimplifySettings) -> Self {
-        let n = intake.kinds.len();
+        let surface = intake.surface;
         let mut decimator = Self {
             placement: settings.placement,
             speed: settings.speed,
@@ -76,18 +74,15 @@ impl Decimator {
             may_close_loops: settings.may_close_loops,
             boundary_weight: settings.boundary_weight,
             stiffness: settings.stiffness,
-            fans: intake.fans,
-            part_of: intake.part_of,
-            kinds: intake.kinds,
-            quadrics: intake.quadrics,
-            merged_into: (0..n as u32).collect(),
-            marks: Marks::new(n),
+            marks: Marks::new(surface.vertices.len()),
+            surface,
+            turned: Vec::new(),
             queue: Queue::new(),
             closing: false,
             refused: Refused::default(),
             collapses: Vec::new(),
         };
-        decimator.fill_queue(&intake.edges);
+        decimator.fill_queue();
         decimator
     }
 
@@ -97,17 +92,17 @@ impl Decimator {
         max_triangles: usize,
         monitor: &Monitor,
     ) -> Result<(Vec<Collapse>, StopReason), Cancelled> {
-        let n_start = self.fans.n_triangles;
+        let n_start = self.surface.n_triangles;
         let to_do = n_start.saturating_sub(max_triangles) as u64;
         let mut n_popped = 0_usize;
         let mut n_at_fill = self.collapses.len();
-        while self.fans.n_triangles > max_triangles {
+        while self.surface.n_triangles > max_triangles {
             if n_popped.is_multiple_of(1024) {
                 monitor.check()?;
                 if monitor.stop_requested() {
                     return Ok((self.collapses, StopReason::StopRequested));
                 }
-                let done = (n_start - self.fans.n_triangles) as u64;
+                let done = (n_start - self.surface.n_triangles) as u64;
                 monitor.progress("simplify", done, Some(to_do));
             }
             n_popped += 1;
@@ -135,8 +130,7 @@ impl Decimator {
                 self.closing = false;
             }
             n_at_fill = self.collapses.len();
-            let edges = self.edges_left();
-            self.fill_queue(&edges);
+            self.fill_queue();
         }
         Ok((self.collapses, StopReason::Reached))
     }
@@ -147,25 +141,25 @@ impl Decimator {
     /// every collapse nearby takes a third of the work for almost the same order: a price that has
     /// risen sends the entry back, one that has fallen is only seen late.
     fn treat(&mut self, entry: Entry) {
-        let (a, b) = (self.root(entry.a), self.root(entry.b));
+        let edge = entry.edge();
+        if self.surface.edges[edge as usize].key != entry.key() {
+            // It was priced anew since.
+            return;
+        }
+        let [a, b] = self.surface.ends_now(edge);
         if a == b {
             return;
         }
-        let (a, b) = (a.min(b), a.max(b));
-        let Some(price) = self.price(a, b) else {
+        let Some(price) = self.price(edge, [a, b]) else {
             self.refused.feature += 1;
             return;
         };
-        let now = Entry {
-            key: key_of(price.cost),
-            a,
-            b,
-        };
+        let now = Entry::new(key_of(price.cost), edge);
         if now > entry && self.queue.peek().is_some_and(|next| next < now) {
-            self.queue.push(now);
+            self.push(now);
             return;
         }
-        match self.refusal(a, b, &price.position) {
+        match self.refusal([a, b], &price.position) {
             None => self.collapse(a, b, &price),
             Some(refusal) => {
                 match refusal {
@@ -173,37 +167,41 @@ impl Decimator {
                     Refusal::Flip => self.refused.flip += 1,
                 }
                 // The surroundings may change: it comes up again at a higher price.
-                let key = later_than(entry.key.max(now.key));
+                let key = later_than(entry.key().max(now.key()));
                 if key < key_of(1.0) {
-                    self.queue.push(Entry { key, ..now });
+                    self.push(Entry::new(key, edge));
                 }
             }
         }
     }
 
-    fn refusal(&mut self, a: u32, b: u32, position: &Vector3<f64>) -> Option<Refusal> {
-        if !link_condition(&self.fans, &mut self.marks, a, b, self.closing) {
+    /// Puts an edge into the queue; an entry it may have there no longer counts.
+    fn push(&mut self, entry: Entry) {
+        self.surface.edges[entry.edge() as usize].key = entry.key();
+        self.queue.push(entry);
+    }
+
+    fn refusal(&mut self, [a, b]: [u32; 2], position: &Vector3<f64>) -> Option<Refusal> {
+        if !link_condition(&self.surface, &mut self.marks, a, b, self.closing) {
             return Some(Refusal::Link);
         }
-        if !keeps_orientation(&self.fans, a, b, position, self.min_cosine) {
+        let (ends, turned) = ([a, b], &mut self.turned);
+        if !keeps_orientation(&self.surface, ends, position, self.min_cosine, turned) {
             return Some(Refusal::Flip);
         }
         None
     }
 
     fn collapse(&mut self, kept: u32, removed: u32, price: &Price) {
-        let (k, r) = (kept as usize, removed as usize);
         let third = self.third_of_loop(kept, removed);
-        if self.speed == Speed::Exact {
-            self.take_old_quadrics(kept, removed);
-        }
-        self.fans.collapse(kept, removed, price.position);
-        self.kinds[k] = self.kinds[k].max(self.kinds[r]);
-        self.merged_into[r] = kept;
+        let kind = self.surface.kind(kept).max(self.surface.kind(removed));
+        self.renew_quadrics(kept, removed);
+        self.surface.collapse(kept, removed, price.position);
+        self.surface.vertices[kept as usize].kind = kind;
         self.collapses.push(Collapse {
             kept,
             removed,
-            n_triangles: self.fans.n_triangles as u32,
+            n_triangles: self.surface.n_triangles as u32,
             closes: u32::from(third.is_some()),
             position: price.position,
             error: if price.weight > 0.0 {
@@ -213,53 +211,63 @@ impl Decimator {
             },
         });
         if let Some(third) = third {
-            self.kinds[k] = self.kind_by_count(kept);
-            self.kinds[third as usize] = self.kind_by_count(third);
+            self.close_loop(kept, third);
         }
-        match self.speed {
-            Speed::Exact => self.add_new_quadrics(kept),
-            Speed::Fast => self.quadrics[k] = self.quadric_of(kept),
+        if kind != Kind::Free {
+            self.renew_features(kept);
         }
-        if self.fans.n_triangles < EAGER_BELOW {
+        if self.surface.n_triangles < EAGER_BELOW {
             self.requeue_around(kept);
         }
     }
 
-    /// Takes the triangles around an edge out of the quadrics of their other vertices.
-    fn take_old_quadrics(&mut self, a: u32, b: u32) {
-        for end in [a, b] {
-            for &t in self.fans.around(end) {
-                let corners = self.fans.triangles[t as usize];
-                if end == b && corners.contains(&a) {
-                    continue;
-                }
-                let quadric = Quadric::triangle(&self.fans.corners(t), self.stiffness);
-                for v in corners {
-                    self.quadrics[v as usize].subtract(&quadric);
+    /// Gives the triangles that stay around a collapsed edge their new pulls, and the vertices they
+    /// belong to their new quadrics: the merged vertex, and if it is to be exact all its neighbours.
+    fn renew_quadrics(&mut self, kept: u32, removed: u32) {
+        let is_exact = self.speed == Speed::Exact;
+        let stiffness = self.stiffness;
+        if is_exact {
+            for i in 0..self.surface.around(removed).len() {
+                let face = self.surface.faces[self.surface.around(removed)[i] as usize];
+                let [next, last] = face.others(removed);
+                if next == kept || last == kept {
+                    let third = (next ^ last ^ kept) as usize;
+                    let quadric = Quadric::triangle(&face.pull, stiffness);
+                    self.surface.vertices[third].quadric.subtract(&quadric);
                 }
             }
         }
+        let mut sum = Quadric::default();
+        for (t, twice_area) in &self.turned {
+            let face = &mut self.surface.faces[*t as usize];
+            let before = std::mem::replace(&mut face.pull, pull_of(twice_area));
+            let quadric = Quadric::triangle(&face.pull, stiffness);
+            sum.add(&quadric);
+            if is_exact {
+                let mut change = quadric;
+                change.subtract(&Quadric::triangle(&before, stiffness));
+                for v in face.corners {
+                    // The merged vertices get a change as well, which the sum then replaces.
+                    self.surface.vertices[v as usize].quadric.add(&change);
+                }
+            }
+        }
+        self.surface.vertices[kept as usize].quadric = sum;
     }
 
-    /// Adds the triangles around a merged vertex to the quadrics of all their vertices.
-    fn add_new_quadrics(&mut self, vertex: u32) {
-        self.quadrics[vertex as usize] = Quadric::default();
-        for &t in self.fans.around(vertex) {
-            let quadric = Quadric::triangle(&self.fans.corners(t), self.stiffness);
-            for v in self.fans.triangles[t as usize] {
-                self.quadrics[v as usize].add(&quadric);
-            }
-        }
-        if self.kinds[vertex as usize] == Kind::Free {
+    /// Where features have changed, so have the lines of the vertices on them.
+    fn renew_features(&mut self, vertex: u32) {
+        self.surface.vertices[vertex as usize].quadric = self.quadric_of(vertex);
+        if self.speed == Speed::Fast {
             return;
         }
-        // Feature edges have changed here and with them the lines of the neighbours on features.
-        self.quadrics[vertex as usize] = self.quadric_of(vertex);
-        for i in 0..self.fans.around(vertex).len() {
-            let t = self.fans.around(vertex)[i];
-            for v in self.fans.triangles[t as usize] {
-                if v != vertex && self.kinds[v as usize] != Kind::Free {
-                    self.quadrics[v as usize] = self.quadric_of(v);
+        for i in 0..self.surface.around(vertex).len() {
+            let face = self.surface.faces[self.surface.around(vertex)[i] as usize];
+            let at = face.index_of(vertex);
+            for (v, edge) in [(at + 1, at + 2), (at + 2, at + 1)] {
+                let (v, edge) = (face.corners[v % 3], face.edges[edge % 3]);
+                if self.surface.edges[edge as usize].is_feature {
+                    self.surface.vertices[v as usize].quadric = self.quadric_of(v);
                 }
             }
         }
@@ -268,16 +276,15 @@ impl Decimator {
     /// The quadric of a vertex from its triangles and its feature edges.
     fn quadric_of(&self, vertex: u32) -> Quadric {
         let mut quadric = Quadric::default();
-        for &t in self.fans.around(vertex) {
-            quadric.add(&Quadric::triangle(&self.fans.corners(t), self.stiffness));
-            for v in self.fans.triangles[t as usize] {
-                let on_feature = v != vertex && self.kinds[v as usize] != Kind::Free;
-                if on_feature && self.is_feature(vertex, v) {
-                    // Seen once from each triangle at the edge, and to count once in all.
-                    let n_sides = self.fans.sides(vertex, v).count() as f64;
-                    let edge = self.positions(v) - self.positions(vertex);
-                    quadric.add(&Quadric::line(&edge, self.boundary_weight / n_sides));
-                }
+        for (_, face) in self.surface.faces_around(vertex) {
+            quadric.add(&Quadric::triangle(&face.pull, self.stiffness));
+        }
+        for (edge, far) in self.surface.spokes(vertex) {
+            if self.surface.edges[edge as usize].is_feature {
+                // Seen once from each triangle at the edge, and to count once in all.
+                let n_sides = self.surface.sides(vertex, far).count() as f64;
+                let along = self.surface.position(far) - self.surface.position(vertex);
+                quadric.add(&Quadric::line(&along, self.boundary_weight / n_sides));
             }
         }
         quadric
@@ -285,131 +292,88 @@ impl Decimator {
 
     /// Prices the edges of `vertex` at once rather than when they come up.
     fn requeue_around(&mut self, vertex: u32) {
-        for i in 0..self.fans.around(vertex).len() {
-            let t = self.fans.around(vertex)[i];
-            for w in self.fans.triangles[t as usize] {
-                let (a, b) = (vertex.min(w), vertex.max(w));
-                if a != b
-                    && let Some(price) = self.price(a, b)
-                {
-                    let key = key_of(price.cost);
-                    self.queue.push(Entry { key, a, b });
-                }
+        for (edge, far) in self.distinct_spokes(vertex) {
+            if let Some(price) = self.price(edge, [vertex.min(far), vertex.max(far)]) {
+                self.push(Entry::new(key_of(price.cost), edge));
             }
         }
     }
 
     /// Cost and place of a collapse; `None` if features forbid it.
-    fn price(&self, a: u32, b: u32) -> Option<Price> {
-        let (kind_a, kind_b) = (self.kinds[a as usize], self.kinds[b as usize]);
-        let both_on_features = kind_a != Kind::Free && kind_b != Kind::Free;
-        let both_fixed = kind_a == Kind::Corner && kind_b == Kind::Corner;
-        if both_fixed || (both_on_features && !self.is_feature(a, b)) {
+    fn price(&self, edge: u32, [a, b]: [u32; 2]) -> Option<Price> {
+        let vertices = &self.surface.vertices;
+        let (first, second) = (&vertices[a as usize], &vertices[b as usize]);
+        let both_on_features = first.kind != Kind::Free && second.kind != Kind::Free;
+        let both_fixed = first.kind == Kind::Corner && second.kind == Kind::Corner;
+        if both_fixed || (both_on_features && !self.surface.edges[edge as usize].is_feature) {
             return None;
         }
-        let origin = self.positions(a);
-        let across = self.positions(b) - origin;
-        let (quadric_a, quadric_b) = (&self.quadrics[a as usize], &self.quadrics[b as usize]);
-        let quadric = EdgeQuadric::new(quadric_a, quadric_b, across);
-        let shift = if kind_a == Kind::Corner {
+        let across = second.position - first.position;
+        let quadric = EdgeQuadric::new(&first.quadric, &second.quadric, across);
+        let shift = if first.kind == Kind::Corner {
             Vector3::zeros()
-        } else if kind_b == Kind::Corner {
+        } else if second.kind == Kind::Corner {
             across
         } else {
             place(&quadric, &across, self.placement)
         };
         Some(Price {
             cost: quadric.at(&shift),
-            position: origin + shift,
+            position: first.position + shift,
             weight: quadric.weight(),
         })
     }
 
-    fn positions(&self, vertex: u32) -> Vector3<f64> {
-        self.fans.positions[vertex as usize]
-    }
-
-    /// True for a border edge, a seam, or an edge with three or more triangles.
-    fn is_feature(&self, a: u32, b: u32) -> bool {
-        let mut sides = self.fans.sides(a, b);
-        let (Some((s, _)), Some((t, _)), None) = (sides.next(), sides.next(), sides.next()) else {
-            return true;
-        };
-        let part = |t: u32| self.part_of.get(t as usize);
-        let forward = |t: u32| {
-            let corners = self.fans.triangles[t as usize];
-            (0..3).any(|i| corners[i] == a && corners[(i + 1) % 3] == b)
-        };
-        part(s) != part(t) || forward(s) == forward(t)
-    }
-
-    fn kind_by_count(&self, vertex: u32) -> Kind {
-        let mut ring: Vec<u32> = self
-            .fans
-            .around(vertex)
-            .iter()
-            .flat_map(|&t| self.fans.triangles[t as usize])
-            .filter(|&v| v != vertex)
-            .collect();
-        ring.sort_unstable();
-        ring.dedup();
-        match ring.iter().filter(|&&v| self.is_feature(vertex, v)).count() {
-            0 => Kind::Free,
-            2 => Kind::Line,
-            _ => Kind::Corner,
-        }
-    }
-
     /// The third vertex of the border loop of three that collapsing this edge would close.
     fn third_of_loop(&self, a: u32, b: u32) -> Option<u32> {
-        if !self.closing || self.fans.sides(a, b).count() != 1 {
+        if !self.closing || self.surface.sides(a, b).count() != 1 {
             return None;
         }
-        let opposite = self.fans.sides(a, b).next()?.1;
-        let is_border = |u: u32, v: u32| self.fans.sides(u, v).count() == 1;
-        self.fans
-            .around(a)
-            .iter()
-            .flat_map(|&t| self.fans.triangles[t as usize])
-            .find(|&x| x != a && x != b && x != opposite && is_border(a, x) && is_border(b, x))
+        let opposite = self.surface.sides(a, b).next()?.1;
+        let is_border = |u: u32, v: u32| self.surface.sides(u, v).count() == 1;
+        let mut neighbours = self.surface.spokes(a).map(|(_, far)| far);
+        neighbours.find(|&x| x != b && x != opposite && is_border(a, x) && is_border(b, x))
     }
 
-    fn root(&mut self, mut vertex: u32) -> u32 {
-        while self.merged_into[vertex as usize] != vertex {
-            let above = self.merged_into[self.merged_into[vertex as usize] as usize];
-            self.merged_into[vertex as usize] = above;
-            vertex = above;
+    /// After a collapse closed a border loop: its last two edges have become one inside the surface.
+    fn close_loop(&mut self, kept: u32, third: u32) {
+        let spokes = self.distinct_spokes(kept);
+        let mut twins = spokes.iter().filter(|&&(_, far)| far == third);
+        if let (Some(&(stays, _)), Some(&(goes, _))) = (twins.next(), twins.next()) {
+            self.surface.merge_edges(stays, goes, [kept, third]);
         }
-        vertex
+        for vertex in [kept, third] {
+            let spokes = self.distinct_spokes(vertex);
+            let on_feature =
+                |&&(edge, _): &&(u32, u32)| self.surface.edges[edge as usize].is_feature;
+            let n_features = spokes.iter().filter(on_feature).count();
+            self.surface.vertices[vertex as usize].kind = Kind::on(n_features);
+            self.surface.vertices[vertex as usize].quadric = self.quadric_of(vertex);
+        }
     }
 
-    fn fill_queue(&mut self, edges: &[[u32; 2]]) {
+    /// The edges of a vertex with their far ends, in the order of the edges.
+    fn distinct_spokes(&self, vertex: u32) -> Vec<(u32, u32)> {
+        let mut spokes: Vec<(u32, u32)> = self.surface.spokes(vertex).collect();
+        spokes.sort_unstable();
+        spokes.dedup();
+        spokes
+    }
+
+    /// Fills the queue with all edges that are left.
+    fn fill_queue(&mut self) {
         self.refused = Refused::default();
         self.queue.clear();
-        for &[a, b] in edges {
-            match self.price(a, b) {
-                Some(price) => self.queue.push(Entry {
-                    key: key_of(price.cost),
-                    a,
-                    b,
-                }),
+        for edge in 0..self.surface.edges.len() as u32 {
+            let [a, b] = self.surface.ends_now(edge);
+            if a == b {
+                continue;
+            }
+            match self.price(edge, [a, b]) {
+                Some(price) => self.push(Entry::new(key_of(price.cost), edge)),
                 None => self.refused.feature += 1,
             }
         }
-    }
-
-    fn edges_left(&self) -> Vec<[u32; 2]> {
-        let mut edges: Vec<[u32; 2]> = self
-            .fans
-            .triangles
-            .iter()
-            .filter(|corners| corners[0] != super::fans::GONE)
-            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
-            .map(|[u, v]| [u.min(v), u.max(v)])
-            .collect();
-        edges.sort_unstable();
-        edges.dedup();
-        edges
     }
 }
 

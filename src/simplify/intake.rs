@@ -2,10 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::fans::Fans;
-use super::legality::Kind;
 use super::quadric::Quadric;
 use super::settings::SimplifySettings;
+use super::surface::{Kind, Surface};
 use crate::geometry::{Point3, TriMesh};
 
 /// Centre and size of a mesh. All work is done with coordinates less the centre, divided by the
@@ -44,15 +43,9 @@ impl Frame {
 #[derive(Debug, Clone)]
 pub(super) struct Intake {
     pub(super) frame: Frame,
-    pub(super) fans: Fans,
-    /// For each triangle in `fans`, its index in the mesh that came in.
+    pub(super) surface: Surface,
+    /// For each face of `surface`, its triangle in the mesh that came in.
     pub(super) triangle_of: Vec<u32>,
-    /// Part of each triangle; empty if there is only one.
-    pub(super) part_of: Vec<u32>,
-    pub(super) kinds: Vec<Kind>,
-    pub(super) quadrics: Vec<Quadric>,
-    /// Edges, smaller vertex first, sorted.
-    pub(super) edges: Vec<[u32; 2]>,
 }
 
 /// Takes a mesh in. O(triangles · log triangles).
@@ -69,18 +62,13 @@ pub(super) fn take_in(mesh: &TriMesh, parts: &[u32], settings: &SimplifySettings
     } else {
         triangle_of.iter().map(|&t| parts[t as usize]).collect()
     };
-    let mut intake = Intake {
+    let mut surface = Surface::new(&positions, &triangles, part_of);
+    add_quadrics(&mut surface, settings);
+    Intake {
         frame,
-        kinds: vec![Kind::Free; positions.len()],
-        quadrics: vec![Quadric::default(); positions.len()],
-        fans: Fans::new(positions, triangles),
+        surface,
         triangle_of,
-        part_of,
-        edges: Vec::new(),
-    };
-    add_face_quadrics(&mut intake, settings);
-    add_features(&mut intake, settings);
-    intake
+    }
 }
 
 /// Indices of the triangles with three different vertices that no earlier triangle has as well.
@@ -113,83 +101,31 @@ fn distinct_triangles(mesh: &TriMesh) -> Vec<u32> {
     kept
 }
 
-fn add_face_quadrics(intake: &mut Intake, settings: &SimplifySettings) {
-    for t in 0..intake.fans.triangles.len() {
-        let quadric = Quadric::triangle(&intake.fans.corners(t as u32), settings.stiffness);
-        for v in intake.fans.triangles[t] {
-            intake.quadrics[v as usize].add(&quadric);
+/// Gives every vertex its quadric and its kind.
+fn add_quadrics(surface: &mut Surface, settings: &SimplifySettings) {
+    let Surface {
+        vertices,
+        faces,
+        edges,
+        ..
+    } = surface;
+    for face in faces {
+        let quadric = Quadric::triangle(&face.pull, settings.stiffness);
+        for v in face.corners {
+            vertices[v as usize].quadric.add(&quadric);
         }
     }
-}
-
-/// Finds edges and features, gives feature vertices their kind and their constraint.
-fn add_features(intake: &mut Intake, settings: &SimplifySettings) {
-    let fans = &intake.fans;
-    let mut degree = vec![0_u32; intake.kinds.len()];
-    for_each_edge(fans, |[u, v], around| {
-        intake.edges.push([u, v]);
-        let smooth = match around {
-            [x, y] => {
-                let part = |side: &Side| intake.part_of.get(side.triangle as usize);
-                x.forward != y.forward && part(x) == part(y)
-            }
-            _ => false,
-        };
-        if smooth {
-            return;
-        }
-        degree[u as usize] += 1;
-        degree[v as usize] += 1;
-        let along = fans.positions[v as usize] - fans.positions[u as usize];
+    let mut n_features = vec![0; vertices.len()];
+    for edge in edges.iter().filter(|edge| edge.is_feature) {
+        let [u, v] = edge.ends.map(|v| v as usize);
+        let along = vertices[v].position - vertices[u].position;
         let quadric = Quadric::line(&along, settings.boundary_weight);
-        intake.quadrics[u as usize].add(&quadric);
-        intake.quadrics[v as usize].add(&quadric);
-    });
-    for (kind, degree) in intake.kinds.iter_mut().zip(degree) {
-        *kind = match degree {
-            0 => Kind::Free,
-            2 => Kind::Line,
-            _ => Kind::Corner,
-        };
+        for end in [u, v] {
+            vertices[end].quadric.add(&quadric);
+            n_features[end] += 1;
+        }
     }
-}
-
-/// One triangle at an edge, as seen from the edge's smaller vertex.
-#[derive(Debug, Clone, Copy)]
-struct Side {
-    other: u32,
-    triangle: u32,
-    /// The triangle runs from the smaller to the larger vertex.
-    forward: bool,
-}
-
-/// Calls `visit` with the ends and sides of every edge, in the order of the ends.
-fn for_each_edge(fans: &Fans, mut visit: impl FnMut([u32; 2], &[Side])) {
-    let mut sides: Vec<Side> = Vec::new();
-    for u in 0..fans.positions.len() as u32 {
-        sides.clear();
-        for &triangle in fans.around(u) {
-            let [a, b, c] = fans.triangles[triangle as usize];
-            let (next, last) = if a == u {
-                (b, c)
-            } else if b == u {
-                (c, a)
-            } else {
-                (a, b)
-            };
-            for (other, forward) in [(next, true), (last, false)] {
-                if other > u {
-                    sides.push(Side {
-                        other,
-                        triangle,
-                        forward,
-                    });
-                }
-            }
-        }
-        sides.sort_unstable_by_key(|side| (side.other, side.triangle));
-        for around in sides.chunk_by(|x, y| x.other == y.other) {
-            visit([u, around[0].other], around);
-        }
+    for (vertex, n) in vertices.iter_mut().zip(n_features) {
+        vertex.kind = Kind::on(n);
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::fans::Fans;
+use super::surface::Surface;
 
 /// Why a collapse may not be made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -11,18 +11,6 @@ pub(super) enum Refusal {
     Link,
     /// A triangle that stays would turn over or lose its area.
     Flip,
-}
-
-/// Where a vertex lies with respect to features: borders, seams between parts, and edges with
-/// three or more triangles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Kind {
-    /// Inside the surface.
-    Free,
-    /// On exactly two feature edges: slides along them.
-    Line,
-    /// On another number of feature edges: stays where it is.
-    Corner,
 }
 
 /// Marks of the vertices around an edge, reused from one test to the next.
@@ -57,7 +45,7 @@ impl Marks {
 /// vertices joined to both ends are just those opposite to the edge, and no two triangles become
 /// one. With `may_close`, one more common neighbour is allowed if it closes a border loop of three.
 pub(super) fn link_condition(
-    fans: &Fans,
+    surface: &Surface,
     marks: &mut Marks,
     a: u32,
     b: u32,
@@ -65,28 +53,28 @@ pub(super) fn link_condition(
 ) -> bool {
     let mark = marks.begin();
     let mut n_sides = 0;
-    for (_, opposite) in fans.sides(a, b) {
+    for (_, opposite) in surface.sides(a, b) {
         n_sides += 1;
         marks.ends.push(opposite);
-        if fans.around(opposite).len() == 1 {
+        if surface.around(opposite).len() == 1 {
             // It would be left without a triangle.
             return false;
         }
     }
-    if n_sides == 0 || fans.around(a).len() + fans.around(b).len() <= 2 * n_sides {
+    if n_sides == 0 || surface.around(a).len() + surface.around(b).len() <= 2 * n_sides {
         // Nothing of the component would be left.
         return false;
     }
-    for &t in fans.around(a) {
-        for v in fans.triangles[t as usize] {
+    for (_, face) in surface.faces_around(a) {
+        for v in face.others(a) {
             marks.of_vertex[v as usize] = mark;
         }
     }
     let mut n_common = 0;
     let mut outsider = None;
-    for &t in fans.around(b) {
-        for v in fans.triangles[t as usize] {
-            if v != a && v != b && marks.of_vertex[v as usize] == mark {
+    for (_, face) in surface.faces_around(b) {
+        for v in face.others(b) {
+            if v != a && marks.of_vertex[v as usize] == mark {
                 marks.of_vertex[v as usize] = mark + 1;
                 n_common += 1;
                 if !marks.ends.contains(&v) {
@@ -95,27 +83,24 @@ pub(super) fn link_condition(
             }
         }
     }
-    let closes =
-        |x: u32| n_sides == 1 && fans.sides(a, x).count() == 1 && fans.sides(b, x).count() == 1;
+    let closes = |x: u32| {
+        n_sides == 1 && surface.sides(a, x).count() == 1 && surface.sides(b, x).count() == 1
+    };
     let joined_rightly = match outsider {
         None => n_common == n_sides,
         Some(x) => may_close && n_common == n_sides + 1 && closes(x),
     };
-    joined_rightly && !doubles_a_triangle(fans, marks, a, b)
+    joined_rightly && !doubles_a_triangle(surface, marks, a, b)
 }
 
 /// True if a triangle (a, c, d) and a triangle (b, c, d) would become one. That needs c and d to
 /// be joined to both ends, so both are opposite to the edge.
-fn doubles_a_triangle(fans: &Fans, marks: &Marks, a: u32, b: u32) -> bool {
+fn doubles_a_triangle(surface: &Surface, marks: &Marks, a: u32, b: u32) -> bool {
     let both_opposite = |vertex: u32| {
-        fans.around(vertex).iter().filter_map(move |&t| {
-            let mut others = fans.triangles[t as usize]
-                .into_iter()
-                .filter(move |&v| v != vertex);
-            let pair = [others.next()?, others.next()?];
-            pair.iter()
-                .all(|v| marks.ends.contains(v))
-                .then(|| [pair[0].min(pair[1]), pair[0].max(pair[1])])
+        surface.faces_around(vertex).filter_map(move |(_, face)| {
+            let [c, d] = face.others(vertex);
+            let are_ends = marks.ends.contains(&c) && marks.ends.contains(&d);
+            are_ends.then_some([c.min(d), c.max(d)])
         })
     };
     both_opposite(a).any(|pair| both_opposite(b).any(|other| other == pair))
@@ -123,29 +108,30 @@ fn doubles_a_triangle(fans: &Fans, marks: &Marks, a: u32, b: u32) -> bool {
 
 /// True if no triangle that stays turns by more than the angle with cosine `min_cosine`, or loses
 /// its area, when `a` and `b` both move to `position`. Triangles without area may do as they like.
+/// Leaves in `turned` the triangles that stay, each with its new normal as long as twice its area;
+/// not all of them if the answer is no.
 pub(super) fn keeps_orientation(
-    fans: &Fans,
-    a: u32,
-    b: u32,
+    surface: &Surface,
+    [a, b]: [u32; 2],
     position: &Vector3<f64>,
     min_cosine: f64,
+    turned: &mut Vec<(u32, Vector3<f64>)>,
 ) -> bool {
-    let keeps = |moving: u32, other: u32| {
-        fans.around(moving).iter().all(|&t| {
-            let corners = fans.triangles[t as usize];
-            if corners.contains(&other) {
+    turned.clear();
+    let mut keeps = |moving: u32, other: u32| {
+        surface.faces_around(moving).all(|(t, face)| {
+            let [next, last] = face.others(moving);
+            if next == other || last == other {
                 return true;
             }
-            let i = usize::from(corners[1] == moving) + 2 * usize::from(corners[2] == moving);
-            let at = |k: usize| fans.positions[corners[k] as usize];
-            let (old, p, q) = (at(i), at((i + 1) % 3), at((i + 2) % 3));
-            let side = q - p;
-            let before = (old - p).cross(&side);
-            let after = (position - p).cross(&side);
-            let product = before.norm_squared() * after.norm_squared();
-            let dot = before.dot(&after);
-            (dot > 0.0 && dot * dot >= min_cosine * min_cosine * product)
-                || before.norm_squared() <= 1e-24 * side.norm_squared().powi(2)
+            let p = surface.position(next);
+            let side = surface.position(last) - p;
+            let after = side.cross(&(position - p));
+            turned.push((t, after));
+            let before2 = face.pull.norm_squared();
+            let dot = face.pull.dot(&after);
+            (dot > 0.0 && dot * dot >= min_cosine * min_cosine * before2 * after.norm_squared())
+                || 2.0 * before2 <= 1e-12 * side.norm_squared()
         })
     };
     keeps(a, b) && keeps(b, a)

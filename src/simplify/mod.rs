@@ -12,13 +12,13 @@
 
 mod border;
 mod decimator;
-mod fans;
 mod intake;
 mod legality;
 mod quadric;
 mod queue;
 mod sequence;
 mod settings;
+mod surface;
 
 pub use border::{BorderDeviation, border_deviation};
 pub use sequence::CollapseSequence;

@@ -34,16 +34,13 @@ impl Quadric {
     }
 
     /// Squared distance to the plane of a triangle times its area, and `stiffness` times as much to
-    /// the vertex itself. Nothing for a triangle without area.
-    pub(super) fn triangle(corners: &[Vector3<f64>; 3], stiffness: f64) -> Self {
-        let [a, b, c] = corners;
-        let twice_area = (b - a).cross(&(c - a));
-        let length = twice_area.norm();
-        if length <= f64::MIN_POSITIVE {
-            return Self::default();
-        }
-        let mut quadric = Self::outer(&twice_area, 0.5 / length);
-        quadric.add(&Self::point(0.5 * length * stiffness));
+    /// the vertex itself. `pull` is the triangle's, see [`pull_of`].
+    pub(super) fn triangle(pull: &Vector3<f64>, stiffness: f64) -> Self {
+        let mut quadric = Self::outer(pull, 1.0);
+        let weight = stiffness * quadric.weight();
+        quadric.xx += weight;
+        quadric.yy += weight;
+        quadric.zz += weight;
         quadric
     }
 
@@ -127,6 +124,16 @@ impl Quadric {
     }
 }
 
+/// A triangle's unit normal times the square root of its area, from the normal as long as twice its
+/// area. Its outer product with itself is the triangle's quadric. Zero for a triangle without area.
+pub(super) fn pull_of(twice_area: &Vector3<f64>) -> Vector3<f64> {
+    let length = twice_area.norm();
+    if length <= f64::MIN_POSITIVE {
+        return Vector3::zeros();
+    }
+    twice_area * (0.5 / length).sqrt()
+}
+
 /// The sum of the quadrics of an edge's two ends, as a function of the place relative to the first.
 pub(super) struct EdgeQuadric {
     sum: Quadric,
@@ -197,12 +204,13 @@ mod tests {
 
     #[test]
     fn a_triangle_pulls_with_its_area() {
-        let corners = [Vector3::zeros(), 2.0 * Vector3::x(), 3.0 * Vector3::y()];
-        let quadric = Quadric::triangle(&corners, 0.0);
+        let twice_area = Vector3::new(2.0, 0.0, 0.0).cross(&Vector3::new(0.0, 3.0, 0.0));
+        let pull = pull_of(&twice_area);
+        let quadric = Quadric::triangle(&pull, 0.0);
         let x = Vector3::new(7.0, 8.0, 2.0);
         assert!((x.dot(&quadric.times(&x)) - 3.0 * 4.0).abs() < 1e-12);
-        let nothing = Quadric::triangle(&[Vector3::zeros(); 3], 1e-6);
-        assert_eq!(nothing, Quadric::default());
+        assert!((Quadric::triangle(&pull, 0.5).weight() - 3.0 * 2.5).abs() < 1e-12);
+        assert_eq!(pull_of(&Vector3::zeros()), Vector3::zeros());
     }
 
     #[test]

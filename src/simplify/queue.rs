@@ -3,33 +3,22 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// An edge with its price, ordered by price, then by its ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Entry {
-    /// The price, see [`key_of`].
-    pub(super) key: u32,
-    /// The smaller end.
-    pub(super) a: u32,
-    /// The larger end.
-    pub(super) b: u32,
-}
+/// An edge with its price, ordered by price, then by its number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Entry(u64);
 
 impl Entry {
-    /// All fields as one number that sorts like them.
-    fn rank(self) -> u128 {
-        u128::from(self.key) << 64 | u128::from(self.a) << 32 | u128::from(self.b)
+    /// An entry for `edge` at the price `key`, see [`key_of`].
+    pub(super) fn new(key: u32, edge: u32) -> Self {
+        Self(u64::from(key) << 32 | u64::from(edge))
     }
-}
 
-impl Ord for Entry {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.rank().cmp(&other.rank())
+    pub(super) fn key(self) -> u32 {
+        (self.0 >> 32) as u32
     }
-}
 
-impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
+    pub(super) fn edge(self) -> u32 {
+        self.0 as u32
     }
 }
 
@@ -80,7 +69,7 @@ impl Queue {
     }
 
     pub(super) fn push(&mut self, entry: Entry) {
-        let bucket = (entry.key >> SHIFT) as usize;
+        let bucket = (entry.key() >> SHIFT) as usize;
         if bucket < self.next_bucket {
             self.late.push(Reverse(entry));
         } else {
@@ -101,14 +90,12 @@ impl Queue {
         }
     }
 
-    /// Takes the cheapest entry, and all that equal it: an edge whose ends were merged comes up as
-    /// often as edges were merged into it.
+    /// Takes the cheapest entry.
     pub(super) fn pop(&mut self) -> Option<Entry> {
         let entry = self.peek()?;
-        while self.open.last() == Some(&entry) {
+        if self.open.last() == Some(&entry) {
             self.open.pop();
-        }
-        while self.late.peek() == Some(&Reverse(entry)) {
+        } else {
             self.late.pop();
         }
         Some(entry)
@@ -121,11 +108,7 @@ mod tests {
 
     #[test]
     fn comes_out_in_order_whatever_goes_in_when() {
-        let entry = |i: u32| Entry {
-            key: key_of(f64::from(i * 7919 % 1000) * 1e-9),
-            a: i % 3,
-            b: i,
-        };
+        let entry = |i: u32| Entry::new(key_of(f64::from(i * 7919 % 1000) * 1e-9), i);
         let mut queue = Queue::new();
         let mut plain = std::collections::BTreeSet::new();
         for i in 0..3000 {
@@ -138,16 +121,6 @@ mod tests {
         while let Some(first) = plain.pop_first() {
             assert_eq!(queue.pop(), Some(first));
         }
-        assert_eq!(queue.pop(), None);
-    }
-
-    #[test]
-    fn equal_entries_come_up_once() {
-        let entry = Entry { key: 5, a: 0, b: 1 };
-        let mut queue = Queue::new();
-        queue.push(entry);
-        queue.push(entry);
-        assert_eq!(queue.pop(), Some(entry));
         assert_eq!(queue.pop(), None);
     }
 }

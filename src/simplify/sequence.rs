@@ -49,7 +49,8 @@ impl CollapseSequence {
         monitor.check()?;
         let mut intake = take_in(mesh, part_of_triangle, settings);
         let frame = intake.frame;
-        let triangles = intake.fans.triangles.clone();
+        let faces = &intake.surface.faces;
+        let triangles = faces.iter().map(|face| face.corners).collect();
         let triangle_of = std::mem::take(&mut intake.triangle_of);
         let (collapses, stop_reason) =
             Decimator::new(intake, settings).run(settings.max_triangles, monitor)?;

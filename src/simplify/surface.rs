@@ -1,0 +1,422 @@
+//! The mesh while it shrinks: vertices, faces, edges, and the fan of faces around each vertex.
+
+use nalgebra::Vector3;
+
+use super::quadric::{Quadric, pull_of};
+
+/// Stands for no vertex, no edge and no face.
+const GONE: u32 = u32::MAX;
+
+/// Where a vertex lies with respect to features: borders, seams between parts, and edges with
+/// three or more triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub(super) enum Kind {
+    /// Inside the surface.
+    #[default]
+    Free,
+    /// On exactly two feature edges: slides along them.
+    Line,
+    /// On another number of feature edges: stays where it is.
+    Corner,
+}
+
+impl Kind {
+    /// The kind of a vertex on so many feature edges.
+    pub(super) fn on(n_feature_edges: usize) -> Self {
+        match n_feature_edges {
+            0 => Self::Free,
+            2 => Self::Line,
+            _ => Self::Corner,
+        }
+    }
+}
+
+/// What is read together when an edge is priced, together in memory.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Vertex {
+    pub(super) position: Vector3<f64>,
+    pub(super) quadric: Quadric,
+    pub(super) kind: Kind,
+}
+
+/// A triangle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Face {
+    /// Its vertices; [`GONE`] three times once it is collapsed.
+    pub(super) corners: [u32; 3],
+    /// For each corner the edge opposite to it.
+    pub(super) edges: [u32; 3],
+    /// Its unit normal times the square root of its area, see [`pull_of`].
+    pub(super) pull: Vector3<f64>,
+}
+
+impl Face {
+    /// Which of the corners `vertex` is. One that is none of them counts as the first.
+    pub(super) fn index_of(&self, vertex: u32) -> usize {
+        usize::from(self.corners[1] == vertex) + 2 * usize::from(self.corners[2] == vertex)
+    }
+
+    /// The other two corners, in the face's direction of travel from `vertex`.
+    pub(super) fn others(&self, vertex: u32) -> [u32; 2] {
+        let [a, b, c] = self.corners;
+        match self.index_of(vertex) {
+            0 => [b, c],
+            1 => [c, a],
+            _ => [a, b],
+        }
+    }
+}
+
+/// An edge. Edges that become one by a collapse keep one number; the other one is dead.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Edge {
+    /// Its vertices, or vertices that were merged into them. Twice the same if it is dead.
+    pub(super) ends: [u32; 2],
+    /// The price under which it waits in the queue.
+    pub(super) key: u32,
+    /// A border edge, a seam, or an edge with three or more triangles.
+    pub(super) is_feature: bool,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Fan {
+    start: u32,
+    len: u32,
+    capacity: u32,
+}
+
+/// A triangle mesh, kept up to date under collapses.
+///
+/// Fans lie in one pool. A merged fan that outgrows its place moves to the end of the pool, which
+/// in all adds a few entries per collapse; nothing is ever freed.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Surface {
+    pub(super) vertices: Vec<Vertex>,
+    pub(super) faces: Vec<Face>,
+    pub(super) edges: Vec<Edge>,
+    /// Part of each face; empty if there is only one.
+    pub(super) part_of: Vec<u32>,
+    /// Faces that are left.
+    pub(super) n_triangles: usize,
+    fans: Vec<Fan>,
+    pool: Vec<u32>,
+    merged_into: Vec<u32>,
+    /// Edges that become one in the collapse at hand: the one to stay, the one to go, and the
+    /// vertex they lead to.
+    merging: Vec<(u32, u32, u32)>,
+}
+
+impl Surface {
+    /// Counting sort of the triangles by vertex, and the edges between them. The triangles must
+    /// differ from each other and each have three vertices. O(vertices + triangles).
+    pub(super) fn new(
+        positions: &[Vector3<f64>],
+        triangles: &[[u32; 3]],
+        part_of: Vec<u32>,
+    ) -> Self {
+        let mut fans = vec![Fan::default(); positions.len()];
+        for &vertex in triangles.iter().flatten() {
+            fans[vertex as usize].capacity += 1;
+        }
+        let mut start = 0;
+        for fan in &mut fans {
+            fan.start = start;
+            start += fan.capacity;
+        }
+        let mut pool = vec![0; start as usize];
+        for (t, corners) in triangles.iter().enumerate() {
+            for &vertex in corners {
+                let fan = &mut fans[vertex as usize];
+                pool[(fan.start + fan.len) as usize] = t as u32;
+                fan.len += 1;
+            }
+        }
+        let face = |corners: &[u32; 3]| Face {
+            corners: *corners,
+            edges: [GONE; 3],
+            pull: pull_of(&twice_area(&corners.map(|v| positions[v as usize]))),
+        };
+        let vertex = |position: &Vector3<f64>| Vertex {
+            position: *position,
+            ..Vertex::default()
+        };
+        let mut surface = Self {
+            vertices: positions.iter().map(vertex).collect(),
+            faces: triangles.iter().map(face).collect(),
+            edges: Vec::with_capacity(3 * positions.len()),
+            part_of,
+            n_triangles: triangles.len(),
+            fans,
+            pool,
+            merged_into: (0..positions.len() as u32).collect(),
+            merging: Vec::new(),
+        };
+        surface.number_edges();
+        surface
+    }
+
+    /// Numbers the edges by their smaller end, then by their larger, and finds the features.
+    fn number_edges(&mut self) {
+        // The face, which of its edges, and the far end, which sorts first.
+        let mut spokes: Vec<(u32, u32, usize)> = Vec::new();
+        for near in 0..self.vertices.len() as u32 {
+            spokes.clear();
+            for &t in self.around(near) {
+                let face = &self.faces[t as usize];
+                let i = face.index_of(near);
+                let [next, last] = face.others(near);
+                if next > near {
+                    spokes.push((next, t, (i + 2) % 3));
+                }
+                if last > near {
+                    spokes.push((last, t, (i + 1) % 3));
+                }
+            }
+            spokes.sort_unstable();
+            for sides in spokes.chunk_by(|x, y| x.0 == y.0) {
+                let id = self.edges.len() as u32;
+                for &(_, t, i) in sides {
+                    self.faces[t as usize].edges[i] = id;
+                }
+                let is_smooth = match *sides {
+                    [(_, s, i), (_, t, j)] => {
+                        let runs_from =
+                            |t: u32, i: usize| self.faces[t as usize].corners[(i + 1) % 3];
+                        runs_from(s, i) != runs_from(t, j) && self.part(s) == self.part(t)
+                    }
+                    _ => false,
+                };
+                self.edges.push(Edge {
+                    ends: [near, sides[0].0],
+                    key: 0,
+                    is_feature: !is_smooth,
+                });
+            }
+        }
+    }
+
+    fn part(&self, triangle: u32) -> Option<u32> {
+        self.part_of.get(triangle as usize).copied()
+    }
+
+    /// Where a vertex is.
+    pub(super) fn position(&self, vertex: u32) -> Vector3<f64> {
+        self.vertices[vertex as usize].position
+    }
+
+    /// Where a vertex lies with respect to features.
+    pub(super) fn kind(&self, vertex: u32) -> Kind {
+        self.vertices[vertex as usize].kind
+    }
+
+    /// Triangles around a vertex, in no particular but a reproducible order.
+    pub(super) fn around(&self, vertex: u32) -> &[u32] {
+        let fan = self.fans[vertex as usize];
+        &self.pool[fan.start as usize..(fan.start + fan.len) as usize]
+    }
+
+    /// Faces around a vertex, with their numbers.
+    pub(super) fn faces_around(&self, vertex: u32) -> impl Iterator<Item = (u32, &Face)> + '_ {
+        let around = self.around(vertex).iter();
+        around.map(|&t| (t, &self.faces[t as usize]))
+    }
+
+    /// The faces that share the edge, each with the vertex opposite to it.
+    pub(super) fn sides(&self, a: u32, b: u32) -> impl Iterator<Item = (u32, u32)> + '_ {
+        self.faces_around(a).filter_map(move |(t, face)| {
+            let [next, last] = face.others(a);
+            (next == b || last == b).then_some((t, next ^ last ^ b))
+        })
+    }
+
+    /// The two edges of each face around a vertex that meet there, with their far ends.
+    pub(super) fn spokes(&self, vertex: u32) -> impl Iterator<Item = (u32, u32)> + '_ {
+        self.faces_around(vertex).flat_map(move |(_, face)| {
+            let i = face.index_of(vertex);
+            let [next, last] = face.others(vertex);
+            [
+                (face.edges[(i + 2) % 3], next),
+                (face.edges[(i + 1) % 3], last),
+            ]
+        })
+    }
+
+    /// The vertex that `vertex` was merged into, itself if none.
+    pub(super) fn root(&mut self, mut vertex: u32) -> u32 {
+        while self.merged_into[vertex as usize] != vertex {
+            let above = self.merged_into[self.merged_into[vertex as usize] as usize];
+            self.merged_into[vertex as usize] = above;
+            vertex = above;
+        }
+        vertex
+    }
+
+    /// The ends of an edge as they are now, the smaller first; the same twice if it is dead.
+    pub(super) fn ends_now(&mut self, edge: u32) -> [u32; 2] {
+        let [a, b] = self.edges[edge as usize].ends;
+        let (a, b) = (self.root(a), self.root(b));
+        [a.min(b), a.max(b)]
+    }
+
+    /// Merges `removed` into `kept`, which moves to `position`. Faces with both are gone.
+    /// The pulls of the faces that stay are for the caller to renew.
+    pub(super) fn collapse(&mut self, kept: u32, removed: u32, position: Vector3<f64>) {
+        self.vertices[kept as usize].position = position;
+        self.merged_into[removed as usize] = kept;
+        let from = std::mem::take(&mut self.fans[removed as usize]);
+        let slots = from.start as usize..(from.start + from.len) as usize;
+        let reserved = self.fans[kept as usize].len + from.len;
+        self.make_room(kept, reserved);
+        self.merging.clear();
+        for slot in slots.clone() {
+            let t = self.pool[slot];
+            let face = &mut self.faces[t as usize];
+            let [next, last] = face.others(removed);
+            if next == kept || last == kept {
+                let third = next ^ last ^ kept;
+                let stays = face.edges[face.index_of(removed)];
+                let goes = face.edges[face.index_of(kept)];
+                face.corners = [GONE; 3];
+                self.merging.push((stays, goes, third));
+                self.forget(kept, t);
+                self.forget(third, t);
+                self.n_triangles -= 1;
+            }
+        }
+        for slot in slots {
+            let t = self.pool[slot];
+            let face = &mut self.faces[t as usize];
+            if face.corners[0] == GONE {
+                continue;
+            }
+            let i = face.index_of(removed);
+            face.corners[i] = kept;
+            for edge in &mut face.edges {
+                for &(stays, goes, _) in &self.merging {
+                    if *edge == goes {
+                        *edge = stays;
+                    }
+                }
+            }
+            let fan = &mut self.fans[kept as usize];
+            self.pool[(fan.start + fan.len) as usize] = t;
+            fan.len += 1;
+        }
+        for i in 0..self.merging.len() {
+            let (stays, goes, third) = self.merging[i];
+            self.end_merge(stays, goes, [kept, third]);
+        }
+    }
+
+    /// Gives one number to two edges that now have the same ends.
+    pub(super) fn merge_edges(&mut self, stays: u32, goes: u32, ends: [u32; 2]) {
+        for slot in 0..self.around(ends[0]).len() {
+            let t = self.around(ends[0])[slot];
+            for edge in &mut self.faces[t as usize].edges {
+                if *edge == goes {
+                    *edge = stays;
+                }
+            }
+        }
+        self.end_merge(stays, goes, ends);
+    }
+
+    fn end_merge(&mut self, stays: u32, goes: u32, ends: [u32; 2]) {
+        let both = self.edges[stays as usize].is_feature && self.edges[goes as usize].is_feature;
+        self.edges[stays as usize].is_feature |= self.edges[goes as usize].is_feature;
+        self.edges[goes as usize].ends = [0; 2];
+        if both {
+            // The only case in which the features of the two may have cancelled.
+            self.edges[stays as usize].is_feature = self.is_feature_by_sides(ends);
+            if self.sides(ends[0], ends[1]).next().is_none() {
+                self.edges[stays as usize].ends = [0; 2];
+            }
+        }
+    }
+
+    fn is_feature_by_sides(&self, [a, b]: [u32; 2]) -> bool {
+        let mut sides = self.sides(a, b);
+        let (Some((s, _)), Some((t, _)), None) = (sides.next(), sides.next(), sides.next()) else {
+            return true;
+        };
+        let forward = |t: u32| self.faces[t as usize].others(a)[0] == b;
+        self.part(s) != self.part(t) || forward(s) == forward(t)
+    }
+
+    fn make_room(&mut self, vertex: u32, capacity: u32) {
+        let fan = &mut self.fans[vertex as usize];
+        if capacity <= fan.capacity {
+            return;
+        }
+        let old = fan.start as usize..(fan.start + fan.len) as usize;
+        fan.start = self.pool.len() as u32;
+        fan.capacity = capacity;
+        self.pool.extend_from_within(old);
+        self.pool.resize((fan.start + capacity) as usize, GONE);
+    }
+
+    fn forget(&mut self, vertex: u32, triangle: u32) {
+        let fan = &mut self.fans[vertex as usize];
+        let slots = &mut self.pool[fan.start as usize..(fan.start + fan.len) as usize];
+        if let Some(at) = slots.iter().position(|&t| t == triangle) {
+            slots.swap(at, slots.len() - 1);
+            fan.len -= 1;
+        }
+    }
+}
+
+/// The normal of a triangle, as long as twice its area.
+fn twice_area([a, b, c]: &[Vector3<f64>; 3]) -> Vector3<f64> {
+    (b - a).cross(&(c - a))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hexagon() -> Surface {
+        let positions = vec![Vector3::zeros(); 7];
+        let triangles: Vec<_> = (1..7).map(|i| [0, i, i % 6 + 1]).collect();
+        Surface::new(&positions, &triangles, Vec::new())
+    }
+
+    #[test]
+    fn a_collapse_keeps_fans_and_triangles_in_step() {
+        let mut surface = hexagon();
+        surface.collapse(0, 1, Vector3::x());
+        assert_eq!(surface.n_triangles, 4);
+        assert_eq!(surface.around(0).len(), 4);
+        assert_eq!(surface.around(1).len(), 0);
+        for v in 0..7 {
+            for (_, face) in surface.faces_around(v) {
+                assert!(face.corners.contains(&v));
+            }
+        }
+        assert_eq!((surface.around(2).len(), surface.around(6).len()), (1, 1));
+        assert_eq!(surface.sides(0, 3).count(), 2);
+        assert_eq!(surface.root(1), 0);
+    }
+
+    #[test]
+    fn edges_that_become_one_share_a_number_and_stay_features() {
+        let mut surface = hexagon();
+        assert_eq!(surface.edges.len(), 12);
+        assert_eq!(surface.edges.iter().filter(|e| e.is_feature).count(), 6);
+        surface.collapse(0, 1, Vector3::x());
+        for t in 0..6 {
+            let face = surface.faces[t];
+            for i in 0..if face.corners[0] == GONE { 0 } else { 3 } {
+                let mut ends = [face.corners[(i + 1) % 3], face.corners[(i + 2) % 3]];
+                ends.sort_unstable();
+                assert_eq!(surface.ends_now(face.edges[i]), ends);
+                let is_border = surface.sides(ends[0], ends[1]).count() == 1;
+                assert_eq!(surface.edges[face.edges[i] as usize].is_feature, is_border);
+            }
+        }
+        let alive = (0..12).filter(|&e| {
+            let [a, b] = surface.ends_now(e);
+            a != b
+        });
+        assert_eq!(alive.count(), 9);
+    }
+}
