@@ -106,6 +106,12 @@ fn describe_forming(forming: &FormingInfo) -> String {
     if forming.strain > 0 {
         pieces.push(format!("strain on {}", counted(forming.strain, "shell")));
     }
+    if forming.others > 0 {
+        pieces.push(format!(
+            "results of {} that are not kept",
+            counted(forming.others, "solid")
+        ));
+    }
     if forming.history_variables > 0 {
         pieces.push(counted(forming.history_variables, "history variable"));
     }

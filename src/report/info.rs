@@ -75,6 +75,8 @@ pub struct FormingInfo {
     pub stress: usize,
     /// Shells with strain tensors.
     pub strain: usize,
+    /// Solids and thick shells with stresses or strains, counted but not kept.
+    pub others: usize,
     /// Largest number of history variables at a point.
     pub history_variables: usize,
     /// Smallest and largest corner thickness.
@@ -157,10 +159,13 @@ impl FormingInfo {
             .forming
             .stresses()
             .flat_map(|stress| stress.points.iter().map(|point| point.plastic_strain));
+        let others = &model.forming.others;
         Self {
             thickness: with_thickness().count(),
             stress: model.forming.n_stress(),
             strain: model.forming.n_strain(),
+            others: others.solid_stress.max(others.solid_strain)
+                + others.thick_shell_stress.max(others.thick_shell_strain),
             history_variables: model
                 .forming
                 .stresses()
@@ -174,7 +179,7 @@ impl FormingInfo {
 
     /// True if there is nothing.
     pub fn is_empty(&self) -> bool {
-        self.thickness + self.stress + self.strain == 0
+        self.thickness + self.stress + self.strain + self.others == 0
     }
 }
 
