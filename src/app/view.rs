@@ -1,6 +1,6 @@
 use super::{AxisFrame, GestureId, ModalMove, MoveFrame};
 use crate::geometry::camera::OrbitStyle;
-use crate::geometry::{Aabb, Camera};
+use crate::geometry::{Camera, Point3};
 use crate::jobs::{PerRole, Role};
 
 /// A part of a deck.
@@ -198,7 +198,7 @@ pub struct ViewState {
     /// Turntable or free.
     pub orbit_style: OrbitStyle,
     /// Picked pivot of the camera, in the space of its window.
-    pub pivot: PerRole<Option<crate::geometry::Point3>>,
+    pub pivot: PerRole<Option<Point3>>,
     /// The window keys and menus act on.
     pub focus: Role,
     /// The stamped part is shown in the left window, at its pose.
@@ -276,12 +276,12 @@ impl ViewState {
         *self.previous_cameras.get_mut(role) = *self.cameras.get(role);
     }
 
-    /// Fits a window's camera to a box; an empty one changes nothing.
-    pub fn fit(&mut self, role: Role, bounds: &Aabb, aspect: f64) {
-        if !bounds.is_empty() {
+    /// Fits a window's camera to points; without any it stays.
+    pub fn fit(&mut self, role: Role, points: &[Point3], aspect: f64) {
+        if !points.is_empty() {
             self.remember_camera(role);
             let mut camera = *self.cameras.get(role);
-            camera.fit(bounds, aspect);
+            camera.fit_to_points(points, aspect);
             self.set_camera(role, camera);
         }
     }

@@ -303,27 +303,23 @@ fn a_click_selects_the_part_and_beside_it_nothing() {
 }
 
 #[test]
-fn moved_over_the_right_window_offers_the_way_back() {
-    let mut desk = Desk::with_sheets(None);
-    desk.apply(ViewCommand::ToggleMoveOver.into());
-    let mut harness = harness(desk);
-    harness.get_by_label("Move the stamped part back").click();
-    harness.run_steps(3);
-    assert!(!harness.state().state.view.is_moved_over);
-    assert!(
-        harness
-            .query_by_label("Move the stamped part back")
-            .is_none()
-    );
-}
-
-#[test]
-fn an_empty_window_invites() {
-    let mut harness = harness(Desk::new(None));
-    harness.get_by_label("Open the stamped part…").click();
+fn arrow_keys_turn_the_window_that_has_the_focus() {
+    let mut harness = harness(Desk::with_sheets(None));
+    let before = harness.state().camera(Role::Stamped);
+    let is_right = |label: &str| label.starts_with("Stamped part");
+    harness
+        .get_by(|node| node.label().is_some_and(|l| is_right(&l)))
+        .focus();
     harness.run_steps(2);
-    let asked = |c: &Command| matches!(c, Command::File(FileCommand::AskOpen(Role::Stamped)));
-    assert!(harness.state().seen.iter().any(asked));
+    harness.key_press(egui::Key::ArrowRight);
+    harness.run_steps(2);
+    let turned = harness.state().camera(Role::Stamped);
+    assert!(turned.world_from_view.angle_to(&before.world_from_view) > 0.05);
+    assert_eq!(turned.height, before.height);
+    harness.key_press(egui::Key::Minus);
+    harness.run_steps(2);
+    assert!(harness.state().camera(Role::Stamped).height > before.height);
+    assert_eq!(harness.state().state.view.focus, Role::Stamped);
 }
 
 #[test]

@@ -1,6 +1,9 @@
 use crate::app::{AppState, BottomTab, Effect, ViewCommand};
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Point3, Similarity};
 use crate::jobs::Role;
+
+/// Nodes that a camera is fitted to at most; those between them lie within the margin.
+const MAX_FITTED: usize = 20_000;
 
 impl AppState {
     pub(super) fn apply_view(&mut self, command: ViewCommand) -> Vec<Effect> {
@@ -58,15 +61,11 @@ impl AppState {
                 camera.toggle_projection();
                 self.view.set_camera(role, camera);
             }
-            ViewCommand::FitAll(role) => {
-                let bounds = self.visible_bounds(role);
-                self.fit(role, &bounds);
-            }
-            ViewCommand::Focus(role) => {
-                let bounds = self.selected_bounds(role);
-                let bounds = bounds.unwrap_or_else(|| self.visible_bounds(role));
-                self.fit(role, &bounds);
-            }
+            ViewCommand::FitAll(role) => self.fit_all(role),
+            ViewCommand::Focus(role) => match self.selected_bounds(role) {
+                Some(bounds) => self.fit(role, &bounds.corners()),
+                None => self.fit_all(role),
+            },
             ViewCommand::ToggleLink => self.toggle_link(),
             _ => {}
         }
@@ -78,9 +77,35 @@ impl AppState {
         self.view.set_camera(role, camera);
     }
 
-    fn fit(&mut self, role: Role, bounds: &Aabb) {
+    fn fit(&mut self, role: Role, points: &[Point3]) {
         let aspect = *self.view.aspects.get(role);
-        self.view.fit(role, bounds, aspect);
+        self.view.fit(role, points, aspect);
+    }
+
+    /// Fits what a window shows, tightly: a turned sheet fills the picture better than its box.
+    fn fit_all(&mut self, role: Role) {
+        let mut points = Vec::new();
+        for of in self.shown_in(role) {
+            if let Some(part) = self.document.part(*of) {
+                let pose = match of {
+                    Role::Crash => Similarity::identity(),
+                    Role::Stamped => self.shown_pose(),
+                };
+                let positions = part.loaded.mesh.positions();
+                let step = positions.len().div_ceil(MAX_FITTED).max(1);
+                points.extend(positions.iter().step_by(step).map(|p| pose.apply(p)));
+            }
+        }
+        self.fit(role, &points);
+    }
+
+    /// The parts a window shows.
+    fn shown_in(&self, role: Role) -> &'static [Role] {
+        match role {
+            Role::Crash if self.view.is_moved_over => &Role::ALL,
+            Role::Crash => &[Role::Crash],
+            Role::Stamped => &[Role::Stamped],
+        }
     }
 
     /// What a window shows, in its own space: the left one that of the crash model, the right one
@@ -128,8 +153,7 @@ impl AppState {
             self.view.is_moved_over = true;
             self.view.focus = Role::Crash;
         }
-        let bounds = self.visible_bounds(Role::Crash);
-        self.fit(Role::Crash, &bounds);
+        self.fit_all(Role::Crash);
     }
 
     fn set_tab(&mut self, tab: BottomTab) {
@@ -142,11 +166,9 @@ impl AppState {
         if role == Role::Stamped {
             self.look_at_sheet();
         }
-        let bounds = self.visible_bounds(role);
-        self.fit(role, &bounds);
+        self.fit_all(role);
         if self.view.is_moved_over {
-            let bounds = self.visible_bounds(Role::Crash);
-            self.fit(Role::Crash, &bounds);
+            self.fit_all(Role::Crash);
         }
     }
 
@@ -167,7 +189,7 @@ impl AppState {
 }
 
 /// Box around a moved box.
-fn moved_box(bounds: &Aabb, pose: &crate::geometry::Similarity) -> Aabb {
+fn moved_box(bounds: &Aabb, pose: &Similarity) -> Aabb {
     if bounds.is_empty() {
         return *bounds;
     }

@@ -90,13 +90,13 @@ pub(super) fn cast(state: &AppState, stage: &Stage) -> Vec<Actor> {
             }
             actors
         }
-        Some(Divider::Split(_)) => actors.into_iter().flat_map(both_sides).collect(),
+        Some(Divider::Split(_)) => actors.iter().flat_map(both_sides).collect(),
         None => actors,
     }
 }
 
 /// A part as reduced on the left of the line and as full mesh on its right.
-fn both_sides(actor: Actor) -> [Actor; 2] {
+fn both_sides(actor: &Actor) -> [Actor; 2] {
     let side = |is_detailed, wipe| Actor {
         is_detailed,
         wipe,
@@ -144,9 +144,16 @@ fn stamped(state: &AppState, stage: &Stage) -> Option<Actor> {
     if !is_previewed_left {
         offset += flight_offset(stage);
     }
+    // Its own window shows the part where it really is, also while the other tries out poses.
+    let is_real = !is_left && state.is_preview();
+    let world_from_part = if is_real {
+        *state.document.crash_from_stamped()
+    } else {
+        stage.pose
+    };
     Some(Actor {
         role: Role::Stamped,
-        world_from_part: stage.pose,
+        world_from_part,
         offset,
         opacity,
         is_detailed: is_detailed(state),
@@ -188,6 +195,8 @@ pub(super) fn part_looks(state: &AppState, part: &Part, role: Role, look: &Look)
     let is_by_part = state.view.display.color_by == ColorBy::Part;
     let is_ref =
         |of: Option<crate::app::PartRef>, id| of.is_some_and(|p| p.role == role && p.id == id);
+    // Where there is nothing to choose between, lighting everything up would only flicker.
+    let has_choice = part.facts.used.len() > 1;
     let model_parts = part.loaded.model.parts.iter().enumerate();
     let looks = model_parts.map(|(index, model_part)| {
         let id = model_part.id;
@@ -196,7 +205,7 @@ pub(super) fn part_looks(state: &AppState, part: &Part, role: Role, look: &Look)
             color: given.or_else(|| is_by_part.then(|| look.part(index))),
             visible: part.is_visible(id),
             selected: is_ref(state.view.selected, id),
-            hovered: is_ref(state.view.hovered, id),
+            hovered: has_choice && is_ref(state.view.hovered, id),
         }
     });
     looks.collect()

@@ -54,6 +54,8 @@ struct Window {
     pointing: Pointing,
     /// The meshes that were drawn last, shown until newer ones are ready.
     shown: PerRole<Option<Arc<ShownMesh>>>,
+    /// Revision of the part that was shown last.
+    known_part: u64,
     /// Revision of the pose the camera has followed the part to.
     followed: u64,
     /// What was drawn last, for pictures in files.
@@ -90,17 +92,24 @@ impl Viewports {
         response
             .widget_info(|| WidgetInfo::labeled(egui::Role::Canvas, true, summary(state, role)));
         let look = Look::of(ui.visuals().dark_mode);
-        tell_state(&response, role, state, commands);
+        self.windows
+            .get_mut(role)
+            .tell_aspect(rect, role, state, commands);
+        tell_focus(&response, role, state, commands);
         let stage = self.stage(ui, role, state, rect, commands);
         let picture = self.picture_of(ui, &stage, state, &look);
-        let camera = self.navigate(ui, &response, state, &stage, &picture, commands);
-        let stage = Stage { camera, ..stage };
         let frame = InFrame {
             response: &response,
             state,
             stage: &stage,
             picture: &picture,
             look: &look,
+        };
+        let camera = self.navigate(ui, &frame, commands);
+        let stage = Stage { camera, ..stage };
+        let frame = InFrame {
+            stage: &stage,
+            ..frame
         };
         self.paint(ui, &frame);
         self.interact(ui, &frame, commands);
@@ -148,6 +157,10 @@ impl Viewports {
         let mut camera = *state.view.cameras.get(role);
         if let Some(followed) = window.follow_part(role, state, rect, is_driven) {
             camera = followed;
+            if !self.pose.is_moving(now) {
+                // The part is there already; a flight would lose it from sight.
+                window.camera.jump(camera);
+            }
             commands.push(ViewCommand::SetCamera(role, camera).into());
         }
         let may_fly = may_move && window.has_picture && !is_linked_drag;
@@ -204,15 +217,14 @@ impl Viewports {
     }
 
     /// The camera after this frame's input.
-    fn navigate(
-        &mut self,
-        ui: &Ui,
-        response: &Response,
-        state: &AppState,
-        stage: &Stage,
-        picture: &Picture,
-        commands: &mut Vec<Command>,
-    ) -> Camera {
+    fn navigate(&mut self, ui: &Ui, frame: &InFrame<'_>, commands: &mut Vec<Command>) -> Camera {
+        let InFrame {
+            response,
+            state,
+            stage,
+            picture,
+            ..
+        } = *frame;
         let role = stage.window;
         let view = View {
             rect: response.rect,
@@ -296,6 +308,7 @@ impl Viewports {
             scale: kind.and_then(|kind| Some((kind.label(), self.fields.scale(state)?))),
             hint: window.tools.hint(state),
             is_focused: response.has_focus(),
+            is_preparing: is_preparing(state, stage, picture),
         };
         overlay::show(ui, &view, commands);
     }
@@ -312,6 +325,7 @@ impl Viewports {
 }
 
 /// What a window shows in one frame.
+#[derive(Clone, Copy)]
 struct InFrame<'a> {
     response: &'a Response,
     state: &'a AppState,
@@ -321,6 +335,26 @@ struct InFrame<'a> {
 }
 
 impl Window {
+    /// Tells the state how wide the window is. A part that was fitted before that was known is fitted
+    /// again.
+    fn tell_aspect(
+        &mut self,
+        rect: Rect,
+        role: Role,
+        state: &AppState,
+        commands: &mut Vec<Command>,
+    ) {
+        let revision = state.document.part(role).map_or(0, |part| part.revision);
+        let is_new = std::mem::replace(&mut self.known_part, revision) != revision;
+        let aspect = f64::from(rect.width() / rect.height());
+        if (*state.view.aspects.get(role) - aspect).abs() > 1e-3 {
+            commands.push(ViewCommand::SetAspect(role, aspect).into());
+            if is_new {
+                commands.push(ViewCommand::FitAll(role).into());
+            }
+        }
+    }
+
     /// A match may take the stamped part far away; where it would leave its own window, the camera
     /// goes with it.
     fn follow_part(
@@ -340,19 +374,23 @@ impl Window {
         let camera = *state.view.cameras.get(role);
         let seen = navigation::pos_of(rect, &camera, &center);
         let is_inside = seen.is_some_and(|at| rect.shrink2(rect.size() * 0.2).contains(at));
-        (self.has_picture && !is_inside).then_some(Camera {
+        (!is_inside).then_some(Camera {
             target: center,
             ..camera
         })
     }
 }
 
-/// Tells the state what it needs to know about a window.
-fn tell_state(response: &Response, role: Role, state: &AppState, commands: &mut Vec<Command>) {
-    let aspect = f64::from(response.rect.width() / response.rect.height());
-    if (*state.view.aspects.get(role) - aspect).abs() > 1e-3 {
-        commands.push(ViewCommand::SetAspect(role, aspect).into());
-    }
+/// True if the window should show something and nothing of it is ready.
+fn is_preparing(state: &AppState, stage: &Stage, picture: &Picture) -> bool {
+    picture.is_empty()
+        && cast::cast(state, stage)
+            .iter()
+            .any(|actor| state.document.part(actor.role).is_some())
+}
+
+/// Tells the state which window has the keys.
+fn tell_focus(response: &Response, role: Role, state: &AppState, commands: &mut Vec<Command>) {
     let is_pressed = response.is_pointer_button_down_on();
     if is_pressed {
         response.request_focus();

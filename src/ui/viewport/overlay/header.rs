@@ -1,52 +1,81 @@
 //! Name of the window, what it shows, and the buttons of its camera.
 
+use std::sync::Arc;
+
 use egui::{
-    Align, Button, Color32, CornerRadius, FontId, Layout, Pos2, Rect, RichText, Sense, Stroke, Ui,
-    UiBuilder, Vec2, vec2,
+    Align, Button, Color32, CornerRadius, FontId, Galley, Layout, Painter, Pos2, Rect, RichText,
+    Sense, Shape, Stroke, Ui, UiBuilder, Vec2, vec2,
 };
 
 use super::{MARGIN, Overlay, grouped};
-use crate::app::{Command, ShownGeometry, ViewCommand};
+use crate::app::{Command, ShownGeometry, ViewCommand, short_number};
 use crate::geometry::camera::StandardView;
 use crate::jobs::Role;
 use crate::registration::StartKind;
 
-/// Role mark, name, count of triangles.
+/// Role mark, name and facts of each part in the window, then what is shown instead of the real pose.
 pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
     let painter = over.painter(ui);
-    let color = over.look.role(over.role());
-    let (name, what) = match over.role() {
+    frame(over, &painter, over.look.role(over.role()));
+    let small =
+        |text: String| painter.layout_no_wrap(text, FontId::proportional(11.5), over.look.weak);
+    let notes: Vec<_> = notes(over).into_iter().map(small).collect();
+    let is_both = over.role() == Role::Crash && over.state.view.is_moved_over;
+    let roles = if is_both {
+        &Role::ALL[..]
+    } else {
+        &[over.role()]
+    };
+    let blocks: Vec<_> = roles
+        .iter()
+        .map(|&role| (role, title(&painter, over, role), small(facts(over, role))))
+        .collect();
+    let title_width = |title: &[Arc<Galley>; 2]| title[0].size().x + 7.0 + title[1].size().x;
+    let widths = blocks
+        .iter()
+        .map(|(_, title, facts)| title_width(title).max(facts.size().x));
+    let widest = widths
+        .chain(notes.iter().map(|note| note.size().x))
+        .fold(0.0, f32::max);
+    let height = 40.0 * blocks.len() as f32 + 17.0 * notes.len() as f32 + 3.0;
+    let top = over.rect.min + Vec2::splat(MARGIN);
+    let plate = Rect::from_min_size(top, vec2(widest + 36.0, height));
+    painter.rect_filled(plate, CornerRadius::same(6), over.look.plate);
+    let mut at = top + vec2(25.0, 5.0);
+    for (role, [name, what], facts) in blocks {
+        mark(
+            &painter,
+            role,
+            at + vec2(-12.0, 8.0),
+            5.0,
+            over.look.role(role),
+        );
+        let second = at + vec2(name.size().x + 7.0, 0.0);
+        painter.galley(at, name, over.look.text);
+        painter.galley(second, what, over.look.weak);
+        painter.galley(at + vec2(0.0, 18.0), facts, over.look.weak);
+        at.y += 40.0;
+    }
+    for note in notes {
+        painter.galley(at - vec2(0.0, 2.0), note, over.look.text);
+        at.y += 17.0;
+    }
+}
+
+/// Name of a part and what becomes of it.
+fn title(painter: &Painter, over: &Overlay<'_>, role: Role) -> [Arc<Galley>; 2] {
+    let (name, what) = match role {
         Role::Crash => ("CRASH", "fixed"),
         Role::Stamped => ("STAMPED", "moves"),
     };
-    let title = painter.layout_no_wrap(name.to_owned(), FontId::proportional(13.5), over.look.text);
-    let role = painter.layout_no_wrap(what.to_owned(), FontId::proportional(13.5), over.look.weak);
-    let lines: Vec<_> = facts(over)
-        .into_iter()
-        .map(|line| painter.layout_no_wrap(line, FontId::proportional(11.5), over.look.weak))
-        .collect();
-    let top = over.rect.min + Vec2::splat(MARGIN);
-    let text_left = top.x + 25.0;
-    let first_width = title.size().x + 7.0 + role.size().x;
-    let widest = lines.iter().map(|l| l.size().x).fold(first_width, f32::max);
-    let n_lines = lines.len() as f32;
-    let plate = Rect::from_min_size(top, vec2(widest + 35.0, 25.0 + 16.0 * n_lines));
-    painter.rect_filled(plate, CornerRadius::same(6), over.look.plate);
-    mark(&painter, over.role(), top + vec2(13.0, 13.0), 5.0, color);
-    let baseline = top.y + 5.0;
-    let title_width = title.size().x;
-    painter.galley(Pos2::new(text_left, baseline), title, over.look.text);
-    let at = Pos2::new(text_left + title_width + 7.0, baseline);
-    painter.galley(at, role, over.look.weak);
-    for (index, line) in lines.into_iter().enumerate() {
-        let y = baseline + 18.0 + 16.0 * index as f32;
-        painter.galley(Pos2::new(text_left, y), line, over.look.weak);
-    }
-    frame(over, &painter, color);
+    let galley = |text: &str, color| {
+        painter.layout_no_wrap(text.to_owned(), FontId::proportional(13.5), color)
+    };
+    [galley(name, over.look.text), galley(what, over.look.weak)]
 }
 
 /// A line in the role's colour marks the window that keys act on, a frame the keyboard's focus.
-fn frame(over: &Overlay<'_>, painter: &egui::Painter, color: Color32) {
+fn frame(over: &Overlay<'_>, painter: &Painter, color: Color32) {
     let is_target = over.state.view.focus == over.role();
     let strength = if is_target { 1.0 } else { 0.28 };
     let line = Rect::from_min_size(over.rect.min, vec2(over.rect.width(), 2.0));
@@ -59,7 +88,7 @@ fn frame(over: &Overlay<'_>, painter: &egui::Painter, color: Color32) {
 }
 
 /// A square for crash, a triangle for stamped: shape and colour say the same.
-pub(super) fn mark(painter: &egui::Painter, role: Role, center: Pos2, radius: f32, color: Color32) {
+fn mark(painter: &Painter, role: Role, center: Pos2, radius: f32, color: Color32) {
     match role {
         Role::Crash => {
             let square = Rect::from_center_size(center, Vec2::splat(2.0 * radius));
@@ -74,43 +103,48 @@ pub(super) fn mark(painter: &egui::Painter, role: Role, center: Pos2, radius: f3
     }
 }
 
-/// What the window shows, line by line.
-fn facts(over: &Overlay<'_>) -> Vec<String> {
+/// How much of a part is shown.
+fn facts(over: &Overlay<'_>, role: Role) -> String {
     let state = over.state;
-    let mut lines = Vec::new();
-    if let Some(part) = state.document.part(over.role()) {
-        let full = grouped(part.loaded.mesh.n_triangles());
-        let is_reduced = state.view.shown == ShownGeometry::Reduced && !state.view.is_blinking;
-        let triangles = match part.level.as_ref().filter(|_| is_reduced) {
-            Some(level) => {
-                format!(
-                    "{} of {full} triangles",
-                    grouped(level.level.mesh.n_triangles())
-                )
-            }
-            None => format!("{full} triangles"),
-        };
-        let n_parts = part.facts.used.len();
-        let parts = if n_parts > 1 {
-            format!(" · {n_parts} parts")
-        } else {
-            String::new()
-        };
-        lines.push(format!("{triangles}{parts}"));
+    let Some(part) = state.document.part(role) else {
+        return "nothing loaded".to_owned();
+    };
+    let full = grouped(part.loaded.mesh.n_triangles());
+    let is_blinking = state.view.is_blinking && !state.view.is_moved_over;
+    let is_reduced = state.view.shown == ShownGeometry::Reduced && !is_blinking;
+    let triangles = match part.level.as_ref().filter(|_| is_reduced) {
+        Some(level) => {
+            let reduced = grouped(level.level.mesh.n_triangles());
+            format!("{reduced} of {full} triangles")
+        }
+        None => format!("{full} triangles"),
+    };
+    let n_parts = part.facts.used.len();
+    if n_parts > 1 {
+        format!("{triangles} · {n_parts} parts")
+    } else {
+        triangles
     }
+}
+
+/// What the user should know about the picture, in the window with the stamped part.
+fn notes(over: &Overlay<'_>) -> Vec<String> {
+    let state = over.state;
     let is_left = over.role() == Role::Crash;
-    if is_left && let Some(tool) = &state.view.move_tool {
-        lines.push(tool.modal.header(&tool.frame));
+    let mut notes: Vec<String> = over.hint.clone().into_iter().collect();
+    if is_left == state.view.is_moved_over
+        && let Some(tool) = &state.view.move_tool
+    {
+        notes.push(tool.modal.header(&tool.frame));
     }
-    lines.extend(over.hint.clone());
-    if is_left && let Some(preview) = preview(over) {
-        lines.push(preview);
+    if is_left {
+        notes.extend(preview(over));
     }
     let separation = state.view.display.separation;
     if is_left && state.view.is_moved_over && separation != 0.0 {
-        lines.push(format!("shown {separation} apart"));
+        notes.push(format!("shown {} apart", short_number(separation)));
     }
-    lines
+    notes
 }
 
 /// What is shown instead of the real pose.
@@ -167,12 +201,11 @@ pub(super) fn buttons(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comman
     if area.left() < over.rect.left() + 150.0 {
         return;
     }
-    ui.painter()
-        .rect_filled(area, CornerRadius::same(6), over.look.plate);
+    let plate = ui.painter().add(Shape::Noop);
     let builder = UiBuilder::new()
         .max_rect(area.shrink(2.0))
         .layout(Layout::right_to_left(Align::Center));
-    ui.scope_builder(builder, |ui| {
+    let row = ui.scope_builder(builder, |ui| {
         ui.spacing_mut().item_spacing.x = 1.0;
         ui.spacing_mut().button_padding = vec2(7.0, 2.0);
         for (label, tooltip, command) in entries.into_iter().rev() {
@@ -194,4 +227,7 @@ pub(super) fn buttons(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comman
             }
         }
     });
+    let used = row.response.rect.expand(2.0);
+    let ground = Shape::rect_filled(used, CornerRadius::same(6), over.look.plate);
+    ui.painter().set(plate, ground);
 }

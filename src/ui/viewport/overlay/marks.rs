@@ -19,10 +19,11 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
     if display.has_axes {
         triad(&painter, over);
     }
+    let mut taken = over.rect.left() + MARGIN;
     if display.has_scale_bar && !over.picture.is_empty() {
-        bar(&painter, over);
+        taken = bar(&painter, over);
     }
-    readout(&painter, over);
+    readout(&painter, over, taken);
 }
 
 /// Axes with their letters, those that point away fainter and drawn first.
@@ -75,11 +76,13 @@ fn triad(painter: &Painter, over: &Overlay<'_>) {
     painter.circle_filled(center, 2.0, over.look.weak);
 }
 
-fn bar(painter: &Painter, over: &Overlay<'_>) {
+/// The scale bar; returns where it ends.
+fn bar(painter: &Painter, over: &Overlay<'_>) -> f32 {
     let camera = &over.stage.camera;
     let size = camera.pixel_size(screen_of(over.rect), &camera.target);
-    let Some(bar) = scale_bar(size, MAX_BAR) else {
-        return;
+    let max_bar = MAX_BAR.min(f64::from(over.rect.width()) * 0.25);
+    let Some(bar) = scale_bar(size, max_bar) else {
+        return over.rect.left() + MARGIN;
     };
     let left = over.rect.left_bottom() + vec2(MARGIN + 84.0, -MARGIN - 8.0);
     let right = left + vec2(bar.pixels as f32, 0.0);
@@ -98,6 +101,7 @@ fn bar(painter: &Painter, over: &Overlay<'_>) {
     }
     let middle = left + (right - left) * 0.5 - vec2(galley.size().x * 0.5, 18.0);
     painter.galley(middle, galley, over.look.text);
+    ground.right()
 }
 
 /// A round length without needless digits.
@@ -111,8 +115,8 @@ fn length_text(length: f64) -> String {
     }
 }
 
-/// What lies under the cursor, bottom right.
-fn readout(painter: &Painter, over: &Overlay<'_>) {
+/// What lies under the cursor, bottom right, or above the scale bar where there is no room beside it.
+fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32) {
     let Some(hit) = over.hit else {
         return;
     };
@@ -121,15 +125,23 @@ fn readout(painter: &Painter, over: &Overlay<'_>) {
         Some(id) => format!("node {id}  {}", place(&hit.node)),
         None => place(&hit.point),
     };
-    if let Some(part) = hit.part {
-        text = format!("part {}   {text}", part.id);
+    let parts = hit
+        .part
+        .map(|part| (part, over.state.document.part(part.role)));
+    if let Some((part, Some(of))) = parts
+        && of.facts.used.len() > 1
+    {
+        text = format!("part {}  {text}", part.id);
     }
     if let Some(value) = hit.value {
-        text = format!("{value:.3}   {text}");
+        text = format!("{value:.3}  {text}");
     }
     let galley = painter.layout_no_wrap(text, FontId::monospace(11.0), over.look.text);
     let size = galley.size() + vec2(14.0, 8.0);
-    let corner = over.rect.right_bottom() - Vec2::splat(MARGIN) - size;
+    let mut corner = over.rect.right_bottom() - Vec2::splat(MARGIN) - size;
+    if corner.x < taken + 6.0 {
+        corner.y -= 30.0;
+    }
     let ground = Rect::from_min_size(corner, size);
     painter.rect_filled(ground, CornerRadius::same(5), over.look.plate);
     painter.galley(corner + vec2(7.0, 4.0), galley, over.look.text);

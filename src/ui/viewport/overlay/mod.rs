@@ -34,6 +34,8 @@ pub(super) struct Overlay<'a> {
     /// What the handle under the pointer does.
     pub hint: Option<String>,
     pub is_focused: bool,
+    /// The part is there but not yet its mesh.
+    pub is_preparing: bool,
 }
 
 impl Overlay<'_> {
@@ -50,9 +52,8 @@ impl Overlay<'_> {
 pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
     marks::pivot(ui, over);
     marks::node(ui, over);
-    if cards::show(ui, over, commands) {
-        header::show(ui, over);
-        return;
+    if over.is_preparing {
+        cards::preparing(ui, over);
     }
     apart::show(ui, over, commands);
     divider::show(ui, over, commands);
@@ -79,7 +80,7 @@ pub(super) fn placeholder(ui: &Ui, rect: Rect, look: &Look) {
     );
 }
 
-/// A count with narrow gaps between the thousands.
+/// A count with commas between the thousands.
 pub(super) fn grouped(n: usize) -> String {
     let digits = n.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
