@@ -211,27 +211,31 @@ impl Shell {
         }
     }
 
-    /// Asks for a picture of the window where one is wanted; a thread of its own writes it.
+    /// Draws the pictures that are wanted; a thread of its own packs and writes them.
     fn take_pictures(&mut self, ctx: &egui::Context) {
-        for PictureRequest { path, .. } in self.dialogs.take_pictures() {
-            let place = panels::graphics::place_of_both(ctx);
-            let scale = ctx.pixels_per_point();
+        for PictureRequest {
+            path,
+            is_transparent,
+        } in self.dialogs.take_pictures()
+        {
+            let Some(picture) = self.viewports.picture(&self.state, is_transparent) else {
+                let text = "no picture could be taken: nothing is drawn yet".to_owned();
+                self.state
+                    .apply(NoticeCommand::Tell(NoticeLevel::Error, text));
+                continue;
+            };
             let (sender, waking) = (self.told.0.clone(), ctx.clone());
-            ctx.request_screenshot(move |window| {
-                let write = move || {
-                    let picture = place.map(|place| window.region(&place, Some(scale)));
-                    let news = match write_picture(picture.as_ref().unwrap_or(&window), &path) {
-                        Ok(()) => (NoticeLevel::Success, format!("written: {}", path.display())),
-                        Err(error) => (
-                            NoticeLevel::Error,
-                            format!("the picture could not be written: {error}"),
-                        ),
-                    };
-                    // The window may have closed meanwhile.
-                    let _ = sender.send(news);
-                    waking.request_repaint();
+            std::thread::spawn(move || {
+                let news = match picture.save(&path) {
+                    Ok(()) => (NoticeLevel::Success, format!("written: {}", path.display())),
+                    Err(error) => (
+                        NoticeLevel::Error,
+                        format!("the picture could not be written: {error}"),
+                    ),
                 };
-                std::thread::spawn(write);
+                // The window may have closed meanwhile.
+                let _ = sender.send(news);
+                waking.request_repaint();
             });
         }
         let news: Vec<_> = self.told.1.try_iter().collect();
@@ -297,16 +301,6 @@ impl Shell {
             self.title = title;
         }
     }
-}
-
-/// Writes pixels as a PNG, or what the ending says.
-fn write_picture(picture: &egui::ColorImage, path: &std::path::Path) -> Result<(), String> {
-    let [width, height] = picture.size.map(|n| u32::try_from(n).unwrap_or(0));
-    let bytes = picture.pixels.iter().flat_map(|p| p.to_array()).collect();
-    image::RgbaImage::from_raw(width, height, bytes)
-        .ok_or_else(|| "the picture is incomplete".to_owned())?
-        .save(path)
-        .map_err(|error| error.to_string())
 }
 
 impl eframe::App for Shell {

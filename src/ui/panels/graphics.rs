@@ -32,11 +32,6 @@ pub fn role_under_pointer(ctx: &egui::Context) -> Option<Role> {
     }
 }
 
-/// The rectangle of both windows.
-pub fn place_of_both(ctx: &egui::Context) -> Option<Rect> {
-    place(ctx).map(|place| place.crash.union(place.stamped))
-}
-
 /// Where the windows end and the bottom pane begins.
 pub fn bottom_edge(ctx: &egui::Context) -> f32 {
     place(ctx).map_or_else(|| ctx.content_rect().bottom(), |p| p.crash.bottom())

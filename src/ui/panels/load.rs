@@ -197,10 +197,12 @@ fn display_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut display: Display = state.view.display.clone();
     ui.horizontal(|ui| {
         caption(ui, "Colour");
+        let chips = 2.0 * 64.0;
+        let width = ui.available_width() - chips - 2.0 * UNIT;
         ui.name_inputs("Colour by", |ui| {
             egui::ComboBox::from_id_salt("colour by")
                 .selected_text(display.color_by.label())
-                .width(128.0)
+                .width(width)
                 .show_ui(ui, |ui| {
                     for by in ColorBy::ALL {
                         ui.selectable_value(&mut display.color_by, by, by.label());

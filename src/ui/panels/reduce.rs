@@ -22,11 +22,9 @@ pub fn reduce_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         &summary,
         commands,
         |ui, commands| {
-            if let Err(reason) = state.can_reduce() {
-                paragraph(ui, format!("Not now: {reason}."));
-                if state.document.parts.iter().all(|(_, part)| part.is_none()) {
-                    return;
-                }
+            if state.document.parts.iter().all(|(_, part)| part.is_none()) {
+                paragraph(ui, "Not now: load a part first.");
+                return;
             }
             ceiling_ui(ui, state, commands);
             strip_ui(ui, state, commands);
@@ -71,7 +69,7 @@ fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 let digits: String = text.chars().filter(char::is_ascii_digit).collect();
                 digits.parse().ok()
             })
-            .min_size(vec2(80.0, ROW));
+            .min_size(vec2(98.0, ROW));
         let field = ui.add(field);
         ui.spacing_mut().button_padding.x = 8.0;
         is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
@@ -160,7 +158,7 @@ fn strip_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         });
         let least = 200.min(n_full);
         let mut n = wanted.unwrap_or(n_full).clamp(least, n_full);
-        ui.spacing_mut().slider_width = ui.available_width() - UNIT;
+        ui.spacing_mut().slider_width = ui.available_width();
         let slider = Slider::new(&mut n, least..=n_full)
             .logarithmic(true)
             .show_value(false);

@@ -5,12 +5,15 @@ use crate::monitor::IterationReport;
 use crate::ui::theme::Palette;
 use crate::ui::widgets::{caption, length, nothing_yet, percent};
 use egui::{Ui, vec2};
-use egui_plot::{Line, Plot, PlotPoints, VLine};
+use egui_plot::{GridMark, Line, Plot, PlotPoints, VLine};
+use std::collections::BTreeMap;
 
-/// Two charts with one axis of iterations.
+/// The iterations of each start, with their place in the whole list.
+type Curves<'a> = BTreeMap<usize, Vec<(usize, &'a IterationReport)>>;
+
+/// Two charts with one axis of iterations; the start that leads stands out.
 pub fn convergence_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let iterations = &state.convergence;
-    if iterations.is_empty() {
+    if state.convergence.is_empty() {
         nothing_yet(
             ui,
             "No iterations yet",
@@ -18,77 +21,140 @@ pub fn convergence_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
         );
         return;
     }
-    let scrubbed = state.view.scrubbed_iteration;
-    match scrubbed.and_then(|index| Some((index, iterations.get(index)?))) {
-        Some((index, it)) => caption(
-            ui,
-            format!(
-                "iteration {} of {} · start {} · rmse {} · overlap {} · the windows show this pose",
-                index + 1,
-                iterations.len(),
-                it.start_idx + 1,
-                length(it.rmse),
-                percent(it.fraction)
-            ),
-        ),
-        None => caption(
-            ui,
-            format!(
-                "{} iterations of all starts · point at a curve to see the pose",
-                iterations.len()
-            ),
-        ),
-    };
-    let palette = Palette::of(ui);
+    let mut curves: Curves<'_> = BTreeMap::new();
+    for (index, report) in state.convergence.iter().enumerate() {
+        curves
+            .entry(report.start_idx)
+            .or_default()
+            .push((index, report));
+    }
+    let leader = leader(state);
+    head_ui(ui, state, curves.len(), leader);
+    let led = curves.get(&leader).map_or(&[][..], Vec::as_slice);
+    let shown = state.view.scrubbed_iteration;
+    let mark = shown.and_then(|index| led.iter().position(|(i, _)| *i == index));
     let size = vec2((ui.available_width() - 16.0) / 2.0, ui.available_height());
     let mut pointed = None;
     ui.horizontal_top(|ui| {
-        type Value = fn(&IterationReport) -> f64;
-        let charts: [(&str, Value, egui::Color32); 2] = [
-            ("rmse", |it| it.rmse, palette.accent_text),
-            ("overlap", |it| it.fraction, palette.good),
-        ];
-        for (name, value, color) in charts {
-            let points: Vec<[f64; 2]> = thinned(iterations)
-                .map(|(index, it)| [index as f64, value(it)])
-                .collect();
-            let shown = Plot::new(name)
-                .width(size.x)
-                .height(size.y)
-                .show_background(false)
-                .allow_scroll(false)
-                .allow_drag(false)
-                .allow_zoom(false)
-                .allow_boxed_zoom(false)
-                .include_y(0.0)
-                .y_axis_label(name)
-                .y_axis_min_width(48.0)
-                .show(ui, |plot| {
-                    plot.line(
-                        Line::new(name, PlotPoints::from(points))
-                            .color(color)
-                            .width(1.5),
-                    );
-                    if let Some(index) = scrubbed {
-                        plot.vline(VLine::new("shown", index as f64).color(palette.secondary));
-                    }
-                    let is_over = plot.response().hovered();
-                    plot.pointer_coordinate().filter(|_| is_over)
-                });
-            if let Some(at) = shown.inner {
-                pointed = Some(at.x.round().max(0.0) as usize);
-            }
+        let rmse = Chart {
+            name: "rmse",
+            value: |report| report.rmse.max(1e-9).log10(),
+            is_logarithmic: true,
+        };
+        let overlap = Chart {
+            name: "overlap",
+            value: |report| report.fraction,
+            is_logarithmic: false,
+        };
+        for chart in [rmse, overlap] {
+            let at = chart.show(ui, &curves, (leader, mark), size);
+            pointed = pointed.or(at);
         }
     });
-    let can_scrub = state.locking_job().is_none();
-    let pointed = pointed.filter(|index| can_scrub && *index < iterations.len());
-    if pointed != scrubbed && (pointed.is_some() || can_scrub) {
+    if state.locking_job().is_some() {
+        return;
+    }
+    let pointed = pointed.and_then(|at| led.get(at)).map(|(index, _)| *index);
+    if pointed != shown {
         commands.push(ViewCommand::ScrubIteration(pointed).into());
     }
 }
 
-/// At most some thousand points, so that a long match draws as fast as a short one.
-fn thinned(iterations: &[IterationReport]) -> impl Iterator<Item = (usize, &IterationReport)> {
-    let step = iterations.len().div_ceil(4000).max(1);
-    iterations.iter().enumerate().step_by(step)
+/// The start that won, or while the match runs the one that was heard of last.
+fn leader(state: &AppState) -> usize {
+    let latest = state
+        .convergence
+        .last()
+        .map_or(0, |report| report.start_idx);
+    match &state.document.result {
+        Some(result) if state.locking_job().is_none() => result.run.outcome.winner,
+        _ => latest,
+    }
+}
+
+fn head_ui(ui: &mut Ui, state: &AppState, n_starts: usize, leader: usize) {
+    let shown = state.view.scrubbed_iteration;
+    let text = match shown.and_then(|index| state.convergence.get(index)) {
+        Some(report) => format!(
+            "start {} · rmse {} · overlap {} · the windows show this pose",
+            report.start_idx + 1,
+            length(report.rmse),
+            percent(report.fraction)
+        ),
+        None => format!(
+            "{} iterations of {n_starts} starts, start {} in front · point at a curve to see the pose",
+            state.convergence.len(),
+            leader + 1
+        ),
+    };
+    caption(ui, text);
+}
+
+struct Chart {
+    name: &'static str,
+    value: fn(&IterationReport) -> f64,
+    is_logarithmic: bool,
+}
+
+impl Chart {
+    /// Draws; the iteration of the leader under the pointer.
+    fn show(
+        &self,
+        ui: &mut Ui,
+        curves: &Curves<'_>,
+        (leader, mark): (usize, Option<usize>),
+        size: egui::Vec2,
+    ) -> Option<usize> {
+        let palette = Palette::of(ui);
+        let is_logarithmic = self.is_logarithmic;
+        let format = move |mark: GridMark, _: &std::ops::RangeInclusive<f64>| {
+            if !is_logarithmic {
+                return format!("{:.0} %", 100.0 * mark.value);
+            }
+            let is_decade = mark.value.fract().abs() < 1e-6;
+            is_decade
+                .then(|| 10_f64.powf(mark.value).to_string())
+                .unwrap_or_default()
+        };
+        let points = |reports: &[(usize, &IterationReport)]| -> Vec<[f64; 2]> {
+            let reports = reports.iter().enumerate();
+            reports
+                .map(|(n, (_, report))| [n as f64, (self.value)(report)])
+                .collect()
+        };
+        let shown = Plot::new(self.name)
+            .width(size.x)
+            .height(size.y)
+            .show_background(false)
+            .allow_scroll(false)
+            .allow_drag(false)
+            .allow_zoom(false)
+            .allow_boxed_zoom(false)
+            .allow_axis_zoom_drag(false)
+            .grid_color(palette.line)
+            .y_axis_label(self.name)
+            .y_axis_min_width(48.0)
+            .y_axis_formatter(format)
+            .show(ui, |plot| {
+                let quiet = palette.secondary.gamma_multiply(0.4);
+                for (start, reports) in curves.iter().filter(|(start, _)| **start != leader) {
+                    let name = format!("start {}", start + 1);
+                    let line = Line::new(name, PlotPoints::from(points(reports)));
+                    plot.line(line.color(quiet).width(1.0).allow_hover(false));
+                }
+                if let Some(reports) = curves.get(&leader) {
+                    let name = format!("start {}", leader + 1);
+                    let line = Line::new(name, PlotPoints::from(points(reports)));
+                    plot.line(line.color(palette.accent_text).width(2.0));
+                }
+                if let Some(mark) = mark {
+                    let line = VLine::new("shown", mark as f64);
+                    plot.vline(line.color(palette.secondary));
+                }
+                let is_over = plot.response().hovered();
+                plot.pointer_coordinate().filter(|_| is_over)
+            });
+        let at = shown.inner?.x.round();
+        (at >= 0.0).then_some(at as usize)
+    }
 }

@@ -232,6 +232,7 @@ fn chart_ui(ui: &mut Ui, title: &str, curves: Vec<Curve>, size: egui::Vec2) {
         .allow_drag(false)
         .allow_zoom(false)
         .allow_boxed_zoom(false)
+        .grid_color(Palette::of(ui).line)
         .legend(Legend::default())
         .x_axis_formatter(decade)
         .y_axis_formatter(decade)
