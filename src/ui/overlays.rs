@@ -65,6 +65,8 @@ fn help_ui(ui: &mut Ui, room: egui::Vec2) {
         .min_scrolled_height(room.y);
     sheet.show(ui, |ui| {
         ui.spacing_mut().item_spacing = vec2(40.0, 2.0);
+        // The scroll bar floats; the keys must not lie under it.
+        ui.set_max_width(width - 16.0);
         ui.columns(3, |columns| {
             let menus: [&[Menu]; 3] = [
                 &[Menu::File, Menu::Edit],
@@ -79,11 +81,11 @@ fn help_ui(ui: &mut Ui, room: egui::Vec2) {
             let last = &mut columns[2];
             group_title(last, "Mouse");
             for (what, how) in [
-                ("Left drag", "turn"),
-                ("Middle drag", "pan"),
-                ("Wheel, right drag", "zoom to the pointer"),
-                ("Click", "select a part"),
-                ("Double click", "bring the part into view"),
+                ("Left drag", "Turn"),
+                ("Middle drag", "Pan"),
+                ("Wheel, right drag", "Zoom to the pointer"),
+                ("Click", "Select a part"),
+                ("Double click", "Bring the part into view"),
             ] {
                 key_row(last, how, what);
             }
@@ -206,7 +208,7 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
     });
     form_row(ui, "Mouse like", label, |ui| {
-        mouse_choice(ui, &mut settings)
+        mouse_choice(ui, &mut settings);
     });
     ui.horizontal(|ui| {
         ui.add_space(label + UNIT);

@@ -45,9 +45,7 @@ pub fn percent(share: f64) -> String {
 
 /// A count on a chip: full, 50k, 2k, 500.
 pub fn short_count(n: usize) -> String {
-    if n >= 1000 && n.is_multiple_of(1000) {
-        format!("{}k", n / 1000)
-    } else if n >= 10_000 {
+    if n >= 10_000 || (n >= 1000 && n.is_multiple_of(1000)) {
         format!("{}k", n / 1000)
     } else {
         grouped(n)
@@ -261,7 +259,12 @@ pub fn icon_button(ui: &mut Ui, sign: &str, name: &str, is_enabled: bool) -> Res
 /// A chip: one of several choices side by side.
 pub fn chip(ui: &mut Ui, label: &str, is_on: bool) -> Response {
     let palette = Palette::of(ui);
-    let text = RichText::new(label);
+    let color = if is_on {
+        palette.on_accent
+    } else {
+        palette.text
+    };
+    let text = RichText::new(label).color(color);
     let fill = if is_on {
         palette.accent
     } else {

@@ -112,9 +112,11 @@ impl Chart {
                 return format!("{:.0} %", 100.0 * mark.value);
             }
             let is_decade = mark.value.fract().abs() < 1e-6;
-            is_decade
-                .then(|| 10_f64.powf(mark.value).to_string())
-                .unwrap_or_default()
+            if is_decade {
+                10_f64.powf(mark.value).to_string()
+            } else {
+                String::new()
+            }
         };
         let points = |reports: &[(usize, &IterationReport)]| -> Vec<[f64; 2]> {
             let reports = reports.iter().enumerate();

@@ -29,6 +29,7 @@ pub fn log_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             .id_salt("log")
             .stick_to_bottom(true)
             .auto_shrink([false, false])
+            .min_scrolled_height(0.0)
             .max_scroll_height(height)
             .cell_layout(Layout::left_to_right(Align::Center))
             .column(Column::exact(56.0))

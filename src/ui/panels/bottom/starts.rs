@@ -25,6 +25,7 @@ pub fn starts_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     TableBuilder::new(ui)
         .id_salt("starts")
         .sense(Sense::click())
+        .min_scrolled_height(0.0)
         .auto_shrink([false, false])
         .cell_layout(Layout::left_to_right(Align::Center))
         .column(Column::exact(40.0))
