@@ -1,7 +1,10 @@
 use crate::app::state::Starts;
-use crate::app::{AppState, BottomTab, Effect, MatchCommand, MatchResult, NoticeLevel, facts};
+use crate::app::{
+    AppState, BottomTab, Effect, MatchCommand, MatchResult, NoticeLevel, ViewCommand, facts,
+};
 use crate::assess::Coverage;
-use crate::jobs::{JobKey, JobKind, MatchInput, MeasureInput, Stamp, SweepInput};
+use crate::geometry::Point3;
+use crate::jobs::{JobKey, JobKind, MatchInput, MeasureInput, Role, Stamp, SweepInput};
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
 use crate::pipeline::sweep::{Sweep, SweepSettings};
 use crate::registration::starts::Start;
@@ -10,6 +13,8 @@ use std::time::Duration;
 
 /// A run that took longer is worth a word to the desktop.
 const LONG_RUN: Duration = Duration::from_secs(10);
+/// Moves of the centre up to this share of the part's size leave the cameras alone.
+const NUDGE: f64 = 0.25;
 
 impl AppState {
     pub(super) fn apply_match(&mut self, command: MatchCommand) -> Vec<Effect> {
@@ -218,17 +223,35 @@ impl AppState {
         }
         self.live_pose = None;
         let pose = run.crash_from_stamped;
+        let before = self.document.stamped_center();
         self.take_pose_as_result("Match".to_owned(), pose, |stamp| MatchResult {
             run: run.into(),
             alternative: None,
             stamp,
         });
+        self.follow_far_move(before);
         // Its phases have their own rows; counting the whole again would double the total.
         self.log_at(level, "result", None, line.clone(), None);
         if took >= LONG_RUN {
             vec![Effect::NotifyDesktop(line)]
         } else {
             Vec::new()
+        }
+    }
+
+    /// A part that went far is no longer where the cameras look; one that was nudged still is.
+    fn follow_far_move(&mut self, before: Option<Point3>) {
+        let (Some(before), Some(after)) = (before, self.document.stamped_center()) else {
+            return;
+        };
+        let part = self.document.part(Role::Stamped);
+        let size = part.map_or(0.0, |part| part.bounds().diagonal());
+        if (after - before).norm() < NUDGE * size {
+            return;
+        }
+        self.apply_view(ViewCommand::FitAll(Role::Stamped));
+        if self.view.is_moved_over {
+            self.apply_view(ViewCommand::FitAll(Role::Crash));
         }
     }
 
