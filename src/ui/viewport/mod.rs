@@ -20,8 +20,8 @@ use std::sync::Arc;
 use eframe::egui_wgpu::RenderState;
 use egui::{EventFilter, Rect, Response, Sense, Ui, WidgetInfo};
 
-use crate::app::{AppState, Command, ViewCommand};
-use crate::geometry::{Camera, Point3};
+use crate::app::{AppState, Command, StampedPose, ViewCommand};
+use crate::geometry::{Camera, Point3, Rotation};
 use crate::jobs::{PerRole, Role};
 use cast::Stage;
 use fields::{FieldKind, FieldStore};
@@ -34,6 +34,9 @@ use pointing::{Pointing, Target};
 use snapshot::Shot;
 use stage::{Layer, Picture};
 use tools::{Bench, Tools};
+
+/// A pair smaller than this share of the picture's height is fitted again when its pose changes.
+const SMALL: f64 = 0.4;
 
 /// The 3D windows with everything they remember between frames.
 pub struct Viewports {
@@ -56,8 +59,8 @@ struct Window {
     shown: PerRole<Option<Arc<ShownMesh>>>,
     /// Revision of the part that was shown last.
     known_part: u64,
-    /// Revision of the pose the camera has followed the part to.
-    followed: u64,
+    /// The pose the camera has followed the part to.
+    followed: StampedPose,
     /// What was drawn last, for pictures in files.
     shot: Option<Shot>,
     has_picture: bool,
@@ -155,6 +158,9 @@ impl Viewports {
             state.view.are_linked && self.windows.get(role.other()).navigator.drag().is_some();
         let window = self.windows.get_mut(role);
         let mut camera = *state.view.cameras.get(role);
+        if role == Role::Crash {
+            window.fit_pair(state, is_driven, commands);
+        }
         if let Some(followed) = window.follow_part(role, state, rect, is_driven) {
             camera = followed;
             if !self.pose.is_moving(now) {
@@ -356,7 +362,7 @@ impl Window {
     }
 
     /// A match may take the stamped part far away; where it would leave its own window, the camera
-    /// goes with it.
+    /// goes with it, so that the part looks as it did.
     fn follow_part(
         &mut self,
         role: Role,
@@ -364,20 +370,48 @@ impl Window {
         rect: Rect,
         is_driven: bool,
     ) -> Option<Camera> {
-        let revision = state.document.pose.revision;
+        let pose = state.document.pose;
         let is_alone = role == Role::Stamped && !state.view.is_moved_over;
-        if !is_alone || is_driven || revision == self.followed {
+        if !is_alone || is_driven || pose.revision == self.followed.revision {
             return None;
         }
-        self.followed = revision;
+        let before = std::mem::replace(&mut self.followed, pose);
         let center = state.document.stamped_center()?;
         let camera = *state.view.cameras.get(role);
         let seen = navigation::pos_of(rect, &camera, &center);
         let is_inside = seen.is_some_and(|at| rect.shrink2(rect.size() * 0.2).contains(at));
-        (!is_inside).then_some(Camera {
-            target: center,
-            ..camera
-        })
+        (!is_inside).then(|| carried(&camera, &before, &pose))
+    }
+
+    /// Two parts that came together out of a great distance are small in the picture: fits it again.
+    fn fit_pair(&mut self, state: &AppState, is_driven: bool, commands: &mut Vec<Command>) {
+        let pose = state.document.pose;
+        if !state.view.is_moved_over || is_driven || pose.revision == self.followed.revision {
+            return;
+        }
+        self.followed = pose;
+        let size = state.visible_bounds(Role::Crash).diagonal();
+        if size < SMALL * state.view.cameras.crash.height {
+            commands.push(ViewCommand::FitAll(Role::Crash).into());
+        }
+    }
+}
+
+/// The camera that shows a part at its new pose as this one did at the old pose.
+fn carried(camera: &Camera, before: &StampedPose, now: &StampedPose) -> Camera {
+    let motion = now
+        .crash_from_stamped
+        .after(&before.crash_from_stamped.inverse());
+    let target = motion.apply(&camera.target);
+    if motion.is_mirrored() {
+        return Camera { target, ..*camera };
+    }
+    let turn = nalgebra::Rotation3::from_matrix_unchecked(motion.rotation);
+    Camera {
+        target,
+        world_from_view: Rotation::from_rotation_matrix(&turn) * camera.world_from_view,
+        height: camera.height * motion.scale,
+        ..*camera
     }
 }
 
@@ -425,4 +459,39 @@ fn summary(state: &AppState, role: Role) -> String {
         _ => "",
     };
     format!("{name}, {n} triangles{with}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::rotation_about;
+    use crate::geometry::Vector3;
+    use crate::geometry::camera::ScreenSize;
+
+    #[test]
+    fn a_carried_camera_shows_the_part_as_before() {
+        let pose = |angle| StampedPose {
+            crash_from_stamped: rotation_about(
+                &Point3::new(500.0, 0.0, 20.0),
+                &Vector3::new(1.0, 2.0, -0.5),
+                angle,
+            ),
+            revision: 1,
+        };
+        let (before, now) = (pose(0.3), pose(2.0));
+        let camera = Camera {
+            height: 80.0,
+            ..Camera::default()
+        };
+        let carried = carried(&camera, &before, &now);
+        let screen = ScreenSize::new(400, 300);
+        for point in [Point3::new(3.0, 4.0, 5.0), Point3::new(-20.0, 0.0, 7.0)] {
+            let seen = |camera: &Camera, pose: &StampedPose| {
+                let at = camera.project(&pose.crash_from_stamped.apply(&point), screen);
+                at.map(|at| [at.x, at.y]).unwrap()
+            };
+            let [old, new] = [seen(&camera, &before), seen(&carried, &now)];
+            assert!((old[0] - new[0]).hypot(old[1] - new[1]) < 1e-6);
+        }
+    }
 }
