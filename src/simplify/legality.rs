@@ -52,28 +52,32 @@ pub(super) fn link_condition(
     may_close: bool,
 ) -> bool {
     let mark = marks.begin();
-    let mut n_sides = 0;
-    for (_, opposite) in surface.sides(a, b) {
-        n_sides += 1;
-        marks.ends.push(opposite);
-        if surface.around(opposite).len() == 1 {
-            // It would be left without a triangle.
-            return false;
+    for (_, face) in surface.faces_around(a) {
+        let [next, last] = face.others(a);
+        if next == b || last == b {
+            marks.ends.push(next ^ last ^ b);
         }
+        marks.of_vertex[next as usize] = mark;
+        marks.of_vertex[last as usize] = mark;
     }
+    let n_sides = marks.ends.len();
     if n_sides == 0 || surface.around(a).len() + surface.around(b).len() <= 2 * n_sides {
         // Nothing of the component would be left.
         return false;
     }
-    for (_, face) in surface.faces_around(a) {
-        for v in face.others(a) {
-            marks.of_vertex[v as usize] = mark;
-        }
+    if marks.ends.iter().any(|&v| surface.around(v).len() == 1) {
+        // It would be left without a triangle.
+        return false;
     }
     let mut n_common = 0;
     let mut outsider = None;
+    let mut may_double = false;
     for (_, face) in surface.faces_around(b) {
-        for v in face.others(b) {
+        let others = face.others(b);
+        may_double |= others
+            .iter()
+            .all(|&v| v != a && marks.of_vertex[v as usize] >= mark);
+        for v in others {
             if v != a && marks.of_vertex[v as usize] == mark {
                 marks.of_vertex[v as usize] = mark + 1;
                 n_common += 1;
@@ -90,7 +94,7 @@ pub(super) fn link_condition(
         None => n_common == n_sides,
         Some(x) => may_close && n_common == n_sides + 1 && closes(x),
     };
-    joined_rightly && !doubles_a_triangle(surface, marks, a, b)
+    joined_rightly && !(may_double && doubles_a_triangle(surface, marks, a, b))
 }
 
 /// True if a triangle (a, c, d) and a triangle (b, c, d) would become one. That needs c and d to

@@ -7,8 +7,13 @@
 //! with three or more triangles pull on their vertices as well and are only collapsed along
 //! themselves. No collapse may turn a triangle over, pinch the surface or join separate sheets.
 //!
-//! The result does not depend on the unit of length or on the place of the part, and equal prices
-//! are decided by vertex numbers, so the same mesh always gives the same result.
+//! Where the time goes decides the layout: an edge waits in a bucket queue under the price it had
+//! when it was last priced, and is priced anew when it comes up (`decimator`); position and quadric
+//! of a vertex lie together, and a face keeps the vector whose outer product is its quadric
+//! (`surface`).
+//!
+//! The result does not depend on the unit of length or on the place of the part, and nearly
+//! equal prices are decided by the order of the edges, so the same mesh always gives the same result.
 
 mod border;
 mod decimator;

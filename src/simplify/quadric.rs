@@ -101,25 +101,26 @@ impl Quadric {
     /// depend on the unit of length.
     fn solve(&self, right: &Vector3<f64>) -> Option<Vector3<f64>> {
         let smallest = 1e-12 * self.weight();
-        let d0 = self.xx;
-        if d0 <= smallest {
+        if self.xx <= smallest {
             return None;
         }
-        let (l10, l20) = (self.xy / d0, self.xz / d0);
+        let inverse0 = 1.0 / self.xx;
+        let (l10, l20) = (self.xy * inverse0, self.xz * inverse0);
         let d1 = self.yy - l10 * self.xy;
         if d1 <= smallest {
             return None;
         }
+        let inverse1 = 1.0 / d1;
         let u12 = self.yz - l10 * self.xz;
-        let l21 = u12 / d1;
+        let l21 = u12 * inverse1;
         let d2 = self.zz - l20 * self.xz - l21 * u12;
         if d2 <= smallest {
             return None;
         }
         let y1 = right.y - l10 * right.x;
         let z = (right.z - l20 * right.x - l21 * y1) / d2;
-        let y = y1 / d1 - l21 * z;
-        let x = right.x / d0 - l10 * y - l20 * z;
+        let y = y1 * inverse1 - l21 * z;
+        let x = right.x * inverse0 - l10 * y - l20 * z;
         Some(Vector3::new(x, y, z))
     }
 }

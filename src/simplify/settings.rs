@@ -13,13 +13,16 @@ pub enum Placement {
     Endpoint,
 }
 
-/// How much is kept up to date after each collapse.
+/// How much is kept up to date after each collapse. Figures for the car floor sample, 34,808
+/// triangles, as in `tests/bench/RESULTS.md`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Speed {
-    /// The quadrics of the merged vertex and of all its neighbours.
+    /// The quadrics of the merged vertex and of all its neighbours. Two-sided rms 0.0051 mm at
+    /// 20,000 triangles, 0.039 at 10,000, 0.23 at 1,000.
     #[default]
     Exact,
-    /// The merged vertex's quadric only: less time for a larger error.
+    /// The merged vertex's quadric only, as long as there are 8,000 triangles or more; below it is
+    /// `Exact`. Up to a tenth less time for up to a tenth more error: 0.0053, 0.042, 0.23 mm.
     Fast,
 }
 

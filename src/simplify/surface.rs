@@ -39,8 +39,9 @@ pub(super) struct Vertex {
     pub(super) kind: Kind,
 }
 
-/// A triangle.
+/// A triangle, in one cache line.
 #[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
 pub(super) struct Face {
     /// Its vertices; [`GONE`] three times once it is collapsed.
     pub(super) corners: [u32; 3],

@@ -18,5 +18,6 @@ mod registration;
 mod samples;
 mod search;
 mod simplify;
+mod simplify_rules;
 mod textbook_qem;
 mod tidy;
