@@ -22,7 +22,7 @@ pub enum Speed {
     #[default]
     Exact,
     /// The merged vertex's quadric only, as long as there are 8,000 triangles or more; below it is
-    /// `Exact`. Up to a tenth less time for up to a tenth more error: 0.0053, 0.042, 0.23 mm.
+    /// `Exact`. 0.0053, 0.042 and 0.23 mm, for 5 % less time; of 200,000 triangles 14 % less.
     Fast,
 }
 
