@@ -44,8 +44,7 @@ const EAGER_BELOW: usize = 1000;
 const EXACT_BELOW: usize = 8000;
 
 /// An edge whose price has risen by less than this, half an octave of keys, is collapsed all the
-/// same. On the car floor sample the error is the same as with none, and a third of the edges that
-/// come up need not wait again.
+/// same. On the car floor sample the error is the same as with none.
 const SLACK: u32 = 1 << 14;
 
 /// Counts of edges that cannot be collapsed, by reason.
