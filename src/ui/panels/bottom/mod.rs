@@ -11,7 +11,8 @@ mod timings;
 use crate::app::{AppState, BottomTab, Command, ViewCommand};
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::caption;
-use egui::{Align, Button, Frame, Layout, Margin, RichText, Stroke, Ui, vec2};
+use egui::scroll_area::ScrollBarVisibility;
+use egui::{Align, Button, Frame, Layout, Margin, RichText, ScrollArea, Stroke, Ui, vec2};
 
 /// Tabs and content.
 pub fn bottom_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -58,12 +59,26 @@ fn tabs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     bar.show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            for tab in SHOWN {
-                tab_ui(ui, tab, state, commands);
+            // At a large text size the tabs scroll sideways rather than being cut.
+            let room = ui.available_width();
+            let is_narrow = room < 720.0;
+            let tabs = if is_narrow { room } else { room - 200.0 };
+            ScrollArea::horizontal()
+                .id_salt("tabs")
+                .max_width(tabs)
+                .scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden)
+                .show(ui, |ui| {
+                    ui.horizontal(|ui| {
+                        for tab in SHOWN {
+                            tab_ui(ui, tab, state, commands);
+                        }
+                    });
+                });
+            if !is_narrow {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    status_ui(ui, state);
+                });
             }
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                status_ui(ui, state);
-            });
         });
     });
 }
