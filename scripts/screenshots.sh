@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# Drives the real window through the story of the README, with real mouse and keys on a virtual
+# screen, and writes the pictures to screenshots/. SHAPEMATCH=path takes a binary that is built.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. scripts/setup.sh
+install_packages xvfb xdotool scrot mesa-vulkan-drivers || exit 1
+if [ -z "${SHAPEMATCH:-}" ]; then
+    need_rust
+    cargo build --release --locked
+    SHAPEMATCH=target/release/shapematch
+fi
+
+folder=$(mktemp -d)
+pids=()
+cleanup() {
+    for pid in "${pids[@]}"; do kill "$pid" 2>/dev/null || true; done
+    rm -rf "$folder"
+}
+trap cleanup EXIT
+# A home of its own: no settings of before, none left behind.
+export HOME=$folder XDG_CONFIG_HOME=$folder/config XDG_DATA_HOME=$folder/data
+export XDG_RUNTIME_DIR=$folder/run WGPU_BACKEND=${WGPU_BACKEND:-vulkan} RUST_BACKTRACE=0
+mkdir -m 700 "$XDG_RUNTIME_DIR"
+
+# The server picks a free display and tells its number.
+Xvfb -screen 0 1400x900x24 -nolisten tcp -displayfd 3 3>"$folder/display" >/dev/null 2>&1 &
+pids+=($!)
+until [ -s "$folder/display" ]; do sleep 0.1; done
+DISPLAY=:$(cat "$folder/display")
+export DISPLAY
+
+"$SHAPEMATCH" >"$folder/log" 2>&1 &
+pids+=($!)
+window=$(timeout 60 xdotool search --sync --onlyvisible --name shapematch | head -n 1)
+xdotool windowmove "$window" 0 0 windowsize "$window" 1400 900 windowfocus "$window"
+
+shot() { scrot -o "$1"; }
+# settle: waits until the picture stands still; an idle window draws nothing.
+settle() {
+    local i
+    for i in $(seq 60); do
+        shot "$folder/a.png"
+        sleep 0.7
+        shot "$folder/b.png"
+        cmp -s "$folder/a.png" "$folder/b.png" && return 0
+    done
+    say "The window does not come to rest."
+    exit 1
+}
+keep() { settle; cp "$folder/b.png" "screenshots/$1.png"; say "screenshots/$1.png"; }
+click() { xdotool mousemove "$1" "$2"; sleep 0.2; xdotool click 1; sleep 0.3; }
+press() { xdotool key "$@"; sleep 0.3; }
+# drag X Y DX DY: with the left button, in steps as a hand does.
+drag() {
+    local i
+    xdotool mousemove "$1" "$2" mousedown 1
+    for i in $(seq 10); do xdotool mousemove_relative --sync -- $(($3 / 10)) $(($4 / 10)); sleep 0.03; done
+    xdotool mouseup 1
+}
+# Where nothing reacts to the pointer.
+rest() { xdotool mousemove 1000 890; }
+
+mkdir -p screenshots
+rest
+keep start
+click "$EXAMPLE_X" "$EXAMPLE_Y"
+settle
+drag 560 420 60 -40
+rest
+keep loaded
+click "$REDUCE_X" "$REDUCE_Y"
+settle
+press e
+rest
+keep reduced
+press m
+rest
+keep moved-over
+press a
+settle
+press alt+Return
+settle
+press ctrl+Return
+for i in $(seq 8); do shot "$folder/live-$i.png"; done
+cp "$folder/live-${LIVE_FRAME:-3}.png" screenshots/live.png
+say "screenshots/live.png"
+rest
+keep matched-reduced
+press e
+press shift+d
+rest
+keep matched-detailed
+click "$SWEEP_X" "$SWEEP_Y"
+click "$RUN_X" "$RUN_Y"
+sleep 5
+rest
+keep sweep
