@@ -64,12 +64,12 @@ rest() { xdotool mousemove 1000 890; }
 mkdir -p screenshots
 rest
 keep start
-click "$EXAMPLE_X" "$EXAMPLE_Y"
+click 607 373 # Open the example pair
 settle
 drag 560 420 60 -40
 rest
 keep loaded
-click "$REDUCE_X" "$REDUCE_Y"
+click 139 353 # Reduce
 settle
 press e
 rest
@@ -83,7 +83,7 @@ press alt+Return
 settle
 press ctrl+Return
 for i in $(seq 8); do shot "$folder/live-$i.png"; done
-cp "$folder/live-${LIVE_FRAME:-3}.png" screenshots/live.png
+cp "$folder/live-3.png" screenshots/live.png
 say "screenshots/live.png"
 rest
 keep matched-reduced
@@ -91,8 +91,10 @@ press e
 press shift+d
 rest
 keep matched-detailed
-click "$SWEEP_X" "$SWEEP_Y"
-click "$RUN_X" "$RUN_Y"
+click 652 715 # Sweep
+click 414 745 # Run the sweep
 sleep 5
+settle
+drag 870 700 0 -320 # more room for tables and curves
 rest
 keep sweep

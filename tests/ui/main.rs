@@ -1,5 +1,7 @@
 //! Tests above the glass floor: pictures on the software driver, then panels. One binary.
 
+#![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
+
 mod panels;
 mod render;
 mod story;
