@@ -15,10 +15,54 @@ use crate::monitor::{Cancelled, Monitor};
 const SAME_ANGLE_DEG: f64 = 3.0;
 const SAME_SHIFT: f64 = 0.02;
 
-/// After so many iterations only the better ones go on: (iterations, share kept, least kept).
-const HEATS: [(usize, f64, usize); 3] = [(5, 0.5, 10), (5, 0.5, 6), (10, 0.5, 4)];
+/// A stretch of the race at whose end only the better ones go on.
+struct Heat {
+    n_iterations: usize,
+    /// Share of the race points that are asked: far from the pose a few say as much as many, and
+    /// queries from far away are the dear ones.
+    points: f64,
+    /// Share of the starts that goes on.
+    keep: f64,
+    /// Of a small field at least so many go on.
+    least: usize,
+}
+
+/// The race of the usual starts, and of those that a crowd has left.
+const HEATS: [Heat; 3] = [
+    Heat {
+        n_iterations: 5,
+        points: 0.5,
+        keep: 0.5,
+        least: 10,
+    },
+    Heat {
+        n_iterations: 5,
+        points: 1.0,
+        keep: 0.5,
+        least: 6,
+    },
+    Heat {
+        n_iterations: 10,
+        points: 1.0,
+        keep: 0.5,
+        least: 4,
+    },
+];
+/// From this many starts on a qualifying heat comes first, so that a wide search costs about as
+/// much as a narrow one.
+const CROWD: usize = 40;
+/// The heat in which a crowd qualifies.
+const QUALIFYING: Heat = Heat {
+    n_iterations: 4,
+    points: 0.3,
+    keep: 0.25,
+    least: 24,
+};
 /// A start this much worse than the best one drops out at the end of a heat.
 const HOPELESS: f64 = 8.0;
+
+/// Iterations of the refinement after which the hopeless drop out.
+const PROBATION: usize = 10;
 
 /// The surfaces of one stage in their roles.
 #[derive(Clone, Copy)]
@@ -133,22 +177,34 @@ pub(crate) fn race(
     monitor: &Monitor,
 ) -> Result<(), Cancelled> {
     let Pairing { data, model } = leg.coarse;
-    let points = BothSigns::new(Data::new(thin(data, settings.n_race_points)));
     let rules = stage_rules(Stage::Race, settings, data, model);
+    let qualifying = (entrants.len() >= CROWD).then_some(QUALIFYING);
+    let mut asked: Option<(f64, BothSigns)> = None;
     let mut done = 0;
-    for (n_iterations, share, least) in HEATS {
+    for heat in qualifying.iter().chain(&HEATS) {
         monitor.progress("race", done as u64, None);
-        done += n_iterations;
+        done += heat.n_iterations;
+        let unchanged = asked.take().filter(|(share, _)| *share == heat.points);
+        let (_, points) = asked.insert(unchanged.unwrap_or_else(|| {
+            // Scores and partners of other points do not carry over.
+            for entrant in entrants.iter_mut().filter(|e| e.is_alive()) {
+                entrant.run.enter_stage();
+            }
+            let n_points = (heat.points * settings.n_race_points as f64).ceil() as usize;
+            let points = BothSigns::new(Data::new(thin(data, n_points)));
+            (heat.points, points)
+        }));
+        let n_iterations = heat.n_iterations;
         advance_all(
             leg,
             entrants,
-            (&points, model),
+            (&*points, model),
             &rules,
             n_iterations,
             monitor,
         )?;
         let n_alive = entrants.iter().filter(|e| e.is_alive()).count();
-        let keep = ((n_alive as f64 * share).ceil() as usize).max(least);
+        let keep = ((n_alive as f64 * heat.keep).ceil() as usize).max(heat.least);
         merge(leg, entrants);
         drop_slow(entrants, keep, done);
     }
@@ -175,9 +231,19 @@ pub(crate) fn refine(
     for entrant in entrants.iter_mut().filter(|e| e.is_alive()) {
         entrant.run.enter_stage();
     }
-    let cap = rules.max_iterations;
-    advance_all(leg, entrants, (&points, model), &rules, cap, monitor)?;
-    merge(leg, entrants);
+    let first = PROBATION.min(rules.max_iterations);
+    for n_iterations in [first, rules.max_iterations - first] {
+        advance_all(
+            leg,
+            entrants,
+            (&points, model),
+            &rules,
+            n_iterations,
+            monitor,
+        )?;
+        merge(leg, entrants);
+        drop_slow(entrants, n_distinct, raced.unwrap_or(0) + n_iterations);
+    }
     Ok(())
 }
 

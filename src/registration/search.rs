@@ -21,9 +21,12 @@ const N_DISTINCT: usize = 4;
 /// A pose convinces if its kept pairs lie within this many floors …
 const CONVINCING_RMSE: f64 = 2.5;
 /// … and make up this share of the data.
-const CONVINCING_FRACTION: f64 = 0.5;
+const CONVINCING_FRACTION: f64 = 0.7;
 /// Where less of what could be covered is kept, the opposite hand is tried too.
 const CERTAIN_FRACTION: f64 = 0.85;
+/// Mirror images that score so much worse than the winner after the race are not refined: a part
+/// that is nearly its own mirror image comes within a factor of a few.
+const CLEARLY_WORSE: f64 = 8.0;
 /// Deviation of a reduced mesh from the sheet, as a share of its mean edge length. The car floor
 /// measures 0.01 from 10,000 down to 500 triangles.
 const REDUCED_ERROR: f64 = 0.02;
@@ -228,14 +231,20 @@ impl<'a> Contest<'a> {
         let entrant = |start: &Start| Entrant::new(leg, *start, 0);
         let mut images: Vec<Entrant> = images.iter().map(entrant).collect();
         race(leg, &mut images, self.settings, monitor)?;
+        let best_ratio = |images: &[Entrant]| {
+            ranking(images).first().map(|&i| {
+                let image = &images[i];
+                let pose = leg.frames.target_from_source(&image.run.model_from_data);
+                let bare = pose.after(&leg.frames.mirror.inverse());
+                self.judge.score(&bare, image.start.flipped).score() / winner.scores.score()
+            })
+        };
+        let raced = best_ratio(&images);
+        if raced.is_none_or(|ratio| ratio > CLEARLY_WORSE) {
+            return Ok(raced);
+        }
         refine(leg, &mut images, 1, self.settings, monitor)?;
-        let best = ranking(&images).first().map(|&i| {
-            let image = &images[i];
-            let pose = leg.frames.target_from_source(&image.run.model_from_data);
-            let bare = pose.after(&leg.frames.mirror.inverse());
-            self.judge.score(&bare, image.start.flipped)
-        });
-        Ok(best.map(|scores| scores.score() / winner.scores.score()))
+        Ok(best_ratio(&images))
     }
 
     /// True if a pose lays a fair share of the data within a few floors of the model.

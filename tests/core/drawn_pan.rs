@@ -28,6 +28,25 @@ pub fn pan_height(x: f64, y: f64) -> f64 {
 
 /// The pan within `keep`, sampled on a grid of `pitch` turned by `turn`, jittered.
 pub fn pan(pitch: f64, turn: f64, keep: impl Fn(f64, f64) -> bool) -> TriMesh {
+    sheet(pitch, turn, pan_height, keep)
+}
+
+/// A wavy panel, 200 × 130 mm, whose radii of 45 mm and more elements of 9 mm follow well; meshed
+/// as [`pan`] is.
+pub fn panel(pitch: f64, turn: f64, keep: impl Fn(f64, f64) -> bool) -> TriMesh {
+    let height = |x: f64, y: f64| {
+        15.0 * (x / 30.0 + 0.5).sin() + 14.0 * (y / 27.0 - 0.3).cos() + x * y / 270.0
+    };
+    let within = |x: f64, y: f64| x.abs() <= 100.0 && y.abs() <= 65.0 && keep(x, y);
+    sheet(pitch, turn, height, within)
+}
+
+fn sheet(
+    pitch: f64,
+    turn: f64,
+    height: impl Fn(f64, f64) -> f64,
+    keep: impl Fn(f64, f64) -> bool,
+) -> TriMesh {
     let n = (260.0 / pitch) as i64;
     let width = 2 * n + 1;
     let mut index = vec![u32::MAX; (width * width) as usize];
@@ -48,7 +67,7 @@ pub fn pan(pitch: f64, turn: f64, keep: impl Fn(f64, f64) -> bool) -> TriMesh {
             );
             if x.abs() <= 210.0 && y.abs() <= 140.0 && keep(x, y) {
                 index[((j + n) * width + i + n) as usize] = positions.len() as u32;
-                positions.push(Point3::new(x, y, pan_height(x, y)));
+                positions.push(Point3::new(x, y, height(x, y)));
             }
         }
     }

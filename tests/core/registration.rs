@@ -6,7 +6,7 @@ use shapematch::geometry::{Point3, Pose, Similarity, TriMesh, Vector3};
 use shapematch::monitor::{IterationReport, Monitor, Observer};
 use shapematch::registration::*;
 
-use super::drawn_pan::{everywhere, pan, placement, worst_node};
+use super::drawn_pan::{everywhere, pan, panel, placement, worst_node};
 
 fn run(source: &TriMesh, target: &TriMesh, settings: &MatchSettings) -> MatchOutcome {
     match_meshes(source, target, settings, &Monitor::silent()).unwrap()
@@ -55,29 +55,65 @@ fn the_same_mesh_moved_is_found_to_round_off() {
     check(&source, &part, &truth, 1e-9 * part.aabb().diagonal());
 }
 
+/// One way of laying the panel on itself.
+struct Situation {
+    name: &'static str,
+    source: TriMesh,
+    target: TriMesh,
+    data_side: DataSide,
+    /// Share of the data that has a counterpart.
+    overlap: f64,
+}
+
+fn situations() -> [Situation; 4] {
+    let is_left = |x: f64, y: f64| x + 0.3 * y < 40.0;
+    let stamped = panel(8.0, 0.0, everywhere);
+    let whole = panel(9.0, 0.35, everywhere);
+    let cut = panel(9.0, 0.35, is_left);
+    let of = |name, source: &TriMesh, target: &TriMesh, data_side, overlap| Situation {
+        name,
+        source: source.clone(),
+        target: target.clone(),
+        data_side,
+        overlap,
+    };
+    [
+        of("full", &stamped, &whole, DataSide::Auto, 1.0),
+        of(
+            "noisy",
+            &noisy(&stamped, 0.1),
+            &whole,
+            DataSide::Target,
+            1.0,
+        ),
+        of("contained", &stamped, &cut, DataSide::Auto, 1.0),
+        of("overhanging", &stamped, &cut, DataSide::Source, 0.7),
+    ]
+}
+
+fn current_pose() -> StartSettings {
+    StartSettings {
+        method: StartMethod::CurrentPose,
+        both_signs: false,
+        widen: false,
+        ..StartSettings::default()
+    }
+}
+
 #[test]
 fn every_selection_metric_and_motion_finds_the_pose() {
-    let whole = pan(15.0, 0.35, everywhere);
-    let cut = pan(15.0, 0.35, |x, y| x + 0.3 * y < 40.0);
-    let stamped = pan(13.0, 0.0, everywhere);
-    let rough = noisy(&stamped, 0.1);
     let nudge: Similarity = Pose::new(
         Vector3::new(4.0, -5.0, 6.0),
         Vector3::new(0.05, -0.04, 0.07),
     )
     .into();
-    let cases = [
-        ("full", &stamped, &whole, DataSide::Auto),
-        ("cut", &stamped, &cut, DataSide::Auto),
-        ("noisy and swapped", &rough, &whole, DataSide::Source),
-    ];
     let mut missed = Vec::new();
-    for (name, stamped, target, data_side) in cases {
-        let source = stamped.transformed(&nudge.inverse());
+    for situation in situations() {
+        let source = situation.source.transformed(&nudge.inverse());
+        let edge = situation.target.mean_edge_length();
         for mut selection in Selection::ALL {
-            // The trimmed method is told the overlap, and the data is covered to its rim.
             if let Selection::Trimmed { overlap } = &mut selection {
-                *overlap = 0.95;
+                *overlap = 0.95 * situation.overlap;
             }
             for metric in Metric::ALL {
                 for motion in Motion::ALL {
@@ -85,36 +121,38 @@ fn every_selection_metric_and_motion_finds_the_pose() {
                         selection,
                         metric,
                         motion,
-                        data_side,
-                        max_iterations: 80,
-                        starts: StartSettings {
-                            method: StartMethod::CurrentPose,
-                            both_signs: false,
-                            widen: false,
-                            ..StartSettings::default()
-                        },
+                        data_side: situation.data_side,
+                        max_iterations: 60,
+                        starts: current_pose(),
                         ..MatchSettings::default()
                     };
-                    let outcome = run(&source, target, &settings);
-                    let error = worst_node(&source, &nudge, &outcome.target_from_source);
-                    // Facets of 15 mm on radii of 30 mm: this asks whether the right pose is
-                    // found, not how exactly. Normals of one side only, or a free scale, which
-                    // facets pull below 1, leave more of the faceting in the pose; point to point
-                    // crawls and meets the iteration limit. Measured: 1.9, 6.5 and 8.4 mm.
-                    let limit = match (metric, motion) {
-                        (Metric::Symmetric, Motion::Rigid) => 2.0,
-                        (Metric::Symmetric | Metric::PointToPlane, _) => 7.0,
-                        (Metric::PointToPoint, _) => 9.0,
-                    };
+                    let outcome = run(&source, &situation.target, &settings);
+                    let error = worst_node(&source, &nudge, &outcome.target_from_source) / edge;
+                    let which =
+                        format!("{}, {selection:?}, {metric:?}, {motion:?}", situation.name);
+                    let limit = limit(metric, motion);
                     if error >= limit {
-                        let which = format!("{selection:?}, {metric:?}, {motion:?}");
-                        missed.push(format!("{name}, {which}: {error:.3}"));
+                        missed.push(format!("{which}: {error:.3} edge lengths"));
                     }
                 }
             }
         }
     }
     assert!(missed.is_empty(), "{}", missed.join("\n"));
+}
+
+/// Allowed error of the worst node in mean edge lengths.
+fn limit(metric: Metric, motion: Motion) -> f64 {
+    match (metric, motion) {
+        // A fifth of what the program promises; facets pull a free scale a little below 1.
+        (Metric::Symmetric | Metric::PointToPlane, Motion::Rigid) => 0.02,
+        (Metric::Symmetric | Metric::PointToPlane, Motion::Similarity) => 0.04,
+        // Point to point slides along the sheet in ever smaller steps; 60 iterations leave it on
+        // the way, 200 halve the error.
+        (Metric::PointToPoint, Motion::Rigid) => 0.3,
+        // A free scale is one more direction in which it crawls.
+        (Metric::PointToPoint, Motion::Similarity) => 0.6,
+    }
 }
 
 #[test]
