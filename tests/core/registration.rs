@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
+use shapematch::assess::{AssessSettings, Verdict, assess};
 use shapematch::geometry::{Point3, Pose, Similarity, TriMesh, Vector3};
 use shapematch::monitor::{IterationReport, Monitor, Observer};
 use shapematch::registration::*;
@@ -130,6 +131,17 @@ fn every_selection_metric_and_motion_finds_the_pose() {
                     let error = worst_node(&source, &nudge, &outcome.target_from_source) / edge;
                     let which =
                         format!("{}, {selection:?}, {metric:?}, {motion:?}", situation.name);
+                    // All pairs, point to point, scale free: what overhangs shrinks the part, and
+                    // no setting of these three helps. It must be told.
+                    let misled = situation.overlap < 1.0
+                        && selection == Selection::All
+                        && metric == Metric::PointToPoint
+                        && motion == Motion::Similarity;
+                    if misled {
+                        let verdict = verdict(&source, &situation.target, &outcome);
+                        assert_ne!(verdict, Verdict::Good);
+                        continue;
+                    }
                     let limit = limit(metric, motion);
                     if error >= limit {
                         missed.push(format!("{which}: {error:.3} edge lengths"));
@@ -139,6 +151,13 @@ fn every_selection_metric_and_motion_finds_the_pose() {
         }
     }
     assert!(missed.is_empty(), "{}", missed.join("\n"));
+}
+
+fn verdict(source: &TriMesh, target: &TriMesh, outcome: &MatchOutcome) -> Verdict {
+    let [source, target] = [source, target].map(|m| Surface::new(m, "source").unwrap());
+    let settings = AssessSettings::default();
+    let check = assess(&source, &target, outcome, &settings, &Monitor::silent());
+    check.unwrap().verdict
 }
 
 /// Allowed error of the worst node in mean edge lengths.
