@@ -34,6 +34,8 @@ const REDUCED_ERROR: f64 = 0.02;
 const OVERHANG: f64 = 0.9;
 /// The smaller part is laid on patches of the larger below this ratio of areas.
 const PATCH_RATIO: f64 = 0.75;
+/// Below this ratio of areas the units differ, and no start finds a pose worth the time.
+const HOPELESS_RATIO: f64 = 0.01;
 
 /// The search for one hand of the source: legs (choices of data and model) with their entrants.
 pub(crate) struct Contest<'a> {
@@ -111,7 +113,9 @@ impl<'a> Contest<'a> {
 
     /// Runs wider starts, for when nothing convinces.
     pub(crate) fn widen(&mut self, monitor: &Monitor) -> Result<(), RegistrationError> {
+        let (a, b) = (self.input.source.measures(), self.input.target.measures());
         let widens = self.settings.starts.widen
+            && a.area.min(b.area) > HOPELESS_RATIO * a.area.max(b.area)
             && self.settings.search == Search::Race
             && self.settings.selection != Selection::All;
         if widens && !monitor.stop_requested() {
