@@ -48,6 +48,8 @@ settle() {
     say "The window does not come to rest."
     exit 1
 }
+# await_rest N: the same for work that shows no motion for up to N seconds.
+await_rest() { sleep "$1"; settle; }
 keep() { settle; cp "$folder/b.png" "screenshots/$1.png"; say "screenshots/$1.png"; }
 click() { xdotool mousemove "$1" "$2"; sleep 0.2; xdotool click 1; sleep 0.3; }
 press() { xdotool key "$@"; sleep 0.3; }
@@ -57,6 +59,7 @@ drag() {
     xdotool mousemove "$1" "$2" mousedown 1
     for i in $(seq 10); do xdotool mousemove_relative --sync -- $(($3 / 10)) $(($4 / 10)); sleep 0.03; done
     xdotool mouseup 1
+    sleep 0.5
 }
 # Where nothing reacts to the pointer.
 rest() { xdotool mousemove 1000 890; }
@@ -93,8 +96,7 @@ rest
 keep matched-detailed
 click 652 715 # Sweep
 click 414 745 # Run the sweep
-sleep 5
-settle
-drag 870 700 0 -320 # more room for tables and curves
+await_rest 60
+drag 1100 700 0 -320 # more room for tables and curves
 rest
 keep sweep

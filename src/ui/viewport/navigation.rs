@@ -220,7 +220,7 @@ impl Navigator {
         let Some(drag) = &mut self.drag else {
             return;
         };
-        if let Some(pos) = ui.input(|i| i.pointer.interact_pos()) {
+        if let Some(pos) = ui.input(|i| place_of_drag(i, drag.button)) {
             drag.apply(pos, view, camera);
             drag.last = pos;
         }
@@ -228,6 +228,21 @@ impl Navigator {
             self.drag = None;
         }
     }
+}
+
+/// Where a drag has come to: the place of the release if the button went up in this frame. A slow
+/// frame can also hold what the pointer did after that, which is no part of the drag.
+fn place_of_drag(input: &egui::InputState, button: PointerButton) -> Option<Pos2> {
+    let released = input.events.iter().find_map(|event| match event {
+        egui::Event::PointerButton {
+            pos,
+            button: of,
+            pressed: false,
+            ..
+        } if *of == button => Some(*pos),
+        _ => None,
+    });
+    released.or_else(|| input.pointer.interact_pos())
 }
 
 impl CameraDrag {
