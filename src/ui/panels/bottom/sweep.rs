@@ -55,7 +55,8 @@ pub fn sweep_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal_top(|ui| {
         let height = ui.available_height();
         let width = (0.46 * ui.available_width()).min(560.0);
-        ui.allocate_ui(vec2(width, height), |ui| {
+        ui.allocate_ui_with_layout(vec2(width, height), Layout::top_down(Align::Min), |ui| {
+            ui.set_width(width);
             ScrollArea::vertical()
                 .id_salt("sweep tables")
                 .auto_shrink([false, false])
@@ -66,8 +67,11 @@ pub fn sweep_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 fn settings(state: &AppState) -> SweepSettings {
+    let mut settings = state.document.recipe.settings.clone();
+    // The same starts at every level, so that the times compare.
+    settings.starts.widen = false;
     SweepSettings {
-        settings: state.document.recipe.settings.clone(),
+        settings,
         ..SweepSettings::default()
     }
 }
