@@ -6,6 +6,7 @@ use crate::geometry::Similarity;
 use crate::jobs::{MeasuredLevel, PartFacts};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::MatchRun;
+pub(super) use crate::report::grouped;
 use std::time::Duration;
 
 /// A pose this much worse than the best is worth a key: above it, it is simply another pose.
@@ -145,17 +146,4 @@ pub(super) fn measure_line(coverage: &Coverage) -> String {
 pub(super) fn counted(n: usize, noun: &str) -> String {
     let plural = if n == 1 { "" } else { "s" };
     format!("{} {noun}{plural}", grouped(n))
-}
-
-/// A count with commas between the thousands.
-pub(super) fn grouped(n: usize) -> String {
-    let digits = n.to_string();
-    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
 }

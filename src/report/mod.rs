@@ -5,6 +5,7 @@ pub mod cards;
 mod info;
 pub mod matrix;
 mod record;
+mod text;
 
 pub use cards::{CardError, CardForm, CardOptions, Cards, Receiver, write as write_cards};
 pub use info::{Bounds, DiagnosticInfo, FileInfo, FormingInfo, ModelInfo, PartInfo};
@@ -13,3 +14,4 @@ pub use record::{
     AlternativeRecord, DIRECTION, FileRecord, Files, MatchRecord, OverlapRecord, Parameters,
     RecordContext, StartEntry, TimingsRecord, build_id, fate_words, side_word,
 };
+pub use text::grouped;

@@ -3,23 +3,11 @@
 use super::theme::{Palette, ROW, TALL, UNIT};
 use crate::app::{Action, AppState, Command, NoticeLevel};
 use crate::jobs::Role;
+pub use crate::report::grouped;
 use egui::{
     Align, Button, Color32, CornerRadius, Frame, Layout, Margin, Rect, Response, RichText, Sense,
     Stroke, Ui, Vec2, pos2, vec2,
 };
-
-/// A count with thin groups of three: 41 208.
-pub fn grouped(n: usize) -> String {
-    let digits = n.to_string();
-    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
 
 /// A length with three digits that count: 0.0412, 1.35, 128.
 pub fn length(value: f64) -> String {

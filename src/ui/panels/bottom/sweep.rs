@@ -159,22 +159,18 @@ fn charts_ui(ui: &mut Ui, sweep: &Sweep, height: f32) {
     let matched = || sweep.matching.iter();
     let reduced = || sweep.reduction.iter();
     let n = |row: &crate::pipeline::sweep::MatchingRow| row.triangles[1] as f64;
-    let of_paper = |table: &[(usize, f64)]| -> Vec<[f64; 2]> {
-        table.iter().map(|&(n, ms)| log_log(n as f64, ms)).collect()
-    };
+    let of_paper = |table: &[(usize, f64)]| curve(table.iter().map(|&(n, ms)| [n as f64, ms]));
     let times: Vec<Curve> = vec![
         (
             "match",
             palette.accent_text,
-            matched().map(|row| log_log(n(row), row.time_ms)).collect(),
+            curve(matched().map(|row| [n(row), row.time_ms])),
             false,
         ),
         (
             "reduce",
             palette.good,
-            reduced()
-                .map(|row| log_log(row.triangles as f64, row.time_ms))
-                .collect(),
+            curve(reduced().map(|row| [row.triangles as f64, row.time_ms])),
             false,
         ),
         (
@@ -194,15 +190,13 @@ fn charts_ui(ui: &mut Ui, sweep: &Sweep, height: f32) {
         (
             "node rms",
             palette.accent_text,
-            matched().map(|row| log_log(n(row), row.node_rms)).collect(),
+            curve(matched().map(|row| [n(row), row.node_rms])),
             false,
         ),
         (
             "reduction rms",
             palette.good,
-            reduced()
-                .map(|row| log_log(row.triangles as f64, row.rms))
-                .collect(),
+            curve(reduced().map(|row| [row.triangles as f64, row.rms])),
             false,
         ),
     ];
@@ -211,9 +205,13 @@ fn charts_ui(ui: &mut Ui, sweep: &Sweep, height: f32) {
     chart_ui(ui, "error", errors, vec2(width, height));
 }
 
-/// Both axes of the charts are logarithmic; a zero is drawn at a tiny value.
-fn log_log(x: f64, y: f64) -> [f64; 2] {
-    [x.max(1.0).log10(), y.max(1e-6).log10()]
+/// Points of a curve in logarithms, from few triangles to many. What is zero or less, such as the
+/// error of the level that nothing was taken from, has no place on a logarithmic axis.
+fn curve(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+    let above_zero = points.filter(|[x, y]| *x > 0.0 && *y > 1e-9);
+    let mut curve: Vec<[f64; 2]> = above_zero.map(|point| point.map(f64::log10)).collect();
+    curve.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    curve
 }
 
 fn chart_ui(ui: &mut Ui, title: &str, curves: Vec<Curve>, size: egui::Vec2) {

@@ -7,6 +7,7 @@ mod header;
 mod legend;
 mod marks;
 
+pub(super) use crate::report::grouped;
 use egui::{Align2, FontId, Painter, Rect, Ui};
 
 use super::cast::Stage;
@@ -78,17 +79,4 @@ pub(super) fn placeholder(ui: &Ui, rect: Rect, look: &Look) {
         FontId::proportional(13.0),
         look.weak,
     );
-}
-
-/// A count with commas between the thousands.
-pub(super) fn grouped(n: usize) -> String {
-    let digits = n.to_string();
-    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
 }
