@@ -32,7 +32,8 @@ pub(super) fn decide(
     let begin = Instant::now();
     let finished = contests[home].finish(&winner, monitor)?;
     let finish = begin.elapsed();
-    let mirror_ratio = if settings.hand == Hand::Either || monitor.stop_requested() {
+    let is_told = settings.hand == Hand::Either || contests[home].is_hopeless();
+    let mirror_ratio = if is_told || monitor.stop_requested() {
         None
     } else if certain || settings.hand == Hand::Mirrored {
         contests[home].mirror_ratio(&winner, &monitor.without_observer())?

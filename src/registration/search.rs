@@ -100,6 +100,7 @@ impl<'a> Contest<'a> {
         self.compete(0, &first, monitor)?;
         let swaps = self.settings.data_side == DataSide::Auto
             && self.settings.search == Search::Race
+            && !self.is_hopeless()
             && self.best_fraction(0) < OVERHANG;
         if swaps {
             self.add_leg(match side {
@@ -113,9 +114,8 @@ impl<'a> Contest<'a> {
 
     /// Runs wider starts, for when nothing convinces.
     pub(crate) fn widen(&mut self, monitor: &Monitor) -> Result<(), RegistrationError> {
-        let (a, b) = (self.input.source.measures(), self.input.target.measures());
         let widens = self.settings.starts.widen
-            && a.area.min(b.area) > HOPELESS_RATIO * a.area.max(b.area)
+            && !self.is_hopeless()
             && self.settings.search == Search::Race
             && self.settings.selection != Selection::All;
         if widens && !monitor.stop_requested() {
@@ -130,6 +130,15 @@ impl<'a> Contest<'a> {
             self.compete(0, &wider, monitor)?;
         }
         Ok(())
+    }
+
+    /// True if the sizes differ so much that the parts must be in different units or different
+    /// parts. Points of the larger one would ask far away from the smaller one, which is slow and
+    /// tells nothing.
+    pub(crate) fn is_hopeless(&self) -> bool {
+        let a = self.input.source.measures().area;
+        let b = self.input.target.measures().area;
+        a.min(b) <= HOPELESS_RATIO * a.max(b)
     }
 
     fn data_side(&self) -> Side {
