@@ -4,6 +4,7 @@ mod card_reader;
 pub mod cards;
 mod info;
 pub mod matrix;
+pub mod picture;
 mod record;
 mod text;
 
