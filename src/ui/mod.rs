@@ -7,6 +7,7 @@ pub mod dialogs;
 pub mod gizmo;
 pub mod keyboard;
 pub mod overlays;
+pub mod palette;
 pub mod panels;
 pub mod shell;
 pub mod storage;
