@@ -4,6 +4,7 @@
 //! What cannot be understood becomes a [`Diagnostic`] and the rest is read.
 
 pub mod diagnostic;
+mod hash;
 pub mod keyword;
 pub mod model;
 pub mod moved;
@@ -16,6 +17,7 @@ pub mod stl;
 use std::path::{Path, PathBuf};
 
 pub use diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position, Severity};
+pub use hash::{FileHash, HashError};
 pub use model::{Model, PartSummary, Selection, SelectionError, Surface};
 pub use source::{Disk, FileSource, Memory};
 

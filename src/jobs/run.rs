@@ -5,7 +5,7 @@ use super::{
 };
 use super::{MatchInput, MeasureInput, SweepInput};
 use crate::assess::{coverage, overlap_limit};
-use crate::formats::{Memory, read_from};
+use crate::formats::Memory;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::{self, LoadSettings, LoadedPart};
@@ -164,8 +164,7 @@ fn example(role: Role, settings: &LoadSettings, monitor: &Monitor) -> Result<Loa
     };
     let path = Path::new(file.name);
     let memory = Memory::new().with(path, file.bytes);
-    let model = read_from(&memory, path, &settings.read, monitor).map_err(PipelineError::from)?;
-    Ok(load::prepare(path, Arc::new(model), settings, monitor)?)
+    Ok(load::load_from(&memory, path, settings, monitor)?)
 }
 
 fn align(input: &MatchInput, monitor: &Monitor) -> Result<JobOutput, JobError> {

@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
+use rayon::prelude::*;
+
 use super::{PipelineError, millis_since};
 use crate::formats::{
-    self, Diagnostics, Disk, FileSource, Model, ReadOptions, Selection, Severity, Surface,
+    self, Diagnostics, Disk, FileHash, FileSource, Model, ReadOptions, Selection, Severity, Surface,
 };
 use crate::geometry::{Point3, TriMesh, orient_consistently, weld};
 use crate::monitor::Monitor;
@@ -101,6 +103,11 @@ impl LoadedPart {
         self.for_match.0.get_or_init(make).clone()
     }
 
+    /// The content of the file by name; `None` for a model that was not read from a file.
+    pub fn hash(&self) -> Option<FileHash> {
+        self.model.files.first()?.hash
+    }
+
     /// The file name without its folder.
     pub fn file_name(&self) -> String {
         self.path
@@ -154,9 +161,21 @@ pub fn load_from(
     monitor: &Monitor,
 ) -> Result<LoadedPart, PipelineError> {
     let start = Instant::now();
-    let model = Arc::new(formats::read_from(source, path, &settings.read, monitor)?);
+    let (model, hash) = rayon::join(
+        || formats::read_from(source, path, &settings.read, monitor),
+        || FileHash::of_file(source, path, monitor),
+    );
+    let mut model = model?;
+    model.files.par_iter_mut().for_each(|file| {
+        let of_include = || FileHash::of_file(source, &file.path, monitor);
+        file.hash = if file.path == path {
+            hash.as_ref().ok().copied()
+        } else {
+            of_include().ok()
+        };
+    });
     let read_ms = millis_since(start);
-    let mut part = prepare(path, model, settings, monitor)?;
+    let mut part = prepare(path, Arc::new(model), settings, monitor)?;
     part.report.read_ms = read_ms;
     Ok(part)
 }
@@ -266,5 +285,21 @@ mod tests {
             parse_selection("B pillar, inner"),
             Selection::PartTitle("B pillar, inner".into())
         );
+    }
+
+    #[test]
+    fn the_file_and_its_includes_are_hashed() {
+        let bytes: [&[u8]; 2] = [
+            b"*KEYWORD\n*INCLUDE\nmesh.k\n*PART\nsheet\n1,1,1\n*END\n",
+            b"*NODE\n1,0.,0.,0.\n2,1.,0.,0.\n3,0.,1.,0.\n*ELEMENT_SHELL\n1,1,1,2,3,3\n*END\n",
+        ];
+        let source = formats::Memory::new()
+            .with("deck.k", bytes[0])
+            .with("mesh.k", bytes[1]);
+        let (path, settings) = (Path::new("deck.k"), LoadSettings::default());
+        let part = load_from(&source, path, &settings, &Monitor::silent()).unwrap();
+        let hashes: Vec<_> = part.model.files.iter().map(|file| file.hash).collect();
+        assert_eq!(hashes, bytes.map(|bytes| Some(FileHash::of(bytes))));
+        assert_eq!(part.hash(), Some(FileHash::of(bytes[0])));
     }
 }

@@ -106,6 +106,7 @@ impl Reader<'_> {
         self.assembly.files.push(ReadFile {
             path: file.path().to_path_buf(),
             n_bytes: file.bytes().len() as u64,
+            hash: None,
         });
         let mut context = context;
         let mut blocks = Blocks::new(file, context.layout);

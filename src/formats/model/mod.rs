@@ -13,6 +13,7 @@ pub(crate) use surface::has_area;
 pub use surface::{PartSummary, Selection, SelectionError, Surface};
 
 use super::diagnostic::{Diagnostics, Position};
+use super::hash::FileHash;
 use crate::geometry::{Matrix4, Point3, TriMesh};
 
 /// Nodes in the order of the files, found by id.
@@ -203,6 +204,8 @@ pub struct ReadFile {
     pub path: PathBuf,
     /// Its length, unpacked.
     pub n_bytes: u64,
+    /// Its content by name; `None` until it is asked for, and for a pipe.
+    pub hash: Option<FileHash>,
 }
 
 /// Everything that was read from a file and the files it includes.
