@@ -2,6 +2,7 @@
 
 mod ambiguity;
 mod coverage;
+pub mod deviation;
 mod sliding;
 mod verdict;
 

@@ -6,6 +6,7 @@ mod app;
 mod assess;
 mod cli;
 mod deck_out;
+mod deviation;
 mod drawn_pan;
 mod jobs;
 mod keyword;
