@@ -5,6 +5,7 @@
 //! `crash = c · R · stamped + t` in column vectors. The modules, from the ground up:
 //!
 //! - [`monitor`]: progress, stop and cancel.
+//! - [`units`]: units of length, unit systems, and what a file says of its own.
 //! - [`geometry`]: points, meshes, topology, poses, the camera.
 //! - [`colormap`]: colour maps and scales.
 //! - [`formats`]: LS-DYNA keyword decks, STL, OBJ, PLY.
@@ -40,3 +41,4 @@ pub mod search;
 pub mod simplify;
 #[cfg(feature = "gui")]
 pub mod ui;
+pub mod units;

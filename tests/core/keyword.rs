@@ -568,3 +568,30 @@ fn public_decks_are_read_with_their_nodes_and_shells() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+/// The units a deck states, in words.
+fn units_of(deck: &str) -> Option<String> {
+    read_text(deck).stated_units.map(|known| known.words())
+}
+
+#[test]
+fn units_are_read_from_comments_titles_control_cards_and_materials() {
+    let says = |words: &str| Some(words.to_owned());
+    assert_eq!(
+        units_of("*KEYWORD\n$ Unit system: mm, ms, kg, kN\n*END\n"),
+        says("kg-mm-ms, from title or comment")
+    );
+    assert_eq!(
+        units_of("*KEYWORD\n*TITLE\nPillar in ton-mm-s\n*END\n"),
+        says("ton-mm-s, from title or comment")
+    );
+    assert_eq!(
+        units_of("*KEYWORD\n*CONTROL_UNITS\n        MM        MS        KG\n*END\n"),
+        says("kg-mm-ms, from title or comment")
+    );
+    let steel =
+        "*MAT_PIECEWISE_LINEAR_PLASTICITY_TITLE\nDC04\n         1  7.85E-09    2.1E+5       0.3\n";
+    let from_steel = says("ton-mm-s, from density and modulus");
+    assert_eq!(units_of(&format!("*KEYWORD\n{steel}*END\n")), from_steel);
+    assert_eq!(units_of("*KEYWORD\n*MAT_ELASTIC\n1, &RHO, x\n*END\n"), None);
+}

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 const MAY_USE: &[(&str, &[&str])] = &[
     ("monitor", &[]),
     ("colormap", &[]),
+    ("units", &[]),
     ("geometry", &["monitor"]),
-    ("formats", &["geometry", "monitor"]),
+    ("formats", &["geometry", "monitor", "units"]),
     ("simplify", &["geometry", "monitor"]),
     ("search", &["geometry", "monitor"]),
     ("samples", &["formats", "geometry", "monitor"]),
@@ -15,7 +16,14 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("assess", &["registration", "search", "geometry", "monitor"]),
     (
         "report",
-        &["assess", "registration", "formats", "geometry", "colormap"],
+        &[
+            "assess",
+            "registration",
+            "formats",
+            "geometry",
+            "colormap",
+            "units",
+        ],
     ),
     (
         "pipeline",
@@ -30,6 +38,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "geometry",
             "colormap",
             "monitor",
+            "units",
         ],
     ),
     (
@@ -46,6 +55,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "geometry",
             "colormap",
             "monitor",
+            "units",
         ],
     ),
     (
@@ -63,6 +73,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "geometry",
             "colormap",
             "monitor",
+            "units",
         ],
     ),
     ("render", &["geometry", "colormap"]),
@@ -83,6 +94,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "geometry",
             "colormap",
             "monitor",
+            "units",
         ],
     ),
 ];

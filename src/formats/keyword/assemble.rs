@@ -19,6 +19,7 @@ use super::sets::RawSet;
 use super::shells::{ElementOffsets, PackedIds, PartIds, ShellChunk, find_element};
 use super::solids::{RawSolid, SolidChunk};
 use super::transform::Transformation;
+use super::unit_clues::UnitClues;
 use crate::geometry::Point3;
 use crate::monitor::{Cancelled, Monitor};
 
@@ -136,6 +137,7 @@ pub(crate) struct Assembly {
     pub title: String,
     pub files: Vec<ReadFile>,
     pub found: Diagnostics,
+    pub unit_clues: UnitClues,
     pub forming: RawForming,
     pub sections: Vec<Section>,
     pub sets: Vec<RawSet>,

@@ -109,6 +109,9 @@ impl Reader<'_> {
             hash: None,
         });
         let mut context = context;
+        if context.length == 1.0 {
+            self.assembly.unit_clues.read_head(file);
+        }
         let mut blocks = Blocks::new(file, context.layout);
         self.report_encrypted(file, &blocks);
         while let Some(block) = blocks.next() {
@@ -249,6 +252,7 @@ impl Reader<'_> {
             let title = block.cards().next().map(|card| card.line_text());
             let title = title.unwrap_or_default().trim().to_owned();
             if assembly.title.is_empty() && self.open.len() == 1 {
+                assembly.unit_clues.read_text(&title);
                 assembly.title = title;
             }
         } else if name == "PART" || name.starts_with("PART_") {
@@ -270,6 +274,8 @@ impl Reader<'_> {
         } else if is_forming(name) {
             let units = context.results();
             read_block(block, units, &mut assembly.forming, &mut assembly.found);
+        } else if context.length == 1.0 {
+            assembly.unit_clues.read_block(block);
         }
     }
 

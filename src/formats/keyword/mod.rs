@@ -38,4 +38,5 @@ mod sets;
 mod shells;
 mod solids;
 pub mod transform;
+mod unit_clues;
 pub mod write;

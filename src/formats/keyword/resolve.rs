@@ -24,6 +24,7 @@ pub(super) fn finish(mut assembly: Assembly, monitor: &Monitor) -> Result<Model,
     let mut model = Model {
         title: std::mem::take(&mut assembly.title),
         files: std::mem::take(&mut assembly.files),
+        stated_units: assembly.unit_clues.units(),
         ..Model::default()
     };
     number_nodes(&mut assembly, &mut model);

@@ -15,6 +15,7 @@ pub use surface::{PartSummary, Selection, SelectionError, Surface};
 use super::diagnostic::{Diagnostics, Position};
 use super::hash::FileHash;
 use crate::geometry::{Matrix4, Point3, TriMesh};
+use crate::units::KnownUnits;
 
 /// Nodes in the order of the files, found by id.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -215,6 +216,8 @@ pub struct ReadFile {
 pub struct Model {
     /// The deck's title; empty if it has none.
     pub title: String,
+    /// The units that the deck names or that follow from its materials.
+    pub stated_units: Option<KnownUnits>,
     /// Nodes.
     pub nodes: Nodes,
     /// Shells whose nodes all exist.

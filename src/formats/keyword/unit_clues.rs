@@ -1,0 +1,61 @@
+//! What a deck says about its units: in comments, in its title, in `*CONTROL_UNITS`, and by its
+//! materials.
+
+use super::block::{Block, SourceFile, next_line};
+use super::card::EIGHT_BY_10;
+use crate::units::{self, KnownUnits};
+
+/// Comments further down a file are not about the file.
+const HEAD: usize = 1 << 16;
+
+/// What was found so far.
+#[derive(Debug, Clone, Default)]
+pub(super) struct UnitClues {
+    stated: Option<KnownUnits>,
+    /// Density and modulus of each material.
+    materials: Vec<[f64; 2]>,
+}
+
+impl UnitClues {
+    /// Reads the comments at the head of a file.
+    pub(super) fn read_head(&mut self, file: &SourceFile) {
+        let bytes = file.bytes();
+        let end = bytes.len().min(HEAD);
+        let mut next = 0;
+        while self.stated.is_none()
+            && let Some((line, _, after)) = next_line(bytes, next, end)
+        {
+            next = after;
+            if line.first() == Some(&b'$') {
+                self.read_text(&String::from_utf8_lossy(line));
+            }
+        }
+    }
+
+    /// Reads a title or comment; the first that names units counts.
+    pub(super) fn read_text(&mut self, text: &str) {
+        self.stated = self.stated.or_else(|| units::of_text(text));
+    }
+
+    /// Reads a `*CONTROL_UNITS` or a `*MAT_…` block; passes over all others.
+    pub(super) fn read_block(&mut self, block: &Block<'_>) {
+        let mut cards = block.cards();
+        if block.name == "CONTROL_UNITS" {
+            let card = cards.next().map(|card| card.line_text());
+            self.read_text(&format!("units {}", card.unwrap_or_default()));
+        } else if block.name.starts_with("MAT_") && !block.name.starts_with("MAT_ADD") {
+            if block.has_option("TITLE") {
+                cards.next();
+            }
+            let Some(card) = cards.next() else { return };
+            let field = |index| card.real(EIGHT_BY_10, index).ok().flatten();
+            self.materials
+                .extend(field(1).zip(field(2)).map(<[f64; 2]>::from));
+        }
+    }
+
+    /// What all of it comes to.
+    pub(super) fn units(&self) -> Option<KnownUnits> {
+        self.stated.or_else(|| units::of_materials(&self.materials))
+    }
+}
