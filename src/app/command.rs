@@ -9,6 +9,7 @@ use crate::jobs::{JobEvent, Live, PartSource, PerRole, Role};
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::pipeline::sweep::SweepSettings;
 use crate::report::{CardForm, MatrixForm};
+use crate::units::Units;
 use std::path::PathBuf;
 
 /// Everything that can happen to the window, with its data.
@@ -70,6 +71,13 @@ pub enum FileCommand {
         role: Role,
         /// Factor on the coordinates of the file.
         factor: f64,
+    },
+    /// Say which units a file is in, or with `None` leave that to the file and its sizes.
+    SetUnits {
+        /// Which.
+        role: Role,
+        /// Its units.
+        units: Option<Units>,
     },
     /// The sizes really are different.
     DismissUnitHint,

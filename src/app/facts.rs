@@ -28,7 +28,10 @@ pub(super) fn load_line(part: &LoadedPart, facts: &PartFacts) -> String {
     if part.settings.length_factor != 1.0 {
         line += &format!(", lengths × {}", part.settings.length_factor);
     }
-    line
+    match part.units() {
+        Some(known) => line + "; " + &known.words(),
+        None => line + "; unit unknown",
+    }
 }
 
 /// "12 findings in bp.dynain", if the reader had any.
@@ -53,11 +56,11 @@ pub(super) fn reduce_line(measured: &MeasuredLevel) -> String {
     line
 }
 
-/// "rms 0.0412, max 0.312, border max 0.1".
-pub(super) fn deviation_line(measured: &MeasuredLevel) -> String {
+/// "rms 0.0412, max 0.312, at borders max 0.1 mm"; lengths are followed by `unit`.
+pub(super) fn deviation_line(measured: &MeasuredLevel, unit: &str) -> String {
     measured.deviation.get().map_or_else(String::new, |d| {
         format!(
-            "distance to the full mesh: rms {:.4}, max {:.4}, at borders max {:.4}",
+            "distance to the full mesh: rms {:.4}, max {:.4}, at borders max {:.4}{unit}",
             d.rms, d.max, d.border_max
         )
     })
@@ -82,11 +85,11 @@ pub(super) fn n_alternatives(run: &MatchRun) -> usize {
         .count()
 }
 
-/// "GOOD: overlap 87 %, rmse 0.38; the reason".
-pub(super) fn match_line(run: &MatchRun) -> String {
+/// "GOOD: overlap 87 %, rmse 0.38, p95 0.9 mm; the reason"; lengths are followed by `unit`.
+pub(super) fn match_line(run: &MatchRun, unit: &str) -> String {
     let assessment = &run.assessment;
     let mut line = format!(
-        "{}: overlap {:.1} %, rmse {:.4}, p95 {:.4}",
+        "{}: overlap {:.1} %, rmse {:.4}, p95 {:.4}{unit}",
         assessment.verdict.label(),
         100.0 * assessment.coverage.better_overlap(),
         assessment.coverage.rmse(),
@@ -131,10 +134,11 @@ pub(super) fn match_steps(run: &MatchRun) -> Vec<(&'static str, String, Duration
     steps
 }
 
-/// "stamped → crash 87.0 % within 1.5, crash → stamped 96.0 %, rmse 0.38".
-pub(super) fn measure_line(coverage: &Coverage) -> String {
+/// "stamped → crash 87.0 %, crash → stamped 96.0 % within 1.5 mm; rmse 0.38 mm"; lengths are
+/// followed by `unit`.
+pub(super) fn measure_line(coverage: &Coverage, unit: &str) -> String {
     format!(
-        "stamped → crash {:.1} %, crash → stamped {:.1} % within {:.3}; rmse {:.4}",
+        "stamped → crash {:.1} %, crash → stamped {:.1} % within {:.3}{unit}; rmse {:.4}{unit}",
         100.0 * coverage.source_on_target.overlap,
         100.0 * coverage.target_on_source.overlap,
         coverage.limit,

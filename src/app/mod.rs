@@ -20,6 +20,7 @@ mod settings;
 mod shared;
 mod state;
 mod status;
+mod unit_memory;
 mod units;
 mod view;
 
@@ -40,5 +41,6 @@ pub use settings::{MouseScheme, Settings, StartupOptions, Theme};
 pub use shared::Shared;
 pub use state::{AppState, Starts};
 pub use status::{Section, Stale};
+pub use unit_memory::UnitMemory;
 pub use units::UnitHint;
 pub use view::{BottomTab, ColorBy, Dialog, Display, MoveTool, PartRef, ShownGeometry, ViewState};

@@ -1,3 +1,4 @@
+use super::UnitMemory;
 use crate::jobs::{PartSource, PerRole};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -84,6 +85,8 @@ pub struct Settings {
     pub reduce_motion: bool,
     /// Files opened last, newest first.
     pub recent: Vec<PathBuf>,
+    /// What was said about the units of files.
+    pub unit_memory: UnitMemory,
     /// Marked reduction levels, largest first.
     pub marked_levels: Vec<usize>,
     /// What stands in the field "max triangles".
@@ -109,6 +112,7 @@ impl Default for Settings {
             is_mouse_asked: false,
             reduce_motion: false,
             recent: Vec::new(),
+            unit_memory: UnitMemory::default(),
             marked_levels: vec![50_000, 20_000, 8_000, 4_000, 2_000, 1_000, 500],
             max_triangles: 2_000,
             reduce_roles: PerRole {

@@ -56,6 +56,8 @@ pub struct AppState {
     /// The pose at the beginning of the drag or move by keys that is under way.
     pub(super) grab: Option<(GestureId, StampedPose)>,
     pub(super) unit_hint_dismissed_for: Option<PerRole<u64>>,
+    /// The undo step of a change of units that a new factor belongs to.
+    pub(super) unit_gesture: Option<GestureId>,
     pub(super) open_recipe_gesture: Option<GestureId>,
     n_revisions: u64,
     n_gestures: u64,

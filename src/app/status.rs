@@ -1,6 +1,6 @@
 //! What a section says about itself, and what stands in the way of an action.
 
-use super::{AppState, Part, Reason, UnitHint};
+use super::{AppState, Part, Reason};
 use crate::jobs::{JobKey, Role};
 
 /// The paper's three sections.
@@ -50,15 +50,6 @@ impl AppState {
         } else {
             None
         }
-    }
-
-    /// The hint about units, until it is answered.
-    pub fn unit_hint(&self) -> Option<UnitHint> {
-        let (crash, stamped) = self.document.both()?;
-        if self.unit_hint_dismissed_for == Some(self.document.stamp().parts) {
-            return None;
-        }
-        UnitHint::of(&crash.bounds(), &stamped.bounds())
     }
 
     /// The length factor that follows the hint: that of the stamped file times the hint's.

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::text::{count, millis, short};
 use crate::pipeline::load::LoadedPart;
+use crate::pipeline::units::PairUnits;
 use crate::report::{MatchRecord, StartEntry, number};
 
 /// Verdict, matrix, fit, starts and times, about twenty lines.
@@ -16,6 +17,8 @@ pub fn report(record: &MatchRecord, crash: &LoadedPart, stamped: &LoadedPart) ->
     text.push('\n');
     side(&mut text, "Crash", crash);
     side(&mut text, "Stamped", stamped);
+    let units = PairUnits::sentences(crash, stamped);
+    let _ = writeln!(text, "Units    {}", units.join("\n         "));
     text.push('\n');
     matrix(&mut text, record);
     text.push('\n');

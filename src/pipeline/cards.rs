@@ -3,6 +3,7 @@
 use super::PipelineError;
 use super::load::LoadedPart;
 use super::match_parts::MatchRun;
+use super::units::PairUnits;
 use crate::formats::Selection;
 use crate::report::{CardForm, CardOptions, Cards, Receiver, build_id, write_cards};
 
@@ -22,6 +23,17 @@ pub fn cards(
         return Err(PipelineError::CardsNeedOneUnit(factor));
     }
     let coverage = &run.assessment.coverage;
+    let mut comments = vec![
+        format!("{} on {}", stamped.file_name(), crash.file_name()),
+        format!(
+            "{}, rmse {:.4}",
+            run.assessment.verdict.label(),
+            coverage.rmse()
+        ),
+    ];
+    comments.extend(PairUnits::sentences(crash, stamped));
+    comments.extend(PairUnits::stress_warning(crash, stamped));
+    comments.push(build_id());
     let options = CardOptions {
         // The solver reads the unpacked file.
         file_name: stamped.file_name().trim_end_matches(".gz").to_owned(),
@@ -29,15 +41,7 @@ pub fn cards(
         search_radius: coverage.limit,
         mapped_percent: (100.0 * coverage.target_on_source.overlap - 1.0).max(0.0),
         bounds: stamped.mesh.aabb(),
-        comments: vec![
-            format!("{} on {}", stamped.file_name(), crash.file_name()),
-            format!(
-                "{}, rmse {:.4}",
-                run.assessment.verdict.label(),
-                coverage.rmse()
-            ),
-            build_id(),
-        ],
+        comments,
         ..CardOptions::default()
     };
     Ok(write_cards(form, &run.crash_from_stamped, &options)?)

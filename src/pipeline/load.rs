@@ -13,6 +13,7 @@ use crate::formats::{
 use crate::geometry::{Point3, TriMesh, orient_consistently, weld};
 use crate::monitor::Monitor;
 use crate::registration::{self, RegistrationError};
+use crate::units::{self, KnownUnits, UnitOrigin, Units};
 
 /// Choices for loading one side.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +22,8 @@ pub struct LoadSettings {
     pub selection: Selection,
     /// Coordinates are multiplied by this once, here; 1 for a file in the crash model's unit.
     pub length_factor: f64,
+    /// The units of the file as the user set them; `None` leaves them to the file and its sizes.
+    pub units: Option<Units>,
     /// Further folders for included files.
     pub read: ReadOptions,
 }
@@ -30,6 +33,7 @@ impl Default for LoadSettings {
         Self {
             selection: Selection::All,
             length_factor: 1.0,
+            units: None,
             read: ReadOptions::default(),
         }
     }
@@ -76,6 +80,8 @@ pub struct LoadedPart {
     pub triangle_of: Arc<Vec<u32>>,
     /// For each vertex of `surface`, the vertex of `mesh` it became.
     pub vertex_of: Arc<Vec<u32>>,
+    /// The units the file states, or those its sizes speak for.
+    pub guessed_units: Option<KnownUnits>,
     /// What loading did.
     pub report: LoadReport,
     /// The mesh prepared for matching, made when first asked for and shared by all clones.
@@ -106,6 +112,22 @@ impl LoadedPart {
     /// The content of the file by name; `None` for a model that was not read from a file.
     pub fn hash(&self) -> Option<FileHash> {
         self.model.files.first()?.hash
+    }
+
+    /// The units of the file: as the user set them, else as they were guessed.
+    pub fn units(&self) -> Option<KnownUnits> {
+        let by_user = self.settings.units.map(|units| KnownUnits {
+            units,
+            origin: UnitOrigin::User,
+        });
+        by_user.or(self.guessed_units)
+    }
+
+    /// The same part with its units set or left to guessing; lengths stay as they are. Cheap.
+    pub fn with_units(&self, units: Option<Units>) -> Self {
+        let mut part = self.clone();
+        part.settings.units = units;
+        part
     }
 
     /// The file name without its folder.
@@ -216,7 +238,7 @@ pub fn prepare(
         read_ms: 0.0,
         prepare_ms: millis_since(start),
     };
-    Ok(LoadedPart {
+    let mut part = LoadedPart {
         path: path.to_path_buf(),
         model,
         settings: settings.clone(),
@@ -224,9 +246,23 @@ pub fn prepare(
         mesh: Arc::new(mesh),
         triangle_of: Arc::new(welded.triangle_of),
         vertex_of: Arc::new(welded.vertex_of),
+        guessed_units: None,
         report,
         for_match: ForMatch::default(),
-    })
+    };
+    part.guessed_units = guess_units(&part);
+    Ok(part)
+}
+
+/// What the deck states, else what size and thickness in the file's own unit speak for.
+fn guess_units(part: &LoadedPart) -> Option<KnownUnits> {
+    let thickness = || {
+        part.mean_thickness()
+            .map(|t| t / part.settings.length_factor)
+    };
+    let diagonal = part.surface.mesh.aabb().diagonal();
+    let stated = part.model.stated_units;
+    stated.or_else(|| units::of_sizes(diagonal, thickness()))
 }
 
 /// How many findings are more than notes.

@@ -10,6 +10,7 @@ pub mod match_parts;
 pub mod record;
 pub mod reduce;
 pub mod sweep;
+pub mod units;
 
 mod error;
 

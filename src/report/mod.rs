@@ -15,4 +15,4 @@ pub use record::{
     AlternativeRecord, DIRECTION, FileRecord, Files, MatchRecord, OverlapRecord, Parameters,
     RecordContext, StartEntry, TimingsRecord, build_id, fate_words, side_word,
 };
-pub use text::grouped;
+pub use text::{grouped, length};

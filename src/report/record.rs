@@ -7,6 +7,7 @@ use crate::geometry::Similarity;
 use crate::registration::{
     Fate, MatchOutcome, MatchSettings, Selection, Side, StartMethod, StartRecord,
 };
+use crate::units::LengthUnit;
 
 /// Which way the matrix goes, in words.
 pub const DIRECTION: &str = "crash = c · R · stamped + t (column vectors)";
@@ -33,6 +34,8 @@ pub struct MatchRecord {
     pub rotation: [[f64; 3]; 3],
     /// t in the crash model's length unit.
     pub translation: [f64; 3],
+    /// The unit of every length here: `mm`, `cm`, `m`, `in` or `ft`; absent if unknown.
+    pub length_unit: Option<&'static str>,
     /// c.
     pub scale: f64,
     /// `good`, `check` or `poor`.
@@ -189,6 +192,10 @@ pub struct FileRecord {
     pub triangles: usize,
     /// Factor its coordinates were multiplied with when it was read.
     pub length_factor: f64,
+    /// Its own units, before that factor: a length, or a system such as `ton-mm-s`.
+    pub units: Option<&'static str>,
+    /// How its units became known, in words.
+    pub units_from: Option<&'static str>,
 }
 
 /// What a record is made of besides outcome and assessment.
@@ -200,6 +207,8 @@ pub struct RecordContext {
     pub n_triangles: [usize; 2],
     /// The two sides.
     pub files: Files,
+    /// The unit of every length, if it is known.
+    pub length_unit: Option<LengthUnit>,
     /// Durations.
     pub timings: TimingsRecord,
     /// What the user should know besides the verdict.
@@ -221,6 +230,7 @@ impl MatchRecord {
             matrix: pose.to_rows(),
             rotation: rotation_rows(pose),
             translation: pose.translation.into(),
+            length_unit: context.length_unit.map(LengthUnit::symbol),
             scale: pose.scale,
             verdict: assessment.verdict.name(),
             reasons: assessment.reasons.clone(),

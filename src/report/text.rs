@@ -13,9 +13,35 @@ pub fn grouped(n: usize) -> String {
     text
 }
 
+/// A length with three digits that count: 0.0412, 1.35, 128.
+pub fn length(value: f64) -> String {
+    let magnitude = value.abs();
+    let decimals = if magnitude >= 100.0 || value == 0.0 {
+        0
+    } else if magnitude >= 10.0 {
+        1
+    } else if magnitude >= 1.0 {
+        2
+    } else if magnitude >= 0.1 {
+        3
+    } else if magnitude >= 1e-3 {
+        4
+    } else {
+        // A thickness or a distance in metres.
+        7
+    };
+    format!("{value:.decimals$}")
+}
+
 #[cfg(test)]
 mod tests {
-    use super::grouped;
+    use super::{grouped, length};
+
+    #[test]
+    fn lengths_have_three_digits() {
+        let read = [0.041_23, 1.349, -128.4, 0.0, 0.000_381].map(length);
+        assert_eq!(read, ["0.0412", "1.35", "-128", "0", "0.0003810"]);
+    }
 
     #[test]
     fn thousands_are_grouped() {

@@ -3,28 +3,11 @@
 use super::theme::{Palette, ROW, TALL, UNIT};
 use crate::app::{Action, AppState, Command, NoticeLevel};
 use crate::jobs::Role;
-pub use crate::report::grouped;
+pub use crate::report::{grouped, length};
 use egui::{
     Align, Button, Color32, CornerRadius, Frame, Layout, Margin, Rect, Response, RichText, Sense,
     Stroke, Ui, Vec2, pos2, vec2,
 };
-
-/// A length with three digits that count: 0.0412, 1.35, 128.
-pub fn length(value: f64) -> String {
-    let magnitude = value.abs();
-    let decimals = if magnitude >= 100.0 || value == 0.0 {
-        0
-    } else if magnitude >= 10.0 {
-        1
-    } else if magnitude >= 1.0 {
-        2
-    } else if magnitude >= 0.1 {
-        3
-    } else {
-        4
-    };
-    format!("{value:.decimals$}")
-}
 
 /// A share in percent: 87.0 %.
 pub fn percent(share: f64) -> String {

@@ -146,6 +146,8 @@ pub enum UnitOrigin {
     SizeAndThickness,
     /// The size is that of a part or a car; no more than that is known.
     Size,
+    /// The other part's units are known, and this one's lengths are as those.
+    OtherPart,
 }
 
 impl UnitOrigin {
@@ -157,12 +159,13 @@ impl UnitOrigin {
             Self::Materials => "from density and modulus",
             Self::SizeAndThickness => "guessed from size and thickness",
             Self::Size => "guessed from size",
+            Self::OtherPart => "as the other part",
         }
     }
 
-    /// True unless only a size speaks for it.
+    /// True unless only a size speaks for it, or nothing of its own.
     pub fn is_firm(self) -> bool {
-        self != Self::Size
+        !matches!(self, Self::Size | Self::OtherPart)
     }
 }
 

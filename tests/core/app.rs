@@ -65,9 +65,22 @@ fn read(source: &PartSource, settings: &LoadSettings) -> Result<LoadedPartAndFac
         "crash.k" => model(24, 1.0, false),
         "stamped.k" => model(20, 1.0, true),
         "metres.k" => model(20, 0.001, true),
+        "says_mm.k" => stated(model(24, 1.0, false), "units: mm", b"1"),
+        "says_m.k" => stated(model(20, 0.001, true), "units: m", b"2"),
         other => return Err(format!("cannot read the file: {other:?}")),
     };
     prepared(path, Arc::new(model), settings)
+}
+
+/// A model of a file that names its units.
+fn stated(mut model: Model, comment: &str, content: &[u8]) -> Model {
+    model.stated_units = shapematch::units::of_text(comment);
+    model.files.push(shapematch::formats::model::ReadFile {
+        path: PathBuf::new(),
+        n_bytes: 0,
+        hash: Some(shapematch::formats::FileHash::of(content)),
+    });
+    model
 }
 
 type LoadedPartAndFacts = (Arc<shapematch::pipeline::load::LoadedPart>, Arc<PartFacts>);
@@ -91,38 +104,38 @@ fn shifted(x: f64) -> Similarity {
 
 /// A window whose worker answers at once.
 #[derive(Default)]
-struct Window {
-    state: AppState,
+pub struct Window {
+    pub state: AppState,
     /// Jobs that are not answered at once.
     held: Vec<(JobId, JobKind, Stamp)>,
-    holds: bool,
+    pub holds: bool,
     n_jobs: u64,
-    effects: Vec<Effect>,
+    pub effects: Vec<Effect>,
 }
 
 impl Window {
-    fn new() -> Self {
+    pub fn new() -> Self {
         Self {
             state: AppState::new(Settings::default()),
             ..Self::default()
         }
     }
 
-    fn with_both() -> Self {
+    pub fn with_both() -> Self {
         let mut window = Self::new();
         window.open("crash.k", Role::Crash);
         window.open("stamped.k", Role::Stamped);
         window
     }
 
-    fn open(&mut self, name: &str, role: Role) {
+    pub fn open(&mut self, name: &str, role: Role) {
         self.apply(FileCommand::Open {
             paths: vec![PathBuf::from(name)],
             role: Some(role),
         });
     }
 
-    fn apply(&mut self, command: impl Into<Command>) {
+    pub fn apply(&mut self, command: impl Into<Command>) {
         let effects = self.state.apply(command);
         for effect in effects {
             match effect {
@@ -133,13 +146,13 @@ impl Window {
         }
     }
 
-    fn act(&mut self, action: Action) {
+    pub fn act(&mut self, action: Action) {
         for command in action.to_commands(&self.state) {
             self.apply(command);
         }
     }
 
-    fn submit(&mut self, kind: JobKind, stamp: Stamp) {
+    pub fn submit(&mut self, kind: JobKind, stamp: Stamp) {
         self.n_jobs += 1;
         let id = JobId(self.n_jobs);
         if self.holds {
@@ -151,7 +164,7 @@ impl Window {
         }
     }
 
-    fn cancel(&mut self, key: JobKey) {
+    pub fn cancel(&mut self, key: JobKey) {
         let (gone, kept) = std::mem::take(&mut self.held)
             .into_iter()
             .partition(|(_, kind, _)| kind.key() == key);
@@ -161,14 +174,14 @@ impl Window {
         }
     }
 
-    fn finish_held(&mut self) {
+    pub fn finish_held(&mut self) {
         self.holds = false;
         for (id, kind, stamp) in std::mem::take(&mut self.held) {
             self.finish(id, kind, stamp);
         }
     }
 
-    fn finish(&mut self, id: JobId, kind: JobKind, stamp: Stamp) {
+    pub fn finish(&mut self, id: JobId, kind: JobKind, stamp: Stamp) {
         let key = kind.key();
         let stage = match run(kind) {
             Ok(output) => JobStage::Finished(output),
@@ -177,7 +190,7 @@ impl Window {
         self.tell(id, key, stamp, stage);
     }
 
-    fn tell(&mut self, id: JobId, key: JobKey, stamp: Stamp, stage: JobStage) {
+    pub fn tell(&mut self, id: JobId, key: JobKey, stamp: Stamp, stage: JobStage) {
         let elapsed = Duration::from_millis(5);
         self.apply(JobEvent {
             id,
@@ -188,15 +201,15 @@ impl Window {
         });
     }
 
-    fn pose(&self) -> Similarity {
+    pub fn pose(&self) -> Similarity {
         *self.state.document.crash_from_stamped()
     }
 
-    fn mesh(&self, role: Role) -> Arc<TriMesh> {
+    pub fn mesh(&self, role: Role) -> Arc<TriMesh> {
         Arc::clone(&self.state.document.part(role).unwrap().loaded.mesh)
     }
 
-    fn part(&self, role: Role) -> &Part {
+    pub fn part(&self, role: Role) -> &Part {
         self.state.document.part(role).unwrap()
     }
 }

@@ -22,3 +22,4 @@ mod simplify;
 mod simplify_rules;
 mod textbook_qem;
 mod tidy;
+mod units;

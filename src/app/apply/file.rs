@@ -19,10 +19,8 @@ impl AppState {
             FileCommand::Close(role) => self.close(role),
             FileCommand::Swap => self.swap(),
             FileCommand::SetLengthFactor { role, factor } => self.set_length_factor(role, factor),
-            FileCommand::DismissUnitHint => {
-                self.unit_hint_dismissed_for = Some(self.document.stamp().parts);
-                Vec::new()
-            }
+            FileCommand::SetUnits { role, units } => self.set_units(role, units),
+            FileCommand::DismissUnitHint => self.dismiss_unit_hint(),
             FileCommand::ForgetRecent(path) => {
                 self.settings.recent.retain(|known| *known != path);
                 vec![Effect::SaveSettings]
@@ -137,6 +135,19 @@ impl AppState {
         self.reselect(role, |settings| settings.length_factor = factor)
     }
 
+    /// What became of a part that took another selection, factor or unit.
+    fn reselect_name(&self, role: Role, part: &LoadedPart, facts: &PartFacts) -> String {
+        let old_factor = self.document.part(role).map(Part::length_factor);
+        let factor = part.settings.length_factor;
+        match part.settings.units {
+            _ if old_factor == Some(factor) => {
+                format!("Match {}", facts::counted(facts.used.len(), "part"))
+            }
+            Some(units) => format!("{} is in {}", part.file_name(), units.label()),
+            None => format!("Lengths × {factor}"),
+        }
+    }
+
     /// Makes the surface of a part again from the model in memory.
     pub(super) fn reselect(
         &mut self,
@@ -186,6 +197,7 @@ impl AppState {
             self.log_at(NoticeLevel::Note, "load", Some(role), line, None);
         }
         self.settings.remember(&source);
+        let part = self.with_remembered_units(part);
         self.place(role, source, part, facts);
         if is_guess {
             self.guess.n_pending -= 1;
@@ -194,7 +206,9 @@ impl AppState {
             }
         }
         self.fit_after_load(role);
-        vec![Effect::SaveSettings]
+        let mut effects = vec![Effect::SaveSettings];
+        effects.extend(self.settle_length_factor());
+        effects
     }
 
     /// A single file without a role whose content says stamped, and nothing stamped there yet.
@@ -257,14 +271,10 @@ impl AppState {
     ) -> Vec<Effect> {
         let line = facts::load_line(&part, &facts);
         let revision = self.next_revision();
-        let old_factor = self.document.part(role).map(Part::length_factor);
-        let name = if old_factor == Some(part.settings.length_factor) {
-            format!("Match {}", facts::counted(facts.used.len(), "part"))
-        } else {
-            format!("Lengths × {}", part.settings.length_factor)
-        };
+        let name = self.reselect_name(role, &part, &facts);
+        let gesture = self.unit_gesture.take();
         self.drop_previews();
-        self.commit(name, |document| {
+        self.commit_in(name, gesture, |document| {
             if let Some(old) = document.parts.get_mut(role) {
                 old.loaded = part.into();
                 old.facts = facts.into();

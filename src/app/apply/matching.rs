@@ -217,7 +217,10 @@ impl AppState {
     }
 
     pub(super) fn take_matched(&mut self, run: Arc<MatchRun>, took: Duration) -> Vec<Effect> {
-        let (line, level) = (facts::match_line(&run), facts::match_level(&run));
+        let (line, level) = (
+            facts::match_line(&run, self.unit_suffix()),
+            facts::match_level(&run),
+        );
         for (step, text, took) in facts::match_steps(&run) {
             self.log_step(step, None, text, Some(took));
         }
@@ -272,7 +275,7 @@ impl AppState {
         stamp: Stamp,
         took: Duration,
     ) {
-        let line = facts::measure_line(&measurement);
+        let line = facts::measure_line(&measurement, self.unit_suffix());
         self.log_step("measure", None, line, Some(took));
         self.measurement = Some((stamp, measurement.into()));
     }

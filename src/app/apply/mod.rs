@@ -8,6 +8,7 @@ mod matching;
 mod moving;
 mod part;
 mod reduce;
+mod units;
 mod view;
 
 use super::{AppState, Command, Effect, ModalInput, MoveCommand, NoticeCommand, Settings};

@@ -105,8 +105,9 @@ impl AppState {
         };
         let delta = translation_along(&frame.axis(axis, of), distance);
         let name = format!(
-            "Move {} along {}",
+            "Move {}{} along {}",
             short_number(distance),
+            self.unit_suffix(),
             axis_name(axis, of)
         );
         self.move_by(name, &delta);

@@ -129,7 +129,7 @@ impl AppState {
         self.log_step(
             "measure",
             Some(role),
-            facts::deviation_line(level),
+            facts::deviation_line(level, self.unit_suffix()),
             Some(took),
         );
         Vec::new()

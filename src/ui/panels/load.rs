@@ -2,13 +2,14 @@
 
 use super::part_list::part_list_ui;
 use super::section::{elided, section_ui};
+use super::units;
 use crate::app::{
     Action, AppState, BottomTab, ColorBy, Command, Display, FileCommand, Part, Section, ViewCommand,
 };
 use crate::jobs::{JobKey, Role};
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
-    Look, action_button, caption, card, chip, grouped, icon_button, role_mark, square, tight,
+    Look, action_button, caption, chip, grouped, icon_button, role_mark, square, tight,
 };
 use egui::{Align, Layout, Sense, TextStyle, Ui, vec2};
 
@@ -25,7 +26,7 @@ pub fn load_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             for role in Role::ALL {
                 file_ui(ui, role, state, commands);
             }
-            unit_question_ui(ui, state, commands);
+            units::unit_question_ui(ui, state, commands);
             if state.document.parts.iter().any(|(_, part)| part.is_some()) {
                 tools_ui(ui, state, commands);
                 part_list_ui(ui, state, commands);
@@ -78,7 +79,13 @@ fn loaded_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState, commands: &
     let title = elided(ui, &name, body, palette.text, room);
     ui.painter()
         .galley(rect.left_top() + vec2(0.0, 1.0), title, palette.text);
-    let detail = elided(ui, &detail(part), small, palette.secondary, room);
+    let detail = elided(
+        ui,
+        &detail(role, part, state),
+        small,
+        palette.secondary,
+        room,
+    );
     ui.painter()
         .galley(rect.left_top() + vec2(0.0, 19.0), detail, palette.secondary);
     let spoken = format!("{} part: {name}", role.word());
@@ -93,14 +100,18 @@ fn loaded_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState, commands: &
     button.on_hover_text("Open another, reload, close, findings");
 }
 
-fn detail(part: &Part) -> String {
+fn detail(role: Role, part: &Part, state: &AppState) -> String {
     let report = &part.loaded.report;
     let mut text = format!("{} triangles", grouped(report.n_triangles));
+    match state.units_of(role) {
+        Some(known) => text += &format!(" · {}", known.units.label()),
+        None => text += " · unit unknown",
+    }
     if report.n_parts > 1 {
         text += &format!(" · {} of {} parts", part.facts.used.len(), report.n_parts);
     }
     if let Some(thickness) = part.facts.thickness {
-        text += &format!(" · t {thickness:.2}");
+        text += &format!(" · t {}", state.length_text(thickness));
     }
     if part.length_factor() != 1.0 {
         text += &format!(" · lengths × {}", part.length_factor());
@@ -144,6 +155,11 @@ fn file_menu_ui(
     if ui.button(findings).clicked() {
         commands.push(ViewCommand::SetTab(BottomTab::Diagnostics).into());
     }
+    ui.add_enabled_ui(is_free, |ui| {
+        ui.menu_button("Units", |ui| {
+            units::units_menu_ui(ui, role, state, commands)
+        });
+    });
     ui.separator();
     if ui
         .add_enabled(is_free, egui::Button::new("Close"))
@@ -151,26 +167,6 @@ fn file_menu_ui(
     {
         commands.extend(close.to_commands(state));
     }
-}
-
-/// The sizes of the two files hint at different units.
-fn unit_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let (Some(hint), Some(factor)) = (state.unit_hint(), state.hinted_length_factor()) else {
-        return;
-    };
-    card(ui, |ui| {
-        let palette = Palette::of(ui);
-        let text = egui::RichText::new(format!("⚠ {}.", hint.text())).color(palette.check);
-        ui.add(egui::Label::new(text).wrap());
-        let multiply = format!("Multiply stamped lengths by {factor}");
-        if ui.button(multiply).clicked() {
-            let role = Role::Stamped;
-            commands.push(FileCommand::SetLengthFactor { role, factor }.into());
-        }
-        if ui.button("They are really different").clicked() {
-            commands.push(FileCommand::DismissUnitHint.into());
-        }
-    });
 }
 
 fn tools_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {

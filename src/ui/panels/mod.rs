@@ -12,6 +12,7 @@ pub mod reduce;
 pub mod result;
 pub mod section;
 pub mod top_bar;
+pub mod units;
 
 use super::theme::{Palette, UNIT};
 use super::viewport::Viewports;

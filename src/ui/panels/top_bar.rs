@@ -1,10 +1,11 @@
 //! Menus, search, unit, bell.
 
+use super::units::window_unit_ui;
 use crate::app::{Action, AppState, Command, Dialog, ExportCommand, ExportKind, Menu, ViewCommand};
 use crate::jobs::Role;
 use crate::report::{CardForm, MatrixForm};
 use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::{caption, secondary};
+use crate::ui::widgets::caption;
 use egui::{Align, Button, Layout, MenuBar, RichText, Sense, Ui, pos2, vec2};
 
 /// The bar at the top.
@@ -18,7 +19,7 @@ pub fn top_bar_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             bell_ui(ui, state, commands);
-            unit_ui(ui, state);
+            window_unit_ui(ui, state);
             search_ui(ui, commands);
         });
     });
@@ -198,23 +199,6 @@ fn paint_bell(painter: &egui::Painter, at: egui::Pos2, color: egui::Color32) {
     let stroke = egui::Stroke::new(1.3, color);
     painter.add(egui::Shape::closed_line(points, stroke));
     painter.circle_filled(at + vec2(0.0, 5.6), 1.6, color);
-}
-
-/// The files say no unit; lengths are those of the crash deck.
-fn unit_ui(ui: &mut Ui, state: &AppState) {
-    let factor = state
-        .document
-        .part(Role::Stamped)
-        .map(|part| part.length_factor());
-    let text = match factor {
-        Some(factor) if factor != 1.0 => {
-            format!("Lengths as in the crash deck, stamped × {factor}")
-        }
-        _ => "Lengths as in the crash deck".to_owned(),
-    };
-    secondary(ui, text).on_hover_text(
-        "LS-DYNA decks carry no unit. Every length in this window is in the unit of the crash deck.",
-    );
 }
 
 fn search_ui(ui: &mut Ui, commands: &mut Vec<Command>) {

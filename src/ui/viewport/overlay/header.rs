@@ -119,11 +119,14 @@ fn facts(over: &Overlay<'_>, role: Role) -> String {
         }
         None => format!("{full} triangles"),
     };
+    let mut facts = triangles;
     let n_parts = part.facts.used.len();
     if n_parts > 1 {
-        format!("{triangles} · {n_parts} parts")
-    } else {
-        triangles
+        facts += &format!(" · {n_parts} parts");
+    }
+    match state.units_of(role) {
+        Some(known) => facts + " · " + known.units.length.symbol(),
+        None => facts + " · unit unknown",
     }
 }
 
@@ -142,7 +145,11 @@ fn notes(over: &Overlay<'_>) -> Vec<String> {
     }
     let separation = state.view.display.separation;
     if is_left && state.view.is_moved_over && separation != 0.0 {
-        notes.push(format!("shown {} apart", short_number(separation)));
+        notes.push(format!(
+            "shown {}{} apart",
+            short_number(separation),
+            state.unit_suffix()
+        ));
     }
     notes
 }

@@ -1,0 +1,98 @@
+//! The units of two parts that are brought together: what is known of either, and the unit that all
+//! lengths are in.
+
+use super::load::LoadedPart;
+use crate::units::{KnownUnits, LengthUnit, UnitOrigin};
+
+/// The units of a pair, or of one part alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PairUnits {
+    /// Units of the crash file.
+    pub crash: Option<KnownUnits>,
+    /// Units of the stamped file, before its factor was applied.
+    pub stamped: Option<KnownUnits>,
+    /// The unit that every length is in once the factors are applied; `None` if unknown.
+    pub lengths: Option<LengthUnit>,
+}
+
+impl PairUnits {
+    /// What both files say together. The crash file's units count; a stamped file says only what
+    /// that one leaves open, because the factor between the two is what was chosen for it.
+    pub fn of(crash: Option<&LoadedPart>, stamped: Option<&LoadedPart>) -> Self {
+        let [of_crash, of_stamped] = [crash, stamped].map(|part| part?.units());
+        let through = |part: Option<&LoadedPart>, known: Option<KnownUnits>| {
+            after_factor(known?, part?.settings.length_factor)
+        };
+        let firm = |known: Option<KnownUnits>| known.filter(|known| known.origin.is_firm());
+        let lengths = through(crash, firm(of_crash))
+            .or_else(|| through(stamped, firm(of_stamped)))
+            .or_else(|| through(crash, of_crash))
+            .or_else(|| through(stamped, of_stamped));
+        Self {
+            crash: agreed(crash, of_crash, lengths),
+            stamped: agreed(stamped, of_stamped, lengths),
+            lengths,
+        }
+    }
+
+    /// The unit of all lengths, the files' units and factors, for exports: "lengths in mm",
+    /// "stamped.dynain: m, set by you; its lengths were multiplied by 1000".
+    pub fn sentences(crash: &LoadedPart, stamped: &LoadedPart) -> Vec<String> {
+        let units = Self::of(Some(crash), Some(stamped));
+        let mut sentences = vec![match units.lengths {
+            Some(unit) => format!("lengths in {unit}"),
+            None => "unit of lengths unknown".to_owned(),
+        }];
+        for (part, known) in [(crash, units.crash), (stamped, units.stamped)] {
+            let name = part.file_name();
+            let words = known.map_or_else(|| "unit unknown".to_owned(), KnownUnits::words);
+            let factor = part.settings.length_factor;
+            sentences.push(if factor == 1.0 {
+                format!("{name}: {words}")
+            } else {
+                format!("{name}: {words}; its lengths were multiplied by {factor}")
+            });
+        }
+        sentences
+    }
+
+    /// A warning where both systems are known and their stresses are in different units, which no
+    /// card converts.
+    pub fn stress_warning(crash: &LoadedPart, stamped: &LoadedPart) -> Option<String> {
+        let stress = |part: &LoadedPart| Some(part.units()?.units.system?.stress());
+        let (target, source) = (stress(crash)?, stress(stamped)?);
+        let has_stress = !stamped.model.forming.is_empty();
+        (has_stress && target != source).then(|| {
+            format!(
+                "stresses in {} are in {source}, those of {} in {target}; the cards do not \
+                 convert them",
+                stamped.file_name(),
+                crash.file_name()
+            )
+        })
+    }
+}
+
+/// The unit of lengths after a factor was applied.
+fn after_factor(known: KnownUnits, factor: f64) -> Option<LengthUnit> {
+    known.units.length.times(1.0 / factor)
+}
+
+/// A file's own units where they agree with the unit of all lengths, else those that follow.
+fn agreed(
+    part: Option<&LoadedPart>,
+    known: Option<KnownUnits>,
+    lengths: Option<LengthUnit>,
+) -> Option<KnownUnits> {
+    let factor = part?.settings.length_factor;
+    let Some(lengths) = lengths else {
+        return known;
+    };
+    let agrees = |known: &KnownUnits| after_factor(*known, factor) == Some(lengths);
+    known.filter(agrees).or_else(|| {
+        Some(KnownUnits {
+            units: lengths.times(factor)?.into(),
+            origin: UnitOrigin::OtherPart,
+        })
+    })
+}

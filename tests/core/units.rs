@@ -1,0 +1,169 @@
+//! Units: guessed, shown, asked about once, remembered with the file, stated in exports.
+
+use super::app::Window;
+use shapematch::app::*;
+use shapematch::formats::Memory;
+use shapematch::geometry::Similarity;
+use shapematch::jobs::Role;
+use shapematch::monitor::Monitor;
+use shapematch::pipeline::load::{LoadSettings, LoadedPart, load_from};
+use shapematch::pipeline::match_parts::{MatchRecipe, match_parts};
+use shapematch::pipeline::record::match_record;
+use shapematch::pipeline::units::PairUnits;
+use shapematch::units::{LengthUnit, UnitSystem};
+use std::path::Path;
+
+fn words(window: &Window, role: Role) -> String {
+    window
+        .state
+        .units_of(role)
+        .map_or_else(|| "unknown".to_owned(), |known| known.words())
+}
+
+fn set(role: Role, units: impl Into<shapematch::units::Units>) -> FileCommand {
+    let units = Some(units.into());
+    FileCommand::SetUnits { role, units }
+}
+
+#[test]
+fn unknown_units_are_said_to_be_unknown_and_can_be_set() {
+    let mut window = Window::with_both();
+    assert_eq!(words(&window, Role::Crash), "unknown");
+    assert_eq!(window.state.length_text(0.38), "0.380");
+    let before = window.state.document.clone();
+    let n_done = window.state.history.n_done();
+    window.apply(set(Role::Crash, UnitSystem::TonMmS));
+    assert_eq!(words(&window, Role::Crash), "ton-mm-s, set by you");
+    assert_eq!(words(&window, Role::Stamped), "mm, as the other part");
+    assert_eq!(window.state.length_text(0.38), "0.380 mm");
+    // Only a word about the file has changed: what was measured stays valid.
+    assert_eq!(window.state.document.stamp(), before.stamp());
+    assert_eq!(window.state.history.n_done(), n_done + 1);
+    window.act(Action::Undo);
+    assert_eq!(window.state.document, before);
+}
+
+#[test]
+fn what_the_files_say_is_asked_about_once_and_is_one_undo_step() {
+    let mut window = Window::new();
+    window.open("says_mm.k", Role::Crash);
+    window.open("says_m.k", Role::Stamped);
+    let hint = window.state.unit_hint().unwrap();
+    assert_eq!((hint.factor, hint.unit), (1000.0, Some(LengthUnit::Meter)));
+    assert_eq!(hint.text(), "Stamped looks 1000 × smaller than crash");
+    assert_eq!(words(&window, Role::Stamped), "m, from title or comment");
+    let before = window.state.document.clone();
+    let n_done = window.state.history.n_done();
+    window.apply(set(Role::Stamped, LengthUnit::Meter));
+    assert_eq!(window.part(Role::Stamped).length_factor(), 1000.0);
+    assert_eq!(window.state.unit_hint(), None);
+    assert_eq!(words(&window, Role::Stamped), "m, set by you");
+    assert_eq!(window.state.length_unit(), Some(LengthUnit::Millimeter));
+    assert_eq!(window.state.history.n_done(), n_done + 1);
+    assert_eq!(window.state.history.undo_name(), Some("says_m.k is in m"));
+    let after = window.state.document.clone();
+    window.act(Action::Undo);
+    assert_eq!(window.state.document, before);
+    window.act(Action::Redo);
+    assert_eq!(window.state.document, after);
+}
+
+#[test]
+fn an_answer_is_remembered_for_the_file() {
+    let mut first = Window::new();
+    first.open("says_mm.k", Role::Crash);
+    first.open("says_m.k", Role::Stamped);
+    first.apply(set(Role::Stamped, LengthUnit::Meter));
+    let text = serde_json::to_string(&first.state.settings).unwrap();
+    let mut next = Window::new();
+    next.state.settings = serde_json::from_str(&text).unwrap();
+    next.open("says_m.k", Role::Stamped);
+    next.open("says_mm.k", Role::Crash);
+    assert_eq!(next.part(Role::Stamped).length_factor(), 1000.0);
+    assert_eq!(words(&next, Role::Stamped), "m, set by you");
+
+    let mut other = Window::new();
+    other.open("says_mm.k", Role::Crash);
+    other.open("says_m.k", Role::Stamped);
+    other.apply(FileCommand::DismissUnitHint);
+    assert_eq!(other.state.unit_hint(), None);
+    assert_eq!(words(&other, Role::Stamped), "mm, as the other part");
+    let mut again = Window::new();
+    again.state.settings = other.state.settings.clone();
+    again.open("says_mm.k", Role::Crash);
+    again.open("says_m.k", Role::Stamped);
+    assert_eq!(again.state.unit_hint(), None);
+}
+
+#[test]
+fn another_unit_of_the_crash_file_carries_the_stamped_file_along() {
+    let mut window = Window::new();
+    window.open("says_mm.k", Role::Crash);
+    window.open("says_m.k", Role::Stamped);
+    window.apply(set(Role::Stamped, LengthUnit::Meter));
+    window.apply(set(Role::Crash, LengthUnit::Centimeter));
+    assert_eq!(window.part(Role::Stamped).length_factor(), 100.0);
+    assert_eq!(window.state.length_text(2.0), "2.00 cm");
+}
+
+fn bundled(name: &str, settings: &LoadSettings) -> LoadedPart {
+    let file = shapematch::samples::bundled()
+        .into_iter()
+        .find(|file| file.name.starts_with(name))
+        .unwrap();
+    let files = Memory::new().with(file.name, file.bytes);
+    load_from(&files, Path::new(file.name), settings, &Monitor::silent()).unwrap()
+}
+
+#[test]
+fn every_export_states_units_and_factors() {
+    let settings = LoadSettings {
+        units: Some(LengthUnit::Centimeter.into()),
+        length_factor: 10.0,
+        ..LoadSettings::default()
+    };
+    let crash = bundled("crash", &LoadSettings::default());
+    let stamped = bundled("stamped", &settings);
+    let known = crash.units().unwrap();
+    assert_eq!(known.words(), "kg-mm-ms, from title or comment");
+    assert_eq!(
+        PairUnits::sentences(&crash, &stamped)[2],
+        "stamped.dynain.gz: cm, set by you; its lengths were multiplied by 10"
+    );
+
+    let stamped = bundled("stamped", &LoadSettings::default());
+    let known = stamped.units().unwrap();
+    assert_eq!(known.words(), "mm, guessed from size and thickness");
+    let recipe = MatchRecipe {
+        max_triangles: Some(500),
+        ..MatchRecipe::default()
+    };
+    let silent = Monitor::silent();
+    let identity = Similarity::identity();
+    let run = match_parts(&crash, &stamped, None, &recipe, &identity, &silent).unwrap();
+    let record = match_record(&run, &crash, &stamped);
+    assert_eq!(record.length_unit, Some("mm"));
+    assert_eq!(record.files.crash.units, Some("kg-mm-ms"));
+    assert_eq!(record.files.stamped.units, Some("mm"));
+    let form = shapematch::report::CardForm::ALL[0];
+    let cards = shapematch::pipeline::cards::cards(form, &run, &crash, &stamped).unwrap();
+    assert!(cards.text.contains("lengths in mm"), "{}", cards.text);
+    assert!(cards.text.contains("stamped.dynain.gz: mm, guessed"));
+}
+
+#[test]
+fn stresses_in_other_units_are_told() {
+    let crash = bundled("crash", &LoadSettings::default());
+    let settings = LoadSettings {
+        units: Some(UnitSystem::TonMmS.into()),
+        ..LoadSettings::default()
+    };
+    let stamped = bundled("stamped", &settings);
+    let warning = PairUnits::stress_warning(&crash, &stamped).unwrap();
+    assert!(
+        warning.contains("in MPa") && warning.contains("in GPa"),
+        "{warning}"
+    );
+    let alike = bundled("stamped", &LoadSettings::default());
+    assert_eq!(PairUnits::stress_warning(&crash, &alike), None);
+}
