@@ -257,6 +257,8 @@ pub enum ExportCommand {
         /// Where.
         path: PathBuf,
     },
+    /// The line that does the match without the window.
+    CopyCommandLine,
     /// The log as text.
     CopyLog,
     /// A text that a panel shows.

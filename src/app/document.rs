@@ -90,6 +90,11 @@ impl Part {
         }
     }
 
+    /// The ceiling that the mesh in use was reduced to; `None` for the full mesh.
+    pub fn ceiling(&self) -> Option<usize> {
+        self.level.as_ref().map(|measured| measured.max_triangles)
+    }
+
     /// True if this part of the deck is shown.
     pub fn is_visible(&self, id: u64) -> bool {
         !self.hidden.contains(&id)

@@ -7,6 +7,7 @@
 mod action;
 mod apply;
 mod command;
+mod command_line;
 mod document;
 mod effect;
 mod facts;

@@ -2,7 +2,16 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::builder::BoolishValueParser;
+use clap::{Args, Parser, Subcommand};
+
+use super::words::{
+    card_forms, data_sides, floor, hands, methods, pair_targets, residuals, searches, selections,
+    start_methods, units,
+};
+use crate::registration::{DataSide, Floor, Hand, Method, Metric, PairWith, Search, StartMethod};
+use crate::report::CardForm;
+use crate::units::Units;
 
 /// Finds the pose that lays a stamped part on the same part of a crash model.
 ///
@@ -61,6 +70,8 @@ pub struct MatchArgs {
     #[command(flatten)]
     pub method: MethodArgs,
     #[command(flatten)]
+    pub search: SearchArgs,
+    #[command(flatten)]
     pub starts: StartArgs,
     #[command(flatten)]
     pub output: OutputArgs,
@@ -70,8 +81,8 @@ pub struct MatchArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "What is matched")]
 pub struct ChoiceArgs {
-    /// Part of the crash model: an id, several ids (2001,2002), a title, or set:ID, shell-set:ID,
-    /// node-set:ID.
+    /// Part of the crash model: an id, several ids (2001,2002), a title (also title:NAME), or set:ID,
+    /// shell-set:ID, node-set:ID.
     #[arg(long, value_name = "PART")]
     pub crash_part: Option<String>,
     /// Part of the stamped file, written as for --crash-part.
@@ -81,41 +92,19 @@ pub struct ChoiceArgs {
     /// (1000 for metres against millimetres). Stated in the result, never inside the matrix.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     pub stamped_unit: f64,
-}
-
-/// The method by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum MethodName {
-    /// Fractional ICP: finds by itself how much of the parts overlaps.
-    Fractional,
-    /// Trimmed ICP: keeps a given share, or searches it.
-    Trimmed,
-    /// Plain ICP: all pairs count.
-    Icp,
-    /// Closed form for the same mesh with the same node numbers.
-    Umeyama,
-    /// The setting of the paper: Fractional ICP from node to node, point to point.
-    Paper,
-}
-
-/// What a data point is paired with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum PairName {
-    /// The closest point of any triangle.
-    Triangle,
-    /// The closest node.
-    Node,
-}
-
-/// What is made small.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum ResidualName {
-    /// Distance between the points (Besl and McKay 1992).
-    PointToPoint,
-    /// Distance to the tangent plane (Chen and Medioni 1992).
-    PointToPlane,
-    /// Distance along both normals (Rusinkiewicz 2019).
-    Symmetric,
+    /// The same for the crash coordinates. All results are then in the multiplied unit.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    pub crash_unit: f64,
+    /// The units of the crash file, to be stated in the results; guessed if not given. They change
+    /// no number.
+    #[arg(long, value_name = "UNITS", value_parser = units())]
+    pub crash_units: Option<Units>,
+    /// The units of the stamped file, likewise.
+    #[arg(long, value_name = "UNITS", value_parser = units())]
+    pub stamped_units: Option<Units>,
+    /// A further folder for included files; may be given several times.
+    #[arg(long, value_name = "FOLDER")]
+    pub include_folder: Vec<PathBuf>,
 }
 
 /// How the pose is computed.
@@ -123,72 +112,104 @@ pub enum ResidualName {
 #[command(next_help_heading = "Method")]
 pub struct MethodArgs {
     /// The method; the options below change single choices of it.
-    #[arg(long, value_enum, default_value_t = MethodName::Fractional)]
-    pub method: MethodName,
-    /// Pair points with triangles or with nodes.
-    #[arg(long, value_enum, value_name = "TARGET")]
-    pub pairs: Option<PairName>,
-    /// The residual that is minimised.
-    #[arg(long, value_enum)]
-    pub residual: Option<ResidualName>,
+    #[arg(long, default_value = "fractional", value_parser = methods())]
+    pub method: Method,
+    /// Which pairs count.
+    #[arg(long, value_name = "PAIRS", value_parser = selections())]
+    pub keep: Option<String>,
     /// λ of Fractional ICP: larger keeps more of the part.
     #[arg(long, value_name = "LAMBDA")]
     pub lambda: Option<f64>,
-    /// Floor σ₀ of Fractional ICP, in length units; taken from the meshes if not given.
-    #[arg(long, value_name = "LENGTH")]
-    pub floor: Option<f64>,
+    /// Floor σ₀ of Fractional ICP: a length, none, or auto to take it from the meshes.
+    #[arg(long, value_name = "LENGTH", value_parser = floor)]
+    pub floor: Option<Floor>,
     /// Overlap of Trimmed ICP, 0 to 1; searched if not given.
     #[arg(long, value_name = "SHARE")]
     pub overlap: Option<f64>,
+    /// Pair points with triangles or with nodes.
+    #[arg(long, value_name = "TARGET", value_parser = pair_targets())]
+    pub pairs: Option<PairWith>,
+    /// The residual that is minimised.
+    #[arg(long, value_parser = residuals())]
+    pub residual: Option<Metric>,
+    /// Whose nodes are laid on the other part's triangles.
+    #[arg(long, value_name = "PART", value_parser = data_sides())]
+    pub points_of: Option<DataSide>,
     /// Also find a scale c. Off by default: a free scale shrinks parts that only partly overlap.
     #[arg(long)]
     pub scale: bool,
-    /// Also try the mirrored stamped part (left-hand against right-hand part).
-    #[arg(long)]
+    /// Which hand of the stamped part is tried.
+    #[arg(long, value_parser = hands())]
+    pub hand: Option<Hand>,
+    /// Try both hands (left-hand against right-hand part); short for --hand either.
+    #[arg(long, conflicts_with = "hand")]
     pub mirror: bool,
+    /// Deviation to be expected besides faceting, such as springback, in length units.
+    #[arg(long, value_name = "LENGTH")]
+    pub allowance: Option<f64>,
+    /// Largest angle between the normals of a pair, 1 to 180 degrees.
+    #[arg(long, value_name = "DEG")]
+    pub normal_angle: Option<f64>,
+    /// Iterations a run may take.
+    #[arg(long, value_name = "N")]
+    pub iterations: Option<usize>,
+    /// A run has settled when a step moves no corner by more than this share of an edge length.
+    #[arg(long, value_name = "SHARE")]
+    pub tolerance: Option<f64>,
+}
+
+/// Which meshes and points the search runs on.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Search")]
+pub struct SearchArgs {
+    /// How the starts are searched.
+    #[arg(long, value_parser = searches())]
+    pub search: Option<Search>,
+    /// Points of the first stage of the race.
+    #[arg(long, value_name = "N")]
+    pub race_points: Option<usize>,
+    /// Points of its second stage.
+    #[arg(long, value_name = "N")]
+    pub refine_points: Option<usize>,
     /// Run the starts on meshes reduced to so many triangles, as the paper does.
     #[arg(long, value_name = "N")]
     pub triangles: Option<usize>,
-    /// Stop with the result on the reduced meshes; do not finish on the full ones.
-    #[arg(long, requires = "triangles")]
-    pub no_finish: bool,
-}
-
-/// Where the first poses come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum StartName {
-    /// Centroids and mean normals laid on each other, turned in steps about the normal.
-    SurfaceNormal,
-    /// The pose of --initial-pose, or the files as they lie.
-    Current,
-    /// Surface normals, principal axes and a covering of all rotations.
-    All,
+    /// Another number for the crash part, or for it alone.
+    #[arg(long, value_name = "N")]
+    pub crash_triangles: Option<usize>,
+    /// Another number for the stamped part, or for it alone.
+    #[arg(long, value_name = "N")]
+    pub stamped_triangles: Option<usize>,
+    /// Finish the winner on the full meshes.
+    #[arg(long, value_name = "YES|NO", value_parser = BoolishValueParser::new())]
+    pub finish: Option<bool>,
 }
 
 /// First poses.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "First poses")]
 pub struct StartArgs {
-    /// Where the match starts from.
-    #[arg(long, value_enum, default_value_t = StartName::SurfaceNormal)]
-    pub start: StartName,
-    /// Step of the rotations about the mean normal, at most 60 degrees.
-    #[arg(long, value_name = "DEG", default_value_t = 40.0)]
-    pub angle_segment: f64,
-    /// A text file with a 4×4 matrix (crash from stamped) to start from; implies --start current.
-    #[arg(long, value_name = "FILE")]
-    pub initial_pose: Option<PathBuf>,
-}
-
-/// The cards by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum CardName {
-    /// *INCLUDE_STAMPED_PART_MATRIX: the solver maps the forming results.
-    Stamped,
-    /// *INCLUDE_STAMPED_PART_MATRIX_INVERSE: the same from the matrix of the way back.
-    StampedInverse,
-    /// *DEFINE_TRANSFORMATION and *INCLUDE_TRANSFORM: the stamped mesh joins the crash model.
-    Transform,
+    /// Where the match starts from; surface-normal unless a --start-pose is given.
+    #[arg(long, value_parser = start_methods())]
+    pub start: Option<StartMethod>,
+    /// Step of the rotations about the mean normal, at most 60 degrees; 40 gives nine.
+    #[arg(long, value_name = "DEG")]
+    pub angle_segment: Option<f64>,
+    /// A pose (crash from stamped) to start from: a text file, or the numbers themselves, 16 by rows.
+    /// Several poses are all tried.
+    #[arg(
+        long,
+        visible_alias = "initial-pose",
+        value_name = "FILE|NUMBERS",
+        allow_hyphen_values = true
+    )]
+    pub start_pose: Vec<String>,
+    /// Try both directions of the mean normal.
+    #[arg(long, value_name = "YES|NO", value_parser = BoolishValueParser::new())]
+    pub both_directions: Option<bool>,
+    /// Add more starts where none convinces.
+    #[arg(long, value_name = "YES|NO", value_parser = BoolishValueParser::new())]
+    pub widen: Option<bool>,
 }
 
 /// What is written.
@@ -205,8 +226,8 @@ pub struct OutputArgs {
     #[arg(long, value_name = "FILE")]
     pub cards: Option<PathBuf>,
     /// Which cards.
-    #[arg(long, value_enum, value_name = "FORM", default_value_t = CardName::Stamped)]
-    pub card_form: CardName,
+    #[arg(long, value_name = "FORM", default_value = "stamped", value_parser = card_forms())]
+    pub card_form: CardForm,
     /// Write the stamped mesh moved onto the crash part; the ending chooses the format
     /// (.k, .dynain, .stl, .ply, .obj).
     #[arg(long, value_name = "FILE")]

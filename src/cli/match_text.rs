@@ -45,6 +45,7 @@ fn side(text: &mut String, role: &str, part: &LoadedPart) {
 fn matrix(text: &mut String, record: &MatchRecord) {
     let _ = writeln!(text, "{}", record.direction);
     let cells: Vec<Vec<String>> = record
+        .pose
         .matrix
         .iter()
         .map(|row| row.iter().map(|&x| number(x)).collect())
@@ -58,8 +59,8 @@ fn matrix(text: &mut String, record: &MatchRecord) {
             .collect();
         let _ = writeln!(text, "  {}", padded.join("  "));
     }
-    if record.scale != 1.0 {
-        let _ = writeln!(text, "  with the scale c = {}", number(record.scale));
+    if record.pose.scale != 1.0 {
+        let _ = writeln!(text, "  with the scale c = {}", number(record.pose.scale));
     }
 }
 
@@ -67,11 +68,11 @@ fn fit(text: &mut String, record: &MatchRecord) {
     let _ = writeln!(
         text,
         "Fit      rms {}, 95 % below {}, largest {}",
-        short(record.rmse),
-        short(record.p95),
-        short(record.max)
+        short(record.metrics.rmse),
+        short(record.metrics.p95),
+        short(record.metrics.max)
     );
-    let overlap = &record.overlap;
+    let overlap = &record.metrics.overlap;
     let _ = writeln!(
         text,
         "Overlap  {:.1} % of the stamped and {:.1} % of the crash part lie within {} of the other",
@@ -107,14 +108,14 @@ fn starts(text: &mut String, starts: &[StartEntry]) {
 }
 
 fn times(text: &mut String, record: &MatchRecord) {
-    let t = &record.timings_ms;
+    let t = &record.timings;
     let steps = [
-        ("read", t.read),
-        ("reduce", t.reduce),
-        ("align", t.align),
-        ("match", t.matching),
-        ("verify", t.verify),
-        ("total", t.total),
+        ("read", t.read_ms),
+        ("reduce", t.reduce_ms),
+        ("align", t.align_ms),
+        ("match", t.match_ms),
+        ("verify", t.verify_ms),
+        ("total", t.total_ms),
     ];
     let shown: Vec<String> = steps
         .iter()

@@ -1,32 +1,25 @@
 //! `shapematch match`: from two files to the matrix.
 
-use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
-use anyhow::Context as _;
-
-use super::args::{CardName, MatchArgs, MethodName, PairName, ResidualName, StartName};
+use super::args::MatchArgs;
+use super::recipe::{Asked, asked};
 use super::text::short;
 use super::{EXIT_POOR, match_text, print, progress, takes_stdout, write_json, write_output};
 use crate::assess::Verdict;
-use crate::geometry::Similarity;
 use crate::monitor::Monitor;
-use crate::pipeline::load::{LoadSettings, LoadedPart, load, parse_selection};
-use crate::pipeline::match_parts::{MatchRecipe, MatchRun, match_parts};
+use crate::pipeline::load::{LoadedPart, load};
+use crate::pipeline::match_parts::{MatchRun, ReducedPair, match_parts};
 use crate::pipeline::{cards as pipeline_cards, export, record};
-use crate::registration::{
-    Floor, Hand, MatchSettings, Method, Metric, Motion, PairWith, Selection, StartMethod,
-};
-use crate::report::{CardForm, MatchRecord, MatrixForm, parse_matrix};
+use crate::report::{MatchRecord, MatrixForm};
 
 /// Reads, matches, writes what was asked for, and prints the report.
 pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let monitor = progress::monitor(quiet);
-    let current = initial_pose(args)?;
-    let recipe = recipe(args);
-    let (crash, stamped) = load_both(args, &monitor)?;
-    let run = match_parts(&crash, &stamped, None, &recipe, &current, &monitor)?;
+    let asked = asked(args)?;
+    let (crash, stamped) = load_both(args, &asked, &monitor)?;
+    let run = run_match(&asked, &crash, &stamped, &monitor)?;
     let record = record::match_record(&run, &crash, &stamped);
     drop(monitor);
     for warning in &record.warnings {
@@ -42,84 +35,38 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     })
 }
 
-fn load_both(args: &MatchArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, LoadedPart)> {
-    let choice = &args.choice;
-    let settings = |part: Option<&str>, length_factor: f64| LoadSettings {
-        selection: part.map(parse_selection).unwrap_or_default(),
-        length_factor,
-        ..LoadSettings::default()
+/// Reduces first where another level was asked for one of the parts.
+fn run_match(
+    asked: &Asked,
+    crash: &LoadedPart,
+    stamped: &LoadedPart,
+    monitor: &Monitor,
+) -> anyhow::Result<MatchRun> {
+    let reduced = if asked.max_triangles == [asked.recipe.max_triangles; 2] {
+        None
+    } else {
+        Some(ReducedPair::new(
+            crash,
+            stamped,
+            asked.max_triangles,
+            monitor,
+        )?)
     };
-    let crash = settings(choice.crash_part.as_deref(), 1.0);
-    let stamped = settings(choice.stamped_part.as_deref(), choice.stamped_unit);
+    let (recipe, current) = (&asked.recipe, &asked.current);
+    let run = match_parts(crash, stamped, reduced.as_ref(), recipe, current, monitor)?;
+    Ok(run)
+}
+
+fn load_both(
+    args: &MatchArgs,
+    asked: &Asked,
+    monitor: &Monitor,
+) -> anyhow::Result<(LoadedPart, LoadedPart)> {
     let (crash, stamped) = rayon::join(
-        || load(&args.crash, &crash, monitor),
-        || load(&args.stamped, &stamped, monitor),
+        || load(&args.crash, &asked.crash, monitor),
+        || load(&args.stamped, &asked.stamped, monitor),
     );
     Ok((crash?, stamped?))
-}
-
-/// The pose of `--initial-pose`, else the files as they lie.
-fn initial_pose(args: &MatchArgs) -> anyhow::Result<Similarity> {
-    let Some(path) = &args.starts.initial_pose else {
-        return Ok(Similarity::identity());
-    };
-    let text =
-        fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-    let parsed = parse_matrix(&text).with_context(|| format!("no pose in {}", path.display()))?;
-    for note in &parsed.notes {
-        log::warn!("{}: {note}", path.display());
-    }
-    Ok(parsed.motion)
-}
-
-fn recipe(args: &MatchArgs) -> MatchRecipe {
-    let typed = &args.method;
-    let method = match typed.method {
-        MethodName::Fractional => Method::Fractional,
-        MethodName::Trimmed if typed.overlap.is_some() => Method::Trimmed,
-        MethodName::Trimmed => Method::TrimmedSearch,
-        MethodName::Icp => Method::Icp,
-        MethodName::Umeyama => Method::Umeyama,
-        MethodName::Paper => Method::Paper,
-    };
-    let mut settings = MatchSettings::of(method);
-    match typed.pairs {
-        Some(PairName::Node) => settings.pair_with = PairWith::Node,
-        Some(PairName::Triangle) => settings.pair_with = PairWith::Triangle,
-        None => {}
-    }
-    match typed.residual {
-        Some(ResidualName::PointToPoint) => settings.metric = Metric::PointToPoint,
-        Some(ResidualName::PointToPlane) => settings.metric = Metric::PointToPlane,
-        Some(ResidualName::Symmetric) => settings.metric = Metric::Symmetric,
-        None => {}
-    }
-    if let (Some(share), Selection::Trimmed { overlap }) = (typed.overlap, &mut settings.selection)
-    {
-        *overlap = share;
-    }
-    if let Selection::Fractional { lambda, floor } = &mut settings.selection {
-        *lambda = typed.lambda.unwrap_or(*lambda);
-        *floor = typed.floor.map_or(*floor, Floor::Length);
-    }
-    if typed.scale {
-        settings.motion = Motion::Similarity;
-    }
-    if typed.mirror {
-        settings.hand = Hand::Either;
-    }
-    settings.finish &= !typed.no_finish;
-    settings.starts.angle_segment_deg = args.starts.angle_segment;
-    settings.starts.method = match args.starts.start {
-        _ if args.starts.initial_pose.is_some() => StartMethod::CurrentPose,
-        StartName::SurfaceNormal => StartMethod::SurfaceNormals,
-        StartName::Current => StartMethod::CurrentPose,
-        StartName::All => StartMethod::All,
-    };
-    MatchRecipe {
-        settings,
-        max_triangles: typed.triangles,
-    }
 }
 
 fn write_files(
@@ -145,7 +92,7 @@ fn write_files(
         export::write_moved(path, stamped, &run.crash_from_stamped, &comments, &silent)?;
     }
     if let Some(path) = &output.cards {
-        let cards = pipeline_cards::cards(output.card_form.into(), run, crash, stamped)?;
+        let cards = pipeline_cards::cards(output.card_form, run, crash, stamped)?;
         write_output(path, cards.text.as_bytes())?;
         let error = cards.largest_node_error(stamped.surface.mesh.positions());
         if !takes_stdout(output.json.as_deref()) && path != Path::new("-") {
@@ -157,14 +104,4 @@ fn write_files(
         }
     }
     Ok(())
-}
-
-impl From<CardName> for CardForm {
-    fn from(name: CardName) -> Self {
-        match name {
-            CardName::Stamped => Self::StampedPart,
-            CardName::StampedInverse => Self::StampedPartInverse,
-            CardName::Transform => Self::IncludeTransform,
-        }
-    }
 }

@@ -9,9 +9,11 @@ mod info;
 mod match_text;
 mod matching;
 mod progress;
+mod recipe;
 mod reduce;
 mod sample;
 mod text;
+mod words;
 
 pub use args::{Cli, Task};
 

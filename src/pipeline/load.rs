@@ -13,6 +13,7 @@ use crate::formats::{
 use crate::geometry::{Point3, TriMesh, orient_consistently, weld};
 use crate::monitor::Monitor;
 use crate::registration::{self, RegistrationError};
+use crate::report::command_line::CommandSide;
 use crate::units::{self, KnownUnits, UnitOrigin, Units};
 
 /// Choices for loading one side.
@@ -130,6 +131,16 @@ impl LoadedPart {
         part
     }
 
+    /// File, parts and unit as the command line has to be told.
+    pub fn command_side(&self) -> CommandSide<'_> {
+        CommandSide {
+            path: &self.path,
+            selection: &self.settings.selection,
+            length_factor: self.settings.length_factor,
+            units: self.settings.units,
+        }
+    }
+
     /// The file name without its folder.
     pub fn file_name(&self) -> String {
         self.path
@@ -148,6 +159,21 @@ impl LoadedPart {
             .filter(|(_, used)| *used)
             .map(|(part, _)| part.id)
             .collect()
+    }
+
+    /// Id of the element that a triangle of the mesh belongs to.
+    pub fn element_id(&self, triangle: u32) -> Option<u64> {
+        let of_surface = *self.triangle_of.get(triangle as usize)?;
+        let element = *self.surface.triangle_element.get(of_surface as usize)? as usize;
+        let n_shells = self.model.shells.len();
+        match self.model.shells.get(element) {
+            Some(shell) => Some(shell.id),
+            None => self
+                .model
+                .solids
+                .get(element - n_shells)
+                .map(|solid| solid.id),
+        }
     }
 
     /// Area-weighted mean thickness of the chosen elements in the crash model's unit, if known.
@@ -282,10 +308,13 @@ fn scaled(mesh: &TriMesh, factor: f64) -> TriMesh {
     TriMesh::new(positions, mesh.triangles().to_vec()).unwrap_or_else(|_| mesh.clone())
 }
 
-/// Understands a choice of parts as typed: `2001`, `2001,2002`, a title, `set:7`, `shell-set:7`,
-/// `node-set:7`. Anything that is none of the numeric forms is a title.
+/// Understands a choice of parts as typed: `2001`, `2001,2002`, a title, `title:2001`, `set:7`,
+/// `shell-set:7`, `node-set:7`. Anything that is none of these forms is a title.
 pub fn parse_selection(text: &str) -> Selection {
     let text = text.trim();
+    if let Some(title) = text.strip_prefix("title:") {
+        return Selection::PartTitle(title.to_owned());
+    }
     let after = |prefix: &str| {
         text.strip_prefix(prefix)
             .and_then(|id| id.trim().parse().ok())
@@ -321,6 +350,25 @@ mod tests {
             parse_selection("B pillar, inner"),
             Selection::PartTitle("B pillar, inner".into())
         );
+        assert_eq!(
+            parse_selection("title:12"),
+            Selection::PartTitle("12".into())
+        );
+    }
+
+    #[test]
+    fn choices_are_typed_as_they_are_understood() {
+        let choices = [
+            Selection::Parts(vec![1, 22]),
+            Selection::PartTitle("set:7".into()),
+            Selection::PartSet(7),
+            Selection::ShellSet(8),
+            Selection::NodeSet(9),
+        ];
+        for choice in choices {
+            assert_eq!(parse_selection(&choice.typed().unwrap()), choice);
+        }
+        assert_eq!(Selection::All.typed(), None);
     }
 
     #[test]

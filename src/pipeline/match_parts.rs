@@ -50,6 +50,10 @@ pub struct MatchRun {
     pub outcome: Arc<MatchOutcome>,
     /// Distances, overlap, ambiguity, verdict.
     pub assessment: Arc<Assessment>,
+    /// The pose the stamped part had before.
+    pub start_pose: Similarity,
+    /// Ceilings that the crash and the stamped mesh were reduced to for the starts.
+    pub max_triangles: [Option<usize>; 2],
     /// Triangles of the crash and the stamped mesh the starts ran on.
     pub n_triangles: [usize; 2],
     /// Durations.
@@ -63,6 +67,25 @@ pub struct ReducedPair {
     pub crash: Arc<TriMesh>,
     /// The stamped part.
     pub stamped: Arc<TriMesh>,
+    /// Ceilings that the crash and the stamped mesh were reduced to; `None` for a full mesh.
+    pub max_triangles: [Option<usize>; 2],
+}
+
+impl ReducedPair {
+    /// Reduces both parts to their ceilings; a part without one stays as it is.
+    pub fn new(
+        crash: &LoadedPart,
+        stamped: &LoadedPart,
+        max_triangles: [Option<usize>; 2],
+        monitor: &Monitor,
+    ) -> Result<Self, PipelineError> {
+        let [of_crash, of_stamped] = max_triangles;
+        Ok(Self {
+            crash: level(crash, of_crash, monitor)?,
+            stamped: level(stamped, of_stamped, monitor)?,
+            max_triangles,
+        })
+    }
 }
 
 /// Finds the pose of `stamped` on `crash`, and checks it on the full meshes.
@@ -84,10 +107,7 @@ pub fn match_parts(
     let reduced = match (reduced, recipe.max_triangles) {
         (Some(pair), _) => Some(pair),
         (None, Some(n)) => {
-            made = ReducedPair {
-                crash: level(crash, n, monitor)?,
-                stamped: level(stamped, n, monitor)?,
-            };
+            made = ReducedPair::new(crash, stamped, [Some(n); 2], monitor)?;
             times.reduce_ms = millis_since(begin);
             Some(&made)
         }
@@ -123,6 +143,8 @@ pub fn match_parts(
     Ok(MatchRun {
         crash_from_stamped: outcome.target_from_source,
         recipe: recipe.clone(),
+        start_pose: *current,
+        max_triangles: reduced.map_or([None; 2], |pair| pair.max_triangles),
         n_triangles: input.reduced.map_or_else(
             || [crash.mesh.n_triangles(), stamped.mesh.n_triangles()],
             |(source, target)| [target.mesh().n_triangles(), source.mesh().n_triangles()],
@@ -130,6 +152,42 @@ pub fn match_parts(
         outcome: Arc::new(outcome),
         assessment: Arc::new(assessment),
         times,
+    })
+}
+
+/// The run with another of its poses as the result, measured anew on the full meshes.
+pub fn with_alternative(
+    run: &MatchRun,
+    alternative: usize,
+    crash: &LoadedPart,
+    stamped: &LoadedPart,
+    monitor: &Monitor,
+) -> Result<MatchRun, PipelineError> {
+    let mut outcome = MatchOutcome::clone(&run.outcome);
+    let Some(other) = outcome.alternatives.get_mut(alternative) else {
+        return Ok(run.clone());
+    };
+    let ratio = other.score_ratio;
+    let best = outcome.target_from_source;
+    outcome.target_from_source = std::mem::replace(&mut other.target_from_source, best);
+    other.score_ratio = 1.0;
+    for other in &mut outcome.alternatives {
+        other.score_ratio /= ratio;
+    }
+    outcome
+        .alternatives
+        .sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
+    let (target, source) = (crash.surface_for_match()?, stamped.surface_for_match()?);
+    let check = AssessSettings {
+        allowance: run.recipe.settings.allowance,
+        ..AssessSettings::default()
+    };
+    let assessment = assess::assess(&source, &target, &outcome, &check, monitor)?;
+    Ok(MatchRun {
+        crash_from_stamped: outcome.target_from_source,
+        outcome: Arc::new(outcome),
+        assessment: Arc::new(assessment),
+        ..run.clone()
     })
 }
 
@@ -149,12 +207,16 @@ pub fn align(
     Ok(starts::starts(&source, &target, &settings)?)
 }
 
-fn level(part: &LoadedPart, n: usize, monitor: &Monitor) -> Result<Arc<TriMesh>, PipelineError> {
-    Ok(
-        Levels::record(part, &SimplifySettings::to_triangles(n), monitor)?
-            .level(n)
-            .mesh,
-    )
+fn level(
+    part: &LoadedPart,
+    max_triangles: Option<usize>,
+    monitor: &Monitor,
+) -> Result<Arc<TriMesh>, PipelineError> {
+    let Some(n) = max_triangles else {
+        return Ok(Arc::clone(&part.mesh));
+    };
+    let levels = Levels::record(part, &SimplifySettings::to_triangles(n), monitor)?;
+    Ok(levels.level(n).mesh)
 }
 
 /// Prepared surfaces of crash and stamped part.

@@ -7,6 +7,7 @@ pub mod cards;
 pub mod export;
 pub mod load;
 pub mod match_parts;
+pub mod node_table;
 pub mod record;
 pub mod reduce;
 pub mod sweep;

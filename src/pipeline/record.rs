@@ -3,8 +3,12 @@
 use super::load::LoadedPart;
 use super::match_parts::MatchRun;
 use super::units::PairUnits;
-use crate::report::{FileRecord, Files, MatchRecord, RecordContext, TimingsRecord};
-use crate::units::KnownUnits;
+use crate::geometry::Point3;
+use crate::report::command_line::CommandLine;
+use crate::report::{
+    FileRecord, Files, IncludedFile, MatchRecord, RecordContext, TimingsRecord, UnitsRecord,
+};
+use crate::units::{KnownUnits, LengthUnit};
 
 /// Collects the record of a run.
 pub fn match_record(run: &MatchRun, crash: &LoadedPart, stamped: &LoadedPart) -> MatchRecord {
@@ -14,33 +18,78 @@ pub fn match_record(run: &MatchRun, crash: &LoadedPart, stamped: &LoadedPart) ->
     let units = PairUnits::of(Some(crash), Some(stamped));
     let context = RecordContext {
         settings: run.recipe.settings.clone(),
+        max_triangles: run.max_triangles,
         n_triangles: run.n_triangles,
+        units: UnitsRecord {
+            length: units.lengths.map(LengthUnit::symbol),
+            angle: "deg",
+            crash_factor: crash.settings.length_factor,
+            stamped_factor: stamped.settings.length_factor,
+        },
+        sample_node: sample_node(stamped),
+        center: stamped.mesh.aabb().center(),
         files: Files {
             crash: file(crash, units.crash),
             stamped: file(stamped, units.stamped),
         },
-        length_unit: units.lengths,
         timings: TimingsRecord {
-            read,
-            reduce: run.times.reduce_ms,
-            align: run.times.align_ms,
-            matching: run.times.match_ms,
-            verify: run.times.verify_ms,
-            total: read + run.times.total_ms,
+            read_ms: read,
+            reduce_ms: run.times.reduce_ms,
+            align_ms: run.times.align_ms,
+            match_ms: run.times.match_ms,
+            verify_ms: run.times.verify_ms,
+            total_ms: read + run.times.total_ms,
         },
         warnings: warnings(crash, stamped),
+        command_line: command_line(run, crash, stamped).line(),
     };
     MatchRecord::new(&run.outcome, &run.assessment, context)
 }
 
+/// What the command line has to be told to do the run again.
+fn command_line<'a>(
+    run: &'a MatchRun,
+    crash: &'a LoadedPart,
+    stamped: &'a LoadedPart,
+) -> CommandLine<'a> {
+    CommandLine {
+        crash: crash.command_side(),
+        stamped: stamped.command_side(),
+        include_folders: &crash.settings.read.include_folders,
+        settings: &run.recipe.settings,
+        max_triangles: run.max_triangles,
+        current: &run.start_pose,
+    }
+}
+
+/// The first node of the matched surface: its id and place in the crash model's unit.
+fn sample_node(part: &LoadedPart) -> Option<(u64, Point3)> {
+    let node = *part.surface.vertex_node.first()? as usize;
+    let position = part.surface.mesh.positions().first()?;
+    let id = *part.model.nodes.ids().get(node)?;
+    Some((id, position * part.settings.length_factor))
+}
+
 fn file(part: &LoadedPart, units: Option<KnownUnits>) -> FileRecord {
+    let included = part.model.files.iter().skip(1);
     FileRecord {
         path: part.path.display().to_string(),
+        name: part.file_name(),
+        hash: part.hash(),
+        includes: included
+            .map(|file| IncludedFile {
+                path: file.path.display().to_string(),
+                hash: file.hash,
+            })
+            .collect(),
         parts: part.chosen_part_ids(),
+        nodes: part.report.n_nodes,
         triangles: part.mesh.n_triangles(),
+        thickness: part.mean_thickness(),
         length_factor: part.settings.length_factor,
         units: units.map(|known| known.units.label()),
         units_from: units.map(|known| known.origin.words()),
+        findings: part.report.n_findings,
     }
 }
 

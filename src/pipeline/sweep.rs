@@ -1,6 +1,5 @@
 //! The two tables of the paper, measured: reduction over levels, matching over levels.
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use super::load::LoadedPart;
@@ -225,16 +224,7 @@ fn matching_row(
     monitor: &Monitor,
 ) -> Result<MatchingRow, PipelineError> {
     let pair = max_triangles
-        .map(|n| -> Result<ReducedPair, PipelineError> {
-            let level = |part: &LoadedPart| -> Result<Arc<TriMesh>, PipelineError> {
-                let settings = SimplifySettings::to_triangles(n);
-                Ok(Levels::record(part, &settings, monitor)?.level(n).mesh)
-            };
-            Ok(ReducedPair {
-                crash: level(crash)?,
-                stamped: level(stamped)?,
-            })
-        })
+        .map(|n| ReducedPair::new(crash, stamped, [Some(n); 2], monitor))
         .transpose()?;
     let run = |finish: bool| {
         let mut settings = settings.settings.clone();

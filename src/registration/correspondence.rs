@@ -19,6 +19,14 @@ impl PairWith {
     /// Every choice, in the order of menus.
     pub const ALL: [Self; 2] = [Self::Node, Self::Triangle];
 
+    /// The word for the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Node => "node",
+            Self::Triangle => "triangle",
+        }
+    }
+
     /// Short name for menus.
     pub fn label(self) -> &'static str {
         match self {

@@ -93,6 +93,15 @@ impl Hand {
     /// Every choice, in the order of menus.
     pub const ALL: [Self; 3] = [Self::Same, Self::Mirrored, Self::Either];
 
+    /// The word for the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Same => "same",
+            Self::Mirrored => "opposite",
+            Self::Either => "either",
+        }
+    }
+
     /// Short name for menus.
     pub fn label(self) -> &'static str {
         match self {
@@ -126,6 +135,14 @@ impl Search {
     /// Every choice, in the order of menus.
     pub const ALL: [Self; 2] = [Self::Race, Self::EveryStart];
 
+    /// The word for the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Race => "race",
+            Self::EveryStart => "every-start",
+        }
+    }
+
     /// Short name for menus.
     pub fn label(self) -> &'static str {
         match self {
@@ -158,6 +175,15 @@ pub enum DataSide {
 impl DataSide {
     /// Every choice, in the order of menus.
     pub const ALL: [Self; 3] = [Self::Auto, Self::Source, Self::Target];
+
+    /// The word for the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Source => "stamped",
+            Self::Target => "crash",
+        }
+    }
 
     /// Short name for menus.
     pub fn label(self) -> &'static str {

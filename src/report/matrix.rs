@@ -111,15 +111,22 @@ fn csv(motion: &Similarity) -> String {
     format!("{head}{}\n", values.join(","))
 }
 
-fn quaternion(motion: &Similarity) -> String {
-    let mut text = String::from("# crash = scale * q * stamped * q^-1 + t\n");
+/// The rotation of a motion; of a mirrored one the rotation after the mirror x → −x.
+pub(super) fn proper_rotation(motion: &Similarity) -> Rotation {
     let mut rotation = motion.rotation;
     if motion.is_mirrored() {
-        text += "# the stamped part is mirrored first: x becomes -x\n";
         rotation *= Similarity::mirror_x().rotation;
     }
     let turn = nalgebra::Rotation3::from_matrix_unchecked(rotation);
-    let q = Rotation::from_rotation_matrix(&turn);
+    Rotation::from_rotation_matrix(&turn)
+}
+
+fn quaternion(motion: &Similarity) -> String {
+    let mut text = String::from("# crash = scale * q * stamped * q^-1 + t\n");
+    if motion.is_mirrored() {
+        text += "# the stamped part is mirrored first: x becomes -x\n";
+    }
+    let q = proper_rotation(motion);
     let t = motion.translation;
     let mut line = |names: &str, values: &[f64]| {
         let values: Vec<String> = values.iter().map(|&v| number(v)).collect();

@@ -2,17 +2,22 @@
 
 mod card_reader;
 pub mod cards;
+pub mod command_line;
+pub mod csv;
 mod info;
 pub mod matrix;
 pub mod picture;
+mod pose;
 mod record;
 mod text;
 
 pub use cards::{CardError, CardForm, CardOptions, Cards, Receiver, write as write_cards};
 pub use info::{Bounds, DiagnosticInfo, FileInfo, FormingInfo, ModelInfo, PartInfo};
 pub use matrix::{MatrixForm, ParsedMatrix, number, parse_matrix};
+pub use pose::{AxisAngle, PoseRecord, SampleNode};
 pub use record::{
-    AlternativeRecord, DIRECTION, FileRecord, Files, MatchRecord, OverlapRecord, Parameters,
-    RecordContext, StartEntry, TimingsRecord, build_id, fate_words, side_word,
+    AlternativeRecord, DIRECTION, FileRecord, Files, IncludedFile, Machine, MatchRecord, Metrics,
+    OneWay, OverlapRecord, Parameters, RecordContext, StartEntry, TimingsRecord, UnitsRecord,
+    build_id, fate_words, side_word,
 };
 pub use text::{grouped, length};

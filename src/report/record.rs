@@ -2,15 +2,20 @@
 
 use serde::Serialize;
 
-use crate::assess::{Assessment, Clarity};
-use crate::geometry::Similarity;
+use super::pose::PoseRecord;
+use crate::assess::{Assessment, Clarity, Coverage, OneSided};
+use crate::formats::FileHash;
+use crate::geometry::Point3;
 use crate::registration::{
     Fate, MatchOutcome, MatchSettings, Selection, Side, StartMethod, StartRecord,
 };
-use crate::units::LengthUnit;
 
 /// Which way the matrix goes, in words.
 pub const DIRECTION: &str = "crash = c · R · stamped + t (column vectors)";
+
+/// How the numbers of a record are laid out, in words.
+const CONVENTION: &str = "matrices row by row for column vectors; a mirrored part is mirrored at \
+    x = 0 first, then turned by quaternion or axis and angle";
 
 /// Name and version of this program, with the source revision where it is known.
 pub fn build_id() -> String {
@@ -28,16 +33,13 @@ pub struct MatchRecord {
     pub schema: &'static str,
     /// Which way the matrix goes.
     pub direction: &'static str,
-    /// 4×4 as rows, crash from stamped, scale included.
-    pub matrix: [[f64; 4]; 4],
-    /// R as rows; its determinant is −1 for a mirrored part.
-    pub rotation: [[f64; 3]; 3],
-    /// t in the crash model's length unit.
-    pub translation: [f64; 3],
-    /// The unit of every length here: `mm`, `cm`, `m`, `in` or `ft`; absent if unknown.
-    pub length_unit: Option<&'static str>,
-    /// c.
-    pub scale: f64,
+    /// How its numbers are laid out.
+    pub convention: &'static str,
+    /// What the lengths of this record are counted in.
+    pub units: UnitsRecord,
+    /// The transformation in every form.
+    #[serde(flatten)]
+    pub pose: PoseRecord,
     /// `good`, `check` or `poor`.
     pub verdict: &'static str,
     /// Why, one sentence each, the gravest first.
@@ -46,6 +48,48 @@ pub struct MatchRecord {
     pub ambiguous: bool,
     /// Distinct poses that came close, best first.
     pub alternatives: Vec<AlternativeRecord>,
+    /// Distances and overlap.
+    pub metrics: Metrics,
+    /// Motions that change nothing, in words; absent if the shape fixes the pose.
+    pub free_motion: Option<String>,
+    /// The method by name.
+    pub method: &'static str,
+    /// All choices of the method.
+    pub parameters: Parameters,
+    /// Seed of random numbers. A match draws none, so there is none: same input, same bits.
+    pub seed: Option<u64>,
+    /// Every start.
+    pub starts: Vec<StartEntry>,
+    /// Durations.
+    pub timings: TimingsRecord,
+    /// What the user should know besides the verdict.
+    pub warnings: Vec<String>,
+    /// The two files.
+    pub files: Files,
+    /// The line that does the match again without the window.
+    pub command_line: String,
+    /// Program, version, revision.
+    pub build: String,
+    /// Where it ran.
+    pub machine: Machine,
+}
+
+/// What the lengths of a record are counted in.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UnitsRecord {
+    /// The unit of every length: `mm`, `cm`, `m`, `in` or `ft`; none if unknown.
+    pub length: Option<&'static str>,
+    /// The angle unit of everything that ends in `_deg`.
+    pub angle: &'static str,
+    /// Coordinates of the crash file were multiplied by this before anything else.
+    pub crash_factor: f64,
+    /// Coordinates of the stamped file were multiplied by this before the matrix.
+    pub stamped_factor: f64,
+}
+
+/// Distances between the parts at the pose, in length units.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Metrics {
     /// Root mean square distance within the overlap limit, the larger of both directions.
     pub rmse: f64,
     /// Distance that 95 % of the overlapping area stays below, the larger of both directions.
@@ -54,22 +98,59 @@ pub struct MatchRecord {
     pub max: f64,
     /// How much of the parts lies on each other.
     pub overlap: OverlapRecord,
-    /// Motions that change nothing, in words; absent if the shape fixes the pose.
-    pub free_motion: Option<String>,
-    /// The method by name.
-    pub method: &'static str,
-    /// All choices of the method.
-    pub parameters: Parameters,
-    /// Every start.
-    pub starts: Vec<StartEntry>,
-    /// Durations in milliseconds.
-    pub timings_ms: TimingsRecord,
-    /// What the user should know besides the verdict.
-    pub warnings: Vec<String>,
-    /// The two files.
-    pub files: Files,
-    /// Program, version, revision.
-    pub build: String,
+    /// Stamped nodes against the crash part.
+    pub stamped_on_crash: OneWay,
+    /// Crash nodes against the stamped part.
+    pub crash_on_stamped: OneWay,
+}
+
+/// Distances of the nodes of one part from the triangles of the other, weighted by area.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct OneWay {
+    /// Share of the area within the limit.
+    pub overlap: f64,
+    /// Root mean square distance within the limit.
+    pub rmse: f64,
+    /// Distance that 95 % of the overlapping area stays below.
+    pub p95: f64,
+    /// Largest distance within the limit.
+    pub max: f64,
+    /// Largest distance of any node.
+    pub max_anywhere: f64,
+}
+
+impl From<&OneSided> for OneWay {
+    fn from(one: &OneSided) -> Self {
+        Self {
+            overlap: one.overlap,
+            rmse: one.rmse,
+            p95: one.p95,
+            max: one.max,
+            max_anywhere: one.max_anywhere,
+        }
+    }
+}
+
+/// The computer.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Machine {
+    /// Operating system.
+    pub os: &'static str,
+    /// Processor architecture.
+    pub arch: &'static str,
+    /// Threads that worked.
+    pub threads: usize,
+}
+
+impl Machine {
+    /// This one.
+    pub fn here() -> Self {
+        Self {
+            os: std::env::consts::OS,
+            arch: std::env::consts::ARCH,
+            threads: rayon::current_num_threads(),
+        }
+    }
 }
 
 /// A distinct pose that came close.
@@ -117,12 +198,32 @@ pub struct Parameters {
     pub angle_segment_deg: f64,
     /// Number of those rotations, for one direction of the normal.
     pub n_rotations: Option<usize>,
+    /// True if both directions of the mean normal were tried.
+    pub both_directions: bool,
+    /// True if more starts were to be added where none convinced.
+    pub widen: bool,
     /// How the starts were searched.
     pub search: &'static str,
+    /// Points of the first stage of the race.
+    pub race_points: usize,
+    /// Points of its second stage.
+    pub refine_points: usize,
+    /// Iterations a run might take.
+    pub max_iterations: usize,
+    /// A run has settled when a step moves no corner by more than this share of an edge length.
+    pub motion_tolerance: f64,
+    /// Largest angle between the normals of a pair.
+    pub max_normal_angle_deg: f64,
+    /// Deviation to be expected besides faceting.
+    pub allowance: f64,
     /// True if the winner was finished on the full meshes.
     pub finish_on_full: bool,
-    /// Which part's nodes were laid on the other part's triangles in the end.
+    /// Whose nodes were to be laid on the other part's triangles.
+    pub points_of: &'static str,
+    /// Whose nodes were laid on the other part's triangles in the end.
     pub data_side: &'static str,
+    /// Ceilings of the crash and the stamped mesh the starts ran on; none for a full mesh.
+    pub max_triangles: [Option<usize>; 2],
     /// Triangles of the crash mesh the starts ran on.
     pub crash_triangles: usize,
     /// Triangles of the stamped mesh the starts ran on.
@@ -158,18 +259,17 @@ pub struct StartEntry {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct TimingsRecord {
     /// Reading both files and making meshes of them.
-    pub read: f64,
+    pub read_ms: f64,
     /// Reducing both meshes; 0 if nothing was reduced.
-    pub reduce: f64,
+    pub reduce_ms: f64,
     /// Trees, normals and first poses.
-    pub align: f64,
+    pub align_ms: f64,
     /// All starts and the finish.
-    #[serde(rename = "match")]
-    pub matching: f64,
+    pub match_ms: f64,
     /// The independent check.
-    pub verify: f64,
+    pub verify_ms: f64,
     /// Everything together.
-    pub total: f64,
+    pub total_ms: f64,
 }
 
 /// The two sides of a match.
@@ -186,16 +286,39 @@ pub struct Files {
 pub struct FileRecord {
     /// Path of the file.
     pub path: String,
+    /// The file's name.
+    pub name: String,
+    /// SHA-256 of the file as it is stored.
+    #[serde(rename = "sha256")]
+    pub hash: Option<FileHash>,
+    /// The files it includes.
+    pub includes: Vec<IncludedFile>,
     /// Ids of the parts that were matched.
     pub parts: Vec<u64>,
+    /// Nodes of the file and its includes.
+    pub nodes: usize,
     /// Triangles of the matched surface.
     pub triangles: usize,
+    /// Mean thickness of the matched shells, if known.
+    pub thickness: Option<f64>,
     /// Factor its coordinates were multiplied with when it was read.
     pub length_factor: f64,
     /// Its own units, before that factor: a length, or a system such as `ton-mm-s`.
     pub units: Option<&'static str>,
     /// How its units became known, in words.
     pub units_from: Option<&'static str>,
+    /// Warnings and errors of the reader.
+    pub findings: u64,
+}
+
+/// A file that another one includes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct IncludedFile {
+    /// Its path.
+    pub path: String,
+    /// SHA-256 of the file as it is stored.
+    #[serde(rename = "sha256")]
+    pub hash: Option<FileHash>,
 }
 
 /// What a record is made of besides outcome and assessment.
@@ -203,16 +326,24 @@ pub struct FileRecord {
 pub struct RecordContext {
     /// The settings of the match.
     pub settings: MatchSettings,
+    /// Ceilings of the crash and the stamped mesh the starts ran on.
+    pub max_triangles: [Option<usize>; 2],
     /// Triangles of the crash and the stamped mesh the starts ran on.
     pub n_triangles: [usize; 2],
+    /// What lengths are counted in.
+    pub units: UnitsRecord,
+    /// A node of the stamped part: its id and place in the crash model's unit.
+    pub sample_node: Option<(u64, Point3)>,
+    /// Centre of the stamped part's box, in the crash model's unit.
+    pub center: Point3,
     /// The two sides.
     pub files: Files,
-    /// The unit of every length, if it is known.
-    pub length_unit: Option<LengthUnit>,
     /// Durations.
     pub timings: TimingsRecord,
     /// What the user should know besides the verdict.
     pub warnings: Vec<String>,
+    /// The line that does the match again.
+    pub command_line: String,
 }
 
 impl MatchRecord {
@@ -227,34 +358,44 @@ impl MatchRecord {
         Self {
             schema: "shapematch.match/1",
             direction: DIRECTION,
-            matrix: pose.to_rows(),
-            rotation: rotation_rows(pose),
-            translation: pose.translation.into(),
-            length_unit: context.length_unit.map(LengthUnit::symbol),
-            scale: pose.scale,
+            convention: CONVENTION,
+            pose: PoseRecord::new(pose, context.sample_node, &context.center),
+            units: context.units.clone(),
             verdict: assessment.verdict.name(),
             reasons: assessment.reasons.clone(),
             ambiguous: assessment.ambiguity.clarity == Clarity::Ambiguous,
             alternatives: alternatives.collect(),
-            rmse: coverage.rmse(),
-            p95: coverage.p95(),
-            max: coverage
-                .source_on_target
-                .max
-                .max(coverage.target_on_source.max),
-            overlap: OverlapRecord {
-                stamped: coverage.source_on_target.overlap,
-                crash: coverage.target_on_source.overlap,
-                limit: coverage.limit,
-            },
+            metrics: Metrics::of(coverage),
             free_motion: assessment.freedom.motion.map(|motion| motion.words()),
             method: context.settings.method.name(),
             parameters: Parameters::of(outcome, &context),
+            seed: None,
             starts: outcome.starts.iter().map(StartEntry::of).collect(),
-            timings_ms: context.timings,
+            timings: context.timings,
             warnings: context.warnings,
             files: context.files,
+            command_line: context.command_line,
             build: build_id(),
+            machine: Machine::here(),
+        }
+    }
+}
+
+impl Metrics {
+    /// Collects the figures of both directions.
+    pub fn of(coverage: &Coverage) -> Self {
+        let (there, back) = (&coverage.source_on_target, &coverage.target_on_source);
+        Self {
+            rmse: coverage.rmse(),
+            p95: coverage.p95(),
+            max: there.max.max(back.max),
+            overlap: OverlapRecord {
+                stamped: there.overlap,
+                crash: back.overlap,
+                limit: coverage.limit,
+            },
+            stamped_on_crash: there.into(),
+            crash_on_stamped: back.into(),
         }
     }
 }
@@ -283,9 +424,19 @@ impl Parameters {
             start_method: settings.starts.method.label(),
             angle_segment_deg: settings.starts.angle_segment_deg,
             n_rotations: settings.starts.n_rotations().ok().filter(|_| by_normals),
+            both_directions: settings.starts.both_signs,
+            widen: settings.starts.widen,
             search: settings.search.label(),
+            race_points: settings.n_race_points,
+            refine_points: settings.n_refine_points,
+            max_iterations: settings.max_iterations,
+            motion_tolerance: settings.motion_tolerance,
+            max_normal_angle_deg: settings.max_normal_angle_deg,
+            allowance: settings.allowance,
             finish_on_full: settings.finish,
+            points_of: settings.data_side.label(),
             data_side: side_word(outcome.data_side),
+            max_triangles: context.max_triangles,
             crash_triangles: context.n_triangles[0],
             stamped_triangles: context.n_triangles[1],
         }
@@ -326,8 +477,4 @@ pub fn fate_words(fate: Fate) -> String {
         Fate::Dropped { after } => format!("dropped after {after} iterations"),
         Fate::Failed => "found no fit".into(),
     }
-}
-
-fn rotation_rows(pose: &Similarity) -> [[f64; 3]; 3] {
-    std::array::from_fn(|row| std::array::from_fn(|col| pose.rotation[(row, col)]))
 }

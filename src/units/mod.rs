@@ -105,6 +105,17 @@ pub struct Units {
 }
 
 impl Units {
+    /// The units of a [`Units::label`].
+    pub fn from_label(label: &str) -> Option<Self> {
+        Self::all().find(|units| units.label() == label)
+    }
+
+    /// Every length alone, then every system.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let lengths = LengthUnit::ALL.into_iter().map(Self::from);
+        lengths.chain(UnitSystem::ALL.into_iter().map(Self::from))
+    }
+
     /// The name of the system, or the length alone.
     pub fn label(self) -> &'static str {
         match self.system {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use serde_json::Value;
-use shapematch::formats::{ReadOptions, read};
+use shapematch::formats::{FileHash, ReadOptions, read};
 use shapematch::geometry::{Matrix4, Similarity};
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::sweep::node_distance;
@@ -105,39 +105,112 @@ fn the_record_has_its_keys() {
     let keys = [
         "schema",
         "direction",
+        "convention",
+        "units",
         "matrix",
+        "inverse",
         "rotation",
+        "rotation_axis_angle",
+        "quaternion",
         "translation",
         "scale",
         "verdict",
         "reasons",
         "ambiguous",
         "alternatives",
-        "rmse",
-        "p95",
-        "max",
-        "overlap",
+        "metrics",
         "method",
         "parameters",
+        "seed",
         "starts",
-        "timings_ms",
+        "timings",
         "warnings",
         "files",
+        "command_line",
         "build",
+        "machine",
     ];
     for key in keys {
         assert!(record.get(key).is_some(), "no key {key}");
     }
     for key in ["read", "reduce", "align", "match", "verify", "total"] {
-        assert!(record["timings_ms"][key].is_f64(), "no time {key}");
+        let time = &record["timings"][format!("{key}_ms")];
+        assert!(time.is_f64(), "no time {key}");
     }
     for key in ["stamped", "crash", "limit"] {
-        assert!(record["overlap"][key].is_f64(), "no overlap {key}");
+        let overlap = &record["metrics"]["overlap"];
+        assert!(overlap[key].is_f64(), "no overlap {key}");
+    }
+    for (side, name) in [("crash", "crash.k.gz"), ("stamped", "stamped.dynain.gz")] {
+        let file = &record["files"][side];
+        assert_eq!(file["name"], name);
+        let bytes = std::fs::read(pair.path(name)).unwrap();
+        assert_eq!(file["sha256"], FileHash::of(&bytes).to_string());
     }
     assert_eq!(record["schema"], "shapematch.match/1");
+    let there = similarity(&record["matrix"]);
+    let back = similarity(&record["inverse"]);
+    let still = Similarity::identity().to_matrix4();
+    assert!((back.after(&there).to_matrix4() - still).amax() < 1e-9);
     assert_eq!(record["verdict"], "good");
     assert_eq!(record["rotation"].as_array().unwrap().len(), 3);
     assert_eq!(record["translation"].as_array().unwrap().len(), 3);
+}
+
+/// Runs the line as a shell would, with this build in place of the installed program.
+fn run_line(line: &str, more: &[&str]) -> Value {
+    let program = Path::new(env!("CARGO_BIN_EXE_shapematch"));
+    let path = std::env::join_paths(std::iter::once(program.parent().unwrap().to_owned()).chain(
+        std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()),
+    ));
+    let output = Command::new("sh")
+        .args(["-c", &format!("{line} {}", more.join(" "))])
+        .env("PATH", path.unwrap())
+        .output()
+        .unwrap();
+    let told = text(&output.stderr);
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|e| panic!("{line}: {e}: {told}"))
+}
+
+#[test]
+#[cfg(unix)]
+fn the_line_in_a_record_does_the_match_again_bit_for_bit() {
+    let pair = Pair::bundled();
+    let odd = pair.path("it's here.k.gz");
+    std::fs::copy(pair.path("crash.k.gz"), &odd).unwrap();
+    let stamped = pair.path("stamped.dynain.gz");
+    let pose = "0 -1 0 12.5  1 0 0 -3.25  0 0 1 1e2  0 0 0 1";
+    let options: [&[&str]; 3] = [
+        &[],
+        &[
+            "--crash-part",
+            "title:FLOOR PAN FRONT",
+            "--crash-triangles",
+            "900",
+            "--lambda",
+            "1.7",
+        ],
+        &[
+            "--start-pose",
+            pose,
+            "--method",
+            "icp",
+            "--stamped-unit",
+            "1.001",
+            "--normal-angle",
+            "70",
+        ],
+    ];
+    for options in options {
+        let output = shapematch(&[&["match", &odd, &stamped, "--json", "-"], options].concat());
+        let first: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let line = first["command_line"].as_str().unwrap();
+        let second = run_line(line, &["--json", "-", "--threads", "1"]);
+        assert_eq!(second["matrix"], first["matrix"], "{line}");
+        assert_eq!(second["starts"], first["starts"], "{line}");
+        assert_eq!(second["parameters"], first["parameters"], "{line}");
+        assert_eq!(second["command_line"], first["command_line"]);
+    }
 }
 
 #[test]

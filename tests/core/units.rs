@@ -142,7 +142,7 @@ fn every_export_states_units_and_factors() {
     let identity = Similarity::identity();
     let run = match_parts(&crash, &stamped, None, &recipe, &identity, &silent).unwrap();
     let record = match_record(&run, &crash, &stamped);
-    assert_eq!(record.length_unit, Some("mm"));
+    assert_eq!(record.units.length, Some("mm"));
     assert_eq!(record.files.crash.units, Some("kg-mm-ms"));
     assert_eq!(record.files.stamped.units, Some("mm"));
     let form = shapematch::report::CardForm::ALL[0];

@@ -43,7 +43,7 @@ impl Action {
                 require(is_moved, "the part is where its file has it")
             }
             A::BringCentersTogether | A::Align | A::Measure => state.can_match(),
-            A::ToggleMoveOver => state.has_both_parts(),
+            A::ToggleMoveOver | A::CopyCommandLine => state.has_both_parts(),
             A::Reduce => state.can_reduce(),
             A::NextLevel | A::PreviousLevel => level_step(self, state),
             A::ReduceToFull | A::ToggleDetailed | A::ToggleSplit => is_reduced(state),

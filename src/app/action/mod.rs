@@ -225,6 +225,8 @@ actions! {
     SaveCards,
     /// The moved stamped part into a file.
     SaveMoved,
+    /// The match as a line for a shell.
+    CopyCommandLine,
     /// The log as text.
     CopyLog,
     /// A picture.

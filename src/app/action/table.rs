@@ -391,6 +391,11 @@ impl Action {
                 "Write the stamped part where it lies on the crash part",
                 None,
             ),
+            Self::CopyCommandLine => (
+                "Copy as command line",
+                "Copy the line that does this match again without the window, bit for bit",
+                None,
+            ),
             Self::CopyLog => ("Copy log", "Copy the rows of the log as text", None),
             Self::TakePicture => (
                 "Picture…",

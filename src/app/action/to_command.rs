@@ -172,6 +172,7 @@ impl Action {
             Self::SaveRecord => save(ExportKind::Record),
             Self::SaveCards => save(ExportKind::Cards(CardForm::ALL[0])),
             Self::SaveMoved => save(ExportKind::Moved),
+            Self::CopyCommandLine => ExportCommand::CopyCommandLine.into(),
             Self::CopyLog => ExportCommand::CopyLog.into(),
             Self::TakePicture => picture(false).into(),
             Self::TakePictureTransparent => picture(true).into(),

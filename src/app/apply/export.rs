@@ -11,6 +11,10 @@ impl AppState {
             ExportCommand::CopyMatrix(form) => self.copy_matrix(form),
             ExportCommand::AskSave(kind) => vec![Effect::AskSave(kind)],
             ExportCommand::Write { kind, path } => self.write(kind, path),
+            ExportCommand::CopyCommandLine => match self.command_line() {
+                Some(line) => self.copy(line, "Command line"),
+                None => Vec::new(),
+            },
             ExportCommand::CopyLog => self.copy(self.log.to_text(), "Log"),
             ExportCommand::CopyText { text, what } => self.copy(text, &what),
             ExportCommand::TakePicture { is_transparent } => {

@@ -1,6 +1,6 @@
 use crate::app::state::Starts;
 use crate::app::{
-    AppState, BottomTab, Effect, MatchCommand, MatchResult, NoticeLevel, ViewCommand, facts,
+    AppState, BottomTab, Effect, MatchCommand, MatchResult, NoticeLevel, Part, ViewCommand, facts,
 };
 use crate::assess::Coverage;
 use crate::geometry::Point3;
@@ -51,6 +51,7 @@ impl AppState {
         let reduced = is_reduced.then(|| ReducedPair {
             crash: Arc::clone(crash.reduced_mesh()),
             stamped: Arc::clone(stamped.reduced_mesh()),
+            max_triangles: [crash, stamped].map(Part::ceiling),
         });
         Some(MatchInput {
             crash: crash.loaded.to_arc(),

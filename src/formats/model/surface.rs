@@ -27,6 +27,23 @@ pub enum Selection {
     NodeSet(u64),
 }
 
+impl Selection {
+    /// The choice as it is typed on the command line; `None` for everything.
+    pub fn typed(&self) -> Option<String> {
+        match self {
+            Self::All => None,
+            Self::Parts(ids) => {
+                let ids: Vec<String> = ids.iter().map(u64::to_string).collect();
+                Some(ids.join(","))
+            }
+            Self::PartTitle(title) => Some(format!("title:{title}")),
+            Self::PartSet(id) => Some(format!("set:{id}")),
+            Self::ShellSet(id) => Some(format!("shell-set:{id}")),
+            Self::NodeSet(id) => Some(format!("node-set:{id}")),
+        }
+    }
+}
+
 /// Why a selection gives no surface.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SelectionError {

@@ -24,6 +24,15 @@ impl Metric {
     /// Every metric, in the order of menus.
     pub const ALL: [Self; 3] = [Self::PointToPoint, Self::PointToPlane, Self::Symmetric];
 
+    /// The word for the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PointToPoint => "point-to-point",
+            Self::PointToPlane => "point-to-plane",
+            Self::Symmetric => "symmetric",
+        }
+    }
+
     /// Short name for menus.
     pub fn label(self) -> &'static str {
         match self {

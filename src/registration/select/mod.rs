@@ -61,6 +61,23 @@ impl Selection {
         },
     ];
 
+    /// The choice of that [`Selection::name`]: `usual` if it is of this kind, else one with the usual
+    /// parameters of its kind.
+    pub fn of_kind(name: &str, usual: Self) -> Option<Self> {
+        let mut choices = [usual].into_iter().chain(Self::ALL);
+        choices.find(|choice| choice.name() == name)
+    }
+
+    /// The word for the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::Trimmed { .. } => "trimmed",
+            Self::TrimmedSearch => "trimmed-search",
+            Self::Fractional { .. } => "fractional",
+        }
+    }
+
     /// Short name for menus.
     pub fn label(self) -> &'static str {
         match self {

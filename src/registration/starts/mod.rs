@@ -35,6 +35,16 @@ impl StartMethod {
         Self::All,
     ];
 
+    /// The word for the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SurfaceNormals => "surface-normal",
+            Self::CurrentPose => "current",
+            Self::GivenPoses => "given",
+            Self::All => "all",
+        }
+    }
+
     /// Short name for menus.
     pub fn label(self) -> &'static str {
         match self {

@@ -1,0 +1,98 @@
+//! Tables for other programs: plain text, one row a line, every digit.
+
+use std::fmt::Write as _;
+
+use super::matrix::number;
+use crate::assess::deviation::OverlapClass;
+use crate::geometry::Point3;
+
+/// The head of a table of node deviations.
+pub const DEVIATION_COLUMNS: &str = "part,node,x,y,z,distance,class,nearest_element";
+
+/// One node seen from the other part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeDeviation {
+    /// `stamped` or `crash`: whose node it is.
+    pub part: &'static str,
+    /// Its id in its file.
+    pub node: u64,
+    /// Where it lies, in the frame and unit of the crash part.
+    pub at: Point3,
+    /// Signed distance, positive where the stamped part lies in front of the crash part; infinite
+    /// where nothing is within reach.
+    pub distance: f64,
+    /// What the distance means.
+    pub class: OverlapClass,
+    /// Id of the element of the other part that is nearest.
+    pub nearest_element: Option<u64>,
+}
+
+/// A word for machines.
+pub fn class_word(class: OverlapClass) -> &'static str {
+    match class {
+        OverlapClass::Matched => "matched",
+        OverlapClass::OffByMore => "off",
+        OverlapClass::OnlyHere => "only_here",
+    }
+}
+
+/// A table with `comments` before it, each behind `#`. Numbers read back to the same bits; where
+/// there is no value the cell is empty.
+pub fn deviation_table(comments: &[String], rows: &[NodeDeviation]) -> String {
+    let mut text = String::with_capacity(96 * rows.len());
+    for comment in comments.iter().flat_map(|comment| comment.lines()) {
+        text += "# ";
+        text += comment;
+        text.push('\n');
+    }
+    text += DEVIATION_COLUMNS;
+    text.push('\n');
+    for row in rows {
+        let [x, y, z] = [row.at.x, row.at.y, row.at.z].map(number);
+        let distance = if row.distance.is_finite() {
+            number(row.distance)
+        } else {
+            String::new()
+        };
+        let element = row
+            .nearest_element
+            .map_or_else(String::new, |id| id.to_string());
+        let (part, node, class) = (row.part, row.node, class_word(row.class));
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{part},{node},{x},{y},{z},{distance},{class},{element}"
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_read_back_and_missing_values_are_empty() {
+        let near = NodeDeviation {
+            part: "stamped",
+            node: 12,
+            at: Point3::new(0.1 + 0.2, -1e-7, 5000.0),
+            distance: -1.0 / 3.0,
+            class: OverlapClass::Matched,
+            nearest_element: Some(7),
+        };
+        let far = NodeDeviation {
+            distance: f64::INFINITY,
+            class: OverlapClass::OnlyHere,
+            nearest_element: None,
+            ..near
+        };
+        let text = deviation_table(&["a\nb".to_owned()], &[near, far]);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[..3], ["# a", "# b", DEVIATION_COLUMNS]);
+        let cells: Vec<&str> = lines[3].split(',').collect();
+        let numbers = [2, 3, 4, 5].map(|i| cells[i].parse::<f64>().unwrap());
+        assert_eq!(numbers, [near.at.x, near.at.y, near.at.z, near.distance]);
+        assert_eq!(&lines[4][lines[4].len() - 12..], ",,only_here,");
+    }
+}
