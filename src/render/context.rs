@@ -1,12 +1,15 @@
 //! What is made once per device: layouts, shaders, pipelines.
 
 use super::pass::{Passes, composite::Composite};
+use super::sheets::Sheets;
 
 /// Format of every picture; shaders write sRGB values into it. A view of another format would be
 /// simpler, but OpenGL has none.
 pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub(super) const PICK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
+/// Bits of a depth; as a float it could not be drawn to everywhere.
+pub(super) const SHEET_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 pub(super) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 /// Samples per pixel; every device has four.
 pub(super) const SAMPLES: u32 = 4;
@@ -17,6 +20,8 @@ pub(super) struct Context {
     pub(super) layouts: Layouts,
     pub(super) passes: Passes,
     pub(super) composite: Composite,
+    /// What shaders read in place of the sheets' depths where there are none.
+    pub(super) no_sheets: Sheets,
 }
 
 impl Context {
@@ -26,6 +31,7 @@ impl Context {
         Self {
             passes: Passes::new(device, &layouts),
             composite: Composite::new(device, window_format),
+            no_sheets: Sheets::new(device, [1; 2]),
             layouts,
         }
     }
@@ -34,7 +40,7 @@ impl Context {
 /// Bind groups that several passes share.
 #[derive(Debug)]
 pub(super) struct Layouts {
-    /// Group 0: the frame's numbers.
+    /// Group 0: the frame's numbers and the depths of the two sheets.
     pub(super) frame: wgpu::BindGroupLayout,
     /// Group 1: a drawable's numbers, its parts table and its field's colours.
     pub(super) drawable: wgpu::BindGroupLayout,
@@ -53,7 +59,14 @@ impl Layouts {
         let table = wgpu::TextureSampleType::Uint;
         let colors = wgpu::TextureSampleType::Float { filterable: false };
         Self {
-            frame: layout("frame", &[uniform_entry(0)]),
+            frame: layout(
+                "frame",
+                &[
+                    uniform_entry(0),
+                    texture_entry(1, wgpu::ShaderStages::FRAGMENT, table),
+                    texture_entry(2, wgpu::ShaderStages::FRAGMENT, table),
+                ],
+            ),
             drawable: layout(
                 "drawable",
                 &[

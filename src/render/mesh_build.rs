@@ -8,11 +8,16 @@ use crate::geometry::{Topology, TriMesh, Vector3};
 const SMOOTH_COS: f64 = 0.819_152_044_288_991_8;
 /// Edges that turn by more are drawn as creases: cos 25°.
 const FEATURE_COS: f64 = 0.906_307_787_036_650;
+/// Creases sharper than this are certain: cos 34°.
+const CERTAIN_COS: f64 = 0.829_037_572_555_041_7;
 /// Creases sharper than this are drawn however short they are: cos 50°.
 const SHARP_COS: f64 = 0.642_787_609_686_539_4;
-/// Softer creases are drawn where at least so many edges hang together. Radii meshed with two or three
-/// elements bend by about 25° per row, and a few edges above the limit would look like stitches.
-const MIN_CHAIN: u32 = 8;
+/// Softer creases are drawn where at least so many edges hang together: a fold that runs askew to the
+/// mesh jumps from row to row, and its pieces would look like stitches.
+const MIN_CHAIN: u32 = 20;
+/// And where at least one in so many is certain. Radii meshed with three or four elements bend by about
+/// 25° per row, and only some of their edges lie above the limit.
+const CERTAIN_ONE_IN: u32 = 3;
 
 /// Unit normal of each triangle.
 pub(super) fn face_normals(mesh: &TriMesh) -> Vec<Vector3> {
@@ -105,8 +110,7 @@ pub(super) struct EdgeClasses {
 impl EdgeClasses {
     pub(super) fn of(topology: &Topology, faces: &[Vector3], elements: Option<&[u32]>) -> Self {
         let mut classes = Self::default();
-        let mut soft = Vec::new();
-        let mut sharp = Vec::new();
+        let mut creases = Vec::new();
         for edge in 0..topology.edges.len() {
             let around = topology.triangles_of(edge);
             if is_inside_element(around, elements) {
@@ -121,18 +125,13 @@ impl EdgeClasses {
                     let cos = a.dot(&b).abs();
                     let degenerate = a == Vector3::zeros() || b == Vector3::zeros();
                     if cos < FEATURE_COS && !degenerate {
-                        let list = if cos < SHARP_COS {
-                            &mut sharp
-                        } else {
-                            &mut soft
-                        };
-                        list.push(edge);
+                        creases.push(Crease { edge, cos });
                     }
                 }
-                _ => sharp.push(edge),
+                _ => creases.push(Crease { edge, cos: 0.0 }),
             }
         }
-        classes.features = long_chains(topology, &sharp, &soft);
+        classes.features = clear_creases(topology, &creases);
         classes
     }
 }
@@ -145,28 +144,43 @@ fn is_inside_element(around: &[u32], elements: Option<&[u32]>) -> bool {
     element(a).is_some() && element(a) == element(b)
 }
 
-/// All sharp edges, and the soft ones that hang together with at least [`MIN_CHAIN`] of either kind;
-/// in ascending order.
-fn long_chains(topology: &Topology, sharp: &[usize], soft: &[usize]) -> Vec<usize> {
-    let mut all: Vec<usize> = sharp.iter().chain(soft).copied().collect();
-    all.sort_unstable();
-    let mut ends: Vec<u32> = all.iter().flat_map(|&e| topology.edges[e]).collect();
+/// An edge that may be drawn as a crease, and the cosine of its bend.
+#[derive(Debug, Clone, Copy)]
+struct Crease {
+    edge: usize,
+    cos: f64,
+}
+
+/// The creases that are sharp, and the softer ones that hang together with many others of which enough
+/// are certain (thresholding with hysteresis, Canny 1986). Keeps the order.
+fn clear_creases(topology: &Topology, creases: &[Crease]) -> Vec<usize> {
+    let mut ends: Vec<u32> = creases
+        .iter()
+        .flat_map(|c| topology.edges[c.edge])
+        .collect();
     ends.sort_unstable();
     ends.dedup();
     // Union–find over the ends of the candidates.
     let mut parent: Vec<usize> = (0..ends.len()).collect();
     let place = |vertex: u32| ends.partition_point(|&v| v < vertex);
-    for &edge in &all {
-        let [a, b] = topology.edges[edge].map(|v| root(&mut parent, place(v)));
+    for crease in creases {
+        let [a, b] = topology.edges[crease.edge].map(|v| root(&mut parent, place(v)));
         parent[a.max(b)] = a.min(b);
     }
-    let mut n_edges = vec![0u32; ends.len()];
     let mut chain_of = |edge: usize| root(&mut parent, place(topology.edges[edge][0]));
-    for &edge in &all {
-        n_edges[chain_of(edge)] += 1;
+    // All edges of a chain, and those that are certain.
+    let mut counts = vec![[0_u32; 2]; ends.len()];
+    for crease in creases {
+        let [all, certain] = &mut counts[chain_of(crease.edge)];
+        *all += 1;
+        *certain += u32::from(crease.cos < CERTAIN_COS);
     }
-    all.retain(|&edge| n_edges[chain_of(edge)] >= MIN_CHAIN || sharp.binary_search(&edge).is_ok());
-    all
+    let mut is_clear = |crease: &&Crease| {
+        let [all, certain] = counts[chain_of(crease.edge)];
+        crease.cos < SHARP_COS || (all >= MIN_CHAIN && certain * CERTAIN_ONE_IN >= all)
+    };
+    let clear = creases.iter().filter(|crease| is_clear(crease));
+    clear.map(|crease| crease.edge).collect()
 }
 
 fn root(parent: &mut [usize], mut node: usize) -> usize {
@@ -252,9 +266,10 @@ mod tests {
             classes.features.len()
         };
         assert_eq!(n_features(3, 0.6), 0, "three soft edges are noise");
-        assert_eq!(n_features(12, 0.6), 12);
+        assert_eq!(n_features(24, 0.6), 24);
+        assert_eq!(n_features(24, 0.5), 0, "none of them is certain");
         assert_eq!(n_features(3, 1.2), 3, "sharp ones always count");
-        assert_eq!(n_features(12, 0.3), 0);
+        assert_eq!(n_features(24, 0.3), 0);
     }
 
     #[test]

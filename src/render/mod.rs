@@ -17,6 +17,7 @@ mod prepare;
 mod readback;
 mod renderer;
 mod scene;
+mod sheets;
 mod target;
 mod uniforms;
 
@@ -26,6 +27,6 @@ pub use readback::ReadbackError;
 pub use renderer::{Frame, Renderer};
 pub use scene::{
     Background, DepthMode, Drawable, FieldLook, Fill, LineLook, Marker, MarkerShape, Overlay,
-    PartLook, Polyline, Rgba, Scene, Section, Shading, Style, WipeSide,
+    PartLook, Polyline, Rgba, Scene, Section, Shading, Sheet, Style, WipeSide,
 };
 pub use target::ViewTarget;

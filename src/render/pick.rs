@@ -43,7 +43,7 @@ impl PickRequest {
             origin: corner,
             size: [f64::from(SIDE); 2],
         };
-        let prepared = Prepared::new(gpu, cache, frame, region);
+        let prepared = Prepared::new(gpu, cache, frame, region, context.no_sheets.views());
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let copied = usage | wgpu::TextureUsages::COPY_SRC;
         let ids = texture(gpu.device, [SIDE; 2], PICK_FORMAT, 1, copied);

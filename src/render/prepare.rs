@@ -8,7 +8,7 @@ use super::context::Layouts;
 use super::mesh_cache::{GpuMesh, MeshCache};
 use super::pass::overlay::PreparedOverlay;
 use super::renderer::Frame;
-use super::scene::{Drawable, PartLook, Style};
+use super::scene::{Drawable, PartLook, Sheet, Style};
 use super::uniforms::{DrawableUniform, FrameUniform, Region};
 
 /// Parts per row of the table; the smallest largest texture of all backends is 2048 wide and high.
@@ -20,6 +20,7 @@ const FIELD_STEPS: usize = 1024;
 #[derive(Debug)]
 pub(super) struct Prepared {
     pub(super) frame: wgpu::BindGroup,
+    uniform: wgpu::Buffer,
     /// Solid drawables, the one pushed back furthest first; then transparent ones from far to near.
     pub(super) solid: Vec<PreparedDrawable>,
     pub(super) clear: Vec<PreparedDrawable>,
@@ -35,6 +36,8 @@ pub(super) struct PreparedDrawable {
     pub(super) field: Option<Arc<wgpu::Buffer>>,
     pub(super) group: wgpu::BindGroup,
     pub(super) style: Style,
+    /// Set if it may coincide with the other sheet.
+    pub(super) sheet: Option<Sheet>,
 }
 
 /// The device and the layouts, which every preparation needs.
@@ -46,23 +49,17 @@ pub(super) struct Gpu<'a> {
 }
 
 impl Prepared {
-    /// Uploads what is new and makes the bind groups for drawing `region` of the frame.
+    /// Uploads what is new and makes the bind groups for drawing `region` of the frame. `sheets` are the
+    /// depths of the two sheets.
     pub(super) fn new(
         gpu: Gpu<'_>,
         cache: &mut MeshCache,
         frame: &Frame<'_>,
         region: Region,
+        sheets: [&wgpu::TextureView; 2],
     ) -> Self {
         let uniform = FrameUniform::new(frame, region);
-        let buffer = uniform_buffer(gpu.device, bytemuck::bytes_of(&uniform));
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("frame"),
-            layout: &gpu.layouts.frame,
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: buffer.as_entire_binding(),
-            }],
-        });
+        let uniform = uniform_buffer(gpu.device, bytemuck::bytes_of(&uniform));
         let pixel = frame.camera.height / f64::from(frame.size[1].max(1));
         let mut solid = Vec::new();
         let mut clear = Vec::new();
@@ -82,7 +79,8 @@ impl Prepared {
         solid.sort_by(|a, b| b.0.total_cmp(&a.0));
         clear.sort_by(|a, b| a.0.total_cmp(&b.0));
         Self {
-            frame: group,
+            frame: frame_group(gpu, &uniform, sheets),
+            uniform,
             solid: solid.into_iter().map(|(_, prepared)| prepared).collect(),
             clear: clear.into_iter().map(|(_, prepared)| prepared).collect(),
             overlay: PreparedOverlay::new(gpu.device, frame),
@@ -91,10 +89,44 @@ impl Prepared {
         }
     }
 
+    /// The frame's numbers with other depths of the sheets.
+    pub(super) fn frame_group(
+        &self,
+        gpu: Gpu<'_>,
+        sheets: [&wgpu::TextureView; 2],
+    ) -> wgpu::BindGroup {
+        frame_group(gpu, &self.uniform, sheets)
+    }
+
     /// Solid and transparent drawables.
     pub(super) fn all(&self) -> impl Iterator<Item = &PreparedDrawable> {
         self.solid.iter().chain(&self.clear)
     }
+}
+
+fn frame_group(
+    gpu: Gpu<'_>,
+    uniform: &wgpu::Buffer,
+    [first, second]: [&wgpu::TextureView; 2],
+) -> wgpu::BindGroup {
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("frame"),
+        layout: &gpu.layouts.frame,
+        entries: &[
+            wgpu::BindGroupEntry {
+                binding: 0,
+                resource: uniform.as_entire_binding(),
+            },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: wgpu::BindingResource::TextureView(first),
+            },
+            wgpu::BindGroupEntry {
+                binding: 2,
+                resource: wgpu::BindingResource::TextureView(second),
+            },
+        ],
+    })
 }
 
 fn prepare_drawable(
@@ -104,8 +136,10 @@ fn prepare_drawable(
     index: usize,
 ) -> PreparedDrawable {
     let drawable = &frame.scene.drawables[index];
-    let height = f64::from(frame.size[1].max(1));
-    let uniform = DrawableUniform::new(drawable, index, frame.camera, height);
+    let sheet = drawable.sheet.filter(|sheet| drawable.is_solid_of(*sheet));
+    let both = sheet.zip(frame.scene.coinciding());
+    let other_sheet = both.map(|(sheet, colors)| colors[sheet.other() as usize]);
+    let uniform = DrawableUniform::new(frame, index, other_sheet);
     let buffer = uniform_buffer(gpu.device, bytemuck::bytes_of(&uniform));
     let parts = parts_table(gpu, drawable.parts.as_deref().unwrap_or(&[]));
     let colors = field_table(gpu, drawable);
@@ -133,6 +167,7 @@ fn prepare_drawable(
         field: field.and_then(|field| cache.field(gpu.device, &drawable.mesh, field)),
         group,
         style: drawable.style,
+        sheet: both.map(|(sheet, _)| sheet),
     }
 }
 

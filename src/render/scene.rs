@@ -25,6 +25,12 @@ pub struct Scene {
     pub section: Option<Section>,
     /// Place of the wipe line as a share of the picture's width; see [`Drawable::wipe`].
     pub wipe: Option<f32>,
+    /// Where solid meshes of the two [`Sheet`]s lie closer together than this, both are drawn in stripes
+    /// of their two colours. World units.
+    pub coincidence: Option<f64>,
+    /// Brightness of the light on surfaces; zero counts as one. More than one suits dark colours on a
+    /// light ground.
+    pub exposure: f32,
     /// Pixels per point of the screen; widths and sizes are in points. Zero counts as one.
     pub pixels_per_point: f32,
 }
@@ -40,6 +46,23 @@ impl Scene {
             bounds.insert(point);
         }
         bounds
+    }
+
+    /// The exposure, one if it was not given.
+    pub(super) fn exposure(&self) -> f32 {
+        if self.exposure > 0.0 {
+            self.exposure
+        } else {
+            1.0
+        }
+    }
+
+    /// The sheets of which something solid is drawn, each with its colour, if both are there and may
+    /// coincide.
+    pub fn coinciding(&self) -> Option<[Rgb; 2]> {
+        self.coincidence.filter(|distance| *distance > 0.0)?;
+        let of = |sheet| self.drawables.iter().find(|d| d.is_solid_of(sheet));
+        Some([of(Sheet::First)?.color, of(Sheet::Second)?.color])
     }
 
     /// Pixels per point, at least a little more than nothing.
@@ -149,6 +172,25 @@ pub enum WipeSide {
     Right,
 }
 
+/// Of two sheets that may lie in each other, the one a mesh belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sheet {
+    /// One.
+    First,
+    /// The other.
+    Second,
+}
+
+impl Sheet {
+    /// The other one.
+    pub(super) fn other(self) -> Self {
+        match self {
+            Self::First => Self::Second,
+            Self::Second => Self::First,
+        }
+    }
+}
+
 /// One mesh in the picture.
 #[derive(Debug, Clone)]
 pub struct Drawable {
@@ -174,6 +216,8 @@ pub struct Drawable {
     /// The same in world units, added to it. Two meshes of one curved sheet cut through each other by
     /// their chord heights, about element size² / (4 · radius), at any zoom.
     pub push_back_length: f64,
+    /// The sheet it belongs to, for [`Scene::coincidence`].
+    pub sheet: Option<Sheet>,
     /// Side of the wipe line.
     pub wipe: WipeSide,
     /// True if the section plane cuts it.
@@ -198,6 +242,7 @@ impl Drawable {
             style: Style::default(),
             push_back: 0.0,
             push_back_length: 0.0,
+            sheet: None,
             wipe: WipeSide::Both,
             cut_by_section: true,
             selected: false,
@@ -215,6 +260,11 @@ impl Drawable {
             .corners()
             .map(|corner| self.world_from_mesh.apply(&corner) + self.offset);
         Aabb::of_points(&corners)
+    }
+
+    /// True if it hides what lies behind it and belongs to a sheet.
+    pub(super) fn is_solid_of(&self, sheet: Sheet) -> bool {
+        self.sheet == Some(sheet) && self.opacity >= 1.0 && self.style.surface
     }
 
     /// True if something is selected, so that an outline is needed.
@@ -240,6 +290,7 @@ impl PartialEq for Drawable {
             && self.style == other.style
             && self.push_back == other.push_back
             && self.push_back_length == other.push_back_length
+            && self.sheet == other.sheet
             && self.wipe == other.wipe
             && self.cut_by_section == other.cut_by_section
             && self.selected == other.selected
@@ -300,19 +351,19 @@ pub enum Shading {
 /// What is drawn of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Style {
-    /// The triangles.
+    /// The triangles. Without them lines are drawn in the mesh's own colour.
     pub surface: bool,
     /// Smooth or flat.
     pub shading: Shading,
     /// Edges of elements.
     pub element_edges: bool,
-    /// Creases sharper than 25°, short ones only if sharper than 50°.
+    /// Creases: lines along which the sheet clearly turns by more than 25°, short ones only above 50°.
     pub feature_edges: bool,
     /// Borders and holes.
     pub borders: bool,
     /// Nodes.
     pub points: bool,
-    /// A fine hatch on the back of sheets.
+    /// A fine, faint hatch on the back of sheets; small pictures of a mesh are left without.
     pub back_hatch: bool,
 }
 

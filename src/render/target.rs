@@ -3,6 +3,7 @@ use super::mesh_cache::MeshCache;
 use super::prepare::{Gpu, Prepared};
 use super::renderer::Frame;
 use super::scene::Scene;
+use super::sheets::Sheets;
 use super::uniforms::Region;
 use crate::geometry::Camera;
 
@@ -24,6 +25,8 @@ struct Textures {
     picture_view: wgpu::TextureView,
     /// For laying the picture on the window.
     composite: wgpu::BindGroup,
+    /// Made when two sheets may coincide for the first time.
+    sheets: Option<Sheets>,
     /// Made when something is selected for the first time.
     mask: Option<Mask>,
 }
@@ -81,8 +84,13 @@ impl ViewTarget {
             return false;
         }
         let frame = Frame { size, ..*frame };
-        let prepared = Prepared::new(gpu, cache, &frame, Region::whole(size));
         if let Some(textures) = &mut self.textures {
+            let sheets = textures.sheets(gpu.device, &frame);
+            let views = sheets.unwrap_or(&context.no_sheets).views();
+            let prepared = Prepared::new(gpu, cache, &frame, Region::whole(size), views);
+            if let Some(sheets) = sheets {
+                sheets.draw(gpu, context, encoder, &prepared);
+            }
             textures.draw(gpu, context, encoder, &prepared);
         }
         self.drawn = Some((frame.scene.clone(), *frame.camera));
@@ -106,8 +114,16 @@ impl Textures {
             composite: context.composite.bind(device, &picture_view),
             picture,
             picture_view,
+            sheets: None,
             mask: None,
         }
+    }
+
+    /// Textures for the depths of the two sheets, if they may coincide.
+    fn sheets(&mut self, device: &wgpu::Device, frame: &Frame<'_>) -> Option<&Sheets> {
+        frame.scene.coinciding()?;
+        let size = self.size;
+        Some(self.sheets.get_or_insert_with(|| Sheets::new(device, size)))
     }
 
     fn draw(

@@ -2,8 +2,8 @@
 //! `f64`; only their product, small near the target, becomes `f32`.
 
 use super::renderer::Frame;
-use super::scene::{Background, Drawable, Rgba, Shading, WipeSide};
-use crate::colormap::Rgb;
+use super::scene::{Background, Drawable, Rgba, Shading, Sheet, WipeSide};
+use crate::colormap::{Rgb, UNMATCHED};
 use crate::geometry::camera::ScreenSize;
 use crate::geometry::{Camera, Matrix4, Point3};
 
@@ -22,6 +22,7 @@ pub(super) struct FrameUniform {
     feature_color: [f32; 4],
     border_color: [f32; 4],
     selection_color: [f32; 4],
+    unmatched_color: [f32; 4],
     widths: [f32; 4],
 }
 
@@ -31,6 +32,7 @@ pub(super) struct FrameUniform {
 pub(super) struct DrawableUniform {
     view_from_mesh: [[f32; 4]; 4],
     color: [f32; 4],
+    other_sheet: [f32; 4],
     params: [f32; 4],
     flags: [u32; 4],
 }
@@ -80,13 +82,19 @@ impl FrameUniform {
                 region.origin[1] as f32,
             ],
             section: section_in_view(frame),
-            switches: [f32::from(scene.section.is_some()), wipe, 0.0, 0.0],
+            switches: [
+                f32::from(scene.section.is_some()),
+                wipe,
+                scene.exposure(),
+                scene.coincidence.unwrap_or(0.0) as f32,
+            ],
             background_top: opaque(top),
             background_bottom: opaque(bottom),
             edge_color: unit(lines.edge),
             feature_color: unit(lines.feature),
             border_color: unit(lines.border),
             selection_color: opaque(lines.selection),
+            unmatched_color: opaque(UNMATCHED),
             widths: [
                 lines.feature_width * scale,
                 lines.border_width * scale,
@@ -98,8 +106,11 @@ impl FrameUniform {
 }
 
 impl DrawableUniform {
-    /// The numbers of drawable `index` of the scene.
-    pub(super) fn new(drawable: &Drawable, index: usize, camera: &Camera, height_px: f64) -> Self {
+    /// The numbers of drawable `index` of the scene. `other_sheet` is the colour of what it may
+    /// coincide with.
+    pub(super) fn new(frame: &Frame<'_>, index: usize, other_sheet: Option<Rgb>) -> Self {
+        let (drawable, camera) = (&frame.scene.drawables[index], frame.camera);
+        let height_px = f64::from(frame.size[1].max(1));
         let origin = drawable.world_from_mesh.apply(&drawable.mesh.origin) + drawable.offset;
         let (first, per_step) = match &drawable.field {
             Some(field) => (field.scale.min, 1.0 / (field.scale.max - field.scale.min)),
@@ -120,6 +131,7 @@ impl DrawableUniform {
         Self {
             view_from_mesh: columns(&view_from_mesh(drawable, camera, &origin)),
             color: [r, g, b, drawable.opacity.clamp(0.0, 1.0)],
+            other_sheet: other_color(drawable, other_sheet, pixel, frame.scene.scale_factor()),
             params: [
                 first as f32,
                 per_step as f32,
@@ -127,7 +139,7 @@ impl DrawableUniform {
                 edge_opacity(drawable, pixel),
             ],
             flags: [
-                switches(drawable),
+                switches(drawable, other_sheet),
                 index as u32 + 1,
                 drawable
                     .parts
@@ -159,7 +171,17 @@ fn edge_opacity(drawable: &Drawable, pixel: f64) -> f32 {
     ((length / pixel - 2.5) / 6.5).clamp(0.0, 1.0) as f32
 }
 
-fn switches(drawable: &Drawable) -> u32 {
+/// The other sheet's colour, and how strong the hatch of back sides is: full on parts larger than 240
+/// points, none below 80.
+fn other_color(drawable: &Drawable, other: Option<Rgb>, pixel: f64, scale: f32) -> [f32; 4] {
+    let [r, g, b, _] = opaque(other.unwrap_or_default());
+    let size = drawable.mesh.bounds().diagonal() * drawable.world_from_mesh.scale;
+    let points = size / pixel / f64::from(scale);
+    [r, g, b, ((points - 80.0) / 160.0).clamp(0.0, 1.0) as f32]
+}
+
+fn switches(drawable: &Drawable, other_sheet: Option<Rgb>) -> u32 {
+    let sheet = drawable.sheet.filter(|_| other_sheet.is_some());
     [
         drawable.parts.is_some(),
         drawable.field.is_some(),
@@ -171,6 +193,9 @@ fn switches(drawable: &Drawable) -> u32 {
         drawable.wipe == WipeSide::Right,
         drawable.selected,
         drawable.hovered,
+        sheet == Some(Sheet::First),
+        sheet == Some(Sheet::Second),
+        !drawable.style.surface,
     ]
     .iter()
     .enumerate()

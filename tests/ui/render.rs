@@ -9,7 +9,7 @@ use shapematch::geometry::camera::{OrbitStyle, ScreenSize, StandardView};
 use shapematch::geometry::{Camera, Point3, Projection, Similarity, TriMesh, Vector3};
 use shapematch::render::{
     Background, DepthMode, Drawable, FieldLook, Frame, Marker, MarkerShape, MeshInput, PartLook,
-    Polyline, RenderMesh, Renderer, Scene, Section, Style, ViewTarget, WipeSide,
+    Polyline, RenderMesh, Renderer, Scene, Section, Sheet, Style, ViewTarget, WipeSide,
 };
 
 const SIZE: [u32; 2] = [120, 90];
@@ -134,11 +134,17 @@ fn back_sides_are_darker_and_hatched() {
     );
     assert!(plain_back * 10 < front * 9, "{plain_back} {front}");
     drawable.style.back_hatch = true;
-    let hatched = picture(&scene(vec![drawable]), &below);
-    let shades: std::collections::BTreeSet<u32> = (50..70)
-        .map(|x| brightness(hatched.get_pixel(x, 45).0))
-        .collect();
-    assert!(shades.len() > 2, "{shades:?}");
+    let n_shades = |camera: &Camera| {
+        let hatched = picture(&scene(vec![drawable.clone()]), camera);
+        let row = (50..70).map(|x| brightness(hatched.get_pixel(x, 45).0));
+        row.collect::<std::collections::BTreeSet<u32>>().len()
+    };
+    let near = Camera {
+        height: 1.0,
+        ..below
+    };
+    assert!(n_shades(&near) > 2, "a hatch");
+    assert_eq!(n_shades(&below), 1, "none on small pictures");
 }
 
 #[test]
@@ -208,6 +214,60 @@ fn the_nearer_of_coincident_sheets_wins_everywhere() {
         let differing = inner.filter(|(a, b)| difference(a.0, b.0) > 2).count();
         assert_eq!(differing, 0);
     }
+}
+
+#[test]
+fn sheets_that_coincide_are_striped_in_both_colours() {
+    let camera = from(StandardView::Top, Point3::origin());
+    let shot = |gap: f64, is_swapped: bool| {
+        let mut sheets = [
+            plain(&square(Point3::origin()), BLUE),
+            plain(&square(Point3::new(0.0, 0.0, gap)), ORANGE),
+        ];
+        sheets[0].sheet = Some(Sheet::First);
+        sheets[1].sheet = Some(Sheet::Second);
+        if is_swapped {
+            sheets.reverse();
+        }
+        let scene = Scene {
+            coincidence: Some(0.1),
+            ..scene(sheets.to_vec())
+        };
+        let picture = picture(&scene, &camera);
+        let (mut n_blue, mut n_orange) = (0, 0);
+        for x in 45..75 {
+            for y in 30..60 {
+                let [r, _, b, _] = picture.get_pixel(x, y).0.map(i32::from);
+                n_blue += u32::from(b > r + 40);
+                n_orange += u32::from(r > b + 40);
+            }
+        }
+        (n_blue, n_orange)
+    };
+    for (gap, is_swapped) in [(0.02, false), (-0.02, false), (0.0, true)] {
+        let (n_blue, n_orange) = shot(gap, is_swapped);
+        assert!(n_blue > 250 && n_orange > 250, "{gap}: {n_blue} {n_orange}");
+    }
+    assert_eq!(shot(0.2, false), (0, 900), "only the upper sheet");
+    assert_eq!(shot(-0.2, false), (900, 0), "only the upper sheet");
+}
+
+#[test]
+fn lines_without_a_surface_have_the_colour_of_their_part() {
+    let camera = from(StandardView::Top, Point3::origin());
+    let mut drawable = plain(&square(Point3::origin()), ORANGE);
+    drawable.style.borders = true;
+    let border = Point3::new(1.0, 0.3, 0.0);
+    let shot = |drawable: &Drawable| {
+        let picture = picture(&scene(vec![drawable.clone()]), &camera);
+        let middle = color_at(&picture, &camera, &Point3::new(0.2, 0.4, 0.0));
+        (color_at(&picture, &camera, &border), middle)
+    };
+    let ([r, _, b, _], middle) = shot(&drawable);
+    assert!(r < 60 && b < 60 && middle[3] == 255, "dark on the surface");
+    drawable.style.surface = false;
+    let ([r, _, b, _], middle) = shot(&drawable);
+    assert!(r > 150 && b < 60 && middle[3] == 0, "{r} {b}");
 }
 
 #[test]

@@ -1,16 +1,18 @@
 use crate::render::context::{
-    Depth, Layouts, MASK_FORMAT, OVER, PICK_FORMAT, PipelineSpec, SAMPLES, shader,
+    Depth, Layouts, MASK_FORMAT, OVER, PICK_FORMAT, PipelineSpec, SAMPLES, SHEET_FORMAT, shader,
 };
 use crate::render::mesh::Corner;
 use crate::render::prepare::PreparedDrawable;
 
-/// Triangles: lit and solid, as glass, as the mask of the selection, as indices for picking.
+/// Triangles: lit and solid, as glass, as the mask of the selection, as depths of a sheet, as indices
+/// for picking.
 #[derive(Debug)]
 pub(in crate::render) struct Surface {
     solid: wgpu::RenderPipeline,
     clear_backs: wgpu::RenderPipeline,
     clear_fronts: wgpu::RenderPipeline,
     selected: wgpu::RenderPipeline,
+    depth: wgpu::RenderPipeline,
     pick: wgpu::RenderPipeline,
 }
 
@@ -57,6 +59,13 @@ impl Surface {
                 ..spec("selection mask", "fs_selected")
             }
             .build(device),
+            depth: PipelineSpec {
+                biased: false,
+                format: SHEET_FORMAT,
+                samples: 1,
+                ..spec("sheet depth", "fs_depth")
+            }
+            .build(device),
             pick: PipelineSpec {
                 biased: false,
                 format: PICK_FORMAT,
@@ -83,6 +92,14 @@ impl Surface {
         drawable: &PreparedDrawable,
     ) {
         draw_with(&self.selected, pass, drawable);
+    }
+
+    pub(in crate::render) fn draw_depth(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        drawable: &PreparedDrawable,
+    ) {
+        draw_with(&self.depth, pass, drawable);
     }
 
     pub(in crate::render) fn draw_pick(

@@ -9,7 +9,8 @@ struct Frame {
     screen: vec4<f32>,
     // Plane in view space: kept where dot(xyz, p) + w <= 0.
     section: vec4<f32>,
-    // 1 if the section cuts, pixel of the wipe line (negative: none), 0, 0.
+    // 1 if the section cuts, pixel of the wipe line (negative: none), exposure, distance within which
+    // two sheets coincide.
     switches: vec4<f32>,
     background_top: vec4<f32>,
     background_bottom: vec4<f32>,
@@ -17,6 +18,8 @@ struct Frame {
     feature_color: vec4<f32>,
     border_color: vec4<f32>,
     selection_color: vec4<f32>,
+    // Where a field has no value.
+    unmatched_color: vec4<f32>,
     // Widths of creases and borders and the diameter of nodes, in pixels.
     widths: vec4<f32>,
 }
@@ -25,6 +28,8 @@ struct Drawable {
     view_from_mesh: mat4x4<f32>,
     // sRGB colour and opacity.
     color: vec4<f32>,
+    // Colour of the sheet it may coincide with, strength of the hatch on back sides.
+    other_sheet: vec4<f32>,
     // Field value at the start of the table, one over the range, pixels pushed back, edge opacity.
     params: vec4<f32>,
     // Switches (below), index in the scene, width of the parts table, 0.
@@ -41,6 +46,9 @@ const WIPE_LEFT: u32 = 64u;
 const WIPE_RIGHT: u32 = 128u;
 const SELECTED: u32 = 256u;
 const HOVERED: u32 = 512u;
+const FIRST_SHEET: u32 = 1024u;
+const SECOND_SHEET: u32 = 2048u;
+const BARE: u32 = 4096u;
 
 // Bits of a part's look in the parts table.
 const PART_VISIBLE: u32 = 1u;
@@ -50,6 +58,9 @@ const PART_COLORED: u32 = 8u;
 const PARTS_PER_ROW: u32 = 256u;
 
 @group(0) @binding(0) var<uniform> frame: Frame;
+// Depths of the two sheets in view space as bits of a float, 0 where there is nothing.
+@group(0) @binding(1) var first_sheet: texture_2d<u32>;
+@group(0) @binding(2) var second_sheet: texture_2d<u32>;
 @group(1) @binding(0) var<uniform> drawable: Drawable;
 @group(1) @binding(1) var parts: texture_2d<u32>;
 @group(1) @binding(2) var field_colors: texture_2d<f32>;

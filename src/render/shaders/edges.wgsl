@@ -26,7 +26,7 @@ fn fs_thin(in: Varyings) -> @location(0) vec4<f32> {
     if removed(in.view, in.clip.xy) {
         discard;
     }
-    let color = frame.edge_color;
+    let color = select(frame.edge_color, vec4<f32>(drawable.color.rgb, 1.0), has(BARE));
     return premultiplied(vec4<f32>(color.rgb, color.a * drawable.params.w * drawable.color.a));
 }
 
@@ -64,6 +64,9 @@ fn vs_wide(
     out.place = segment.place;
     out.shape = vec2<f32>(segment.length, segment.half_width);
     out.color = select(frame.feature_color, frame.border_color, border);
+    if has(BARE) {
+        out.color = vec4<f32>(drawable.color.rgb, select(0.8, 1.0, border));
+    }
     return out;
 }
 

@@ -66,12 +66,12 @@ fn light(n: vec3<f32>, v: vec3<f32>) -> Light {
     let wrapped = clamp((dot(n, key) + 0.15) / 1.15, 0.0, 1.0);
     let eye = dot(n, v);
     var out: Light;
-    out.diffuse = 0.09 + 0.10 * sky + 0.74 * pow(wrapped, 1.6) + 0.22 * eye * eye
-        + 0.12 * max(dot(n, fill), 0.0);
+    out.diffuse = 0.13 + 0.12 * sky + 0.66 * pow(wrapped, 1.5) + 0.22 * eye * eye
+        + 0.16 * max(dot(n, fill), 0.0);
     let halfway = normalize(key + v);
     let facing = max(dot(n, halfway), 0.0);
     // Two lobes: the broad one makes bent sheet read as metal, the narrow one as pressed.
-    out.gloss = 0.07 * pow(facing, 12.0) + 0.10 * pow(facing, 80.0);
+    out.gloss = 0.06 * pow(facing, 10.0) + 0.10 * pow(facing, 60.0);
     return out;
 }
 
@@ -81,7 +81,23 @@ fn field_color(value: f32) -> vec3<f32> {
     return textureLoad(field_colors, vec2<i32>(texel, 0), 0).rgb;
 }
 
-const UNMATCHED: vec3<f32> = vec3<f32>(0.541, 0.553, 0.573);
+// How much of a fragment belongs to two sheets at once: 1 where the other one lies within the
+// distance of coincidence, measured along the normal, falling to 0 at that distance.
+fn coincidence(in: Varyings, n: vec3<f32>, v: vec3<f32>) -> f32 {
+    var bits = 0u;
+    let pixel = vec2<i32>(in.clip.xy);
+    if has(FIRST_SHEET) {
+        bits = textureLoad(second_sheet, pixel, 0).r;
+    } else if has(SECOND_SHEET) {
+        bits = textureLoad(first_sheet, pixel, 0).r;
+    }
+    if bits == 0u {
+        return 0.0;
+    }
+    let along_ray = abs(bitcast<f32>(bits) - in.view.z) / max(abs(v.z), 0.1);
+    let distance = along_ray * abs(dot(n, v));
+    return 1.0 - smoothstep(0.75, 1.0, distance / frame.switches.w);
+}
 
 // Opaque colour of a fragment (sRGB), before opacity.
 fn shaded(in: Varyings, front: bool) -> vec3<f32> {
@@ -108,14 +124,23 @@ fn shaded(in: Varyings, front: bool) -> vec3<f32> {
             base = linear_from_srgb(field_color(in.field.x));
         } else {
             let stripe = hatch(in.clip.xy + frame.screen.zw, 1.0, 5.0, 1.6);
-            base = linear_from_srgb(UNMATCHED) * (1.0 - 0.62 * stripe);
+            base = linear_from_srgb(frame.unmatched_color.rgb) * (1.0 - 0.62 * stripe);
         }
     }
-    var color = base * diffuse + gloss;
+    let both = coincidence(in, n, v);
+    if both > 0.0 {
+        // The same stripes on either sheet, so that it does not matter which one is in front.
+        let stripe = hatch(in.clip.xy + frame.screen.zw, 1.0, 9.0, 4.5);
+        let share = select(stripe, 1.0 - stripe, has(SECOND_SHEET));
+        base = mix(base, linear_from_srgb(drawable.other_sheet.rgb), share * both);
+    }
+    var color = (base * diffuse + gloss * mix(vec3<f32>(1.0), base, 0.5)) * frame.switches.z;
     if back {
-        color *= 0.72;
+        // 15 % darker on the screen.
+        color *= 0.71;
         if has(BACK_HATCH) {
-            color *= 1.0 - 0.30 * hatch(in.clip.xy + frame.screen.zw, -1.0, 4.5, 1.0);
+            let stripe = hatch(in.clip.xy + frame.screen.zw, -1.0, 5.0, 1.0);
+            color *= 1.0 - 0.10 * stripe * drawable.other_sheet.w * (1.0 - both);
         }
     }
     if has(HOVERED) || (in.ids.x & PART_HOVERED) != 0u {
@@ -160,6 +185,15 @@ fn fs_selected(in: Varyings) -> @location(0) vec4<f32> {
         discard;
     }
     return vec4<f32>(1.0);
+}
+
+// Depth of a sheet, for the other one; never 0, which stands for nothing.
+@fragment
+fn fs_depth(in: Varyings) -> @location(0) u32 {
+    if removed(in.view, in.clip.xy) {
+        discard;
+    }
+    return bitcast<u32>(select(in.view.z, 1e-30, in.view.z == 0.0));
 }
 
 // Drawable and triangle, counted from one.

@@ -13,6 +13,8 @@ pub(super) struct Look {
     pub roles: PerRole<Rgb>,
     pub background: Background,
     pub lines: LineLook,
+    /// Brightness of the light on the parts.
+    pub exposure: f32,
     /// Text over the picture, and the same fainter.
     pub text: Color32,
     pub weak: Color32,
@@ -32,6 +34,7 @@ impl Look {
         },
         background: Background::DARK,
         lines: LineLook::DARK,
+        exposure: 1.0,
         text: Color32::from_rgb(0xEC, 0xEF, 0xF3),
         weak: Color32::from_rgb(0xA9, 0xB2, 0xBD),
         plate: Color32::from_rgba_unmultiplied_const(0x16, 0x19, 0x1D, 0xC8),
@@ -46,6 +49,7 @@ impl Look {
         },
         background: Background::LIGHT,
         lines: LineLook::LIGHT,
+        exposure: 1.45,
         text: Color32::from_rgb(0x1B, 0x20, 0x26),
         weak: Color32::from_rgb(0x4E, 0x58, 0x63),
         plate: Color32::from_rgba_unmultiplied_const(0xFF, 0xFF, 0xFF, 0xD2),

@@ -9,12 +9,15 @@ use crate::app::{AppState, PartRef};
 use crate::geometry::camera::{ScreenSize, ViewRay};
 use crate::geometry::{Aabb, Camera, Point3};
 use crate::jobs::Role;
-use crate::render::{Drawable, FieldLook, PartLook, Scene};
+use crate::render::{Drawable, FieldLook, PartLook, Scene, Sheet};
 
 /// How far the crash sheet lies back when two sheets coincide, in pixels and in element sizes: about
 /// the chord heights of two meshes of one curved sheet.
-const PUSH_BACK_PIXELS: f32 = 1.0;
-const PUSH_BACK_ELEMENTS: f64 = 0.03;
+const PUSH_BACK_PIXELS: f32 = 0.5;
+const PUSH_BACK_ELEMENTS: f64 = 0.02;
+/// Shares of the thickness and of the element size within which sheets coincide.
+const COINCIDENT_THICKNESS: f64 = 0.5;
+const COINCIDENT_ELEMENTS: f64 = 0.04;
 /// Parts fainter than this are looked through when picking.
 const PICKED_OPACITY: f32 = 0.15;
 /// Hidden sheets a ray passes before it gives up.
@@ -63,11 +66,14 @@ impl Picture {
             .iter()
             .map(|layer| drawable(state, look, layer))
             .collect();
+        let has_field = layers.iter().any(|layer| layer.field.is_some());
         let scene = Scene {
             drawables,
             background: look.background,
             lines: look.lines,
             wipe: cast::divider(state, stage).map(cast::Divider::share),
+            coincidence: (!has_field).then(|| coincidence(state)).flatten(),
+            exposure: look.exposure,
             pixels_per_point,
             ..Scene::default()
         };
@@ -114,6 +120,19 @@ fn is_on_side(wipe: crate::render::WipeSide, is_left: Option<bool>) -> bool {
     }
 }
 
+/// How close the sheets lie together where both are shown: half their mean thickness, the distance at
+/// which two real sheets would cut into each other by half; without thickness a share of the element
+/// size. In the crash model's unit.
+pub(super) fn coincidence(state: &AppState) -> Option<f64> {
+    let (crash, stamped) = state.document.both()?;
+    let facts = [&crash.facts, &stamped.facts];
+    let known = facts.iter().filter_map(|facts| facts.thickness);
+    let thickness = known.reduce(f64::min).filter(|t| *t > 0.0);
+    let element = facts[0].edge_length.min(facts[1].edge_length);
+    let distance = thickness.map_or(COINCIDENT_ELEMENTS * element, |t| COINCIDENT_THICKNESS * t);
+    (distance > 0.0).then_some(distance)
+}
+
 fn drawable(state: &AppState, look: &Look, layer: &Layer) -> Drawable {
     let Actor { role, .. } = layer.actor;
     let (push_back, push_back_length) = match role {
@@ -136,6 +155,10 @@ fn drawable(state: &AppState, look: &Look, layer: &Layer) -> Drawable {
         parts,
         push_back,
         push_back_length,
+        sheet: Some(match role {
+            Role::Crash => Sheet::First,
+            Role::Stamped => Sheet::Second,
+        }),
         ..Drawable::new(Arc::clone(&layer.mesh.drawn), *look.roles.get(role))
     }
 }

@@ -143,6 +143,7 @@ fn notes(over: &Overlay<'_>) -> Vec<String> {
     if is_left {
         notes.extend(preview(over));
     }
+    notes.extend(stripes(over));
     let separation = state.view.display.separation;
     if is_left && state.view.is_moved_over && separation != 0.0 {
         notes.push(format!(
@@ -152,6 +153,14 @@ fn notes(over: &Overlay<'_>) -> Vec<String> {
         ));
     }
     notes
+}
+
+/// What the stripes in the picture say, where both sheets are drawn.
+fn stripes(over: &Overlay<'_>) -> Option<String> {
+    let scene = &over.picture.scene;
+    scene.coinciding()?;
+    let distance = scene.coincidence?;
+    Some(format!("striped: both within {}", short_number(distance)))
 }
 
 /// What is shown instead of the real pose.

@@ -1,0 +1,69 @@
+//! The depths of two sheets, drawn before the picture: where they lie in each other, each is striped
+//! with the colour of the other. Both see the same stripes, so that rounding of depths does not show.
+
+use super::context::{Context, DEPTH_FORMAT, SHEET_FORMAT};
+use super::prepare::{Gpu, Prepared};
+use super::scene::Sheet;
+use super::target::{attachment, texture, view};
+
+/// A depth picture of each sheet, one sample per pixel, with the depth buffer they share.
+#[derive(Debug)]
+pub(super) struct Sheets {
+    first: wgpu::TextureView,
+    second: wgpu::TextureView,
+    depth: wgpu::TextureView,
+}
+
+impl Sheets {
+    pub(super) fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+        let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let read = drawn | wgpu::TextureUsages::TEXTURE_BINDING;
+        let sheet = || view(&texture(device, size, SHEET_FORMAT, 1, read));
+        Self {
+            first: sheet(),
+            second: sheet(),
+            depth: view(&texture(device, size, DEPTH_FORMAT, 1, drawn)),
+        }
+    }
+
+    /// What shaders read, first and second sheet.
+    pub(super) fn views(&self) -> [&wgpu::TextureView; 2] {
+        [&self.first, &self.second]
+    }
+
+    /// Records the drawing of both.
+    pub(super) fn draw(
+        &self,
+        gpu: Gpu<'_>,
+        context: &Context,
+        encoder: &mut wgpu::CommandEncoder,
+        prepared: &Prepared,
+    ) {
+        // The frame's own group reads what is drawn here.
+        let frame = prepared.frame_group(gpu, context.no_sheets.views());
+        for (sheet, target) in [(Sheet::First, &self.first), (Sheet::Second, &self.second)] {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("sheet depth"),
+                color_attachments: &[Some(attachment(
+                    target,
+                    None,
+                    wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                ))],
+                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                    view: &self.depth,
+                    depth_ops: Some(wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(0.0),
+                        store: wgpu::StoreOp::Discard,
+                    }),
+                    stencil_ops: None,
+                }),
+                ..Default::default()
+            });
+            pass.set_bind_group(0, &frame, &[]);
+            let of_sheet = prepared.solid.iter().filter(|d| d.sheet == Some(sheet));
+            for drawable in of_sheet {
+                context.passes.surface.draw_depth(&mut pass, drawable);
+            }
+        }
+    }
+}
