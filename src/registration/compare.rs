@@ -1,4 +1,5 @@
 use super::correspondence::{Correspondence, MatchRules, PairWith, Sample, correspond};
+use super::holes::Holes;
 use super::problem::thin;
 use super::reject::RejectRules;
 use super::select::{Floor, SelectRules, Selection, select};
@@ -19,6 +20,9 @@ const CURVED: f64 = 0.4;
 /// λ of the comparison. A tenth of the area left out costs a factor of 1.37, so that a twin that
 /// differs in a small emboss is told apart; with 1.5 it would cost 1.17.
 const LAMBDA: f64 = 3.0;
+/// Price of holes none of which the other mesh has, as a factor on top of 1. Only poses that fit
+/// equally well otherwise are told apart by it: a hole may be punched after the stamping.
+const HOLE_PRICE: f64 = 0.5;
 
 /// Compares poses of one pair of surfaces by the same measure, whatever search they came from:
 /// floored FRMSD of points of each mesh to the smooth surface of the other, where it has one.
@@ -27,7 +31,11 @@ pub(crate) struct Judge<'a> {
     target: &'a Surface,
     source_samples: Vec<Sample>,
     target_samples: Vec<Sample>,
+    source_holes: Holes,
+    target_holes: Holes,
     floor: f64,
+    /// Points farther away than this find no partner.
+    reach: f64,
 }
 
 /// Scores of both directions, in length units; smaller is better.
@@ -52,13 +60,23 @@ impl TwoSided {
 }
 
 impl<'a> Judge<'a> {
-    pub(crate) fn new(source: &'a Surface, target: &'a Surface, allowance: f64) -> Self {
+    /// `reach` is infinite where the sizes allow a match.
+    pub(crate) fn new(
+        source: &'a Surface,
+        target: &'a Surface,
+        allowance: f64,
+        reach: f64,
+    ) -> Self {
+        let edge = edge_length(source, target);
         Self {
             source,
             target,
             source_samples: thin(source, N_POINTS),
             target_samples: thin(target, N_POINTS),
+            source_holes: Holes::new(source, edge),
+            target_holes: Holes::new(target, edge),
             floor: CURVED * natural_floor(source, target) + allowance,
+            reach,
         }
     }
 
@@ -76,11 +94,24 @@ impl<'a> Judge<'a> {
             },
             || self.one_side(&self.target_samples, self.source, &inverse, flipped),
         );
+        let [source_price, target_price] = self.hole_prices(target_from_source, &inverse);
         TwoSided {
-            source_on_target: forward,
+            source_on_target: forward * source_price,
             // Distances were measured in the source's unit.
-            target_on_source: backward * target_from_source.scale,
+            target_on_source: backward * target_from_source.scale * target_price,
         }
+    }
+
+    /// What holes without a counterpart add to the score of each mesh, at least 1. A mesh without
+    /// holes says nothing: they may not be modelled.
+    fn hole_prices(&self, target_from_source: &Similarity, back: &Similarity) -> [f64; 2] {
+        let edge = edge_length(self.source, self.target);
+        let (source, target) = (&self.source_holes, &self.target_holes);
+        let shares = [
+            source.share_on(target, target_from_source, edge),
+            target.share_on(source, back, edge / target_from_source.scale),
+        ];
+        shares.map(|share| 1.0 + HOLE_PRICE * (1.0 - share.unwrap_or(1.0)))
     }
 
     fn one_side(
@@ -105,8 +136,8 @@ impl<'a> Judge<'a> {
             pair_with: PairWith::Triangle,
             reject: RejectRules {
                 min_cos: 0.5,
+                max_distance: self.reach,
                 max_overhang: OVERHANG * edge_length(self.source, self.target),
-                ..RejectRules::default()
             },
             curved: true,
         };

@@ -10,6 +10,7 @@
 mod compare;
 mod correspondence;
 mod error;
+mod holes;
 mod icp;
 mod metric;
 mod multi_start;

@@ -1,3 +1,4 @@
+use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 use super::compare::{Judge, TwoSided};
@@ -36,11 +37,13 @@ const OVERHANG: f64 = 0.9;
 const PATCH_RATIO: f64 = 0.75;
 /// Below this ratio of areas the units differ, and no start finds a pose worth the time.
 const HOPELESS_RATIO: f64 = 0.01;
+/// Points that are enough there.
+const HOPELESS_POINTS: usize = 50;
 
 /// The search for one hand of the source: legs (choices of data and model) with their entrants.
 pub(crate) struct Contest<'a> {
     input: MatchInput<'a>,
-    settings: &'a MatchSettings,
+    settings: Cow<'a, MatchSettings>,
     mirror: Option<Similarity>,
     pub(crate) legs: Vec<(Leg<'a>, Vec<Entrant>)>,
     judge: Judge<'a>,
@@ -77,8 +80,16 @@ impl<'a> Contest<'a> {
         mirror: Option<Similarity>,
         n_before: usize,
     ) -> Self {
+        let (source, target) = (input.source, input.target);
+        let (reach, settings) = if is_hopeless(source, target) {
+            let diagonal = |surface: &Surface| surface.measures().diagonal;
+            let reach = diagonal(source).min(diagonal(target));
+            (reach, Cow::Owned(hopeless_settings(settings)))
+        } else {
+            (f64::INFINITY, Cow::Borrowed(settings))
+        };
         Self {
-            judge: Judge::new(input.source, input.target, settings.allowance),
+            judge: Judge::new(source, target, settings.allowance, reach),
             input,
             settings,
             mirror,
@@ -136,9 +147,7 @@ impl<'a> Contest<'a> {
     /// parts. Points of the larger one would ask far away from the smaller one, which is slow and
     /// tells nothing.
     pub(crate) fn is_hopeless(&self) -> bool {
-        let a = self.input.source.measures().area;
-        let b = self.input.target.measures().area;
-        a.min(b) <= HOPELESS_RATIO * a.max(b)
+        is_hopeless(self.input.source, self.input.target)
     }
 
     fn data_side(&self) -> Side {
@@ -181,7 +190,7 @@ impl<'a> Contest<'a> {
         monitor: &Monitor,
     ) -> Result<(), Cancelled> {
         let begin = Instant::now();
-        let settings = self.settings;
+        let settings = &*self.settings;
         let (leg, done) = &mut self.legs[leg_idx];
         let enter = |starts: &[Start], n_starts: &mut usize| -> Vec<Entrant> {
             let new = starts.iter().map(|start| {
@@ -243,7 +252,7 @@ impl<'a> Contest<'a> {
         let images = mirror_images(leg, &entrants[winner.entrant]);
         let entrant = |start: &Start| Entrant::new(leg, *start, 0);
         let mut images: Vec<Entrant> = images.iter().map(entrant).collect();
-        race(leg, &mut images, self.settings, monitor)?;
+        race(leg, &mut images, &self.settings, monitor)?;
         let best_ratio = |images: &[Entrant]| {
             ranking(images).first().map(|&i| {
                 let image = &images[i];
@@ -256,7 +265,7 @@ impl<'a> Contest<'a> {
         if raced.is_none_or(|ratio| ratio > CLEARLY_WORSE) {
             return Ok(raced);
         }
-        refine(leg, &mut images, 1, self.settings, monitor)?;
+        refine(leg, &mut images, 1, &self.settings, monitor)?;
         Ok(best_ratio(&images))
     }
 
@@ -313,7 +322,7 @@ impl<'a> Contest<'a> {
         entrant.fate = Some(Fate::Won);
         let flipped = entrant.start.flipped;
         if !self.settings.finish {
-            let rules = stage_rules(Stage::Refine, self.settings, leg.fine.data, leg.fine.model);
+            let rules = stage_rules(Stage::Refine, &self.settings, leg.fine.data, leg.fine.model);
             return Ok(Finished {
                 target_from_source: winner.target_from_source,
                 run: entrant.run.clone(),
@@ -330,7 +339,7 @@ impl<'a> Contest<'a> {
         } else {
             pairing
         };
-        let rules = stage_rules(Stage::Finish, self.settings, pairing.data, pairing.model);
+        let rules = stage_rules(Stage::Finish, &self.settings, pairing.data, pairing.model);
         let mut points = Data::new(all_nodes(pairing.data, true));
         if flipped {
             points = points.flipped();
@@ -360,6 +369,22 @@ impl<'a> Contest<'a> {
     pub(crate) fn n_starts(&self) -> usize {
         self.n_starts
     }
+}
+
+/// No pose will be worth much, so a rough one is enough: in the hollow of a part a hundred times as
+/// large every question takes long, because all its triangles are about equally far.
+fn hopeless_settings(settings: &MatchSettings) -> MatchSettings {
+    MatchSettings {
+        n_race_points: settings.n_race_points.min(HOPELESS_POINTS),
+        n_refine_points: settings.n_refine_points.min(HOPELESS_POINTS),
+        finish: false,
+        ..settings.clone()
+    }
+}
+
+fn is_hopeless(source: &Surface, target: &Surface) -> bool {
+    let (a, b) = (source.measures().area, target.measures().area);
+    a.min(b) <= HOPELESS_RATIO * a.max(b)
 }
 
 /// The smaller mesh is the data, because it is the one that is contained; of meshes that differ by

@@ -162,6 +162,17 @@ impl Surface {
         }
     }
 
+    /// The edges with one triangle, as their vertices in the direction of the triangle.
+    pub(crate) fn border_edges(&self) -> Vec<[u32; 2]> {
+        let triangles = self.border_edges.iter().zip(self.mesh.triangles());
+        let of_triangle = |(&edges, corners): (&u8, &[u32; 3])| {
+            let on_border = (0..3).filter(move |edge| edges >> edge & 1 == 1);
+            let corners = *corners;
+            on_border.map(move |edge| [corners[edge], corners[(edge + 1) % 3]])
+        };
+        triangles.flat_map(of_triangle).collect()
+    }
+
     /// The vertex closest to `query` within `max_distance`, as (vertex, squared distance).
     pub fn nearest_node(
         &self,

@@ -348,12 +348,12 @@ fn the_opposite_hand_is_found_on_request_and_hinted_at_otherwise() {
 #[test]
 fn a_nearly_symmetric_part_of_the_wrong_hand_is_hinted_at() {
     use shapematch::samples::{SamplePart, SampleSettings, SampleVariant, generate};
-    let ratio = |variant| {
+    let ratio = |part, size: f64, variant| {
         let pair = generate(&SampleSettings {
-            part: SamplePart::Pillar,
+            part,
             variant,
-            stamped_size: Some(12.0),
-            crash_size: Some(14.0),
+            stamped_size: Some(size),
+            crash_size: Some(1.2 * size),
             ..SampleSettings::default()
         });
         let outcome = run(
@@ -363,11 +363,12 @@ fn a_nearly_symmetric_part_of_the_wrong_hand_is_hinted_at() {
         );
         outcome.mirror_check.score_ratio.unwrap()
     };
-    let (wrong, right) = (
-        ratio(SampleVariant::OppositeHand),
-        ratio(SampleVariant::Plain),
-    );
-    assert!(wrong < 0.98 && right > 1.0, "wrong {wrong}, right {right}");
+    // The hands of the bracket differ in one slot, which only the holes show.
+    for (part, size) in [(SamplePart::Pillar, 12.0), (SamplePart::Bracket, 3.0)] {
+        let wrong = ratio(part, size, SampleVariant::OppositeHand);
+        let right = ratio(part, size, SampleVariant::Plain);
+        assert!(wrong < 0.98 && right > 1.0, "wrong {wrong}, right {right}");
+    }
 }
 
 #[test]
