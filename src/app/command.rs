@@ -1,7 +1,7 @@
 use super::{Axis, NoticeLevel};
 use super::{
-    AxisFrame, BottomTab, Dialog, Display, GestureId, ModalInput, MotionKind, MoveFrame, NoticeId,
-    PartRef, Settings, ShownGeometry,
+    AxisFrame, BottomTab, Dialog, Display, GestureId, InspectCommand, ModalInput, MotionKind,
+    MoveFrame, NoticeId, PartRef, SectionView, Settings, ShownGeometry,
 };
 use crate::geometry::camera::{OrbitStyle, StandardView};
 use crate::geometry::{Camera, Point3, Similarity};
@@ -29,6 +29,8 @@ pub enum Command {
     Export(ExportCommand),
     /// What is shown and how.
     View(ViewCommand),
+    /// Distances, labels, section.
+    Inspect(InspectCommand),
     /// Undo and redo.
     History(HistoryCommand),
     /// Toasts and bell.
@@ -308,6 +310,8 @@ pub enum ViewCommand {
     SetBlinking(bool),
     /// Plain choices about the picture, as a whole.
     SetDisplay(Box<Display>),
+    /// The section plane, as a whole.
+    SetSection(SectionView),
     /// A tab of the bottom pane.
     SetTab(BottomTab),
     /// Fold or unfold a section, 0 to 2.
@@ -366,6 +370,7 @@ from_group!(
     MatchCommand => Match,
     ExportCommand => Export,
     ViewCommand => View,
+    InspectCommand => Inspect,
     HistoryCommand => History,
     NoticeCommand => Notice
 );

@@ -1,4 +1,4 @@
-use super::Shared;
+use super::{Label, Shared};
 use crate::geometry::{Aabb, Similarity, TriMesh};
 use crate::jobs::{MeasuredLevel, PartFacts, PartSource, PerRole, Role, Stamp};
 use crate::pipeline::load::LoadedPart;
@@ -19,6 +19,8 @@ pub struct Document {
     pub recipe: MatchRecipe,
     /// The last match that was taken over.
     pub result: Option<MatchResult>,
+    /// Values pinned to nodes, oldest first.
+    pub labels: Vec<Label>,
 }
 
 /// The pose of the stamped part with the number of its state.

@@ -12,6 +12,7 @@ mod document;
 mod effect;
 mod facts;
 mod history;
+mod inspect;
 mod job_board;
 mod log;
 mod modal_move;
@@ -33,6 +34,7 @@ pub use command::{
 pub use document::{Document, MatchResult, Part, StampedPose};
 pub use effect::Effect;
 pub use history::{GestureId, History};
+pub use inspect::{Coloring, Compared, Freshness, InspectCommand, Label, SectionView};
 pub use job_board::{JobBoard, RunningJob};
 pub use log::{Log, LogRow, duration_text};
 pub use modal_move::{Constraint, ModalInput, ModalMove, ModalOutcome, MotionKind, short_number};

@@ -1,6 +1,6 @@
 use super::{
-    Document, GestureId, History, JobBoard, Log, LogRow, NoticeLevel, Notices, Settings, Shared,
-    StampedPose, ViewState,
+    Compared, Document, GestureId, History, JobBoard, Log, LogRow, NoticeLevel, Notices, Settings,
+    Shared, StampedPose, ViewState,
 };
 use crate::assess::Coverage;
 use crate::geometry::Similarity;
@@ -47,6 +47,8 @@ pub struct AppState {
     pub convergence: Vec<IterationReport>,
     /// Distances and overlap with the state they were measured in.
     pub measurement: Option<(Stamp, Shared<Coverage>)>,
+    /// The last comparison of both parts, up to date or not.
+    pub compared: Option<Compared>,
     /// The tables of the last sweep.
     pub sweep: Option<Shared<Sweep>>,
     /// Time since the program began, as the shell last told.
@@ -59,6 +61,8 @@ pub struct AppState {
     /// The undo step of a change of units that a new factor belongs to.
     pub(super) unit_gesture: Option<GestureId>,
     pub(super) open_recipe_gesture: Option<GestureId>,
+    /// The state at which a comparison failed or was cancelled.
+    pub(super) gave_up_comparing: Option<Stamp>,
     n_revisions: u64,
     n_gestures: u64,
 }

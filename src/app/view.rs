@@ -1,4 +1,4 @@
-use super::{AxisFrame, GestureId, ModalMove, MoveFrame};
+use super::{AxisFrame, Coloring, GestureId, ModalMove, MoveFrame, SectionView};
 use crate::geometry::camera::OrbitStyle;
 use crate::geometry::{Camera, Point3};
 use crate::jobs::{PerRole, Role};
@@ -34,18 +34,21 @@ pub enum ColorBy {
     Thickness,
     /// Distance of the reduced to the full mesh.
     ReductionError,
-    /// Distance of the stamped to the crash part.
+    /// Signed distance between the parts.
     Deviation,
+    /// Where the other part is, is off, or is missing.
+    Overlap,
 }
 
 impl ColorBy {
     /// All, in the order of the menu.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Role,
         Self::Part,
         Self::Thickness,
         Self::ReductionError,
         Self::Deviation,
+        Self::Overlap,
     ];
 
     /// Name in the menu.
@@ -56,6 +59,7 @@ impl ColorBy {
             Self::Thickness => "Thickness",
             Self::ReductionError => "Reduction error",
             Self::Deviation => "Deviation",
+            Self::Overlap => "Overlap",
         }
     }
 }
@@ -146,6 +150,8 @@ pub struct Display {
     pub has_points: bool,
     /// What the colours say.
     pub color_by: ColorBy,
+    /// Maps, limits, tolerance.
+    pub coloring: Coloring,
     /// The small axes in the corner.
     pub has_axes: bool,
     /// The scale bar.
@@ -167,6 +173,7 @@ impl Default for Display {
             has_feature_edges: true,
             has_points: false,
             color_by: ColorBy::default(),
+            coloring: Coloring::default(),
             has_axes: true,
             has_scale_bar: true,
         }
@@ -209,6 +216,8 @@ pub struct ViewState {
     pub is_blinking: bool,
     /// Plain choices about the picture.
     pub display: Display,
+    /// The section plane.
+    pub section: SectionView,
     /// The selected part of a deck.
     pub selected: Option<PartRef>,
     /// The part of a deck under the pointer, in the tree or in a window.
@@ -248,6 +257,7 @@ impl Default for ViewState {
             shown: ShownGeometry::default(),
             is_blinking: false,
             display: Display::default(),
+            section: SectionView::default(),
             selected: None,
             hovered: None,
             tab: BottomTab::default(),

@@ -5,7 +5,7 @@ mod cool_warm;
 mod scale;
 mod tables;
 
-pub use scale::{ColorScale, NEUTRAL, UNMATCHED};
+pub use scale::{ColorScale, NEUTRAL, Pattern, UNMATCHED};
 
 /// An sRGB colour, a byte per channel.
 pub type Rgb = [u8; 3];
@@ -22,10 +22,12 @@ pub enum ColorMap {
     CoolWarm,
     /// The old fringe colours. Their lightness goes up and down, so only for comparison with old pictures.
     Rainbow,
+    /// Two colours, for two classes: a calm one below the middle, a loud one above.
+    Classes,
 }
 
 impl ColorMap {
-    /// All maps, in menu order.
+    /// All maps to choose from, in menu order.
     pub const ALL: [Self; 4] = [Self::Viridis, Self::Cividis, Self::CoolWarm, Self::Rainbow];
 
     /// Name in menus.
@@ -35,6 +37,7 @@ impl ColorMap {
             Self::Cividis => "Cividis",
             Self::CoolWarm => "Cool–warm",
             Self::Rainbow => "Rainbow, like LS-PrePost",
+            Self::Classes => "Two classes",
         }
     }
 
@@ -51,6 +54,8 @@ impl ColorMap {
             Self::Cividis => between_stops(tables::CIVIDIS, t),
             Self::CoolWarm => cool_warm::sample(t),
             Self::Rainbow => between_stops(tables::RAINBOW, t),
+            Self::Classes if t < 0.5 => [0x9E, 0xC9, 0xE2],
+            Self::Classes => [0xC9, 0x3B, 0x7F],
         }
     }
 }

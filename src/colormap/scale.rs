@@ -20,6 +20,20 @@ pub struct ColorScale {
     pub n_bands: Option<u8>,
     /// Turns the map round.
     pub reversed: bool,
+    /// A pattern tells the sign of values beyond the tolerance, for those who do not see the hues.
+    pub has_pattern: bool,
+}
+
+/// What is drawn over the colour of a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Pattern {
+    /// Nothing.
+    #[default]
+    Plain,
+    /// Horizontal lines: a negative value.
+    Lines,
+    /// Dots: a positive value.
+    Dots,
 }
 
 impl ColorScale {
@@ -32,6 +46,7 @@ impl ColorScale {
             tolerance: 0.0,
             n_bands: None,
             reversed: false,
+            has_pattern: false,
         }
     }
 
@@ -73,6 +88,24 @@ impl ColorScale {
             t = (t * n).floor().min(n - 1.0) / (n - 1.0);
         }
         self.map.sample(if self.reversed { 1.0 - t } else { t })
+    }
+
+    /// The pattern of a value.
+    pub fn pattern(&self, value: f64) -> Pattern {
+        if self.map == ColorMap::Classes {
+            return if self.position(value) < 0.5 || value.is_nan() {
+                Pattern::Plain
+            } else {
+                Pattern::Dots
+            };
+        }
+        if !self.has_pattern || value.is_nan() || value.abs() <= self.tolerance {
+            Pattern::Plain
+        } else if value < 0.0 {
+            Pattern::Lines
+        } else {
+            Pattern::Dots
+        }
     }
 
     /// The colours of `n` equal steps from end to end, sampled in their middles: the texture of the

@@ -1,6 +1,7 @@
 use super::{ExportRequest, PartFacts};
 use crate::assess::Coverage;
-use crate::geometry::Similarity;
+use crate::geometry::{Similarity, TriMesh};
+use crate::pipeline::inspect::Comparison;
 use crate::pipeline::load::{LoadSettings, LoadedPart};
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
 use crate::pipeline::reduce::{Deviation, Level, Levels};
@@ -106,6 +107,8 @@ pub enum JobKey {
     Match,
     /// Distances and overlap at a pose.
     Measure,
+    /// Deviation of every node.
+    Compare,
     /// The paper's tables.
     Sweep,
     /// Writing files.
@@ -125,6 +128,7 @@ impl JobKey {
             Self::Align => "Aligning surface normals",
             Self::Match => "Matching",
             Self::Measure => "Measuring distances",
+            Self::Compare => "Measuring the deviation",
             Self::Sweep => "Running the sweep",
             Self::Export => "Writing",
         }
@@ -238,6 +242,19 @@ pub struct MeasureInput {
     pub crash_from_stamped: Similarity,
 }
 
+/// Input of a comparison.
+#[derive(Debug, Clone)]
+pub struct CompareInput {
+    /// The target.
+    pub crash: Arc<LoadedPart>,
+    /// The source.
+    pub stamped: Arc<LoadedPart>,
+    /// The levels that are shown.
+    pub levels: PerRole<Option<Arc<TriMesh>>>,
+    /// Where the source lies.
+    pub crash_from_stamped: Similarity,
+}
+
 /// Everything the worker can do. A closed list, so that jobs can be listed, logged and tested.
 #[derive(Debug, Clone)]
 pub enum JobKind {
@@ -269,6 +286,8 @@ pub enum JobKind {
     Match(MatchInput),
     /// Distances and overlap at a pose.
     Measure(MeasureInput),
+    /// Deviation of every node.
+    Compare(CompareInput),
     /// Levels × match.
     Sweep(SweepInput),
     /// Writes files.
@@ -286,6 +305,7 @@ impl JobKind {
             Self::Align(_) => JobKey::Align,
             Self::Match(_) => JobKey::Match,
             Self::Measure(_) => JobKey::Measure,
+            Self::Compare(_) => JobKey::Compare,
             Self::Sweep(_) => JobKey::Sweep,
             Self::Export(_) => JobKey::Export,
         }
@@ -328,6 +348,8 @@ pub enum JobOutput {
     Matched(Arc<MatchRun>),
     /// Distances and overlap.
     Measured(Arc<Coverage>),
+    /// Deviation of every node.
+    Compared(Arc<Comparison>),
     /// The tables.
     Swept(Arc<Sweep>),
     /// Files were written.

@@ -16,8 +16,8 @@ pub use event::{JobEvent, JobStage};
 pub use export::ExportRequest;
 pub use facts::PartFacts;
 pub use job::{
-    JobId, JobKey, JobKind, JobOutput, MatchInput, MeasureInput, MeasureLevelInput, MeasuredLevel,
-    PartSource, PerRole, Recording, ReduceInput, Role, Stamp, SweepInput,
+    CompareInput, JobId, JobKey, JobKind, JobOutput, MatchInput, MeasureInput, MeasureLevelInput,
+    MeasuredLevel, PartSource, PerRole, Recording, ReduceInput, Role, Stamp, SweepInput,
 };
 pub use live::{Live, LiveSlot};
 pub use run::{JobError, PipelineRunner, Runner};

@@ -1,13 +1,14 @@
 use super::export::export;
+use super::{CompareInput, MatchInput, MeasureInput, SweepInput};
 use super::{
     JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource, Recording,
     ReduceInput, Role,
 };
-use super::{MatchInput, MeasureInput, SweepInput};
 use crate::assess::{coverage, overlap_limit};
 use crate::formats::Memory;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::PipelineError;
+use crate::pipeline::inspect::compare_parts;
 use crate::pipeline::load::{self, LoadSettings, LoadedPart};
 use crate::pipeline::match_parts::{self, match_parts};
 use crate::pipeline::reduce::Levels;
@@ -88,6 +89,7 @@ impl Runner for PipelineRunner {
             JobKind::Align(input) => align(&input, monitor),
             JobKind::Match(input) => run_match(&input, monitor),
             JobKind::Measure(input) => measure(&input, monitor),
+            JobKind::Compare(input) => compare(&input, monitor),
             JobKind::Sweep(input) => run_sweep(&input, monitor),
             JobKind::Export(request) => {
                 let (path, notes) = export(request, monitor)?;
@@ -194,6 +196,14 @@ fn measure(input: &MeasureInput, monitor: &Monitor) -> Result<JobOutput, JobErro
     let pose = &input.crash_from_stamped;
     let coverage = coverage(&source, &target, pose, limit, monitor)?;
     Ok(JobOutput::Measured(Arc::new(coverage)))
+}
+
+fn compare(input: &CompareInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
+    monitor.progress("compare", 0, None);
+    let levels = [input.levels.crash.as_ref(), input.levels.stamped.as_ref()];
+    let pose = &input.crash_from_stamped;
+    let comparison = compare_parts(&input.crash, &input.stamped, levels, pose, monitor)?;
+    Ok(JobOutput::Compared(Arc::new(comparison)))
 }
 
 fn run_sweep(input: &SweepInput, monitor: &Monitor) -> Result<JobOutput, JobError> {

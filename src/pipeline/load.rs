@@ -176,6 +176,13 @@ impl LoadedPart {
         }
     }
 
+    /// Number in the deck of the first node that became a vertex of `mesh`. O(nodes).
+    pub fn node_of(&self, vertex: u32) -> Option<u64> {
+        let of_surface = self.vertex_of.iter().position(|&v| v == vertex)?;
+        let node = *self.surface.vertex_node.get(of_surface)?;
+        self.model.nodes.ids().get(node as usize).copied()
+    }
+
     /// Area-weighted mean thickness of the chosen elements in the crash model's unit, if known.
     pub fn mean_thickness(&self) -> Option<f64> {
         let (mut sum, mut area_sum) = (0.0, 0.0);

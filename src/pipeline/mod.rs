@@ -5,6 +5,7 @@
 
 pub mod cards;
 pub mod export;
+pub mod inspect;
 pub mod load;
 pub mod match_parts;
 pub mod node_table;

@@ -10,6 +10,7 @@ use super::pass::overlay::PreparedOverlay;
 use super::renderer::Frame;
 use super::scene::{Drawable, PartLook, Sheet, Style};
 use super::uniforms::{DrawableUniform, FrameUniform, Region};
+use crate::colormap::{ColorScale, Pattern};
 
 /// Parts per row of the table; the smallest largest texture of all backends is 2048 wide and high.
 const PARTS_PER_ROW: usize = 256;
@@ -205,13 +206,24 @@ fn part_texel(part: &PartLook) -> [u8; 4] {
 
 /// The field's colours from end to end; one texel without a field.
 fn field_table(gpu: Gpu<'_>, drawable: &Drawable) -> wgpu::TextureView {
-    let colors = match &drawable.field {
-        Some(field) => field.scale.table(FIELD_STEPS),
-        None => vec![[0; 3]],
+    let texels: Vec<[u8; 4]> = match &drawable.field {
+        Some(field) => field_texels(&field.scale),
+        None => vec![[0; 4]],
     };
-    let texels: Vec<[u8; 4]> = colors.iter().map(|&[r, g, b]| [r, g, b, 255]).collect();
     let size = [texels.len() as u32, 1];
     table_texture(gpu, size, wgpu::TextureFormat::Rgba8Unorm, &texels)
+}
+
+/// Colours from end to end; the fourth byte names the pattern over them, as `surface.wgsl` reads it.
+fn field_texels(scale: &ColorScale) -> Vec<[u8; 4]> {
+    let middle = |i: usize| scale.value_at((i as f64 + 0.5) / FIELD_STEPS as f64);
+    let patterns = (0..FIELD_STEPS).map(|i| match scale.pattern(middle(i)) {
+        Pattern::Plain => 255,
+        Pattern::Lines => 170,
+        Pattern::Dots => 85,
+    });
+    let colors = scale.table(FIELD_STEPS).into_iter().zip(patterns);
+    colors.map(|([r, g, b], p)| [r, g, b, p]).collect()
 }
 
 fn table_texture(

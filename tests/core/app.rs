@@ -107,7 +107,7 @@ fn shifted(x: f64) -> Similarity {
 pub struct Window {
     pub state: AppState,
     /// Jobs that are not answered at once.
-    held: Vec<(JobId, JobKind, Stamp)>,
+    pub held: Vec<(JobId, JobKind, Stamp)>,
     pub holds: bool,
     n_jobs: u64,
     pub effects: Vec<Effect>,

@@ -8,6 +8,7 @@ mod cli;
 mod deck_out;
 mod deviation;
 mod drawn_pan;
+mod inspect;
 mod jobs;
 mod keyword;
 mod keyword_large;

@@ -61,7 +61,17 @@ impl Action {
             }
             A::CancelRun => require(state.locking_job().is_some(), "nothing is running"),
             A::FlipAlternative => has_alternative(state),
-            A::ToggleDeviation => state.has_both_parts(),
+            A::ToggleDeviation | A::ToggleOverlap | A::UpdateDeviation => state.has_both_parts(),
+            A::ToggleSection
+            | A::SectionX
+            | A::SectionY
+            | A::SectionZ
+            | A::SectionView
+            | A::ToggleSectionClip => state.has_any_part(),
+            A::SectionForward | A::SectionBack => {
+                state.has_any_part()?;
+                require(state.view.section.is_on, "show the section first")
+            }
             A::CopyMatrix | A::SaveMatrix | A::SaveMoved => state.has_part(Role::Stamped),
             A::SaveRecord | A::SaveCards => {
                 let has_result = state.document.current_result().is_some();

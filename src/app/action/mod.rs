@@ -155,6 +155,26 @@ actions! {
     TogglePoints,
     /// Colours of the deviation.
     ToggleDeviation,
+    /// Colours of the overlap.
+    ToggleOverlap,
+    /// Measure the deviation again.
+    UpdateDeviation,
+    /// The section plane.
+    ToggleSection,
+    /// Cut away what lies in front of the section plane.
+    ToggleSectionClip,
+    /// The section plane across x.
+    SectionX,
+    /// The section plane across y.
+    SectionY,
+    /// The section plane across z.
+    SectionZ,
+    /// The section plane across the view.
+    SectionView,
+    /// The section plane a step along its normal.
+    SectionForward,
+    /// The section plane a step back.
+    SectionBack,
     /// Fit everything.
     FitAll,
     /// Fit the selection.

@@ -239,8 +239,53 @@ impl Action {
             Self::TogglePoints => ("Nodes", "Draw the nodes as points", None),
             Self::ToggleDeviation => (
                 "Deviation map",
-                "Colour the stamped part by its distance to the crash part",
+                "Colour the parts by the signed distance between them",
                 Some(key('D')),
+            ),
+            Self::ToggleOverlap => (
+                "Overlap map",
+                "Show where the parts match, where they are off, and what only one of them has",
+                Some(key('O')),
+            ),
+            Self::UpdateDeviation => (
+                "Update the deviation",
+                "Measure the deviation again at the shown pose and levels",
+                None,
+            ),
+            _ => return self.section_row(),
+        };
+        Some(row)
+    }
+
+    fn section_row(self) -> Option<Row> {
+        let row: Row = match self {
+            Self::ToggleSection => (
+                "Section",
+                "Cut both parts with a plane and show their outlines",
+                Some(key('S')),
+            ),
+            Self::ToggleSectionClip => (
+                "Cut away one half",
+                "Hide what lies in front of the section plane",
+                Some(Shortcut::shift(Key::Letter('S'))),
+            ),
+            Self::SectionX => ("Section across X", "Turn the section plane across x", None),
+            Self::SectionY => ("Section across Y", "Turn the section plane across y", None),
+            Self::SectionZ => ("Section across Z", "Turn the section plane across z", None),
+            Self::SectionView => (
+                "Section across the view",
+                "Turn the section plane to face the viewer",
+                None,
+            ),
+            Self::SectionForward => (
+                "Section forward",
+                "Move the section plane by a tenth of an element along its normal",
+                Some(Shortcut::shift(Key::PageUp)),
+            ),
+            Self::SectionBack => (
+                "Section back",
+                "Move the section plane back by a tenth of an element",
+                Some(Shortcut::shift(Key::PageDown)),
             ),
             _ => return None,
         };

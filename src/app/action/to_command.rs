@@ -1,9 +1,10 @@
 use super::Action;
 use crate::app::{
     AppState, Axis, AxisFrame, ColorBy, Command, Dialog, Display, ExportCommand, ExportKind,
-    FileCommand, HistoryCommand, MatchCommand, MotionKind, MoveCommand, PartCommand, ReduceCommand,
-    Settings, ShownGeometry, ViewCommand,
+    FileCommand, HistoryCommand, InspectCommand, MatchCommand, MotionKind, MoveCommand,
+    PartCommand, ReduceCommand, SectionView, Settings, ShownGeometry, ViewCommand,
 };
+use crate::geometry::Vector3;
 use crate::geometry::camera::{OrbitStyle, StandardView};
 use crate::jobs::{JobKey, PerRole, Role};
 use crate::report::{CardForm, MatrixForm};
@@ -27,6 +28,7 @@ impl Action {
         let command = self
             .edit_command(state)
             .or_else(|| self.display_command(state))
+            .or_else(|| self.inspect_command(state))
             .or_else(|| self.camera_command(state))
             .or_else(|| self.match_command(state))
             .or_else(|| self.window_command(state));
@@ -82,15 +84,34 @@ impl Action {
             Self::ToggleEdges => display.has_edges ^= true,
             Self::ToggleFeatureEdges => display.has_feature_edges ^= true,
             Self::TogglePoints => display.has_points ^= true,
-            Self::ToggleDeviation => {
-                display.color_by = match display.color_by {
-                    ColorBy::Deviation => ColorBy::Role,
-                    _ => ColorBy::Deviation,
-                }
-            }
+            Self::ToggleDeviation => toggle_color(&mut display, ColorBy::Deviation),
+            Self::ToggleOverlap => toggle_color(&mut display, ColorBy::Overlap),
             _ => return None,
         }
         Some(ViewCommand::SetDisplay(Box::new(display)).into())
+    }
+
+    fn inspect_command(self, state: &AppState) -> Option<Command> {
+        let step = state.section_step();
+        let section = match self {
+            Self::UpdateDeviation => return Some(InspectCommand::Update.into()),
+            Self::ToggleSection => state.section_toggled(),
+            Self::ToggleSectionClip => SectionView {
+                is_clipped: !state.view.section.is_clipped,
+                ..state.section_across(&section_normal(state))
+            },
+            Self::SectionX => state.section_across(&Vector3::x()),
+            Self::SectionY => state.section_across(&Vector3::y()),
+            Self::SectionZ => state.section_across(&Vector3::z()),
+            Self::SectionView => {
+                let camera = state.view.cameras.get(state.view.focus);
+                state.section_across(&-camera.forward())
+            }
+            Self::SectionForward => state.section_moved(step)?,
+            Self::SectionBack => state.section_moved(-step)?,
+            _ => return None,
+        };
+        Some(ViewCommand::SetSection(section).into())
     }
 
     fn camera_command(self, state: &AppState) -> Option<Command> {
@@ -190,6 +211,22 @@ fn last_form(state: &AppState) -> MatrixForm {
     let of_name = |form: &&MatrixForm| Some(form.name()) == name;
     let found = MatrixForm::ALL.iter().find(of_name);
     found.copied().unwrap_or(MatrixForm::Rows)
+}
+
+/// What the section plane lies across now, or would.
+fn section_normal(state: &AppState) -> Vector3 {
+    let plane = state.view.section.plane;
+    plane
+        .unwrap_or_else(|| state.default_section_plane())
+        .normal
+}
+
+fn toggle_color(display: &mut Display, by: ColorBy) {
+    display.color_by = if display.color_by == by {
+        ColorBy::Role
+    } else {
+        by
+    };
 }
 
 fn toggled(line: Option<f32>) -> Option<f32> {

@@ -48,7 +48,9 @@ impl AppState {
             }
             // What was measured is written on the level itself, which may be shown again.
             JobKey::MeasureLevel(_) => true,
-            JobKey::Align | JobKey::Match | JobKey::Sweep => now.parts == stamp.parts,
+            JobKey::Align | JobKey::Match | JobKey::Sweep | JobKey::Compare => {
+                now.parts == stamp.parts
+            }
             JobKey::Measure => now == stamp,
         }
     }
@@ -83,6 +85,7 @@ impl AppState {
             JobOutput::Matched(run) => return self.take_matched(run, took),
             JobOutput::Aligned(poses) => self.take_aligned(poses, took),
             JobOutput::Measured(measurement) => self.take_measured(measurement, stamp, took),
+            JobOutput::Compared(comparison) => self.take_compared(comparison, stamp),
             JobOutput::Swept(table) => self.take_swept(table, took),
             JobOutput::Exported { paths, notes } => {
                 for path in paths {
@@ -116,6 +119,7 @@ impl AppState {
         match key {
             JobKey::Match => self.live_pose = None,
             JobKey::Load(_) => self.guess.n_pending = self.guess.n_pending.saturating_sub(1),
+            JobKey::Compare => self.give_up_comparing(self.document.stamp()),
             _ => {}
         }
     }
@@ -146,6 +150,7 @@ fn step_of(key: JobKey) -> (&'static str, Option<Role>) {
         JobKey::Align => ("align", None),
         JobKey::Match => ("match", None),
         JobKey::Measure => ("measure", None),
+        JobKey::Compare => ("compare", None),
         JobKey::Sweep => ("sweep", None),
         JobKey::Export => ("export", None),
     }

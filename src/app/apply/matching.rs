@@ -126,8 +126,10 @@ impl AppState {
             return Vec::new();
         }
         self.jobs.ending(key, true);
-        if key == JobKey::Match {
-            self.live_pose = None;
+        match key {
+            JobKey::Match => self.live_pose = None,
+            JobKey::Compare => self.give_up_comparing(self.document.stamp()),
+            _ => {}
         }
         vec![Effect::CancelJob(key)]
     }

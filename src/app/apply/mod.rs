@@ -3,6 +3,7 @@
 mod export;
 mod file;
 mod history;
+mod inspect;
 mod jobs;
 mod matching;
 mod moving;
@@ -17,7 +18,14 @@ impl AppState {
     /// Changes the state as the command says and returns what has to be done outside. A command
     /// that makes no sense now (its action is disabled) changes nothing.
     pub fn apply(&mut self, command: impl Into<Command>) -> Vec<Effect> {
-        match command.into() {
+        let mut effects = self.apply_one(command.into());
+        // Whatever changed, what the window shows of the distances follows.
+        effects.extend(self.keep_comparing());
+        effects
+    }
+
+    fn apply_one(&mut self, command: Command) -> Vec<Effect> {
+        match command {
             Command::File(command) => self.apply_file(command),
             Command::Part(command) => self.apply_part(command),
             Command::Reduce(command) => self.apply_reduce(command),
@@ -25,6 +33,7 @@ impl AppState {
             Command::Match(command) => self.apply_match(command),
             Command::Export(command) => self.apply_export(command),
             Command::View(command) => self.apply_view(command),
+            Command::Inspect(command) => self.apply_inspect(command),
             Command::History(command) => self.apply_history(command),
             Command::Notice(command) => self.apply_notice(command),
             Command::Settings(settings) => self.set_settings(*settings),

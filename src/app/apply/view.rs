@@ -23,6 +23,7 @@ impl AppState {
             ViewCommand::SetShown(shown) => self.view.shown = shown,
             ViewCommand::SetBlinking(is_blinking) => self.view.is_blinking = is_blinking,
             ViewCommand::SetDisplay(display) => self.view.display = *display,
+            ViewCommand::SetSection(section) => self.view.section = section,
             ViewCommand::SetTab(tab) => self.set_tab(tab),
             ViewCommand::ToggleSection(index) => {
                 if let Some(is_open) = self.view.open_sections.get_mut(index) {
@@ -77,7 +78,7 @@ impl AppState {
         self.view.set_camera(role, camera);
     }
 
-    fn fit(&mut self, role: Role, points: &[Point3]) {
+    pub(super) fn fit(&mut self, role: Role, points: &[Point3]) {
         let aspect = *self.view.aspects.get(role);
         self.view.fit(role, points, aspect);
     }

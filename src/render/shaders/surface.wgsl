@@ -75,10 +75,31 @@ fn light(n: vec3<f32>, v: vec3<f32>) -> Light {
     return out;
 }
 
-fn field_color(value: f32) -> vec3<f32> {
+// Colour of a value; the fourth number names the pattern over it.
+fn field_color(value: f32) -> vec4<f32> {
     let t = clamp((value - drawable.params.x) * drawable.params.y, 0.0, 1.0);
     let texel = min(i32(t * FIELD_STEPS), i32(FIELD_STEPS) - 1);
-    return textureLoad(field_colors, vec2<i32>(texel, 0), 0).rgb;
+    return textureLoad(field_colors, vec2<i32>(texel, 0), 0);
+}
+
+// 1 on the marks of a pattern of the screen: horizontal lines for negative values, dots for
+// positive ones.
+fn pattern(pixel: vec2<f32>, name: f32) -> f32 {
+    if name > 0.83 {
+        return 0.0;
+    }
+    let period = 6.0 * frame.eye.w;
+    let half = 0.75 * frame.eye.w;
+    if name > 0.5 {
+        let distance = abs(fract(pixel.y / period) - 0.5) * period;
+        return 1.0 - smoothstep(half - 0.5, half + 0.5, distance);
+    }
+    // Every second row is shifted by half a step.
+    let row = floor(pixel.y / period);
+    let shift = 0.5 * period * (row - 2.0 * floor(0.5 * row));
+    let place = (fract(vec2<f32>(pixel.x + shift, pixel.y) / period) - 0.5) * period;
+    let radius = 1.5 * frame.eye.w;
+    return 1.0 - smoothstep(radius - 0.5, radius + 0.5, length_2d(place));
 }
 
 // How much of a fragment belongs to two sheets at once: 1 where the other one lies within the
@@ -121,7 +142,9 @@ fn shaded(in: Varyings, front: bool) -> vec3<f32> {
         diffuse = mix(1.0, lit.diffuse, 0.45);
         gloss *= 0.3;
         if in.field.y > 0.999 {
-            base = linear_from_srgb(field_color(in.field.x));
+            let found = field_color(in.field.x);
+            base = linear_from_srgb(found.rgb);
+            base = mix(base, base * 0.28, pattern(in.clip.xy + frame.screen.zw, found.a));
         } else {
             let stripe = hatch(in.clip.xy + frame.screen.zw, 1.0, 5.0, 1.6);
             base = linear_from_srgb(frame.unmatched_color.rgb) * (1.0 - 0.62 * stripe);

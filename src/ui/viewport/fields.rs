@@ -1,5 +1,5 @@
-//! Numbers shown as colours: thickness, error of the reduction, distance between the parts. Made
-//! off the frame and kept while they are shown.
+//! Numbers shown as colours: thickness and error of the reduction, made off the frame and kept while
+//! they are shown; distance between the parts and overlap, which the worker measures.
 
 use std::sync::Arc;
 
@@ -7,14 +7,12 @@ use super::background::{Background, Task};
 use super::meshes::{MeshKey, ShownMesh};
 use crate::app::{AppState, ColorBy};
 use crate::colormap::{ColorMap, ColorScale};
-use crate::geometry::{Point3, Similarity, TriMesh, Vector3};
+use crate::geometry::{Point3, TriMesh};
 use crate::jobs::{PerRole, Role};
 use crate::monitor::Monitor;
 use crate::render::FieldLook;
 use crate::search::{Bvh, SearchLimits, closest_many};
 
-/// Distances beyond this share of the crash part's size are none: the part is elsewhere.
-const REACH: f64 = 0.05;
 /// Share of the values on either end that may lie beyond the colours.
 const TAIL: f64 = 0.005;
 /// Fields kept although nothing shows them now.
@@ -26,6 +24,7 @@ pub(super) enum FieldKind {
     Thickness,
     ReductionError,
     Deviation,
+    Overlap,
 }
 
 impl FieldKind {
@@ -35,6 +34,7 @@ impl FieldKind {
             ColorBy::Thickness => Some(Self::Thickness),
             ColorBy::ReductionError => Some(Self::ReductionError),
             ColorBy::Deviation => Some(Self::Deviation),
+            ColorBy::Overlap => Some(Self::Overlap),
             ColorBy::Role | ColorBy::Part => None,
         }
     }
@@ -44,7 +44,8 @@ impl FieldKind {
         match self {
             Self::Thickness => "Thickness",
             Self::ReductionError => "Distance reduced to full",
-            Self::Deviation => "Stamped to crash",
+            Self::Deviation => "Deviation",
+            Self::Overlap => "Overlap",
         }
     }
 }
@@ -54,8 +55,6 @@ impl FieldKind {
 struct FieldKey {
     kind: FieldKind,
     mesh: MeshKey,
-    /// The pose a deviation was measured at and the parts it was measured between.
-    pose: Option<(crate::jobs::Stamp, Similarity)>,
     /// The other mesh of a reduction error, by identity.
     other: usize,
 }
@@ -98,6 +97,10 @@ impl FieldStore {
         wake: &egui::Context,
     ) -> Vec<Option<FieldLook>> {
         let kind = FieldKind::of(state.view.display.color_by);
+        if let Some(kind @ (FieldKind::Deviation | FieldKind::Overlap)) = kind {
+            let of = |(role, mesh): &(Role, Arc<ShownMesh>)| compared(kind, state, *role, mesh);
+            return meshes.iter().map(of).collect();
+        }
         let orders: Vec<_> = meshes
             .iter()
             .map(|(role, mesh)| Order::new(kind?, state, *role, mesh))
@@ -138,17 +141,21 @@ impl FieldStore {
     /// The scale of what both windows show.
     pub fn scale(&self, state: &AppState) -> Option<ColorScale> {
         let kind = FieldKind::of(state.view.display.color_by)?;
+        let coloring = &state.view.display.coloring;
+        match kind {
+            FieldKind::Deviation => return Some(coloring.deviation_scale(state.comparison()?)),
+            FieldKind::Overlap => return Some(ColorScale::new(ColorMap::Classes, 0.0, 1.0)),
+            FieldKind::Thickness | FieldKind::ReductionError => {}
+        }
         let ranges = self.ranges.iter().filter_map(|(_, range)| *range);
         let ranges = ranges.filter(|(of, _)| *of == kind).map(|(_, range)| range);
         let [low, high] = ranges.reduce(union)?;
-        Some(match kind {
-            FieldKind::Thickness => ColorScale::new(ColorMap::Viridis, low, high),
-            FieldKind::ReductionError => ColorScale::new(ColorMap::Viridis, 0.0, high),
-            FieldKind::Deviation => {
-                let limit = high.abs().max(low.abs());
-                ColorScale::symmetric(limit, 0.05 * limit)
-            }
-        })
+        let low = if kind == FieldKind::Thickness {
+            low
+        } else {
+            0.0
+        };
+        Some(coloring.on_scale(ColorScale::new(ColorMap::Viridis, low, high)))
     }
 
     /// The field, or the last one of this mesh and kind, which is shown until the new one is there.
@@ -164,6 +171,39 @@ impl FieldStore {
     }
 }
 
+/// True if a part is to be coloured by a field.
+pub(super) fn is_wanted(state: &AppState, role: Role) -> bool {
+    let display = &state.view.display;
+    match FieldKind::of(display.color_by) {
+        Some(FieldKind::Deviation) => *display.coloring.on.get(role) && has_both(state),
+        Some(FieldKind::Overlap) => has_both(state),
+        Some(_) => true,
+        None => false,
+    }
+}
+
+fn has_both(state: &AppState) -> bool {
+    state.document.both().is_some()
+}
+
+/// The values of a mesh in the last comparison.
+fn compared(kind: FieldKind, state: &AppState, role: Role, mesh: &ShownMesh) -> Option<FieldLook> {
+    let coloring = &state.view.display.coloring;
+    let comparison = state.comparison()?;
+    let drawn = comparison.drawn(mesh.source.mesh())?;
+    match kind {
+        FieldKind::Deviation if *coloring.on.get(role) => Some(FieldLook {
+            values: Arc::clone(&drawn.signed),
+            scale: coloring.deviation_scale(comparison),
+        }),
+        FieldKind::Overlap => Some(FieldLook {
+            values: Arc::clone(&drawn.overlap),
+            scale: ColorScale::new(ColorMap::Classes, 0.0, 1.0),
+        }),
+        _ => None,
+    }
+}
+
 fn union(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
@@ -175,40 +215,28 @@ struct Order {
     mesh: Arc<ShownMesh>,
     /// What distances are measured to.
     other: Option<Arc<TriMesh>>,
-    world_from_mesh: Similarity,
 }
 
 impl Order {
     fn new(kind: FieldKind, state: &AppState, role: Role, mesh: &Arc<ShownMesh>) -> Option<Self> {
         let part = state.document.part(role)?;
-        let (other, pose) = match kind {
-            FieldKind::Thickness => (None, None),
+        let other = match kind {
             FieldKind::ReductionError => {
                 let level = &part.level.as_ref()?.level.mesh;
                 let is_full = mesh.source.level.is_none();
-                let other = if is_full { level } else { &part.loaded.mesh };
-                (Some(Arc::clone(other)), None)
+                Some(Arc::clone(if is_full { level } else { &part.loaded.mesh }))
             }
-            FieldKind::Deviation => {
-                let crash = state.document.part(Role::Crash)?;
-                let at = (state.document.stamp(), state.shown_pose());
-                if role == Role::Crash {
-                    return None;
-                }
-                (Some(Arc::clone(&crash.loaded.mesh)), Some(at))
-            }
+            _ => None,
         };
         let key = FieldKey {
             kind,
             mesh: mesh.key(),
-            pose,
             other: other.as_ref().map_or(0, |mesh| Arc::as_ptr(mesh).addr()),
         };
         Some(Self {
             key,
             mesh: Arc::clone(mesh),
             other,
-            world_from_mesh: pose.map_or_else(Similarity::identity, |(_, pose)| pose),
         })
     }
 
@@ -220,10 +248,9 @@ impl Order {
     }
 
     fn make(self) -> Field {
-        let values = match (self.key.kind, &self.other) {
-            (FieldKind::Deviation, Some(other)) => self.deviation(other),
-            (_, Some(other)) => self.distance(other),
-            (_, None) => thickness(&self.mesh),
+        let values = match &self.other {
+            Some(other) => distances(other, self.mesh.mesh().positions()),
+            None => thickness(&self.mesh),
         };
         Field {
             range: robust_range(&values),
@@ -231,39 +258,22 @@ impl Order {
             _key: (self.mesh, self.other),
         }
     }
-
-    fn distance(&self, other: &Arc<TriMesh>) -> Vec<f32> {
-        let signed = closest(other, self.mesh.mesh().positions(), f64::INFINITY);
-        signed.into_iter().map(f32::abs).collect()
-    }
-
-    /// Positive on the side of the crash part's normals.
-    fn deviation(&self, crash: &Arc<TriMesh>) -> Vec<f32> {
-        let points = self.mesh.mesh().positions().iter();
-        let points: Vec<Point3> = points.map(|p| self.world_from_mesh.apply(p)).collect();
-        closest(crash, &points, REACH * crash.aabb().diagonal())
-    }
 }
 
-/// Signed distances to a surface; NaN beyond the reach.
-fn closest(target: &Arc<TriMesh>, points: &[Point3], reach: f64) -> Vec<f32> {
+/// Distances of points from a surface.
+fn distances(target: &Arc<TriMesh>, points: &[Point3]) -> Vec<f32> {
     let tree = Bvh::build(Arc::clone(target));
     let limits = SearchLimits {
-        max_distance: reach,
+        max_distance: f64::INFINITY,
         min_cos: None,
     };
     let found = closest_many(&tree, points, &[], &[], limits, &Monitor::silent());
     // A silent monitor is never cancelled.
-    let found = found.unwrap_or_default();
-    let signed = found.iter().zip(points).map(|(hit, point)| {
-        let Some(hit) = hit else {
-            return f32::NAN;
-        };
-        let away: Vector3 = point - hit.point;
-        let side = away.dot(&target.normal(hit.triangle as usize));
-        (away.norm() * if side < 0.0 { -1.0 } else { 1.0 }) as f32
-    });
-    signed.collect()
+    let found = found.unwrap_or_default().into_iter();
+    let distance = |hit: Option<crate::search::SurfaceHit>| {
+        hit.map_or(f32::NAN, |hit| hit.distance_sq.sqrt() as f32)
+    };
+    found.map(distance).collect()
 }
 
 /// Mean over the elements around each vertex, in the crash model's unit; NaN where no thickness is known.
@@ -335,13 +345,11 @@ mod tests {
     }
 
     #[test]
-    fn distances_have_the_sign_of_the_side() {
+    fn distances_are_those_to_the_surface() {
         let corners = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]];
         let positions = corners.map(|[x, y]| Point3::new(x, y, 0.0)).to_vec();
         let mesh = Arc::new(TriMesh::new(positions, vec![[0, 1, 2]]).unwrap());
-        let points = [0.5, -0.25, 9.0].map(|z| Point3::new(1.0, 1.0, z));
-        let found = closest(&mesh, &points, 2.0);
-        assert_eq!(found[..2], [0.5, -0.25]);
-        assert!(found[2].is_nan());
+        let points = [0.5, -0.25].map(|z| Point3::new(1.0, 1.0, z));
+        assert_eq!(distances(&mesh, &points), [0.5, 0.25]);
     }
 }

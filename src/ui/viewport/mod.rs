@@ -217,6 +217,7 @@ impl Viewports {
                 role: actor.role,
                 mesh,
                 field,
+                wants_field: fields::is_wanted(state, actor.role),
                 actor,
             });
         Picture::new(state, stage, look, layers.collect(), ui.pixels_per_point())
@@ -311,7 +312,8 @@ impl Viewports {
             picture,
             drag: window.navigator.drag(),
             hit: hit.as_ref(),
-            scale: kind.and_then(|kind| Some((kind.label(), self.fields.scale(state)?))),
+            scale: kind.and_then(|kind| Some((kind, self.fields.scale(state)?))),
+            kind,
             hint: window.tools.hint(state),
             is_focused: response.has_focus(),
             is_preparing: is_preparing(state, stage, picture),

@@ -37,6 +37,8 @@ pub(super) struct Layer {
     pub role: Role,
     pub mesh: Arc<ShownMesh>,
     pub field: Option<FieldLook>,
+    /// It is to be coloured by a field, which may not be there yet.
+    pub wants_field: bool,
     pub actor: Actor,
 }
 
@@ -86,6 +88,17 @@ impl Picture {
             layers,
             bounds,
         }
+    }
+
+    /// True if some part carries a field, or should.
+    pub fn has_colored(&self) -> bool {
+        self.layers.iter().any(|layer| layer.wants_field)
+    }
+
+    /// The parts that are drawn, each once, crash first.
+    pub fn roles(&self) -> Vec<Role> {
+        let has = |role: &Role| self.layers.iter().any(|layer| layer.role == *role);
+        Role::ALL.into_iter().filter(has).collect()
     }
 
     /// True if nothing is drawn.

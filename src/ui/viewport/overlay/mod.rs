@@ -11,6 +11,7 @@ pub(super) use crate::report::grouped;
 use egui::{Align2, FontId, Painter, Rect, Ui};
 
 use super::cast::Stage;
+use super::fields::FieldKind;
 use super::look::Look;
 use super::navigation::CameraDrag;
 use super::stage::{Hit, Picture};
@@ -31,7 +32,9 @@ pub(super) struct Overlay<'a> {
     pub drag: Option<&'a CameraDrag>,
     pub hit: Option<&'a Hit>,
     /// Colours of the shown field and what they say.
-    pub scale: Option<(&'static str, ColorScale)>,
+    pub scale: Option<(FieldKind, ColorScale)>,
+    /// What the colours should show, measured or not.
+    pub kind: Option<FieldKind>,
     /// What the handle under the pointer does.
     pub hint: Option<String>,
     pub is_focused: bool,
@@ -58,7 +61,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     }
     apart::show(ui, over, commands);
     divider::show(ui, over, commands);
-    legend::show(ui, over);
+    legend::show(ui, over, commands);
     marks::show(ui, over);
     header::show(ui, over);
     header::buttons(ui, over, commands);

@@ -1,0 +1,110 @@
+//! How far two loaded parts lie from each other under a pose, ready to be drawn.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use super::PipelineError;
+use super::load::LoadedPart;
+use crate::assess::deviation::{
+    self, Deviation, DeviationField, DeviationSettings, OverlapClass, source_on_target,
+    target_on_source,
+};
+use crate::geometry::{Similarity, TriMesh};
+use crate::monitor::Monitor;
+use crate::registration::Surface;
+
+/// The values of one mesh as they are drawn.
+#[derive(Debug, Clone)]
+pub struct DrawnDeviation {
+    /// The mesh: a full one or a level.
+    pub mesh: Arc<TriMesh>,
+    /// Signed distance of each vertex; NaN where the other part is not there.
+    pub signed: Arc<[f32]>,
+    /// 0 matched, 1 off by more than the limit, NaN only here.
+    pub overlap: Arc<[f32]>,
+}
+
+/// Two parts compared at one pose. The stamped part is the source, the crash part the target.
+#[derive(Debug, Clone)]
+pub struct Comparison {
+    /// The pose.
+    pub crash_from_stamped: Similarity,
+    /// Distances of the full meshes, in both directions.
+    pub deviation: Deviation,
+    /// What is drawn: both full meshes and both levels.
+    pub drawn: Vec<DrawnDeviation>,
+    /// How long it took.
+    pub took: Duration,
+}
+
+impl Comparison {
+    /// The values of a mesh, by identity.
+    pub fn drawn(&self, mesh: &Arc<TriMesh>) -> Option<&DrawnDeviation> {
+        self.drawn
+            .iter()
+            .find(|drawn| Arc::ptr_eq(&drawn.mesh, mesh))
+    }
+}
+
+/// Compares two parts in both directions on their full meshes. Levels, crash first, are measured
+/// against the full mesh of the other part with the same limits, so that their colours mean the
+/// same.
+pub fn compare_parts(
+    crash: &LoadedPart,
+    stamped: &LoadedPart,
+    levels: [Option<&Arc<TriMesh>>; 2],
+    crash_from_stamped: &Similarity,
+    monitor: &Monitor,
+) -> Result<Comparison, PipelineError> {
+    let begin = Instant::now();
+    let (target, source) =
+        rayon::join(|| crash.surface_for_match(), || stamped.surface_for_match());
+    let (target, source) = (target?, source?);
+    let thickness = crash.mean_thickness().or_else(|| stamped.mean_thickness());
+    let settings = DeviationSettings {
+        thickness,
+        ..DeviationSettings::default()
+    };
+    let pose = crash_from_stamped;
+    let deviation = deviation::compare(&source, &target, pose, &settings, monitor)?;
+    let settings = DeviationSettings {
+        limit: Some(deviation.limit),
+        reach: Some(deviation.source_on_target.field.reach),
+        ..settings
+    };
+    let mut drawn = vec![
+        draw(&crash.mesh, &deviation.target_on_source.field),
+        draw(&stamped.mesh, &deviation.source_on_target.field),
+    ];
+    if let Some(level) = levels[0] {
+        let reduced = Surface::new(level, "target")?;
+        let field = target_on_source(&source, &reduced, pose, &settings, monitor)?;
+        drawn.push(draw(level, &field));
+    }
+    if let Some(level) = levels[1] {
+        let reduced = Surface::new(level, "source")?;
+        let field = source_on_target(&reduced, &target, pose, &settings, monitor)?;
+        drawn.push(draw(level, &field));
+    }
+    Ok(Comparison {
+        crash_from_stamped: *crash_from_stamped,
+        deviation,
+        drawn,
+        took: begin.elapsed(),
+    })
+}
+
+fn draw(mesh: &Arc<TriMesh>, field: &DeviationField) -> DrawnDeviation {
+    let values = 0..field.signed.len();
+    let signed = values.map(|v| field.compared(v).map_or(f32::NAN, |d| d as f32));
+    let overlap = field.class.iter().map(|class| match class {
+        OverlapClass::Matched => 0.0,
+        OverlapClass::OffByMore => 1.0,
+        OverlapClass::OnlyHere => f32::NAN,
+    });
+    DrawnDeviation {
+        mesh: Arc::clone(mesh),
+        signed: signed.collect(),
+        overlap: overlap.collect(),
+    }
+}

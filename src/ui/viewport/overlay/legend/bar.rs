@@ -1,0 +1,110 @@
+//! The bar of colours with its ticks.
+
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
+
+use super::menu;
+use super::tick_text;
+use crate::app::Command;
+use crate::colormap::{ColorScale, Pattern};
+use crate::ui::viewport::overlay::Overlay;
+
+/// Width of the bar.
+pub(super) const BAR: f32 = 14.0;
+
+/// Title, menu, bar, ticks: for values without more to say about them.
+pub(super) fn plain(
+    ui: &mut Ui,
+    over: &Overlay<'_>,
+    title: &str,
+    scale: &ColorScale,
+    height: f32,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(title).size(12.0));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            menu::maps(ui, over, false, commands);
+        });
+    });
+    ui.add_space(6.0);
+    let (room, _) = ui.allocate_exact_size(vec2(super::WIDTH, height + 8.0), Sense::hover());
+    let bar = Rect::from_min_size(room.min + vec2(2.0, 4.0), vec2(BAR, height));
+    paint(ui.painter(), scale, bar, over);
+    ticks(ui.painter(), scale, bar, over, false);
+}
+
+/// The colours, low values at the foot, with their patterns.
+pub(super) fn paint(painter: &Painter, scale: &ColorScale, bar: Rect, over: &Overlay<'_>) {
+    let n = bar.height().round().max(1.0) as usize;
+    for (i, [r, g, b]) in scale.table(n).into_iter().enumerate() {
+        let bottom = bar.bottom() - i as f32;
+        let row = Rect::from_min_max(pos2(bar.left(), bottom - 1.0), pos2(bar.right(), bottom));
+        painter.rect_filled(row, 0.0, Color32::from_rgb(r, g, b));
+    }
+    patterns(painter, bar, |y| {
+        let share = f64::from((bar.bottom() - y) / bar.height());
+        scale.pattern(scale.value_at(share))
+    });
+    let stroke = Stroke::new(1.0, over.look.plate_line);
+    painter.rect_stroke(bar, 0.0, stroke, egui::StrokeKind::Outside);
+}
+
+/// Draws lines and dots over a rectangle as the shader draws them over parts.
+pub(super) fn patterns(painter: &Painter, rect: Rect, pattern_at: impl Fn(f32) -> Pattern) {
+    const STEP: f32 = 6.0;
+    let ink = Color32::from_black_alpha(170);
+    let n_rows = (rect.height() / STEP) as usize;
+    for row in 0..n_rows {
+        let y = rect.top() + STEP * (row as f32 + 0.5);
+        match pattern_at(y) {
+            Pattern::Plain => {}
+            Pattern::Lines => {
+                painter.hline(rect.x_range(), y, Stroke::new(1.5, ink));
+            }
+            Pattern::Dots => {
+                let shift = if row % 2 == 0 { 0.25 } else { 0.75 };
+                let n = (rect.width() / STEP).ceil() as usize;
+                for column in 0..n {
+                    let x = rect.left() + STEP * (column as f32 + shift);
+                    if x <= rect.right() - 1.0 {
+                        painter.circle_filled(pos2(x, y), 1.5, ink);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Round values beside the bar.
+///
+/// Ends that have a field of their own need no tick.
+pub(super) fn ticks(
+    painter: &Painter,
+    scale: &ColorScale,
+    bar: Rect,
+    over: &Overlay<'_>,
+    has_fields: bool,
+) {
+    let n_ticks = ((bar.height() / 26.0) as usize).clamp(3, 7);
+    let ticks = scale.ticks(n_ticks);
+    let is_end = |tick: f64| (scale.position(tick) - 0.5).abs() > 0.46;
+    for tick in ticks.iter().filter(|t| !(has_fields && is_end(**t))) {
+        let at = Pos2::new(bar.right(), y_of(scale, bar, *tick));
+        painter.line_segment(
+            [at + vec2(1.0, 0.0), at + vec2(5.0, 0.0)],
+            Stroke::new(1.0, over.look.weak),
+        );
+        painter.text(
+            at + vec2(8.0, 0.0),
+            Align2::LEFT_CENTER,
+            tick_text(*tick, &ticks),
+            FontId::proportional(11.0),
+            over.look.text,
+        );
+    }
+}
+
+/// Height of a value on the bar.
+pub(super) fn y_of(scale: &ColorScale, bar: Rect, value: f64) -> f32 {
+    bar.bottom() - scale.position(value) as f32 * bar.height()
+}

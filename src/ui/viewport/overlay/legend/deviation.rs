@@ -1,0 +1,430 @@
+//! The legend of the deviation: colours with a histogram, limits and tolerance to drag, and what the
+//! numbers say.
+
+use egui::{
+    Align, Button, CursorIcon, DragValue, Layout, Rect, RichText, Sense, Stroke, Ui, WidgetInfo,
+    pos2, vec2,
+};
+
+use super::{Room, WIDTH, bar, menu, overlap};
+use crate::app::{Coloring, Command, Freshness, InspectCommand};
+use crate::assess::deviation::DeviationStats;
+use crate::colormap::ColorScale;
+use crate::jobs::Role;
+use crate::ui::viewport::overlay::Overlay;
+use crate::ui::widgets::{length, paint_role_mark, percent};
+
+/// Width of the histogram beside the bar.
+const HISTOGRAM: f32 = 64.0;
+/// How quickly a dragged limit grows, per point.
+const DRAG_RATE: f64 = 0.012;
+
+/// Everything about the deviation.
+pub(super) fn show(
+    ui: &mut Ui,
+    over: &Overlay<'_>,
+    scale: &ColorScale,
+    room: Room,
+    commands: &mut Vec<Command>,
+) {
+    let Some((role, stats)) = over.state.deviation_stats() else {
+        return;
+    };
+    title(ui, over, role, commands);
+    freshness(ui, over, commands);
+    if over.state.freshness() != Freshness::Current {
+        ui.set_opacity(0.45);
+    }
+    let before = over.state.view.display.coloring;
+    let mut coloring = before;
+    if room.is_full {
+        side_words(ui, over, "in front of the crash side", true);
+    }
+    limit_field(ui, over, scale, Limit::Upper, &mut coloring);
+    bars(ui, over, (scale, stats), room.bar, &mut coloring);
+    limit_field(ui, over, scale, Limit::Lower, &mut coloring);
+    if room.is_full {
+        side_words(ui, over, "behind it", false);
+    }
+    ui.add_space(2.0);
+    tolerance(ui, over, scale, stats, &mut coloring);
+    if room.is_full {
+        numbers(ui, over, stats);
+    }
+    if coloring != before {
+        menu::set(over, coloring, commands);
+    }
+}
+
+/// Before the first measurement has ended.
+pub(super) fn waiting(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
+    ui.label(RichText::new("Deviation").size(12.0).strong());
+    freshness(ui, over, commands);
+}
+
+/// From which part to which, and the menu.
+fn title(ui: &mut Ui, over: &Overlay<'_>, role: Role, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let words = format!("{} to {}", capital(role), role.other().word());
+        let (rect, _) = ui.allocate_exact_size(vec2(10.0, 14.0), Sense::hover());
+        let mark = Rect::from_center_size(rect.center(), vec2(10.0, 10.0));
+        paint_role_mark(ui.painter(), mark, role, over.look.role(role));
+        ui.label(RichText::new(words).size(12.0).strong());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            menu::maps(ui, over, true, commands);
+        });
+    });
+}
+
+fn capital(role: Role) -> &'static str {
+    match role {
+        Role::Crash => "Crash",
+        Role::Stamped => "Stamped",
+    }
+}
+
+/// Says when the numbers are not those of what is shown.
+pub(super) fn freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
+    let text = match over.state.freshness() {
+        Freshness::Current => return,
+        Freshness::Missing => "not measured yet",
+        Freshness::Updating => "out of date · measuring",
+        Freshness::OutOfDate => "out of date",
+    };
+    let palette = crate::ui::theme::Palette::of(ui);
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(text).size(11.5).color(palette.check));
+        let is_asked = matches!(
+            over.state.freshness(),
+            Freshness::Missing | Freshness::OutOfDate
+        );
+        if is_asked {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let button = Button::new(RichText::new("Update").size(11.5)).small();
+                let can = over.state.can_match().is_ok();
+                if ui.add_enabled(can, button).clicked() {
+                    commands.push(InspectCommand::Update.into());
+                }
+            });
+        }
+    });
+}
+
+/// Which side the sign means.
+fn side_words(ui: &mut Ui, over: &Overlay<'_>, words: &str, is_front: bool) {
+    let is_signed = over
+        .state
+        .comparison()
+        .is_some_and(|comparison| comparison.deviation.is_signed);
+    let text = match (is_signed, is_front) {
+        (true, true) => format!("+  {words}"),
+        (true, false) => format!("−  {words}"),
+        (false, true) => "without sign: the crash part\nhas no clear sides".to_owned(),
+        (false, false) => return,
+    };
+    ui.label(RichText::new(text).size(11.0).color(over.look.weak));
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Limit {
+    Upper,
+    Lower,
+}
+
+impl Limit {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Upper => "Upper limit",
+            Self::Lower => "Lower limit",
+        }
+    }
+}
+
+/// The value at an end of the bar, typed or dragged.
+fn limit_field(
+    ui: &mut Ui,
+    over: &Overlay<'_>,
+    scale: &ColorScale,
+    limit: Limit,
+    coloring: &mut Coloring,
+) {
+    let mut value = match limit {
+        Limit::Upper => scale.max,
+        Limit::Lower => scale.min,
+    };
+    ui.horizontal(|ui| {
+        ui.add_space(HISTOGRAM - 2.0);
+        let field = DragValue::new(&mut value)
+            .speed(0.01 * scale.max.abs().max(scale.min.abs()))
+            .range(-1e9..=1e9)
+            .custom_formatter(|value, _| signed(value));
+        let response = ui.add(field);
+        response.widget_info(|| {
+            let name = format!("{} ({})", limit.name(), over.role().word());
+            WidgetInfo::labeled(egui::Role::SpinButton, true, name)
+        });
+        if response.changed() {
+            set_limit(ui, scale, limit, value, coloring);
+        }
+        response.on_hover_text("Drag or type; both ends move together unless Alt is held");
+    });
+}
+
+/// A new value at one end; the other end mirrors it while they are symmetric, unless Alt is held.
+fn set_limit(ui: &Ui, scale: &ColorScale, limit: Limit, value: f64, coloring: &mut Coloring) {
+    let is_symmetric = scale.min == -scale.max;
+    let is_alone = ui.input(|i| i.modifiers.alt) || !is_symmetric;
+    let limits = match limit {
+        _ if !is_alone && value != 0.0 => [-value.abs(), value.abs()],
+        Limit::Upper => [scale.min, value],
+        Limit::Lower => [value, scale.max],
+    };
+    if limits[0] < limits[1] {
+        coloring.limits = Some(limits);
+    }
+}
+
+/// Histogram, bar, ticks, and the handles on them.
+fn bars(
+    ui: &mut Ui,
+    over: &Overlay<'_>,
+    (scale, stats): (&ColorScale, &DeviationStats),
+    height: f32,
+    coloring: &mut Coloring,
+) {
+    let (room, _) = ui.allocate_exact_size(vec2(WIDTH, height + 8.0), Sense::hover());
+    let top = room.top() + 4.0;
+    let bar_rect = Rect::from_min_size(
+        pos2(room.left() + HISTOGRAM + 4.0, top),
+        vec2(bar::BAR, height),
+    );
+    let beside = Rect::from_min_size(pos2(room.left(), top), vec2(HISTOGRAM, height));
+    histogram(ui, over, scale, stats, beside);
+    bar::paint(ui.painter(), scale, bar_rect, over);
+    bar::ticks(ui.painter(), scale, bar_rect, over, true);
+    for limit in [Limit::Upper, Limit::Lower] {
+        drag_end(ui, over, scale, (limit, bar_rect), coloring);
+    }
+    for side in [1.0, -1.0] {
+        drag_tolerance(ui, over, scale, (side, beside, bar_rect), coloring);
+    }
+    let id = ui.make_persistent_id(("bar", over.role().word()));
+    let middle = bar_rect.shrink2(vec2(0.0, 14.0));
+    let response = ui.interact(middle, id, Sense::click());
+    if response.double_clicked() {
+        coloring.limits = None;
+        coloring.tolerance = None;
+    }
+    response.on_hover_text("Double click: automatic limits");
+}
+
+/// How much area has which value: bars in the colours of the values, growing to the left.
+fn histogram(ui: &Ui, over: &Overlay<'_>, scale: &ColorScale, stats: &DeviationStats, room: Rect) {
+    let n_bins = (room.height() / 3.0) as usize;
+    let counted = stats.histogram(n_bins, [scale.min, scale.max]);
+    let most = counted.shares.iter().copied().fold(0.0, f64::max);
+    let step = room.height() / n_bins.max(1) as f32;
+    for (i, share) in counted.shares.iter().enumerate() {
+        // Rare values are what one looks for: the root keeps them visible.
+        let width = if most > 0.0 {
+            (share / most).sqrt() as f32 * (room.width() - 2.0)
+        } else {
+            0.0
+        };
+        if width < 0.5 {
+            continue;
+        }
+        let bottom = room.bottom() - step * i as f32;
+        let row = Rect::from_min_max(
+            pos2(room.right() - width, bottom - step + 0.5),
+            pos2(room.right(), bottom),
+        );
+        let middle = scale.value_at((i as f64 + 0.5) / n_bins as f64);
+        let [r, g, b] = scale.color(middle);
+        ui.painter()
+            .rect_filled(row, 0.0, egui::Color32::from_rgb(r, g, b));
+    }
+    let foot = Stroke::new(1.0, over.look.plate_line);
+    ui.painter().vline(room.right() + 1.0, room.y_range(), foot);
+    let beyond = [
+        (counted.above, room.top() + 6.0, "above"),
+        (counted.below, room.bottom() - 6.0, "below"),
+    ];
+    for (share, y, word) in beyond {
+        if share > 5e-4 {
+            ui.painter().text(
+                pos2(room.left(), y),
+                egui::Align2::LEFT_CENTER,
+                format!("{} {word}", percent(share)),
+                egui::FontId::proportional(9.5),
+                over.look.weak,
+            );
+        }
+    }
+}
+
+/// An end of the bar, dragged up or down.
+fn drag_end(
+    ui: &Ui,
+    over: &Overlay<'_>,
+    scale: &ColorScale,
+    (limit, bar): (Limit, Rect),
+    coloring: &mut Coloring,
+) {
+    let y = match limit {
+        Limit::Upper => bar.top(),
+        Limit::Lower => bar.bottom(),
+    };
+    let grip = Rect::from_center_size(pos2(bar.center().x, y), vec2(bar.width() + 8.0, 14.0));
+    let id = ui.make_persistent_id((limit.name(), over.role().word()));
+    let response = ui.interact(grip, id, Sense::drag());
+    let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeVertical);
+    response.widget_info(|| {
+        let name = format!("{} of the colours ({})", limit.name(), over.role().word());
+        WidgetInfo::labeled(egui::Role::Slider, true, name)
+    });
+    let is_held = response.hovered() || response.dragged();
+    let color = if is_held {
+        over.look.tool
+    } else {
+        over.look.weak
+    };
+    let reach = if is_held { 3.0 } else { 2.0 };
+    let line = bar.left() - reach..=bar.right() + reach;
+    ui.painter()
+        .hline(line, y, Stroke::new(if is_held { 3.0 } else { 2.0 }, color));
+    if response.dragged() {
+        let up = -f64::from(response.drag_delta().y);
+        let (value, outward) = match limit {
+            Limit::Upper => (scale.max, up),
+            Limit::Lower => (scale.min, -up),
+        };
+        let span = scale.max - scale.min;
+        let is_symmetric = scale.min == -scale.max;
+        let value = if is_symmetric {
+            value * (DRAG_RATE * outward).exp()
+        } else {
+            value + up * DRAG_RATE * span
+        };
+        set_limit(ui, scale, limit, value, coloring);
+    }
+}
+
+/// An end of the neutral band.
+fn drag_tolerance(
+    ui: &Ui,
+    over: &Overlay<'_>,
+    scale: &ColorScale,
+    (side, beside, bar): (f64, Rect, Rect),
+    coloring: &mut Coloring,
+) {
+    let value = side * scale.tolerance;
+    if scale.tolerance <= 0.0 || value < scale.min || value > scale.max {
+        return;
+    }
+    let y = bar::y_of(scale, bar, value);
+    let from = beside.left();
+    let grip = Rect::from_min_max(pos2(from, y - 5.0), pos2(bar.left() - 1.0, y + 5.0));
+    let name = if side > 0.0 {
+        "Upper tolerance"
+    } else {
+        "Lower tolerance"
+    };
+    let id = ui.make_persistent_id((name, over.role().word()));
+    let response = ui.interact(grip, id, Sense::drag());
+    let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeVertical);
+    response.widget_info(|| {
+        let name = format!("{name} ({})", over.role().word());
+        WidgetInfo::labeled(egui::Role::Slider, true, name)
+    });
+    let is_held = response.hovered() || response.dragged();
+    let color = if is_held {
+        over.look.tool
+    } else {
+        over.look.weak
+    };
+    let stroke = Stroke::new(if is_held { 1.5 } else { 1.0 }, color);
+    let dashes = [pos2(from, y), pos2(bar.left(), y)];
+    ui.painter()
+        .extend(egui::Shape::dashed_line(&dashes, stroke, 3.0, 2.0));
+    let tip = pos2(bar.left() - 1.0, y);
+    let corners = vec![tip, tip + vec2(-6.0, -4.0), tip + vec2(-6.0, 4.0)];
+    ui.painter().add(egui::Shape::convex_polygon(
+        corners,
+        over.look.text,
+        Stroke::NONE,
+    ));
+    if let Some(pos) = response
+        .interact_pointer_pos()
+        .filter(|_| response.dragged())
+    {
+        let share = f64::from((bar.bottom() - pos.y) / bar.height()).clamp(0.0, 1.0);
+        let found = side * scale.value_at(share);
+        let least = 1e-3 * (scale.max - scale.min);
+        coloring.tolerance = Some(found.max(least));
+    }
+}
+
+/// How much area lies within the neutral band, whose width can be typed.
+fn tolerance(
+    ui: &mut Ui,
+    over: &Overlay<'_>,
+    scale: &ColorScale,
+    stats: &DeviationStats,
+    coloring: &mut Coloring,
+) {
+    ui.horizontal(|ui| {
+        let inside = percent(stats.share_inside(scale.tolerance));
+        ui.label(RichText::new(inside).size(15.0).strong());
+        ui.label(RichText::new("inside ±").size(12.0));
+        ui.spacing_mut().item_spacing.x = 2.0;
+        let mut value = scale.tolerance;
+        let field = DragValue::new(&mut value)
+            .speed(0.01 * scale.max.abs())
+            .range(0.0..=1e9)
+            .custom_formatter(|value, _| length(value));
+        let response = ui.add(field);
+        response.widget_info(|| {
+            let name = format!("Tolerance ({})", over.role().word());
+            WidgetInfo::labeled(egui::Role::SpinButton, true, name)
+        });
+        if response.changed() {
+            coloring.tolerance = Some(value);
+        }
+    });
+}
+
+/// Mean and spread, what is alone, and a constant offset in words.
+fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
+    let small = |text: String| RichText::new(text).size(11.0).color(over.look.weak);
+    let mean = format!("mean {} · rms {}", signed(stats.mean), length(stats.rms));
+    ui.label(small(mean));
+    let (least, most) = (signed(stats.min), signed(stats.max));
+    ui.label(small(format!(
+        "95 % within {} · {least} … {most}",
+        length(stats.p95)
+    )));
+    let alone = stats.class_shares[2];
+    if alone > 5e-4 {
+        ui.horizontal(|ui| {
+            let (rect, _) = ui.allocate_exact_size(vec2(14.0, 10.0), Sense::hover());
+            overlap::hatched(ui, rect);
+            let text = format!("{} without counterpart", percent(alone));
+            ui.label(small(text));
+        });
+    }
+    if let Some(offset) = &stats.offset {
+        let words = offset.words(length);
+        let text = RichText::new(format!("constant offset: {words}")).size(11.5);
+        ui.add(egui::Label::new(text).wrap());
+    }
+}
+
+/// A value with its sign: +0.42, −1.3, 0.
+pub(in crate::ui) fn signed(value: f64) -> String {
+    if value > 0.0 {
+        format!("+{}", length(value))
+    } else {
+        length(value).replace('-', "−")
+    }
+}

@@ -1,0 +1,83 @@
+//! The menu of a legend: which part, which map, how many colours.
+
+use egui::containers::menu::{MenuButton, MenuConfig};
+use egui::{Button, PopupCloseBehavior, RichText, Ui};
+
+use crate::app::{Coloring, Command, ViewCommand};
+use crate::colormap::ColorMap;
+use crate::jobs::Role;
+use crate::ui::viewport::overlay::Overlay;
+
+/// Plain colours to choose from.
+const BANDS: [u8; 4] = [5, 7, 9, 11];
+
+/// The button with the menu of maps; `is_signed` for values with a sign, which have more choices.
+pub(super) fn maps(ui: &mut Ui, over: &Overlay<'_>, is_signed: bool, commands: &mut Vec<Command>) {
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let button = Button::new(RichText::new("Map").size(11.5)).small();
+    let before = over.state.view.display.coloring;
+    let mut coloring = before;
+    let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
+        ui.visuals_mut().override_text_color = None;
+        ui.set_min_width(190.0);
+        if is_signed {
+            parts(ui, &mut coloring);
+            ui.separator();
+        }
+        choices(ui, &mut coloring, is_signed);
+    });
+    let name = format!("Colour map ({})", over.role().word());
+    response
+        .on_hover_text("Colours, bands, pattern")
+        .accessible_name(name);
+    if coloring != before {
+        set(over, coloring, commands);
+    }
+}
+
+fn parts(ui: &mut Ui, coloring: &mut Coloring) {
+    for (role, name) in [
+        (Role::Stamped, "▲ on the stamped part"),
+        (Role::Crash, "■ on the crash part"),
+    ] {
+        ui.checkbox(coloring.on.get_mut(role), name);
+    }
+}
+
+fn choices(ui: &mut Ui, coloring: &mut Coloring, is_signed: bool) {
+    let map = if is_signed {
+        &mut coloring.signed_map
+    } else {
+        &mut coloring.map
+    };
+    for choice in ColorMap::ALL {
+        ui.radio_value(map, choice, choice.label());
+    }
+    ui.checkbox(&mut coloring.is_reversed, "Reversed");
+    ui.separator();
+    ui.horizontal(|ui| {
+        ui.label("Bands");
+        ui.selectable_value(&mut coloring.n_bands, None, "smooth");
+        for n in BANDS {
+            ui.selectable_value(&mut coloring.n_bands, Some(n), n.to_string());
+        }
+    });
+    if is_signed {
+        ui.checkbox(&mut coloring.has_pattern, "Pattern for the sign")
+            .on_hover_text("Dots in front, lines behind: readable without colours");
+        ui.separator();
+        let is_automatic = coloring.limits.is_none() && coloring.tolerance.is_none();
+        let automatic = Button::new("Automatic limits");
+        if ui.add_enabled(!is_automatic, automatic).clicked() {
+            coloring.limits = None;
+            coloring.tolerance = None;
+        }
+    }
+}
+
+/// Takes new choices over.
+pub(super) fn set(over: &Overlay<'_>, coloring: Coloring, commands: &mut Vec<Command>) {
+    let mut display = over.state.view.display.clone();
+    display.coloring = coloring;
+    commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
+}

@@ -1,0 +1,129 @@
+//! What the colours of a window mean.
+
+mod bar;
+mod deviation;
+mod menu;
+mod overlap;
+
+use egui::{
+    Align, CornerRadius, Frame, Layout, Margin, Pos2, Rect, Sense, Shape, Ui, UiBuilder, vec2,
+};
+
+use super::{MARGIN, Overlay};
+use crate::app::Command;
+use crate::ui::viewport::fields::FieldKind;
+
+/// Width of what is inside the plate.
+const WIDTH: f32 = 172.0;
+/// Windows lower than this have no legend, those lower than the next a short one.
+const LEAST_HEIGHT: f32 = 240.0;
+const FULL_HEIGHT: f32 = 440.0;
+
+/// The legend below the buttons of the camera.
+pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
+    let Some((kind, scale)) = over.scale else {
+        // The first measurement is under way.
+        if over.kind.is_some_and(is_measured) && over.picture.has_colored() {
+            plate(ui, over, |ui| deviation::waiting(ui, over, commands));
+        }
+        return;
+    };
+    let is_low = over.rect.height() < LEAST_HEIGHT || over.rect.width() < 2.0 * WIDTH;
+    if is_low || !over.picture.has_colored() {
+        return;
+    }
+    let room = Room {
+        is_full: over.rect.height() >= FULL_HEIGHT,
+        bar: if over.rect.height() >= FULL_HEIGHT {
+            176.0
+        } else {
+            (over.rect.height() - 170.0).clamp(70.0, 150.0)
+        },
+    };
+    plate(ui, over, |ui| match kind {
+        FieldKind::Deviation => deviation::show(ui, over, &scale, room, commands),
+        FieldKind::Overlap => overlap::show(ui, over, commands),
+        FieldKind::Thickness | FieldKind::ReductionError => {
+            bar::plain(ui, over, kind.label(), &scale, room.bar, commands);
+        }
+    });
+}
+
+fn is_measured(kind: FieldKind) -> bool {
+    matches!(kind, FieldKind::Deviation | FieldKind::Overlap)
+}
+
+/// How much a legend may show.
+#[derive(Debug, Clone, Copy)]
+struct Room {
+    is_full: bool,
+    /// Height of the bar.
+    bar: f32,
+}
+
+/// A plate in the upper right corner, as high as what is on it; the pointer does not reach through.
+fn plate(ui: &mut Ui, over: &Overlay<'_>, add: impl FnOnce(&mut Ui)) {
+    let id = ui.make_persistent_id(("legend", over.role().word()));
+    if let Some(last) = ui.data(|data| data.get_temp::<Rect>(id)) {
+        ui.interact(last, id, Sense::click_and_drag());
+    }
+    let outer = WIDTH + 20.0;
+    let corner = Pos2::new(over.rect.right() - MARGIN - outer, over.rect.top() + 44.0);
+    let room = Rect::from_min_max(
+        corner,
+        Pos2::new(over.rect.right() - MARGIN, over.rect.bottom() - MARGIN),
+    );
+    let ground = ui.painter().add(Shape::Noop);
+    let builder = UiBuilder::new()
+        .max_rect(room)
+        .layout(Layout::top_down(Align::Min));
+    let shown = ui.scope_builder(builder, |ui| {
+        ui.set_clip_rect(over.rect);
+        ui.spacing_mut().item_spacing = vec2(6.0, 3.0);
+        ui.visuals_mut().override_text_color = Some(over.look.text);
+        Frame::new()
+            .inner_margin(Margin::symmetric(10, 8))
+            .show(ui, |ui| {
+                ui.set_width(WIDTH);
+                add(ui);
+            });
+    });
+    let used = shown.response.rect;
+    let shape = Shape::rect_filled(used, CornerRadius::same(6), over.look.plate);
+    ui.painter().set(ground, shape);
+    ui.data_mut(|data| data.insert_temp(id, used));
+}
+
+/// As many digits as the step between ticks needs.
+fn tick_text(tick: f64, ticks: &[f64]) -> String {
+    let step = ticks
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).abs())
+        .next();
+    let digits = step
+        .map_or(3.0, |step| (-step.log10() + 0.3).ceil())
+        .clamp(0.0, 9.0);
+    let text = format!("{tick:.0$}", digits as usize);
+    if text
+        .trim_start_matches('-')
+        .chars()
+        .all(|c| c == '0' || c == '.')
+    {
+        "0".to_owned()
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_have_the_digits_of_their_step() {
+        assert_eq!(tick_text(0.5, &[0.0, 0.5, 1.0]), "0.5");
+        assert_eq!(tick_text(20.0, &[0.0, 20.0]), "20");
+        assert_eq!(tick_text(-1e-17, &[-0.2, 0.0]), "0");
+        assert_eq!(tick_text(1.25, &[1.2, 1.25]), "1.25");
+    }
+}

@@ -1,0 +1,218 @@
+//! Deviation, labels and section as the window keeps them: commands in, state and jobs out.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use shapematch::app::*;
+use shapematch::geometry::{Plane, Point3, Vector3};
+use shapematch::jobs::{JobKey, JobKind, PerRole, Role};
+use shapematch::pipeline::inspect::Comparison;
+
+use super::app::Window;
+
+fn with_map() -> Window {
+    let mut window = Window::with_both();
+    window.act(Action::ToggleDeviation);
+    window
+}
+
+fn nudge(window: &mut Window, distance: f64) {
+    window.apply(MoveCommand::Translate {
+        axis: Axis::Z,
+        frame: AxisFrame::Global,
+        distance,
+    });
+}
+
+/// The last comparison as if it had taken so long.
+fn as_if_it_took(window: &mut Window, took: Duration) {
+    let compared = window.state.compared.as_mut().unwrap();
+    let comparison = Comparison {
+        took,
+        ..Comparison::clone(&compared.comparison)
+    };
+    compared.comparison = Arc::new(comparison).into();
+}
+
+#[test]
+fn the_deviation_is_measured_when_something_shows_it_and_follows_quick_moves() {
+    let mut window = Window::with_both();
+    assert_eq!(window.state.freshness(), Freshness::Missing);
+    window.act(Action::ToggleDeviation);
+    assert_eq!(window.state.freshness(), Freshness::Current);
+    as_if_it_took(&mut window, Duration::from_millis(20));
+    nudge(&mut window, 0.5);
+    assert_eq!(window.state.freshness(), Freshness::Current);
+    let (role, stats) = window.state.deviation_stats().unwrap();
+    assert_eq!(role, Role::Stamped);
+    // The strip bends, so the distance is a little less than the way.
+    assert!((0.4..=0.5).contains(&stats.max), "{}", stats.max);
+    window.act(Action::Undo);
+    assert_eq!(window.state.freshness(), Freshness::Current);
+    assert!(window.state.deviation_stats().unwrap().1.max.abs() < 1e-9);
+}
+
+#[test]
+fn a_slow_deviation_is_out_of_date_until_it_is_asked_for() {
+    let mut window = with_map();
+    as_if_it_took(&mut window, Duration::from_secs(20));
+    nudge(&mut window, 0.5);
+    assert_eq!(window.state.freshness(), Freshness::OutOfDate);
+    window.holds = true;
+    window.act(Action::UpdateDeviation);
+    assert_eq!(window.state.freshness(), Freshness::Updating);
+    window.finish_held();
+    assert_eq!(window.state.freshness(), Freshness::Current);
+    // Another level is another surface.
+    as_if_it_took(&mut window, Duration::from_secs(20));
+    window.apply(ReduceCommand::To {
+        roles: PerRole {
+            crash: true,
+            stamped: true,
+        },
+        max_triangles: 60,
+    });
+    assert_eq!(window.state.freshness(), Freshness::OutOfDate);
+    window.act(Action::UpdateDeviation);
+    assert_eq!(window.state.freshness(), Freshness::Current);
+    let level = window
+        .state
+        .document
+        .part(Role::Stamped)
+        .unwrap()
+        .reduced_mesh();
+    let drawn = window.state.comparison().unwrap().drawn(level).unwrap();
+    assert_eq!(drawn.signed.len(), level.n_vertices());
+}
+
+#[test]
+fn a_cancelled_comparison_is_not_asked_for_again_by_itself() {
+    let mut window = Window::with_both();
+    window.holds = true;
+    window.act(Action::ToggleDeviation);
+    assert!(window.state.jobs.is_active(JobKey::Compare));
+    assert_eq!(window.held.len(), 1);
+    window.act(Action::Escape);
+    assert!(window.held.is_empty() && !window.state.jobs.is_busy());
+    window.act(Action::ToggleEdges);
+    assert!(window.held.is_empty(), "no second try");
+    window.act(Action::UpdateDeviation);
+    assert!(matches!(window.held[0].1, JobKind::Compare(_)));
+}
+
+#[test]
+fn nothing_is_measured_that_nobody_sees() {
+    let mut window = Window::with_both();
+    window.holds = true;
+    nudge(&mut window, 0.5);
+    assert!(window.held.is_empty());
+    window.apply(ViewCommand::SetTab(BottomTab::Deviation));
+    assert_eq!(window.held.len(), 1);
+}
+
+#[test]
+fn colours_are_symmetric_round_and_neutral_within_the_tolerance() {
+    let mut window = with_map();
+    nudge(&mut window, 0.7);
+    let comparison = window.state.comparison().unwrap();
+    let scale = Coloring::default().deviation_scale(comparison);
+    assert_eq!((scale.min, scale.max, scale.tolerance), (-1.0, 1.0, 0.2));
+    let typed = Coloring {
+        limits: Some([-0.5, 2.0]),
+        tolerance: Some(0.3),
+        ..Coloring::default()
+    };
+    let scale = typed.deviation_scale(comparison);
+    assert_eq!((scale.min, scale.max, scale.tolerance), (-0.5, 2.0, 0.3));
+}
+
+#[test]
+fn labels_are_steps_of_the_history_and_belong_to_their_part() {
+    let mut window = with_map();
+    let n_steps = window.state.history.n_done();
+    let near = Point3::new(3.1, 1.9, 0.2);
+    window.apply(InspectCommand::Pin(Role::Stamped, near));
+    window.apply(InspectCommand::Pin(Role::Stamped, near));
+    assert_eq!(window.state.history.n_done(), n_steps + 1, "one is enough");
+    let label = window.state.document.labels[0].clone();
+    assert_eq!(label.position, Point3::new(3.0, 2.0, 0.02 * 9.0));
+    let part = window.state.document.part(Role::Stamped).unwrap();
+    let loaded = &part.loaded;
+    let ids = loaded.model.nodes.ids();
+    let node = loaded
+        .surface
+        .vertex_node
+        .iter()
+        .zip(loaded.vertex_of.iter());
+    let mut node = node
+        .filter(|(_, v)| **v == label.vertex)
+        .map(|(n, _)| ids[*n as usize]);
+    assert_eq!(label.node, node.next());
+    nudge(&mut window, 0.5);
+    window.act(Action::UpdateDeviation);
+    let value = window.state.label_value(&label).unwrap();
+    assert!((0.45..=0.5).contains(&value), "{value}");
+    for name in ["f", "fl", "flange"] {
+        window.apply(InspectCommand::Rename {
+            id: label.id,
+            name: name.to_owned(),
+            gesture: GestureId(1),
+        });
+    }
+    assert_eq!(window.state.document.labels[0].name, "flange");
+    window.act(Action::Undo);
+    assert_eq!(window.state.document.labels[0].name, "");
+    window.apply(InspectCommand::Remove(label.id));
+    assert!(window.state.document.labels.is_empty());
+    window.act(Action::Undo);
+    assert_eq!(window.state.document.labels, [label]);
+    window.apply(FileCommand::Swap);
+    let (role, _) = window.state.document.shown_labels().next().unwrap();
+    assert_eq!(role, Role::Crash, "it went with its part");
+    window.act(Action::CloseCrash);
+    assert_eq!(window.state.document.shown_labels().count(), 0);
+}
+
+#[test]
+fn the_section_cuts_across_the_longest_side_and_steps_by_a_tenth_of_an_element() {
+    let mut window = Window::with_both();
+    assert!(Action::SectionForward.enabled(&window.state).is_err());
+    window.act(Action::ToggleSection);
+    let plane = window.state.view.section.shown().unwrap();
+    assert_eq!(plane.normal, Vector3::x());
+    assert_eq!(
+        plane.point,
+        window.state.visible_bounds(Role::Crash).center()
+    );
+    window.act(Action::SectionForward);
+    window.act(Action::SectionForward);
+    window.act(Action::SectionBack);
+    let moved = window.state.view.section.shown().unwrap();
+    let step = window.state.section_step();
+    assert!((moved.distance(&plane.point) + step).abs() < 1e-12);
+    window.act(Action::SectionZ);
+    let turned = window.state.view.section.shown().unwrap();
+    assert_eq!(turned, Plane::new(moved.point, &Vector3::z()));
+    window.act(Action::ToggleSectionClip);
+    assert!(window.state.view.section.is_clipped);
+    window.act(Action::ToggleSection);
+    assert_eq!(window.state.view.section.shown(), None);
+    window.act(Action::ToggleSection);
+    assert_eq!(
+        window.state.view.section.shown(),
+        Some(turned),
+        "it stays where it was"
+    );
+}
+
+#[test]
+fn looking_at_a_place_brings_the_camera_there() {
+    let mut window = with_map();
+    let place = Point3::new(3.0, 2.0, 0.18);
+    window.apply(InspectCommand::LookAt(Role::Stamped, place));
+    let camera = window.state.view.cameras.stamped;
+    let bounds = window.state.visible_bounds(Role::Stamped);
+    assert!((camera.target - place).norm() < 1e-6);
+    assert!(camera.height < 0.5 * bounds.diagonal());
+    assert_eq!(window.state.view.focus, Role::Stamped);
+}
