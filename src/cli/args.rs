@@ -228,6 +228,12 @@ pub struct OutputArgs {
     /// Which cards.
     #[arg(long, value_name = "FORM", default_value = "stamped", value_parser = card_forms())]
     pub card_form: CardForm,
+    /// Write a report with pictures, tables and charts as one HTML file.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
+    /// Write how far every node of both parts lies from the other part, as CSV.
+    #[arg(long, value_name = "FILE")]
+    pub deviations: Option<PathBuf>,
     /// Write the stamped mesh moved onto the crash part; the ending chooses the format
     /// (.k, .dynain, .stl, .ply, .obj).
     #[arg(long, value_name = "FILE")]

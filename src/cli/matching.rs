@@ -11,7 +11,7 @@ use crate::assess::Verdict;
 use crate::monitor::Monitor;
 use crate::pipeline::load::{LoadedPart, load};
 use crate::pipeline::match_parts::{MatchRun, ReducedPair, match_parts};
-use crate::pipeline::{cards as pipeline_cards, export, record};
+use crate::pipeline::{cards as pipeline_cards, export, node_table, record, report};
 use crate::report::{MatchRecord, MatrixForm};
 
 /// Reads, matches, writes what was asked for, and prints the report.
@@ -90,6 +90,15 @@ fn write_files(
         let comments = [record.direction.to_owned(), record.build.clone()];
         let silent = Monitor::silent();
         export::write_moved(path, stamped, &run.crash_from_stamped, &comments, &silent)?;
+    }
+    let silent = Monitor::silent();
+    if let Some(path) = &output.deviations {
+        let table = node_table::node_table(crash, stamped, &run.crash_from_stamped, &silent)?;
+        write_output(path, table.as_bytes())?;
+    }
+    if let Some(path) = &output.report {
+        let page = report::report(run, crash, stamped, &silent)?;
+        write_output(path, page.as_bytes())?;
     }
     if let Some(path) = &output.cards {
         let cards = pipeline_cards::cards(output.card_form, run, crash, stamped)?;

@@ -11,6 +11,8 @@ pub mod match_parts;
 pub mod node_table;
 pub mod record;
 pub mod reduce;
+pub mod report;
+mod report_figures;
 pub mod sweep;
 pub mod units;
 

@@ -1,6 +1,6 @@
 //! The `shapematch match …` line that does a match again, without a window and bit for bit.
 //!
-//! The other direction, from words to settings, is [`crate::cli`]; a test walks both.
+//! The other direction, from words to settings, is in the module of the command line; a test walks both.
 
 use std::path::{Path, PathBuf};
 

@@ -4,11 +4,13 @@ mod card_reader;
 pub mod cards;
 pub mod command_line;
 pub mod csv;
+pub mod html;
 mod info;
 pub mod matrix;
 pub mod picture;
 mod pose;
 mod record;
+mod start_groups;
 mod text;
 
 pub use cards::{CardError, CardForm, CardOptions, Cards, Receiver, write as write_cards};
@@ -20,4 +22,5 @@ pub use record::{
     OneWay, OverlapRecord, Parameters, RecordContext, StartEntry, TimingsRecord, UnitsRecord,
     build_id, fate_words, side_word,
 };
+pub use start_groups::{StartGroup, start_groups};
 pub use text::{grouped, length};

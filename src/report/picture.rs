@@ -72,6 +72,37 @@ pub fn picture(
 }
 
 impl Picture {
+    /// This picture over another of the same size, each half transparent: where both show something
+    /// the colours mix, elsewhere each keeps its own.
+    #[must_use]
+    pub fn mixed(mut self, other: &Self) -> Self {
+        let pixels = self.rgba.as_chunks_mut::<4>().0.iter_mut();
+        for (own, other) in pixels.zip(other.rgba.as_chunks::<4>().0) {
+            let [a, b] = [own[3], other[3]].map(u32::from);
+            for (channel, other) in own.iter_mut().zip(other).take(3) {
+                let sum = u32::from(*channel) * a + u32::from(*other) * b;
+                *channel = sum.checked_div(a + b).unwrap_or(0) as u8;
+            }
+            own[3] = own[3].max(other[3]);
+        }
+        self
+    }
+
+    /// This picture and another of the same size in turn, in squares of `tile` pixels; where one of
+    /// them shows nothing, the other. Where lines run on from square to square, the two agree.
+    #[must_use]
+    pub fn chequered(mut self, other: &Self, tile: usize) -> Self {
+        let (width, tile) = (self.width, tile.max(1));
+        let pixels = self.rgba.as_chunks_mut::<4>().0.iter_mut();
+        for (at, (own, other)) in pixels.zip(other.rgba.as_chunks::<4>().0).enumerate() {
+            let is_others = (at % width / tile + at / width / tile) % 2 == 1;
+            if own[3] == 0 || (is_others && other[3] > 0) {
+                *own = *other;
+            }
+        }
+        self
+    }
+
     /// The picture as a PNG file.
     pub fn to_png(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
@@ -326,6 +357,33 @@ mod tests {
         let colors = [[0, 0, 0], [100, 0, 0], [200, 0, 0], [100, 0, 0]];
         let [red, ..] = shown(&sheet, Paint::PerVertex(&colors));
         assert!((90..=110).contains(&red), "{red}");
+    }
+
+    #[test]
+    fn mixed_pictures_show_both() {
+        let pixel = |rgba: [u8; 4]| Picture {
+            width: 1,
+            height: 1,
+            rgba: rgba.to_vec(),
+        };
+        let mixed = |a, b| pixel(a).mixed(&pixel(b)).rgba;
+        assert_eq!(mixed([200, 0, 0, 255], [0, 100, 0, 255]), [100, 50, 0, 255]);
+        assert_eq!(mixed([200, 0, 0, 255], [9, 9, 9, 0]), [200, 0, 0, 255]);
+        assert_eq!(mixed([9, 9, 9, 0], [0, 100, 0, 128]), [0, 100, 0, 128]);
+        assert_eq!(mixed([9, 9, 9, 0], [9, 9, 9, 0])[3], 0);
+    }
+
+    #[test]
+    fn chequered_pictures_take_turns_where_both_are() {
+        let row = |rgba: [[u8; 4]; 4]| Picture {
+            width: 4,
+            height: 1,
+            rgba: rgba.concat(),
+        };
+        let (a, b, none) = ([1, 1, 1, 255], [2, 2, 2, 255], [0; 4]);
+        let both = row([a, a, a, none]).chequered(&row([b, b, none, b]), 1);
+        assert_eq!(both, row([a, b, a, b]));
+        assert_eq!(row([a; 4]).chequered(&row([b; 4]), 2), row([a, a, b, b]));
     }
 
     #[test]

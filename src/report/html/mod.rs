@@ -1,0 +1,136 @@
+//! The report of a match as one file that needs nothing else: pictures, charts and tables inside it,
+//! for the screen in both themes, for narrow windows and for paper. Works without its script.
+
+mod charts;
+mod page;
+mod sections;
+mod tables;
+
+use crate::assess::deviation::Deviation;
+use crate::colormap::ColorScale;
+use crate::registration::MatchOutcome;
+
+use super::text::length;
+use super::{MatchRecord, StartGroup};
+
+pub use page::escaped;
+
+/// A picture with its words.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// PNG file.
+    pub png: Vec<u8>,
+    /// Pixels to each side.
+    pub size: [usize; 2],
+    /// What it shows, for those who cannot see it.
+    pub alt: String,
+    /// Title, in bold.
+    pub title: String,
+    /// The sentence below.
+    pub caption: String,
+    /// True if a ring marks the middle.
+    pub is_marked: bool,
+}
+
+/// The pictures of a report.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Figures {
+    /// Each part by itself, in its own frame.
+    pub parts: Vec<Figure>,
+    /// Both parts at the pose.
+    pub overlays: Vec<Figure>,
+    /// The deviation of the stamped part.
+    pub maps: Vec<Figure>,
+    /// The worst places from near.
+    pub spots: Vec<Figure>,
+    /// One small picture for each group of starts.
+    pub starts: Vec<Figure>,
+}
+
+/// Cards, or why there are none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CardsInfo {
+    /// The keyword.
+    pub name: &'static str,
+    /// The text and the largest error that its rounding makes at a node, or why it cannot be written.
+    pub text: Result<(String, f64), String>,
+}
+
+/// Everything the report shows.
+#[derive(Debug, Clone, Copy)]
+pub struct Report<'a> {
+    /// Matrix, verdict, settings, times, files.
+    pub record: &'a MatchRecord,
+    /// Starts and iterations.
+    pub outcome: &'a MatchOutcome,
+    /// Starts by where they ended.
+    pub groups: &'a [StartGroup],
+    /// How far the best start of each group ended from the result: millimetres or whatever the unit of
+    /// the centre, and degrees.
+    pub group_distances: &'a [(f64, f64)],
+    /// Distances of all nodes.
+    pub deviation: &'a Deviation,
+    /// The colours of the map.
+    pub scale: ColorScale,
+    /// Pictures.
+    pub figures: &'a Figures,
+    /// LS-DYNA cards.
+    pub cards: &'a [CardsInfo],
+}
+
+/// Lengths with their unit, where it is known.
+#[derive(Debug, Clone, Copy)]
+pub struct Lengths {
+    symbol: Option<&'static str>,
+}
+
+impl Lengths {
+    /// Lengths in the unit of a symbol.
+    pub fn new(symbol: Option<&'static str>) -> Self {
+        Self { symbol }
+    }
+
+    /// Three digits and the unit.
+    pub fn of(self, value: f64) -> String {
+        let number = self.bare(value);
+        self.symbol
+            .map_or_else(|| number.clone(), |unit| format!("{number} {unit}"))
+    }
+
+    /// Three digits.
+    pub fn bare(self, value: f64) -> String {
+        length(value).replace('-', "−")
+    }
+
+    /// The name of an axis with the unit.
+    pub fn axis(self, name: &str) -> String {
+        self.symbol
+            .map_or_else(|| name.to_owned(), |unit| format!("{name}, {unit}"))
+    }
+}
+
+impl Report<'_> {
+    /// The page.
+    pub fn write(&self) -> String {
+        let record = self.record;
+        let title = escaped(&format!(
+            "{} on {}: {}",
+            record.files.stamped.name,
+            record.files.crash.name,
+            record.verdict.to_uppercase()
+        ));
+        let (style, script) = (include_str!("style.css"), include_str!("script.js"));
+        let (header, main, footer) = (self.header(), self.main(), self.footer());
+        format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <meta name=\"generator\" content=\"{}\">\n<title>{title}</title>\n<style>\n{style}</style>\n\
+             </head>\n<body>\n{header}<main>\n{main}</main>\n{footer}<script>\n{script}</script>\n</body>\n</html>\n",
+            escaped(&record.build)
+        )
+    }
+
+    fn lengths(&self) -> Lengths {
+        Lengths::new(self.record.units.length)
+    }
+}
