@@ -90,14 +90,20 @@ pub enum FileCommand {
 /// The parts of a deck.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PartCommand {
-    /// Select or deselect.
+    /// Select this part and no other, or none.
     Select(Option<PartRef>),
+    /// Add a part to the selection, or take it out.
+    ToggleSelected(PartRef),
     /// The pointer is over it.
     Hover(Option<PartRef>),
     /// Show or hide.
     SetVisible(PartRef, bool),
     /// Hide all others of this model.
     ShowOnly(PartRef),
+    /// Hide the selected parts.
+    HideSelected,
+    /// Hide all others of the models that something is selected of.
+    ShowOnlySelected,
     /// Show everything.
     ShowAll,
     /// Match this part of the deck, or leave it out.

@@ -2,6 +2,7 @@ use super::{AxisFrame, Coloring, GestureId, ModalMove, MoveFrame, SectionView};
 use crate::geometry::camera::OrbitStyle;
 use crate::geometry::{Camera, Point3};
 use crate::jobs::{PerRole, Role};
+use std::collections::BTreeSet;
 
 /// A part of a deck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -218,8 +219,8 @@ pub struct ViewState {
     pub display: Display,
     /// The section plane.
     pub section: SectionView,
-    /// The selected part of a deck.
-    pub selected: Option<PartRef>,
+    /// The selected parts of the decks.
+    pub selected: BTreeSet<PartRef>,
     /// The part of a deck under the pointer, in the tree or in a window.
     pub hovered: Option<PartRef>,
     /// The tab of the bottom pane.
@@ -258,7 +259,7 @@ impl Default for ViewState {
             is_blinking: false,
             display: Display::default(),
             section: SectionView::default(),
-            selected: None,
+            selected: BTreeSet::new(),
             hovered: None,
             tab: BottomTab::default(),
             is_graphics_only: false,

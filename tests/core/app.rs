@@ -1023,3 +1023,52 @@ mod modal {
         assert!((end - Point3::new(1.0, 1.0, 0.0)).norm() < 1e-12);
     }
 }
+
+#[test]
+fn several_selected_parts_are_hidden_and_isolated_in_one_step() {
+    let mut window = Window::with_both();
+    let crash = |id| PartRef {
+        role: Role::Crash,
+        id,
+    };
+    let hidden = |window: &Window| -> Vec<u64> {
+        let part = window.state.document.part(Role::Crash).unwrap();
+        part.hidden.iter().copied().collect()
+    };
+    window.apply(PartCommand::Select(Some(crash(11))));
+    window.apply(PartCommand::ToggleSelected(crash(99)));
+    assert_eq!(window.state.view.selected.len(), 1, "no such part");
+    window.apply(PartCommand::ToggleSelected(crash(12)));
+    window.act(Action::HideSelected);
+    assert_eq!(hidden(&window), [11, 12]);
+    assert_eq!(window.state.history.undo_name(), Some("Hide 2 parts"));
+    window.apply(HistoryCommand::Undo);
+    assert!(hidden(&window).is_empty());
+    window.apply(PartCommand::ToggleSelected(crash(11)));
+    window.act(Action::IsolateSelected);
+    assert_eq!(hidden(&window), [11]);
+    let stamped = window.state.document.part(Role::Stamped).unwrap();
+    assert!(stamped.hidden.is_empty(), "nothing of it is selected");
+    window.apply(PartCommand::Select(None));
+    assert!(Action::HideSelected.enabled(&window.state).is_err());
+}
+
+#[test]
+fn the_camera_brings_all_selected_parts_into_view() {
+    let mut window = Window::with_both();
+    let height = |window: &mut Window, ids: &[u64]| {
+        window.apply(PartCommand::Select(None));
+        for &id in ids {
+            let role = Role::Crash;
+            window.apply(PartCommand::ToggleSelected(PartRef { role, id }));
+        }
+        window.apply(ViewCommand::Focus(Role::Crash));
+        window.state.view.cameras.crash.height
+    };
+    let (one, other) = (height(&mut window, &[11]), height(&mut window, &[12]));
+    let both = height(&mut window, &[11, 12]);
+    assert!(
+        both > 1.2 * one && both > 1.2 * other,
+        "{one} {other} {both}"
+    );
+}

@@ -294,12 +294,35 @@ fn a_click_selects_the_part_and_beside_it_nothing() {
         press(&harness, pos, PointerButton::Primary, false);
         harness.run_steps(2);
         let view = &harness.state().state.view;
-        (view.selected, view.focus)
+        (view.selected.first().copied(), view.focus)
     };
     let (selected, focus) = click(area.center());
     assert_eq!(selected.map(|part| part.role), Some(Role::Crash));
     assert_eq!(focus, Role::Crash);
     assert_eq!(click(area.left_bottom() + vec2(6.0, -110.0)).0, None);
+}
+
+#[test]
+fn ctrl_and_click_add_to_the_selection_and_take_from_it() {
+    let mut harness = harness(Desk::with_sheets(None));
+    let mut click = |role| {
+        let pos = area(&harness, role).center();
+        harness.event(Event::PointerMoved(pos));
+        harness.step();
+        harness.event(Event::ModifiersChanged(egui::Modifiers::COMMAND));
+        for pressed in [true, false] {
+            harness.event(Event::PointerButton {
+                pos,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers: egui::Modifiers::COMMAND,
+            });
+        }
+        harness.run_steps(2);
+        harness.state().state.view.selected.len()
+    };
+    let counts = [Role::Crash, Role::Stamped, Role::Crash].map(&mut click);
+    assert_eq!(counts, [1, 2, 1]);
 }
 
 #[test]
@@ -367,8 +390,8 @@ fn the_gizmo_moves_the_part_in_one_step() {
     assert!(desk.seen.iter().any(ended));
 }
 
-#[test]
-fn move_over_draws_the_stamped_part_in_the_left_picture() {
+/// Two windows with a device, so that there are pictures.
+fn drawn() -> Harness<'static, Desk> {
     let state = egui_kittest::wgpu::create_render_state(
         egui_kittest::wgpu::default_wgpu_setup(),
         RendererOptions::PREDICTABLE,
@@ -380,12 +403,54 @@ fn move_over_draws_the_stamped_part_in_the_left_picture() {
         .renderer(renderer);
     let mut harness = builder.build_ui_state(show, desk);
     harness.run_steps(4);
+    harness
+}
+
+/// The picture of the left window on transparent ground.
+fn left_picture(harness: &mut Harness<'_, Desk>) -> image::RgbaImage {
+    let viewports = &mut harness.state_mut().viewports;
+    viewports.window_picture(Role::Crash, true).unwrap()
+}
+
+#[test]
+fn a_drag_with_ctrl_draws_edges_only_as_long_as_it_lasts() {
+    let mut harness = drawn();
+    let n_opaque = |harness: &mut Harness<'_, Desk>| {
+        let picture = left_picture(harness);
+        picture.pixels().filter(|p| p.0[3] > 128).count()
+    };
+    let center = area(&harness, Role::Crash).center();
+    let full = n_opaque(&mut harness);
+    harness.event(Event::PointerMoved(center));
+    harness.step();
+    let button = |harness: &Harness<'_, Desk>, pos, pressed| {
+        harness.event(Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: egui::Modifiers::COMMAND,
+        });
+    };
+    harness.event(Event::ModifiersChanged(egui::Modifiers::COMMAND));
+    button(&harness, center, true);
+    let mut pos = center;
+    for _ in 0..4 {
+        pos += vec2(5.0, 2.0);
+        harness.event(Event::PointerMoved(pos));
+        harness.step();
+    }
+    let dragged = n_opaque(&mut harness);
+    assert!(dragged > 100 && dragged * 3 < full, "{dragged} of {full}");
+    button(&harness, pos, false);
+    harness.run_steps(2);
+    assert!(n_opaque(&mut harness) * 2 > full, "the surface is back");
+}
+
+#[test]
+fn move_over_draws_the_stamped_part_in_the_left_picture() {
+    let mut harness = drawn();
     let counts = |harness: &mut Harness<'_, Desk>| {
-        let picture = harness
-            .state_mut()
-            .viewports
-            .window_picture(Role::Crash, true)
-            .unwrap();
+        let picture = left_picture(harness);
         let (mut blue, mut orange) = (0, 0);
         for pixel in picture.pixels().filter(|p| p.0[3] == 255) {
             let [red, _, b, _] = pixel.0;

@@ -31,7 +31,7 @@ impl Action {
                 state.is_unlocked()
             }
             A::HideSelected | A::IsolateSelected => {
-                require(state.view.selected.is_some(), "select a part first")
+                require(!state.view.selected.is_empty(), "select a part first")
             }
             A::MoveTool | A::RotateTool | A::TurnOverX | A::TurnOverY | A::TurnOverZ => {
                 state.can_move()

@@ -137,10 +137,10 @@ impl Action {
                 "Pose, levels and visibility as after loading; one undo step",
                 None,
             ),
-            Self::HideSelected => ("Hide", "Hide the selected part", Some(key('H'))),
+            Self::HideSelected => ("Hide", "Hide the selected parts", Some(key('H'))),
             Self::IsolateSelected => (
                 "Isolate",
-                "Hide all parts but the selected one",
+                "Hide all parts but the selected ones",
                 Some(Shortcut::shift(Key::Letter('H'))),
             ),
             Self::ShowAllParts => (
@@ -298,7 +298,7 @@ impl Action {
             Self::FitAll => ("Fit all", "Bring everything visible into view", Some(home)),
             Self::FocusSelection => (
                 "Fit selection",
-                "Bring the selected part into view, or everything",
+                "Bring the selected parts into view, or everything",
                 Some(key('F')),
             ),
             Self::PreviousView => (

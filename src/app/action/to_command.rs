@@ -36,7 +36,6 @@ impl Action {
     }
 
     fn edit_command(self, state: &AppState) -> Option<Command> {
-        let selected = state.view.selected;
         let begin = |kind| {
             let frame = state.move_frame()?;
             Some(Command::from(MoveCommand::Begin { kind, frame }))
@@ -51,8 +50,8 @@ impl Action {
             Self::Undo => HistoryCommand::Undo.into(),
             Self::Redo => HistoryCommand::Redo.into(),
             Self::BackToAsLoaded => HistoryCommand::BackToAsLoaded.into(),
-            Self::HideSelected => PartCommand::SetVisible(selected?, false).into(),
-            Self::IsolateSelected => PartCommand::ShowOnly(selected?).into(),
+            Self::HideSelected => PartCommand::HideSelected.into(),
+            Self::IsolateSelected => PartCommand::ShowOnlySelected.into(),
             Self::ShowAllParts => PartCommand::ShowAll.into(),
             Self::MoveTool => return begin(MotionKind::Move),
             Self::RotateTool => return begin(MotionKind::Rotate),

@@ -125,7 +125,7 @@ impl AppState {
         });
         if has_swapped {
             self.view.cameras.swap();
-            self.view.selected = None;
+            self.view.selected.clear();
             self.log_step("load", None, "crash and stamped part exchanged", None);
         }
         Vec::new()

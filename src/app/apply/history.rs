@@ -1,4 +1,4 @@
-use crate::app::{AppState, Effect, HistoryCommand, ModalInput, MoveCommand, StampedPose};
+use crate::app::{AppState, Effect, HistoryCommand, ModalInput, MoveCommand, PartRef, StampedPose};
 use crate::jobs::Role;
 
 impl AppState {
@@ -46,10 +46,9 @@ impl AppState {
     /// What the view points at may be gone.
     fn after_jump(&mut self) {
         self.drop_previews();
-        let is_gone = |role: Role| self.document.part(role).is_none();
-        if self.view.selected.is_some_and(|part| is_gone(part.role)) {
-            self.view.selected = None;
-        }
+        let document = &self.document;
+        let is_there = |part: &PartRef| document.part(part.role).is_some();
+        self.view.selected.retain(is_there);
     }
 
     fn back_to_as_loaded(&mut self) {

@@ -77,7 +77,7 @@ impl AppState {
             let key = self.jobs.running().map(|job| job.key);
             key.map_or_else(Vec::new, |key| self.cancel_job(key))
         } else {
-            self.view.selected = None;
+            self.view.selected.clear();
             self.view.is_graphics_only = false;
             Vec::new()
         }

@@ -5,10 +5,20 @@ use crate::jobs::Role;
 impl AppState {
     pub(super) fn apply_part(&mut self, command: PartCommand) -> Vec<Effect> {
         match command {
-            PartCommand::Select(part) => self.view.selected = part.filter(|p| self.knows(*p)),
+            PartCommand::Select(part) => {
+                let known = part.filter(|part| self.knows(*part));
+                self.view.selected = known.into_iter().collect();
+            }
+            PartCommand::ToggleSelected(part) => {
+                if !self.view.selected.remove(&part) && self.knows(part) {
+                    self.view.selected.insert(part);
+                }
+            }
             PartCommand::Hover(part) => self.view.hovered = part,
             PartCommand::SetVisible(part, is_visible) => self.set_visible(part, is_visible),
             PartCommand::ShowOnly(part) => self.show_only(part),
+            PartCommand::HideSelected => self.hide_selected(),
+            PartCommand::ShowOnlySelected => self.show_only_selected(),
             PartCommand::ShowAll => self.show_all(),
             PartCommand::SetColor(part, color) => self.set_color(part, color),
             PartCommand::SetUsed(part, is_used) => return self.set_used(part, is_used),
@@ -67,6 +77,44 @@ impl AppState {
             let others = p.facts.parts.iter().map(|row| row.id);
             p.hidden = others.filter(|id| *id != part.id).collect();
         });
+    }
+
+    fn hide_selected(&mut self) {
+        let selected = self.view.selected.clone();
+        let name = format!("Hide {}", self.selection_name());
+        self.commit(name, |document| {
+            for at in selected {
+                if let Some(part) = document.parts.get_mut(at.role) {
+                    part.hidden.insert(at.id);
+                }
+            }
+        });
+    }
+
+    /// Models of which nothing is selected stay as they are.
+    fn show_only_selected(&mut self) {
+        let selected = self.view.selected.clone();
+        let name = format!("Isolate {}", self.selection_name());
+        self.commit(name, |document| {
+            for role in Role::ALL {
+                let is_kept = |id| selected.contains(&PartRef { role, id });
+                let part = document.parts.get_mut(role).as_mut();
+                let has_some = selected.iter().any(|at| at.role == role);
+                if let Some(part) = part.filter(|_| has_some) {
+                    let all = part.facts.parts.iter().map(|row| row.id);
+                    part.hidden = all.filter(|id| !is_kept(*id)).collect();
+                }
+            }
+        });
+    }
+
+    /// What is selected, for the names of steps.
+    fn selection_name(&self) -> String {
+        let mut selected = self.view.selected.iter();
+        match (selected.next(), selected.next()) {
+            (Some(part), None) => self.part_name(*part),
+            _ => format!("{} parts", self.view.selected.len()),
+        }
     }
 
     fn show_all(&mut self) {

@@ -133,16 +133,21 @@ impl AppState {
         }
     }
 
-    /// Box of the selected part of a deck, if it belongs to this window.
+    /// Box around the selected parts that a window shows, if there are any.
     fn selected_bounds(&self, role: Role) -> Option<Aabb> {
-        let selected = self.view.selected.filter(|part| part.role == role)?;
-        let part = self.document.part(role)?;
-        let bounds = *part.facts.part_bounds.get(&selected.id)?;
-        let pose = self.shown_pose();
-        (!bounds.is_empty()).then(|| match role {
-            Role::Crash => bounds,
-            Role::Stamped => moved_box(&bounds, &pose),
-        })
+        let mut all = Aabb::empty();
+        let here = self.shown_in(role);
+        for selected in self.view.selected.iter().filter(|p| here.contains(&p.role)) {
+            let part = self.document.part(selected.role);
+            let bounds = part.and_then(|part| part.facts.part_bounds.get(&selected.id));
+            if let Some(bounds) = bounds.filter(|bounds| !bounds.is_empty()) {
+                all = all.union(&match selected.role {
+                    Role::Crash => *bounds,
+                    Role::Stamped => moved_box(bounds, &self.shown_pose()),
+                });
+            }
+        }
+        (!all.is_empty()).then_some(all)
     }
 
     fn toggle_move_over(&mut self) {

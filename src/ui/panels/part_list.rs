@@ -88,7 +88,7 @@ fn row_ui(
     let id = ui.scope_id().with(("part", role, row.id));
     let response = ui.interact(rect, id, Sense::click());
     let is_visible = part.is_visible(row.id);
-    let is_selected = state.view.selected == Some(at);
+    let is_selected = state.view.selected.contains(&at);
     if is_selected {
         ui.painter()
             .rect_filled(rect, 4.0, palette.accent.gamma_multiply(0.35));
@@ -118,7 +118,7 @@ fn row_ui(
         let is_used = part.is_used(row.id);
         commands.push(PartCommand::SetUsed(at, !is_used).into());
     }
-    row_clicks(&response, at, commands);
+    row_clicks(ui, &response, at, commands);
     response.context_menu(|ui| row_menu(ui, at, part, commands));
     let is_over = response.hovered() || eye.hovered() || tick.hovered();
     response.on_hover_text(format!(
@@ -130,14 +130,19 @@ fn row_ui(
     is_over
 }
 
-fn row_clicks(response: &Response, at: PartRef, commands: &mut Vec<Command>) {
+fn row_clicks(ui: &Ui, response: &Response, at: PartRef, commands: &mut Vec<Command>) {
     if response.double_clicked() {
         commands.push(PartCommand::Select(Some(at)).into());
         commands.push(ViewCommand::Focus(at.role).into());
     } else if response.middle_clicked() {
         commands.push(PartCommand::ShowOnly(at).into());
     } else if response.clicked() {
-        commands.push(PartCommand::Select(Some(at)).into());
+        let is_toggling = ui.input(|input| input.modifiers.command);
+        commands.push(if is_toggling {
+            PartCommand::ToggleSelected(at).into()
+        } else {
+            PartCommand::Select(Some(at)).into()
+        });
     }
 }
 

@@ -1,6 +1,6 @@
 //! Which parts a window shows, where, and how they look: from the state, without a mesh in sight.
 
-use crate::app::{AppState, ColorBy, Part, ShownGeometry};
+use crate::app::{AppState, ColorBy, Part, PartRef, ShownGeometry};
 use crate::geometry::{Camera, Similarity, Vector3};
 use crate::jobs::Role;
 use crate::render::{PartLook, Style, WipeSide};
@@ -25,6 +25,8 @@ pub(super) struct Stage {
     pub pose: Similarity,
     /// How far the stamped part has flown from the right window (0) to the left one (1).
     pub over: f64,
+    /// Only creases and borders are drawn, while the camera is dragged so.
+    pub is_bare: bool,
 }
 
 /// One part in one window.
@@ -193,8 +195,6 @@ fn separation(state: &AppState, stage: &Stage) -> Vector3 {
 /// Looks of the parts of a deck, by their index.
 pub(super) fn part_looks(state: &AppState, part: &Part, role: Role, look: &Look) -> Vec<PartLook> {
     let is_by_part = state.view.display.color_by == ColorBy::Part;
-    let is_ref =
-        |of: Option<crate::app::PartRef>, id| of.is_some_and(|p| p.role == role && p.id == id);
     // Where there is nothing to choose between, lighting everything up would only flicker.
     let has_choice = part.facts.used.len() > 1;
     let model_parts = part.loaded.model.parts.iter().enumerate();
@@ -204,16 +204,22 @@ pub(super) fn part_looks(state: &AppState, part: &Part, role: Role, look: &Look)
         PartLook {
             color: given.or_else(|| is_by_part.then(|| look.part(index))),
             visible: part.is_visible(id),
-            selected: is_ref(state.view.selected, id),
-            hovered: has_choice && is_ref(state.view.hovered, id),
+            selected: state.view.selected.contains(&PartRef { role, id }),
+            hovered: has_choice && state.view.hovered == Some(PartRef { role, id }),
         }
     });
     looks.collect()
 }
 
 /// What is drawn of a mesh.
-pub(super) fn style(state: &AppState) -> Style {
+pub(super) fn style(state: &AppState, stage: &Stage) -> Style {
     let display = &state.view.display;
+    if stage.is_bare {
+        return Style {
+            surface: false,
+            ..Style::default()
+        };
+    }
     Style {
         element_edges: display.has_edges,
         feature_edges: display.has_feature_edges,

@@ -37,6 +37,8 @@ use tools::{Bench, Tools};
 
 /// A pair smaller than this share of the picture's height is fitted again when its pose changes.
 const SMALL: f64 = 0.4;
+/// A part that turned by more is looked at anew, radians.
+const LARGE_TURN: f64 = 0.35;
 
 /// The 3D windows with everything they remember between frames.
 pub struct Viewports {
@@ -161,13 +163,20 @@ impl Viewports {
         if role == Role::Crash {
             window.fit_pair(state, is_driven, commands);
         }
-        if let Some(followed) = window.follow_part(role, state, rect, is_driven) {
-            camera = followed;
-            if !self.pose.is_moving(now) {
-                // The part is there already; a flight would lose it from sight.
-                window.camera.jump(camera);
+        match window.follow_part(role, state, rect, is_driven) {
+            Some(Following::Carried(followed)) => {
+                camera = followed;
+                if !self.pose.is_moving(now) {
+                    // The part is there already; a flight would lose it from sight.
+                    window.camera.jump(camera);
+                }
+                commands.push(ViewCommand::SetCamera(role, camera).into());
             }
-            commands.push(ViewCommand::SetCamera(role, camera).into());
+            Some(Following::Beside(turned)) => {
+                commands.push(ViewCommand::SetCamera(role, turned).into());
+                commands.push(ViewCommand::FitAll(role).into());
+            }
+            None => {}
         }
         let may_fly = may_move && window.has_picture && !is_linked_drag;
         Stage {
@@ -176,6 +185,7 @@ impl Viewports {
             aspect: f64::from(rect.width() / rect.height()),
             pose,
             over,
+            is_bare: window.navigator.drag().is_some_and(|drag| drag.is_bare),
         }
     }
 
@@ -363,15 +373,16 @@ impl Window {
         }
     }
 
-    /// A match may take the stamped part far away; where it would leave its own window, the camera
-    /// goes with it, so that the part looks as it did.
+    /// A match may take the stamped part far away or turn it over. Then both windows show the parts
+    /// from the same side. Where another step does so, the camera goes with the part, so that it looks
+    /// as it did.
     fn follow_part(
         &mut self,
         role: Role,
         state: &AppState,
         rect: Rect,
         is_driven: bool,
-    ) -> Option<Camera> {
+    ) -> Option<Following> {
         let pose = state.document.pose;
         let is_alone = role == Role::Stamped && !state.view.is_moved_over;
         if !is_alone || is_driven || pose.revision == self.followed.revision {
@@ -382,7 +393,21 @@ impl Window {
         let camera = *state.view.cameras.get(role);
         let seen = navigation::pos_of(rect, &camera, &center);
         let is_inside = seen.is_some_and(|at| rect.shrink2(rect.size() * 0.2).contains(at));
-        (!is_inside).then(|| carried(&camera, &before, &pose))
+        let turn = before.crash_from_stamped.angle_to(&pose.crash_from_stamped);
+        if is_inside && turn < LARGE_TURN {
+            None
+        } else if state.document.current_result().is_some() {
+            let side = state.view.cameras.crash.world_from_view;
+            Some(Following::Beside(Camera {
+                world_from_view: side,
+                ..camera
+            }))
+        } else if state.view.are_linked {
+            // Turning the camera would turn the other window's too.
+            Some(Following::Beside(camera))
+        } else {
+            Some(Following::Carried(carried(&camera, &before, &pose)))
+        }
     }
 
     /// Two parts that came together out of a great distance are small in the picture: fits it again.
@@ -397,6 +422,14 @@ impl Window {
             commands.push(ViewCommand::FitAll(Role::Crash).into());
         }
     }
+}
+
+/// How a window's camera takes part in a move of its part.
+enum Following {
+    /// It goes with the part.
+    Carried(Camera),
+    /// It looks from here, fitted to the part.
+    Beside(Camera),
 }
 
 /// The camera that shows a part at its new pose as this one did at the old pose.

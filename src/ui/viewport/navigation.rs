@@ -59,6 +59,12 @@ pub(super) fn drag_kind(
     Some(kind)
 }
 
+/// True if a drag draws edges only: with Ctrl, where no habit gives that another meaning.
+fn is_bare(scheme: MouseScheme, button: PointerButton, held: Modifiers) -> bool {
+    let is_free = button == PointerButton::Primary || scheme == MouseScheme::LsPrePost;
+    held.command && !held.shift && is_free
+}
+
 /// A window as the mouse meets it.
 pub(super) struct View<'a> {
     pub rect: Rect,
@@ -137,6 +143,8 @@ pub(super) struct CameraDrag {
     pub kind: DragKind,
     /// What stays under the cursor, or where it is.
     pub anchor: Point3,
+    /// Begun with Ctrl, which draws edges only as long as it lasts.
+    pub is_bare: bool,
     button: PointerButton,
     last: Pos2,
 }
@@ -202,9 +210,11 @@ impl Navigator {
             DragKind::Roll => view.pivot.unwrap_or(view.camera.target),
             DragKind::Pan | DragKind::Zoom => view.anchor(pos),
         };
+        ui.ctx().request_repaint();
         self.drag = Some(CameraDrag {
             kind,
             anchor,
+            is_bare: is_bare(view.scheme, button, held),
             button,
             last: pos,
         });
@@ -226,6 +236,7 @@ impl Navigator {
         }
         if !response.dragged_by(drag.button) {
             self.drag = None;
+            ui.ctx().request_repaint();
         }
     }
 }

@@ -55,8 +55,14 @@ impl Pointing {
             commands.push(PartCommand::Select(part).into());
             commands.push(ViewCommand::Focus(target.stage.window).into());
         } else if target.response.clicked() {
-            let is_off = is_toggling && target.state.view.selected == part;
-            commands.push(PartCommand::Select(part.filter(|_| !is_off)).into());
+            // Beside the parts, Ctrl keeps what was selected.
+            match part {
+                Some(part) if is_toggling => {
+                    commands.push(PartCommand::ToggleSelected(part).into());
+                }
+                None if is_toggling => {}
+                _ => commands.push(PartCommand::Select(part).into()),
+            }
         }
     }
 

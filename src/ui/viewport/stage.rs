@@ -66,7 +66,7 @@ impl Picture {
     ) -> Self {
         let drawables: Vec<Drawable> = layers
             .iter()
-            .map(|layer| drawable(state, look, layer))
+            .map(|layer| drawable(state, stage, look, layer))
             .collect();
         let has_field = layers.iter().any(|layer| layer.field.is_some());
         let scene = Scene {
@@ -146,7 +146,7 @@ pub(super) fn coincidence(state: &AppState) -> Option<f64> {
     (distance > 0.0).then_some(distance)
 }
 
-fn drawable(state: &AppState, look: &Look, layer: &Layer) -> Drawable {
+fn drawable(state: &AppState, stage: &Stage, look: &Look, layer: &Layer) -> Drawable {
     let Actor { role, .. } = layer.actor;
     let (push_back, push_back_length) = match role {
         Role::Crash => {
@@ -163,7 +163,7 @@ fn drawable(state: &AppState, look: &Look, layer: &Layer) -> Drawable {
         offset: layer.actor.offset,
         opacity: layer.actor.opacity,
         wipe: layer.actor.wipe,
-        style: cast::style(state),
+        style: cast::style(state, stage),
         field: layer.field.clone(),
         parts,
         push_back,
