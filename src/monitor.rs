@@ -40,12 +40,46 @@ pub struct IterationReport {
     pub fraction: f64,
 }
 
+/// What became of a start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fate {
+    /// It gave the result.
+    Won,
+    /// It went to the last comparison and lost to a better pose.
+    RunnerUp,
+    /// It met another start's pose and was dropped for it.
+    MergedInto {
+        /// Index of the other start.
+        start: usize,
+    },
+    /// Others were ahead after so many iterations.
+    Dropped {
+        /// Iterations made.
+        after: usize,
+    },
+    /// It found no pairs or its pairs fixed no motion.
+    Failed,
+}
+
+/// A start that begins or ends; told twice for each start, never within an iteration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StartReport {
+    /// Index of the start, counted from 0 over the whole match.
+    pub start_idx: usize,
+    /// How it came to be, in words.
+    pub name: String,
+    /// What became of it; `None` while it runs.
+    pub fate: Option<Fate>,
+}
+
 /// Receives progress and iterations. Called from worker threads, so it must be quick and `Sync`.
 pub trait Observer: Send + Sync {
     /// A phase began or moved on.
     fn progress(&self, _progress: Progress) {}
     /// A registration made one iteration.
     fn iteration(&self, _report: &IterationReport) {}
+    /// A start of a registration began or ended.
+    fn start(&self, _report: StartReport) {}
 }
 
 #[derive(Debug, Default)]
@@ -121,6 +155,13 @@ impl Monitor {
     pub fn progress(&self, phase: &'static str, done: u64, total: Option<u64>) {
         if let Some(observer) = &self.observer {
             observer.progress(Progress { phase, done, total });
+        }
+    }
+
+    /// Tells that a start began or ended; `report` is only made if somebody listens.
+    pub fn start(&self, report: impl FnOnce() -> StartReport) {
+        if let Some(observer) = &self.observer {
+            observer.start(report());
         }
     }
 

@@ -1,7 +1,7 @@
 use super::{Axis, NoticeLevel};
 use super::{
     AxisFrame, BottomTab, Dialog, Display, GestureId, InspectCommand, ModalInput, MotionKind,
-    MoveFrame, NoticeId, PartRef, SectionView, Settings, ShownGeometry,
+    MoveFrame, NoticeId, PartRef, Preview, SectionView, Settings, ShownGeometry,
 };
 use crate::geometry::camera::{OrbitStyle, StandardView};
 use crate::geometry::{Camera, Point3, Similarity};
@@ -203,6 +203,8 @@ pub enum MatchCommand {
     ShowStart(Option<usize>),
     /// Show the next (+1) or previous (−1) first pose.
     StepStart(i32),
+    /// Put the stamped part where a start of the last match ended.
+    UseAttempt(usize),
     /// Take the shown first pose over.
     UseStart(usize),
     /// Run the match.
@@ -330,8 +332,12 @@ pub enum ViewCommand {
     ToggleGizmo,
     /// Whose axes gizmo and keys use.
     SetMoveAxes(AxisFrame),
-    /// Show the pose of an iteration of the last match; `None` shows the real pose again.
-    ScrubIteration(Option<usize>),
+    /// Show the pose of a start or an iteration while the pointer is on it; `None` when it left.
+    HoverPreview(Option<Preview>),
+    /// Show the pose of a start or an iteration until it is let go; `None` shows the real pose again.
+    PinPreview(Option<Preview>),
+    /// Let the curve of a start stand out; `None` for that of the winner.
+    ChooseStart(Option<usize>),
 }
 
 /// Undo and redo.

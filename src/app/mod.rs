@@ -6,6 +6,7 @@
 
 mod action;
 mod apply;
+mod attempts;
 mod command;
 mod command_line;
 mod document;
@@ -27,6 +28,7 @@ mod units;
 mod view;
 
 pub use action::{Action, ActionInfo, Key, Menu, Reason, Shortcut};
+pub use attempts::{Attempt, AttemptGroup, Preview, Race, Step, group_attempts, is_same_pose};
 pub use command::{
     Command, ExportCommand, ExportKind, FileCommand, HistoryCommand, MatchCommand, MoveCommand,
     NoticeCommand, PartCommand, ReduceCommand, ViewCommand,

@@ -1,6 +1,6 @@
 use super::{
-    Compared, Document, GestureId, History, JobBoard, Log, LogRow, NoticeLevel, Notices, Settings,
-    Shared, StampedPose, ViewState,
+    Compared, Document, GestureId, History, JobBoard, Log, LogRow, NoticeLevel, Notices, Race,
+    Settings, Shared, StampedPose, ViewState,
 };
 use crate::assess::Coverage;
 use crate::geometry::Similarity;
@@ -43,8 +43,8 @@ pub struct AppState {
     pub starts: Option<Starts>,
     /// The best pose of the running match, for the preview.
     pub live_pose: Option<Similarity>,
-    /// The iterations of the running or last match.
-    pub convergence: Vec<IterationReport>,
+    /// The starts of the running match, or of the last one if it gave no result.
+    pub race: Race,
     /// Distances and overlap with the state they were measured in.
     pub measurement: Option<(Stamp, Shared<Coverage>)>,
     /// The last comparison of both parts, up to date or not.
@@ -98,7 +98,7 @@ impl AppState {
         if let Some(start) = self.shown_start() {
             return start.target_from_source;
         }
-        if let Some(pose) = self.scrubbed_pose() {
+        if let Some(pose) = self.previewed_pose() {
             return pose;
         }
         self.document.pose.crash_from_stamped
@@ -106,7 +106,7 @@ impl AppState {
 
     /// True while something else than the real pose is drawn.
     pub fn is_preview(&self) -> bool {
-        self.live_pose.is_some() || self.shown_start().is_some() || self.scrubbed_pose().is_some()
+        self.live_pose.is_some() || self.shown_start().is_some() || self.previewed_pose().is_some()
     }
 
     /// The first pose that is shown instead of the real one.
@@ -119,11 +119,6 @@ impl AppState {
     pub fn current_starts(&self) -> Option<&Starts> {
         let parts = self.document.stamp().parts;
         self.starts.as_ref().filter(|s| s.parts == parts)
-    }
-
-    fn scrubbed_pose(&self) -> Option<Similarity> {
-        let iteration = self.convergence.get(self.view.scrubbed_iteration?)?;
-        pose_of(iteration)
     }
 
     /// The measurement, if parts and pose are still those it was made at.
@@ -212,7 +207,8 @@ impl AppState {
 
     /// Shows the real pose again.
     pub(super) fn drop_previews(&mut self) {
-        self.view.scrubbed_iteration = None;
+        self.view.hovered_preview = None;
+        self.view.pinned_preview = None;
         if let Some(starts) = &mut self.starts {
             starts.shown = None;
         }

@@ -1,4 +1,4 @@
-use super::{AxisFrame, Coloring, GestureId, ModalMove, MoveFrame, SectionView};
+use super::{AxisFrame, Coloring, GestureId, ModalMove, MoveFrame, Preview, SectionView};
 use crate::geometry::camera::OrbitStyle;
 use crate::geometry::{Camera, Point3};
 use crate::jobs::{PerRole, Role};
@@ -237,8 +237,12 @@ pub struct ViewState {
     pub move_axes: AxisFrame,
     /// The move by keys that is under way.
     pub move_tool: Option<MoveTool>,
-    /// The iteration of the last match whose pose is shown instead of the result.
-    pub scrubbed_iteration: Option<usize>,
+    /// The pose of a start or an iteration that is shown while the pointer is on it.
+    pub hovered_preview: Option<Preview>,
+    /// The pose of a start or an iteration that is shown until it is let go.
+    pub pinned_preview: Option<Preview>,
+    /// The start whose curve was chosen; by default that of the winner.
+    pub chosen_start: Option<usize>,
 }
 
 impl Default for ViewState {
@@ -268,7 +272,9 @@ impl Default for ViewState {
             has_gizmo: false,
             move_axes: AxisFrame::Global,
             move_tool: None,
-            scrubbed_iteration: None,
+            hovered_preview: None,
+            pinned_preview: None,
+            chosen_start: None,
         }
     }
 }

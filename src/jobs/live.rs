@@ -1,5 +1,5 @@
 use super::{JobId, Waker};
-use crate::monitor::{IterationReport, Observer, Progress};
+use crate::monitor::{IterationReport, Observer, Progress, StartReport};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -21,6 +21,8 @@ pub struct Live {
     pub latest: Option<IterationReport>,
     /// Iterations since the last look, in the order they were told, for the convergence curve.
     pub iterations: Vec<IterationReport>,
+    /// Starts that began or ended since the last look, in the order they were told.
+    pub starts: Vec<StartReport>,
 }
 
 /// The slot between the worker's threads, which write, and the window, which reads when it draws.
@@ -38,21 +40,24 @@ impl LiveSlot {
         }
     }
 
-    /// Empties the slot for the next job.
-    pub fn begin(&self, job: Option<JobId>) {
+    /// Empties the slot for the next job. What the last one told stays until then, so that a window
+    /// that reads the events first and the slot after them misses nothing of a job that ended.
+    pub fn begin(&self, job: JobId) {
         let (live, _) = &mut *self.lock();
         *live = Live {
-            job,
+            job: Some(job),
             ..Live::default()
         };
     }
 
-    /// The present state; takes the iterations out, leaves the rest.
+    /// The present state; takes iterations and starts out, leaves the rest.
     pub fn take(&self) -> Live {
         let (live, _) = &mut *self.lock();
         let iterations = std::mem::take(&mut live.iterations);
+        let starts = std::mem::take(&mut live.starts);
         Live {
             iterations,
+            starts,
             ..live.clone()
         }
     }
@@ -91,6 +96,13 @@ impl Observer for LiveSlot {
             }
             live.progress = Some(progress);
             new_phase
+        });
+    }
+
+    fn start(&self, report: StartReport) {
+        self.update(|live| {
+            live.starts.push(report);
+            false
         });
     }
 

@@ -115,7 +115,8 @@ impl Worker {
         self.receiver.recv_timeout(timeout).ok()
     }
 
-    /// The latest progress, pose and new iterations of the running job.
+    /// The latest progress, pose, new iterations and starts of the running job, or of the last one if
+    /// none runs. Read the events before it: then the news of a job that ended are all in it.
     pub fn live(&self) -> Live {
         self.shared.live.take()
     }
@@ -197,7 +198,6 @@ fn work(shared: &Shared, events: &Sender<JobEvent>, mut runner: impl Runner) {
         let result = catch_unwind(AssertUnwindSafe(|| runner.run(request.kind, &monitor)));
         let elapsed = begin.elapsed();
         shared.lock().running = None;
-        shared.live.begin(None);
         tell(outcome(result, &monitor), elapsed);
     }
 }
@@ -211,7 +211,7 @@ fn next(shared: &Shared) -> Option<(Request, Monitor)> {
         if let Some(request) = queue.waiting.pop_front() {
             let observer: Arc<dyn Observer> = Arc::clone(&shared.live) as Arc<dyn Observer>;
             let monitor = Monitor::with_observer(observer);
-            shared.live.begin(Some(request.id));
+            shared.live.begin(request.id);
             queue.running = Some(Running {
                 key: request.kind.key(),
                 monitor: monitor.clone(),

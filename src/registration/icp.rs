@@ -1,3 +1,5 @@
+use std::time::{Duration, Instant};
+
 use super::correspondence::{Correspondence, MatchRules, Sample, correspond};
 use super::metric::{StepRules, step};
 use super::result::{IterationRecord, Side};
@@ -63,6 +65,8 @@ pub(crate) struct Run {
     pub(crate) fraction: f64,
     pub(crate) rmse: f64,
     pub(crate) termination: Option<Termination>,
+    /// Time the iterations took.
+    pub(crate) took: Duration,
     stage_iterations: usize,
     damping: f64,
     pairs: Vec<Correspondence>,
@@ -79,6 +83,7 @@ impl Run {
             fraction: 0.0,
             rmse: f64::INFINITY,
             termination: None,
+            took: Duration::ZERO,
             stage_iterations: 0,
             damping: MIN_DAMPING,
             pairs: Vec::new(),
@@ -94,6 +99,22 @@ impl Run {
         self.damping = MIN_DAMPING;
         self.pairs.clear();
         self.kept.clear();
+    }
+
+    /// Distance below which 95 % of the kept pairs lie, by weight, and the largest.
+    pub(crate) fn spread(&self) -> (f64, f64) {
+        let total: f64 = self.kept_pairs().map(|pair| pair.weight).sum();
+        let mut weight = 0.0;
+        let mut p95 = None;
+        let mut largest = 0.0;
+        for pair in self.kept_pairs() {
+            weight += pair.weight;
+            largest = pair.distance_sq.sqrt();
+            if p95.is_none() && weight >= 0.95 * total {
+                p95 = Some(largest);
+            }
+        }
+        (p95.unwrap_or(largest), largest)
     }
 
     /// The kept pairs of the last iteration, closest first, under the pose before its step.
@@ -144,6 +165,7 @@ pub(crate) fn advance(
     frames: &Frames,
     monitor: &Monitor,
 ) -> Result<(), Cancelled> {
+    let begin = Instant::now();
     for _ in 0..n_iterations {
         if run.termination.is_some() {
             break;
@@ -155,6 +177,7 @@ pub(crate) fn advance(
         }
         iterate(run, data, model, rules, frames, monitor);
     }
+    run.took += begin.elapsed();
     Ok(())
 }
 

@@ -2,14 +2,14 @@ use rayon::prelude::*;
 
 use super::icp::{Data, Frames, Run, StageRules, advance};
 use super::problem::{all_nodes, thin};
-use super::result::{Fate, Side, StartRecord};
+use super::result::{Fate, Side, StartRecord, start_name};
 use super::settings::MatchSettings;
 use super::stages::{Stage, stage_rules};
 use super::starts::{Start, StartKind};
 use super::surface::Surface;
 use super::termination::Termination;
 use crate::geometry::{Point3, Similarity};
-use crate::monitor::{Cancelled, Monitor};
+use crate::monitor::{Cancelled, Monitor, StartReport};
 
 /// Poses closer than this in angle and centroid are one pose.
 const SAME_ANGLE_DEG: f64 = 3.0;
@@ -139,6 +139,26 @@ impl Entrant {
         self.fate.is_none()
     }
 
+    /// Tells that it begins.
+    pub(crate) fn announce(&self, leg: &Leg<'_>, monitor: &Monitor) {
+        monitor.start(|| StartReport {
+            start_idx: self.run.start_idx,
+            name: start_name(
+                self.start.kind,
+                leg.data_side(),
+                self.start.flipped,
+                leg.mirrored,
+            ),
+            fate: self.fate,
+        });
+    }
+
+    /// Takes it out of the race, and tells.
+    pub(crate) fn end(&mut self, fate: Fate, leg: &Leg<'_>, monitor: &Monitor) {
+        self.fate = Some(fate);
+        self.announce(leg, monitor);
+    }
+
     pub(crate) fn into_record(self, leg: &Leg<'_>) -> StartRecord {
         StartRecord {
             kind: self.start.kind,
@@ -148,6 +168,8 @@ impl Entrant {
             first: self.first,
             last: leg.frames.target_from_source(&self.run.model_from_data),
             score: self.run.score,
+            p95: self.run.spread().0,
+            took: self.run.took,
             termination: self.run.termination,
             fate: self.fate.unwrap_or(Fate::RunnerUp),
             iterations: self.run.records,
@@ -205,8 +227,8 @@ pub(crate) fn race(
         )?;
         let n_alive = entrants.iter().filter(|e| e.is_alive()).count();
         let keep = ((n_alive as f64 * heat.keep).ceil() as usize).max(heat.least);
-        merge(leg, entrants);
-        drop_slow(entrants, keep, done);
+        merge(leg, entrants, monitor);
+        drop_slow(leg, entrants, (keep, done), monitor);
     }
     for entrant in entrants.iter_mut() {
         entrant.race_score = entrant.run.score;
@@ -224,7 +246,8 @@ pub(crate) fn refine(
 ) -> Result<(), Cancelled> {
     let Pairing { data, model } = leg.fine;
     let raced = entrants.iter().map(|e| e.run.records.len()).max();
-    drop_slow(entrants, n_distinct, raced.unwrap_or(0));
+    let raced = raced.unwrap_or(0);
+    drop_slow(leg, entrants, (n_distinct, raced), monitor);
     let points = BothSigns::new(Data::new(thin(data, settings.n_refine_points)));
     let rules = stage_rules(Stage::Refine, settings, data, model);
     monitor.progress("refine", 0, None);
@@ -241,8 +264,9 @@ pub(crate) fn refine(
             n_iterations,
             monitor,
         )?;
-        merge(leg, entrants);
-        drop_slow(entrants, n_distinct, raced.unwrap_or(0) + n_iterations);
+        merge(leg, entrants, monitor);
+        let after = raced + n_iterations;
+        drop_slow(leg, entrants, (n_distinct, after), monitor);
     }
     Ok(())
 }
@@ -265,7 +289,7 @@ pub(crate) fn run_every_start(
         let cap = rules.max_iterations;
         advance_all(leg, entrants, (&points, model), &rules, cap, monitor)?;
     }
-    merge(leg, entrants);
+    merge(leg, entrants, monitor);
     Ok(())
 }
 
@@ -296,7 +320,7 @@ fn advance_all(
     for entrant in entrants.iter_mut().filter(|e| e.is_alive()) {
         let lost = run_failed(&entrant.run);
         if lost {
-            entrant.fate = Some(Fate::Failed);
+            entrant.end(Fate::Failed, leg, monitor);
         }
     }
     Ok(())
@@ -319,7 +343,13 @@ pub(crate) fn ranking(entrants: &[Entrant]) -> Vec<usize> {
     order
 }
 
-fn drop_slow(entrants: &mut [Entrant], keep: usize, after: usize) {
+/// Lets the best `keep` go on.
+fn drop_slow(
+    leg: &Leg<'_>,
+    entrants: &mut [Entrant],
+    (keep, after): (usize, usize),
+    monitor: &Monitor,
+) {
     let order = ranking(entrants);
     let Some(&first) = order.first() else {
         return;
@@ -327,13 +357,13 @@ fn drop_slow(entrants: &mut [Entrant], keep: usize, after: usize) {
     let limit = HOPELESS * entrants[first].run.score;
     for (rank, i) in order.into_iter().enumerate() {
         if rank >= keep || (rank > 0 && entrants[i].run.score > limit) {
-            entrants[i].fate = Some(Fate::Dropped { after });
+            entrants[i].end(Fate::Dropped { after }, leg, monitor);
         }
     }
 }
 
 /// Of those that met in one pose only the best goes on.
-fn merge(leg: &Leg<'_>, entrants: &mut [Entrant]) {
+fn merge(leg: &Leg<'_>, entrants: &mut [Entrant], monitor: &Monitor) {
     let order = ranking(entrants);
     for (rank, &i) in order.iter().enumerate() {
         let better = order[..rank].iter().copied().find(|&j| {
@@ -342,7 +372,7 @@ fn merge(leg: &Leg<'_>, entrants: &mut [Entrant]) {
         });
         if let Some(better) = better {
             let start = entrants[better].run.start_idx;
-            entrants[i].fate = Some(Fate::MergedInto { start });
+            entrants[i].end(Fate::MergedInto { start }, leg, monitor);
         }
     }
 }

@@ -49,7 +49,7 @@ pub(super) fn decide(
     } = finished;
     let alternatives = alternatives(input, &ranked, &target_from_source, &contests);
     let pairs = fit_kept(&run);
-    let (p95, max) = spread(&run);
+    let (p95, max) = run.spread();
     let (starts, mut timings) = tell(contests);
     timings.finish = finish;
     let pair_scale = pairs.map_or(1.0, |fit| match data_side {
@@ -172,22 +172,6 @@ fn fit_kept(run: &Run) -> Option<PairFit> {
     fit_pairs(pairs, Motion::Rigid).ok()
 }
 
-/// Distance below which 95 % of the kept pairs lie, by weight, and the largest.
-fn spread(run: &Run) -> (f64, f64) {
-    let total: f64 = run.kept_pairs().map(|pair| pair.weight).sum();
-    let mut weight = 0.0;
-    let mut p95 = None;
-    let mut largest = 0.0;
-    for pair in run.kept_pairs() {
-        weight += pair.weight;
-        largest = pair.distance_sq.sqrt();
-        if p95.is_none() && weight >= 0.95 * total {
-            p95 = Some(largest);
-        }
-    }
-    (p95.unwrap_or(largest), largest)
-}
-
 /// Meshes with the same nodes in the same order: Umeyama's solution over all nodes.
 pub(super) fn closed_form(
     input: &MatchInput<'_>,
@@ -240,6 +224,8 @@ pub(super) fn closed_form(
             last: target_from_source,
             iterations: Vec::new(),
             score: rmse,
+            p95,
+            took: begin.elapsed(),
             termination: Some(Termination::ClosedForm),
             fate: Fate::Won,
         }],

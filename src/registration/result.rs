@@ -4,6 +4,7 @@ use super::starts::StartKind;
 use super::termination::Termination;
 use super::units::ScaleCheck;
 use crate::geometry::Similarity;
+pub use crate::monitor::Fate;
 use crate::monitor::IterationReport;
 
 /// Which of the two meshes.
@@ -43,27 +44,6 @@ impl IterationRecord {
     }
 }
 
-/// What became of a start.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Fate {
-    /// It gave the result.
-    Won,
-    /// It went to the last comparison and lost to a better pose.
-    RunnerUp,
-    /// It met another start's pose and was dropped for it.
-    MergedInto {
-        /// Index of the other start.
-        start: usize,
-    },
-    /// Others were ahead after so many iterations.
-    Dropped {
-        /// Iterations made.
-        after: usize,
-    },
-    /// It found no pairs or its pairs fixed no motion.
-    Failed,
-}
-
 /// The story of one start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StartRecord {
@@ -83,10 +63,37 @@ pub struct StartRecord {
     pub iterations: Vec<IterationRecord>,
     /// Objective of the last iteration.
     pub score: f64,
+    /// Distance that 95 % of its last kept pairs stay below.
+    pub p95: f64,
+    /// Time its iterations took. For the reader; nothing depends on it.
+    pub took: Duration,
     /// Why its last stage ended, if it was not dropped.
     pub termination: Option<Termination>,
     /// What became of it.
     pub fate: Fate,
+}
+
+impl StartRecord {
+    /// How it came to be, in words: "surface normal 40°, stamped, turned".
+    pub fn name(&self) -> String {
+        start_name(self.kind, self.data_side, self.flipped, self.mirrored)
+    }
+}
+
+/// See [`StartRecord::name`].
+pub(crate) fn start_name(kind: StartKind, side: Side, flipped: bool, mirrored: bool) -> String {
+    let side = match side {
+        Side::Source => "stamped",
+        Side::Target => "crash",
+    };
+    let mut name = format!("{}, {side}", kind.label());
+    if flipped {
+        name += ", turned";
+    }
+    if mirrored {
+        name += ", mirrored";
+    }
+    name
 }
 
 /// A distinct pose that came close.

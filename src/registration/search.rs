@@ -195,7 +195,9 @@ impl<'a> Contest<'a> {
         let enter = |starts: &[Start], n_starts: &mut usize| -> Vec<Entrant> {
             let new = starts.iter().map(|start| {
                 *n_starts += 1;
-                Entrant::new(leg, *start, *n_starts - 1)
+                let entrant = Entrant::new(leg, *start, *n_starts - 1);
+                entrant.announce(leg, monitor);
+                entrant
             });
             new.collect()
         };
@@ -319,7 +321,7 @@ impl<'a> Contest<'a> {
     ) -> Result<Finished, Cancelled> {
         let (leg, entrants) = &mut self.legs[winner.leg];
         let entrant = &mut entrants[winner.entrant];
-        entrant.fate = Some(Fate::Won);
+        entrant.end(Fate::Won, leg, monitor);
         let flipped = entrant.start.flipped;
         if !self.settings.finish {
             let rules = stage_rules(Stage::Refine, &self.settings, leg.fine.data, leg.fine.model);

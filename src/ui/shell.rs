@@ -8,7 +8,7 @@ use crate::app::{
     AppState, Command, Effect, FileCommand, NoticeCommand, NoticeLevel, Settings, StartupOptions,
     Theme,
 };
-use crate::jobs::{PipelineRunner, Role, Worker};
+use crate::jobs::{JobEvent, JobStage, Live, PipelineRunner, Role, Worker};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -303,15 +303,26 @@ impl Shell {
     }
 }
 
+/// The events with what was told live right after the job's beginning, or before all of them if it began
+/// earlier.
+fn with_live(events: Vec<JobEvent>, live: Live) -> Vec<Command> {
+    let begins =
+        |event: &JobEvent| matches!(event.stage, JobStage::Started) && Some(event.id) == live.job;
+    let place = events.iter().position(begins).map_or(0, |at| at + 1);
+    let mut commands: Vec<Command> = events.into_iter().map(Command::from).collect();
+    if live.job.is_some() {
+        commands.insert(place, Command::Live(Box::new(live)));
+    }
+    commands
+}
+
 impl eframe::App for Shell {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.state.tick(self.begin.elapsed());
+        // Read in this order and applied in the other, no news of a job that ended is lost.
+        let events: Vec<JobEvent> = self.worker.events().collect();
         let live = self.worker.live();
-        let mut commands: Vec<Command> = Vec::new();
-        if live.job.is_some() {
-            commands.push(Command::Live(Box::new(live)));
-        }
-        commands.extend(self.worker.events().map(Command::from));
+        let mut commands = with_live(events, live);
         commands.extend(self.dialogs.answers());
         commands.extend(self.dropped(ctx));
         self.run_commands(commands, ctx);

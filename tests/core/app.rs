@@ -552,7 +552,7 @@ fn while_a_match_runs_inputs_are_locked_and_cancel_restores() {
     assert_eq!(window.state.shown_pose(), Similarity::identity());
     assert_eq!(window.state.document, before);
     assert!(!window.state.jobs.is_busy());
-    assert_eq!(window.state.convergence.len(), 1);
+    assert_eq!(window.state.attempts().len(), 1);
 }
 
 fn iteration(x: f64) -> shapematch::monitor::IterationReport {

@@ -155,7 +155,7 @@ fn a_panic_is_a_failed_job_and_the_worker_goes_on() {
 }
 
 #[test]
-fn progress_is_seen_while_the_job_runs_and_gone_after_it() {
+fn progress_is_seen_while_the_job_runs_and_what_it_told_last_after_it() {
     let (tell, told) = channel();
     let (go_on, wait) = channel::<()>();
     let wait = Mutex::new(wait);
@@ -173,7 +173,8 @@ fn progress_is_seen_while_the_job_runs_and_gone_after_it() {
     go_on.send(()).unwrap();
     assert!(matches!(next(&worker).stage, JobStage::Started));
     assert!(matches!(next(&worker).stage, JobStage::Finished(_)));
-    assert_eq!(worker.live().progress, None);
+    assert_eq!(worker.live().job, Some(id));
+    assert_eq!(worker.live().progress.map(|p| p.done), Some(3));
 }
 
 #[test]

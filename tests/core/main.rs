@@ -4,6 +4,7 @@
 
 mod app;
 mod assess;
+mod attempts;
 mod cli;
 mod deck_out;
 mod deviation;

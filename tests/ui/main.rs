@@ -4,5 +4,6 @@
 
 mod panels;
 mod render;
+mod starts;
 mod story;
 mod viewport;

@@ -117,7 +117,13 @@ impl AppState {
 
     fn end_of(&mut self, key: JobKey) {
         match key {
-            JobKey::Match => self.live_pose = None,
+            JobKey::Match => {
+                self.live_pose = None;
+                // The starts of a run without a result are worth seeing only where nothing better is.
+                if self.document.result.is_some() {
+                    self.race.clear();
+                }
+            }
             JobKey::Load(_) => self.guess.n_pending = self.guess.n_pending.saturating_sub(1),
             JobKey::Compare => self.give_up_comparing(self.document.stamp()),
             _ => {}
@@ -134,7 +140,7 @@ impl AppState {
             if let Some(best) = &live.best {
                 self.live_pose = pose_of(best).or(self.live_pose);
             }
-            self.convergence.extend(live.iterations);
+            self.race.add(live.starts, live.iterations);
         }
         Vec::new()
     }

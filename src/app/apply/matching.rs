@@ -23,6 +23,7 @@ impl AppState {
             MatchCommand::Align => return self.start_with_input(JobKind::Align),
             MatchCommand::ShowStart(index) => self.show_start(index),
             MatchCommand::StepStart(direction) => self.step_start(direction),
+            MatchCommand::UseAttempt(index) => self.use_attempt(index),
             MatchCommand::UseStart(index) => self.use_start(index),
             MatchCommand::Run => return self.run_match(),
             MatchCommand::Stop => return self.stop_run(),
@@ -73,7 +74,8 @@ impl AppState {
     fn run_match(&mut self) -> Vec<Effect> {
         let effects = self.start_with_input(JobKind::Match);
         if !effects.is_empty() {
-            self.convergence.clear();
+            self.race.clear();
+            self.view.chosen_start = None;
             self.live_pose = None;
         }
         effects
@@ -135,7 +137,8 @@ impl AppState {
     }
 
     fn show_start(&mut self, index: Option<usize>) {
-        self.view.scrubbed_iteration = None;
+        self.view.hovered_preview = None;
+        self.view.pinned_preview = None;
         if self.is_unlocked().is_err() {
             return;
         }
@@ -168,6 +171,35 @@ impl AppState {
             self.commit_pose(format!("Start pose {}", index + 1), None, pose);
             self.drop_previews();
         }
+    }
+
+    /// A start that gave the result or one of its alternatives shows that, so that the result stays
+    /// current; any other start moves the part.
+    fn use_attempt(&mut self, index: usize) {
+        let Some(pose) = self.attempt(index).and_then(|a| a.last_pose()) else {
+            return;
+        };
+        if self.can_move().is_err() {
+            return;
+        }
+        let outcome = self
+            .document
+            .result
+            .as_ref()
+            .filter(|_| self.race.is_empty());
+        let known = outcome.and_then(|result| {
+            let outcome = &result.run.outcome;
+            let alternative = outcome.alternatives.iter().position(|a| a.start == index);
+            let is_winner = outcome.winner == index;
+            is_winner.then_some(None).or(alternative.map(Some))
+        });
+        match known {
+            Some(alternative) => self.show_alternative(alternative),
+            None => {
+                self.commit_pose(format!("Pose of start {}", index + 1), None, pose);
+            }
+        }
+        self.drop_previews();
     }
 
     fn show_alternative(&mut self, alternative: Option<usize>) {
@@ -228,6 +260,7 @@ impl AppState {
             self.log_step(step, None, text, Some(took));
         }
         self.live_pose = None;
+        self.race.clear();
         let pose = run.crash_from_stamped;
         let before = self.document.stamped_center();
         self.take_pose_as_result("Match".to_owned(), pose, |stamp| MatchResult {

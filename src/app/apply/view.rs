@@ -32,13 +32,18 @@ impl AppState {
             }
             ViewCommand::ToggleGraphicsOnly => {
                 self.view.is_graphics_only = !self.view.is_graphics_only;
+                self.view.hovered_preview = None;
             }
             ViewCommand::SetDialog(dialog) => self.view.dialog = dialog,
             ViewCommand::ToggleGizmo => self.view.has_gizmo = !self.view.has_gizmo,
             ViewCommand::SetMoveAxes(axes) => self.view.move_axes = axes,
-            ViewCommand::ScrubIteration(index) => {
-                self.view.scrubbed_iteration = index.filter(|i| *i < self.convergence.len());
+            ViewCommand::HoverPreview(preview) => {
+                self.view.hovered_preview = preview.filter(|_| self.is_unlocked().is_ok());
             }
+            ViewCommand::PinPreview(preview) => {
+                self.view.pinned_preview = preview.filter(|_| self.is_unlocked().is_ok());
+            }
+            ViewCommand::ChooseStart(start) => self.view.chosen_start = start,
         }
         Vec::new()
     }
@@ -164,6 +169,8 @@ impl AppState {
 
     fn set_tab(&mut self, tab: BottomTab) {
         self.view.tab = tab;
+        // The list the pointer was on may be gone.
+        self.view.hovered_preview = None;
         self.view.is_graphics_only = false;
     }
 

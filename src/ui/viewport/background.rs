@@ -6,7 +6,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use crate::jobs::{PerRole, Role};
 
 /// Something to be made.
-pub(super) struct Task<K, T> {
+pub(in crate::ui) struct Task<K, T> {
     /// Its name; two tasks of one name make the same thing.
     pub key: K,
     /// Makes it.
@@ -14,7 +14,7 @@ pub(super) struct Task<K, T> {
 }
 
 /// A thread that makes things one after another and forgets what nobody wants any more.
-pub(super) struct Background<K, T> {
+pub(in crate::ui) struct Background<K, T> {
     desk: Arc<Desk<K, T>>,
     has_thread: bool,
     name: &'static str,

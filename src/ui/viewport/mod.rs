@@ -1,7 +1,7 @@
 //! The two 3D windows: crash left, stamped right. They draw what the state says and turn mouse and
 //! keys into commands.
 
-mod background;
+pub(in crate::ui) mod background;
 mod cast;
 mod fields;
 mod gpu;
@@ -20,7 +20,7 @@ use std::sync::Arc;
 use eframe::egui_wgpu::RenderState;
 use egui::{EventFilter, Rect, Response, Sense, Ui, WidgetInfo};
 
-use crate::app::{AppState, Command, StampedPose, ViewCommand};
+use crate::app::{AppState, Command, Preview, StampedPose, ViewCommand};
 use crate::geometry::{Camera, Point3, Rotation};
 use crate::jobs::{PerRole, Role};
 use cast::Stage;
@@ -144,7 +144,7 @@ impl Viewports {
         // What the hand or the running match moves must not lag behind.
         let is_driven = state.live_pose.is_some()
             || state.view.move_tool.is_some()
-            || state.view.scrubbed_iteration.is_some()
+            || matches!(state.preview(), Some(Preview::Step { .. }))
             || self
                 .windows
                 .iter()

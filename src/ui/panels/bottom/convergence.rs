@@ -1,114 +1,235 @@
-//! Residual and overlap over the iterations, live; the pointer scrubs through the poses.
+//! Residual and overlap over the iterations of every start, live. Pointing at the curve of the chosen
+//! start shows the pose of that iteration, a click or the arrow keys keep it.
 
-use crate::app::{AppState, Command, ViewCommand};
-use crate::monitor::IterationReport;
-use crate::ui::theme::Palette;
-use crate::ui::widgets::{caption, length, nothing_yet, percent};
-use egui::{Ui, vec2};
+use crate::app::{AppState, Attempt, Command, Preview, Step, ViewCommand};
+use crate::ui::theme::{Palette, ROW};
+use crate::ui::widgets::{caption, icon_button, length, nothing_yet, percent};
+use egui::{Button, ComboBox, Key, Modifiers, Ui, vec2};
 use egui_plot::{GridMark, Line, Plot, PlotPoints, VLine};
-use std::collections::BTreeMap;
 
-/// The iterations of each start, with their place in the whole list.
-type Curves<'a> = BTreeMap<usize, Vec<(usize, &'a IterationReport)>>;
+/// The curves of one frame.
+struct Curves<'a> {
+    attempts: &'a [Attempt<'a>],
+    leader: &'a Attempt<'a>,
+    /// The iteration that is shown.
+    shown: Option<usize>,
+    has_others: bool,
+    unit: &'static str,
+}
 
-/// Two charts with one axis of iterations; the start that leads stands out.
+/// What the pointer did on a chart.
+#[derive(Default)]
+struct Pointed {
+    over: Option<usize>,
+    is_clicked: bool,
+    is_inside: bool,
+}
+
+/// Two charts with one axis of iterations; the chosen start stands out.
 pub fn convergence_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    if state.convergence.is_empty() {
+    let attempts = state.attempts();
+    let leader = state.leading_start();
+    let leader = attempts.iter().find(|a| Some(a.index) == leader);
+    let Some(leader) = leader.or(attempts.first()) else {
         nothing_yet(
             ui,
             "No iterations yet",
-            "The curves grow here while a match runs",
+            "The curves of every start grow here while a match runs",
         );
         return;
-    }
-    let mut curves: Curves<'_> = BTreeMap::new();
-    for (index, report) in state.convergence.iter().enumerate() {
-        curves
-            .entry(report.start_idx)
-            .or_default()
-            .push((index, report));
-    }
-    let leader = leader(state);
-    head_ui(ui, state, curves.len(), leader);
-    let led = curves.get(&leader).map_or(&[][..], Vec::as_slice);
-    let shown = state.view.scrubbed_iteration;
-    let mark = shown.and_then(|index| led.iter().position(|(i, _)| *i == index));
+    };
+    let shown = match state.preview() {
+        Some(Preview::Step { start, iteration }) if start == leader.index => Some(iteration),
+        _ => None,
+    };
+    let mut curves = Curves {
+        attempts: &attempts,
+        leader,
+        shown,
+        has_others: has_others(ui),
+        unit: state.unit_suffix(),
+    };
+    let is_free = state.locking_job().is_none();
+    head_ui(ui, state, &mut curves, commands);
     let size = vec2((ui.available_width() - 16.0) / 2.0, ui.available_height());
-    let mut pointed = None;
+    let mut pointed = Pointed::default();
     ui.horizontal_top(|ui| {
-        let rmse = Chart {
-            name: "rmse",
-            value: |report| report.rmse.max(1e-9).log10(),
-            is_logarithmic: true,
-        };
-        let overlap = Chart {
-            name: "overlap",
-            value: |report| report.fraction,
-            is_logarithmic: false,
-        };
-        for chart in [rmse, overlap] {
-            let at = chart.show(ui, &curves, (leader, mark), size);
-            pointed = pointed.or(at);
+        for chart in [RMS, OVERLAP] {
+            let at = chart.show(ui, &curves, size);
+            pointed.is_inside |= at.is_inside;
+            pointed.is_clicked |= at.is_clicked;
+            pointed.over = pointed.over.or(at.over);
         }
     });
-    if state.locking_job().is_some() {
+    if is_free {
+        scrub(ui, state, &curves, &pointed, commands);
+    }
+}
+
+/// The pose under the pointer, kept by a click; the arrow keys step on from it.
+fn scrub(
+    ui: &Ui,
+    state: &AppState,
+    curves: &Curves<'_>,
+    pointed: &Pointed,
+    commands: &mut Vec<Command>,
+) {
+    let start = curves.leader.index;
+    let n_steps = curves.leader.n_steps();
+    let over = pointed.over.filter(|at| *at < n_steps);
+    let over = over.map(|iteration| Preview::Step { start, iteration });
+    if pointed.is_inside {
+        let pressed = |key| ui.input_mut(|i| i.consume_key(Modifiers::NONE, key));
+        let way = i32::from(pressed(Key::ArrowRight)) - i32::from(pressed(Key::ArrowLeft));
+        if way != 0 {
+            step(state, curves, way, commands);
+            return;
+        }
+    }
+    if pointed.is_clicked && over.is_some() {
+        commands.push(ViewCommand::PinPreview(over).into());
+    }
+    // A pointer that rests must not fight with the keys.
+    let is_moving = ui.input(|i| i.pointer.is_moving());
+    if over != state.view.hovered_preview && (is_moving || over.is_none()) {
+        commands.push(ViewCommand::HoverPreview(over).into());
+    }
+}
+
+/// One iteration on or back from the shown one.
+fn step(state: &AppState, curves: &Curves<'_>, way: i32, commands: &mut Vec<Command>) {
+    let n_steps = curves.leader.n_steps();
+    let Some(last) = n_steps.checked_sub(1) else {
         return;
-    }
-    let pointed = pointed.and_then(|at| led.get(at)).map(|(index, _)| *index);
-    if pointed != shown {
-        commands.push(ViewCommand::ScrubIteration(pointed).into());
-    }
-}
-
-/// The start that won, or while the match runs the one that was heard of last.
-fn leader(state: &AppState) -> usize {
-    let latest = state
-        .convergence
-        .last()
-        .map_or(0, |report| report.start_idx);
-    match &state.document.result {
-        Some(result) if state.locking_job().is_none() => result.run.outcome.winner,
-        _ => latest,
-    }
-}
-
-fn head_ui(ui: &mut Ui, state: &AppState, n_starts: usize, leader: usize) {
-    let shown = state.view.scrubbed_iteration;
-    let text = match shown.and_then(|index| state.convergence.get(index)) {
-        Some(report) => format!(
-            "start {} · rmse {} · overlap {} · the windows show this pose",
-            report.start_idx + 1,
-            length(report.rmse),
-            percent(report.fraction)
-        ),
-        None => format!(
-            "{} iterations of {n_starts} starts, start {} in front · point at a curve to see the pose",
-            state.convergence.len(),
-            leader + 1
-        ),
     };
-    caption(ui, text);
+    let iteration = match curves.shown {
+        Some(at) if way > 0 => (at + 1).min(last),
+        Some(at) => at.saturating_sub(1),
+        None => last,
+    };
+    let start = curves.leader.index;
+    if state.view.hovered_preview.is_some() {
+        commands.push(ViewCommand::HoverPreview(None).into());
+    }
+    commands.push(ViewCommand::PinPreview(Some(Preview::Step { start, iteration })).into());
+}
+
+fn others_id() -> egui::Id {
+    egui::Id::unique("curves of the other starts")
+}
+
+fn has_others(ui: &Ui) -> bool {
+    ui.data(|data| data.get_temp(others_id())).unwrap_or(true)
+}
+
+/// Which start, its figures, and the steps through its iterations.
+fn head_ui(ui: &mut Ui, state: &AppState, curves: &mut Curves<'_>, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let leader = curves.leader;
+        ComboBox::from_id_salt("start of the curve")
+            .selected_text(start_text(leader))
+            .width(230.0)
+            .truncate()
+            .show_ui(ui, |ui| {
+                for attempt in curves.attempts {
+                    let is_on = attempt.index == leader.index;
+                    if ui.selectable_label(is_on, start_text(attempt)).clicked() {
+                        commands.push(ViewCommand::ChooseStart(Some(attempt.index)).into());
+                    }
+                }
+            })
+            .response
+            .accessible_name("Start of the curve");
+        let mut has_others = curves.has_others;
+        if ui.checkbox(&mut has_others, "All starts").changed() {
+            ui.data_mut(|data| data.insert_temp(others_id(), has_others));
+            curves.has_others = has_others;
+        }
+        let is_free = state.locking_job().is_none() && leader.n_steps() > 0;
+        for (sign, name, way) in [("◀", "Iteration before", -1), ("▶", "Next iteration", 1)] {
+            if icon_button(ui, sign, name, is_free).clicked() {
+                step(state, curves, way, commands);
+            }
+        }
+        figures_ui(ui, curves);
+        if state.view.pinned_preview.is_some() {
+            let button = Button::new("Back to the result").min_size(vec2(0.0, ROW));
+            if ui.add(button).clicked() {
+                commands.push(ViewCommand::PinPreview(None).into());
+            }
+        }
+    });
+}
+
+fn figures_ui(ui: &mut Ui, curves: &Curves<'_>) {
+    let n_steps = curves.leader.n_steps();
+    let words = |step: Step| {
+        format!(
+            "RMS {}{} · overlap {}",
+            length(step.rmse),
+            curves.unit,
+            percent(step.overlap)
+        )
+    };
+    let text = match curves.shown {
+        Some(at) => curves.leader.step(at).map(|step| {
+            format!(
+                "preview of iteration {} of {n_steps} · {}",
+                at + 1,
+                words(step)
+            )
+        }),
+        None => curves
+            .leader
+            .last_step()
+            .map(|step| format!("{n_steps} iterations · {}", words(step))),
+    };
+    caption(ui, text.unwrap_or_else(|| "no iteration yet".to_owned()));
+}
+
+fn start_text(attempt: &Attempt<'_>) -> String {
+    format!("{} · {}", attempt.index + 1, attempt.name)
 }
 
 struct Chart {
     name: &'static str,
-    value: fn(&IterationReport) -> f64,
-    is_logarithmic: bool,
+    /// Place of the value in [`Attempt::curve`].
+    value: usize,
+    is_length: bool,
 }
 
+const RMS: Chart = Chart {
+    name: "RMS",
+    value: 0,
+    is_length: true,
+};
+const OVERLAP: Chart = Chart {
+    name: "overlap",
+    value: 1,
+    is_length: false,
+};
+
 impl Chart {
-    /// Draws; the iteration of the leader under the pointer.
-    fn show(
-        &self,
-        ui: &mut Ui,
-        curves: &Curves<'_>,
-        (leader, mark): (usize, Option<usize>),
-        size: egui::Vec2,
-    ) -> Option<usize> {
+    fn points(&self, attempt: &Attempt<'_>) -> PlotPoints<'static> {
+        let curve = attempt.curve().into_iter().enumerate();
+        let points = curve.map(|(n, values)| {
+            let value = values[self.value];
+            let shown = if self.is_length {
+                value.max(1e-9).log10()
+            } else {
+                value
+            };
+            [n as f64, shown]
+        });
+        points.collect::<Vec<_>>().into()
+    }
+
+    /// Draws; what the pointer does on it.
+    fn show(&self, ui: &mut Ui, curves: &Curves<'_>, size: egui::Vec2) -> Pointed {
         let palette = Palette::of(ui);
-        let is_logarithmic = self.is_logarithmic;
+        let is_length = self.is_length;
         let format = move |mark: GridMark, _: &std::ops::RangeInclusive<f64>| {
-            if !is_logarithmic {
+            if !is_length {
                 return format!("{:.0} %", 100.0 * mark.value);
             }
             let is_decade = mark.value.fract().abs() < 1e-6;
@@ -118,11 +239,10 @@ impl Chart {
                 String::new()
             }
         };
-        let points = |reports: &[(usize, &IterationReport)]| -> Vec<[f64; 2]> {
-            let reports = reports.iter().enumerate();
-            reports
-                .map(|(n, (_, report))| [n as f64, (self.value)(report)])
-                .collect()
+        let label = if is_length {
+            format!("{}{}", self.name, curves.unit)
+        } else {
+            self.name.to_owned()
         };
         let shown = Plot::new(self.name)
             .width(size.x)
@@ -134,29 +254,36 @@ impl Chart {
             .allow_boxed_zoom(false)
             .allow_axis_zoom_drag(false)
             .grid_color(palette.line)
-            .y_axis_label(self.name)
+            .y_axis_label(label)
             .y_axis_min_width(48.0)
             .y_axis_formatter(format)
             .show(ui, |plot| {
                 let quiet = palette.secondary.gamma_multiply(0.4);
-                for (start, reports) in curves.iter().filter(|(start, _)| **start != leader) {
-                    let name = format!("start {}", start + 1);
-                    let line = Line::new(name, PlotPoints::from(points(reports)));
+                let leader = curves.leader;
+                let others = curves.attempts.iter().filter(|_| curves.has_others);
+                for attempt in others.filter(|other| other.index != leader.index) {
+                    let name = format!("start {}", attempt.index + 1);
+                    let line = Line::new(name, self.points(attempt));
                     plot.line(line.color(quiet).width(1.0).allow_hover(false));
                 }
-                if let Some(reports) = curves.get(&leader) {
-                    let name = format!("start {}", leader + 1);
-                    let line = Line::new(name, PlotPoints::from(points(reports)));
-                    plot.line(line.color(palette.accent_text).width(2.0));
-                }
-                if let Some(mark) = mark {
-                    let line = VLine::new("shown", mark as f64);
+                let name = format!("start {}", leader.index + 1);
+                let line = Line::new(name, self.points(leader));
+                plot.line(line.color(palette.accent_text).width(2.0));
+                if let Some(at) = curves.shown {
+                    let line = VLine::new("shown", at as f64);
                     plot.vline(line.color(palette.secondary));
                 }
-                let is_over = plot.response().hovered();
-                plot.pointer_coordinate().filter(|_| is_over)
+                let response = plot.response();
+                let is_over = response.hovered();
+                let at = plot.pointer_coordinate().filter(|_| is_over);
+                (at, response.clicked(), is_over)
             });
-        let at = shown.inner?.x.round();
-        (at >= 0.0).then_some(at as usize)
+        let (at, is_clicked, is_inside) = shown.inner;
+        let over = at.map(|at| at.x.round()).filter(|x| *x >= 0.0);
+        Pointed {
+            over: over.map(|x| x as usize),
+            is_clicked,
+            is_inside,
+        }
     }
 }

@@ -6,6 +6,7 @@ mod history;
 mod log;
 mod starts;
 mod sweep;
+mod thumbnails;
 mod timings;
 
 use crate::app::{AppState, BottomTab, Command, ViewCommand};

@@ -1,50 +1,141 @@
-//! The starts of the last match, the winner first.
+//! The starts of a match, the best first, while it runs and after it: what became of each, and a small
+//! picture. Pointing at a row shows its pose in the window, a click takes it.
 
-use crate::app::{AppState, Command, MoveCommand};
-use crate::registration::{Fate, StartRecord};
-use crate::report::{fate_words, side_word};
+use super::thumbnails::Thumbnails;
+use crate::app::{
+    AppState, Attempt, AttemptGroup, Command, MatchCommand, Preview, ViewCommand, duration_text,
+    group_attempts,
+};
+use crate::geometry::Point3;
+use crate::monitor::Fate;
+use crate::report::fate_words;
 use crate::ui::theme::Palette;
-use crate::ui::widgets::{caption, length, nothing_yet, percent};
-use egui::{Align, Layout, RichText, Sense, Ui};
-use egui_extras::{Column, TableBuilder};
+use crate::ui::widgets::{caption, length, nothing_yet, percent, tight};
+use egui::{Align, Button, Color32, Label, Layout, RichText, Sense, Ui};
+use egui_extras::{Column, TableBuilder, TableRow};
+
+/// Height of a row with its picture.
+const HEIGHT: f32 = 44.0;
+/// Width of a picture.
+const PICTURE: f32 = 64.0;
+
+/// One line of the table: an attempt, and the group if it leads one.
+struct Line<'a> {
+    attempt: &'a Attempt<'a>,
+    group: Option<&'a AttemptGroup>,
+    distance: Option<f64>,
+}
+
+/// What every row needs.
+struct Table<'a> {
+    state: &'a AppState,
+    n_starts: usize,
+    lines: Vec<Line<'a>>,
+    open: Vec<usize>,
+}
 
 /// The table.
 pub fn starts_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let Some(result) = &state.document.result else {
+    let attempts = state.attempts();
+    if attempts.is_empty() {
         nothing_yet(
             ui,
             "No starts yet",
-            "A match lists every start here with what became of it",
+            "A match tries many first poses; each has a row here with its picture and what became of it",
         );
         return;
+    }
+    let corners = state.stamped_corners().unwrap_or([Point3::origin(); 8]);
+    let groups = group_attempts(&attempts, &corners);
+    let open = open_groups(ui);
+    let table = Table {
+        state,
+        n_starts: attempts.len(),
+        lines: lines(&attempts, &groups, &open),
+        open,
     };
-    let outcome = &result.run.outcome;
-    let mut order: Vec<usize> = (0..outcome.starts.len()).collect();
-    order.sort_by_key(|&index| rank(&outcome.starts[index].fate));
+    head_ui(ui, &table, groups.len());
+    let hovered = table_ui(ui, &table, commands);
+    let shown = state.view.hovered_preview;
+    if hovered != shown && state.locking_job().is_none() {
+        commands.push(ViewCommand::HoverPreview(hovered).into());
+    }
+}
+
+fn lines<'a>(
+    attempts: &'a [Attempt<'a>],
+    groups: &'a [AttemptGroup],
+    open: &[usize],
+) -> Vec<Line<'a>> {
+    let mut lines = Vec::new();
+    for group in groups {
+        for (place, &member) in group.members.iter().enumerate() {
+            let leader = &attempts[group.members[0]];
+            if place > 0 && !open.contains(&leader.index) {
+                break;
+            }
+            lines.push(Line {
+                attempt: &attempts[member],
+                group: (place == 0).then_some(group),
+                distance: group.distance.filter(|_| place == 0),
+            });
+        }
+    }
+    lines
+}
+
+fn open_id() -> egui::Id {
+    egui::Id::unique("unfolded groups of starts")
+}
+
+fn open_groups(ui: &Ui) -> Vec<usize> {
+    ui.data(|data| data.get_temp(open_id())).unwrap_or_default()
+}
+
+fn head_ui(ui: &mut Ui, table: &Table<'_>, n_groups: usize) {
+    let n_starts = table.n_starts;
+    let text = if table.state.locking_job().is_some() {
+        format!("{n_starts} starts so far; rows fill while they run")
+    } else {
+        format!(
+            "{n_starts} starts, {n_groups} different ends · point at a row to see its pose, click to take it"
+        )
+    };
+    caption(ui, text);
+}
+
+/// The rows; the preview of the one under the pointer.
+fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Option<Preview> {
+    let unit = table.state.unit_suffix();
+    let titles = [
+        String::new(),
+        "start".to_owned(),
+        "what became of it".to_owned(),
+        "overlap".to_owned(),
+        format!("RMS{unit}"),
+        format!("p95{unit}"),
+        "steps".to_owned(),
+        "time".to_owned(),
+        format!("from row 1{unit}"),
+    ];
+    let mut hovered = None;
+    let thumbnails = Thumbnails::of(ui.ctx());
+    let mut thumbnails = thumbnails.lock();
     ui.spacing_mut().item_spacing.y = 0.0;
-    TableBuilder::new(ui)
+    let mut builder = TableBuilder::new(ui)
         .id_salt("starts")
         .sense(Sense::click())
         .min_scrolled_height(0.0)
         .auto_shrink([false, false])
         .cell_layout(Layout::left_to_right(Align::Center))
-        .column(Column::exact(40.0))
-        .column(Column::exact(176.0))
-        .column(Column::exact(80.0))
-        .column(Column::exact(80.0))
-        .column(Column::exact(80.0))
-        .column(Column::exact(72.0))
-        .column(Column::remainder().clip(true))
+        .column(Column::exact(PICTURE + 8.0))
+        .column(Column::remainder().at_least(170.0).clip(true))
+        .column(Column::exact(190.0).clip(true));
+    for width in [62.0, 68.0, 68.0, 48.0, 64.0, 84.0] {
+        builder = builder.column(Column::exact(width));
+    }
+    builder
         .header(20.0, |mut header| {
-            let titles = [
-                "#",
-                "start",
-                "rmse",
-                "overlap",
-                "score",
-                "iterations",
-                "fate",
-            ];
             for title in titles {
                 header.col(|ui| {
                     caption(ui, title);
@@ -52,58 +143,128 @@ pub fn starts_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
         })
         .body(|body| {
-            body.rows(20.0, order.len(), |mut row| {
-                let index = order[row.index()];
-                let start = &outcome.starts[index];
-                for text in cells(index, start) {
-                    row.col(|ui| {
-                        let color = if index == outcome.winner {
-                            Palette::of(ui).good
-                        } else {
-                            Palette::of(ui).text
-                        };
-                        ui.add(egui::Label::new(RichText::new(text).color(color)).truncate());
-                    });
-                }
+            body.rows(HEIGHT, table.lines.len(), |mut row| {
+                let line = &table.lines[row.index()];
+                row_ui(&mut row, table, line, &mut thumbnails, commands);
+                let index = line.attempt.index;
                 let response = row.response();
-                if response.clicked() && state.can_move().is_ok() {
-                    let command = MoveCommand::SetPose {
-                        crash_from_stamped: start.last,
-                        name: format!("Pose of start {}", index + 1),
-                    };
-                    commands.push(command.into());
+                if response.hovered() {
+                    hovered = Some(Preview::Start(index));
                 }
-                response.on_hover_text("Click to put the stamped part at this pose");
+                if response.clicked() && table.state.can_move().is_ok() {
+                    commands.push(MatchCommand::UseAttempt(index).into());
+                }
             });
         });
+    thumbnails.make(ui, table.state);
+    hovered
 }
 
-fn rank(fate: &Fate) -> u8 {
-    match fate {
-        Fate::Won => 0,
-        Fate::RunnerUp => 1,
-        Fate::MergedInto { .. } => 2,
-        Fate::Dropped { .. } => 3,
-        Fate::Failed => 4,
+fn row_ui(
+    row: &mut TableRow<'_, '_>,
+    table: &Table<'_>,
+    line: &Line<'_>,
+    thumbnails: &mut Thumbnails,
+    commands: &mut Vec<Command>,
+) {
+    let attempt = line.attempt;
+    row.col(|ui| {
+        let pose = attempt.last_pose().filter(|_| attempt.fate.is_some());
+        thumbnails.show(ui, table.state, pose, egui::vec2(PICTURE, HEIGHT - 4.0));
+    });
+    row.col(|ui| {
+        ui.vertical(|ui| {
+            ui.add_space(3.0);
+            name_ui(ui, table, line, commands);
+        });
+    });
+    let [sign, words] = fate_text(attempt, table.state);
+    let is_best = attempt.fate == Some(Fate::Won);
+    row.col(|ui| {
+        let palette = Palette::of(ui);
+        let color = match attempt.fate {
+            Some(Fate::Won) => palette.good,
+            Some(Fate::Dropped { .. } | Fate::MergedInto { .. }) => palette.secondary,
+            _ => palette.text,
+        };
+        cell(ui, format!("{sign} {words}"), color);
+    });
+    for text in figures(line) {
+        row.col(|ui| {
+            let palette = Palette::of(ui);
+            let color = if is_best { palette.good } else { palette.text };
+            cell(ui, text, color);
+        });
     }
 }
 
-fn cells(index: usize, start: &StartRecord) -> [String; 7] {
-    let last = start.iterations.last();
-    let mut kind = format!("{}, {}", start.kind.label(), side_word(start.data_side));
-    if start.flipped {
-        kind += ", turned";
+/// Number and origin, and the others that ended here.
+fn name_ui(ui: &mut Ui, table: &Table<'_>, line: &Line<'_>, commands: &mut Vec<Command>) {
+    let index = line.attempt.index;
+    let indent = if line.group.is_some() { "" } else { "   " };
+    let text = format!("{indent}{} · {}", index + 1, line.attempt.name);
+    let can = table.state.can_move().is_ok();
+    let button = Button::new(text).frame(false).truncate();
+    let response = tight(ui, |ui| ui.add_enabled(can, button));
+    let name = format!("Use the pose of start {}", index + 1);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, can, &name));
+    if response.clicked() {
+        commands.push(MatchCommand::UseAttempt(index).into());
     }
-    if start.mirrored {
-        kind += ", mirrored";
+    let Some(group) = line.group.filter(|group| group.members.len() > 1) else {
+        return;
+    };
+    let is_open = table.open.contains(&index);
+    let sign = if is_open { "▼" } else { "▶" };
+    let n_here = group.members.len();
+    let text = format!("{sign} {n_here} of {} starts", table.n_starts);
+    let text = RichText::new(text).small().color(Palette::of(ui).secondary);
+    let response = tight(ui, |ui| ui.add(Button::new(text).frame(false)));
+    let response = response.on_hover_text("They ended in one pose; click to see each");
+    if response.clicked() {
+        let mut open = table.open.clone();
+        match open.iter().position(|at| *at == index) {
+            Some(at) => drop(open.remove(at)),
+            None => open.push(index),
+        }
+        ui.data_mut(|data| data.insert_temp(open_id(), open));
     }
+}
+
+fn cell(ui: &mut Ui, text: String, color: Color32) {
+    ui.add(Label::new(RichText::new(text).color(color)).truncate());
+}
+
+/// Sign and words of what became of a start.
+fn fate_text(attempt: &Attempt<'_>, state: &AppState) -> [String; 2] {
+    let (sign, words) = match attempt.fate {
+        Some(fate) => {
+            let sign = match fate {
+                Fate::Won => "✔",
+                Fate::RunnerUp => "●",
+                Fate::MergedInto { .. } => "↪",
+                Fate::Dropped { .. } => "▼",
+                Fate::Failed => "✖",
+            };
+            (sign, fate_words(fate))
+        }
+        None if state.locking_job().is_some() => ("▶", "running".to_owned()),
+        None => ("■", "not ended".to_owned()),
+    };
+    [sign.to_owned(), words]
+}
+
+fn figures(line: &Line<'_>) -> [String; 6] {
+    let dash = || "–".to_owned();
+    let attempt = line.attempt;
+    let last = attempt.last_step();
+    let number = |value: Option<f64>| value.map_or_else(dash, length);
     [
-        (index + 1).to_string(),
-        kind,
-        last.map_or_else(|| "–".to_owned(), |i| length(i.rmse)),
-        last.map_or_else(|| "–".to_owned(), |i| percent(i.fraction)),
-        length(start.score),
-        start.iterations.len().to_string(),
-        fate_words(start.fate),
+        last.map_or_else(dash, |step| percent(step.overlap)),
+        number(last.map(|step| step.rmse)),
+        number(attempt.p95),
+        attempt.n_steps().to_string(),
+        attempt.took.map_or_else(dash, duration_text),
+        number(line.distance),
     ]
 }

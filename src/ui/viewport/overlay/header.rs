@@ -8,7 +8,7 @@ use egui::{
 };
 
 use super::{MARGIN, Overlay, grouped};
-use crate::app::{Command, ShownGeometry, ViewCommand, short_number};
+use crate::app::{AppState, Command, Preview, ShownGeometry, ViewCommand, short_number};
 use crate::geometry::camera::StandardView;
 use crate::jobs::Role;
 use crate::registration::StartKind;
@@ -177,9 +177,23 @@ fn preview(over: &Overlay<'_>) -> Option<String> {
         let kind = start_text(start.kind);
         return Some(format!("start {index} of {}{kind}", starts.poses.len()));
     }
-    let iteration = state.view.scrubbed_iteration?;
-    let n = state.convergence.len();
-    Some(format!("iteration {} of {n}", iteration + 1))
+    preview_text(state)
+}
+
+/// Which start and iteration is shown.
+fn preview_text(state: &AppState) -> Option<String> {
+    let preview = state.preview()?;
+    let number = preview.start() + 1;
+    Some(match preview {
+        Preview::Start(_) => format!("preview: where start {number} ended"),
+        Preview::Step { start, iteration } => {
+            let n_steps = state.attempt(start)?.n_steps();
+            format!(
+                "preview: start {number}, iteration {} of {n_steps}",
+                iteration + 1
+            )
+        }
+    })
 }
 
 /// How a start came to be, in a few words.
