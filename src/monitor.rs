@@ -4,6 +4,7 @@
 //! once per chunk of work; chunks are small enough that an answer comes within 100 ms.
 //! *Stop* means "end early and keep the best result so far"; *cancel* means "end and forget".
 
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -41,7 +42,8 @@ pub struct IterationReport {
 }
 
 /// What became of a start.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Fate {
     /// It gave the result.
     Won,

@@ -1,4 +1,5 @@
 use crate::registration::Alternative;
+use serde::{Deserialize, Serialize};
 
 /// Below this ratio two poses are equivalent.
 const AMBIGUOUS_BELOW: f64 = 1.1;
@@ -6,7 +7,8 @@ const AMBIGUOUS_BELOW: f64 = 1.1;
 const VERIFY_BELOW: f64 = 1.3;
 
 /// How far the second-best distinct pose is behind.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Clarity {
     /// No other pose comes near.
     Clear,
@@ -17,7 +19,7 @@ pub enum Clarity {
 }
 
 /// The comparison with the poses that came closest.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ambiguity {
     /// The verdict of the comparison.
     pub clarity: Clarity,

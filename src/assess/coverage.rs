@@ -1,28 +1,35 @@
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
+use crate::geometry::serial::any_float;
 use crate::geometry::{Point3, Similarity};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::Surface;
 use crate::search::ClosestPoint;
 
 /// Distances of the nodes of one mesh from the triangles of the other, weighted by area.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OneSided {
     /// Share of this mesh's area that lies within the limit of the other mesh; the denominator is
     /// this mesh's own area.
+    #[serde(with = "any_float")]
     pub overlap: f64,
     /// Root mean square distance within the overlap.
+    #[serde(with = "any_float")]
     pub rmse: f64,
     /// Distance below which 95 % of the overlap's area lies.
+    #[serde(with = "any_float")]
     pub p95: f64,
     /// Largest distance within the overlap.
+    #[serde(with = "any_float")]
     pub max: f64,
     /// Largest distance of any node, overlap or not.
+    #[serde(with = "any_float")]
     pub max_anywhere: f64,
 }
 
 /// Both directions.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
     /// Source nodes against target triangles.
     pub source_on_target: OneSided,

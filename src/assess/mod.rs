@@ -8,6 +8,7 @@ mod verdict;
 
 pub use ambiguity::{Ambiguity, Clarity};
 pub use coverage::{Coverage, OneSided, coverage, overlap_limit};
+use serde::{Deserialize, Serialize};
 pub use sliding::{FreeMotion, FreeMotionKind, Freedom, free_motions};
 pub use verdict::Verdict;
 
@@ -25,7 +26,7 @@ pub struct AssessSettings {
 }
 
 /// Everything that speaks for or against a pose.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Assessment {
     /// GOOD, CHECK or POOR.
     pub verdict: Verdict,

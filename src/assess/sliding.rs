@@ -1,5 +1,7 @@
 use nalgebra::{SMatrix, SymmetricEigen};
+use serde::{Deserialize, Serialize};
 
+use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::ClosestPoint;
@@ -13,7 +15,8 @@ const FREE_BELOW: f64 = 1e-4;
 const MAX_NODES: usize = 4000;
 
 /// What kind of surface slides on itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum FreeMotionKind {
     /// Two shifts in the plane and the turn about its normal.
     Flat,
@@ -30,13 +33,15 @@ pub enum FreeMotionKind {
 }
 
 /// A family of motions that the surfaces do not resist.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FreeMotion {
     /// The kind.
     pub kind: FreeMotionKind,
     /// Unit direction of the axis or of the plane's normal, in the target's frame.
+    #[serde(with = "xyz")]
     pub direction: Vector3,
     /// A point of the axis, in the target's frame.
+    #[serde(with = "xyz")]
     pub point: Point3,
 }
 
@@ -77,7 +82,7 @@ fn axis_words(direction: &Vector3) -> String {
 }
 
 /// How firmly the overlap holds the pose.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Freedom {
     /// The motions that are free.
     pub motion: Option<FreeMotion>,
@@ -85,6 +90,7 @@ pub struct Freedom {
     pub n_free: usize,
     /// Resistance of the weakest motion relative to the stiffest (λ6/λ1 of Gelfand et al. 2003,
     /// lengths scaled to a mean distance of 1 from the centroid).
+    #[serde(with = "any_float")]
     pub weakest: f64,
 }
 

@@ -1,8 +1,10 @@
 use super::{Assessment, Clarity};
 use crate::registration::{MatchOutcome, Surface, Termination};
+use serde::{Deserialize, Serialize};
 
 /// The judgement in one word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// Use it.
     Good,

@@ -5,6 +5,7 @@ pub mod camera;
 mod mesh;
 mod sampling;
 pub mod section;
+pub mod serial;
 mod similarity;
 mod topology;
 mod weld;

@@ -1,5 +1,6 @@
 //! The match of two loaded parts, and whether it can be trusted.
 
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -7,6 +8,7 @@ use super::load::LoadedPart;
 use super::reduce::Levels;
 use super::{PipelineError, millis_since};
 use crate::assess::{self, AssessSettings, Assessment};
+use crate::geometry::serial::shared;
 use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::Monitor;
 use crate::registration::starts::{self, Start};
@@ -16,7 +18,8 @@ use crate::registration::{
 use crate::simplify::SimplifySettings;
 
 /// Everything a match depends on besides the two parts.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct MatchRecipe {
     /// Method and parameters.
     pub settings: MatchSettings,
@@ -25,7 +28,7 @@ pub struct MatchRecipe {
 }
 
 /// Durations of the steps in milliseconds.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct MatchTimes {
     /// Reduction of both parts; 0 if nothing was reduced here.
     pub reduce_ms: f64,
@@ -40,15 +43,17 @@ pub struct MatchTimes {
 }
 
 /// The result of a match.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct MatchRun {
     /// `crash = c · R · stamped + t`.
     pub crash_from_stamped: Similarity,
     /// The recipe that gave it.
     pub recipe: MatchRecipe,
     /// Starts, iterations, alternatives.
+    #[serde(with = "shared")]
     pub outcome: Arc<MatchOutcome>,
     /// Distances, overlap, ambiguity, verdict.
+    #[serde(with = "shared")]
     pub assessment: Arc<Assessment>,
     /// The pose the stamped part had before.
     pub start_pose: Similarity,

@@ -1,4 +1,5 @@
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::reject::RejectRules;
 use super::surface::Surface;
@@ -6,7 +7,8 @@ use crate::geometry::{Point3, Similarity, Vector3};
 use crate::search::{ClosestPoint, NormalFilter};
 
 /// What a data point is paired with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum PairWith {
     /// The nearest node of the other mesh, as in the paper.
     Node,

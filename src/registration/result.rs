@@ -1,14 +1,17 @@
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 use super::starts::StartKind;
 use super::termination::Termination;
 use super::units::ScaleCheck;
 use crate::geometry::Similarity;
+use crate::geometry::serial::any_float;
 pub use crate::monitor::Fate;
 use crate::monitor::IterationReport;
 
 /// Which of the two meshes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Side {
     /// The moving (stamped) mesh.
     Source,
@@ -16,19 +19,34 @@ pub enum Side {
     Target,
 }
 
+/// A word that is known beforehand. The name keeps serde from borrowing it from its input.
+type StageWord = &'static str;
+
 /// One iteration of one start.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct IterationRecord {
     /// Stage of the search in one word: `race`, `refine`, `finish`, `match`.
-    pub stage: &'static str,
+    #[serde(deserialize_with = "stage_word")]
+    pub stage: StageWord,
     /// The pose whose pairs were measured, before the step.
     pub target_from_source: Similarity,
     /// What the selection minimises, in length units; comparable within one stage only.
+    #[serde(with = "any_float")]
     pub objective: f64,
     /// Root mean square distance of the kept pairs.
+    #[serde(with = "any_float")]
     pub rmse: f64,
     /// Share of the data area whose pairs were kept.
+    #[serde(with = "any_float")]
     pub fraction: f64,
+}
+
+/// The words for stages; any other that was stored is not told apart.
+fn stage_word<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<StageWord, D::Error> {
+    let stored = String::deserialize(deserializer)?;
+    let known = ["race", "refine", "finish", "match"];
+    let found = known.into_iter().find(|word| *word == stored);
+    Ok(found.unwrap_or("match"))
 }
 
 impl IterationRecord {
@@ -45,7 +63,7 @@ impl IterationRecord {
 }
 
 /// The story of one start.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StartRecord {
     /// How it came to be.
     pub kind: StartKind,
@@ -62,8 +80,10 @@ pub struct StartRecord {
     /// Every iteration, in order.
     pub iterations: Vec<IterationRecord>,
     /// Objective of the last iteration.
+    #[serde(with = "any_float")]
     pub score: f64,
     /// Distance that 95 % of its last kept pairs stay below.
+    #[serde(with = "any_float")]
     pub p95: f64,
     /// Time its iterations took. For the reader; nothing depends on it.
     pub took: Duration,
@@ -97,21 +117,23 @@ pub(crate) fn start_name(kind: StartKind, side: Side, flipped: bool, mirrored: b
 }
 
 /// A distinct pose that came close.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Alternative {
     /// The pose.
     pub target_from_source: Similarity,
     /// How much worse than the result, 1 = equally good; the larger one of both directions.
+    #[serde(with = "any_float")]
     pub score_ratio: f64,
     /// The start it came from.
     pub start: usize,
 }
 
 /// What the pairs say about the opposite hand.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MirrorCheck {
     /// Root mean square distance of the final pairs under the best mirrored motion; compare with
     /// the outcome's `rmse`. Equal for a flat part, which has no hand.
+    #[serde(with = "any_float")]
     pub mirrored_rmse: f64,
     /// Score of the opposite hand relative to the result's: below 1 it fits better. From the mirror
     /// images of the result, or from a search of its own where the result was not certain. `None`
@@ -120,7 +142,7 @@ pub struct MirrorCheck {
 }
 
 /// How long the phases took. For the reader; nothing depends on them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct MatchTimings {
     /// First poses.
     pub align: Duration,
@@ -135,27 +157,33 @@ pub struct MatchTimings {
 }
 
 /// The product of a match.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MatchOutcome {
     /// `target = c · R · source + t`.
     pub target_from_source: Similarity,
     /// Why the last stage ended.
     pub termination: Termination,
     /// Root mean square distance of the kept pairs, in target length units.
+    #[serde(with = "any_float")]
     pub rmse: f64,
     /// Distance that 95 % of the kept pairs stay below.
+    #[serde(with = "any_float")]
     pub p95: f64,
     /// Largest distance of a kept pair.
+    #[serde(with = "any_float")]
     pub max: f64,
     /// Kept share of the data mesh's area.
+    #[serde(with = "any_float")]
     pub fraction: f64,
     /// Which mesh supplied the points.
     pub data_side: Side,
     /// True if the source's normals point to the other side of the sheet than the target's.
     pub normals_opposed: bool,
     /// Objective at the end, in length units.
+    #[serde(with = "any_float")]
     pub objective: f64,
     /// The floor σ0 of the last stage.
+    #[serde(with = "any_float")]
     pub floor: f64,
     /// Distinct poses that were compared in the end, best first, without the result itself.
     pub alternatives: Vec<Alternative>,

@@ -4,9 +4,11 @@ use super::metric::Metric;
 use super::select::{Floor, Selection};
 use super::starts::StartSettings;
 use super::umeyama::Motion;
+use serde::{Deserialize, Serialize};
 
 /// The methods by name; each is a choice of pairs, selection, metric and search.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Closed form for meshes with the same node numbering.
     Umeyama,
@@ -78,7 +80,8 @@ impl Method {
 }
 
 /// Which hand of the source is tried.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Hand {
     /// As it is.
     #[default]
@@ -122,7 +125,8 @@ impl Hand {
 }
 
 /// How the starts are searched.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Search {
     /// All starts on few points, the best distinct ones on more, the winner refined.
     #[default]
@@ -161,7 +165,8 @@ impl Search {
 }
 
 /// Which mesh supplies the points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum DataSide {
     /// The smaller one; of equal ones the coarser; both where both overhang.
     #[default]
@@ -207,7 +212,8 @@ impl DataSide {
 }
 
 /// Everything a match depends on besides the meshes. The defaults just work.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct MatchSettings {
     /// The method by name; sets the fields below through [`MatchSettings::of`]. Only
     /// [`Method::Umeyama`] is asked for again later, because it needs no search.

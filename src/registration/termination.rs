@@ -1,5 +1,8 @@
+use serde::{Deserialize, Serialize};
+
 /// Why an iteration ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Termination {
     /// The last step moved no corner of the part's box by more than the tolerance.
     Converged,

@@ -1,10 +1,12 @@
 use nalgebra::{Matrix4, Quaternion, SymmetricEigen, Vector4};
+use serde::{Deserialize, Serialize};
 
 use super::RegistrationError;
 use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
 
 /// What a closed-form fit may use to lay one point set on the other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Motion {
     /// Rotation and translation.
     #[default]

@@ -1,4 +1,6 @@
 use super::surface::Surface;
+use crate::geometry::serial::any_float;
+use serde::{Deserialize, Serialize};
 
 /// Factors between length units in use: mm, cm, m, inch, foot.
 pub const UNIT_FACTORS: [(f64, &str); 8] = [
@@ -13,23 +15,45 @@ pub const UNIT_FACTORS: [(f64, &str); 8] = [
 ];
 
 /// What sizes and pairs say about the units of both meshes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ScaleCheck {
     /// Target size over source size: root of the ratio of the surface areas.
+    #[serde(with = "any_float")]
     pub size_ratio: f64,
     /// Scale that would fit the final pairs best; 1 for equal units.
+    #[serde(with = "any_float")]
     pub pair_scale: f64,
     /// The unit factor that the source seems to need. A guess to be shown, never applied.
     pub unit: Option<UnitGuess>,
 }
 
-/// A factor between length units.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The name keeps serde from borrowing the words from its input.
+type Words = &'static str;
+
+/// A factor between length units; stored as the factor.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(into = "f64", try_from = "f64")]
 pub struct UnitGuess {
     /// Multiply the source by this.
     pub factor: f64,
     /// The units of source and target, in words.
-    pub words: &'static str,
+    pub words: Words,
+}
+
+impl From<UnitGuess> for f64 {
+    fn from(guess: UnitGuess) -> Self {
+        guess.factor
+    }
+}
+
+impl TryFrom<f64> for UnitGuess {
+    type Error = String;
+
+    fn try_from(factor: f64) -> Result<Self, String> {
+        let known = UNIT_FACTORS.into_iter().find(|(known, _)| *known == factor);
+        let guess = known.map(|(factor, words)| Self { factor, words });
+        guess.ok_or_else(|| format!("{factor} is no factor between units"))
+    }
 }
 
 impl ScaleCheck {

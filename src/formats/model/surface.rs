@@ -1,5 +1,6 @@
 //! From a model to the triangle mesh that is matched.
 
+use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
@@ -10,7 +11,8 @@ use crate::geometry::{Aabb, MeshError, Point3, TriMesh};
 const UNUSED: u32 = u32::MAX;
 
 /// Which elements make the surface.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Selection {
     /// Every shell, and the skin of every solid.
     #[default]

@@ -1,8 +1,10 @@
 use super::{Camera, Projection, ScreenSize};
 use crate::geometry::{Aabb, Point3, Rotation, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// How dragging turns the camera.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum OrbitStyle {
     /// Sideways about the world's z axis, upwards about the screen's horizontal: the horizon stays level.
     #[default]

@@ -7,9 +7,11 @@ mod symmetric;
 use super::correspondence::Correspondence;
 use super::umeyama::{Motion, fit_pairs};
 use crate::geometry::Similarity;
+use serde::{Deserialize, Serialize};
 
 /// The residual of a pair.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Metric {
     /// |p − q|², solved in closed form (Besl and McKay 1992, Umeyama 1991).
     PointToPoint,

@@ -4,9 +4,11 @@ mod fractional;
 mod trimmed;
 
 use super::correspondence::Correspondence;
+use serde::{Deserialize, Serialize};
 
 /// The floor under the root of the fractional objective (σ0).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Floor {
     /// Estimated from the meshes: how far facets lie from the smooth surface they stand for.
     #[default]
@@ -19,7 +21,8 @@ pub enum Floor {
 }
 
 /// Which of the pairs are kept in an iteration.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Selection {
     /// All pairs (Besl and McKay 1992).
     All,

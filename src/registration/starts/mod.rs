@@ -6,6 +6,7 @@ mod patches;
 mod surface_normals;
 
 pub use covering::super_fibonacci;
+use serde::{Deserialize, Serialize};
 pub use surface_normals::align_surface_normals;
 
 use super::RegistrationError;
@@ -13,7 +14,8 @@ use super::surface::Surface;
 use crate::geometry::{Pose, Similarity};
 
 /// Where first poses come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum StartMethod {
     /// Centroids and mean normals laid on each other, then turned in steps about the normal.
     #[default]
@@ -69,7 +71,8 @@ impl StartMethod {
 }
 
 /// Which first poses are tried.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct StartSettings {
     /// Where they come from.
     pub method: StartMethod,
@@ -109,7 +112,8 @@ impl StartSettings {
 }
 
 /// How a start came to be.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum StartKind {
     /// Mean normals laid on each other, then turned by `angle_deg`.
     SurfaceNormal {
