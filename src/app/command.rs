@@ -1,11 +1,12 @@
 use super::{Axis, NoticeLevel};
 use super::{
-    AxisFrame, BottomTab, Dialog, Display, GestureId, InspectCommand, ModalInput, MotionKind,
-    MoveFrame, NoticeId, PartRef, Preview, SectionView, Settings, ShownGeometry,
+    AxisFrame, BottomTab, Dialog, Display, Document, GestureId, InspectCommand, KeptWork,
+    ModalInput, MotionKind, MoveFrame, NoticeId, PartRef, Preview, SectionView, Settings,
+    ShownGeometry,
 };
 use crate::geometry::camera::{OrbitStyle, StandardView};
 use crate::geometry::{Camera, Point3, Similarity};
-use crate::jobs::{JobEvent, Live, PartSource, PerRole, Role};
+use crate::jobs::{JobEvent, Live, Located, PartSource, PerRole, ProjectRequest, Role};
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::pipeline::sweep::SweepSettings;
 use crate::report::{CardForm, MatrixForm};
@@ -17,6 +18,8 @@ use std::path::PathBuf;
 pub enum Command {
     /// Files and parts come and go.
     File(FileCommand),
+    /// Projects: files that hold the work.
+    Project(ProjectCommand),
     /// The parts of a deck.
     Part(PartCommand),
     /// Reduction.
@@ -85,6 +88,43 @@ pub enum FileCommand {
     DismissUnitHint,
     /// Remove an entry from the recent files.
     ForgetRecent(PathBuf),
+}
+
+/// Projects: files that hold the work.
+#[derive(Debug, Clone)]
+pub enum ProjectCommand {
+    /// Ask for a project with a dialog.
+    AskOpen,
+    /// Open a project.
+    Open(ProjectRequest),
+    /// Open work that was kept in case of a crash.
+    Restore(PathBuf),
+    /// Ask where a file of the project is that was not found.
+    AskLocate(Role),
+    /// A file of the project is there, or is done without.
+    Locate(Role, Located),
+    /// Do not open the project whose files are missing.
+    GiveUp,
+    /// Write the project to its file, or ask where to.
+    Save,
+    /// Ask where to write the project.
+    SaveAs,
+    /// Write the project there.
+    Write(PathBuf),
+    /// The shell wrote this state of the work.
+    Written(PathBuf, Box<Document>),
+    /// The shell could not write, or the user closed the dialog.
+    NotWritten,
+    /// Keep the work in case of a crash, if there is something new.
+    Keep,
+    /// The shell found work of the last runs.
+    TellKept(Vec<KeptWork>),
+    /// Leave lost work where it is; the menu still offers it.
+    PutOff,
+    /// Save, and leave the program when that is done.
+    SaveAndQuit,
+    /// Leave the program without saving.
+    QuitUnsaved,
 }
 
 /// The parts of a deck.
@@ -376,6 +416,7 @@ macro_rules! from_group {
 
 from_group!(
     FileCommand => File,
+    ProjectCommand => Project,
     PartCommand => Part,
     ReduceCommand => Reduce,
     MoveCommand => Move,

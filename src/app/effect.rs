@@ -1,5 +1,7 @@
-use super::ExportKind;
+use super::{Document, ExportKind};
 use crate::jobs::{JobKey, JobKind, Role, Stamp};
+use crate::pipeline::project::Project;
+use std::path::PathBuf;
 
 /// What the shell has to do after a command.
 #[derive(Debug, Clone)]
@@ -12,6 +14,25 @@ pub enum Effect {
     CancelJob(JobKey),
     /// Ask for a file; answer with `FileCommand::Open`.
     AskOpen(Role),
+    /// Ask for a project; answer with `ProjectCommand::Open`.
+    AskOpenProject,
+    /// Ask for a file of a project; answer with `ProjectCommand::Locate`.
+    AskLocate(Role),
+    /// Ask where to write the project, beginning there; answer with `ProjectCommand::Write`.
+    AskSaveProject(PathBuf),
+    /// Write a project; answer with `ProjectCommand::Written` and the document.
+    WriteProject {
+        /// Where.
+        path: PathBuf,
+        /// What.
+        project: Box<Project>,
+        /// The state that it holds.
+        document: Box<Document>,
+    },
+    /// Keep the work in the user's folder in case of a crash.
+    KeepWork(Box<Project>),
+    /// Lost work is no longer to be offered at the start.
+    PutOffKept,
     /// Ask where to write; answer with `ExportCommand::Write`.
     AskSave(ExportKind),
     /// Put a text on the clipboard.

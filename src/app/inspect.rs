@@ -6,6 +6,7 @@ use crate::colormap::{ColorMap, ColorScale};
 use crate::geometry::{Plane, Point3, Vector3};
 use crate::jobs::{JobKey, PerRole, Role, Stamp};
 use crate::pipeline::inspect::Comparison;
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// A comparison as quick as this follows every move of the hand.
@@ -14,7 +15,8 @@ const LIVE: Duration = Duration::from_millis(100);
 const BY_ITSELF: Duration = Duration::from_secs(3);
 
 /// Choices about the colours of distances.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Coloring {
     /// Which parts carry the deviation.
     pub on: PerRole<bool>,
@@ -162,7 +164,8 @@ pub struct Compared {
 }
 
 /// The section plane and what becomes of the parts in front of it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct SectionView {
     /// The plane is shown and cuts.
     pub is_on: bool,

@@ -19,6 +19,7 @@ mod log;
 mod modal_move;
 mod motion;
 mod notice;
+mod project;
 mod settings;
 mod shared;
 mod state;
@@ -31,7 +32,7 @@ pub use action::{Action, ActionInfo, Key, Menu, Reason, Shortcut};
 pub use attempts::{Attempt, AttemptGroup, Preview, Race, Step, group_attempts, is_same_pose};
 pub use command::{
     Command, ExportCommand, ExportKind, FileCommand, HistoryCommand, MatchCommand, MoveCommand,
-    NoticeCommand, PartCommand, ReduceCommand, ViewCommand,
+    NoticeCommand, PartCommand, ProjectCommand, ReduceCommand, ViewCommand,
 };
 pub use document::{Document, MatchResult, Part, StampedPose};
 pub use effect::Effect;
@@ -42,6 +43,8 @@ pub use log::{Log, LogRow, duration_text};
 pub use modal_move::{Constraint, ModalInput, ModalMove, ModalOutcome, MotionKind, short_number};
 pub use motion::{Axis, AxisFrame, MoveFrame, rotation_about, translation_along};
 pub use notice::{Notice, NoticeId, NoticeLevel, Notices};
+pub(crate) use project::project_title;
+pub use project::{KeptWork, ProjectState};
 pub use settings::{MouseScheme, Settings, StartupOptions, Theme};
 pub use shared::Shared;
 pub use state::{AppState, Starts};

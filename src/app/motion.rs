@@ -1,4 +1,5 @@
 use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// One of three axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -31,7 +32,8 @@ impl Axis {
 }
 
 /// Whose axes a move follows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum AxisFrame {
     /// Those of the crash model.
     #[default]

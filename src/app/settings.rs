@@ -1,7 +1,7 @@
 use super::UnitMemory;
 use crate::jobs::{PartSource, PerRole};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Most entries in the list of recent files.
 const MAX_RECENT: usize = 10;
@@ -134,10 +134,15 @@ impl Settings {
     /// Puts a file first in the list of recent files.
     pub fn remember(&mut self, source: &PartSource) {
         if let PartSource::File(path) = source {
-            self.recent.retain(|known| known != path);
-            self.recent.insert(0, path.clone());
-            self.recent.truncate(MAX_RECENT);
+            self.remember_path(path);
         }
+    }
+
+    /// Puts a file or a project first in the list of recent files.
+    pub fn remember_path(&mut self, path: &Path) {
+        self.recent.retain(|known| known != path);
+        self.recent.insert(0, path.to_path_buf());
+        self.recent.truncate(MAX_RECENT);
     }
 
     /// Brings values from a file that someone edited back into their ranges.

@@ -15,6 +15,13 @@ impl<T> Shared<T> {
     }
 }
 
+impl<T: Clone> Shared<T> {
+    /// A value of its own.
+    pub fn clone_inner(&self) -> T {
+        T::clone(&self.0)
+    }
+}
+
 impl<T> From<Arc<T>> for Shared<T> {
     fn from(value: Arc<T>) -> Self {
         Self(value)

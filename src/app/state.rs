@@ -1,6 +1,6 @@
 use super::{
-    Compared, Document, GestureId, History, JobBoard, Log, LogRow, NoticeLevel, Notices, Race,
-    Settings, Shared, StampedPose, ViewState,
+    Compared, Document, GestureId, History, JobBoard, Log, LogRow, NoticeLevel, Notices,
+    ProjectState, Race, Settings, Shared, StampedPose, ViewState,
 };
 use crate::assess::Coverage;
 use crate::geometry::Similarity;
@@ -31,6 +31,8 @@ pub struct AppState {
     pub view: ViewState,
     /// Preferences.
     pub settings: Settings,
+    /// The project that is worked on.
+    pub project: ProjectState,
     /// Undo and redo.
     pub history: History,
     /// The rows of the log pane.

@@ -2,6 +2,7 @@ use super::{AxisFrame, Coloring, GestureId, ModalMove, MoveFrame, Preview, Secti
 use crate::geometry::camera::OrbitStyle;
 use crate::geometry::{Camera, Point3};
 use crate::jobs::{PerRole, Role};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// A part of a deck.
@@ -14,7 +15,8 @@ pub struct PartRef {
 }
 
 /// Which geometry the windows show.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum ShownGeometry {
     /// The chosen level.
     #[default]
@@ -24,7 +26,8 @@ pub enum ShownGeometry {
 }
 
 /// What the colours say.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum ColorBy {
     /// Which of the two parts.
     #[default]
@@ -128,10 +131,15 @@ pub enum Dialog {
     Messages,
     /// Name, version, licences.
     About,
+    /// Unsaved work, asked about before the program ends.
+    Unsaved,
+    /// Files of a project that were not found.
+    MissingFiles,
 }
 
 /// Plain choices about the picture, changed as a whole.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Display {
     /// Opacity of each part, 0 to 1.
     pub opacity: PerRole<f32>,

@@ -24,7 +24,7 @@ pub struct Cli {
     #[command(subcommand)]
     pub command: Option<Task>,
 
-    /// Files to open in the window: the crash part, then the stamped part.
+    /// Files to open in the window: the crash part, then the stamped part; or a project.
     #[arg(value_name = "FILE", num_args = 0..=2)]
     pub files: Vec<PathBuf>,
 
@@ -60,10 +60,11 @@ pub enum Task {
 #[derive(Debug, Args)]
 #[command(after_help = MATCH_HELP)]
 pub struct MatchArgs {
-    /// The crash part or the whole crash model (fixed).
+    /// The crash part or the whole crash model (fixed); or a project (.shapematch), whose match is
+    /// run as it is stored. Beside a project only the options of the output count.
     pub crash: PathBuf,
     /// The stamped part, for example a dynain (moves).
-    pub stamped: PathBuf,
+    pub stamped: Option<PathBuf>,
 
     #[command(flatten)]
     pub choice: ChoiceArgs,
@@ -311,6 +312,7 @@ pub struct BenchArgs {
 const MATCH_HELP: &str = "\
 Examples:
   shapematch match crash.k stamped.dynain
+  shapematch match floor.shapematch --cards include.k
   shapematch match car.k stamped.dynain --crash-part 2000012 --cards include.k --json result.json
   shapematch match crash.k stamped.dynain --method paper --triangles 2000
 

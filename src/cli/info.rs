@@ -5,12 +5,15 @@ use std::process::ExitCode;
 
 use super::args::InfoArgs;
 use super::text::{counted, short};
-use super::{print, progress, takes_stdout, write_json};
+use super::{print, progress, project, takes_stdout, write_json};
 use crate::formats::{self, Diagnostics, ReadOptions};
 use crate::report::{FormingInfo, ModelInfo};
 
 /// Reads the file and tells what is in it.
 pub fn run(args: &InfoArgs, quiet: bool) -> anyhow::Result<ExitCode> {
+    if project::is_project(&args.input) {
+        return project::info(&args.input, args.json.as_deref());
+    }
     let model = formats::read(
         &args.input,
         &ReadOptions::default(),
@@ -34,6 +37,9 @@ fn describe(info: &ModelInfo, diagnostics: &Diagnostics) -> String {
     };
     if !info.title.is_empty() {
         line(format!("Title    {}", info.title));
+    }
+    if let Some(units) = &info.units {
+        line(format!("Units    {units}"));
     }
     for (i, file) in info.files.iter().enumerate() {
         let label = if i == 0 { "File" } else { "Include" };

@@ -6,7 +6,9 @@ use std::process::ExitCode;
 use super::args::MatchArgs;
 use super::recipe::{Asked, asked};
 use super::text::short;
-use super::{EXIT_POOR, match_text, print, progress, takes_stdout, write_json, write_output};
+use super::{
+    EXIT_POOR, match_text, print, progress, project, takes_stdout, write_json, write_output,
+};
 use crate::assess::Verdict;
 use crate::monitor::Monitor;
 use crate::pipeline::load::{LoadedPart, load};
@@ -17,8 +19,19 @@ use crate::report::{MatchRecord, MatrixForm};
 /// Reads, matches, writes what was asked for, and prints the report.
 pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let monitor = progress::monitor(quiet);
-    let asked = asked(args)?;
-    let (crash, stamped) = load_both(args, &asked, &monitor)?;
+    let (asked, crash, stamped) = match &args.stamped {
+        Some(path) => {
+            let asked = asked(args)?;
+            let (crash, stamped) = load_both([&args.crash, path], &asked, &monitor)?;
+            (asked, crash, stamped)
+        }
+        None if project::is_project(&args.crash) => project::open(&args.crash, &monitor)?,
+        None => anyhow::bail!(
+            "name the stamped part too, or a project alone (.{}): {}",
+            project::EXTENSION,
+            args.crash.display()
+        ),
+    };
     let run = run_match(&asked, &crash, &stamped, &monitor)?;
     let record = record::match_record(&run, &crash, &stamped);
     drop(monitor);
@@ -58,13 +71,13 @@ fn run_match(
 }
 
 fn load_both(
-    args: &MatchArgs,
+    [crash, stamped]: [&Path; 2],
     asked: &Asked,
     monitor: &Monitor,
 ) -> anyhow::Result<(LoadedPart, LoadedPart)> {
     let (crash, stamped) = rayon::join(
-        || load(&args.crash, &asked.crash, monitor),
-        || load(&args.stamped, &asked.stamped, monitor),
+        || load(crash, &asked.crash, monitor),
+        || load(stamped, &asked.stamped, monitor),
     );
     Ok((crash?, stamped?))
 }

@@ -9,6 +9,7 @@ mod info;
 mod match_text;
 mod matching;
 mod progress;
+mod project;
 mod recipe;
 mod reduce;
 mod sample;

@@ -5,13 +5,16 @@ mod cool_warm;
 mod scale;
 mod tables;
 
+use serde::{Deserialize, Serialize};
+
 pub use scale::{ColorScale, NEUTRAL, Pattern, UNMATCHED};
 
 /// An sRGB colour, a byte per channel.
 pub type Rgb = [u8; 3];
 
 /// A map from 0 … 1 to colour.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum ColorMap {
     /// Dark blue to yellow, even in lightness; for one-sided values.
     #[default]

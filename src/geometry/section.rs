@@ -2,14 +2,19 @@
 
 use std::collections::HashMap;
 
+use serde::{Deserialize, Serialize};
+
+use super::serial::xyz;
 use super::{Point3, TriMesh, Vector3};
 
 /// A plane in space.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Plane {
     /// A point of the plane.
+    #[serde(with = "xyz")]
     pub point: Point3,
     /// Unit normal.
+    #[serde(with = "xyz")]
     pub normal: Vector3,
 }
 

@@ -1,4 +1,4 @@
-use super::{ExportRequest, PartFacts};
+use super::{ExportRequest, OpenedProject, PartFacts, ProjectRequest};
 use crate::assess::Coverage;
 use crate::geometry::{Similarity, TriMesh};
 use crate::pipeline::inspect::Comparison;
@@ -111,6 +111,8 @@ pub enum JobKey {
     Compare,
     /// The paper's tables.
     Sweep,
+    /// Reading a project with its parts.
+    OpenProject,
     /// Writing files.
     Export,
 }
@@ -130,6 +132,7 @@ impl JobKey {
             Self::Measure => "Measuring distances",
             Self::Compare => "Measuring the deviation",
             Self::Sweep => "Running the sweep",
+            Self::OpenProject => "Opening the project",
             Self::Export => "Writing",
         }
     }
@@ -290,6 +293,8 @@ pub enum JobKind {
     Compare(CompareInput),
     /// Levels × match.
     Sweep(SweepInput),
+    /// Reads a project with its parts.
+    OpenProject(ProjectRequest),
     /// Writes files.
     Export(ExportRequest),
 }
@@ -307,6 +312,7 @@ impl JobKind {
             Self::Measure(_) => JobKey::Measure,
             Self::Compare(_) => JobKey::Compare,
             Self::Sweep(_) => JobKey::Sweep,
+            Self::OpenProject(_) => JobKey::OpenProject,
             Self::Export(_) => JobKey::Export,
         }
     }
@@ -315,6 +321,8 @@ impl JobKind {
 /// What a finished job brings.
 #[derive(Debug, Clone)]
 pub enum JobOutput {
+    /// A project was read, with its parts or with the names of those that are missing.
+    ProjectOpened(Box<OpenedProject>),
     /// A part was read or taken anew.
     Loaded {
         /// Which part it was meant to be.

@@ -9,6 +9,7 @@ mod export;
 mod facts;
 mod job;
 mod live;
+mod project;
 mod run;
 mod worker;
 
@@ -20,5 +21,6 @@ pub use job::{
     MeasuredLevel, PartSource, PerRole, Recording, ReduceInput, Role, Stamp, SweepInput,
 };
 pub use live::{Live, LiveSlot};
+pub use project::{Located, OpenedPart, OpenedProject, ProjectRequest, part_entry};
 pub use run::{JobError, PipelineRunner, Runner};
 pub use worker::{Waker, Worker};

@@ -1,11 +1,11 @@
 use super::export::export;
+use super::project::open_project;
 use super::{CompareInput, MatchInput, MeasureInput, SweepInput};
 use super::{
     JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource, Recording,
     ReduceInput, Role,
 };
 use crate::assess::{coverage, overlap_limit};
-use crate::formats::Memory;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::PipelineError;
 use crate::pipeline::inspect::compare_parts;
@@ -13,9 +13,7 @@ use crate::pipeline::load::{self, LoadSettings, LoadedPart};
 use crate::pipeline::match_parts::{self, match_parts};
 use crate::pipeline::reduce::Levels;
 use crate::pipeline::sweep::sweep;
-use crate::samples;
 use crate::simplify::SimplifySettings;
-use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 /// How a job ended without a result.
@@ -69,10 +67,7 @@ impl Runner for PipelineRunner {
                 source,
                 settings,
             } => {
-                let part = match &source {
-                    PartSource::File(path) => load::load(path, &settings, monitor)?,
-                    PartSource::Example => example(role, &settings, monitor)?,
-                };
+                let part = load_source(role, &source, &settings, monitor)?;
                 Ok(loaded(role, source, part))
             }
             JobKind::Reselect {
@@ -91,12 +86,29 @@ impl Runner for PipelineRunner {
             JobKind::Measure(input) => measure(&input, monitor),
             JobKind::Compare(input) => compare(&input, monitor),
             JobKind::Sweep(input) => run_sweep(&input, monitor),
+            JobKind::OpenProject(request) => {
+                let opened = open_project(request, monitor)?;
+                Ok(JobOutput::ProjectOpened(Box::new(opened)))
+            }
             JobKind::Export(request) => {
                 let (path, notes) = export(request, monitor)?;
                 let paths = vec![path];
                 Ok(JobOutput::Exported { paths, notes })
             }
         }
+    }
+}
+
+/// Reads a part from where it comes from.
+pub(super) fn load_source(
+    role: Role,
+    source: &PartSource,
+    settings: &LoadSettings,
+    monitor: &Monitor,
+) -> Result<LoadedPart, JobError> {
+    match source {
+        PartSource::File(path) => Ok(load::load(path, settings, monitor)?),
+        PartSource::Example => Ok(load::load_bundled(role.word(), settings, monitor)?),
     }
 }
 
@@ -111,14 +123,34 @@ fn loaded(role: Role, source: PartSource, part: LoadedPart) -> JobOutput {
 }
 
 fn reduce(input: ReduceInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
-    let max_triangles = input.max_triangles;
-    let recorded = input.recording.filter(|r| r.down_to <= max_triangles);
+    let ReduceInput {
+        role,
+        part,
+        recording,
+        max_triangles,
+    } = input;
+    let (recording, level) = reduce_part(&part, recording, max_triangles, monitor)?;
+    Ok(JobOutput::Reduced {
+        role,
+        recording,
+        level,
+    })
+}
+
+/// A level of a part, from the recording at hand or a new one.
+pub(super) fn reduce_part(
+    part: &LoadedPart,
+    recording: Option<Arc<Recording>>,
+    max_triangles: usize,
+    monitor: &Monitor,
+) -> Result<(Arc<Recording>, Arc<MeasuredLevel>), JobError> {
+    let recorded = recording.filter(|r| r.down_to <= max_triangles);
     let recording = match recorded {
         Some(recording) => recording,
         None => {
             let down_to = max_triangles.min(RECORD_DOWN_TO);
             let settings = SimplifySettings::to_triangles(down_to);
-            let levels = Levels::record(&input.part, &settings, monitor)?;
+            let levels = Levels::record(part, &settings, monitor)?;
             // A stopped recording ends where it is, and asking for less records again.
             let down_to = if monitor.stop_requested() {
                 levels.coarsest()
@@ -129,15 +161,12 @@ fn reduce(input: ReduceInput, monitor: &Monitor) -> Result<JobOutput, JobError> 
         }
     };
     let level = recording.levels.level(max_triangles);
-    Ok(JobOutput::Reduced {
-        role: input.role,
-        recording,
-        level: Arc::new(MeasuredLevel {
-            max_triangles,
-            level,
-            deviation: OnceLock::new(),
-        }),
-    })
+    let measured = MeasuredLevel {
+        max_triangles,
+        level,
+        deviation: OnceLock::new(),
+    };
+    Ok((recording, Arc::new(measured)))
 }
 
 fn measure_level(input: MeasureLevelInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
@@ -151,22 +180,6 @@ fn measure_level(input: MeasureLevelInput, monitor: &Monitor) -> Result<JobOutpu
     // A second measurement of the same level finds the same numbers.
     let _ = level.deviation.set(deviation);
     Ok(JobOutput::LevelMeasured { role, level })
-}
-
-/// One side of the pair that comes with the program.
-fn example(role: Role, settings: &LoadSettings, monitor: &Monitor) -> Result<LoadedPart, JobError> {
-    let starts = match role {
-        Role::Crash => "crash",
-        Role::Stamped => "stamped",
-    };
-    let files = samples::bundled();
-    let file = files.into_iter().find(|file| file.name.starts_with(starts));
-    let Some(file) = file else {
-        return Err(JobError::Failed("the example is not in this build".into()));
-    };
-    let path = Path::new(file.name);
-    let memory = Memory::new().with(path, file.bytes);
-    Ok(load::load_from(&memory, path, settings, monitor)?)
 }
 
 fn align(input: &MatchInput, monitor: &Monitor) -> Result<JobOutput, JobError> {

@@ -20,6 +20,9 @@ pub enum PipelineError {
         /// The file it was made for.
         path: PathBuf,
     },
+    /// The build lacks the example.
+    #[error("the example is not in this build")]
+    NoExample,
     /// A unit factor that is not a positive number.
     #[error("the unit factor {0} is not a positive number")]
     BadUnitFactor(f64),

@@ -1,6 +1,7 @@
 //! Writing results to disk.
 
 use std::fs;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::PipelineError;
@@ -17,6 +18,32 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), PipelineError> {
     fs::write(path, bytes).map_err(|error| PipelineError::Write {
         path: path.to_path_buf(),
         reason: error.to_string(),
+    })
+}
+
+/// Writes beside the file and renames, so that a crash leaves either the old or the new one whole.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), PipelineError> {
+    let failed = |error: std::io::Error| PipelineError::Write {
+        path: path.to_path_buf(),
+        reason: error.to_string(),
+    };
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(".new");
+    let beside = path.with_file_name(name);
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    folder.map_or(Ok(()), fs::create_dir_all).map_err(failed)?;
+    let write = || {
+        let mut file = fs::File::create(&beside)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        fs::rename(&beside, path)
+    };
+    write().map_err(|error| {
+        // What is left of the attempt helps no one.
+        let _ = fs::remove_file(&beside);
+        failed(error)
     })
 }
 

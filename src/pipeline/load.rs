@@ -8,12 +8,14 @@ use rayon::prelude::*;
 
 use super::{PipelineError, millis_since};
 use crate::formats::{
-    self, Diagnostics, Disk, FileHash, FileSource, Model, ReadOptions, Selection, Severity, Surface,
+    self, Diagnostics, Disk, FileHash, FileSource, Memory, Model, ReadOptions, Selection, Severity,
+    Surface,
 };
 use crate::geometry::{Point3, TriMesh, orient_consistently, weld};
 use crate::monitor::Monitor;
 use crate::registration::{self, RegistrationError};
 use crate::report::command_line::CommandSide;
+use crate::samples;
 use crate::units::{self, KnownUnits, UnitOrigin, Units};
 
 /// Choices for loading one side.
@@ -233,6 +235,20 @@ pub fn load_from(
     let mut part = prepare(path, Arc::new(model), settings, monitor)?;
     part.report.read_ms = read_ms;
     Ok(part)
+}
+
+/// One side of the pair that comes with the program: the file whose name begins so.
+pub fn load_bundled(
+    begins: &str,
+    settings: &LoadSettings,
+    monitor: &Monitor,
+) -> Result<LoadedPart, PipelineError> {
+    let files = samples::bundled();
+    let file = files.into_iter().find(|file| file.name.starts_with(begins));
+    let file = file.ok_or(PipelineError::NoExample)?;
+    let path = Path::new(file.name);
+    let memory = Memory::new().with(path, file.bytes);
+    load_from(&memory, path, settings, monitor)
 }
 
 /// Prepares the chosen part of a model that was read before, for example after another choice of

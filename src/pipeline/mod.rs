@@ -9,6 +9,7 @@ pub mod inspect;
 pub mod load;
 pub mod match_parts;
 pub mod node_table;
+pub mod project;
 pub mod record;
 pub mod reduce;
 pub mod report;

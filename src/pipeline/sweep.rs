@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use serde::{Deserialize, Serialize};
+
 use super::load::LoadedPart;
 use super::match_parts::{MatchRecipe, ReducedPair, match_parts};
 use super::reduce::Levels;
@@ -60,7 +62,7 @@ fn nine_starts() -> MatchSettings {
 }
 
 /// One row of the reduction table.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ReductionRow {
     /// The maximum asked for.
     pub max_triangles: usize,
@@ -81,7 +83,7 @@ pub struct ReductionRow {
 }
 
 /// One row of the matching table.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MatchingRow {
     /// The maximum both parts were reduced to; `None` for the full meshes.
     pub max_triangles: Option<usize>,
@@ -111,7 +113,7 @@ pub enum SweepRow {
 }
 
 /// The tables.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Sweep {
     /// Triangles of the stamped part before reduction.
     pub n_triangles: usize,

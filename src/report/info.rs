@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::formats::{Model, Severity};
+use crate::units::KnownUnits;
 
 /// What a file holds. The JSON form has exactly these keys.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -11,6 +12,8 @@ pub struct ModelInfo {
     pub schema: &'static str,
     /// The deck's title.
     pub title: String,
+    /// The units it states or that follow from its materials, in words; absent if it says none.
+    pub units: Option<String>,
     /// Files that were read, the one asked for first.
     pub files: Vec<FileInfo>,
     /// Number of nodes.
@@ -129,6 +132,7 @@ impl ModelInfo {
         Self {
             schema: "shapematch.info/1",
             title: model.title.clone(),
+            units: model.stated_units.map(KnownUnits::words),
             files: files.collect(),
             nodes: model.nodes.len(),
             shells: model.shells.len(),

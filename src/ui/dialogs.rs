@@ -3,9 +3,10 @@
 
 use super::theme::{Palette, ROW, UNIT};
 use super::widgets::{caption, paragraph};
-use crate::app::{Command, ExportCommand, ExportKind, FileCommand};
+use crate::app::{Command, ExportCommand, ExportKind, FileCommand, ProjectCommand};
 use crate::formats::Format;
-use crate::jobs::Role;
+use crate::jobs::{Located, ProjectRequest, Role};
+use crate::pipeline::project::EXTENSION;
 use std::future::Future;
 use std::path::PathBuf;
 use std::pin::pin;
@@ -18,11 +19,18 @@ use std::time::{Duration, Instant};
 const NOT_SHOWN: Duration = Duration::from_millis(400);
 
 /// What is asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 enum Question {
     Open(Role),
+    OpenProject,
+    /// A file of a project.
+    Locate(Role),
+    /// Where to write the project, beginning there.
+    SaveProject(PathBuf),
     Save(ExportKind),
-    Picture { is_transparent: bool },
+    Picture {
+        is_transparent: bool,
+    },
 }
 
 struct Answer {
@@ -70,6 +78,21 @@ impl Dialogs {
         self.ask(Question::Open(role), ctx);
     }
 
+    /// Asks for a project.
+    pub fn ask_open_project(&mut self, ctx: &egui::Context) {
+        self.ask(Question::OpenProject, ctx);
+    }
+
+    /// Asks for a file of a project.
+    pub fn ask_locate(&mut self, role: Role, ctx: &egui::Context) {
+        self.ask(Question::Locate(role), ctx);
+    }
+
+    /// Asks where to write the project.
+    pub fn ask_save_project(&mut self, suggested: PathBuf, ctx: &egui::Context) {
+        self.ask(Question::SaveProject(suggested), ctx);
+    }
+
     /// Asks where to write.
     pub fn ask_save(&mut self, kind: ExportKind, ctx: &egui::Context) {
         self.ask(Question::Save(kind), ctx);
@@ -89,7 +112,8 @@ impl Dialogs {
         if self.is_asking {
             return;
         }
-        let dialog = file_dialog(question);
+        let dialog = file_dialog(&question);
+        let asked = question.clone();
         let (sender, ctx) = (self.sender.clone(), ctx.clone());
         let thread = std::thread::Builder::new().name("file dialog".to_owned());
         let spawned = thread.spawn(move || {
@@ -97,7 +121,7 @@ impl Dialogs {
             let path = wait_for(dialog);
             let took = begin.elapsed();
             let answer = Answer {
-                question,
+                question: asked,
                 path,
                 took,
             };
@@ -120,14 +144,17 @@ impl Dialogs {
             match answer.path {
                 Some(path) => commands.extend(self.answered(answer.question, path)),
                 None if answer.took < NOT_SHOWN => {
-                    let suggestion = match answer.question {
-                        Question::Open(_) => String::new(),
+                    let suggestion = match &answer.question {
+                        Question::Open(_) | Question::OpenProject | Question::Locate(_) => {
+                            String::new()
+                        }
+                        Question::SaveProject(path) => path.display().to_string(),
                         Question::Save(kind) => kind.suggested_name().to_owned(),
                         Question::Picture { .. } => "shapematch.png".to_owned(),
                     };
                     self.prompt = Some((answer.question, suggestion));
                 }
-                None => {}
+                None => commands.extend(closed(&answer.question)),
             }
         }
         commands
@@ -142,6 +169,15 @@ impl Dialogs {
                 }
                 .into(),
             ),
+            Question::OpenProject => {
+                let request = ProjectRequest {
+                    path,
+                    ..ProjectRequest::default()
+                };
+                Some(ProjectCommand::Open(request).into())
+            }
+            Question::Locate(role) => Some(ProjectCommand::Locate(role, Located::At(path)).into()),
+            Question::SaveProject(_) => Some(ProjectCommand::Write(path).into()),
             Question::Save(kind) => Some(ExportCommand::Write { kind, path }.into()),
             Question::Picture { is_transparent } => {
                 self.pictures.push(PictureRequest {
@@ -158,7 +194,7 @@ impl Dialogs {
         let Some((question, mut text)) = self.prompt.take() else {
             return;
         };
-        let (title, verb) = titles(question);
+        let (title, verb) = titles(&question);
         let mut is_taken = false;
         let mut is_closed = false;
         let modal = egui::Modal::new(egui::Id::unique("path prompt")).show(ctx, |ui| {
@@ -188,7 +224,7 @@ impl Dialogs {
                 is_taken |= ui.add_enabled(!text.trim().is_empty(), button).clicked();
                 let cancel = egui::Button::new("Cancel").min_size(egui::vec2(88.0, ROW + 4.0));
                 is_closed |= ui.add(cancel).clicked();
-                if matches!(question, Question::Open(_)) {
+                if matches!(question, Question::Open(_) | Question::Locate(_)) {
                     caption(ui, formats());
                 }
             });
@@ -198,12 +234,24 @@ impl Dialogs {
             commands.extend(self.answered(question, PathBuf::from(path)));
         } else if !is_closed && !modal.should_close() {
             self.prompt = Some((question, text));
+        } else {
+            commands.extend(closed(&question));
         }
     }
 }
 
-fn titles(question: Question) -> (&'static str, &'static str) {
+/// What follows from a dialog that was closed without an answer.
+fn closed(question: &Question) -> Option<Command> {
+    let is_save = matches!(question, Question::SaveProject(_));
+    is_save.then(|| ProjectCommand::NotWritten.into())
+}
+
+fn titles(question: &Question) -> (&'static str, &'static str) {
     match question {
+        Question::OpenProject => ("Open a project", "Open"),
+        Question::Locate(Role::Crash) => ("Find the crash model of the project", "Use"),
+        Question::Locate(Role::Stamped) => ("Find the stamped part of the project", "Use"),
+        Question::SaveProject(_) => ("Save the project", "Save"),
         Question::Open(Role::Crash) => ("Open the crash model", "Open"),
         Question::Open(Role::Stamped) => ("Open the stamped part", "Open"),
         Question::Save(_) => ("Write to a file", "Write"),
@@ -216,11 +264,23 @@ fn formats() -> String {
     labels.join(", ")
 }
 
-fn file_dialog(question: Question) -> impl Future<Output = Option<rfd::FileHandle>> + Send {
+fn file_dialog(
+    question: &Question,
+) -> impl Future<Output = Option<rfd::FileHandle>> + Send + use<> {
     let (title, _) = titles(question);
     let mut dialog = rfd::AsyncFileDialog::new().set_title(title);
     match question {
-        Question::Open(_) => {
+        Question::OpenProject => dialog = dialog.add_filter("Project", &[EXTENSION]),
+        Question::SaveProject(path) => {
+            dialog = dialog.add_filter("Project", &[EXTENSION]);
+            if let Some(name) = path.file_name() {
+                dialog = dialog.set_file_name(name.to_string_lossy());
+            }
+            if let Some(folder) = path.parent().filter(|folder| folder.is_dir()) {
+                dialog = dialog.set_directory(folder);
+            }
+        }
+        Question::Open(_) | Question::Locate(_) => {
             let all: Vec<&str> = Format::ALL
                 .iter()
                 .flat_map(|f| f.extensions())
@@ -235,7 +295,10 @@ fn file_dialog(question: Question) -> impl Future<Output = Option<rfd::FileHandl
         Question::Save(kind) => dialog = dialog.set_file_name(kind.suggested_name()),
         Question::Picture { .. } => dialog = dialog.set_file_name("shapematch.png"),
     }
-    let is_open = matches!(question, Question::Open(_));
+    let is_open = matches!(
+        question,
+        Question::Open(_) | Question::OpenProject | Question::Locate(_)
+    );
     async move {
         if is_open {
             dialog.pick_file().await

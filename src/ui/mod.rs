@@ -5,10 +5,12 @@
 
 pub mod dialogs;
 pub mod gizmo;
+pub mod keeper;
 pub mod keyboard;
 pub mod overlays;
 pub mod palette;
 pub mod panels;
+pub mod project_dialogs;
 pub mod shell;
 pub mod storage;
 pub mod theme;

@@ -1,6 +1,7 @@
 //! What lies over the window: help sheet, command search, preferences, messages, about.
 
 use super::palette::palette_ui;
+use super::project_dialogs::{missing_ui, unsaved_ui};
 use super::theme::{Palette, UNIT};
 use super::widgets::{caption, chip, form_row, level_color, paragraph, secondary};
 use crate::app::{
@@ -27,6 +28,8 @@ pub fn overlays_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Com
             Dialog::Preferences => preferences_ui(ui, state, commands),
             Dialog::Messages => messages_ui(ui, state, room, commands),
             Dialog::About => about_ui(ui),
+            Dialog::Unsaved => unsaved_ui(ui, state, commands),
+            Dialog::MissingFiles => missing_ui(ui, state, commands),
         }
     });
     let by_pointer = response.backdrop_response.clicked();

@@ -1,12 +1,13 @@
 //! The program behind the panels: worker, dialogs, clipboard, preferences, and the frame.
 
 use super::dialogs::{Dialogs, PictureRequest};
+use super::keeper::{Keeper, Kept as KeptNews};
 use super::storage::{Kept, Storage, WindowPlace};
 use super::viewport::Viewports;
-use super::{keyboard, overlays, panels, theme, toasts};
+use super::{keyboard, overlays, panels, project_dialogs, theme, toasts};
 use crate::app::{
-    AppState, Command, Effect, FileCommand, NoticeCommand, NoticeLevel, Settings, StartupOptions,
-    Theme,
+    AppState, Command, Effect, FileCommand, NoticeCommand, NoticeLevel, ProjectCommand, Settings,
+    StartupOptions, Theme,
 };
 use crate::jobs::{JobEvent, JobStage, Live, PipelineRunner, Role, Worker};
 use std::process::ExitCode;
@@ -80,8 +81,11 @@ pub struct Shell {
     viewports: Viewports,
     dialogs: Dialogs,
     storage: Storage,
+    keeper: Keeper,
     place: Option<WindowPlace>,
     is_unsaved: bool,
+    /// The question about unsaved work was answered.
+    may_close: bool,
     begin: Instant,
     title: String,
     told: (Sender<News>, Receiver<News>),
@@ -100,6 +104,8 @@ impl Shell {
     ) -> std::io::Result<Self> {
         theme::install(&cc.egui_ctx);
         let ctx = cc.egui_ctx.clone();
+        let waking = ctx.clone();
+        let keeper = Keeper::start(storage.kept_folder(), move || waking.request_repaint())?;
         let worker = Worker::spawn(PipelineRunner, Arc::new(move || ctx.request_repaint()))?;
         let mut shell = Self {
             state: AppState::new(kept.settings),
@@ -107,13 +113,16 @@ impl Shell {
             viewports: Viewports::new(cc.wgpu_render_state.as_ref()),
             dialogs: Dialogs::default(),
             storage,
+            keeper,
             place: kept.window,
             is_unsaved: false,
+            may_close: false,
             begin: Instant::now(),
             title: String::new(),
             told: channel(),
         };
         shell.apply_settings(&cc.egui_ctx);
+        shell.keeper.list();
         shell.open_at_start(options, &cc.egui_ctx);
         Ok(shell)
     }
@@ -166,6 +175,16 @@ impl Shell {
             Effect::CancelJob(key) => self.worker.cancel(key),
             Effect::AskOpen(role) => self.dialogs.ask_open(role, ctx),
             Effect::AskSave(kind) => self.dialogs.ask_save(kind, ctx),
+            Effect::AskOpenProject => self.dialogs.ask_open_project(ctx),
+            Effect::AskLocate(role) => self.dialogs.ask_locate(role, ctx),
+            Effect::AskSaveProject(path) => self.dialogs.ask_save_project(path, ctx),
+            Effect::WriteProject {
+                path,
+                project,
+                document,
+            } => self.keeper.write(path, project, document),
+            Effect::KeepWork(project) => self.keeper.keep(project),
+            Effect::PutOffKept => self.keeper.put_off(),
             Effect::TakePicture { is_transparent } => {
                 self.dialogs.ask_picture(is_transparent, ctx);
             }
@@ -178,7 +197,10 @@ impl Shell {
                 let ask = egui::UserAttentionType::Informational;
                 ctx.send_viewport_cmd(egui::ViewportCommand::RequestUserAttention(ask));
             }
-            Effect::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            Effect::Quit => {
+                self.may_close = true;
+                ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            }
         }
     }
 
@@ -286,15 +308,30 @@ impl Shell {
         };
     }
 
+    /// The desktop wants the window closed: asks first if work would be lost.
+    fn asked_to_close(&self, ctx: &egui::Context) -> Option<Command> {
+        let is_asked = ctx.input(|input| input.viewport().close_requested());
+        if !is_asked || self.may_close || !self.state.is_unsaved() {
+            return None;
+        }
+        ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+        Some(Command::Quit)
+    }
+
     fn update_title(&mut self, ctx: &egui::Context) {
         let name = |role| {
             let part = self.state.document.part(role);
             part.map(|part| part.loaded.file_name())
         };
-        let title = match (name(Role::Crash), name(Role::Stamped)) {
-            (Some(crash), Some(stamped)) => format!("{stamped} on {crash} – shapematch"),
-            (Some(one), None) | (None, Some(one)) => format!("{one} – shapematch"),
-            (None, None) => "shapematch".to_owned(),
+        let work = match (name(Role::Crash), name(Role::Stamped)) {
+            (Some(crash), Some(stamped)) => Some(format!("{stamped} on {crash}")),
+            (Some(one), None) | (None, Some(one)) => Some(one),
+            (None, None) => None,
+        };
+        let mark = if self.state.is_unsaved() { "● " } else { "" };
+        let title = match self.state.project.name().or(work) {
+            Some(name) => format!("{mark}{name} – shapematch"),
+            None => "shapematch".to_owned(),
         };
         if title != self.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
@@ -324,8 +361,13 @@ impl eframe::App for Shell {
         let live = self.worker.live();
         let mut commands = with_live(events, live);
         commands.extend(self.dialogs.answers());
+        commands.extend(self.keeper.news().flat_map(told_by_keeper));
+        commands.extend(self.asked_to_close(ctx));
         commands.extend(self.dropped(ctx));
         self.run_commands(commands, ctx);
+        if self.state.is_to_be_kept() {
+            self.run_commands(vec![ProjectCommand::Keep.into()], ctx);
+        }
         self.take_pictures(ctx);
         self.update_title(ctx);
         self.remember_place(ctx);
@@ -337,6 +379,7 @@ impl eframe::App for Shell {
         let mut commands = keyboard::commands(&ctx, &self.state);
         panels::window_ui(ui, &self.state, &mut self.viewports, &mut commands);
         toasts::toasts_ui(&ctx, &self.state, &mut commands);
+        project_dialogs::restore_ui(&ctx, &self.state, &mut commands);
         overlays::overlays_ui(&ctx, &self.state, &mut commands);
         self.dialogs.show(&ctx, &mut commands);
         if !commands.is_empty() {
@@ -352,5 +395,24 @@ impl eframe::App for Shell {
         self.is_unsaved = true;
         self.save();
         self.worker.cancel_all();
+    }
+}
+
+/// What follows from what the keeper says.
+fn told_by_keeper(news: KeptNews) -> Vec<Command> {
+    match news {
+        KeptNews::Written(path, document) => vec![ProjectCommand::Written(path, document).into()],
+        KeptNews::Failed(reason) => {
+            let text = format!("the project is not saved: {reason}");
+            vec![
+                NoticeCommand::Tell(NoticeLevel::Error, text).into(),
+                ProjectCommand::NotWritten.into(),
+            ]
+        }
+        KeptNews::NotKept(reason) => {
+            let text = format!("the work is not kept in case of a crash: {reason}");
+            vec![NoticeCommand::Tell(NoticeLevel::Note, text).into()]
+        }
+        KeptNews::Works(works) => vec![ProjectCommand::TellKept(works).into()],
     }
 }

@@ -29,6 +29,8 @@ pub struct Kept {
 #[derive(Debug, Clone, Default)]
 pub struct Storage {
     path: Option<PathBuf>,
+    /// The folder for work that is kept in case of a crash.
+    kept: Option<PathBuf>,
 }
 
 impl Storage {
@@ -36,7 +38,8 @@ impl Storage {
     pub fn of_user() -> Self {
         let folders = directories::ProjectDirs::from("", "", "shapematch");
         let path = folders.map(|folders| folders.config_dir().join("settings.json"));
-        Self { path }
+        let kept = super::keeper::Keeper::folder_of_user();
+        Self { path, kept }
     }
 
     /// Keeps nothing.
@@ -46,8 +49,15 @@ impl Storage {
 
     /// A file of one's own.
     pub fn at(path: &Path) -> Self {
-        let path = Some(path.to_owned());
-        Self { path }
+        Self {
+            path: Some(path.to_owned()),
+            kept: path.parent().map(|folder| folder.join("kept")),
+        }
+    }
+
+    /// The folder for kept work; none where no preferences are kept either.
+    pub fn kept_folder(&self) -> Option<PathBuf> {
+        self.kept.clone()
     }
 
     /// What was kept; defaults where there is nothing or it cannot be read.

@@ -17,6 +17,7 @@ mod layering;
 mod mesh_files;
 mod mirrored;
 mod pan;
+mod project;
 mod registration;
 mod samples;
 mod search;

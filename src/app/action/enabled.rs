@@ -15,7 +15,8 @@ impl Action {
     pub fn enabled(self, state: &AppState) -> Result<(), Reason> {
         use Action as A;
         match self {
-            A::OpenCrash | A::OpenStamped | A::OpenExample => state.is_unlocked(),
+            A::OpenCrash | A::OpenStamped | A::OpenExample | A::OpenProject => state.is_unlocked(),
+            A::SaveProject | A::SaveProjectAs => state.has_any_part(),
             A::ReloadAll | A::Swap | A::BackToAsLoaded => {
                 state.has_any_part()?;
                 state.is_unlocked()

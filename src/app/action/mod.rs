@@ -93,6 +93,12 @@ actions! {
     OpenStamped,
     /// Open the example pair.
     OpenExample,
+    /// Choose a project.
+    OpenProject,
+    /// Write the project to its file.
+    SaveProject,
+    /// Write the project to another file.
+    SaveProjectAs,
     /// Read both parts again.
     ReloadAll,
     /// Exchange the two parts.

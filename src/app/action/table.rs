@@ -103,6 +103,21 @@ impl Action {
                 "Load a generated crash part and its stamped part",
                 None,
             ),
+            Self::OpenProject => (
+                "Open project…",
+                "Open saved work: both files, pose, levels, settings and result",
+                None,
+            ),
+            Self::SaveProject => (
+                "Save project",
+                "Save the work: what was chosen and found, without the geometry",
+                Some(ctrl('S')),
+            ),
+            Self::SaveProjectAs => (
+                "Save project as…",
+                "Save the work to another file",
+                Some(Shortcut::ctrl_shift(Key::Letter('S'))),
+            ),
             Self::ReloadAll => (
                 "Reload",
                 "Read the files again; choices and pose stay",
@@ -424,7 +439,7 @@ impl Action {
             Self::SaveRecord => (
                 "Save record…",
                 "Write the whole match as JSON: matrix, verdict, settings, times",
-                Some(ctrl('S')),
+                None,
             ),
             Self::SaveCards => (
                 "Save LS-DYNA cards…",

@@ -2,7 +2,7 @@ use super::Action;
 use crate::app::{
     AppState, Axis, AxisFrame, ColorBy, Command, Dialog, Display, ExportCommand, ExportKind,
     FileCommand, HistoryCommand, InspectCommand, MatchCommand, MotionKind, MoveCommand,
-    PartCommand, ReduceCommand, SectionView, Settings, ShownGeometry, ViewCommand,
+    PartCommand, ProjectCommand, ReduceCommand, SectionView, Settings, ShownGeometry, ViewCommand,
 };
 use crate::geometry::Vector3;
 use crate::geometry::camera::{OrbitStyle, StandardView};
@@ -44,6 +44,9 @@ impl Action {
             Self::OpenCrash => FileCommand::AskOpen(Role::Crash).into(),
             Self::OpenStamped => FileCommand::AskOpen(Role::Stamped).into(),
             Self::OpenExample => FileCommand::OpenExample.into(),
+            Self::OpenProject => ProjectCommand::AskOpen.into(),
+            Self::SaveProject => ProjectCommand::Save.into(),
+            Self::SaveProjectAs => ProjectCommand::SaveAs.into(),
             Self::Swap => FileCommand::Swap.into(),
             Self::CloseCrash => FileCommand::Close(Role::Crash).into(),
             Self::CloseStamped => FileCommand::Close(Role::Stamped).into(),

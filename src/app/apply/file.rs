@@ -1,6 +1,7 @@
+use super::project::is_project;
 use crate::app::state::Guess;
 use crate::app::{AppState, Effect, FileCommand, NoticeLevel, Part, StampedPose, facts};
-use crate::jobs::{JobKey, JobKind, PartFacts, PartSource, Role};
+use crate::jobs::{JobKey, JobKind, PartFacts, PartSource, ProjectRequest, Role};
 use crate::pipeline::load::{LoadSettings, LoadedPart};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -29,6 +30,12 @@ impl AppState {
     }
 
     fn open(&mut self, paths: Vec<PathBuf>, role: Option<Role>) -> Vec<Effect> {
+        if let Some(path) = paths.iter().find(|path| is_project(path)) {
+            return self.open_project(ProjectRequest {
+                path: path.clone(),
+                ..ProjectRequest::default()
+            });
+        }
         let n_paths = paths.len();
         if n_paths > 2 {
             let text = format!("{n_paths} files were dropped; the first two are opened");

@@ -42,7 +42,7 @@ impl AppState {
     fn is_wanted(&self, key: JobKey, stamp: Stamp) -> bool {
         let now = self.document.stamp();
         match key {
-            JobKey::Load(_) | JobKey::Export => true,
+            JobKey::Load(_) | JobKey::OpenProject | JobKey::Export => true,
             JobKey::Reselect(role) | JobKey::Reduce(role) => {
                 now.parts.get(role) == stamp.parts.get(role)
             }
@@ -63,6 +63,7 @@ impl AppState {
         took: Duration,
     ) -> Vec<Effect> {
         match output {
+            JobOutput::ProjectOpened(opened) => return self.take_project(*opened, took),
             JobOutput::Loaded {
                 role, part, facts, ..
             } if matches!(key, JobKey::Reselect(_)) => {
@@ -158,6 +159,7 @@ fn step_of(key: JobKey) -> (&'static str, Option<Role>) {
         JobKey::Measure => ("measure", None),
         JobKey::Compare => ("compare", None),
         JobKey::Sweep => ("sweep", None),
+        JobKey::OpenProject => ("project", None),
         JobKey::Export => ("export", None),
     }
 }

@@ -8,6 +8,7 @@ mod jobs;
 mod matching;
 mod moving;
 mod part;
+mod project;
 mod reduce;
 mod units;
 mod view;
@@ -27,6 +28,7 @@ impl AppState {
     fn apply_one(&mut self, command: Command) -> Vec<Effect> {
         match command {
             Command::File(command) => self.apply_file(command),
+            Command::Project(command) => self.apply_project(command),
             Command::Part(command) => self.apply_part(command),
             Command::Reduce(command) => self.apply_reduce(command),
             Command::Move(command) => self.apply_move(command),
@@ -40,7 +42,7 @@ impl AppState {
             Command::Job(event) => self.take_job_event(*event),
             Command::Live(live) => self.take_live(*live),
             Command::Escape => self.escape(),
-            Command::Quit => vec![Effect::SaveSettings, Effect::Quit],
+            Command::Quit => self.quit(),
         }
     }
 

@@ -3,7 +3,9 @@
 use super::units::window_unit_ui;
 use crate::app::{Action, AppState, Command, Dialog, ExportCommand, ExportKind, Menu, ViewCommand};
 use crate::jobs::Role;
+use crate::pipeline::project::EXTENSION;
 use crate::report::{CardForm, MatrixForm};
+use crate::ui::project_dialogs::kept_menu_ui;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::caption;
 use egui::{Align, Button, Layout, MenuBar, RichText, Sense, Ui, pos2, vec2};
@@ -41,6 +43,9 @@ fn menu_ui(ui: &mut Ui, state: &AppState, menu: Menu, commands: &mut Vec<Command
         ui.separator();
         recent_ui(ui, state, commands);
     }
+    if menu == Menu::File && !state.project.kept_works.is_empty() {
+        kept_menu_ui(ui, state, commands);
+    }
 }
 
 /// Where a line in a menu helps the eye.
@@ -48,7 +53,8 @@ fn begins_group(action: Action) -> bool {
     use Action as A;
     matches!(
         action,
-        A::ReloadAll
+        A::OpenProject
+            | A::ReloadAll
             | A::Preferences
             | A::BackToAsLoaded
             | A::HideSelected
@@ -131,6 +137,15 @@ fn recent_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.menu_button("Recent files", |ui| {
         for path in &state.settings.recent {
             let name = path.file_name().unwrap_or(path.as_os_str());
+            if path.extension().is_some_and(|ending| ending == EXTENSION) {
+                let open = ui.button(name.to_string_lossy());
+                if open.on_hover_text(path.display().to_string()).clicked() {
+                    let (paths, role) = (vec![path.clone()], None);
+                    commands.push(FileCommand::Open { paths, role }.into());
+                    ui.close();
+                }
+                continue;
+            }
             ui.menu_button(name.to_string_lossy(), |ui| {
                 caption(ui, path.display().to_string());
                 for role in Role::ALL {

@@ -1,0 +1,159 @@
+//! Questions about the work as a whole: save it, restore it, find its files.
+
+use super::theme::{Palette, ROW, UNIT};
+use super::widgets::{caption, paragraph, role_mark, secondary};
+use crate::app::{AppState, Command, KeptWork, ProjectCommand, ViewCommand};
+use crate::jobs::Located;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use egui::{Align2, Button, Frame, Margin, RichText, Stroke, Ui, vec2};
+
+/// Least width of the buttons that answer.
+const BUTTON: f32 = 104.0;
+
+/// Unsaved work, before the program ends.
+pub fn unsaved_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.set_width(400.0);
+    ui.heading("Save the work before leaving?");
+    let name = state.project.name().unwrap_or_else(|| state.work_title());
+    paragraph(ui, name);
+    paragraph(
+        ui,
+        "Without saving, pose, levels, settings and result of this work are given up.",
+    );
+    ui.add_space(UNIT);
+    ui.horizontal(|ui| {
+        if primary(ui, "Save").clicked() {
+            commands.push(ProjectCommand::SaveAndQuit.into());
+        }
+        if plain(ui, "Don’t save").clicked() {
+            commands.push(ProjectCommand::QuitUnsaved.into());
+        }
+        if plain(ui, "Cancel").clicked() {
+            commands.push(ViewCommand::SetDialog(None).into());
+        }
+    });
+}
+
+/// Files of a project that are neither where it says nor beside it.
+pub fn missing_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.set_width(480.0);
+    let Some((request, missing)) = &state.project.missing else {
+        commands.push(ViewCommand::SetDialog(None).into());
+        return;
+    };
+    ui.heading("Files of the project are not found");
+    paragraph(ui, request.path.display().to_string());
+    for (role, path) in missing.iter() {
+        let Some(path) = path else { continue };
+        ui.add_space(UNIT);
+        ui.horizontal(|ui| {
+            role_mark(ui, role);
+            ui.add(egui::Label::new(path.display().to_string()).truncate());
+        });
+        ui.horizontal(|ui| {
+            let word = role.word();
+            if plain(ui, "Find it…")
+                .accessible_name(format!("Find the {word} part"))
+                .clicked()
+            {
+                commands.push(ProjectCommand::AskLocate(role).into());
+            }
+            let without = plain(ui, "Open without it");
+            if without
+                .accessible_name(format!("Open without the {word} part"))
+                .clicked()
+            {
+                commands.push(ProjectCommand::Locate(role, Located::Without).into());
+            }
+        });
+    }
+    ui.add_space(UNIT);
+    caption(
+        ui,
+        "They were looked for where the project says, and beside the project.",
+    );
+    if plain(ui, "Cancel").clicked() {
+        commands.push(ProjectCommand::GiveUp.into());
+    }
+}
+
+/// Work that its program did not live to save, offered while nothing is loaded.
+pub fn restore_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Command>) {
+    let is_empty = state.document.parts.iter().all(|(_, part)| part.is_none());
+    let Some(work) = state
+        .project
+        .lost_work()
+        .filter(|_| is_empty && !state.jobs.is_busy())
+    else {
+        return;
+    };
+    let area = egui::Area::new(egui::Id::unique("restore"))
+        .anchor(Align2::CENTER_TOP, vec2(0.0, 72.0))
+        .order(egui::Order::Middle);
+    area.show(ctx, |ui| {
+        let palette = Palette::of(ui);
+        let frame = Frame::new()
+            .fill(palette.card)
+            .stroke(Stroke::new(1.0, palette.accent))
+            .corner_radius(8)
+            .shadow(ui.visuals().popup_shadow)
+            .inner_margin(Margin::symmetric(20, 16));
+        frame.show(ui, |ui| {
+            ui.set_width(400.0);
+            ui.spacing_mut().item_spacing.y = UNIT;
+            ui.label(RichText::new(format!("Restore the work from {}?", when(work))).size(16.0));
+            secondary(ui, work.title.clone());
+            caption(ui, "The program ended before it was saved.");
+            ui.horizontal(|ui| {
+                if primary(ui, "Restore").clicked() {
+                    commands.push(ProjectCommand::Restore(work.path.clone()).into());
+                }
+                if plain(ui, "Not now").clicked() {
+                    commands.push(ProjectCommand::PutOff.into());
+                }
+                caption(ui, "File › Kept work has it too");
+            });
+        });
+    });
+}
+
+/// The works of the last runs, in the menu.
+pub fn kept_menu_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.menu_button("Kept work", |ui| {
+        for work in &state.project.kept_works {
+            let label = format!("{}   {}", when(work), work.title);
+            if ui.button(label).clicked() {
+                commands.push(ProjectCommand::Restore(work.path.clone()).into());
+                ui.close();
+            }
+        }
+        caption(ui, "The work of the last five runs, kept after each step");
+    });
+}
+
+/// How long ago work was kept, roughly.
+fn when(work: &KeptWork) -> String {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH);
+    let now = now.map_or(0, |now| now.as_secs());
+    match now.saturating_sub(work.saved_at) / 60 {
+        0 => "a moment ago".to_owned(),
+        minutes @ 1..60 => format!("{minutes} min ago"),
+        minutes @ 60..1440 => format!("{} h ago", minutes / 60),
+        minutes => format!("{} days ago", minutes / 1440),
+    }
+}
+
+fn primary(ui: &mut Ui, label: &str) -> egui::Response {
+    let palette = Palette::of(ui);
+    let text = RichText::new(label).color(palette.on_accent);
+    ui.add(
+        Button::new(text)
+            .fill(palette.accent)
+            .min_size(vec2(BUTTON, ROW + 4.0)),
+    )
+}
+
+fn plain(ui: &mut Ui, label: &str) -> egui::Response {
+    ui.add(Button::new(label).min_size(vec2(BUTTON, ROW + 4.0)))
+}

@@ -1,0 +1,509 @@
+//! Projects: saved and opened, moved, changed on disk, from later programs, and kept in case of a crash.
+
+use super::app::{Window, shifted};
+use proptest::prelude::*;
+use shapematch::app::*;
+use shapematch::geometry::Similarity;
+use shapematch::jobs::{Located, PerRole, PipelineRunner, ProjectRequest, Role, Runner as _};
+use shapematch::monitor::Monitor;
+use shapematch::pipeline::match_parts::MatchRecipe;
+use shapematch::pipeline::project::{PartEntry, Project};
+use shapematch::registration::{
+    DataSide, Floor, Hand, MatchSettings, Method, Metric, Motion, PairWith, Search, Selection,
+    StartMethod, StartSettings,
+};
+use shapematch::units::LengthUnit;
+use std::path::{Path, PathBuf};
+
+/// The example on disk, and a place for a project beside it.
+fn folder() -> (tempfile::TempDir, [PathBuf; 3]) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut paths = Vec::new();
+    for file in shapematch::samples::bundled() {
+        let path = folder.path().join(file.name);
+        std::fs::write(&path, &file.bytes).unwrap();
+        paths.push(path);
+    }
+    let find = |begins: &str| {
+        let mut found = paths.iter();
+        let is_it = |p: &&PathBuf| p.file_name().unwrap().to_str().unwrap().starts_with(begins);
+        found.find(is_it).unwrap().clone()
+    };
+    let project = folder.path().join("floor.shapematch");
+    let paths = [find("crash"), find("stamped"), project];
+    (folder, paths)
+}
+
+/// A window with real files, reduced, moved, hidden and matched.
+fn worked(crash: &Path, stamped: &Path) -> Window {
+    let mut window = Window::real();
+    for (path, role) in [(crash, Role::Crash), (stamped, Role::Stamped)] {
+        window.apply(FileCommand::Open {
+            paths: vec![path.to_path_buf()],
+            role: Some(role),
+        });
+    }
+    let units = Some(LengthUnit::Millimeter.into());
+    window.apply(FileCommand::SetUnits {
+        role: Role::Stamped,
+        units,
+    });
+    window.apply(ReduceCommand::To {
+        roles: PerRole {
+            crash: true,
+            stamped: true,
+        },
+        max_triangles: 400,
+    });
+    let id = window.part(Role::Crash).facts.parts[0].id;
+    let part = PartRef {
+        role: Role::Crash,
+        id,
+    };
+    window.apply(PartCommand::SetColor(part, Some([1, 2, 3])));
+    window.apply(PartCommand::SetVisible(part, false));
+    window.apply(MatchCommand::Run);
+    window.apply(ViewCommand::ToggleMoveOver);
+    assert!(window.state.document.current_result().is_some());
+    window
+}
+
+/// Saves as the shell does.
+fn save(window: &mut Window, path: &Path) {
+    window.apply(ProjectCommand::Write(path.to_path_buf()));
+    let effects = std::mem::take(&mut window.effects);
+    let mut n_written = 0;
+    for effect in effects {
+        if let Effect::WriteProject {
+            path,
+            project,
+            document,
+        } = effect
+        {
+            project.write(&path).unwrap();
+            window.apply(ProjectCommand::Written(path, document));
+            n_written += 1;
+        }
+    }
+    assert_eq!(n_written, 1);
+}
+
+fn open(path: &Path) -> Window {
+    let mut window = Window::real();
+    window.apply(FileCommand::Open {
+        paths: vec![path.to_path_buf()],
+        role: None,
+    });
+    window
+}
+
+fn pose_bits(pose: &Similarity) -> Vec<u64> {
+    let numbers = pose.rotation.iter().chain(pose.translation.iter());
+    numbers.chain([&pose.scale]).map(|x| x.to_bits()).collect()
+}
+
+/// Everything that has to come back.
+fn assert_same_work(a: &Window, b: &Window) {
+    let (old, new) = (&a.state.document, &b.state.document);
+    let poses = [old, new].map(|d| pose_bits(d.crash_from_stamped()));
+    assert_eq!(poses[0], poses[1]);
+    assert_eq!(old.recipe, new.recipe);
+    for role in Role::ALL {
+        let (old, new) = (a.part(role), b.part(role));
+        assert_eq!(old.loaded.settings, new.loaded.settings);
+        assert_eq!(old.hidden, new.hidden);
+        assert_eq!(old.colors, new.colors);
+        assert_eq!(old.wanted_level, new.wanted_level);
+        assert_eq!(old.reduced_mesh(), new.reduced_mesh());
+        assert_eq!(*old.loaded.mesh, *new.loaded.mesh);
+    }
+    let (old, new) = (
+        a.state.document.current_result(),
+        b.state.document.current_result(),
+    );
+    let (old, new) = (old.unwrap(), new.unwrap());
+    assert_eq!(old.alternative, new.alternative);
+    assert_eq!(old.run.outcome, new.run.outcome);
+    assert_eq!(old.run.assessment, new.run.assessment);
+    assert_eq!(old.run.times, new.run.times);
+    assert_eq!(a.state.view.cameras, b.state.view.cameras);
+    assert_eq!(a.state.view.display, b.state.view.display);
+    assert_eq!(a.state.view.is_moved_over, b.state.view.is_moved_over);
+}
+
+#[test]
+fn a_project_brings_everything_back() {
+    let (folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    assert!(window.state.is_unsaved());
+    save(&mut window, &path);
+    assert!(!window.state.is_unsaved());
+    assert_eq!(window.state.project.name().as_deref(), Some("floor"));
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(
+        text.starts_with("{\n  \"schema\": \"shapematch.project/1\""),
+        "{}",
+        &text[..200]
+    );
+    let place = folder.path().to_str().unwrap();
+    assert!(
+        !text.contains(&format!("\"file\": \"{place}")),
+        "absolute path"
+    );
+
+    let again = open(&path);
+    assert_same_work(&window, &again);
+    assert!(!again.state.is_unsaved());
+    assert_eq!(again.state.history.n_done(), 1);
+    assert_eq!(again.state.project.path, Some(path.clone()));
+    assert_eq!(again.state.settings.recent.first(), Some(&path));
+
+    // The whole folder goes elsewhere, and the project is written again: the same work.
+    let elsewhere = tempfile::tempdir().unwrap();
+    for file in [&crash, &stamped, &path] {
+        let to = elsewhere.path().join(file.file_name().unwrap());
+        std::fs::rename(file, to).unwrap();
+    }
+    let moved = open(&elsewhere.path().join("floor.shapematch"));
+    assert_same_work(&window, &moved);
+}
+
+#[test]
+fn a_file_that_changed_keeps_the_pose_and_ages_the_result() {
+    let (_folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    save(&mut window, &path);
+    let mut text = std::fs::read(&crash).unwrap();
+    // Another byte is another content, whatever the format.
+    if crash.extension().is_some_and(|ending| ending == "gz") {
+        use std::io::{Read as _, Write as _};
+        let mut unpacked = Vec::new();
+        flate2::read::GzDecoder::new(&text[..])
+            .read_to_end(&mut unpacked)
+            .unwrap();
+        unpacked.extend(b"$ touched\n");
+        let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        packer.write_all(&unpacked).unwrap();
+        text = packer.finish().unwrap();
+    } else {
+        text.extend(b"$ touched\n");
+    }
+    std::fs::write(&crash, text).unwrap();
+    let again = open(&path);
+    assert_eq!(
+        pose_bits(again.state.document.crash_from_stamped()),
+        pose_bits(window.state.document.crash_from_stamped())
+    );
+    assert!(again.state.document.result.is_some());
+    assert!(again.state.document.current_result().is_none());
+    let toast = again.state.notices.toasts().next().unwrap();
+    assert!(toast.text.contains("has changed since"), "{}", toast.text);
+}
+
+#[test]
+fn a_missing_file_is_asked_for_or_done_without() {
+    let (folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    save(&mut window, &path);
+    let hidden = folder.path().join("elsewhere.k");
+    std::fs::rename(&stamped, &hidden).unwrap();
+    let mut asked = open(&path);
+    assert_eq!(asked.state.view.dialog, Some(Dialog::MissingFiles));
+    let (_, missing) = asked.state.project.missing.clone().unwrap();
+    assert_eq!(missing.crash, None);
+    assert_eq!(missing.stamped, Some(stamped.clone()));
+    assert!(asked.state.document.part(Role::Crash).is_none());
+    asked.apply(ProjectCommand::Locate(Role::Stamped, Located::Without));
+    assert!(asked.state.document.part(Role::Crash).is_some());
+    assert!(asked.state.document.part(Role::Stamped).is_none());
+    assert!(asked.state.document.current_result().is_none());
+
+    let mut asked = open(&path);
+    // A dynain is known by its content, whatever its name.
+    asked.apply(ProjectCommand::Locate(Role::Stamped, Located::At(hidden)));
+    assert_eq!(asked.state.view.dialog, None);
+    assert!(asked.state.document.current_result().is_some());
+}
+
+#[test]
+fn later_programs_are_named_and_their_additions_kept() {
+    let (_folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    save(&mut window, &path);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let newer = text
+        .replace("shapematch.project/1", "shapematch.project/7")
+        .replacen(
+            "\"program\": \"shapematch",
+            "\"program\": \"shapematch 9.1 or",
+            1,
+        );
+    let error = Project::parse(&newer, &path).unwrap_err().to_string();
+    assert!(
+        error.contains("version 7") && error.contains("shapematch 9.1"),
+        "{error}"
+    );
+
+    let more = text
+        .replacen("{", "{\n  \"spring_back\": {\"of\": [1.5, 2]},", 1)
+        .replacen("\"allowance\"", "\"mood\": \"good\", \"allowance\"", 1);
+    let (project, notes) = Project::parse(&more, &path).unwrap();
+    assert_eq!(notes.len(), 2, "{notes:?}");
+    assert!(notes[0].contains("recipe.settings.mood"), "{notes:?}");
+    assert!(project.to_text(&path).contains("spring_back"));
+    std::fs::write(&path, &more).unwrap();
+    let mut again = open(&path);
+    assert!(again.state.document.current_result().is_some());
+    save(&mut again, &path);
+    assert!(
+        std::fs::read_to_string(&path)
+            .unwrap()
+            .contains("spring_back")
+    );
+}
+
+#[test]
+fn rubbish_is_refused_with_a_message() {
+    let path = Path::new("a.shapematch");
+    for (text, said) in [
+        ("", "line 1"),
+        ("{", "line 1"),
+        ("[1]", "no project of shapematch"),
+        (
+            "{\"schema\": \"shapematch.match/1\"}",
+            "no project of shapematch",
+        ),
+        (
+            "{\"schema\": \"shapematch.project/1\", \"pose\": 3}",
+            "\"pose\"",
+        ),
+    ] {
+        let error = Project::parse(text, path).unwrap_err().to_string();
+        assert!(error.contains(said), "{text}: {error}");
+    }
+    let least = "{\"schema\": \"shapematch.project/1\"}";
+    let (project, notes) = Project::parse(least, path).unwrap();
+    assert_eq!(notes, Vec::<String>::new());
+    assert_eq!(project.pose, Similarity::identity());
+    let odd = "{\"schema\": \"shapematch.project/1\", \"recipe\": {\"settings\": {\"metric\": \"love\"}}}";
+    let (project, notes) = Project::parse(odd, path).unwrap();
+    assert_eq!(project.recipe, MatchRecipe::default());
+    assert!(
+        notes[0].contains("recipe") && notes[0].contains("love"),
+        "{notes:?}"
+    );
+}
+
+/// Every setting, with values that only a bit-exact text keeps.
+fn any_recipe() -> impl Strategy<Value = MatchRecipe> {
+    let one = |n: usize| 0..n;
+    let floats = prop::collection::vec(1e-9..1e9_f64, 6);
+    let counts = prop::collection::vec(1usize..1_000_000, 4);
+    let choices = (
+        one(Method::ALL.len()),
+        one(4),
+        one(3),
+        one(Metric::ALL.len()),
+        one(Hand::ALL.len()),
+        one(StartMethod::ALL.len()),
+    );
+    let flags = prop::collection::vec(any::<bool>(), 7);
+    (floats, counts, choices, flags).prop_map(
+        |(x, n, (method, select, floor, metric, hand, start), is)| {
+            let floor = [Floor::Auto, Floor::None, Floor::Length(x[0])][floor];
+            let selection = [
+                Selection::All,
+                Selection::TrimmedSearch,
+                Selection::Trimmed { overlap: x[1] },
+                Selection::Fractional {
+                    lambda: x[1],
+                    floor,
+                },
+            ][select];
+            MatchRecipe {
+                settings: MatchSettings {
+                    method: Method::ALL[method],
+                    pair_with: if is[0] {
+                        PairWith::Node
+                    } else {
+                        PairWith::Triangle
+                    },
+                    selection,
+                    metric: Metric::ALL[metric],
+                    motion: if is[1] {
+                        Motion::Rigid
+                    } else {
+                        Motion::Similarity
+                    },
+                    hand: Hand::ALL[hand],
+                    starts: StartSettings {
+                        method: StartMethod::ALL[start],
+                        angle_segment_deg: x[2],
+                        both_signs: is[2],
+                        poses: vec![shifted(x[3]), shifted(-x[4])],
+                        widen: is[3],
+                    },
+                    search: if is[4] {
+                        Search::Race
+                    } else {
+                        Search::EveryStart
+                    },
+                    finish: is[5],
+                    data_side: if is[6] {
+                        DataSide::Auto
+                    } else {
+                        DataSide::Target
+                    },
+                    allowance: x[3],
+                    max_normal_angle_deg: x[4],
+                    n_race_points: n[0],
+                    n_refine_points: n[1],
+                    max_iterations: n[2],
+                    motion_tolerance: x[5],
+                    ..MatchSettings::default()
+                },
+                max_triangles: is[0].then_some(n[3]),
+            }
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+
+    #[test]
+    fn every_setting_comes_back_to_the_last_bit(recipe in any_recipe(), saved_at: u64) {
+        let project = Project {
+            recipe,
+            saved_at,
+            crash: Some(PartEntry::default()),
+            ..Project::default()
+        };
+        let path = Path::new("/tmp/x/a.shapematch");
+        let (read, notes) = Project::parse(&project.to_text(path), path).unwrap();
+        prop_assert_eq!(notes, Vec::<String>::new());
+        prop_assert_eq!(read.recipe, project.recipe);
+        prop_assert_eq!(read.saved_at, project.saved_at);
+        prop_assert_eq!(read.crash, project.crash);
+    }
+}
+
+#[test]
+fn work_is_kept_after_each_step_and_restored_as_unsaved() {
+    let (folder, [crash, stamped, _]) = folder();
+    let mut window = worked(&crash, &stamped);
+    let kept = |window: &mut Window| {
+        window.apply(ProjectCommand::Keep);
+        let effects = std::mem::take(&mut window.effects);
+        let kept = effects.into_iter().find_map(|effect| match effect {
+            Effect::KeepWork(project) => Some(*project),
+            _ => None,
+        });
+        kept.map(|project| {
+            let path = folder.path().join("kept/run.shapematch");
+            project.write(&path).unwrap();
+            path
+        })
+    };
+    assert!(window.state.is_to_be_kept());
+    assert!(kept(&mut window).is_some());
+    assert!(!window.state.is_to_be_kept());
+    assert!(kept(&mut window).is_none());
+    window.apply(MoveCommand::Begin {
+        kind: MotionKind::Move,
+        frame: window.state.move_frame().unwrap(),
+    });
+    assert!(!window.state.is_to_be_kept(), "a move is under way");
+    window.apply(Command::Escape);
+    window.act(Action::TurnOverX);
+    let path = kept(&mut window).unwrap();
+
+    let mut again = Window::real();
+    again.apply(ProjectCommand::Restore(path));
+    let pose = pose_bits(window.state.document.crash_from_stamped());
+    assert_eq!(pose_bits(again.state.document.crash_from_stamped()), pose);
+    assert!(again.state.document.result.is_some());
+    assert!(again.state.document.current_result().is_none());
+    assert!(again.state.is_unsaved());
+    assert_eq!(again.state.project.path, None);
+    again.act(Action::Undo);
+    assert!(again.state.document.part(Role::Crash).is_none());
+}
+
+#[test]
+fn leaving_asks_only_if_something_would_be_lost() {
+    let quits = |window: &mut Window| {
+        window.effects.clear();
+        window.apply(Command::Quit);
+        window.effects.iter().any(|e| matches!(e, Effect::Quit))
+    };
+    let mut window = Window::new();
+    assert!(quits(&mut window));
+    window.open("crash.k", Role::Crash);
+    window.open("stamped.k", Role::Stamped);
+    assert!(
+        quits(&mut window),
+        "opening the files again brings this back"
+    );
+    window.act(Action::TurnOverX);
+    assert!(!quits(&mut window));
+    assert_eq!(window.state.view.dialog, Some(Dialog::Unsaved));
+    window.apply(Command::Escape);
+    assert_eq!(window.state.view.dialog, None);
+    window.act(Action::Undo);
+    assert!(quits(&mut window));
+    window.act(Action::Redo);
+    window.apply(ProjectCommand::QuitUnsaved);
+    assert!(window.effects.iter().any(|e| matches!(e, Effect::Quit)));
+
+    // Save and leave: asks where to, and leaves when it is written.
+    window.effects.clear();
+    window.apply(ProjectCommand::SaveAndQuit);
+    let asked = window.effects.iter().find_map(|effect| match effect {
+        Effect::AskSaveProject(path) => Some(path.clone()),
+        _ => None,
+    });
+    assert_eq!(asked, Some(PathBuf::from("stamped.shapematch")));
+    let folder = tempfile::tempdir().unwrap();
+    save(&mut window, &folder.path().join("a"));
+    assert!(window.effects.iter().any(|e| matches!(e, Effect::Quit)));
+    assert_eq!(window.state.project.name().as_deref(), Some("a"));
+
+    // A dialog that was closed keeps the window open, also after a later save.
+    window.act(Action::TurnOverY);
+    window.project_dialog_closed();
+    window.effects.clear();
+    save(&mut window, &folder.path().join("a.shapematch"));
+    assert!(!window.effects.iter().any(|e| matches!(e, Effect::Quit)));
+}
+
+impl Window {
+    fn project_dialog_closed(&mut self) {
+        self.apply(ProjectCommand::SaveAndQuit);
+        self.apply(ProjectCommand::NotWritten);
+    }
+
+    /// A window whose worker does everything itself.
+    fn real() -> Self {
+        let mut window = Self::new();
+        window.runner = Some(|kind| {
+            let done = PipelineRunner.run(kind, &Monitor::silent());
+            done.map_err(|error| error.to_string())
+        });
+        window
+    }
+}
+
+#[test]
+fn a_request_finds_files_beside_the_project() {
+    let request = ProjectRequest::default();
+    assert_eq!(request.located.crash, Located::AsStored);
+    let (folder, [crash, ..]) = folder();
+    let entry = PartEntry {
+        file: Some(PathBuf::from("/gone").join(crash.file_name().unwrap())),
+        ..PartEntry::default()
+    };
+    let project = folder.path().join("p.shapematch");
+    assert_eq!(entry.locate(&project), Some(crash));
+    assert_eq!(entry.locate(Path::new("/gone/p.shapematch")), None);
+}
