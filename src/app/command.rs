@@ -1,7 +1,7 @@
 use super::{Axis, NoticeLevel};
 use super::{
-    AxisFrame, BottomTab, Dialog, Display, Document, GestureId, InspectCommand, KeptWork,
-    ModalInput, MotionKind, MoveFrame, NoticeId, PartRef, Preview, SectionView, Settings,
+    AxisFrame, BottomTab, Dialog, Display, Document, GestureId, InspectCommand, KeptWork, LikeWhat,
+    ModalInput, MotionKind, MoveFrame, NoticeId, PartRef, Preview, Section, SectionView, Settings,
     ShownGeometry,
 };
 use crate::geometry::camera::{OrbitStyle, StandardView};
@@ -152,6 +152,8 @@ pub enum PartCommand {
     UseOnly(PartRef),
     /// Match all parts of a deck.
     UseAll(Role),
+    /// Sort the other deck's parts by likeness, or all as in the files.
+    OrderLike(Option<LikeWhat>),
     /// Give a colour, or take it back.
     SetColor(PartRef, Option<[u8; 3]>),
 }
@@ -362,8 +364,10 @@ pub enum ViewCommand {
     SetSection(SectionView),
     /// A tab of the bottom pane.
     SetTab(BottomTab),
-    /// Fold or unfold a section, 0 to 2.
-    ToggleSection(usize),
+    /// Fold or unfold a section.
+    OpenSection(Section, bool),
+    /// The user works in a section; it is the last to be folded for want of room.
+    UseSection(Section),
     /// Only the 3D windows, or everything.
     ToggleGraphicsOnly,
     /// Open something over the window, or close it.
@@ -372,6 +376,8 @@ pub enum ViewCommand {
     ToggleGizmo,
     /// Whose axes gizmo and keys use.
     SetMoveAxes(AxisFrame),
+    /// Show the stamped part where its file has it, or at its pose again.
+    ShowAsLoaded(bool),
     /// Show the pose of a start or an iteration while the pointer is on it; `None` when it left.
     HoverPreview(Option<Preview>),
     /// Show the pose of a start or an iteration until it is let go; `None` shows the real pose again.

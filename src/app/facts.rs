@@ -2,6 +2,7 @@
 
 use super::NoticeLevel;
 use crate::assess::{Coverage, Verdict};
+use crate::formats::{Diagnostic, Severity};
 use crate::geometry::Similarity;
 use crate::jobs::{MeasuredLevel, PartFacts};
 use crate::pipeline::load::LoadedPart;
@@ -34,11 +35,32 @@ pub(super) fn load_line(part: &LoadedPart, facts: &PartFacts) -> String {
     }
 }
 
-/// "12 findings in bp.dynain", if the reader had any.
-pub(super) fn diagnostics_line(part: &LoadedPart) -> Option<String> {
+/// "12 findings in bp.dynain, the first: bp.dynain:48: …", if the reader had any, and how loud it is.
+pub(super) fn diagnostics_line(part: &LoadedPart) -> Option<(NoticeLevel, String)> {
     let n = part.report.n_findings;
+    if n == 0 {
+        return None;
+    }
     let counted = counted(usize::try_from(n).unwrap_or(usize::MAX), "finding");
-    (n > 0).then(|| format!("{counted} in {}, see the tab Diagnostics", part.file_name()))
+    let all = [&part.model.diagnostics, &part.surface.diagnostics];
+    let mut found = all.into_iter().flat_map(|diagnostics| diagnostics.iter());
+    // The gravest tells most; among equals the first.
+    let gravest = found
+        .by_ref()
+        .fold(None, |gravest: Option<&Diagnostic>, one| match gravest {
+            Some(known) if known.severity() >= one.severity() => Some(known),
+            _ => Some(one),
+        });
+    let level = match gravest.map(Diagnostic::severity) {
+        Some(Severity::Error) => NoticeLevel::Warning,
+        _ => NoticeLevel::Note,
+    };
+    let mut text = format!("{counted} in {}", part.file_name());
+    if let Some(gravest) = gravest {
+        text += &format!("; {gravest}");
+    }
+    text += ". The rest was read; the tab Diagnostics lists them";
+    Some((level, text))
 }
 
 /// "212,880 → 7,998 triangles of at most 8,000".

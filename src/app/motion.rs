@@ -119,6 +119,29 @@ pub fn rotation_about(pivot: &Point3, axis: &Vector3, angle: f64) -> Similarity 
     }
 }
 
+/// Rotation as turns about x, then y, then z of the crash model, in degrees; `None` for a mirrored
+/// pose, which no turns make.
+pub fn turns_deg(pose: &Similarity) -> Option<[f64; 3]> {
+    if pose.is_mirrored() {
+        return None;
+    }
+    let rotation = nalgebra::Rotation3::from_matrix_unchecked(pose.rotation);
+    let (x, y, z) = rotation.euler_angles();
+    Some([x, y, z].map(f64::to_degrees))
+}
+
+/// The pose with other turns; the image of `pivot`, a point of the stamped part, stays.
+pub fn with_turns_deg(pose: &Similarity, turns: [f64; 3], pivot: &Point3) -> Similarity {
+    let [x, y, z] = turns.map(f64::to_radians);
+    let rotation = *nalgebra::Rotation3::from_euler_angles(x, y, z).matrix();
+    let image = pose.apply(pivot);
+    Similarity {
+        rotation,
+        translation: image.coords - rotation * pivot.coords * pose.scale,
+        scale: pose.scale,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,6 +154,19 @@ mod tests {
         assert!((turn.apply(&pivot) - pivot).norm() < 1e-12);
         let moved = turn.apply(&(pivot + Vector3::x()));
         assert!((moved - (pivot + Vector3::y())).norm() < 1e-12);
+    }
+
+    #[test]
+    fn turns_are_read_back_and_keep_the_pivot() {
+        let pivot = Point3::new(10.0, -20.0, 30.0);
+        let begin = translation_along(&Vector3::new(1.0, 2.0, 3.0), 5.0);
+        let turned = with_turns_deg(&begin, [10.0, -20.0, 170.0], &pivot);
+        let turns = turns_deg(&turned).unwrap();
+        for (found, given) in turns.iter().zip([10.0, -20.0, 170.0]) {
+            assert!((found - given).abs() < 1e-9, "{turns:?}");
+        }
+        assert!((turned.apply(&pivot) - begin.apply(&pivot)).norm() < 1e-9);
+        assert_eq!(turns_deg(&Similarity::mirror_x()), None);
     }
 
     #[test]

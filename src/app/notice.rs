@@ -1,3 +1,4 @@
+use super::Action;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -17,6 +18,20 @@ pub enum NoticeLevel {
 }
 
 impl NoticeLevel {
+    /// Those that have toasts, quiet first.
+    pub const TOLD: [Self; 4] = [Self::Success, Self::Note, Self::Warning, Self::Error];
+
+    /// Its name.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Info => "Steps",
+            Self::Success => "Successes",
+            Self::Note => "Notes",
+            Self::Warning => "Warnings",
+            Self::Error => "Errors",
+        }
+    }
+
     /// How long the toast stays; `None` until it is dismissed, zero for no toast.
     pub fn lifetime(self) -> Option<Duration> {
         match self {
@@ -63,6 +78,8 @@ pub struct Notice {
     pub at: Duration,
     /// True until it was read or dismissed.
     pub is_unread: bool,
+    /// What the user may want to do about it, beside closing it.
+    pub offer: Option<Action>,
     is_toast: bool,
 }
 
@@ -79,8 +96,30 @@ pub struct Notices {
 }
 
 impl Notices {
-    /// Shows a message; the same message again only counts up and shows anew.
-    pub fn push(&mut self, level: NoticeLevel, text: String, now: Duration) {
+    /// Shows a message; the same message again only counts up and shows anew. A muted one goes
+    /// into the bell's list only.
+    pub fn push(&mut self, level: NoticeLevel, text: String, when: (Duration, bool)) {
+        self.add(level, text, when, None);
+    }
+
+    /// [`Notices::push`] with a button for an action.
+    pub fn offer(
+        &mut self,
+        level: NoticeLevel,
+        text: String,
+        when: (Duration, bool),
+        action: Action,
+    ) {
+        self.add(level, text, when, Some(action));
+    }
+
+    fn add(
+        &mut self,
+        level: NoticeLevel,
+        text: String,
+        (now, is_muted): (Duration, bool),
+        offer: Option<Action>,
+    ) {
         if level == NoticeLevel::Info {
             return;
         }
@@ -97,7 +136,8 @@ impl Notices {
             count,
             at: now,
             is_unread: true,
-            is_toast: true,
+            offer,
+            is_toast: !is_muted,
         });
         if self.items.len() > MAX_KEPT {
             self.items.remove(0);

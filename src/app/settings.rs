@@ -1,6 +1,7 @@
-use super::UnitMemory;
+use super::{NoticeLevel, UnitMemory};
 use crate::jobs::{PartSource, PerRole};
 use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Most entries in the list of recent files.
@@ -95,8 +96,10 @@ pub struct Settings {
     pub reduce_roles: PerRole<bool>,
     /// Name of the form of the matrix that was copied last.
     pub matrix_form: Option<String>,
-    /// No toasts for successes and notes.
-    pub are_toasts_muted: bool,
+    /// Levels that show no toast; log and bell have them all the same.
+    pub muted: BTreeSet<NoticeLevel>,
+    /// When each recent file was opened last, in seconds since 1970.
+    pub opened: BTreeMap<PathBuf, u64>,
     /// The log runs under the left column too.
     pub is_log_wide: bool,
     /// Width of the left column and height of the log, in points, as the user dragged them.
@@ -120,7 +123,8 @@ impl Default for Settings {
                 stamped: true,
             },
             matrix_form: None,
-            are_toasts_muted: false,
+            muted: BTreeSet::new(),
+            opened: BTreeMap::new(),
             is_log_wide: false,
             pane_sizes: [None, None],
         }
@@ -131,18 +135,24 @@ impl Settings {
     /// Smallest and largest size of the window's text.
     pub const UI_SCALES: std::ops::RangeInclusive<f32> = 0.75..=2.5;
 
-    /// Puts a file first in the list of recent files.
-    pub fn remember(&mut self, source: &PartSource) {
+    /// Puts a file first in the list of recent files; `now` in seconds since 1970.
+    pub fn remember(&mut self, source: &PartSource, now: u64) {
         if let PartSource::File(path) = source {
-            self.remember_path(path);
+            self.remember_path(path, now);
         }
     }
 
-    /// Puts a file or a project first in the list of recent files.
-    pub fn remember_path(&mut self, path: &Path) {
+    /// Puts a file or a project first in the list of recent files; `now` in seconds since 1970.
+    pub fn remember_path(&mut self, path: &Path, now: u64) {
         self.recent.retain(|known| known != path);
         self.recent.insert(0, path.to_path_buf());
+        self.opened.insert(path.to_path_buf(), now);
+        self.trim_recent();
+    }
+
+    fn trim_recent(&mut self) {
         self.recent.truncate(MAX_RECENT);
+        self.opened.retain(|path, _| self.recent.contains(path));
     }
 
     /// Brings values from a file that someone edited back into their ranges.
@@ -157,7 +167,7 @@ impl Settings {
         self.marked_levels.sort_unstable_by(|a, b| b.cmp(a));
         self.marked_levels.dedup();
         self.max_triangles = self.max_triangles.max(1);
-        self.recent.truncate(MAX_RECENT);
+        self.trim_recent();
         self
     }
 }

@@ -1,10 +1,11 @@
+use super::level_result::LevelResults;
 use super::{
-    Compared, Document, GestureId, History, JobBoard, Log, LogRow, NoticeLevel, Notices,
-    ProjectState, Race, Settings, Shared, StampedPose, ViewState,
+    Clock, Compared, Document, GestureId, History, JobBoard, Likeness, Log, LogRow, NoticeLevel,
+    Notices, ProjectState, Race, Settings, Shared, StampedPose, ViewState,
 };
 use crate::assess::Coverage;
 use crate::geometry::Similarity;
-use crate::jobs::{JobKind, PerRole, Recording, Role, Stamp};
+use crate::jobs::{JobKey, JobKind, PerRole, Recording, Role, Stamp, SweepRows};
 use crate::monitor::IterationReport;
 use crate::pipeline::sweep::Sweep;
 use crate::registration::starts::Start;
@@ -53,8 +54,15 @@ pub struct AppState {
     pub compared: Option<Compared>,
     /// The tables of the last sweep.
     pub sweep: Option<Shared<Sweep>>,
+    /// The rows of the running sweep, and where the next ones come from.
+    pub(super) sweep_so_far: Option<(Sweep, SweepRows)>,
     /// Time since the program began, as the shell last told.
     pub now: Duration,
+    /// When the program began, as the shell told.
+    pub clock: Clock,
+    /// What the part list is sorted by, if not the order of the files.
+    pub(super) likeness: Option<Likeness>,
+    pub(super) level_results: LevelResults,
     pub(super) recordings: PerRole<Option<(u64, Arc<Recording>)>>,
     pub(super) guess: Guess,
     /// The pose at the beginning of the drag or move by keys that is under way.
@@ -97,6 +105,9 @@ impl AppState {
         if let Some(pose) = self.live_pose {
             return pose;
         }
+        if self.is_as_loaded() {
+            return Similarity::identity();
+        }
         if let Some(start) = self.shown_start() {
             return start.target_from_source;
         }
@@ -108,7 +119,20 @@ impl AppState {
 
     /// True while something else than the real pose is drawn.
     pub fn is_preview(&self) -> bool {
-        self.live_pose.is_some() || self.shown_start().is_some() || self.previewed_pose().is_some()
+        self.live_pose.is_some()
+            || self.is_as_loaded()
+            || self.shown_start().is_some()
+            || self.previewed_pose().is_some()
+    }
+
+    /// True if the stamped part has a pose.
+    pub fn has_pose(&self) -> bool {
+        self.document.pose.crash_from_stamped != Similarity::identity()
+    }
+
+    /// True while the stamped part is shown where its file has it, in spite of its pose.
+    pub fn is_as_loaded(&self) -> bool {
+        self.view.is_as_loaded && self.has_pose()
     }
 
     /// The first pose that is shown instead of the real one.
@@ -121,6 +145,13 @@ impl AppState {
     pub fn current_starts(&self) -> Option<&Starts> {
         let parts = self.document.stamp().parts;
         self.starts.as_ref().filter(|s| s.parts == parts)
+    }
+
+    /// The tables of the running sweep as far as they are measured, or those of the last one.
+    pub fn shown_sweep(&self) -> Option<&Sweep> {
+        let so_far = self.sweep_so_far.as_ref();
+        let running = so_far.filter(|_| self.jobs.is_active(JobKey::Sweep));
+        running.map(|(sweep, _)| sweep).or(self.sweep.as_deref())
     }
 
     /// The measurement, if parts and pose are still those it was made at.
@@ -211,6 +242,7 @@ impl AppState {
     pub(super) fn drop_previews(&mut self) {
         self.view.hovered_preview = None;
         self.view.pinned_preview = None;
+        self.view.is_as_loaded = false;
         if let Some(starts) = &mut self.starts {
             starts.shown = None;
         }
@@ -239,21 +271,20 @@ impl AppState {
         let text = text.into();
         self.notify(level, text.clone());
         self.log.push(LogRow {
-            at: self.now,
+            at: self.clock.day_time_at(self.now),
             step,
             role,
             text,
             took,
             level,
+            count: 1,
         });
     }
 
-    /// Shows a toast, unless the user muted its level.
+    /// Shows a toast, unless the user muted its level; the bell has it in any case.
     pub(super) fn notify(&mut self, level: NoticeLevel, text: impl Into<String>) {
-        let is_muted = self.settings.are_toasts_muted && level < NoticeLevel::Warning;
-        if !is_muted {
-            self.notices.push(level, text.into(), self.now);
-        }
+        let is_muted = self.settings.muted.contains(&level);
+        self.notices.push(level, text.into(), (self.now, is_muted));
     }
 
     /// A job for the worker, stamped with the present state.

@@ -1,6 +1,6 @@
 //! What a section says about itself, and what stands in the way of an action.
 
-use super::{AppState, Part, Reason};
+use super::{AppState, BottomTab, Command, Part, Reason};
 use crate::jobs::{JobKey, Role};
 
 /// The paper's three sections.
@@ -12,6 +12,35 @@ pub enum Section {
     Reduce,
     /// 3 Match.
     Match,
+}
+
+impl Section {
+    /// All, from top to bottom.
+    pub const ALL: [Self; 3] = [Self::Load, Self::Reduce, Self::Match];
+
+    /// Its place, from 0.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Its title.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Load => "Load & display",
+            Self::Reduce => "Reduce",
+            Self::Match => "Match",
+        }
+    }
+
+    /// The section whose work a command is, if it is plainly one section's.
+    pub(super) fn of_command(command: &Command) -> Option<Self> {
+        match command {
+            Command::File(_) => Some(Self::Load),
+            Command::Reduce(_) => Some(Self::Reduce),
+            Command::Match(_) | Command::Move(_) => Some(Self::Match),
+            _ => None,
+        }
+    }
 }
 
 /// Why what a section shows no longer fits the rest.
@@ -49,6 +78,29 @@ impl AppState {
             Some("the stamped part was moved after the match")
         } else {
             None
+        }
+    }
+
+    /// True if a tab has something to show, or something to begin; the others stay away.
+    pub fn has_content(&self, tab: BottomTab) -> bool {
+        match tab {
+            BottomTab::Timings => self.log.rows().iter().any(|row| row.took.is_some()),
+            BottomTab::Starts | BottomTab::Convergence => {
+                !self.race.is_empty()
+                    || self.document.result.is_some()
+                    || self.jobs.is_active(JobKey::Match)
+            }
+            BottomTab::Sweep | BottomTab::Deviation => self.document.both().is_some(),
+            BottomTab::History => {
+                self.history.undo_name().is_some() || self.history.redo_name().is_some()
+            }
+            BottomTab::Diagnostics => self
+                .document
+                .parts
+                .iter()
+                .filter_map(|(_, part)| part.as_ref())
+                .any(|part| part.loaded.model.diagnostics.total() > 0),
+            BottomTab::Log => true,
         }
     }
 

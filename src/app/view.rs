@@ -1,4 +1,4 @@
-use super::{AxisFrame, Coloring, GestureId, ModalMove, MoveFrame, Preview, SectionView};
+use super::{AxisFrame, Coloring, GestureId, ModalMove, MoveFrame, Preview, SectionView, Sections};
 use crate::geometry::camera::OrbitStyle;
 use crate::geometry::{Camera, Point3};
 use crate::jobs::{PerRole, Role};
@@ -236,7 +236,7 @@ pub struct ViewState {
     /// Only the 3D windows are shown.
     pub is_graphics_only: bool,
     /// Which of the three sections are unfolded.
-    pub open_sections: [bool; 3],
+    pub sections: Sections,
     /// What lies over the window.
     pub dialog: Option<Dialog>,
     /// The gizmo is shown.
@@ -251,6 +251,8 @@ pub struct ViewState {
     pub pinned_preview: Option<Preview>,
     /// The start whose curve was chosen; by default that of the winner.
     pub chosen_start: Option<usize>,
+    /// The stamped part is shown where its file has it, until it is moved.
+    pub is_as_loaded: bool,
 }
 
 impl Default for ViewState {
@@ -275,7 +277,7 @@ impl Default for ViewState {
             hovered: None,
             tab: BottomTab::default(),
             is_graphics_only: false,
-            open_sections: [true; 3],
+            sections: Sections::default(),
             dialog: None,
             has_gizmo: false,
             move_axes: AxisFrame::Global,
@@ -283,6 +285,7 @@ impl Default for ViewState {
             hovered_preview: None,
             pinned_preview: None,
             chosen_start: None,
+            is_as_loaded: false,
         }
     }
 }

@@ -4,8 +4,6 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
-use serde::Serialize;
-
 use super::args::BenchArgs;
 use super::text::{count, short};
 use super::{print, progress, takes_stdout, write_json};
@@ -13,7 +11,7 @@ use crate::formats::{Disk, FileSource, Memory};
 use crate::geometry::Similarity;
 use crate::monitor::Monitor;
 use crate::pipeline::load::{LoadSettings, LoadedPart, load_from};
-use crate::pipeline::sweep::{MatchingRow, ReductionRow, Sweep, SweepSettings, sweep};
+use crate::pipeline::sweep::{Sweep, SweepSettings, sweep};
 use crate::samples::{self, SampleSettings};
 
 /// Measures and prints both tables.
@@ -34,7 +32,7 @@ pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         print(&describe(&tables, &crash, &stamped))?;
     }
     if let Some(path) = &args.json {
-        write_json(path, &record(&tables))?;
+        write_json(path, &tables.to_record())?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -140,77 +138,4 @@ fn paper(ms: Option<f64>) -> String {
 
 fn faster(paper_ms: Option<f64>, ms: f64) -> String {
     paper_ms.map_or_else(|| "-".into(), |paper| format!("{:.0} x", paper / ms))
-}
-
-#[derive(Serialize)]
-struct BenchRecord {
-    schema: &'static str,
-    threads: usize,
-    triangles: usize,
-    reduction: Vec<ReductionEntry>,
-    matching: Vec<MatchingEntry>,
-    reference: &'static str,
-    build: String,
-}
-
-#[derive(Serialize)]
-struct ReductionEntry {
-    max_triangles: usize,
-    triangles: usize,
-    time_ms: f64,
-    paper_ms: Option<f64>,
-    rms: f64,
-    max: f64,
-    border_max: f64,
-    border_loops: usize,
-}
-
-#[derive(Serialize)]
-struct MatchingEntry {
-    max_triangles: Option<usize>,
-    crash_triangles: usize,
-    stamped_triangles: usize,
-    time_ms: f64,
-    paper_ms: Option<f64>,
-    node_rms: f64,
-    node_max: f64,
-    finished_ms: f64,
-    finished_node_rms: f64,
-}
-
-fn record(tables: &Sweep) -> BenchRecord {
-    let reduction = |row: &ReductionRow| ReductionEntry {
-        max_triangles: row.max_triangles,
-        triangles: row.triangles,
-        time_ms: row.time_ms,
-        paper_ms: row.paper_ms,
-        rms: row.rms,
-        max: row.max,
-        border_max: row.border_max,
-        border_loops: row.loops,
-    };
-    let matching = |row: &MatchingRow| MatchingEntry {
-        max_triangles: row.max_triangles,
-        crash_triangles: row.triangles[0],
-        stamped_triangles: row.triangles[1],
-        time_ms: row.time_ms,
-        paper_ms: row.paper_ms,
-        node_rms: row.node_rms,
-        node_max: row.node_max,
-        finished_ms: row.finished_ms,
-        finished_node_rms: row.finished_node_rms,
-    };
-    BenchRecord {
-        schema: "shapematch.bench/1",
-        threads: rayon::current_num_threads(),
-        triangles: tables.n_triangles,
-        reduction: tables.reduction.iter().map(reduction).collect(),
-        matching: tables.matching.iter().map(matching).collect(),
-        reference: if tables.has_truth {
-            "known pose"
-        } else {
-            "match of the full meshes"
-        },
-        build: crate::report::build_id(),
-    }
 }

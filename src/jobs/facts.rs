@@ -1,5 +1,6 @@
 use crate::formats::PartSummary;
 use crate::geometry::{Aabb, Vector3};
+use crate::pipeline::likeness::{Moments, moments_of_parts};
 use crate::pipeline::load::LoadedPart;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,6 +13,8 @@ pub struct PartFacts {
     pub used: BTreeSet<u64>,
     /// Box around each of them, in the crash model's unit.
     pub part_bounds: BTreeMap<u64, Aabb>,
+    /// Area and spread of each part of the deck that has shells, in the crash model's unit.
+    pub moments: BTreeMap<u64, Moments>,
     /// Box around the mesh.
     pub bounds: Aabb,
     /// Area of the mesh.
@@ -40,6 +43,7 @@ impl PartFacts {
             parts: model.part_summaries(),
             used: part.chosen_part_ids().into_iter().collect(),
             part_bounds: part_bounds(part),
+            moments: moments_of_parts(model, part.settings.length_factor),
             bounds: part.mesh.aabb(),
             area: part.mesh.area(),
             edge_length: part.mesh.mean_edge_length(),

@@ -1,4 +1,4 @@
-use super::{ExportRequest, OpenedProject, PartFacts, ProjectRequest};
+use super::{ExportRequest, OpenedProject, PartFacts, ProjectRequest, SweepRows};
 use crate::assess::Coverage;
 use crate::geometry::{Similarity, TriMesh};
 use crate::pipeline::inspect::Comparison;
@@ -232,6 +232,8 @@ pub struct SweepInput {
     pub stamped: Arc<LoadedPart>,
     /// Levels and settings.
     pub settings: SweepSettings,
+    /// Where each row goes as soon as it is measured.
+    pub rows: SweepRows,
 }
 
 /// Input of a measurement.

@@ -11,6 +11,7 @@ mod job;
 mod live;
 mod project;
 mod run;
+mod sweep_rows;
 mod worker;
 
 pub use event::{JobEvent, JobStage};
@@ -23,4 +24,5 @@ pub use job::{
 pub use live::{Live, LiveSlot};
 pub use project::{Located, OpenedPart, OpenedProject, ProjectRequest, part_entry};
 pub use run::{JobError, PipelineRunner, Runner};
+pub use sweep_rows::SweepRows;
 pub use worker::{Waker, Worker};

@@ -230,7 +230,8 @@ fn run_sweep(input: &SweepInput, monitor: &Monitor) -> Result<JobOutput, JobErro
         None,
         settings,
         monitor,
-        |_| {
+        |row| {
+            input.rows.push(row);
             n_done += 1;
             monitor.progress("sweep", n_done, Some(n_rows));
         },

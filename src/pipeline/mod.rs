@@ -6,6 +6,7 @@
 pub mod cards;
 pub mod export;
 pub mod inspect;
+pub mod likeness;
 pub mod load;
 pub mod match_parts;
 pub mod node_table;
@@ -15,11 +16,13 @@ pub mod reduce;
 pub mod report;
 mod report_figures;
 pub mod sweep;
+mod sweep_record;
 pub mod units;
 
 mod error;
 
 pub use error::PipelineError;
+pub use sweep_record::SweepRecord;
 
 /// Milliseconds since `start`, for reports; no result depends on it.
 fn millis_since(start: std::time::Instant) -> f64 {

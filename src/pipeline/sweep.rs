@@ -87,6 +87,8 @@ pub struct ReductionRow {
 pub struct MatchingRow {
     /// The maximum both parts were reduced to; `None` for the full meshes.
     pub max_triangles: Option<usize>,
+    /// The pose that was found on the reduced meshes alone.
+    pub crash_from_stamped: Similarity,
     /// Triangles of crash and stamped mesh.
     pub triangles: [usize; 2],
     /// Time of the match on the reduced meshes alone, trees included, in milliseconds.
@@ -123,6 +125,16 @@ pub struct Sweep {
     pub matching: Vec<MatchingRow>,
     /// True if node distances are from a known pose; false if from the result on the full meshes.
     pub has_truth: bool,
+}
+
+impl Sweep {
+    /// Puts a row into its table.
+    pub fn push(&mut self, row: SweepRow) {
+        match row {
+            SweepRow::Reduction(row) => self.reduction.push(row),
+            SweepRow::Matching(row) => self.matching.push(row),
+        }
+    }
 }
 
 /// Measures both tables. Node distances are taken from `truth`, or, where no pose is known, from the
@@ -259,6 +271,7 @@ fn matching_row(
         node_distance(&stamped.mesh, &finished.0.crash_from_stamped, reference);
     Ok(MatchingRow {
         max_triangles,
+        crash_from_stamped: searched.0.crash_from_stamped,
         triangles: searched.0.n_triangles,
         time_ms,
         node_rms,

@@ -5,8 +5,8 @@ use super::project_dialogs::{missing_ui, unsaved_ui};
 use super::theme::{Palette, UNIT};
 use super::widgets::{caption, chip, form_row, level_color, paragraph, secondary};
 use crate::app::{
-    Action, AppState, Command, Dialog, Menu, MouseScheme, NoticeCommand, Settings, Theme,
-    ViewCommand,
+    Action, AppState, Command, Dialog, Menu, MouseScheme, NoticeCommand, NoticeLevel, Settings,
+    Theme, ViewCommand,
 };
 use egui::{Align, Layout, Modal, RichText, ScrollArea, Ui, vec2};
 
@@ -156,12 +156,16 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.add_space(label + UNIT);
         paragraph(ui, settings.mouse.help());
     });
+    form_row(ui, "Show toasts for", label, |ui| {
+        for level in NoticeLevel::TOLD {
+            let is_shown = !settings.muted.contains(&level);
+            if chip(ui, level.label(), is_shown).clicked() && !settings.muted.remove(&level) {
+                settings.muted.insert(level);
+            }
+        }
+    });
     ui.add_space(UNIT);
     ui.checkbox(&mut settings.reduce_motion, "No animations");
-    ui.checkbox(
-        &mut settings.are_toasts_muted,
-        "No messages for successes and notes",
-    );
     ui.checkbox(&mut settings.is_log_wide, "Log under the left column too");
     if settings != state.settings {
         commands.push(Command::Settings(Box::new(settings)));

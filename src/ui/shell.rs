@@ -6,14 +6,14 @@ use super::storage::{Kept, Storage, WindowPlace};
 use super::viewport::Viewports;
 use super::{keyboard, overlays, panels, project_dialogs, theme, toasts};
 use crate::app::{
-    AppState, Command, Effect, FileCommand, NoticeCommand, NoticeLevel, ProjectCommand, Settings,
-    StartupOptions, Theme,
+    AppState, Clock, Command, Effect, FileCommand, NoticeCommand, NoticeLevel, ProjectCommand,
+    Settings, StartupOptions, Theme,
 };
 use crate::jobs::{JobEvent, JobStage, Live, PipelineRunner, Role, Worker};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Least size of the window, in points.
 const MIN_SIZE: [f32; 2] = [960.0, 600.0];
@@ -107,8 +107,10 @@ impl Shell {
         let waking = ctx.clone();
         let keeper = Keeper::start(storage.kept_folder(), move || waking.request_repaint())?;
         let worker = Worker::spawn(PipelineRunner, Arc::new(move || ctx.request_repaint()))?;
+        let mut state = AppState::new(kept.settings);
+        state.clock = clock();
         let mut shell = Self {
-            state: AppState::new(kept.settings),
+            state,
             worker,
             viewports: Viewports::new(cc.wgpu_render_state.as_ref()),
             dialogs: Dialogs::default(),
@@ -351,6 +353,18 @@ fn with_live(events: Vec<JobEvent>, live: Live) -> Vec<Command> {
         commands.insert(place, Command::Live(Box::new(live)));
     }
     commands
+}
+
+/// The local time of day and the date.
+fn clock() -> Clock {
+    let now = jiff::Zoned::now();
+    let time = now.time();
+    let seconds = |n: i8, factor: u64| u64::from(n.unsigned_abs()) * factor;
+    let whole = seconds(time.hour(), 3600) + seconds(time.minute(), 60) + seconds(time.second(), 1);
+    Clock {
+        day_time: Duration::from_secs(whole),
+        unix: now.timestamp().as_second().unsigned_abs(),
+    }
 }
 
 impl eframe::App for Shell {

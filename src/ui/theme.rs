@@ -207,6 +207,8 @@ fn visuals(palette: &Palette, is_dark: bool) -> Visuals {
         widget.expansion = 0.0;
     }
     visuals.widgets.noninteractive.bg_stroke = hair;
+    // What has the keyboard is drawn as what is pressed: this is the ring around it.
+    visuals.widgets.active.bg_stroke = Stroke::new(1.5, palette.accent_text);
     visuals.widgets.hovered.bg_stroke = Stroke::new(1.0, palette.secondary.gamma_multiply(0.6));
     visuals.selection.bg_fill = palette.accent;
     visuals.selection.stroke = Stroke::new(1.0, palette.on_accent);

@@ -1,35 +1,86 @@
 //! Short messages in the lower right corner; at most three.
 
-use super::theme::{Palette, UNIT};
+use super::theme::{Palette, ROW, UNIT};
 use super::widgets::{icon_button, level_color};
 use crate::app::{
-    AppState, BottomTab, Command, ExportCommand, NoticeCommand, NoticeLevel, ViewCommand,
+    Action, AppState, BottomTab, Command, ExportCommand, Notice, NoticeCommand, NoticeLevel,
+    ViewCommand,
 };
-use egui::{Align2, Frame, Margin, RichText, Stroke, vec2};
+use egui::text::LayoutJob;
+use egui::{Align2, Color32, Frame, Margin, RichText, Stroke, TextStyle, Ui, vec2};
 
-/// Width of a toast.
-const WIDTH: f32 = 360.0;
+/// Width of a toast, if there is so much room.
+const WIDTH: f32 = 344.0;
+/// Left and right of its text: sign, cross, margins.
+const BESIDE: f32 = 64.0;
+/// Height above the toasts that stays free for headers, view buttons and legend.
+const FREE: f32 = 260.0;
+/// Height below them, for axes and scale bar.
+const LIFT: f32 = 5.0 * UNIT;
+/// Lines of a text; the rest stands in the log and in the tooltip.
+const MAX_LINES: usize = 6;
 
-/// Draws the toasts over everything but dialogs, clear of the bottom pane.
+/// Draws the toasts over everything but dialogs, within the 3D windows.
 pub fn toasts_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Command>) {
-    let bottom = super::panels::graphics::bottom_edge(ctx);
-    let lift = (ctx.content_rect().bottom() - bottom).max(0.0);
-    let area = egui::Area::new(egui::Id::unique("toasts"))
-        .anchor(Align2::RIGHT_BOTTOM, vec2(-2.0 * UNIT, -lift - 6.0 * UNIT))
-        .order(egui::Order::Foreground);
     if state.notices.toasts().next().is_none() {
         return;
     }
+    let room = super::panels::graphics::area(ctx);
+    let content = ctx.content_rect();
+    let aside = vec2(
+        content.right() - room.right(),
+        content.bottom() - room.bottom(),
+    );
+    let width = WIDTH.min(room.width() - 4.0 * UNIT).max(160.0);
+    let area = egui::Area::new(egui::Id::unique("toasts"))
+        .anchor(Align2::RIGHT_BOTTOM, -aside - vec2(2.0 * UNIT, LIFT))
+        .order(egui::Order::Foreground);
     area.show(ctx, |ui| {
         ui.spacing_mut().item_spacing.y = UNIT;
-        let toasts: Vec<_> = state.notices.toasts().collect();
+        let toasts = fitting(ui, state, width, room.height() - FREE - LIFT);
         for notice in toasts.into_iter().rev() {
-            toast_ui(ui, notice, commands);
+            toast_ui(ui, notice, state, (width, commands));
         }
     });
 }
 
-fn toast_ui(ui: &mut egui::Ui, notice: &crate::app::Notice, commands: &mut Vec<Command>) {
+/// The newest toasts that fit; the latest is always shown, the others wait behind the bell.
+fn fitting<'a>(ui: &Ui, state: &'a AppState, width: f32, room: f32) -> Vec<&'a Notice> {
+    let mut left = room;
+    let mut fitting = Vec::new();
+    for notice in state.notices.toasts() {
+        let lines = ui.painter().layout_job(text(ui, notice, width));
+        let buttons = if buttons(notice) { ROW + 6.0 } else { 0.0 };
+        left -= lines.size().y + buttons + 3.0 * UNIT;
+        if left < 0.0 && !fitting.is_empty() {
+            break;
+        }
+        fitting.push(notice);
+    }
+    fitting
+}
+
+fn buttons(notice: &Notice) -> bool {
+    notice.level >= NoticeLevel::Warning || notice.offer.is_some()
+}
+
+fn text(ui: &Ui, notice: &Notice, width: f32) -> LayoutJob {
+    let text = match notice.count {
+        0 | 1 => notice.text.clone(),
+        n => format!("{} (×{n})", notice.text),
+    };
+    let font = TextStyle::Body.resolve(ui.style());
+    let mut job = LayoutJob::simple(text, font, Palette::of(ui).text, width - BESIDE);
+    job.wrap.max_rows = MAX_LINES;
+    job
+}
+
+fn toast_ui(
+    ui: &mut Ui,
+    notice: &Notice,
+    state: &AppState,
+    (width, commands): (f32, &mut Vec<Command>),
+) {
     let palette = Palette::of(ui);
     let color = level_color(palette, notice.level);
     let frame = Frame::new()
@@ -38,34 +89,21 @@ fn toast_ui(ui: &mut egui::Ui, notice: &crate::app::Notice, commands: &mut Vec<C
         .corner_radius(6)
         .shadow(ui.visuals().popup_shadow)
         .inner_margin(Margin {
-            left: 16,
-            right: 8,
+            left: 14,
+            right: 6,
             top: 8,
             bottom: 8,
         });
     let shown = frame.show(ui, |ui| {
-        ui.set_width(WIDTH);
+        ui.set_width(width - 20.0);
         ui.horizontal_top(|ui| {
             ui.label(RichText::new(notice.level.mark()).color(color).size(15.0));
             ui.vertical(|ui| {
-                ui.set_width(WIDTH - 72.0);
-                let text = if notice.count > 1 {
-                    format!("{} (×{})", notice.text, notice.count)
-                } else {
-                    notice.text.clone()
-                };
-                ui.add(egui::Label::new(text).wrap());
-                if notice.level >= NoticeLevel::Warning {
-                    ui.horizontal(|ui| {
-                        if ui.button("Show in log").clicked() {
-                            commands.push(ViewCommand::SetTab(BottomTab::Log).into());
-                            commands.push(NoticeCommand::Dismiss(notice.id).into());
-                        }
-                        if ui.button("Copy details").clicked() {
-                            let (text, what) = (notice.text.clone(), "Message".to_owned());
-                            commands.push(ExportCommand::CopyText { text, what }.into());
-                        }
-                    });
+                ui.set_width(width - BESIDE);
+                let job = text(ui, notice, width);
+                ui.add(egui::Label::new(job)).on_hover_text(&notice.text);
+                if buttons(notice) {
+                    ui.horizontal(|ui| buttons_ui(ui, notice, state, commands));
                 }
             });
             if icon_button(ui, "×", "Close the message", true).clicked() {
@@ -73,7 +111,35 @@ fn toast_ui(ui: &mut egui::Ui, notice: &crate::app::Notice, commands: &mut Vec<C
             }
         });
     });
-    let rect = shown.response.rect;
+    paint_edge(ui, shown.response.rect, color);
+}
+
+fn buttons_ui(ui: &mut Ui, notice: &Notice, state: &AppState, commands: &mut Vec<Command>) {
+    if let Some(action) = notice.offer {
+        let label = match action {
+            Action::Swap => "Swap",
+            other => other.info().label,
+        };
+        let can = action.enabled(state).is_ok();
+        if ui.add_enabled(can, egui::Button::new(label)).clicked() {
+            commands.extend(action.to_commands(state));
+            commands.push(NoticeCommand::Dismiss(notice.id).into());
+        }
+    }
+    if notice.level >= NoticeLevel::Warning {
+        if ui.button("Show in log").clicked() {
+            commands.push(ViewCommand::SetTab(BottomTab::Log).into());
+            commands.push(NoticeCommand::Dismiss(notice.id).into());
+        }
+        if ui.button("Copy details").clicked() {
+            let (text, what) = (notice.text.clone(), "Message".to_owned());
+            commands.push(ExportCommand::CopyText { text, what }.into());
+        }
+    }
+}
+
+/// The level as a coloured left edge.
+fn paint_edge(ui: &Ui, rect: egui::Rect, color: Color32) {
     let edge = egui::Rect::from_min_max(rect.min, egui::pos2(rect.left() + 4.0, rect.bottom()));
     let radius = egui::CornerRadius {
         nw: 6,

@@ -183,9 +183,10 @@ pub fn segments(ui: &mut Ui, labels: &[(&str, bool, bool)], width: f32) -> Optio
         let inner = cell.shrink(2.0);
         if *is_on {
             ui.painter().rect_filled(inner, 3.0, palette.accent);
-        } else if *can && (response.hovered() || response.has_focus()) {
+        } else if *can && response.hovered() {
             ui.painter().rect_filled(inner, 3.0, palette.hovered);
         }
+        focus_ring(ui, inner, &response);
         let color = match (*is_on, *can) {
             (true, _) => palette.on_accent,
             (false, true) => palette.text,
@@ -225,6 +226,15 @@ pub fn icon_button(ui: &mut Ui, sign: &str, name: &str, is_enabled: bool) -> Res
     let response = tight(ui, |ui| ui.add_enabled(is_enabled, square(sign, ROW)));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, is_enabled, name));
     response.on_hover_text(name)
+}
+
+/// The ring around a widget of our own that has the keyboard.
+pub fn focus_ring(ui: &Ui, rect: Rect, response: &Response) {
+    if response.has_focus() {
+        let ring = Stroke::new(1.5, Palette::of(ui).accent_text);
+        let inside = egui::StrokeKind::Inside;
+        ui.painter().rect_stroke(rect, 4.0, ring, inside);
+    }
 }
 
 /// A chip: one of several choices side by side.

@@ -282,13 +282,8 @@ fn two_files_without_roles_are_sorted_by_content() {
     window.apply(FileCommand::Open { paths, role: None });
     assert_eq!(window.part(Role::Crash).facts.parts.len(), 2);
     assert_eq!(window.part(Role::Stamped).facts.formed, 1);
-    assert!(
-        window
-            .state
-            .notices
-            .toasts()
-            .any(|n| n.text.contains("Swap"))
-    );
+    let offers_swap = |n: &Notice| n.offer == Some(Action::Swap);
+    assert!(window.state.notices.toasts().any(offers_swap));
     let before = window.mesh(Role::Crash);
     window.apply(FileCommand::Swap);
     assert!(
@@ -1073,4 +1068,50 @@ fn the_camera_brings_all_selected_parts_into_view() {
         both > 1.2 * one && both > 1.2 * other,
         "{one} {other} {both}"
     );
+}
+
+#[test]
+fn crash_parts_are_sorted_by_likeness_until_a_part_changes() {
+    let mut window = Window::with_both();
+    assert!(
+        window.state.current_likeness().is_none(),
+        "two parts need no order"
+    );
+    window.apply(PartCommand::OrderLike(Some(LikeWhat::Used(Role::Stamped))));
+    let likeness = window.state.current_likeness().unwrap();
+    let facts = &window.part(Role::Crash).facts;
+    assert_eq!(likeness.order.len(), facts.parts.len());
+    let of = |id: &u64| likeness.of_part[id];
+    assert!(
+        likeness
+            .order
+            .windows(2)
+            .all(|pair| of(&pair[0]) >= of(&pair[1]))
+    );
+    // Both halves of the crash strip are like each other, more than either is like the whole.
+    let half = PartRef {
+        role: Role::Crash,
+        id: 11,
+    };
+    window.apply(PartCommand::OrderLike(Some(LikeWhat::Part(half))));
+    assert_eq!(
+        window.state.current_likeness().unwrap().to.role(),
+        Role::Crash
+    );
+    window.apply(FileCommand::Close(Role::Stamped));
+    assert!(window.state.current_likeness().is_none());
+}
+
+#[test]
+fn the_stamped_part_is_shown_as_loaded_and_its_pose_stays() {
+    let mut window = Window::with_both();
+    window.apply(MoveCommand::SetPose {
+        crash_from_stamped: shifted(5.0),
+        name: "Shift".to_owned(),
+    });
+    window.apply(ViewCommand::ShowAsLoaded(true));
+    assert_eq!(window.state.shown_pose(), Similarity::identity());
+    assert_eq!(window.pose(), shifted(5.0));
+    window.apply(Command::Escape);
+    assert_eq!(window.state.shown_pose(), shifted(5.0));
 }

@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
 
+mod keyboard;
+mod layout;
 mod panels;
+mod parts;
 mod render;
 mod starts;
 mod story;

@@ -2,7 +2,7 @@
 
 use super::story::{click, finish, window};
 use egui_kittest::kittest::Queryable as _;
-use shapematch::app::{BottomTab, Dialog};
+use shapematch::app::{BottomTab, Dialog, Section};
 use shapematch::jobs::Role;
 
 #[test]
@@ -24,17 +24,21 @@ fn an_empty_window_invites_and_says_why_the_rest_waits() {
 fn sections_fold_tabs_turn_and_dialogs_open_by_key() {
     let mut window = window();
     click(&mut window, "2 Reduce");
-    assert_eq!(
-        window.state().state().view.open_sections,
-        [true, false, true]
+    assert!(
+        !window
+            .state()
+            .state()
+            .view
+            .sections
+            .is_open(Section::Reduce)
     );
+    assert!(window.query_by_label("Sweep").is_none(), "nothing to sweep");
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
     for tab in [
         BottomTab::Timings,
-        BottomTab::Starts,
-        BottomTab::Convergence,
         BottomTab::Sweep,
         BottomTab::History,
-        BottomTab::Diagnostics,
         BottomTab::Log,
     ] {
         click(&mut window, tab.label());

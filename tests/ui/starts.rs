@@ -7,14 +7,13 @@ use shapematch::app::Preview;
 #[test]
 fn a_match_leaves_rows_to_take_and_curves_to_step_through() {
     let mut window = window();
-    click(&mut window, "Starts");
-    assert!(window.query_by_label("No starts yet").is_some());
     click(&mut window, "Open the example pair");
     finish(&mut window);
     click(&mut window, "Reduce");
     finish(&mut window);
     click(&mut window, "Match the parts");
     finish(&mut window);
+    click(&mut window, "Starts");
     let outcome = {
         let result = window.state().state().document.result.as_ref();
         std::sync::Arc::clone(&result.expect("matched").run.outcome)

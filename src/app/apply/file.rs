@@ -1,6 +1,8 @@
 use super::project::is_project;
 use crate::app::state::Guess;
-use crate::app::{AppState, Effect, FileCommand, NoticeLevel, Part, StampedPose, facts};
+use crate::app::{
+    Action, AppState, Effect, FileCommand, NoticeLevel, Part, Section, StampedPose, facts,
+};
 use crate::jobs::{JobKey, JobKind, PartFacts, PartSource, ProjectRequest, Role};
 use crate::pipeline::load::{LoadSettings, LoadedPart};
 use std::path::PathBuf;
@@ -24,6 +26,7 @@ impl AppState {
             FileCommand::DismissUnitHint => self.dismiss_unit_hint(),
             FileCommand::ForgetRecent(path) => {
                 self.settings.recent.retain(|known| *known != path);
+                self.settings.opened.remove(&path);
                 vec![Effect::SaveSettings]
             }
         }
@@ -200,10 +203,11 @@ impl AppState {
             facts::load_line(&part, &facts),
             Some(took),
         );
-        if let Some(line) = facts::diagnostics_line(&part) {
-            self.log_at(NoticeLevel::Note, "load", Some(role), line, None);
+        if let Some((level, line)) = facts::diagnostics_line(&part) {
+            self.log_at(level, "load", Some(role), line, None);
         }
-        self.settings.remember(&source);
+        self.settings
+            .remember(&source, self.clock.unix_at(self.now));
         let part = self.with_remembered_units(part);
         self.place(role, source, part, facts);
         if is_guess {
@@ -213,9 +217,22 @@ impl AppState {
             }
         }
         self.fit_after_load(role);
+        self.go_on_from_load();
+        self.refresh_likeness();
         let mut effects = vec![Effect::SaveSettings];
         effects.extend(self.settle_length_factor());
         effects
+    }
+
+    /// Two single parts need no choice, so the sections after loading come next; a deck of many
+    /// parts is chosen from first.
+    fn go_on_from_load(&mut self) {
+        let is_single = |part: &Part| part.facts.parts.len() <= 1;
+        let is_plain = |(crash, stamped): (&Part, &Part)| is_single(crash) && is_single(stamped);
+        if self.document.both().is_some_and(is_plain) {
+            self.view.sections.touch(Section::Match);
+            self.view.sections.touch(Section::Reduce);
+        }
     }
 
     /// A single file without a role whose content says stamped, and nothing stamped there yet.
@@ -263,9 +280,28 @@ impl AppState {
         };
         if crash.facts.formed > stamped.facts.formed {
             self.swap();
-            let text = "The roles were guessed from the content of the files; Swap exchanges them";
-            self.log_at(NoticeLevel::Note, "load", None, text, None);
         }
+        self.tell_guess();
+    }
+
+    /// What was guessed, why, and the way out.
+    fn tell_guess(&mut self) {
+        let Some((_, stamped)) = self.document.both() else {
+            return;
+        };
+        let why = match stamped.facts.formed {
+            0 => "no file says which it is",
+            1 => "it is one part with a thickness for each element",
+            _ => "it carries forming results",
+        };
+        let text = format!(
+            "{} is taken for the stamped part: {why}",
+            stamped.loaded.file_name()
+        );
+        self.log_step("load", None, text.clone(), None);
+        let is_muted = self.settings.muted.contains(&NoticeLevel::Note);
+        self.notices
+            .offer(NoticeLevel::Note, text, (self.now, is_muted), Action::Swap);
     }
 
     /// A part took another selection or unit.
@@ -290,6 +326,7 @@ impl AppState {
             }
         });
         self.log_step("select", Some(role), line, Some(took));
+        self.refresh_likeness();
         self.fit_after_load(role);
         self.reduce_again(role)
     }

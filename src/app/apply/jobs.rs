@@ -113,7 +113,13 @@ impl AppState {
     fn take_failed(&mut self, key: JobKey, message: String, elapsed: Duration) {
         self.end_of(key);
         let (step, role) = step_of(key);
-        self.log_at(NoticeLevel::Error, step, role, message, Some(elapsed));
+        let what_now = match key {
+            JobKey::Load(_) => "Nothing was loaded; choose another file or mend this one",
+            JobKey::Export => "Nothing was written; choose another place",
+            _ => "Parts and pose are as they were",
+        };
+        let text = format!("{message}. {what_now}");
+        self.log_at(NoticeLevel::Error, step, role, text, Some(elapsed));
     }
 
     fn end_of(&mut self, key: JobKey) {
@@ -133,6 +139,7 @@ impl AppState {
 
     pub(super) fn take_live(&mut self, live: Live) -> Vec<Effect> {
         self.jobs.take_live(&live);
+        self.take_sweep_rows();
         let is_match = self
             .jobs
             .running()

@@ -4,7 +4,7 @@ use crate::app::{
 };
 use crate::assess::Coverage;
 use crate::geometry::Point3;
-use crate::jobs::{JobKey, JobKind, MatchInput, MeasureInput, Role, Stamp, SweepInput};
+use crate::jobs::{JobKey, JobKind, MatchInput, MeasureInput, Role, Stamp, SweepInput, SweepRows};
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
 use crate::pipeline::sweep::{Sweep, SweepSettings};
 use crate::registration::starts::Start;
@@ -82,14 +82,26 @@ impl AppState {
     }
 
     fn run_sweep(&mut self, settings: SweepSettings) -> Vec<Effect> {
+        let rows = SweepRows::default();
+        let told = rows.clone();
         let effects = self.start_with_input(|input| {
             JobKind::Sweep(SweepInput {
                 crash: input.crash,
                 stamped: input.stamped,
                 settings,
+                rows,
             })
         });
         if !effects.is_empty() {
+            let n_triangles = self
+                .document
+                .part(Role::Stamped)
+                .map_or(0, |part| part.loaded.report.n_triangles);
+            let begun = Sweep {
+                n_triangles,
+                ..Sweep::default()
+            };
+            self.sweep_so_far = Some((begun, told));
             self.view.tab = BottomTab::Sweep;
         }
         effects
@@ -261,6 +273,7 @@ impl AppState {
         }
         self.live_pose = None;
         self.race.clear();
+        self.keep_match_level(&run);
         let pose = run.crash_from_stamped;
         let before = self.document.stamped_center();
         self.take_pose_as_result("Match".to_owned(), pose, |stamp| MatchResult {
@@ -316,8 +329,19 @@ impl AppState {
         self.measurement = Some((stamp, measurement.into()));
     }
 
+    /// Takes over the rows that the running sweep has measured since the last look.
+    pub(super) fn take_sweep_rows(&mut self) {
+        if let Some((sweep, rows)) = &mut self.sweep_so_far {
+            for row in rows.take() {
+                sweep.push(row);
+            }
+        }
+    }
+
     pub(super) fn take_swept(&mut self, table: Arc<Sweep>, took: Duration) {
+        self.keep_sweep_levels(&table);
         self.sweep = Some(table.into());
+        self.sweep_so_far = None;
         self.log_at(
             NoticeLevel::Success,
             "sweep",

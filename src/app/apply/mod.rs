@@ -13,13 +13,17 @@ mod reduce;
 mod units;
 mod view;
 
-use super::{AppState, Command, Effect, ModalInput, MoveCommand, NoticeCommand, Settings};
+use super::{AppState, Command, Effect, ModalInput, MoveCommand, NoticeCommand, Section, Settings};
 
 impl AppState {
     /// Changes the state as the command says and returns what has to be done outside. A command
     /// that makes no sense now (its action is disabled) changes nothing.
     pub fn apply(&mut self, command: impl Into<Command>) -> Vec<Effect> {
-        let mut effects = self.apply_one(command.into());
+        let command = command.into();
+        if let Some(section) = Section::of_command(&command) {
+            self.view.sections.touch(section);
+        }
+        let mut effects = self.apply_one(command);
         // Whatever changed, what the window shows of the distances follows.
         effects.extend(self.keep_comparing());
         effects

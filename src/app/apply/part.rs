@@ -21,6 +21,7 @@ impl AppState {
             PartCommand::ShowOnlySelected => self.show_only_selected(),
             PartCommand::ShowAll => self.show_all(),
             PartCommand::SetColor(part, color) => self.set_color(part, color),
+            PartCommand::OrderLike(to) => self.order_like(to),
             PartCommand::SetUsed(part, is_used) => return self.set_used(part, is_used),
             PartCommand::UseOnly(part) => {
                 return self.use_parts(part.role, Selection::Parts(vec![part.id]));

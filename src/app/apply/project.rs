@@ -115,7 +115,8 @@ impl AppState {
         let text = format!("project saved: {}", path.display());
         self.log_at(NoticeLevel::Success, "project", None, text, None);
         self.project.saved = Some(document);
-        self.settings.remember_path(&path);
+        let now = self.clock.unix_at(self.now);
+        self.settings.remember_path(&path, now);
         self.project.path = Some(path);
         let mut effects = vec![Effect::SaveSettings];
         if std::mem::take(&mut self.project.quits_when_saved) {
@@ -304,7 +305,8 @@ impl AppState {
             self.project.path = path;
             self.project.saved = None;
         } else {
-            self.settings.remember_path(&request.path);
+            let now = self.clock.unix_at(self.now);
+            self.settings.remember_path(&request.path, now);
             self.project.path = Some(request.path);
             self.project.saved = Some(self.document.clone());
         }

@@ -25,14 +25,17 @@ impl AppState {
             ViewCommand::SetDisplay(display) => self.view.display = *display,
             ViewCommand::SetSection(section) => self.view.section = section,
             ViewCommand::SetTab(tab) => self.set_tab(tab),
-            ViewCommand::ToggleSection(index) => {
-                if let Some(is_open) = self.view.open_sections.get_mut(index) {
-                    *is_open = !*is_open;
-                }
+            ViewCommand::OpenSection(section, is_open) => {
+                self.view.sections.set_open(section, is_open);
             }
+            ViewCommand::UseSection(section) => self.view.sections.touch(section),
             ViewCommand::ToggleGraphicsOnly => {
                 self.view.is_graphics_only = !self.view.is_graphics_only;
                 self.view.hovered_preview = None;
+            }
+            ViewCommand::ShowAsLoaded(is_as_loaded) => {
+                self.drop_previews();
+                self.view.is_as_loaded = is_as_loaded;
             }
             ViewCommand::SetDialog(dialog) => self.view.dialog = dialog,
             ViewCommand::ToggleGizmo => self.view.has_gizmo = !self.view.has_gizmo,

@@ -1,9 +1,9 @@
 //! The two 3D windows with what stands in them while there is nothing to draw.
 
-use crate::app::{Action, AppState, Command, FileCommand, Settings};
+use crate::app::{Action, AppState, Command, FileCommand, Settings, age_text};
 use crate::jobs::{JobKey, Role};
 use crate::ui::overlays::mouse_choice;
-use crate::ui::theme::{Palette, TALL, UNIT};
+use crate::ui::theme::{Palette, ROW, TALL, UNIT};
 use crate::ui::viewport::Viewports;
 use crate::ui::widgets::{Look, action_button, card, paragraph, role_mark, secondary};
 use egui::{Align, CursorIcon, Layout, Rect, RichText, Sense, Shape, Stroke, Ui, UiBuilder, vec2};
@@ -32,9 +32,12 @@ pub fn role_under_pointer(ctx: &egui::Context) -> Option<Role> {
     }
 }
 
-/// Where the windows end and the bottom pane begins.
-pub fn bottom_edge(ctx: &egui::Context) -> f32 {
-    place(ctx).map_or_else(|| ctx.content_rect().bottom(), |p| p.crash.bottom())
+/// What both windows take together.
+pub fn area(ctx: &egui::Context) -> Rect {
+    place(ctx).map_or_else(
+        || ctx.content_rect(),
+        |place| place.crash.union(place.stamped),
+    )
 }
 
 /// Both windows side by side, crash left.
@@ -130,7 +133,8 @@ fn away_ui(ui: &mut Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command
 /// Dashed frame, what to drop here, and the other ways in.
 fn empty_ui(ui: &mut Ui, rect: Rect, role: Role, state: &AppState, commands: &mut Vec<Command>) {
     let palette = Palette::of(ui);
-    let frame = rect.shrink(24.0);
+    let is_low = rect.height() < 320.0;
+    let frame = rect.shrink(if is_low { 8.0 } else { 24.0 });
     let corners = [
         frame.left_top(),
         frame.right_top(),
@@ -142,21 +146,29 @@ fn empty_ui(ui: &mut Ui, rect: Rect, role: Role, state: &AppState, commands: &mu
     ui.painter()
         .extend(Shape::dashed_line(&corners, stroke, 6.0, 6.0));
     let is_loading = state.jobs.is_active(JobKey::Load(role));
-    let size = vec2(
-        320.0_f32.min(frame.width() - 16.0),
-        320.0_f32.min(frame.height() - 16.0),
-    );
+    let room = frame.shrink(8.0).size();
+    let size = vec2(320.0_f32.min(room.x), 400.0_f32.min(room.y));
+    // A low window keeps the words and the buttons and leaves the ornament.
     centered(ui, rect, size, |ui| {
-        ui.vertical_centered(|ui| {
-            let (mark, _) = ui.allocate_exact_size(vec2(32.0, 32.0), Sense::hover());
-            crate::ui::widgets::paint_role_mark(ui.painter(), mark, role, palette.role(role));
-            ui.add_space(UNIT);
-            if is_loading {
-                loading_ui(ui, role, state, commands);
-            } else {
-                invitation_ui(ui, role, state, commands);
-            }
-        });
+        egui::ScrollArea::vertical()
+            .id_salt(("empty", role.word()))
+            .auto_shrink([false, false])
+            .show(ui, |ui| {
+                ui.vertical_centered(|ui| {
+                    if !is_low {
+                        ui.add_space(2.0 * UNIT);
+                        let (mark, _) = ui.allocate_exact_size(vec2(32.0, 32.0), Sense::hover());
+                        let color = palette.role(role);
+                        crate::ui::widgets::paint_role_mark(ui.painter(), mark, role, color);
+                        ui.add_space(UNIT);
+                    }
+                    if is_loading {
+                        loading_ui(ui, role, state, commands);
+                    } else {
+                        invitation_ui(ui, role, (state, is_low), commands);
+                    }
+                });
+            });
     });
 }
 
@@ -195,7 +207,12 @@ fn loading_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Comm
     }
 }
 
-fn invitation_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
+fn invitation_ui(
+    ui: &mut Ui,
+    role: Role,
+    (state, is_low): (&AppState, bool),
+    commands: &mut Vec<Command>,
+) {
     let (title, text, action) = match role {
         Role::Crash => (
             "Drop the crash model here",
@@ -208,28 +225,39 @@ fn invitation_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<C
             Action::OpenStamped,
         ),
     };
-    ui.label(RichText::new(title).size(16.0));
+    ui.add(egui::Label::new(RichText::new(title).size(16.0)).wrap());
     ui.add_space(4.0);
-    secondary(ui, text);
-    ui.add_space(2.0 * UNIT);
+    if !is_low {
+        secondary(ui, text);
+        ui.add_space(2.0 * UNIT);
+    }
+    let width = 208.0_f32.min(ui.available_width());
     let is_empty = state.document.parts.iter().all(|(_, part)| part.is_none());
     let look = if role == Role::Crash && is_empty {
         Look::Primary
     } else {
         Look::Plain
     };
+    let is_narrow = width < 160.0;
     let name = match role {
+        _ if is_narrow => "Open…",
         Role::Crash => "Open crash model…",
         Role::Stamped => "Open stamped part…",
     };
-    action_button(ui, state, action, (name, look, vec2(208.0, TALL)), commands);
+    action_button(ui, state, action, (name, look, vec2(width, TALL)), commands);
     if role == Role::Crash && is_empty {
         ui.add_space(UNIT);
-        let example = ("Open the example pair", Look::Plain, vec2(208.0, TALL));
+        let name = if is_narrow {
+            "Example"
+        } else {
+            "Open the example pair"
+        };
+        let example = (name, Look::Plain, vec2(width, TALL));
         action_button(ui, state, Action::OpenExample, example, commands);
     }
     recent_ui(ui, role, state, commands);
-    if role == Role::Stamped && is_empty && !state.settings.is_mouse_asked {
+    let has_room = ui.available_width() > 240.0;
+    if role == Role::Stamped && is_empty && has_room && !state.settings.is_mouse_asked {
         ui.add_space(2.0 * UNIT);
         mouse_card(ui, state, commands);
     }
@@ -242,9 +270,19 @@ fn recent_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Comma
     }
     ui.add_space(2.0 * UNIT);
     secondary(ui, "Recent");
+    let width = 260.0_f32.min(ui.available_width());
+    let now = state.clock.unix_at(state.now);
     for path in recent {
         let name = path.file_name().unwrap_or(path.as_os_str());
-        let link = ui.link(name.to_string_lossy());
+        let name = name.to_string_lossy().into_owned();
+        let age = state.settings.opened.get(path);
+        let age = age.map(|at| age_text(now.saturating_sub(*at)));
+        let mut button = egui::Button::new(&name).truncate();
+        if let Some(age) = age {
+            button = button.right_text(RichText::new(age).small().color(Palette::of(ui).secondary));
+        }
+        let button = button.frame_when_inactive(false).min_size(vec2(width, ROW));
+        let link = ui.add(button);
         if link.on_hover_text(path.display().to_string()).clicked() {
             let (paths, role) = (vec![path.clone()], Some(role));
             commands.push(FileCommand::Open { paths, role }.into());
@@ -293,11 +331,20 @@ fn drop_hint(ui: &Ui, crash: Rect, stamped: Rect) {
         let is_meant = n_files > 1 || at.is_none_or(|at| rect.contains(at));
         if is_meant {
             let color = palette.role(role);
+            let text = match n_files {
+                1 => format!("Drop as the {} part", role.word()),
+                _ => "Drop: the content tells which is which".to_owned(),
+            };
             ui.painter()
                 .rect_filled(rect, 0.0, color.gamma_multiply(0.12));
             let stroke = Stroke::new(2.0, color);
-            ui.painter()
-                .rect_stroke(rect.shrink(2.0), 4.0, stroke, egui::StrokeKind::Inside);
+            let painter = ui.painter();
+            painter.rect_stroke(rect.shrink(2.0), 4.0, stroke, egui::StrokeKind::Inside);
+            let font = egui::FontId::proportional(18.0);
+            let galley = painter.layout(text, font, palette.text, rect.width() - 48.0);
+            let plate = Rect::from_center_size(rect.center(), galley.size() + vec2(32.0, 20.0));
+            painter.rect_filled(plate, 8.0, palette.card);
+            painter.galley(plate.min + vec2(16.0, 10.0), galley, palette.text);
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::app::{
 use crate::jobs::{JobKey, Role};
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
-    Look, action_button, caption, chip, grouped, icon_button, role_mark, square, tight,
+    Look, action_button, caption, chip, grouped, icon_button, role_mark, secondary, square, tight,
 };
 use egui::{Align, Layout, Sense, TextStyle, Ui, vec2};
 
@@ -72,7 +72,9 @@ fn file_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command
 fn loaded_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState, commands: &mut Vec<Command>) {
     let palette = Palette::of(ui);
     let name = part.loaded.file_name();
-    let room = ui.available_width() - ROW - UNIT;
+    let has_badge = role == Role::Stamped && state.has_pose();
+    let badge = if has_badge { ROW + UNIT } else { 0.0 };
+    let room = ui.available_width() - ROW - UNIT - badge;
     let (rect, response) = ui.allocate_exact_size(vec2(room, 36.0), Sense::hover());
     let body = TextStyle::Body.resolve(ui.style());
     let small = TextStyle::Small.resolve(ui.style());
@@ -91,6 +93,9 @@ fn loaded_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState, commands: &
     let spoken = format!("{} part: {name}", role.word());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &spoken));
     response.on_hover_text(part.loaded.path.display().to_string());
+    if has_badge {
+        badge_ui(ui, state, commands);
+    }
     let label = format!("{} file", role.word());
     let menu = egui::containers::menu::MenuButton::from_button(square("…", ROW));
     let (button, _) = tight(ui, |ui| {
@@ -98,6 +103,27 @@ fn loaded_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState, commands: &
     });
     button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
     button.on_hover_text("Open another, reload, close, findings");
+}
+
+/// Says that a pose is applied; a click shows the part as loaded, another one at its pose.
+fn badge_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let is_as_loaded = state.is_as_loaded();
+    let response = tight(ui, |ui| ui.add(square("T", ROW).selected(!is_as_loaded)));
+    let (name, help) = if is_as_loaded {
+        (
+            "Show at its pose",
+            "Shown as loaded. Click: shown at its pose again",
+        )
+    } else {
+        (
+            "Show as loaded",
+            "A pose is applied. Click: shown as loaded; the pose stays",
+        )
+    };
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
+    if response.on_hover_text(help).clicked() {
+        commands.push(ViewCommand::ShowAsLoaded(!is_as_loaded).into());
+    }
 }
 
 fn detail(role: Role, part: &Part, state: &AppState) -> String {
@@ -191,26 +217,28 @@ fn tools_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 fn display_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut display: Display = state.view.display.clone();
-    ui.horizontal(|ui| {
-        caption(ui, "Colour");
-        let chips = 2.0 * 64.0;
-        let width = ui.available_width() - chips - 2.0 * UNIT;
-        ui.name_inputs("Colour by", |ui| {
-            egui::ComboBox::from_id_salt("colour by")
-                .selected_text(display.color_by.label())
-                .width(width)
-                .show_ui(ui, |ui| {
-                    for by in ColorBy::ALL {
-                        ui.selectable_value(&mut display.color_by, by, by.label());
-                    }
-                });
-        });
-        if chip(ui, "Edges", display.has_edges).clicked() {
-            display.has_edges ^= true;
-        }
+    let size = vec2(ui.available_width(), ROW);
+    ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
         if chip(ui, "Nodes", display.has_points).clicked() {
             display.has_points ^= true;
         }
+        if chip(ui, "Edges", display.has_edges).clicked() {
+            display.has_edges ^= true;
+        }
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            secondary(ui, "Colour");
+            ui.name_inputs("Colour by", |ui| {
+                egui::ComboBox::from_id_salt("colour by")
+                    .selected_text(display.color_by.label())
+                    .width(ui.available_width())
+                    .truncate()
+                    .show_ui(ui, |ui| {
+                        for by in ColorBy::ALL {
+                            ui.selectable_value(&mut display.color_by, by, by.label());
+                        }
+                    });
+            });
+        });
     });
     if display != state.view.display {
         commands.push(ViewCommand::SetDisplay(Box::new(display)).into());

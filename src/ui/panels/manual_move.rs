@@ -1,7 +1,11 @@
 //! Moves by hand: numbers, turn-over, snapping, pasted matrices.
 
-use crate::app::{Action, AppState, Axis, AxisFrame, Command, MoveCommand, ViewCommand};
+use crate::app::{
+    Action, AppState, Axis, AxisFrame, Command, MoveCommand, ViewCommand, turns_deg, with_turns_deg,
+};
 use crate::geometry::Similarity;
+use crate::jobs::Role;
+use crate::report::parse_matrix;
 use crate::ui::theme::{ROW, UNIT};
 use crate::ui::widgets::{Look, action_button, caption, chip, form_row, plain_action, set_draft};
 use egui::{CollapsingHeader, DragValue, Ui, vec2};
@@ -103,36 +107,81 @@ fn turn_over_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
-/// Where the centre of the part is; typing moves it there.
+/// Where the centre is, how far it went since loading, and how the part is turned; all can be typed.
 fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let Some(center) = state.document.stamped_center() else {
+    let (Some(center), Some(part)) = (
+        state.document.stamped_center(),
+        state.document.part(Role::Stamped),
+    ) else {
         return;
     };
-    form_row(ui, "Centre", LABEL, |ui| {
+    let pose = *state.document.crash_from_stamped();
+    let pivot = part.bounds().center();
+    let at: [f64; 3] = center.coords.into();
+    let moved: [f64; 3] = (center - pivot).into();
+    let unit = state.unit_suffix();
+    for (name, what, values) in [
+        ("Centre", "Centre", at),
+        ("Moved", "Moved since loading,", moved),
+    ] {
+        if let Some((axis, by, value)) = fields_ui(ui, name, what, values, unit) {
+            let mut crash_from_stamped: Similarity = pose;
+            crash_from_stamped.translation[axis.index()] += by;
+            let name = format!("{name} {} {value:.3}", axis.letter());
+            commands.push(set_pose(crash_from_stamped, name));
+        }
+    }
+    let Some(turns) = turns_deg(&pose) else {
+        caption(ui, "The pose is mirrored: no turns make it");
+        return;
+    };
+    if let Some((axis, by, value)) = fields_ui(ui, "Turned", "Turned since loading,", turns, "°") {
+        let mut turns = turns;
+        turns[axis.index()] += by;
+        let crash_from_stamped = with_turns_deg(&pose, turns, &pivot);
+        let name = format!("Turned {} {value:.3}°", axis.letter());
+        commands.push(set_pose(crash_from_stamped, name));
+    }
+}
+
+fn set_pose(crash_from_stamped: Similarity, name: String) -> Command {
+    MoveCommand::SetPose {
+        crash_from_stamped,
+        name,
+    }
+    .into()
+}
+
+/// Three numbers in a row; the axis that was typed at, by how much it changed, and its new value.
+fn fields_ui(
+    ui: &mut Ui,
+    label: &str,
+    spoken: &str,
+    values: [f64; 3],
+    unit: &str,
+) -> Option<(Axis, f64, f64)> {
+    let mut typed = None;
+    form_row(ui, label, LABEL, |ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
+        ui.spacing_mut().button_padding.x = 4.0;
+        let width = (ui.available_width() - 8.0) / 3.0;
         for axis in Axis::ALL {
-            let before = center[axis.index()];
+            let before = values[axis.index()];
             let mut value = before;
             let field = DragValue::new(&mut value)
                 .max_decimals(3)
                 .speed(0.5)
                 .update_while_editing(false)
-                .min_size(vec2(68.0, ROW));
-            let spoken = format!("Centre {}", axis.letter());
-            let response = ui.name_inputs(spoken, |ui| ui.add(field));
+                .min_size(vec2(width, ROW));
+            let name = format!("{spoken} {}", axis.letter());
+            let response = ui.name_inputs(name.clone(), |ui| ui.add_sized(vec2(width, ROW), field));
             if response.changed() && value != before {
-                let mut pose: Similarity = *state.document.crash_from_stamped();
-                pose.translation[axis.index()] += value - before;
-                let name = format!("Centre to {} {value:.3}", axis.letter());
-                let crash_from_stamped = pose;
-                let command = MoveCommand::SetPose {
-                    crash_from_stamped,
-                    name,
-                };
-                commands.push(command.into());
+                typed = Some((axis, value - before, value));
             }
+            response.on_hover_text(format!("{name}: {before}{unit}"));
         }
     });
+    typed
 }
 
 /// A field that takes any matrix and says what it understood.
@@ -146,13 +195,21 @@ fn paste_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
         .margin(egui::Margin::symmetric(8, 4))
         .font(egui::TextStyle::Monospace);
     ui.add(field).accessible_name("Matrix to paste");
+    let read = (!text.trim().is_empty()).then(|| parse_matrix(&text));
+    let understood = match &read {
+        None => "moves stamped onto crash".to_owned(),
+        Some(Ok(parsed)) => format!("understood: {}", parsed.layout.label()),
+        Some(Err(error)) => format!("⚠ {error}"),
+    };
     ui.horizontal(|ui| {
-        let can = !text.trim().is_empty();
+        let can = matches!(read, Some(Ok(_)));
         if ui.add_enabled(can, egui::Button::new("Set pose")).clicked() {
             commands.push(MoveCommand::Paste(std::mem::take(&mut text)).into());
         }
         ui.add_space(UNIT);
-        caption(ui, "moves stamped onto crash");
+        let color = crate::ui::theme::Palette::of(ui).secondary;
+        let understood = egui::RichText::new(understood).small().color(color);
+        ui.add(egui::Label::new(understood).wrap());
     });
     set_draft(ui, id, text);
 }

@@ -7,6 +7,7 @@ pub mod manual_move;
 pub mod matching;
 pub mod part_filter;
 pub mod part_list;
+pub mod part_row;
 pub mod recipe;
 pub mod reduce;
 pub mod result;
@@ -21,8 +22,12 @@ use egui::{Frame, Margin, Panel, ScrollArea, Sense, Ui, UiBuilder, vec2};
 
 /// Width of the left column at the first start.
 const COLUMN: f32 = 344.0;
-/// Height of the bottom pane at the first start.
+/// Height of the bottom pane at the first start: tabs, six lines, footer.
 const PANE: f32 = 200.0;
+/// Its height in a low window: tabs, three lines, footer.
+const LOW_PANE: f32 = 132.0;
+/// A window lower than this is low.
+const LOW: f32 = 780.0;
 
 /// The whole window.
 pub fn window_ui(
@@ -45,10 +50,18 @@ pub fn window_ui(
         .show(ui, |ui| top_bar::top_bar_ui(ui, state, commands));
     let bottom = |ui: &mut Ui, commands: &mut Vec<Command>| {
         let room = ui.available_height();
-        let shown = Panel::bottom("bottom pane")
+        // A name for each of the two, because a panel asks for its size at the first look only.
+        let is_low = ui.ctx().content_rect().height() < LOW;
+        let (name, size) = match (pane, is_low) {
+            (Some(pane), _) => ("bottom pane", pane),
+            (None, false) => ("bottom pane", PANE),
+            (None, true) => ("low bottom pane", LOW_PANE),
+        };
+        reset_by_double_click(ui, state, (name, 1), commands);
+        let shown = Panel::bottom(name)
             .resizable(true)
-            .default_size(pane.unwrap_or(PANE.min(0.28 * room)))
-            .size_range(96.0..=(0.6 * room).max(120.0))
+            .default_size(size)
+            .size_range(100.0..=(0.6 * room).max(120.0))
             .frame(Frame::new().fill(palette.panel).inner_margin(Margin::ZERO))
             .show(ui, |ui| bottom::bottom_ui(ui, state, commands));
         shown.response.rect.height()
@@ -57,6 +70,7 @@ pub fn window_ui(
     if state.settings.is_log_wide {
         height = Some(bottom(ui, commands));
     }
+    reset_by_double_click(ui, state, ("left column", 0), commands);
     let left = Panel::left("left column")
         .resizable(true)
         .default_size(column.unwrap_or(COLUMN))
@@ -71,6 +85,7 @@ pub fn window_ui(
 /// The paper's three sections, top to bottom.
 fn left_column_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.take_available_space();
+    let height = ui.available_height();
     ScrollArea::vertical()
         .id_salt("left column")
         .auto_shrink([false, false])
@@ -80,13 +95,35 @@ fn left_column_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             let width = room.width();
             let mut column = ui.new_child(UiBuilder::new().max_rect(room));
             column.spacing_mut().item_spacing.y = 0.0;
+            section::fold_ui(&column, state, height);
             load::load_ui(&mut column, state, commands);
             reduce::reduce_ui(&mut column, state, commands);
             matching::matching_ui(&mut column, state, commands);
+            section::drawn_ui(&column, state);
             column.add_space(UNIT);
             let height = column.min_rect().height();
             ui.allocate_exact_size(vec2(width, height), Sense::hover());
         });
+}
+
+/// A double click on the edge of a panel gives it its first size again. To be called right before
+/// the panel is shown, in the same place.
+fn reset_by_double_click(
+    ui: &Ui,
+    state: &AppState,
+    (name, index): (&str, usize),
+    commands: &mut Vec<Command>,
+) {
+    let panel = ui.scope_id().with_salt(egui::IdSalt::new(name));
+    // The name egui gives the edge of a panel.
+    let edge = ui.ctx().read_response(panel.with("__resize"));
+    if edge.is_some_and(|edge| edge.double_clicked()) {
+        ui.data_mut(|data| data.remove::<egui::containers::panel::PanelState>(panel));
+        let mut settings: Settings = state.settings.clone();
+        settings.pane_sizes[index] = None;
+        commands.push(Command::Settings(Box::new(settings)));
+        ui.ctx().request_repaint();
+    }
 }
 
 /// Keeps what the user dragged, once the button is up.

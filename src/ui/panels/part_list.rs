@@ -1,292 +1,315 @@
-//! The parts of both decks: eye, role, id, name, thickness, tick for the match.
+//! The parts of both decks: filter, order by likeness, rows.
 
 use super::part_filter::PartFilter;
-use super::section::elided;
-use crate::app::{AppState, Command, Part, PartCommand, PartRef, ViewCommand};
-use crate::formats::PartSummary;
-use crate::jobs::Role;
-use crate::ui::theme::{Palette, ROW, UNIT};
-use crate::ui::widgets::{caption, draft, grouped, paint_role_mark, set_draft};
-use egui::{Align2, Rect, Response, ScrollArea, Sense, Stroke, TextStyle, Ui, Vec2, pos2, vec2};
+use super::part_row::{Columns, Row, count_text, row_ui};
+use crate::app::{AppState, Command, LikeWhat, PartCommand, PartRef};
+use crate::jobs::{PerRole, Role};
+use crate::ui::theme::{ROW, UNIT};
+use crate::ui::widgets::{caption, chip, draft, grouped, icon_button, set_draft};
+use egui::{ScrollArea, TextStyle, Ui, vec2};
+use std::sync::Arc;
 
 /// Most rows that are seen at once; the rest scrolls.
 const MAX_ROWS: f32 = 6.0;
-
-type Row<'a> = (Role, &'a Part, &'a PartSummary);
+/// The same for a deck of so many parts that it has to be searched.
+const MAX_ROWS_OF_MANY: f32 = 9.0;
+/// A deck has many parts from here on.
+const MANY: usize = 20;
 
 /// Filter and list.
 pub fn part_list_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let id = egui::Id::unique("part filter");
-    let mut text = draft(ui, id);
-    let n_parts: usize = state
-        .document
-        .parts
-        .iter()
-        .filter_map(|(_, part)| part.as_ref())
+    let n_parts: usize = Role::ALL
+        .into_iter()
+        .filter_map(|role| state.document.part(role))
         .map(|part| part.facts.parts.len())
         .sum();
-    if n_parts > 2 || !text.is_empty() {
-        let field = egui::TextEdit::singleline(&mut text)
-            .hint_text("Filter: 2000012, 100-200, pillar, t>1.4")
-            .margin(egui::Margin::symmetric(8, 3))
-            .desired_width(f32::INFINITY);
-        ui.add(field).accessible_name("Filter parts");
-        set_draft(ui, id, text.clone());
-    }
-    let filter = PartFilter::parse(&text);
-    let rows: Vec<Row<'_>> = state
-        .document
-        .parts
-        .iter()
-        .filter_map(|(role, part)| Some((role, part.as_ref()?)))
-        .flat_map(|(role, part)| part.facts.parts.iter().map(move |row| (role, part, row)))
-        .filter(|(_, _, row)| filter.accepts(row))
-        .collect();
-    if rows.is_empty() {
-        caption(
-            ui,
-            format!("None of {} parts fits the filter", grouped(n_parts)),
-        );
+    let filter = filter_ui(ui, state, n_parts, commands);
+    let listed = listed(ui, state, &filter);
+    if listed.is_empty() {
+        let text = format!("None of {} parts fits the filter", grouped(n_parts));
+        caption(ui, text);
         return;
     }
-    let height = ROW * (rows.len() as f32).min(MAX_ROWS);
+    if !filter.is_empty() {
+        let n = grouped(listed.len());
+        caption(ui, format!("{n} of {} parts", grouped(n_parts)));
+    }
+    rows_ui(ui, state, &listed, commands);
+    chosen_ui(ui, state, commands);
+}
+
+/// The field, where there is anything to be filtered, and the order; what was typed.
+fn filter_ui(ui: &mut Ui, state: &AppState, n_parts: usize, commands: &mut Vec<Command>) -> String {
+    let id = egui::Id::unique("part filter");
+    let mut text = draft(ui, id);
+    if n_parts <= 2 && text.is_empty() {
+        return text;
+    }
+    let can_order = state.document.both().is_some();
+    ui.horizontal(|ui| {
+        let beside = if can_order { 64.0 + UNIT } else { 0.0 };
+        let clear = if text.is_empty() { 0.0 } else { ROW + UNIT };
+        let field = egui::TextEdit::singleline(&mut text)
+            .hint_text("2000012, 100-200, pillar, t>1.4")
+            .margin(egui::Margin::symmetric(8, 3))
+            .desired_width(ui.available_width() - beside - clear);
+        ui.add(field)
+            .on_hover_text("Ids, a range of ids, words of the name, thickness; a comma means or")
+            .accessible_name("Filter parts");
+        if clear > 0.0 && icon_button(ui, "×", "Clear the filter", true).clicked() {
+            text.clear();
+        }
+        if can_order {
+            order_ui(ui, state, commands);
+        }
+    });
+    set_draft(ui, id, text.clone());
+    text
+}
+
+/// Sorts the crash parts by their likeness to the stamped part.
+fn order_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let likeness = state.current_likeness();
+    let label = match likeness.map(|l| l.to) {
+        Some(LikeWhat::Part(part)) if part.role == Role::Crash => "Like ■",
+        _ => "Like ▲",
+    };
+    let response = chip(ui, label, likeness.is_some());
+    response.widget_info(|| {
+        let name = "Sort by likeness";
+        egui::WidgetInfo::selected(egui::Role::Button, true, likeness.is_some(), name)
+    });
+    let help = "Sort the crash parts by area, size and thickness: most like the stamped part first";
+    if response.on_hover_text(help).clicked() {
+        let to = likeness.is_none().then_some(LikeWhat::Used(Role::Stamped));
+        commands.push(PartCommand::OrderLike(to).into());
+    }
+}
+
+/// The rows that are listed: model and place in its deck.
+type Listed = Arc<Vec<(Role, u32)>>;
+
+/// What a list was made of.
+#[derive(Debug, Clone, PartialEq)]
+struct Key {
+    parts: PerRole<u64>,
+    filter: String,
+    order: Option<LikeWhat>,
+}
+
+/// Filters and sorts once per change, not once per frame.
+fn listed(ui: &Ui, state: &AppState, filter: &str) -> Listed {
+    let key = Key {
+        parts: state.document.stamp().parts,
+        filter: filter.to_owned(),
+        order: state.current_likeness().map(|l| l.to),
+    };
+    let id = egui::Id::unique("listed parts");
+    let kept: Option<(Key, Listed)> = ui.data(|data| data.get_temp(id));
+    if let Some((_, listed)) = kept.filter(|(of, _)| *of == key) {
+        return listed;
+    }
+    let listed: Listed = Arc::new(list(state, filter));
+    ui.data_mut(|data| data.insert_temp(id, (key, Arc::clone(&listed))));
+    listed
+}
+
+fn list(state: &AppState, filter: &str) -> Vec<(Role, u32)> {
+    let filter = PartFilter::parse(filter);
+    let likeness = state.current_likeness();
+    let first = likeness.map_or(Role::Crash, |l| l.to.role().other());
+    let mut listed = Vec::new();
+    for role in [first, first.other()] {
+        let Some(part) = state.document.part(role) else {
+            continue;
+        };
+        let from = listed.len();
+        let rows = part.facts.parts.iter().enumerate();
+        let fitting = rows.filter(|(_, row)| filter.accepts(row));
+        listed.extend(fitting.map(|(index, _)| (role, index as u32)));
+        if let Some(likeness) = likeness.filter(|l| l.to.role() != role) {
+            let id = |&(_, index): &(Role, u32)| part.facts.parts[index as usize].id;
+            let rank = |row: &(Role, u32)| likeness.of_part.get(&id(row)).copied().unwrap_or(-1.0);
+            listed[from..].sort_by(|a, b| rank(b).total_cmp(&rank(a)));
+        }
+    }
+    listed
+}
+
+fn row_of<'a>(state: &'a AppState, &(role, index): &(Role, u32)) -> Option<Row<'a>> {
+    let part = state.document.part(role)?;
+    let index = index as usize;
+    let summary = part.facts.parts.get(index)?;
+    let likeness = state.current_likeness().filter(|l| l.to.role() != role);
+    Some(Row {
+        role,
+        part,
+        summary,
+        index,
+        likeness: likeness.and_then(|l| l.of_part.get(&summary.id).copied()),
+    })
+}
+
+fn rows_ui(ui: &mut Ui, state: &AppState, listed: &Listed, commands: &mut Vec<Command>) {
+    let is_sorted = state.current_likeness().is_some();
+    let columns = columns(ui, state, listed);
+    let max_rows = if listed.len() > MANY {
+        MAX_ROWS_OF_MANY
+    } else {
+        MAX_ROWS
+    };
+    let height = ROW * (listed.len() as f32).min(max_rows);
+    let offset = egui::Id::unique("part list offset");
+    let wanted: Option<f32> = ui.data_mut(|data| data.remove_temp(offset));
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        ScrollArea::vertical()
+        if listed.len() > 2 {
+            columns.header_ui(ui, if is_sorted { "like" } else { "elem." });
+        }
+        let mut area = ScrollArea::vertical()
             .id_salt("parts")
             .max_height(height)
             .min_scrolled_height(height)
-            .auto_shrink([false, true])
-            .show_rows(ui, ROW, rows.len(), |ui, range| {
-                let mut hovered = None;
-                for row in &rows[range] {
-                    if row_ui(ui, row, state, commands) {
-                        hovered = Some(PartRef {
-                            role: row.0,
-                            id: row.2.id,
-                        });
-                    }
-                }
-                let is_ours = ui.rect_contains_pointer(ui.clip_rect());
-                if is_ours && hovered != state.view.hovered {
-                    commands.push(PartCommand::Hover(hovered).into());
-                }
-            });
-    });
-}
-
-/// One row; true while the pointer is over it.
-fn row_ui(
-    ui: &mut Ui,
-    &(role, part, row): &Row<'_>,
-    state: &AppState,
-    commands: &mut Vec<Command>,
-) -> bool {
-    let palette = Palette::of(ui);
-    let at = PartRef { role, id: row.id };
-    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
-    let id = ui.scope_id().with(("part", role, row.id));
-    let response = ui.interact(rect, id, Sense::click());
-    let is_visible = part.is_visible(row.id);
-    let is_selected = state.view.selected.contains(&at);
-    if is_selected {
-        ui.painter()
-            .rect_filled(rect, 4.0, palette.accent.gamma_multiply(0.35));
-    } else if response.hovered() {
-        ui.painter().rect_filled(rect, 4.0, palette.card);
-    }
-    let eye = Rect::from_min_size(rect.min, Vec2::splat(ROW));
-    let tick = Rect::from_min_size(pos2(rect.right() - ROW, rect.top()), Vec2::splat(ROW));
-    paint_row(ui, rect, (role, row), is_visible);
-    let name = match row.title.is_empty() {
-        true => format!("Part {}", row.id),
-        false => format!("Part {} {}", row.id, row.title),
-    };
-    response
-        .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &name));
-    let eye = eye_ui(ui, eye, id, is_visible, &name);
-    if eye.clicked() {
-        let only = ui.input(|input| input.modifiers.command);
-        commands.push(if only {
-            PartCommand::ShowOnly(at).into()
-        } else {
-            PartCommand::SetVisible(at, !is_visible).into()
-        });
-    }
-    let tick = tick_ui(ui, tick, id, (part.is_used(row.id), state), &name);
-    if tick.clicked() {
-        let is_used = part.is_used(row.id);
-        commands.push(PartCommand::SetUsed(at, !is_used).into());
-    }
-    row_clicks(ui, &response, at, commands);
-    response.context_menu(|ui| row_menu(ui, at, part, commands));
-    let is_over = response.hovered() || eye.hovered() || tick.hovered();
-    response.on_hover_text(format!(
-        "{name}\n{} shells, {} solids, {} triangles",
-        grouped(row.n_shells),
-        grouped(row.n_solids),
-        grouped(row.n_triangles)
-    ));
-    is_over
-}
-
-fn row_clicks(ui: &Ui, response: &Response, at: PartRef, commands: &mut Vec<Command>) {
-    if response.double_clicked() {
-        commands.push(PartCommand::Select(Some(at)).into());
-        commands.push(ViewCommand::Focus(at.role).into());
-    } else if response.middle_clicked() {
-        commands.push(PartCommand::ShowOnly(at).into());
-    } else if response.clicked() {
-        let is_toggling = ui.input(|input| input.modifiers.command);
-        commands.push(if is_toggling {
-            PartCommand::ToggleSelected(at).into()
-        } else {
-            PartCommand::Select(Some(at)).into()
-        });
-    }
-}
-
-fn row_menu(ui: &mut Ui, at: PartRef, part: &Part, commands: &mut Vec<Command>) {
-    let is_visible = part.is_visible(at.id);
-    let items: [(&str, PartCommand); 6] = [
-        (
-            if is_visible { "Hide" } else { "Show" },
-            PartCommand::SetVisible(at, !is_visible),
-        ),
-        ("Show only this", PartCommand::ShowOnly(at)),
-        ("Show all", PartCommand::ShowAll),
-        ("Match only this", PartCommand::UseOnly(at)),
-        ("Match all parts of this deck", PartCommand::UseAll(at.role)),
-        ("Colour as its role", PartCommand::SetColor(at, None)),
-    ];
-    for (label, command) in items {
-        if ui.button(label).clicked() {
-            commands.push(command.into());
+            .auto_shrink([false, true]);
+        if let Some(wanted) = wanted {
+            area = area.vertical_scroll_offset(wanted);
         }
-    }
-    let mut color = part.colors.get(&at.id).copied().unwrap_or([128, 128, 128]);
-    let before = color;
-    ui.horizontal(|ui| {
-        ui.label("Colour");
-        ui.name_inputs("Colour of the part", |ui| {
-            ui.color_edit_button_srgb(&mut color);
+        let shown = area.show_rows(ui, ROW, listed.len(), |ui, range| {
+            let mut hovered = None;
+            for index in range {
+                let Some(row) = row_of(state, &listed[index]) else {
+                    continue;
+                };
+                let (is_over, response) = row_ui(ui, &row, &columns, state, commands);
+                if is_over {
+                    hovered = Some(row.at());
+                }
+                if response.has_focus() {
+                    step_by_key(ui, &response, (state, listed, index));
+                }
+            }
+            tell_hovered(ui, state, hovered, commands);
         });
+        scroll_to_focus(
+            ui,
+            listed,
+            (shown.state.unclamped_offset().y, height),
+            offset,
+        );
     });
-    if color != before {
-        commands.push(PartCommand::SetColor(at, Some(color)).into());
-    }
 }
 
-/// Mark, id, title, thickness.
-fn paint_row(ui: &Ui, rect: Rect, (role, row): (Role, &PartSummary), is_visible: bool) {
-    let palette = Palette::of(ui);
-    let text = if is_visible {
-        palette.text
-    } else {
-        palette.secondary
-    };
-    let middle = rect.center().y;
-    let mark = Rect::from_center_size(pos2(rect.left() + ROW + 6.0, middle), Vec2::splat(9.0));
-    paint_role_mark(ui.painter(), mark, role, palette.role(role));
-    let font = TextStyle::Body.resolve(ui.style());
+/// Columns that fit the longest id and count among the rows that matter.
+fn columns(ui: &Ui, state: &AppState, listed: &Listed) -> Columns {
+    let body = TextStyle::Body.resolve(ui.style());
     let small = TextStyle::Small.resolve(ui.style());
-    let right = rect.right() - ROW - 4.0;
-    let thickness = row
-        .thickness
-        .map_or_else(String::new, |t| format!("{t:.2}"));
-    let thickness_rect = ui.painter().text(
-        pos2(right, middle),
-        Align2::RIGHT_CENTER,
-        thickness,
-        small,
-        palette.secondary,
-    );
-    let left = mark.right() + UNIT;
-    let name = match row.title.is_empty() {
-        true => row.id.to_string(),
-        false => format!("{}  {}", row.id, row.title),
+    let largest = |of: &dyn Fn(&Row<'_>) -> usize| -> usize {
+        let sizes = Role::ALL.into_iter().filter_map(|role| {
+            let part = state.document.part(role)?;
+            (0..part.facts.parts.len().min(256))
+                .filter_map(|index| row_of(state, &(role, index as u32)))
+                .map(|row| of(&row))
+                .max()
+        });
+        sizes.max().unwrap_or(1).min(10)
     };
-    let room = thickness_rect.left().min(right) - UNIT - left;
-    let galley = elided(ui, &name, font, text, room);
-    let at = pos2(left, middle - galley.size().y / 2.0);
-    ui.painter().galley(at, galley, text);
-}
-
-/// An eye that is open or struck out.
-fn eye_ui(ui: &Ui, rect: Rect, id: egui::Id, is_visible: bool, name: &str) -> Response {
-    let palette = Palette::of(ui);
-    let response = ui.interact(rect, id.with("eye"), Sense::click());
-    let color = if is_visible {
-        palette.text
-    } else {
-        palette.secondary
-    };
-    let stroke = Stroke::new(1.2, color);
-    let c = rect.center();
-    let lid = |up: f32| {
-        let points = [
-            c + vec2(-6.5, 0.0),
-            c + vec2(-3.0, up),
-            c + vec2(3.0, up),
-            c + vec2(6.5, 0.0),
-        ];
-        egui::epaint::CubicBezierShape::from_points_stroke(
-            points,
-            false,
-            egui::Color32::TRANSPARENT,
-            stroke,
-        )
-    };
-    ui.painter().add(lid(-5.5));
-    ui.painter().add(lid(5.5));
-    if is_visible {
-        ui.painter().circle_filled(c, 2.2, color);
-    } else {
+    let width = |n: usize, font: egui::FontId| {
+        let digits = "0".repeat(n);
         ui.painter()
-            .line_segment([c + vec2(-6.0, 5.0), c + vec2(6.0, -5.0)], stroke);
-    }
-    let label = format!("Show {name}");
-    response
-        .widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, is_visible, &label));
-    response.on_hover_text("Show or hide. With Ctrl: show only this")
+            .layout_no_wrap(digits, font, egui::Color32::WHITE)
+            .size()
+            .x
+    };
+    let id = width(largest(&|row| row.summary.id.to_string().len()), body);
+    let count = width(largest(&|row| count_text(row).len()), small).max(30.0);
+    let room = ui.available_rect_before_wrap();
+    // The scroll bar of a long list floats over the edge of the ticks otherwise.
+    let bar = if listed.len() > MAX_ROWS as usize {
+        6.0
+    } else {
+        0.0
+    };
+    Columns::new(room.left(), room.right() - bar, id, count)
 }
 
-/// The tick "use for match".
-fn tick_ui(
+fn tell_hovered(ui: &Ui, state: &AppState, hovered: Option<PartRef>, commands: &mut Vec<Command>) {
+    let id = egui::Id::unique("part list hovered");
+    let ours: Option<PartRef> = ui.data(|data| data.get_temp(id));
+    if hovered == ours {
+        return;
+    }
+    ui.data_mut(|data| match hovered {
+        Some(hovered) => {
+            data.insert_temp(id, hovered);
+        }
+        None => data.remove::<PartRef>(id),
+    });
+    if hovered != state.view.hovered {
+        commands.push(PartCommand::Hover(hovered).into());
+    }
+}
+
+/// Arrow keys go from row to row, also to those that are not in sight.
+fn step_by_key(
     ui: &Ui,
-    rect: Rect,
-    id: egui::Id,
-    (is_used, state): (bool, &AppState),
-    name: &str,
-) -> Response {
-    let palette = Palette::of(ui);
-    let is_free = state.locking_job().is_none();
-    let sense = if is_free {
-        Sense::click()
-    } else {
-        Sense::hover()
+    response: &egui::Response,
+    (state, listed, index): (&AppState, &Listed, usize),
+) {
+    let filter = egui::EventFilter {
+        vertical_arrows: true,
+        ..egui::EventFilter::default()
     };
-    let response = ui.interact(rect, id.with("use"), sense);
-    let square = Rect::from_center_size(rect.center(), Vec2::splat(14.0));
-    let (fill, stroke) = if is_used {
-        (palette.accent, Stroke::NONE)
-    } else {
-        (palette.field, Stroke::new(1.0, palette.secondary))
-    };
-    ui.painter()
-        .rect(square, 3.0, fill, stroke, egui::StrokeKind::Inside);
-    if is_used {
-        let c = square.center();
-        let points = vec![
-            c + vec2(-3.5, 0.0),
-            c + vec2(-1.0, 3.0),
-            c + vec2(4.0, -3.5),
-        ];
-        ui.painter()
-            .line(points, Stroke::new(1.6, palette.on_accent));
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    // Taken away, or the next row would take the same key once more in this frame.
+    let step = ui.input_mut(|input| {
+        let mut pressed = |key| isize::from(input.consume_key(egui::Modifiers::NONE, key));
+        pressed(egui::Key::ArrowDown) - pressed(egui::Key::ArrowUp)
+    });
+    let next = index.saturating_add_signed(step).min(listed.len() - 1);
+    if next == index {
+        return;
     }
-    let label = format!("Use {name} for the match");
-    response
-        .widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, is_free, is_used, &label));
-    response.on_hover_text("Use for the match")
+    if let Some(row) = row_of(state, &listed[next]) {
+        ui.memory_mut(|memory| memory.request_focus(row.widget()));
+        ui.data_mut(|data| data.insert_temp(goal_id(), next));
+    }
+}
+
+fn goal_id() -> egui::Id {
+    egui::Id::unique("part row to come into sight")
+}
+
+/// Brings the row the keys went to into sight.
+fn scroll_to_focus(ui: &Ui, listed: &Listed, (at, height): (f32, f32), offset: egui::Id) {
+    let goal: Option<usize> = ui.data_mut(|data| data.remove_temp(goal_id()));
+    let Some(goal) = goal.filter(|goal| *goal < listed.len()) else {
+        return;
+    };
+    let (top, bottom) = (ROW * goal as f32, ROW * (goal + 1) as f32);
+    let wanted = at.clamp(bottom - height, top.max(bottom - height));
+    if (wanted - at).abs() > 0.5 {
+        ui.data_mut(|data| data.insert_temp(offset, wanted));
+        ui.ctx().request_repaint();
+    }
+}
+
+/// The selected part of a large deck: one click makes it the one that is matched.
+fn chosen_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut selected = state.view.selected.iter();
+    let (Some(&at), None) = (selected.next(), selected.next()) else {
+        return;
+    };
+    let Some(part) = state.document.part(at.role) else {
+        return;
+    };
+    let is_alone = part.facts.used.len() == 1 && part.is_used(at.id);
+    if part.facts.parts.len() < 2 || is_alone {
+        return;
+    }
+    let label = format!("Match only {} {}", at.role.mark(), at.id);
+    let button = egui::Button::new(label).min_size(vec2(ui.available_width(), ROW));
+    let can = state.locking_job().is_none();
+    if ui.add_enabled(can, button).clicked() {
+        commands.push(PartCommand::UseOnly(at).into());
+    }
 }

@@ -2,15 +2,16 @@
 
 use super::section::section_ui;
 use crate::app::{
-    Action, AppState, ColorBy, Command, Part, ReduceCommand, Section, Settings, ViewCommand,
+    Action, AppState, ColorBy, Command, LevelResult, Part, ReduceCommand, Section, Settings,
+    ViewCommand, duration_text,
 };
-use crate::jobs::{JobKey, PerRole, Role};
-use crate::ui::theme::{LABEL, ROW, UNIT};
+use crate::jobs::{JobKey, MeasuredLevel, PerRole, Role};
+use crate::ui::theme::{LABEL, Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, form_row, grouped, icon_button, length, paragraph,
-    role_mark, short_count,
+    role_mark, short_count, square, tight,
 };
-use egui::{DragValue, Slider, Ui, vec2};
+use egui::{DragValue, Response, Slider, Ui, vec2};
 
 /// The section.
 pub fn reduce_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -141,13 +142,16 @@ fn strip_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
             ui.spacing_mut().button_padding.x = 7.0;
-            if chip(ui, "full", wanted.is_none()).clicked() {
+            let full = chip(ui, "full", wanted.is_none());
+            if with_result(ui, full, state, None).clicked() {
                 commands.push(ReduceCommand::Full(roles).into());
             }
             let marks = state.settings.marked_levels.iter().filter(|n| **n < n_full);
             for &max_triangles in marks {
                 let is_on = wanted == Some(max_triangles);
-                if chip(ui, &short_count(max_triangles), is_on).clicked() {
+                let response = chip(ui, &short_count(max_triangles), is_on);
+                let response = with_result(ui, response, state, Some(max_triangles));
+                if response.clicked() {
                     let command = ReduceCommand::To {
                         roles,
                         max_triangles,
@@ -155,7 +159,9 @@ fn strip_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                     commands.push(command.into());
                 }
             }
+            marks_menu(ui, state, commands);
         });
+        result_ui(ui, state, wanted);
         let least = 200.min(n_full);
         let mut n = wanted.unwrap_or(n_full).clamp(least, n_full);
         ui.spacing_mut().slider_width = ui.available_width();
@@ -178,67 +184,145 @@ fn strip_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
+/// A dot on a chip whose level was matched, with what came out.
+fn with_result(ui: &Ui, chip: Response, state: &AppState, level: Option<usize>) -> Response {
+    let Some(result) = state.level_result(level) else {
+        return chip;
+    };
+    let at = chip.rect.right_top() + vec2(-4.0, 4.0);
+    ui.painter().circle_filled(at, 2.0, Palette::of(ui).good);
+    chip.on_hover_text(format!("Match: {}", result_text(state, result)))
+}
+
+/// "rmse 0.439 mm · 741 ms · 0.02 mm from full".
+fn result_text(state: &AppState, result: &LevelResult) -> String {
+    let mut parts = Vec::new();
+    if let Some(rmse) = result.rmse {
+        parts.push(format!("rmse {}", state.length_text(rmse)));
+    }
+    parts.push(duration_text(result.took));
+    if result.max_triangles.is_some()
+        && let Some(far) = state.distance_to_full(result)
+    {
+        parts.push(format!("pose {} from full", state.length_text(far)));
+    }
+    parts.join(" · ")
+}
+
+/// The result at the level that is shown, in words.
+fn result_ui(ui: &mut Ui, state: &AppState, level: Option<usize>) {
+    if let Some(result) = state.level_result(level) {
+        let of = level.map_or_else(|| "full".to_owned(), short_count);
+        let text = format!("match at {of}: {}", result_text(state, result));
+        let color = Palette::of(ui).secondary;
+        let text = egui::RichText::new(text).small().color(color);
+        ui.add(egui::Label::new(text).truncate());
+    }
+}
+
+/// Adds what stands in the field to the marked levels, or takes levels away.
+fn marks_menu(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut settings: Settings = state.settings.clone();
+    let menu = egui::containers::menu::MenuButton::from_button(square("…", ROW));
+    let (button, _) = tight(ui, |ui| {
+        menu.ui(ui, |ui| {
+            ui.set_min_width(168.0);
+            let n = settings.max_triangles;
+            let is_new = !settings.marked_levels.contains(&n);
+            let add = egui::Button::new(format!("Add {}", grouped(n)));
+            if ui.add_enabled(is_new, add).clicked() {
+                settings.marked_levels.push(n);
+                ui.close();
+            }
+            ui.separator();
+            for n in settings.marked_levels.clone() {
+                if ui.button(format!("Remove {}", grouped(n))).clicked() {
+                    settings.marked_levels.retain(|known| *known != n);
+                    ui.close();
+                }
+            }
+            ui.separator();
+            if ui.button("As at the beginning").clicked() {
+                settings.marked_levels = Settings::default().marked_levels;
+                ui.close();
+            }
+        })
+    });
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Marked levels"));
+    button.on_hover_text("Add or remove levels");
+    if settings != state.settings {
+        commands.push(Command::Settings(Box::new(settings)));
+    }
+}
+
 /// What one part got and how far it is from the full mesh.
 fn achieved_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState) {
     ui.spacing_mut().interact_size.y = 18.0;
     ui.horizontal(|ui| {
         role_mark(ui, role);
-        let Some(level) = &part.level else {
-            let n = part.loaded.report.n_triangles;
-            let text = if part.wanted_level.is_some() {
-                "⚠ out of date: reduce again".to_owned()
-            } else {
-                format!("{} triangles, full", grouped(n))
-            };
-            ui.label(text);
-            return;
-        };
-        let n = level.level.mesh.n_triangles();
-        ui.label(format!(
-            "{} of at most {}",
-            grouped(n),
-            grouped(level.max_triangles)
-        ));
+        ui.label(achieved(part));
     });
     let Some(level) = &part.level else { return };
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(4.0, 0.0);
-        ui.add_space(12.0 + UNIT);
-        match level.deviation.get() {
-            Some(d) => {
-                let text = format!(
-                    "rms {} · max {} · border {}",
-                    length(d.rms),
-                    length(d.max),
-                    length(d.border_max)
-                );
-                caption(ui, text).on_hover_text(
-                    "Distance between the reduced and the full mesh, measured both ways",
-                );
-                if d.loops_after != d.loops_before {
-                    let lost = d.loops_before.abs_diff(d.loops_after);
-                    caption(ui, format!("⚠ {lost} holes closed"));
-                }
-            }
-            None if state.jobs.is_active(JobKey::MeasureLevel(role)) => {
-                caption(ui, "measuring the distance to the full mesh…");
-            }
-            None => {}
+    let mut lines = vec![error_text(role, level, state)];
+    let report = &level.level.report;
+    if report.triangles_after > level.max_triangles {
+        lines.push(format!("⚠ {}", report.stop_reason));
+    }
+    if let Some(d) = level
+        .deviation
+        .get()
+        .filter(|d| d.loops_after != d.loops_before)
+    {
+        let lost = d.loops_before.abs_diff(d.loops_after);
+        lines.push(format!("⚠ {lost} holes closed"));
+    }
+    for text in lines.into_iter().filter(|text| !text.is_empty()) {
+        ui.horizontal(|ui| {
+            ui.add_space(12.0 + UNIT);
+            let color = Palette::of(ui).secondary;
+            let text = egui::RichText::new(text).small().color(color);
+            ui.add(egui::Label::new(text).wrap())
+                .on_hover_text("Distance between the reduced and the full mesh, both ways");
+        });
+    }
+}
+
+/// "got 1,999 of max 2,000".
+fn achieved(part: &Part) -> String {
+    match &part.level {
+        Some(level) => format!(
+            "got {} of max {}",
+            grouped(level.level.mesh.n_triangles()),
+            grouped(level.max_triangles)
+        ),
+        None if part.wanted_level.is_some() => "⚠ out of date: reduce again".to_owned(),
+        None => format!(
+            "{} triangles, full",
+            grouped(part.loaded.report.n_triangles)
+        ),
+    }
+}
+
+/// "rms 0.061 · max 0.72 · border 0.42 mm · 28 ms".
+fn error_text(role: Role, level: &MeasuredLevel, state: &AppState) -> String {
+    let mut text = match level.deviation.get() {
+        Some(d) => format!(
+            "rms {} · max {} · border {}",
+            length(d.rms),
+            length(d.max),
+            state.length_text(d.border_max)
+        ),
+        None if state.jobs.is_active(JobKey::MeasureLevel(role)) => {
+            "measuring the distance to the full mesh…".to_owned()
         }
-        let report = &level.level.report;
-        if report.triangles_after > level.max_triangles {
-            caption(ui, format!("⚠ {}", report.stop_reason));
-        }
-        let row = state
-            .log
-            .rows()
-            .iter()
-            .rev()
-            .find(|r| r.step == "reduce" && r.role == Some(role));
-        if let Some(took) = row.and_then(|row| row.took) {
-            caption(ui, format!("· {}", crate::app::duration_text(took)));
-        }
-    });
+        None => return String::new(),
+    };
+    let rows = state.log.rows().iter().rev();
+    let mut reductions = rows.filter(|r| r.step == "reduce" && r.role == Some(role));
+    if let Some(took) = reductions.next().and_then(|row| row.took) {
+        text += &format!(" · {}", duration_text(took));
+    }
+    text
 }
 
 fn views_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {

@@ -1,6 +1,7 @@
 //! The frame of the three sections: number, title, summary, fold.
 
 use crate::app::{AppState, Command, Section, ViewCommand};
+use crate::jobs::PerRole;
 use crate::ui::theme::{Palette, TALL, UNIT};
 use egui::{
     Align2, CornerRadius, FontId, Margin, Rect, Sense, Stroke, TextStyle, Ui, UiBuilder, pos2, vec2,
@@ -15,14 +16,10 @@ pub fn section_ui(
     commands: &mut Vec<Command>,
     body: impl FnOnce(&mut Ui, &mut Vec<Command>),
 ) {
-    let (index, title) = match section {
-        Section::Load => (0, "Load & display"),
-        Section::Reduce => (1, "Reduce"),
-        Section::Match => (2, "Match"),
-    };
-    let is_open = state.view.open_sections[index];
-    if header_ui(ui, state, section, (index, title, summary)) {
-        commands.push(ViewCommand::ToggleSection(index).into());
+    let mut fold = Fold::read(ui);
+    let is_open = fold.shown[section.index()];
+    if header_ui(ui, state, section, (is_open, summary)) {
+        commands.push(ViewCommand::OpenSection(section, !is_open).into());
     }
     if !is_open {
         return;
@@ -35,11 +32,73 @@ pub fn section_ui(
     };
     // A child of fixed width: nothing in it may push the edges of those below outwards.
     let room = ui.available_rect_before_wrap() - margin;
-    let mut inner = ui.new_child(UiBuilder::new().max_rect(room).id_salt(title));
+    // A name of its own: its widgets stay the same when a section above is folded.
+    let id = egui::Id::unique(("section", section.title()));
+    let mut inner = ui.new_child(UiBuilder::new().max_rect(room).scope_id(id));
     inner.spacing_mut().item_spacing = vec2(UNIT, 6.0);
     body(&mut inner, commands);
     let height = inner.min_rect().height() + margin.sum().y;
-    ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    let before = std::mem::replace(&mut fold.bodies[section.index()], height);
+    fold.write(ui);
+    let is_pressed =
+        ui.input(|input| input.pointer.any_pressed()) && ui.rect_contains_pointer(rect);
+    let parts = state.document.stamp().parts;
+    let has_unfolded = before > 0.0 && height - before > UNFOLDED && fold.parts == parts;
+    if (is_pressed || has_unfolded) && state.view.sections.in_use() != section {
+        commands.push(ViewCommand::UseSection(section).into());
+    }
+}
+
+/// A body that grows by so much was unfolded by someone, with the pointer or without.
+const UNFOLDED: f32 = 48.0;
+
+/// How high the bodies were when they were last drawn, and which are drawn now.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Fold {
+    bodies: [f32; 3],
+    shown: [bool; 3],
+    /// The parts that were there in the frame before; a body that grows with a new part was not unfolded by anyone.
+    parts: PerRole<u64>,
+}
+
+impl Fold {
+    fn id() -> egui::Id {
+        egui::Id::unique("folds of the left column")
+    }
+
+    fn read(ui: &Ui) -> Self {
+        let kept = ui.data(|data| data.get_temp(Self::id()));
+        kept.unwrap_or(Self {
+            bodies: [0.0; 3],
+            shown: [true; 3],
+            parts: PerRole::default(),
+        })
+    }
+
+    fn write(self, ui: &Ui) {
+        ui.data_mut(|data| data.insert_temp(Self::id(), self));
+    }
+}
+
+/// To be called after the sections are drawn.
+pub fn drawn_ui(ui: &Ui, state: &AppState) {
+    let parts = state.document.stamp().parts;
+    let fold = Fold::read(ui);
+    if fold.parts != parts {
+        Fold { parts, ..fold }.write(ui);
+    }
+}
+
+/// Decides which sections are unfolded in a column of this height; before the sections are drawn.
+pub fn fold_ui(ui: &Ui, state: &AppState, height: f32) {
+    let before = Fold::read(ui);
+    let room = height - TALL * Section::ALL.len() as f32;
+    let shown = state.view.sections.shown(before.bodies, room, before.shown);
+    Fold { shown, ..before }.write(ui);
+    if shown != before.shown {
+        ui.ctx().request_repaint();
+    }
 }
 
 /// Draws the header; true if it was clicked.
@@ -47,10 +106,10 @@ fn header_ui(
     ui: &mut Ui,
     state: &AppState,
     section: Section,
-    (index, title, summary): (usize, &str, &str),
+    (is_open, summary): (bool, &str),
 ) -> bool {
     let palette = Palette::of(ui);
-    let is_open = state.view.open_sections[index];
+    let (index, title) = (section.index(), section.title());
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), TALL), Sense::click());
     let name = format!("{} {title}", index + 1);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_open, &name));

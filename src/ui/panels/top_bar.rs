@@ -7,7 +7,7 @@ use crate::pipeline::project::EXTENSION;
 use crate::report::{CardForm, MatrixForm};
 use crate::ui::project_dialogs::kept_menu_ui;
 use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::caption;
+use crate::ui::widgets::{caption, focus_ring};
 use egui::{Align, Button, Layout, MenuBar, RichText, Sense, Ui, pos2, vec2};
 
 /// The bar at the top.
@@ -179,9 +179,10 @@ fn bell_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     let width = if n_unread > 0 { 40.0 } else { ROW };
     let (rect, response) = ui.allocate_exact_size(vec2(width, ROW), Sense::click());
-    if response.hovered() || response.has_focus() {
+    if response.hovered() {
         ui.painter().rect_filled(rect, 4.0, palette.hovered);
     }
+    focus_ring(ui, rect, &response);
     let at = pos2(rect.left() + ROW / 2.0, rect.center().y);
     paint_bell(ui.painter(), at, color);
     if n_unread > 0 {
@@ -219,14 +220,18 @@ fn paint_bell(painter: &egui::Painter, at: egui::Pos2, color: egui::Color32) {
 fn search_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     let palette = Palette::of(ui);
     ui.spacing_mut().button_padding.x = 8.0;
-    let text = RichText::new("Search commands").color(palette.secondary);
-    let button = Button::new(text)
-        .shortcut_text("Ctrl+K")
+    let room = ui.available_width();
+    let is_wide = room > 216.0;
+    let text = if is_wide { "Search commands" } else { "Search" };
+    let mut button = Button::new(RichText::new(text).color(palette.secondary))
         .fill(palette.panel)
         .stroke(egui::Stroke::new(1.0, palette.line))
         .frame_when_inactive(true)
-        .min_size(vec2(208.0, ROW));
-    let response = ui.add(button);
+        .min_size(vec2(if is_wide { 208.0 } else { 0.0 }, ROW));
+    if is_wide {
+        button = button.shortcut_text("Ctrl+K");
+    }
+    let response = ui.add(button).on_hover_text("Search commands   Ctrl+K");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Search commands"));
     if response.clicked() {
         commands.push(ViewCommand::SetDialog(Some(Dialog::Palette)).into());

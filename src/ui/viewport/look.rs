@@ -2,6 +2,7 @@
 
 use egui::Color32;
 
+use crate::app::{AppState, ColorBy};
 use crate::colormap::Rgb;
 use crate::jobs::{PerRole, Role};
 use crate::render::{Background, LineLook};
@@ -24,6 +25,12 @@ pub(super) struct Look {
     /// Accent of tools: pivot ring, picked node, wipe line.
     pub tool: Color32,
     pub is_dark: bool,
+}
+
+/// The colour of the part of a deck with this place in it, while colours tell parts.
+pub fn part_color(ui: &egui::Ui, state: &AppState, index: usize) -> Option<Rgb> {
+    let is_by_part = state.view.display.color_by == ColorBy::Part;
+    is_by_part.then(|| Look::of(ui.visuals().dark_mode).part(index))
 }
 
 impl Look {

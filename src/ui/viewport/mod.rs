@@ -27,6 +27,7 @@ use cast::Stage;
 use fields::{FieldKind, FieldStore};
 use gpu::{Gpu, ViewCallback};
 use look::Look;
+pub use look::part_color;
 use meshes::{MeshSource, MeshStore, ShownMesh};
 use motion::{Crossing, SmoothCamera, SmoothPose};
 use navigation::{Navigator, View};

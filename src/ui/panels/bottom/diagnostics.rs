@@ -1,14 +1,17 @@
 //! What the reader found in the files.
 
-use crate::app::AppState;
-use crate::formats::{Diagnostic, Severity};
+use crate::app::{AppState, Command, ExportCommand};
+use crate::formats::{Diagnostic, Diagnostics, Severity};
 use crate::jobs::Role;
 use crate::ui::theme::Palette;
 use crate::ui::widgets::{caption, grouped, nothing_yet, role_mark};
-use egui::{RichText, ScrollArea, Ui};
+use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
-/// Counts by kind, then the findings that were kept, file by file.
-pub fn diagnostics_ui(ui: &mut Ui, state: &AppState) {
+/// Findings of a kind that are shown without being asked for.
+const FEW: u64 = 3;
+
+/// File by file one line for each kind of finding, which unfolds.
+pub fn diagnostics_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let loaded = || {
         let parts = Role::ALL.into_iter();
         parts.filter_map(|role| Some((role, state.document.part(role)?)))
@@ -21,11 +24,8 @@ pub fn diagnostics_ui(ui: &mut Ui, state: &AppState) {
             Some(_) => "Nothing was found amiss in the files",
             None => "No file yet",
         };
-        nothing_yet(
-            ui,
-            title,
-            "Findings of the reader stand here with file and line",
-        );
+        let hint = "Findings of the reader stand here with file and line";
+        nothing_yet(ui, title, hint);
         return;
     }
     ScrollArea::vertical()
@@ -40,28 +40,54 @@ pub fn diagnostics_ui(ui: &mut Ui, state: &AppState) {
                 ui.horizontal(|ui| {
                     role_mark(ui, role);
                     ui.label(part.loaded.file_name());
-                    for (kind, n) in diagnostics.counts() {
-                        let n = usize::try_from(n).unwrap_or(usize::MAX);
-                        caption(ui, format!("{} × {}", grouped(n), kind.label()));
+                    if ui.small_button("Copy").clicked() {
+                        let lines: Vec<String> =
+                            diagnostics.iter().map(ToString::to_string).collect();
+                        let (text, what) = (lines.join("\n"), "Findings".to_owned());
+                        commands.push(ExportCommand::CopyText { text, what }.into());
                     }
                 });
-                for diagnostic in diagnostics.iter() {
-                    row_ui(ui, diagnostic);
-                }
+                kinds_ui(ui, role, diagnostics);
             }
         });
 }
 
-fn row_ui(ui: &mut Ui, diagnostic: &Diagnostic) {
+/// The gravest kinds first.
+fn kinds_ui(ui: &mut Ui, role: Role, diagnostics: &Diagnostics) {
+    let mut kinds: Vec<_> = diagnostics.counts().filter(|(_, n)| *n > 0).collect();
+    kinds.sort_by_key(|(kind, _)| std::cmp::Reverse(kind.severity()));
+    for (kind, n) in kinds {
+        let (sign, color) = look(ui, kind.severity());
+        let count = grouped(usize::try_from(n).unwrap_or(usize::MAX));
+        let title = RichText::new(format!("{sign} {count} × {}", kind.label())).color(color);
+        CollapsingHeader::new(title)
+            .id_salt((role.word(), kind.label()))
+            .default_open(n <= FEW)
+            .show(ui, |ui| {
+                let mut n_kept = 0;
+                for diagnostic in diagnostics.iter().filter(|d| d.kind == kind) {
+                    row_ui(ui, diagnostic);
+                    n_kept += 1;
+                }
+                if n_kept < n {
+                    let more = usize::try_from(n - n_kept).unwrap_or(usize::MAX);
+                    caption(ui, format!("and {} more of this kind", grouped(more)));
+                }
+            });
+    }
+}
+
+/// Sign and colour of a severity.
+fn look(ui: &Ui, severity: Severity) -> (&'static str, egui::Color32) {
     let palette = Palette::of(ui);
-    let (sign, color) = match diagnostic.severity() {
+    match severity {
         Severity::Note => ("ℹ", palette.secondary),
         Severity::Warning => ("⚠", palette.check),
         Severity::Error => ("✖", palette.poor),
-    };
-    ui.horizontal_top(|ui| {
-        ui.label(RichText::new(sign).color(color));
-        let text = diagnostic.to_string();
-        ui.add(egui::Label::new(text).wrap().selectable(true));
-    });
+    }
+}
+
+fn row_ui(ui: &mut Ui, diagnostic: &Diagnostic) {
+    let text = diagnostic.to_string();
+    ui.add(egui::Label::new(text).wrap().selectable(true));
 }

@@ -1,14 +1,26 @@
-//! What was done and how long it took.
+//! What was done, when, and how long it took.
 
 use crate::app::{
-    Action, AppState, Command, ExportCommand, ExportKind, LogRow, NoticeLevel, duration_text,
+    Action, AppState, Command, ExportCommand, ExportKind, LogRow, NoticeLevel, clock_text,
+    duration_text,
 };
 use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::{caption, level_color, nothing_yet, paint_role_mark, plain_action};
-use egui::{Align, Layout, Rect, RichText, Ui, Vec2};
-use egui_extras::{Column, TableBuilder};
+use crate::ui::widgets::{level_color, nothing_yet, paint_role_mark, plain_action};
+use egui::{Align, Layout, Rect, RichText, Sense, TextStyle, Ui, Vec2};
+use egui_extras::{Column, TableBuilder, TableRow};
+use std::collections::BTreeSet;
 
+/// Height of a row of one line.
 const LINE: f32 = 20.0;
+/// Columns of fixed width: time of day, step, part, duration.
+const COLUMNS: [f32; 4] = [58.0, 58.0, 12.0, 72.0];
+/// Space between the columns.
+const GAP: f32 = 8.0;
+/// In a pane narrower than this the time of day is left to the tooltip.
+const NARROW: f32 = 420.0;
+
+/// Rows that show their whole text, by their index.
+type Opened = BTreeSet<usize>;
 
 /// The table, newest row in sight, and the sums.
 pub fn log_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -21,85 +33,167 @@ pub fn log_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         );
         return;
     }
-    let height = (ui.available_height() - ROW - 4.0).max(LINE);
+    let height = (ui.available_height() - ROW - ui.spacing().item_spacing.y).max(LINE);
     ui.allocate_ui(egui::vec2(ui.available_width(), height), |ui| {
         ui.set_min_height(height);
-        ui.spacing_mut().item_spacing.y = 0.0;
-        TableBuilder::new(ui)
-            .id_salt("log")
-            .stick_to_bottom(true)
-            .auto_shrink([false, false])
-            .min_scrolled_height(0.0)
-            .max_scroll_height(height)
-            .cell_layout(Layout::left_to_right(Align::Center))
-            .column(Column::exact(56.0))
-            .column(Column::exact(64.0))
-            .column(Column::exact(16.0))
-            .column(Column::remainder().clip(true))
-            .column(Column::exact(88.0))
-            .body(|body| {
-                body.rows(LINE, rows.len(), |mut table_row| {
-                    let row = &rows[table_row.index()];
-                    table_row.col(|ui| {
-                        caption(ui, clock(row.at));
-                    });
-                    table_row.col(|ui| {
-                        ui.label(row.step);
-                    });
-                    table_row.col(|ui| role_cell(ui, row));
-                    table_row.col(|ui| text_cell(ui, row));
-                    table_row.col(|ui| {
-                        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                            ui.add_space(8.0);
-                            if let Some(took) = row.took {
-                                ui.label(duration_text(took));
-                            }
-                        });
-                    });
-                });
-            });
+        table_ui(ui, rows, height);
     });
-    ui.horizontal(|ui| {
-        let total = duration_text(state.log.total());
-        caption(
-            ui,
-            format!("total {total} · build {}", crate::report::build_id()),
-        );
+    sums_ui(ui, state, commands);
+}
+
+fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
+    let id = egui::Id::unique("opened log rows");
+    let mut opened: Opened = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let is_narrow = ui.available_width() < NARROW;
+    let fixed = if is_narrow {
+        &COLUMNS[1..]
+    } else {
+        &COLUMNS[..]
+    };
+    let others: f32 = fixed.iter().map(|width| width + GAP).sum();
+    let room = (ui.available_width() - others - GAP).max(40.0);
+    let heights: Vec<f32> = rows
+        .iter()
+        .enumerate()
+        .map(|(index, row)| row_height(ui, row, opened.contains(&index), room))
+        .collect();
+    let mut clicked = None;
+    ui.spacing_mut().item_spacing = egui::vec2(GAP, 0.0);
+    let mut table = TableBuilder::new(ui)
+        .id_salt(("log", is_narrow))
+        .sense(Sense::click())
+        .stick_to_bottom(true)
+        .auto_shrink([false, false])
+        .min_scrolled_height(0.0)
+        .max_scroll_height(height)
+        .cell_layout(Layout::left_to_right(Align::Center));
+    let [time, step, part, took] = COLUMNS;
+    if !is_narrow {
+        table = table.column(Column::exact(time));
+    }
+    table
+        .column(Column::exact(step))
+        .column(Column::exact(part))
+        .column(Column::remainder().clip(true))
+        .column(Column::exact(took))
+        .body(|body| {
+            body.heterogeneous_rows(heights.into_iter(), |mut table_row| {
+                let index = table_row.index();
+                let (row, is_opened) = (&rows[index], opened.contains(&index));
+                row_ui(&mut table_row, row, is_narrow, is_opened);
+                let response = table_row.response();
+                if response.clicked() {
+                    clicked = Some(index);
+                }
+                response.on_hover_text(hover_text(row));
+            });
+        });
+    if let Some(index) = clicked {
+        if !opened.remove(&index) {
+            opened.insert(index);
+        }
+        ui.data_mut(|data| data.insert_temp(id, opened));
+    }
+}
+
+/// One line, or as many as the whole text needs.
+fn row_height(ui: &Ui, row: &LogRow, is_opened: bool, room: f32) -> f32 {
+    if !is_opened {
+        return LINE;
+    }
+    let font = TextStyle::Body.resolve(ui.style());
+    let galley = ui
+        .painter()
+        .layout(text_of(row), font, egui::Color32::WHITE, room);
+    (galley.size().y + 4.0).max(LINE)
+}
+
+fn row_ui(table_row: &mut TableRow<'_, '_>, row: &LogRow, is_narrow: bool, is_opened: bool) {
+    if !is_narrow {
+        table_row.col(|ui| {
+            let color = Palette::of(ui).secondary;
+            let text = RichText::new(clock_text(row.at)).small().color(color);
+            ui.add(egui::Label::new(text).selectable(false));
+        });
+    }
+    table_row.col(|ui| {
+        ui.add(egui::Label::new(row.step).selectable(false));
+    });
+    table_row.col(|ui| role_cell(ui, row));
+    table_row.col(|ui| text_cell(ui, row, is_opened));
+    table_row.col(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if ui.button("Save log…").clicked() {
-                commands.push(ExportCommand::AskSave(ExportKind::Log).into());
+            ui.add_space(4.0);
+            if let Some(took) = row.took {
+                ui.add(egui::Label::new(duration_text(took)).selectable(false));
             }
-            plain_action(ui, state, Action::CopyLog, commands);
         });
     });
 }
 
-/// Minutes, seconds and tenths since the window opened.
-fn clock(at: std::time::Duration) -> String {
-    let tenths = at.as_millis() / 100;
+/// Total, build and threads on the left; copy and save on the right.
+fn sums_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let size = egui::vec2(ui.available_width(), ROW);
+    ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
+        if ui.button("Save log…").clicked() {
+            commands.push(ExportCommand::AskSave(ExportKind::Log).into());
+        }
+        plain_action(ui, state, Action::CopyLog, commands);
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            let color = Palette::of(ui).secondary;
+            let text = RichText::new(sums(state)).small().color(color);
+            ui.add(egui::Label::new(text).truncate());
+        });
+    });
+}
+
+fn sums(state: &AppState) -> String {
+    let total = duration_text(state.log.total());
+    let threads = rayon::current_num_threads();
+    let build = crate::report::build_id();
+    format!("total {total} · {threads} threads · build {build}")
+}
+
+fn text_of(row: &LogRow) -> String {
+    let mark = row.level.mark();
+    let text = row.counted_text();
+    if row.level >= NoticeLevel::Note {
+        format!("{mark} {text}")
+    } else {
+        text
+    }
+}
+
+fn hover_text(row: &LogRow) -> String {
+    let took = row
+        .took
+        .map_or_else(String::new, |took| format!(", {}", duration_text(took)));
     format!(
-        "{:02}:{:02}.{}",
-        tenths / 600,
-        tenths / 10 % 60,
-        tenths % 10
+        "{} {}{took}\n{}\nClick for the whole text",
+        clock_text(row.at),
+        row.step,
+        text_of(row)
     )
 }
 
 fn role_cell(ui: &mut Ui, row: &LogRow) {
     let Some(role) = row.role else { return };
-    let (rect, response) = ui.allocate_exact_size(Vec2::splat(12.0), egui::Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(12.0), Sense::hover());
     let mark = Rect::from_center_size(rect.center(), Vec2::splat(9.0));
     paint_role_mark(ui.painter(), mark, role, Palette::of(ui).role(role));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, role.word()));
 }
 
-fn text_cell(ui: &mut Ui, row: &LogRow) {
+fn text_cell(ui: &mut Ui, row: &LogRow, is_opened: bool) {
     let palette = Palette::of(ui);
-    let text = if row.level >= NoticeLevel::Note {
-        let text = format!("{} {}", row.level.mark(), row.text);
-        RichText::new(text).color(level_color(palette, row.level))
+    let mut text = RichText::new(text_of(row));
+    if row.level >= NoticeLevel::Note {
+        text = text.color(level_color(palette, row.level));
+    }
+    let label = egui::Label::new(text).selectable(false);
+    if is_opened {
+        ui.add(label.wrap());
     } else {
-        RichText::new(&row.text)
-    };
-    ui.add(egui::Label::new(text).truncate().selectable(true));
+        ui.add(label.truncate().show_tooltip_when_elided(false));
+    }
 }

@@ -1,5 +1,6 @@
 //! The pane at the bottom: a row of tabs over one of them.
 
+mod charts;
 mod convergence;
 mod diagnostics;
 mod history;
@@ -36,7 +37,7 @@ pub fn bottom_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             BottomTab::Convergence => convergence::convergence_ui(ui, state, commands),
             BottomTab::Sweep => sweep::sweep_ui(ui, state, commands),
             BottomTab::History => history::history_ui(ui, state, commands),
-            BottomTab::Diagnostics => diagnostics::diagnostics_ui(ui, state),
+            BottomTab::Diagnostics => diagnostics::diagnostics_ui(ui, state, commands),
         }
     });
 }
@@ -52,6 +53,11 @@ const SHOWN: [BottomTab; 7] = [
     BottomTab::Diagnostics,
 ];
 
+/// In a pane narrower than this the tabs become a menu, so that the status keeps its place.
+const NARROW: f32 = 620.0;
+/// Room for the status at the right of the tabs.
+const STATUS: f32 = 216.0;
+
 fn tabs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let palette = Palette::of(ui);
     let bar = Frame::new()
@@ -60,28 +66,54 @@ fn tabs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     bar.show(ui, |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            // At a large text size the tabs scroll sideways rather than being cut.
+            let is_shown = |tab: &BottomTab| *tab == state.view.tab || state.has_content(*tab);
+            let tabs: Vec<BottomTab> = SHOWN.into_iter().filter(is_shown).collect();
             let room = ui.available_width();
-            let is_narrow = room < 720.0;
-            let tabs = if is_narrow { room } else { room - 200.0 };
-            ScrollArea::horizontal()
-                .id_salt("tabs")
-                .max_width(tabs)
-                .scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden)
-                .show(ui, |ui| {
-                    ui.horizontal(|ui| {
-                        for tab in SHOWN {
-                            tab_ui(ui, tab, state, commands);
-                        }
-                    });
-                });
-            if !is_narrow {
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    status_ui(ui, state);
-                });
+            if room < NARROW {
+                tab_menu(ui, &tabs, state, commands);
+            } else {
+                tab_row(ui, &tabs, state, (room - STATUS, commands));
             }
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                status_ui(ui, state);
+            });
         });
     });
+}
+
+fn tab_row(
+    ui: &mut Ui,
+    tabs: &[BottomTab],
+    state: &AppState,
+    (room, commands): (f32, &mut Vec<Command>),
+) {
+    ScrollArea::horizontal()
+        .id_salt("tabs")
+        .max_width(room)
+        .scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden)
+        .show(ui, |ui| {
+            ui.horizontal(|ui| {
+                for tab in tabs {
+                    tab_ui(ui, *tab, state, commands);
+                }
+            });
+        });
+}
+
+/// The tabs as a menu whose button names the one that is shown.
+fn tab_menu(ui: &mut Ui, tabs: &[BottomTab], state: &AppState, commands: &mut Vec<Command>) {
+    let label = format!("{}  ▾", state.view.tab.label());
+    let (button, _) = egui::containers::menu::MenuButton::new(label).ui(ui, |ui| {
+        for tab in tabs {
+            let is_on = *tab == state.view.tab;
+            if ui.selectable_label(is_on, tab.label()).clicked() {
+                commands.push(ViewCommand::SetTab(*tab).into());
+                ui.close();
+            }
+        }
+    });
+    let name = format!("Tab {}", state.view.tab.label());
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
 }
 
 fn tab_ui(ui: &mut Ui, tab: BottomTab, state: &AppState, commands: &mut Vec<Command>) {
@@ -122,7 +154,8 @@ fn status_ui(ui: &mut Ui, state: &AppState) {
             text += &format!(" {:.0} %", 100.0 * progress.done as f64 / total as f64);
         }
     }
-    let label = caption(ui, text);
+    let text = RichText::new(text).small().color(Palette::of(ui).secondary);
+    let label = ui.add(egui::Label::new(text).truncate());
     ui.ctx().accesskit_node_builder(label.id, |node| {
         node.set_live(egui::accesskit::Live::Polite);
     });

@@ -1,0 +1,125 @@
+//! Which of the three sections of the left column are unfolded.
+
+use super::Section;
+
+/// A section that was folded for want of room comes back only when so much more is free, so that a
+/// line of text more or less does not fold it to and fro. In points.
+const SLACK: f32 = 32.0;
+
+/// What the user asked for, and what was used last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sections {
+    is_open: [bool; 3],
+    /// Latest first.
+    order: [Section; 3],
+}
+
+impl Default for Sections {
+    fn default() -> Self {
+        Self {
+            is_open: [true; 3],
+            order: Section::ALL,
+        }
+    }
+}
+
+impl Sections {
+    /// True unless the user folded it.
+    pub fn is_open(&self, section: Section) -> bool {
+        self.is_open[section.index()]
+    }
+
+    /// The section that is worked in.
+    pub fn in_use(&self) -> Section {
+        self.order[0]
+    }
+
+    /// The user works in this section now.
+    pub fn touch(&mut self, section: Section) {
+        let at = self.order.iter().position(|s| *s == section).unwrap_or(0);
+        self.order[..=at].rotate_right(1);
+    }
+
+    /// The user folds or unfolds a section; this wins over everything that follows from room.
+    pub fn set_open(&mut self, section: Section, is_open: bool) {
+        self.is_open[section.index()] = is_open;
+        if is_open {
+            self.touch(section);
+        }
+    }
+
+    /// Which sections are drawn unfolded when their bodies are so high and so much room is left
+    /// beside the headers.
+    ///
+    /// Where not all fit, those used last have the right of way, and the latest is always shown.
+    /// `before` is the answer of the frame before.
+    pub fn shown(&self, bodies: [f32; 3], room: f32, before: [bool; 3]) -> [bool; 3] {
+        let mut shown = [false; 3];
+        let mut left = room;
+        let mut is_first = true;
+        for index in self.order.map(Section::index) {
+            if !self.is_open[index] {
+                continue;
+            }
+            let slack = if before[index] { 0.0 } else { SLACK };
+            if is_first || bodies[index] + slack <= left {
+                shown[index] = true;
+                left -= bodies[index];
+            }
+            is_first = false;
+        }
+        shown
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BODIES: [f32; 3] = [200.0, 240.0, 500.0];
+
+    #[test]
+    fn all_are_shown_where_there_is_room() {
+        let sections = Sections::default();
+        assert_eq!(sections.shown(BODIES, 1000.0, [true; 3]), [true; 3]);
+    }
+
+    #[test]
+    fn without_room_those_used_last_stay() {
+        let mut sections = Sections::default();
+        sections.touch(Section::Reduce);
+        sections.touch(Section::Match);
+        let shown = |room| sections.shown(BODIES, room, [true; 3]);
+        assert_eq!(shown(800.0), [false, true, true]);
+        assert_eq!(shown(600.0), [false, false, true]);
+        // What is older may still fit where the one between does not.
+        assert_eq!(shown(720.0), [true, false, true]);
+        // The one in use stays even where it does not fit.
+        assert_eq!(shown(100.0), [false, false, true]);
+    }
+
+    #[test]
+    fn what_the_user_says_wins() {
+        let mut sections = Sections::default();
+        sections.set_open(Section::Match, false);
+        assert_eq!(sections.shown(BODIES, 9e9, [true; 3]), [true, true, false]);
+        sections.touch(Section::Match);
+        assert!(!sections.shown(BODIES, 9e9, [true; 3])[2]);
+        sections.set_open(Section::Match, true);
+        assert_eq!(sections.in_use(), Section::Match);
+        assert_eq!(
+            sections.shown(BODIES, 500.0, [true; 3]),
+            [false, false, true]
+        );
+    }
+
+    #[test]
+    fn a_folded_section_waits_for_more_than_just_enough() {
+        let mut sections = Sections::default();
+        sections.touch(Section::Match);
+        let bodies = [200.0, 0.0, 500.0];
+        assert!(sections.shown(bodies, 710.0, [true; 3])[0]);
+        assert!(!sections.shown(bodies, 710.0, [false, true, true])[0]);
+        assert!(sections.shown(bodies, 740.0, [false, true, true])[0]);
+    }
+}

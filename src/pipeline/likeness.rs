@@ -1,0 +1,211 @@
+//! How alike two parts are before anything is matched: by area, spread and thickness.
+//!
+//! A crash model has thousands of parts. Comparing three or four numbers of each names the few that
+//! a stamped part can belong to; the match then decides.
+
+use std::collections::BTreeMap;
+
+use crate::formats::Model;
+use crate::geometry::{Matrix3, Point3, Vector3};
+
+/// Area and its first and second moments. Sums over several parts are the moments of all together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moments {
+    area: f64,
+    /// Integral of the position, about the origin of the file.
+    first: Vector3,
+    /// Integral of the position times its transpose.
+    second: Matrix3,
+}
+
+impl Default for Moments {
+    fn default() -> Self {
+        Self {
+            area: 0.0,
+            first: Vector3::zeros(),
+            second: Matrix3::zeros(),
+        }
+    }
+}
+
+impl Moments {
+    /// Adds a triangle, exactly: its mass stands at the middles of its edges.
+    fn add_triangle(&mut self, corners: [Point3; 3]) {
+        let [a, b, c] = corners.map(|corner| corner.coords);
+        let area = 0.5 * (b - a).cross(&(c - a)).norm();
+        if !area.is_finite() {
+            return;
+        }
+        self.area += area;
+        for middle in [(a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0] {
+            self.first += middle * (area / 3.0);
+            self.second += middle * middle.transpose() * (area / 3.0);
+        }
+    }
+
+    /// Both together.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Self {
+        Self {
+            area: self.area + other.area,
+            first: self.first + other.first,
+            second: self.second + other.second,
+        }
+    }
+
+    /// Area and edges, which no motion changes; `None` without area.
+    pub fn signature(&self, thickness: Option<f64>) -> Option<Signature> {
+        if self.area.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
+            return None;
+        }
+        let mean = self.first / self.area;
+        let covariance = self.second / self.area - mean * mean.transpose();
+        let mut spread = covariance.symmetric_eigenvalues();
+        spread.as_mut_slice().sort_by(|a, b| b.total_cmp(a));
+        // A bar of length a spreads by a²/12.
+        let edges = spread.map(|s| (12.0 * s.max(0.0)).sqrt());
+        Some(Signature {
+            area: self.area,
+            edges: [edges[0], edges[1], edges[2]],
+            thickness,
+        })
+    }
+}
+
+/// The moments of every part of a model with shells, by its id. O(shells).
+///
+/// `factor` is what the coordinates are multiplied by.
+pub fn moments_of_parts(model: &Model, factor: f64) -> BTreeMap<u64, Moments> {
+    let mut moments = vec![Moments::default(); model.parts.len()];
+    let positions = model.nodes.positions();
+    // About a corner of the model, so that far coordinates take no digits from small parts.
+    let origin = positions.first().copied().unwrap_or_default();
+    for shell in &model.shells {
+        let Some(sum) = moments.get_mut(shell.part as usize) else {
+            continue;
+        };
+        let at = |n: u32| Point3::from((positions[n as usize] - origin) * factor);
+        let [a, b, c, d] = shell.nodes.map(at);
+        sum.add_triangle([a, b, c]);
+        if !shell.is_triangle() {
+            sum.add_triangle([a, c, d]);
+        }
+    }
+    let with_area = model
+        .parts
+        .iter()
+        .zip(moments)
+        .filter(|(_, m)| m.area > 0.0);
+    with_area.map(|(part, m)| (part.id, m)).collect()
+}
+
+/// What is compared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Signature {
+    /// Area, in squares of the crash model's unit.
+    pub area: f64,
+    /// Edges of the box of equal spread, longest first.
+    pub edges: [f64; 3],
+    /// Mean thickness, if known.
+    pub thickness: Option<f64>,
+}
+
+/// Shares of the whole in the comparison. The thin direction says little: springback and flanges
+/// change it most.
+const AREA: f64 = 1.0;
+const EDGES: [f64; 3] = [1.0, 1.0, 0.3];
+const THICKNESS: f64 = 0.5;
+
+impl Signature {
+    /// 1 for equal parts, towards 0 the more they differ; the order of the two does not matter.
+    pub fn likeness(&self, other: &Self) -> f64 {
+        // Below this share of the longest edge a part is flat, whatever the figures say.
+        let least = 0.02 * self.edges[0].max(other.edges[0]);
+        let off = |a: f64, b: f64| {
+            (a.max(f64::MIN_POSITIVE) / b.max(f64::MIN_POSITIVE))
+                .ln()
+                .abs()
+        };
+        let mut sum = AREA * off(self.area, other.area);
+        let mut weight = AREA;
+        for ((a, b), share) in self.edges.iter().zip(other.edges).zip(EDGES) {
+            sum += share * off(a.max(least), b.max(least));
+            weight += share;
+        }
+        if let (Some(a), Some(b)) = (self.thickness, other.thickness) {
+            sum += THICKNESS * off(a, b);
+            weight += THICKNESS;
+        }
+        (-2.0 * sum / weight).exp()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Rotation, TriMesh};
+
+    fn plate(length: f64, width: f64) -> Model {
+        let corner = |x, y| Point3::new(x, y, 0.0);
+        let corners = vec![
+            corner(0.0, 0.0),
+            corner(length, 0.0),
+            corner(length, width),
+            corner(0.0, width),
+        ];
+        let mesh = TriMesh::new(corners, vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+        Model::from_mesh(&mesh, "plate")
+    }
+
+    fn signature(model: &Model, factor: f64) -> Signature {
+        let moments = moments_of_parts(model, factor);
+        let all = moments
+            .values()
+            .fold(Moments::default(), |sum, m| sum.and(m));
+        all.signature(None).unwrap()
+    }
+
+    #[test]
+    fn a_plate_has_its_own_edges() {
+        let found = signature(&plate(300.0, 100.0), 1.0);
+        assert!((found.area - 30_000.0).abs() < 1e-6);
+        assert!((found.edges[0] - 300.0).abs() < 1e-6, "{found:?}");
+        assert!((found.edges[1] - 100.0).abs() < 1e-6);
+        assert!(found.edges[2] < 1e-3);
+    }
+
+    #[test]
+    fn motion_and_unit_do_not_matter() {
+        let mut moved = plate(0.3, 0.1);
+        let turn = Rotation::from_euler_angles(0.4, -1.1, 2.0);
+        for point in moved.nodes.positions_mut() {
+            *point = turn * *point + Vector3::new(5.0, -3.0, 1.0);
+        }
+        let (a, b) = (
+            signature(&plate(300.0, 100.0), 1.0),
+            signature(&moved, 1000.0),
+        );
+        assert!(a.likeness(&b) > 0.999_999, "{a:?} {b:?}");
+    }
+
+    #[test]
+    fn the_more_they_differ_the_less_alike() {
+        let given = signature(&plate(300.0, 100.0), 1.0);
+        let likeness = |length, width| given.likeness(&signature(&plate(length, width), 1.0));
+        let trimmed = likeness(290.0, 95.0);
+        let other = likeness(300.0, 50.0);
+        let tiny = likeness(30.0, 10.0);
+        assert!(trimmed > 0.85 && trimmed < 1.0, "{trimmed}");
+        assert!(trimmed > other && other > tiny, "{trimmed} {other} {tiny}");
+        let thick = Signature {
+            thickness: Some(1.2),
+            ..given
+        };
+        let thin = Signature {
+            thickness: Some(0.8),
+            ..given
+        };
+        assert!(thick.likeness(&thick) > thick.likeness(&thin));
+        assert_eq!(thick.likeness(&thin), thin.likeness(&thick));
+    }
+}

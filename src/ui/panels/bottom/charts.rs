@@ -1,0 +1,99 @@
+//! Charts with logarithmic axes.
+
+use crate::ui::theme::Palette;
+use egui::{Ui, Vec2};
+use egui_plot::{GridInput, GridMark, Plot};
+use std::ops::RangeInclusive;
+
+/// A chart of logarithms that shows and does not move: no zoom, no drag, quiet grid, and the numbers
+/// themselves along the axes.
+pub fn log_chart(ui: &Ui, name: &str, size: Vec2) -> Plot<'static> {
+    Plot::new(name)
+        .width(size.x)
+        .height(size.y)
+        .show_background(false)
+        .allow_scroll(false)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .grid_color(Palette::of(ui).line)
+        .y_axis_label(name.to_owned())
+        .y_axis_min_width(44.0)
+        .x_axis_formatter(|mark, _| decade_text(mark.value))
+        .y_axis_formatter(|mark, _| decade_text(mark.value))
+        .x_grid_spacer(decades)
+        .y_grid_spacer(decades)
+}
+
+/// The number whose logarithm this is: 0.01, 3, 20k. Two digits count.
+pub fn decade_text(log: f64) -> String {
+    let value = 10_f64.powf(log);
+    let (value, unit) = if value >= 999.0 {
+        (value / 1000.0, "k")
+    } else {
+        (value, "")
+    };
+    let decimals = if value >= 9.95 {
+        0
+    } else {
+        (1 - value.log10().floor() as i32).clamp(0, 9) as usize
+    };
+    let text = format!("{value:.decimals$}");
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &text
+    };
+    format!("{text}{unit}")
+}
+
+/// Grid of a logarithmic axis: decades, and 2 and 5 between them where few decades are seen.
+fn decades(input: GridInput) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    let (first, last) = (low.floor() as i32, high.ceil() as i32);
+    let inner: &[f64] = if last - first <= 3 {
+        &[1.0, 2.0, 5.0]
+    } else {
+        &[1.0]
+    };
+    let mut marks = Vec::new();
+    for decade in first..=last {
+        for factor in inner {
+            let value = f64::from(decade) + factor.log10();
+            if (low..=high).contains(&value) {
+                // A mark is labelled when its step is wide on the screen.
+                let step_size = 1.0;
+                marks.push(GridMark { value, step_size });
+            }
+        }
+    }
+    marks
+}
+
+/// The range of some values with a margin, for an axis that must not touch its curves.
+pub fn range(values: impl Iterator<Item = f64>) -> Option<RangeInclusive<f64>> {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    let margin = 0.06 * (high - low).max(0.5);
+    (low <= high).then(|| low - margin..=high + margin)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_are_read_in_numbers() {
+        let read = [-2.0, 0.0, 2.0_f64.log10(), 3.0, 4.0, 50_000_f64.log10()].map(decade_text);
+        assert_eq!(read, ["0.01", "1", "2", "1k", "10k", "50k"]);
+    }
+
+    #[test]
+    fn a_range_holds_its_values() {
+        let range = range([1.0, 3.0, 2.0].into_iter()).unwrap();
+        assert!(*range.start() < 1.0 && *range.end() > 3.0);
+        assert!(super::range(std::iter::empty()).is_none());
+    }
+}

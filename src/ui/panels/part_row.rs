@@ -1,0 +1,400 @@
+//! One row of the part list.
+
+use super::section::elided;
+use crate::app::{AppState, Command, LikeWhat, Part, PartCommand, PartRef, ViewCommand};
+use crate::formats::PartSummary;
+use crate::jobs::Role;
+use crate::ui::theme::{Palette, ROW};
+use crate::ui::widgets::{focus_ring, grouped, paint_role_mark};
+use egui::{
+    Align2, Color32, FontId, Rangef, Rect, Response, Sense, Stroke, TextStyle, Ui, Vec2, pos2, vec2,
+};
+
+/// Space between two columns.
+const GAP: f32 = 6.0;
+
+/// A part of a deck with what it belongs to.
+#[derive(Clone, Copy)]
+pub struct Row<'a> {
+    /// Which model.
+    pub role: Role,
+    /// The model's part in the document.
+    pub part: &'a Part,
+    /// The part of the deck.
+    pub summary: &'a PartSummary,
+    /// Its place in the deck, which gives its colour.
+    pub index: usize,
+    /// How like it is to what the list is sorted by.
+    pub likeness: Option<f64>,
+}
+
+impl Row<'_> {
+    /// Its name in commands.
+    pub fn at(&self) -> PartRef {
+        PartRef {
+            role: self.role,
+            id: self.summary.id,
+        }
+    }
+
+    /// "Part 12 Floor".
+    pub fn name(&self) -> String {
+        format!("Part {} {}", self.summary.id, self.summary.title)
+            .trim_end()
+            .to_owned()
+    }
+
+    /// Name of its widget.
+    pub fn widget(&self) -> egui::Id {
+        egui::Id::unique("part row").with((self.role, self.summary.id))
+    }
+}
+
+/// Where the columns lie, from left to right.
+#[derive(Debug, Clone, Copy)]
+pub struct Columns {
+    eye: Rangef,
+    mark: Rangef,
+    color: Rangef,
+    id: Rangef,
+    name: Rangef,
+    count: Rangef,
+    thickness: Rangef,
+    tick: Rangef,
+}
+
+impl Columns {
+    /// Columns of a list this wide; `id` and `count` are the widths of their longest texts.
+    pub fn new(left: f32, right: f32, id: f32, count: f32) -> Self {
+        let from = |start: f32, width: f32| Rangef::new(start, start + width);
+        let to = |end: f32, width: f32| Rangef::new(end - width, end);
+        let eye = from(left, 22.0);
+        let mark = from(eye.max + 2.0, 10.0);
+        let color = from(mark.max + GAP, 10.0);
+        let id = from(color.max + GAP, id);
+        let tick = to(right, 22.0);
+        let thickness = to(tick.min - 2.0, 30.0);
+        let count = to(thickness.min - GAP, count);
+        let name = Rangef::new(id.max + GAP, count.min - GAP);
+        Self {
+            eye,
+            mark,
+            color,
+            id,
+            name,
+            count,
+            thickness,
+            tick,
+        }
+    }
+
+    /// The titles above the columns.
+    pub fn header_ui(&self, ui: &mut Ui, count: &str) {
+        let size = vec2(ui.available_width(), 16.0);
+        let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+        let font = FontId::proportional(11.0);
+        let color = Palette::of(ui).secondary;
+        let middle = rect.center().y;
+        let titles = [
+            ("id", self.id.min, Align2::LEFT_CENTER),
+            ("name", self.name.min, Align2::LEFT_CENTER),
+            (count, self.count.max, Align2::RIGHT_CENTER),
+            ("t", self.thickness.max, Align2::RIGHT_CENTER),
+            ("use", self.tick.max - 2.0, Align2::RIGHT_CENTER),
+        ];
+        for (text, x, align) in titles {
+            if text == "name" && self.name.span() < 32.0 {
+                continue;
+            }
+            ui.painter()
+                .text(pos2(x, middle), align, text, font.clone(), color);
+        }
+    }
+}
+
+/// Draws a row with its clicks; true while the pointer is over it.
+pub fn row_ui(
+    ui: &mut Ui,
+    row: &Row<'_>,
+    columns: &Columns,
+    state: &AppState,
+    commands: &mut Vec<Command>,
+) -> (bool, Response) {
+    let palette = Palette::of(ui);
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
+    let id = row.widget();
+    let response = ui.interact(rect, id, Sense::click());
+    let (at, name) = (row.at(), row.name());
+    let is_selected = state.view.selected.contains(&at);
+    if is_selected {
+        let fill = palette.accent.gamma_multiply(0.35);
+        ui.painter().rect_filled(rect, 4.0, fill);
+    } else if response.hovered() || state.view.hovered == Some(at) {
+        ui.painter().rect_filled(rect, 4.0, palette.card);
+    }
+    focus_ring(ui, rect, &response);
+    paint(ui, rect, row, columns, state);
+    response
+        .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_selected, &name));
+    let cell = |x: Rangef| Rect::from_x_y_ranges(x, rect.y_range());
+    let eye = eye_ui(ui, cell(columns.eye), row, &name);
+    if eye.clicked() {
+        let only = ui.input(|input| input.modifiers.command);
+        commands.push(eye_command(row, only).into());
+    }
+    let tick = tick_ui(ui, cell(columns.tick), row, (state, &name));
+    if tick.clicked() {
+        let is_used = row.part.is_used(at.id);
+        commands.push(PartCommand::SetUsed(at, !is_used).into());
+    }
+    clicks(ui, &response, at, commands);
+    response.context_menu(|ui| menu_ui(ui, row, commands));
+    let is_over = response.hovered() || eye.hovered() || tick.hovered();
+    let response = response.on_hover_text(hover_text(row, state));
+    (is_over, response)
+}
+
+/// Shows or hides; alone, shows only this one, or everything if it is the only one already.
+fn eye_command(row: &Row<'_>, is_alone: bool) -> PartCommand {
+    let at = row.at();
+    let is_visible = row.part.is_visible(at.id);
+    let n_others = row.part.facts.parts.len() - 1;
+    let is_only = is_visible && n_others > 0 && row.part.hidden.len() >= n_others;
+    match (is_alone, is_only) {
+        (true, true) => PartCommand::ShowAll,
+        (true, false) => PartCommand::ShowOnly(at),
+        (false, _) => PartCommand::SetVisible(at, !is_visible),
+    }
+}
+
+fn hover_text(row: &Row<'_>, state: &AppState) -> String {
+    let summary = row.summary;
+    let mut text = format!(
+        "{}\n{} shells, {} solids, {} triangles",
+        row.name(),
+        grouped(summary.n_shells),
+        grouped(summary.n_solids),
+        grouped(summary.n_triangles)
+    );
+    if let Some(thickness) = summary.thickness {
+        text += &format!(", thickness {}", state.length_text(thickness));
+    }
+    if let Some(likeness) = row.likeness {
+        text += &format!("\nlikeness {:.0} %", 100.0 * likeness);
+    }
+    text + "\nClick selects, double click brings it into view, middle click shows only it"
+}
+
+fn clicks(ui: &Ui, response: &Response, at: PartRef, commands: &mut Vec<Command>) {
+    if response.double_clicked() {
+        commands.push(PartCommand::Select(Some(at)).into());
+        commands.push(ViewCommand::Focus(at.role).into());
+    } else if response.middle_clicked() {
+        commands.push(PartCommand::ShowOnly(at).into());
+    } else if response.clicked() {
+        let is_toggling = ui.input(|input| input.modifiers.command);
+        commands.push(if is_toggling {
+            PartCommand::ToggleSelected(at).into()
+        } else {
+            PartCommand::Select(Some(at)).into()
+        });
+    }
+}
+
+fn menu_ui(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>) {
+    let at = row.at();
+    let is_visible = row.part.is_visible(at.id);
+    let is_used = row.part.is_used(at.id);
+    let like = Some(LikeWhat::Part(at));
+    let groups: [&[(&str, PartCommand)]; 3] = [
+        &[
+            (
+                if is_visible { "Hide" } else { "Show" },
+                PartCommand::SetVisible(at, !is_visible),
+            ),
+            ("Show only this", PartCommand::ShowOnly(at)),
+            ("Show all", PartCommand::ShowAll),
+        ],
+        &[
+            (
+                if is_used {
+                    "Ignore for the match"
+                } else {
+                    "Use for the match"
+                },
+                PartCommand::SetUsed(at, !is_used),
+            ),
+            ("Match only this", PartCommand::UseOnly(at)),
+            ("Match all parts of this deck", PartCommand::UseAll(at.role)),
+        ],
+        &[("Find parts like this", PartCommand::OrderLike(like))],
+    ];
+    for items in groups {
+        for (label, command) in items {
+            if ui.button(*label).clicked() {
+                commands.push((*command).into());
+                ui.close();
+            }
+        }
+        ui.separator();
+    }
+    color_ui(ui, row, commands);
+}
+
+fn color_ui(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>) {
+    let at = row.at();
+    let given = row.part.colors.get(&at.id).copied();
+    let mut color = given.unwrap_or([128, 128, 128]);
+    let before = color;
+    ui.horizontal(|ui| {
+        ui.label("Colour");
+        ui.name_inputs("Colour of the part", |ui| {
+            ui.color_edit_button_srgb(&mut color);
+        });
+        if ui
+            .add_enabled(given.is_some(), egui::Button::new("As its role"))
+            .clicked()
+        {
+            commands.push(PartCommand::SetColor(at, None).into());
+        }
+    });
+    if color != before {
+        commands.push(PartCommand::SetColor(at, Some(color)).into());
+    }
+}
+
+/// Mark, colour, id, title, count, thickness.
+fn paint(ui: &Ui, rect: Rect, row: &Row<'_>, columns: &Columns, state: &AppState) {
+    let palette = Palette::of(ui);
+    let is_visible = row.part.is_visible(row.summary.id);
+    let strong = if is_visible {
+        palette.text
+    } else {
+        palette.secondary
+    };
+    let middle = rect.center().y;
+    let square = |x: Rangef| Rect::from_center_size(pos2(x.center(), middle), Vec2::splat(9.0));
+    paint_role_mark(
+        ui.painter(),
+        square(columns.mark),
+        row.role,
+        palette.role(row.role),
+    );
+    let color = part_color(ui, row, state);
+    ui.painter().rect_filled(square(columns.color), 2.0, color);
+    let body = TextStyle::Body.resolve(ui.style());
+    let small = TextStyle::Small.resolve(ui.style());
+    let left = |x: Rangef, text: &str, color: Color32| {
+        let galley = elided(ui, text, body.clone(), color, x.span());
+        let at = pos2(x.min, middle - galley.size().y / 2.0);
+        ui.painter().galley(at, galley, color);
+    };
+    left(columns.id, &row.summary.id.to_string(), strong);
+    if columns.name.span() > 24.0 {
+        left(columns.name, &row.summary.title, strong);
+    }
+    let right = |x: Rangef, text: String| {
+        let at = pos2(x.max, middle);
+        ui.painter().text(
+            at,
+            Align2::RIGHT_CENTER,
+            text,
+            small.clone(),
+            palette.secondary,
+        );
+    };
+    right(columns.count, count_text(row));
+    let thickness = row.summary.thickness;
+    right(
+        columns.thickness,
+        thickness.map_or_else(String::new, |t| format!("{t:.2}")),
+    );
+}
+
+/// Elements, or the likeness while the list is sorted by it.
+pub fn count_text(row: &Row<'_>) -> String {
+    match row.likeness {
+        Some(likeness) => format!("{:.0} %", 100.0 * likeness),
+        None => grouped(row.summary.n_shells + row.summary.n_solids),
+    }
+}
+
+/// The colour it is drawn in.
+fn part_color(ui: &Ui, row: &Row<'_>, state: &AppState) -> Color32 {
+    let given = row.part.colors.get(&row.summary.id).copied();
+    let rgb = given.or_else(|| crate::ui::viewport::part_color(ui, state, row.index));
+    match rgb {
+        Some([r, g, b]) => Color32::from_rgb(r, g, b),
+        None => Palette::of(ui).role(row.role),
+    }
+}
+
+/// An eye that is open or struck out.
+fn eye_ui(ui: &Ui, rect: Rect, row: &Row<'_>, name: &str) -> Response {
+    let palette = Palette::of(ui);
+    let is_visible = row.part.is_visible(row.summary.id);
+    let response = ui.interact(rect, row.widget().with("eye"), Sense::click());
+    focus_ring(ui, rect, &response);
+    let color = if is_visible {
+        palette.text
+    } else {
+        palette.secondary
+    };
+    let stroke = Stroke::new(1.2, color);
+    let c = rect.center();
+    let lid = |up: f32| {
+        let points = [
+            c + vec2(-6.5, 0.0),
+            c + vec2(-3.0, up),
+            c + vec2(3.0, up),
+            c + vec2(6.5, 0.0),
+        ];
+        let clear = Color32::TRANSPARENT;
+        egui::epaint::CubicBezierShape::from_points_stroke(points, false, clear, stroke)
+    };
+    ui.painter().add(lid(-5.5));
+    ui.painter().add(lid(5.5));
+    if is_visible {
+        ui.painter().circle_filled(c, 2.2, color);
+    } else {
+        let line = [c + vec2(-6.0, 5.0), c + vec2(6.0, -5.0)];
+        ui.painter().line_segment(line, stroke);
+    }
+    let label = format!("Show {name}");
+    response
+        .widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, is_visible, &label));
+    response.on_hover_text("Show or hide. With Ctrl: show only this")
+}
+
+/// The tick "use for match".
+fn tick_ui(ui: &Ui, rect: Rect, row: &Row<'_>, (state, name): (&AppState, &str)) -> Response {
+    let palette = Palette::of(ui);
+    let is_used = row.part.is_used(row.summary.id);
+    let is_free = state.locking_job().is_none();
+    let sense = if is_free {
+        Sense::click()
+    } else {
+        Sense::hover()
+    };
+    let response = ui.interact(rect, row.widget().with("use"), sense);
+    focus_ring(ui, rect, &response);
+    let square = Rect::from_center_size(rect.center(), Vec2::splat(14.0));
+    let (fill, stroke) = if is_used {
+        (palette.accent, Stroke::NONE)
+    } else {
+        (palette.field, Stroke::new(1.0, palette.secondary))
+    };
+    let inside = egui::StrokeKind::Inside;
+    ui.painter().rect(square, 3.0, fill, stroke, inside);
+    if is_used {
+        let c = square.center();
+        let points = [vec2(-3.5, 0.0), vec2(-1.0, 3.0), vec2(4.0, -3.5)];
+        let points = points.map(|by| c + by).to_vec();
+        ui.painter()
+            .line(points, Stroke::new(1.6, palette.on_accent));
+    }
+    let label = format!("Use {name} for the match");
+    response
+        .widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, is_free, is_used, &label));
+    response.on_hover_text("Use for the match")
+}
