@@ -14,7 +14,7 @@ pub use aabb::Aabb;
 pub use camera::{Camera, Projection};
 pub use mesh::{MeshError, TriMesh};
 pub use sampling::{SurfaceSample, sample_surface};
-pub use section::{Plane, SectionLine, nearest_on_lines, section};
+pub use section::{Gap, Plane, SectionLine, gap_at, nearest_on_lines, section};
 pub use similarity::{MatrixError, Similarity};
 pub use topology::{BorderLoop, Topology, orient_consistently};
 pub use weld::{Welded, weld};

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use serde::{Deserialize, Serialize};
 
 use super::serial::xyz;
-use super::{Point3, TriMesh, Vector3};
+use super::{Aabb, Point3, TriMesh, Vector3};
 
 /// A plane in space.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -47,6 +47,62 @@ impl Plane {
     pub fn flat(&self, point: &Point3) -> [f64; 2] {
         self.axes().map(|axis| axis.dot(&point.coords))
     }
+
+    /// The point of the plane with these coordinates along [`Plane::axes`].
+    pub fn point_at(&self, [right, up]: [f64; 2]) -> Point3 {
+        let [along, upward] = self.axes();
+        let height = self.normal.dot(&self.point.coords);
+        Point3::from(along * right + upward * up + self.normal * height)
+    }
+
+    /// Corners of the rectangle in the plane, along [`Plane::axes`], under a box.
+    pub fn rectangle(&self, bounds: &Aabb) -> [Point3; 4] {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for corner in bounds.corners() {
+            for (i, value) in self.flat(&corner).into_iter().enumerate() {
+                low[i] = low[i].min(value);
+                high[i] = high[i].max(value);
+            }
+        }
+        let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+        corners.map(|corner| self.point_at(corner))
+    }
+}
+
+/// How two outlines lie to each other at one place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gap {
+    /// The place on the first outline.
+    pub from: Point3,
+    /// The nearest place on the second one.
+    pub to: Point3,
+    /// Distance across the first outline; positive on the side of its sheet's normal.
+    pub gap: f64,
+    /// Distance along the first outline, without sign: zero but where the second one ends.
+    pub flush: f64,
+}
+
+/// The gap between two outlines in a plane next to `query`. `normal_of` gives the normal of a
+/// triangle of the first one. `None` if one of them is empty. O(pieces).
+pub fn gap_at(
+    first: &[SectionLine],
+    normal_of: impl Fn(u32) -> Vector3,
+    second: &[SectionLine],
+    plane: &Plane,
+    query: &Point3,
+) -> Option<Gap> {
+    let from = nearest_on_lines(first, query)?;
+    let to = nearest_on_lines(second, &from.point)?;
+    let away = to.point - from.point;
+    let across = plane.normal.cross(&from.tangent);
+    let is_front = across.dot(&normal_of(from.triangle)) >= 0.0;
+    let front = if is_front { across } else { -across };
+    Some(Gap {
+        from: from.point,
+        to: to.point,
+        gap: away.dot(&front),
+        flush: away.dot(&from.tangent).abs(),
+    })
 }
 
 /// A connected piece of a section.
@@ -345,6 +401,46 @@ mod tests {
         assert!((near.point - Point3::new(1.0, 0.0, 1.5)).norm() < 0.06);
         assert!(near.tangent.y.abs() > 0.99);
         assert!(nearest_on_lines(&[], &Point3::origin()).is_none());
+    }
+
+    #[test]
+    fn gaps_have_the_side_of_the_first_sheet() {
+        let strip = |from: f64, to: f64, z: f64| {
+            let corner = |x, y| Point3::new(x, y, z);
+            let positions = vec![
+                corner(from, 0.0),
+                corner(to, 0.0),
+                corner(to, 4.0),
+                corner(from, 4.0),
+            ];
+            TriMesh::new(positions, vec![[0, 1, 2], [0, 2, 3]]).unwrap()
+        };
+        let plane = at([0.0, 2.0, 0.0], [0.0, 1.0, 0.0]);
+        let (lower, upper) = (strip(0.0, 10.0, 0.0), strip(0.0, 7.0, 0.5));
+        let [first, second] = [&lower, &upper].map(|mesh| section(mesh, &plane));
+        let gap = |x: f64, normal: f64| {
+            let query = Point3::new(x, 2.0, 0.1);
+            gap_at(&first, |_| Vector3::z() * normal, &second, &plane, &query).unwrap()
+        };
+        let inside = gap(3.0, 1.0);
+        assert!((inside.gap - 0.5).abs() < 1e-12 && inside.flush < 1e-12);
+        assert!((gap(3.0, -1.0).gap + 0.5).abs() < 1e-12);
+        let beyond = gap(9.0, 1.0);
+        assert!((beyond.flush - 2.0).abs() < 1e-12 && (beyond.gap - 0.5).abs() < 1e-12);
+        assert!(gap_at(&first, |_| Vector3::z(), &[], &plane, &Point3::origin()).is_none());
+    }
+
+    #[test]
+    fn flat_coordinates_lead_back_to_the_point() {
+        let plane = at([1.0, 2.0, 3.0], [0.3, -0.5, 0.8]);
+        let on_plane = plane.point_at([4.0, -5.0]);
+        assert!(plane.distance(&on_plane).abs() < 1e-12);
+        let [right, up] = plane.flat(&on_plane);
+        assert!((right - 4.0).abs() < 1e-12 && (up + 5.0).abs() < 1e-12);
+        let bounds = Aabb::of_points(&[Point3::origin(), Point3::new(2.0, 3.0, 4.0)]);
+        let corners = at([9.0, 0.0, 0.0], [1.0, 0.0, 0.0]).rectangle(&bounds);
+        assert_eq!(corners[0], Point3::new(9.0, 0.0, 0.0));
+        assert_eq!(corners[2], Point3::new(9.0, 3.0, 4.0));
     }
 
     #[test]

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use super::PipelineError;
 use super::load::LoadedPart;
 use crate::assess::deviation::{
-    self, Deviation, DeviationField, DeviationSettings, OverlapClass, source_on_target,
-    target_on_source,
+    self, Deviation, DeviationField, DeviationSettings, OneWay, OverlapClass, Spot,
+    source_on_target, target_on_source,
 };
 use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::Monitor;
@@ -33,11 +33,42 @@ pub struct Comparison {
     pub deviation: Deviation,
     /// What is drawn: both full meshes and both levels.
     pub drawn: Vec<DrawnDeviation>,
+    /// Nodes of the worst spots, in the order of the spots: stamped, then crash.
+    pub spot_nodes: [Vec<Option<u64>>; 2],
     /// How long it took.
     pub took: Duration,
 }
 
+/// A worst spot with where it is in the decks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoundSpot {
+    /// Value and place.
+    pub spot: Spot,
+    /// True for a node of the stamped part.
+    pub is_stamped: bool,
+    /// The node in its deck.
+    pub node: Option<u64>,
+}
+
 impl Comparison {
+    /// The worst spots of both directions together, the worst first.
+    pub fn worst_spots(&self) -> Vec<FoundSpot> {
+        let [stamped, crash] = &self.spot_nodes;
+        let of = |way: &OneWay, nodes: &[Option<u64>], is_stamped| {
+            let spots = way.spots.iter().zip(nodes);
+            let found = spots.map(|(spot, node)| FoundSpot {
+                spot: *spot,
+                is_stamped,
+                node: *node,
+            });
+            found.collect::<Vec<_>>()
+        };
+        let mut found = of(&self.deviation.source_on_target, stamped, true);
+        found.extend(of(&self.deviation.target_on_source, crash, false));
+        found.sort_by(|a, b| b.spot.value.abs().total_cmp(&a.spot.value.abs()));
+        found
+    }
+
     /// The values of a mesh, by identity.
     pub fn drawn(&self, mesh: &Arc<TriMesh>) -> Option<&DrawnDeviation> {
         self.drawn
@@ -86,7 +117,15 @@ pub fn compare_parts(
         let field = source_on_target(&reduced, &target, pose, &settings, monitor)?;
         drawn.push(draw(level, &field));
     }
+    let nodes = |part: &LoadedPart, way: &OneWay| {
+        let spots = way.spots.iter();
+        spots.map(|spot| part.node_of(spot.vertex)).collect()
+    };
     Ok(Comparison {
+        spot_nodes: [
+            nodes(stamped, &deviation.source_on_target),
+            nodes(crash, &deviation.target_on_source),
+        ],
         crash_from_stamped: *crash_from_stamped,
         deviation,
         drawn,

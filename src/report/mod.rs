@@ -23,4 +23,4 @@ pub use record::{
     build_id, fate_words, side_word,
 };
 pub use start_groups::{StartGroup, start_groups};
-pub use text::{grouped, length};
+pub use text::{grouped, length, signed};

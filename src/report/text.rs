@@ -15,6 +15,8 @@ pub fn grouped(n: usize) -> String {
 
 /// A length with three digits that count: 0.0412, 1.35, 128.
 pub fn length(value: f64) -> String {
+    // What rounding leaves of nothing is nothing.
+    let value = if value.abs() < 5e-8 { 0.0 } else { value };
     let magnitude = value.abs();
     let decimals = if magnitude >= 100.0 || value == 0.0 {
         0
@@ -33,14 +35,30 @@ pub fn length(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
+/// A length with its sign, as the window writes it: +0.412, −1.35, 0.
+pub fn signed(value: f64) -> String {
+    let text = length(value);
+    if value > 0.0 && text != "0" {
+        format!("+{text}")
+    } else {
+        text.replace('-', "−")
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{grouped, length};
+    use super::{grouped, length, signed};
 
     #[test]
     fn lengths_have_three_digits() {
         let read = [0.041_23, 1.349, -128.4, 0.0, 0.000_381].map(length);
         assert_eq!(read, ["0.0412", "1.35", "-128", "0", "0.0003810"]);
+    }
+
+    #[test]
+    fn signs_are_written_and_nothing_has_none() {
+        let read = [0.5, -0.5, 0.0, 1e-14, -1e-14].map(signed);
+        assert_eq!(read, ["+0.500", "−0.500", "0", "0", "0"]);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::theme::{Palette, ROW, TALL, UNIT};
 use crate::app::{Action, AppState, Command, NoticeLevel};
 use crate::jobs::Role;
-pub use crate::report::{grouped, length};
+pub use crate::report::{grouped, length, signed};
 use egui::{
     Align, Button, Color32, CornerRadius, Frame, Layout, Margin, Rect, Response, RichText, Sense,
     Stroke, Ui, Vec2, pos2, vec2,

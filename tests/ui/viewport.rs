@@ -61,7 +61,7 @@ impl Desk {
         }
     }
 
-    fn with_sheets(render_state: Option<&RenderState>) -> Self {
+    pub fn with_sheets(render_state: Option<&RenderState>) -> Self {
         let mut desk = Self::new(render_state);
         for role in Role::ALL {
             let paths = vec![PathBuf::from("sheet.k")];
@@ -146,7 +146,7 @@ fn window(whole: Rect, role: Role) -> Rect {
     }
 }
 
-fn harness(desk: Desk) -> Harness<'static, Desk> {
+pub fn harness(desk: Desk) -> Harness<'static, Desk> {
     let mut harness = Harness::builder()
         .with_size(SIZE)
         .build_ui_state(show, desk);
@@ -163,7 +163,7 @@ fn press(harness: &Harness<'_, Desk>, pos: Pos2, button: PointerButton, pressed:
     });
 }
 
-fn drag(harness: &mut Harness<'_, Desk>, button: PointerButton, from: Pos2, to: Pos2) {
+pub fn drag(harness: &mut Harness<'_, Desk>, button: PointerButton, from: Pos2, to: Pos2) {
     harness.event(Event::PointerMoved(from));
     harness.step();
     press(harness, from, button, true);
@@ -186,7 +186,7 @@ fn screen_of(area: Rect) -> ScreenSize {
 }
 
 /// Where the kittest harness draws: its panel keeps a margin.
-fn area(harness: &Harness<'_, Desk>, role: Role) -> Rect {
+pub fn area(harness: &Harness<'_, Desk>, role: Role) -> Rect {
     let name = match role {
         Role::Crash => "Crash part",
         Role::Stamped => "Stamped part",

@@ -39,6 +39,11 @@ impl FieldKind {
         }
     }
 
+    /// True for distances with a side.
+    pub fn is_signed(self) -> bool {
+        self == Self::Deviation
+    }
+
     /// Title of the legend.
     pub fn label(self) -> &'static str {
         match self {

@@ -11,6 +11,7 @@ mod motion;
 mod navigation;
 mod overlay;
 mod pointing;
+mod sections;
 mod snapshot;
 mod stage;
 mod tools;
@@ -32,6 +33,7 @@ use meshes::{MeshSource, MeshStore, ShownMesh};
 use motion::{Crossing, SmoothCamera, SmoothPose};
 use navigation::{Navigator, View};
 use pointing::{Pointing, Target};
+use sections::SectionStore;
 use snapshot::Shot;
 use stage::{Layer, Picture};
 use tools::{Bench, Tools};
@@ -46,6 +48,7 @@ pub struct Viewports {
     render_state: Option<RenderState>,
     meshes: MeshStore,
     fields: FieldStore,
+    sections: SectionStore,
     crossing: Crossing,
     pose: SmoothPose,
     windows: PerRole<Window>,
@@ -80,6 +83,7 @@ impl Viewports {
             render_state: render_state.cloned(),
             meshes: MeshStore::new(),
             fields: FieldStore::new(),
+            sections: SectionStore::new(),
             crossing: Crossing::default(),
             pose: SmoothPose::default(),
             windows: PerRole::default(),
@@ -125,7 +129,7 @@ impl Viewports {
     /// True while meshes or colours are being made that a window wants to show. For tests and
     /// pictures that must not be taken too early.
     pub fn is_waiting(&self) -> bool {
-        self.meshes.is_waiting() || self.fields.is_waiting()
+        self.meshes.is_waiting() || self.fields.is_waiting() || self.sections.is_waiting()
     }
 
     /// Cameras and poses as they are shown in this frame.
@@ -220,6 +224,12 @@ impl Viewports {
             .iter()
             .map(|(mesh, actor)| (actor.role, Arc::clone(mesh)))
             .collect();
+        let placed: Vec<_> = drawn
+            .iter()
+            .map(|(mesh, actor)| (actor.role, Arc::clone(mesh), actor.world_from_part))
+            .collect();
+        self.sections.update(stage.window, state, &placed, ui.ctx());
+        let cuts = self.sections.cuts(state);
         let fields = self.fields.get(stage.window, state, &meshes, ui.ctx());
         let layers = drawn
             .into_iter()
@@ -231,7 +241,10 @@ impl Viewports {
                 wants_field: fields::is_wanted(state, actor.role),
                 actor,
             });
-        Picture::new(state, stage, look, layers.collect(), ui.pixels_per_point())
+        let layers = layers.collect();
+        let mut picture = Picture::new(state, stage, look, layers, ui.pixels_per_point());
+        picture.cut(state, look, &cuts);
+        picture
     }
 
     /// The camera after this frame's input.
@@ -323,6 +336,7 @@ impl Viewports {
             picture,
             drag: window.navigator.drag(),
             hit: hit.as_ref(),
+            cuts: &self.sections.cuts(state),
             scale: kind.and_then(|kind| Some((kind, self.fields.scale(state)?))),
             kind,
             hint: window.tools.hint(state),

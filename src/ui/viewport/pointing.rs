@@ -5,7 +5,7 @@ use egui::{Response, Ui};
 use super::cast::Stage;
 use super::navigation::{pixel_of, screen_of};
 use super::stage::{Hit, Picture};
-use crate::app::{AppState, Command, PartCommand, PartRef, ViewCommand};
+use crate::app::{AppState, ColorBy, Command, InspectCommand, PartCommand, PartRef, ViewCommand};
 
 /// What a window remembers about the pointer.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -54,6 +54,10 @@ impl Pointing {
         if target.response.double_clicked() {
             commands.push(PartCommand::Select(part).into());
             commands.push(ViewCommand::Focus(target.stage.window).into());
+        } else if target.response.clicked()
+            && let Some(hit) = hit.filter(|hit| target.pins(hit))
+        {
+            commands.push(InspectCommand::Pin(hit.role, hit.in_part).into());
         } else if target.response.clicked() {
             // Beside the parts, Ctrl keeps what was selected.
             match part {
@@ -118,6 +122,14 @@ fn entry(ui: &mut Ui, text: &str, commands: &mut Vec<Command>, command: impl Int
 }
 
 impl Target<'_> {
+    /// A click on a part that shows its deviation pins the value there.
+    fn pins(&self, hit: &Hit) -> bool {
+        let display = &self.state.view.display;
+        let is_toggling = self.ui.input(|i| i.modifiers.command);
+        let is_colored = *display.coloring.on.get(hit.role);
+        display.color_by == ColorBy::Deviation && is_colored && !is_toggling
+    }
+
     fn hit(&self) -> Option<Hit> {
         let pos = self.response.hover_pos().filter(|_| !self.is_busy)?;
         let rect = self.response.rect;

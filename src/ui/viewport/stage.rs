@@ -5,11 +5,12 @@ use std::sync::Arc;
 use super::cast::{self, Actor, Stage};
 use super::look::Look;
 use super::meshes::ShownMesh;
+use super::sections::{self, Cut};
 use crate::app::{AppState, PartRef};
 use crate::geometry::camera::{ScreenSize, ViewRay};
-use crate::geometry::{Aabb, Camera, Point3};
-use crate::jobs::Role;
-use crate::render::{Drawable, FieldLook, PartLook, Scene, Sheet};
+use crate::geometry::{Aabb, Camera, Plane, Point3};
+use crate::jobs::{PerRole, Role};
+use crate::render::{Drawable, FieldLook, PartLook, Scene, Section, Sheet};
 
 /// How far the crash sheet lies back when two sheets coincide, in pixels and in element sizes: about
 /// the chord heights of two meshes of one curved sheet.
@@ -30,6 +31,10 @@ pub(super) struct Picture {
     layers: Vec<Layer>,
     /// Box around what is visible.
     pub bounds: Aabb,
+    /// Corners of the section plane's frame.
+    pub section_frame: Option<[Point3; 4]>,
+    /// What lies on the side of its normal is cut away.
+    clip: Option<Plane>,
 }
 
 /// What stands behind a drawable.
@@ -47,7 +52,12 @@ pub(super) struct Layer {
 pub(super) struct Hit {
     /// On the surface, in the space of the window.
     pub point: Point3,
+    /// The part it belongs to, and the same place in that part's own frame.
+    pub role: Role,
+    pub in_part: Point3,
     pub part: Option<PartRef>,
+    /// Number of the element in the deck, on the full mesh.
+    pub element: Option<u64>,
     /// The nearest corner, and its number in the deck if it is a node.
     pub node: Point3,
     pub node_id: Option<u64>,
@@ -87,12 +97,46 @@ impl Picture {
             scene: Arc::new(scene),
             layers,
             bounds,
+            section_frame: None,
+            clip: None,
         }
+    }
+
+    /// Adds the section plane and the outlines of the parts in it.
+    pub fn cut(&mut self, state: &AppState, look: &Look, cuts: &PerRole<Option<Arc<Cut>>>) {
+        let section = &state.view.section;
+        let Some(plane) = section.shown().filter(|_| !self.bounds.is_empty()) else {
+            return;
+        };
+        let frame = plane.rectangle(&self.bounds);
+        let mut overlay = sections::frame(look, &frame);
+        for layer in &self.layers {
+            if let Some(cut) = cuts.get(layer.role) {
+                let color = *look.roles.get(layer.role);
+                overlay
+                    .polylines
+                    .extend(sections::outline(look, cut, color, &layer.actor.offset));
+            }
+        }
+        self.section_frame = Some(frame);
+        self.clip = Some(plane).filter(|_| section.is_clipped);
+        let scene = Arc::make_mut(&mut self.scene);
+        scene.overlay = overlay;
+        scene.section = self.clip.map(|plane| Section {
+            point: plane.point,
+            normal: plane.normal,
+        });
     }
 
     /// True if some part carries a field, or should.
     pub fn has_colored(&self) -> bool {
         self.layers.iter().any(|layer| layer.wants_field)
+    }
+
+    /// Where a point of a part's own frame is drawn; `None` if the part is not in this window.
+    pub fn world_of(&self, role: Role, point: &Point3) -> Option<Point3> {
+        let layer = self.layers.iter().find(|layer| layer.role == role)?;
+        Some(layer.actor.world_from_part.apply(point) + layer.actor.offset)
     }
 
     /// The parts that are drawn, each once, crash first.
@@ -118,7 +162,13 @@ impl Picture {
         let hits = layers
             .filter(|(_, drawable)| drawable.opacity > PICKED_OPACITY)
             .filter(|(_, drawable)| is_on_side(drawable.wipe, is_left))
-            .filter_map(|(layer, drawable)| hit_layer(layer, drawable, &ray));
+            .filter_map(|(layer, drawable)| {
+                let (distance, hit) = hit_layer(layer, drawable, &ray, self.clip.as_ref())?;
+                // Of two coincident sheets the one that is drawn in front is met.
+                let pixel = camera.pixel_size(screen, &hit.point);
+                let back = drawable.push_back_length + f64::from(drawable.push_back) * pixel;
+                Some((distance + back, hit))
+            });
         let nearest = hits.min_by(|a, b| a.0.total_cmp(&b.0));
         nearest.map(|(_, hit)| hit)
     }
@@ -177,7 +227,12 @@ fn drawable(state: &AppState, stage: &Stage, look: &Look, layer: &Layer) -> Draw
 }
 
 /// Distance along the ray and what is there.
-fn hit_layer(layer: &Layer, drawable: &Drawable, ray: &ViewRay) -> Option<(f64, Hit)> {
+fn hit_layer(
+    layer: &Layer,
+    drawable: &Drawable,
+    ray: &ViewRay,
+    clip: Option<&Plane>,
+) -> Option<(f64, Hit)> {
     let pose = &drawable.world_from_mesh;
     let back = pose.inverse();
     let mut origin = back.apply(&(ray.origin - drawable.offset));
@@ -187,13 +242,18 @@ fn hit_layer(layer: &Layer, drawable: &Drawable, ray: &ViewRay) -> Option<(f64, 
         let index = layer.mesh.part_of_triangle[hit.triangle as usize];
         let looks = drawable.parts.as_deref().unwrap_or(&[]);
         let look = looks.get(index as usize).copied();
-        if look.unwrap_or(PartLook::default()).visible {
-            let to_world = |p: &Point3| pose.apply(p) + drawable.offset;
-            let point = to_world(&hit.point);
+        let point = pose.apply(&hit.point) + drawable.offset;
+        let is_cut_away = clip.is_some_and(|plane| plane.distance(&point) > 0.0);
+        if look.unwrap_or(PartLook::default()).visible && !is_cut_away {
             let (node, node_id) = layer.mesh.nearest_node(&hit);
             let part = layer.mesh.part_id(index);
+            let is_full = layer.mesh.source.level.is_none();
+            let element = is_full.then(|| layer.mesh.source.part.element_id(hit.triangle));
             let hit = Hit {
                 point,
+                role: layer.role,
+                in_part: hit.point,
+                element: element.flatten(),
                 part: part.map(|id| PartRef {
                     role: layer.role,
                     id,

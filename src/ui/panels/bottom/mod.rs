@@ -2,6 +2,7 @@
 
 mod charts;
 mod convergence;
+mod deviation;
 mod diagnostics;
 mod history;
 mod log;
@@ -31,7 +32,8 @@ pub fn bottom_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.spacing_mut().item_spacing = vec2(UNIT, 4.0);
         ui.take_available_space();
         match state.view.tab {
-            BottomTab::Log | BottomTab::Deviation => log::log_ui(ui, state, commands),
+            BottomTab::Log => log::log_ui(ui, state, commands),
+            BottomTab::Deviation => deviation::deviation_ui(ui, state, commands),
             BottomTab::Timings => timings::timings_ui(ui, state),
             BottomTab::Starts => starts::starts_ui(ui, state, commands),
             BottomTab::Convergence => convergence::convergence_ui(ui, state, commands),
@@ -41,17 +43,6 @@ pub fn bottom_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
     });
 }
-
-/// The distances between the parts have no tab yet.
-const SHOWN: [BottomTab; 7] = [
-    BottomTab::Log,
-    BottomTab::Timings,
-    BottomTab::Starts,
-    BottomTab::Convergence,
-    BottomTab::Sweep,
-    BottomTab::History,
-    BottomTab::Diagnostics,
-];
 
 /// In a pane narrower than this the tabs become a menu, so that the status keeps its place.
 const NARROW: f32 = 620.0;
@@ -67,7 +58,7 @@ fn tabs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
             let is_shown = |tab: &BottomTab| *tab == state.view.tab || state.has_content(*tab);
-            let tabs: Vec<BottomTab> = SHOWN.into_iter().filter(is_shown).collect();
+            let tabs: Vec<BottomTab> = BottomTab::ALL.into_iter().filter(is_shown).collect();
             let room = ui.available_width();
             if room < NARROW {
                 tab_menu(ui, &tabs, state, commands);

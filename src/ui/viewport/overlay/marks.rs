@@ -3,9 +3,13 @@
 use egui::{Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 
 use super::{MARGIN, Overlay};
+use crate::assess::deviation::OverlapClass;
 use crate::geometry::Point3;
 use crate::geometry::camera::scale_bar;
+use crate::ui::viewport::fields::FieldKind;
 use crate::ui::viewport::navigation::{DragKind, pos_of, screen_of};
+use crate::ui::viewport::stage::Hit;
+use crate::ui::widgets::signed;
 
 /// Length of an axis of the triad.
 const AXIS: f32 = 26.0;
@@ -133,8 +137,11 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32) {
     {
         text = format!("part {}  {text}", part.id);
     }
-    if let Some(value) = hit.value {
-        text = format!("{value:.3}  {text}");
+    if let Some(element) = hit.element {
+        text = format!("{text}  element {element}");
+    }
+    if let Some(value) = value_text(over, hit) {
+        text = format!("{value}   {text}");
     }
     let galley = painter.layout_no_wrap(text, FontId::monospace(11.0), over.look.text);
     let size = galley.size() + vec2(14.0, 8.0);
@@ -145,6 +152,28 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32) {
     let ground = Rect::from_min_size(corner, size);
     painter.rect_filled(ground, CornerRadius::same(5), over.look.plate);
     painter.galley(corner + vec2(7.0, 4.0), galley, over.look.text);
+}
+
+/// What the colour under the cursor says.
+fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
+    let state = over.state;
+    let is_colored = |role| *state.view.display.coloring.on.get(role);
+    match (over.kind?, hit.value) {
+        (FieldKind::Deviation, Some(value)) => {
+            Some(format!("{}{}", signed(value), state.unit_suffix()))
+        }
+        (FieldKind::Deviation, None) if is_colored(hit.role) => Some("no counterpart".to_owned()),
+        (FieldKind::Deviation, None) => None,
+        (FieldKind::Overlap, value) => {
+            let class = match value {
+                Some(value) if value < 0.5 => OverlapClass::Matched,
+                Some(_) => OverlapClass::OffByMore,
+                None => OverlapClass::OnlyHere,
+            };
+            state.comparison().map(|_| class.label().to_owned())
+        }
+        (_, value) => value.map(|value| state.length_text(value)),
+    }
 }
 
 /// A ring about the point a rotation turns about, and a cross at the picked pivot.

@@ -4,8 +4,10 @@ mod apart;
 mod cards;
 mod divider;
 mod header;
+mod labels;
 mod legend;
 mod marks;
+mod section;
 
 pub(super) use crate::report::grouped;
 use egui::{Align2, FontId, Painter, Rect, Ui};
@@ -14,10 +16,12 @@ use super::cast::Stage;
 use super::fields::FieldKind;
 use super::look::Look;
 use super::navigation::CameraDrag;
+use super::sections::Cut;
 use super::stage::{Hit, Picture};
 use crate::app::{AppState, Command};
 use crate::colormap::ColorScale;
-use crate::jobs::Role;
+use crate::jobs::{PerRole, Role};
+use std::sync::Arc;
 
 /// Air between the edge of the window and what lies over it.
 const MARGIN: f32 = 10.0;
@@ -35,6 +39,8 @@ pub(super) struct Overlay<'a> {
     pub scale: Option<(FieldKind, ColorScale)>,
     /// What the colours should show, measured or not.
     pub kind: Option<FieldKind>,
+    /// The outlines in the section plane.
+    pub cuts: &'a PerRole<Option<Arc<Cut>>>,
     /// What the handle under the pointer does.
     pub hint: Option<String>,
     pub is_focused: bool,
@@ -61,10 +67,13 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     }
     apart::show(ui, over, commands);
     divider::show(ui, over, commands);
+    section::handle(ui, over, commands);
+    labels::show(ui, over, commands);
     legend::show(ui, over, commands);
     marks::show(ui, over);
     header::show(ui, over);
     header::buttons(ui, over, commands);
+    section::show(ui, over, over.cuts, commands);
 }
 
 /// A text in the place of the picture.

@@ -12,7 +12,7 @@ use crate::assess::deviation::DeviationStats;
 use crate::colormap::ColorScale;
 use crate::jobs::Role;
 use crate::ui::viewport::overlay::Overlay;
-use crate::ui::widgets::{length, paint_role_mark, percent};
+use crate::ui::widgets::{length, paint_role_mark, percent, signed};
 
 /// Width of the histogram beside the bar.
 const HISTOGRAM: f32 = 64.0;
@@ -56,6 +56,20 @@ pub(super) fn show(
     }
 }
 
+/// Only the bar with its numbers.
+pub(super) fn slim(ui: &mut Ui, over: &Overlay<'_>, scale: &ColorScale) {
+    super::fold(ui, over);
+    if over.state.freshness() != Freshness::Current {
+        let color = crate::ui::theme::Palette::of(ui).check;
+        ui.label(RichText::new("out of\ndate").size(11.0).color(color));
+        ui.set_opacity(0.45);
+    }
+    let (room, _) = ui.allocate_exact_size(vec2(super::SLIM, 196.0), Sense::hover());
+    let bar = Rect::from_min_size(room.min + vec2(1.0, 10.0), vec2(bar::BAR, 176.0));
+    bar::paint(ui.painter(), scale, bar, over);
+    bar::ticks(ui.painter(), scale, bar, over, false);
+}
+
 /// Before the first measurement has ended.
 pub(super) fn waiting(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
     ui.label(RichText::new("Deviation").size(12.0).strong());
@@ -65,12 +79,25 @@ pub(super) fn waiting(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comman
 /// From which part to which, and the menu.
 fn title(ui: &mut Ui, over: &Overlay<'_>, role: Role, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let words = format!("{} to {}", capital(role), role.other().word());
-        let (rect, _) = ui.allocate_exact_size(vec2(10.0, 14.0), Sense::hover());
-        let mark = Rect::from_center_size(rect.center(), vec2(10.0, 10.0));
-        paint_role_mark(ui.painter(), mark, role, over.look.role(role));
-        ui.label(RichText::new(words).size(12.0).strong());
+        ui.label(RichText::new("Deviation").size(12.5).strong());
+        let (rect, response) = ui.allocate_exact_size(vec2(40.0, 14.0), Sense::hover());
+        let at =
+            |x: f32| Rect::from_center_size(pos2(rect.left() + x, rect.center().y), vec2(9.0, 9.0));
+        let other = role.other();
+        paint_role_mark(ui.painter(), at(6.0), role, over.look.role(role));
+        paint_role_mark(ui.painter(), at(34.0), other, over.look.role(other));
+        let tip = pos2(rect.left() + 25.0, rect.center().y);
+        let stroke = Stroke::new(1.2, over.look.weak);
+        ui.painter()
+            .line_segment([tip - vec2(10.0, 0.0), tip], stroke);
+        for leg in [vec2(-3.5, 3.0), vec2(-3.5, -3.0)] {
+            ui.painter().line_segment([tip + leg, tip], stroke);
+        }
+        let words = format!("{} to {}", capital(role), other.word());
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &words));
+        response.on_hover_text(format!("From the nodes of the {} part", role.word()));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            super::fold(ui, over);
             menu::maps(ui, over, true, commands);
         });
     });
@@ -391,13 +418,19 @@ fn tolerance(
         if response.changed() {
             coloring.tolerance = Some(value);
         }
+        ui.label(RichText::new(over.state.unit_suffix()).size(12.0));
     });
 }
 
 /// Mean and spread, what is alone, and a constant offset in words.
 fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
     let small = |text: String| RichText::new(text).size(11.0).color(over.look.weak);
-    let mean = format!("mean {} · rms {}", signed(stats.mean), length(stats.rms));
+    let unit = over.state.unit_suffix();
+    let mean = format!(
+        "mean {}{unit} · rms {}{unit}",
+        signed(stats.mean),
+        length(stats.rms)
+    );
     ui.label(small(mean));
     let (least, most) = (signed(stats.min), signed(stats.max));
     ui.label(small(format!(
@@ -414,17 +447,8 @@ fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
         });
     }
     if let Some(offset) = &stats.offset {
-        let words = offset.words(length);
+        let words = offset.words(|value| over.state.length_text(value));
         let text = RichText::new(format!("constant offset: {words}")).size(11.5);
         ui.add(egui::Label::new(text).wrap());
-    }
-}
-
-/// A value with its sign: +0.42, −1.3, 0.
-pub(in crate::ui) fn signed(value: f64) -> String {
-    if value > 0.0 {
-        format!("+{}", length(value))
-    } else {
-        length(value).replace('-', "−")
     }
 }

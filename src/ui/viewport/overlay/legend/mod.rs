@@ -13,8 +13,9 @@ use super::{MARGIN, Overlay};
 use crate::app::Command;
 use crate::ui::viewport::fields::FieldKind;
 
-/// Width of what is inside the plate.
+/// Width of what is inside the plate, and of the folded one.
 const WIDTH: f32 = 172.0;
+const SLIM: f32 = 52.0;
 /// Windows lower than this have no legend, those lower than the next a short one.
 const LEAST_HEIGHT: f32 = 240.0;
 const FULL_HEIGHT: f32 = 440.0;
@@ -30,6 +31,12 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     };
     let is_low = over.rect.height() < LEAST_HEIGHT || over.rect.width() < 2.0 * WIDTH;
     if is_low || !over.picture.has_colored() {
+        return;
+    }
+    if kind == FieldKind::Deviation && is_folded(ui, over) {
+        plate(ui, over, |ui| {
+            deviation::slim(ui, over, &scale);
+        });
         return;
     }
     let room = Room {
@@ -53,6 +60,33 @@ fn is_measured(kind: FieldKind) -> bool {
     matches!(kind, FieldKind::Deviation | FieldKind::Overlap)
 }
 
+/// True if the user folded the legend of a window, or the section takes the room for it.
+fn is_folded(ui: &Ui, over: &Overlay<'_>) -> bool {
+    let is_tight = over.state.view.section.is_on && over.rect.width() < 640.0;
+    ui.data(|data| data.get_temp(fold_id(ui, over)))
+        .unwrap_or(is_tight)
+}
+
+fn fold_id(ui: &Ui, over: &Overlay<'_>) -> egui::Id {
+    egui::Id::unique(("legend folded", over.role().word())).with(ui.ctx().viewport_id())
+}
+
+/// The button that folds the legend to its bar and back.
+fn fold(ui: &mut Ui, over: &Overlay<'_>) {
+    let is_folded = is_folded(ui, over);
+    let (sign, name) = if is_folded {
+        ("<", "Unfold the legend")
+    } else {
+        (">", "Fold the legend")
+    };
+    let button = egui::Button::new(egui::RichText::new(sign).size(11.5)).small();
+    let response = ui.add(button).on_hover_text(name);
+    let name = format!("{name} ({})", over.role().word());
+    if response.accessible_name(name).clicked() {
+        ui.data_mut(|data| data.insert_temp(fold_id(ui, over), !is_folded));
+    }
+}
+
 /// How much a legend may show.
 #[derive(Debug, Clone, Copy)]
 struct Room {
@@ -61,13 +95,21 @@ struct Room {
     bar: f32,
 }
 
+/// Where the legend of a window was drawn last.
+pub(super) fn last_place(ui: &Ui, over: &Overlay<'_>) -> Option<Rect> {
+    over.scale.as_ref()?;
+    let id = ui.make_persistent_id(("legend", over.role().word()));
+    ui.data(|data| data.get_temp(id))
+}
+
 /// A plate in the upper right corner, as high as what is on it; the pointer does not reach through.
 fn plate(ui: &mut Ui, over: &Overlay<'_>, add: impl FnOnce(&mut Ui)) {
     let id = ui.make_persistent_id(("legend", over.role().word()));
     if let Some(last) = ui.data(|data| data.get_temp::<Rect>(id)) {
         ui.interact(last, id, Sense::click_and_drag());
     }
-    let outer = WIDTH + 20.0;
+    let is_slim = over.kind == Some(FieldKind::Deviation) && is_folded(ui, over);
+    let outer = if is_slim { SLIM } else { WIDTH } + 20.0;
     let corner = Pos2::new(over.rect.right() - MARGIN - outer, over.rect.top() + 44.0);
     let room = Rect::from_min_max(
         corner,
@@ -84,7 +126,7 @@ fn plate(ui: &mut Ui, over: &Overlay<'_>, add: impl FnOnce(&mut Ui)) {
         Frame::new()
             .inner_margin(Margin::symmetric(10, 8))
             .show(ui, |ui| {
-                ui.set_width(WIDTH);
+                ui.set_width(outer - 20.0);
                 add(ui);
             });
     });
@@ -111,7 +153,7 @@ fn tick_text(tick: f64, ticks: &[f64]) -> String {
     {
         "0".to_owned()
     } else {
-        text
+        text.replace('-', "−")
     }
 }
 

@@ -8,7 +8,7 @@ use crate::assess::deviation::OverlapClass;
 use crate::colormap::{ColorMap, Pattern, UNMATCHED};
 use crate::jobs::Role;
 use crate::ui::viewport::overlay::Overlay;
-use crate::ui::widgets::{length, percent};
+use crate::ui::widgets::percent;
 
 /// Swatch, words and shares of each class.
 pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
@@ -32,7 +32,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     });
     deviation::freshness(ui, over, commands);
     ui.add_space(3.0);
-    let limit = length(comparison.deviation.limit);
+    let limit = over.state.length_text(comparison.deviation.limit);
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
         let words = match class {
             OverlapClass::Matched => "matched".to_owned(),

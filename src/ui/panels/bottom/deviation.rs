@@ -1,0 +1,393 @@
+//! How far the parts lie apart: numbers of both directions, the worst places, pinned labels.
+
+use crate::app::{
+    Action, AppState, Command, ExportCommand, Freshness, GestureId, InspectCommand, ViewCommand,
+};
+use crate::assess::deviation::OverlapClass;
+use crate::jobs::Role;
+use crate::pipeline::inspect::Comparison;
+use crate::ui::theme::{Palette, ROW};
+use crate::ui::widgets::{
+    Look, action_button, caption, chip, icon_button, length, nothing_yet, percent, role_mark,
+    signed,
+};
+use egui::{Align, Button, Layout, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
+use egui_extras::{Column, TableBuilder};
+use std::fmt::Write as _;
+
+/// Height of a row.
+const LINE: f32 = 20.0;
+
+/// Head line and three lists side by side.
+pub fn deviation_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(comparison) = state.comparison() else {
+        let (title, hint) = match state.freshness() {
+            Freshness::Updating => ("The deviation is being measured", ""),
+            _ if state.document.both().is_some() => (
+                "Not measured yet",
+                "It is measured as soon as nothing else runs",
+            ),
+            _ => (
+                "No deviation yet",
+                "Load both parts, and the distances between them stand here",
+            ),
+        };
+        nothing_yet(ui, title, hint);
+        return;
+    };
+    head_ui(ui, state, comparison, commands);
+    let height = ui.available_height();
+    let width = ui.available_width();
+    let columns: [(f32, Column3); 3] = [
+        (300.0_f32.min(0.34 * width), Column3::Numbers),
+        (0.36 * width, Column3::Spots),
+        (0.24 * width, Column3::Labels),
+    ];
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 20.0;
+        for (width, column) in columns {
+            ui.allocate_ui_with_layout(vec2(width, height), Layout::top_down(Align::Min), |ui| {
+                ui.set_width(width);
+                ui.spacing_mut().item_spacing.x = 8.0;
+                match column {
+                    Column3::Numbers => numbers_ui(ui, state, comparison),
+                    Column3::Spots => spots_ui(ui, state, comparison, commands),
+                    Column3::Labels => labels_ui(ui, state, commands),
+                }
+            });
+        }
+    });
+}
+
+/// The three lists.
+#[derive(Debug, Clone, Copy)]
+enum Column3 {
+    Numbers,
+    Spots,
+    Labels,
+}
+
+/// Which part carries the colours, whether the numbers are up to date, and the way out.
+fn head_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(ROW);
+        let is_on = state.view.display.color_by == crate::app::ColorBy::Deviation;
+        let look = if is_on { Look::On } else { Look::Plain };
+        let map = ("Deviation map", look, vec2(0.0, ROW));
+        action_button(ui, state, Action::ToggleDeviation, map, commands);
+        for (role, name) in [(Role::Stamped, "on ▲ stamped"), (Role::Crash, "on ■ crash")] {
+            let mut display = state.view.display.clone();
+            let on = display.coloring.on.get_mut(role);
+            if chip(ui, name, is_on && *on).clicked() {
+                // A click on a map that is off shows it on that part.
+                *on = !(is_on && *on);
+                display.color_by = crate::app::ColorBy::Deviation;
+                commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
+            }
+        }
+        freshness_ui(ui, state, commands);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if ui.button("Copy as CSV").clicked() {
+                let text = csv(state, comparison);
+                let what = "Deviation (CSV)".to_owned();
+                commands.push(ExportCommand::CopyText { text, what }.into());
+            }
+            let sign = if comparison.deviation.is_signed {
+                "full meshes · + the stamped part lies in front of the crash part's normals"
+            } else {
+                "full meshes · without sign: the crash part has no clear sides"
+            };
+            ui.add(
+                egui::Label::new(RichText::new(sign).small().color(Palette::of(ui).secondary))
+                    .truncate(),
+            );
+        });
+    });
+}
+
+fn freshness_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    match state.freshness() {
+        Freshness::Current | Freshness::Missing => {}
+        Freshness::Updating => {
+            let color = Palette::of(ui).check;
+            ui.label(RichText::new("measuring…").color(color));
+        }
+        Freshness::OutOfDate => {
+            let color = Palette::of(ui).check;
+            ui.label(RichText::new("out of date").color(color));
+            let update = ("Update", Look::Plain, vec2(0.0, ROW));
+            action_button(ui, state, Action::UpdateDeviation, update, commands);
+        }
+    }
+}
+
+/// Name of a row and its value in both directions.
+fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])> {
+    let coloring = &state.view.display.coloring;
+    let tolerance = coloring.deviation_scale(comparison).tolerance;
+    let deviation = &comparison.deviation;
+    let both = [&deviation.source_on_target, &deviation.target_on_source];
+    let row = |name: &str, of: &dyn Fn(&crate::assess::deviation::DeviationStats) -> String| {
+        (name.to_owned(), both.map(|way| of(&way.stats)))
+    };
+    let inside = format!("inside ±{}", state.length_text(tolerance));
+    let mut rows = vec![
+        row(&inside, &|s| percent(s.share_inside(tolerance))),
+        row("mean", &|s| signed(s.mean)),
+        row("rms", &|s| length(s.rms)),
+        row("standard deviation", &|s| length(s.std)),
+        row("95 % within", &|s| length(s.p95)),
+        row("smallest", &|s| signed(s.min)),
+        row("largest", &|s| signed(s.max)),
+    ];
+    for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
+        let name = match class {
+            OverlapClass::Matched => {
+                format!("matched, within {}", state.length_text(deviation.limit))
+            }
+            OverlapClass::OffByMore => "off by more".to_owned(),
+            OverlapClass::OnlyHere => "only here".to_owned(),
+        };
+        rows.push(row(&name, &|s| percent(s.class_shares[index])));
+    }
+    rows
+}
+
+fn numbers_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison) {
+    let rows = rows(state, comparison);
+    ui.spacing_mut().item_spacing.y = 0.0;
+    if let Some(offset) = &comparison.deviation.source_on_target.stats.offset {
+        let words = offset.words(|value| state.length_text(value));
+        let text = RichText::new(format!("Constant offset: {words}"));
+        ui.add(egui::Label::new(text).wrap());
+    }
+    let unit = state.unit_suffix();
+    TableBuilder::new(ui)
+        .id_salt("deviation numbers")
+        .min_scrolled_height(0.0)
+        .auto_shrink([false, false])
+        .cell_layout(Layout::left_to_right(Align::Center))
+        .column(Column::remainder().clip(true))
+        .columns(Column::exact(74.0), 2)
+        .header(LINE, |mut header| {
+            header.col(|ui| {
+                if !unit.is_empty() {
+                    caption(ui, format!("lengths in{unit}"));
+                }
+            });
+            for title in ["▲ → ■", "■ → ▲"] {
+                header.col(|ui| {
+                    right(
+                        ui,
+                        RichText::new(title)
+                            .small()
+                            .color(Palette::of(ui).secondary),
+                    );
+                });
+            }
+        })
+        .body(|body| {
+            body.rows(LINE - 2.0, rows.len(), |mut row| {
+                let (name, values) = &rows[row.index()];
+                row.col(|ui| {
+                    let text = RichText::new(name).color(Palette::of(ui).secondary);
+                    ui.add(egui::Label::new(text).truncate());
+                });
+                for value in values {
+                    row.col(|ui| right(ui, RichText::new(value)));
+                }
+            });
+        });
+}
+
+fn right(ui: &mut Ui, text: RichText) {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text));
+}
+
+/// The worst places of both directions; a click flies there, the pin keeps them in the picture.
+fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &mut Vec<Command>) {
+    let spots = comparison.worst_spots();
+    caption(ui, "Worst places: click to go there");
+    if spots.is_empty() {
+        caption(ui, "none: the parts lie on each other or nowhere near");
+        return;
+    }
+    ui.spacing_mut().item_spacing.y = 0.0;
+    TableBuilder::new(ui)
+        .id_salt("worst places")
+        .sense(Sense::click())
+        .min_scrolled_height(0.0)
+        .auto_shrink([false, false])
+        .cell_layout(Layout::left_to_right(Align::Center))
+        .column(Column::exact(18.0))
+        .column(Column::exact(84.0))
+        .column(Column::remainder().clip(true))
+        .column(Column::exact(30.0))
+        .body(|body| {
+            body.rows(LINE, spots.len(), |mut row| {
+                let found = &spots[row.index()];
+                let role = if found.is_stamped {
+                    Role::Stamped
+                } else {
+                    Role::Crash
+                };
+                let place = found.spot.position;
+                let value = format!("{}{}", signed(found.spot.value), state.unit_suffix());
+                let node = match found.node {
+                    Some(node) => format!("node {node}"),
+                    None => format!("vertex {}", found.spot.vertex),
+                };
+                row.col(|ui| {
+                    role_mark(ui, role);
+                });
+                row.col(|ui| {
+                    ui.label(RichText::new(&value).strong());
+                });
+                row.col(|ui| {
+                    let text = RichText::new(&node).color(Palette::of(ui).secondary);
+                    ui.add(egui::Label::new(text).truncate());
+                });
+                row.col(|ui| {
+                    let name = format!("Pin {value} at {node}");
+                    let pin = ui
+                        .add(Button::new("+").small())
+                        .on_hover_text("Pin a label here");
+                    if pin.accessible_name(name).clicked() {
+                        commands.push(InspectCommand::Pin(role, place).into());
+                    }
+                });
+                let response = row.response();
+                response.widget_info(|| {
+                    let name = format!("{} {value} at {node}", role.word());
+                    egui::WidgetInfo::labeled(egui::Role::Button, true, name)
+                });
+                if response.clicked() {
+                    commands.push(InspectCommand::LookAt(role, place).into());
+                }
+            });
+        });
+}
+
+/// The pinned labels: value, place, name, the way to them, and the way out.
+fn labels_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let labels: Vec<_> = state.document.shown_labels().collect();
+    ui.horizontal(|ui| {
+        caption(ui, "Pinned labels");
+        if !labels.is_empty() {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let button = Button::new(RichText::new("Remove all").small()).small();
+                if ui.add(button).clicked() {
+                    commands.push(InspectCommand::RemoveAll.into());
+                }
+            });
+        }
+    });
+    if labels.is_empty() {
+        caption(ui, "Click on the map to pin the value of a node");
+        return;
+    }
+    let area = ScrollArea::vertical()
+        .id_salt("labels")
+        .auto_shrink([false, false]);
+    area.show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        for (role, label) in labels {
+            label_ui(ui, state, (role, label), commands);
+        }
+    });
+}
+
+fn label_ui(
+    ui: &mut Ui,
+    state: &AppState,
+    (role, label): (Role, &crate::app::Label),
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal(|ui| {
+        role_mark(ui, role);
+        let value = state
+            .label_value(label)
+            .map_or_else(|| "–".to_owned(), signed);
+        let node = label.node.map_or_else(
+            || format!("vertex {}", label.vertex),
+            |n| format!("node {n}"),
+        );
+        let go = Button::new(RichText::new(value).strong()).min_size(vec2(60.0, LINE));
+        let response = ui.add(go).on_hover_text(format!("Go to {node}"));
+        let response = response.accessible_name(format!("Go to {node}"));
+        if response.clicked() {
+            commands.push(InspectCommand::LookAt(role, label.position).into());
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let remove = icon_button(ui, "×", &format!("Remove the label at {node}"), true);
+            if remove.clicked() {
+                commands.push(InspectCommand::Remove(label.id).into());
+            }
+            let mut name = label.name.clone();
+            let field = TextEdit::singleline(&mut name)
+                .hint_text(&node)
+                .desired_width(f32::INFINITY);
+            let response = ui.add(field).accessible_name(format!("Name of {node}"));
+            if response.changed() {
+                // One step for one stay in the field.
+                let gesture = GestureId(label.id << 1 | 1 << 62);
+                let id = label.id;
+                commands.push(InspectCommand::Rename { id, name, gesture }.into());
+            }
+        });
+    });
+}
+
+/// Numbers, worst places and labels as a table for other programs.
+fn csv(state: &AppState, comparison: &Comparison) -> String {
+    let mut text = String::from("quantity,stamped to crash,crash to stamped\n");
+    let deviation = &comparison.deviation;
+    let both = [
+        &deviation.source_on_target.stats,
+        &deviation.target_on_source.stats,
+    ];
+    let coloring = &state.view.display.coloring;
+    let tolerance = coloring.deviation_scale(comparison).tolerance;
+    let mut line = |name: &str, values: [f64; 2]| {
+        // Writing into a text cannot fail.
+        let _ = writeln!(text, "{name},{},{}", values[0], values[1]);
+    };
+    line("tolerance", [tolerance; 2]);
+    line("share inside", both.map(|s| s.share_inside(tolerance)));
+    line("mean", both.map(|s| s.mean));
+    line("rms", both.map(|s| s.rms));
+    line("standard deviation", both.map(|s| s.std));
+    line("p95", both.map(|s| s.p95));
+    line("smallest", both.map(|s| s.min));
+    line("largest", both.map(|s| s.max));
+    for (index, name) in ["matched", "off by more", "only here"].iter().enumerate() {
+        line(name, both.map(|s| s.class_shares[index]));
+    }
+    text += "\nplace,part,node,value,x,y,z\n";
+    let mut place =
+        |what: &str, role: Role, node: Option<u64>, value: Option<f64>, at: [f64; 3]| {
+            let node = node.map_or_else(String::new, |n| n.to_string());
+            let value = value.map_or_else(String::new, |v| v.to_string());
+            let [x, y, z] = at;
+            let _ = writeln!(text, "{what},{},{node},{value},{x},{y},{z}", role.word());
+        };
+    for found in comparison.worst_spots() {
+        let role = if found.is_stamped {
+            Role::Stamped
+        } else {
+            Role::Crash
+        };
+        let at = found.spot.position.coords.into();
+        place("worst", role, found.node, Some(found.spot.value), at);
+    }
+    for (role, label) in state.document.shown_labels() {
+        let name = if label.name.is_empty() {
+            "label".to_owned()
+        } else {
+            format!("\"{}\"", label.name.replace('"', "\"\""))
+        };
+        let value = state.label_value(label);
+        place(&name, role, label.node, value, label.position.coords.into());
+    }
+    text
+}

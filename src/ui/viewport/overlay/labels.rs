@@ -1,0 +1,308 @@
+//! Values pinned to nodes: a plate beside each node, joined to it by a line.
+
+use std::collections::BTreeMap;
+
+use egui::{
+    Color32, CornerRadius, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, pos2,
+    vec2,
+};
+
+use super::{MARGIN, Overlay, legend};
+use crate::app::{BottomTab, Command, InspectCommand, Label, ViewCommand};
+use crate::jobs::Role;
+use crate::ui::viewport::navigation::{pixel_of, pos_of, screen_of};
+use crate::ui::widgets::signed;
+
+/// Distances of a plate from its node, tried in turn.
+const REACHES: [f32; 4] = [34.0, 58.0, 90.0, 130.0];
+/// Directions tried at each distance, upwards first.
+const DIRECTIONS: [Vec2; 8] = [
+    vec2(0.8, -0.8),
+    vec2(-0.8, -0.8),
+    vec2(1.0, 0.0),
+    vec2(-1.0, 0.0),
+    vec2(0.0, -1.0),
+    vec2(0.8, 0.8),
+    vec2(-0.8, 0.8),
+    vec2(0.0, 1.0),
+];
+/// How far in front of a node a surface must be to hide it, as a share of the picture's box.
+const HIDING: f64 = 0.004;
+
+/// A label with its place on the screen.
+struct Placed<'a> {
+    role: Role,
+    label: &'a Label,
+    anchor: Pos2,
+    is_hidden: bool,
+}
+
+/// Draws the labels of the parts in this window. Plates keep clear of each other and of what else
+/// lies over the picture; each stays on its side as long as there is room.
+pub(super) fn show(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
+    let labels: Vec<Placed<'_>> = placed(over);
+    if labels.is_empty() {
+        return;
+    }
+    let memory = ui.make_persistent_id(("label places", over.role().word()));
+    let last: BTreeMap<u64, usize> = ui.data(|data| data.get_temp(memory)).unwrap_or_default();
+    let mut now = BTreeMap::new();
+    let mut taken = taken(ui, over);
+    taken.extend(
+        labels
+            .iter()
+            .map(|l| Rect::from_center_size(l.anchor, Vec2::splat(8.0))),
+    );
+    for placed in &labels {
+        let texts = texts(over, placed);
+        let size = plate_size(ui, over, &texts);
+        let before = last.get(&placed.label.id).copied();
+        let (choice, plate) = place(over.rect, placed.anchor, size, before, &taken);
+        now.insert(placed.label.id, choice);
+        taken.push(plate);
+        one(ui, over, (placed, &texts, plate), commands);
+    }
+    ui.data_mut(|data| data.insert_temp(memory, now));
+}
+
+fn placed<'a>(over: &Overlay<'a>) -> Vec<Placed<'a>> {
+    let camera = &over.stage.camera;
+    let depth = |p: &crate::geometry::Point3| p.coords.dot(&camera.forward());
+    let slack = HIDING * over.picture.bounds.diagonal();
+    let labels = over.state.document.shown_labels();
+    let placed = labels.filter_map(|(role, label)| {
+        let at = over.picture.world_of(role, &label.position)?;
+        let anchor = pos_of(over.rect, camera, &at)?;
+        if !over.rect.contains(anchor) {
+            return None;
+        }
+        let pixel = pixel_of(over.rect, anchor);
+        let hit = over.picture.hit(camera, pixel, screen_of(over.rect));
+        let is_hidden = hit.is_some_and(|hit| depth(&hit.point) < depth(&at) - slack);
+        Some(Placed {
+            role,
+            label,
+            anchor,
+            is_hidden,
+        })
+    });
+    placed.collect()
+}
+
+/// What plates must not cover: names, buttons, legend, axes.
+fn taken(ui: &Ui, over: &Overlay<'_>) -> Vec<Rect> {
+    let rect = over.rect;
+    let mut taken = vec![
+        Rect::from_min_size(rect.min, vec2(190.0, 56.0)),
+        Rect::from_min_max(
+            pos2(rect.right() - 230.0, rect.top()),
+            pos2(rect.right(), rect.top() + 40.0),
+        ),
+        Rect::from_min_max(
+            pos2(rect.left(), rect.bottom() - 90.0),
+            pos2(rect.left() + 96.0, rect.bottom()),
+        ),
+    ];
+    taken.extend(legend::last_place(ui, over));
+    taken
+}
+
+/// Value, and below it the name or the node.
+fn texts(over: &Overlay<'_>, placed: &Placed<'_>) -> [String; 2] {
+    let label = placed.label;
+    let value = match over.state.label_value(label) {
+        Some(value) => format!("{}{}", signed(value), over.state.unit_suffix()),
+        None if over.state.comparison().is_none() => "–".to_owned(),
+        None => "no counterpart".to_owned(),
+    };
+    let node = label.node.map(|node| format!("node {node}"));
+    let below = match (label.name.as_str(), node) {
+        ("", Some(node)) => node,
+        ("", None) => format!("vertex {}", label.vertex),
+        (name, _) => name.to_owned(),
+    };
+    [value, below]
+}
+
+fn fonts() -> [FontId; 2] {
+    [FontId::proportional(12.5), FontId::proportional(10.5)]
+}
+
+fn plate_size(ui: &Ui, over: &Overlay<'_>, texts: &[String; 2]) -> Vec2 {
+    let [value, below] = fonts();
+    let painter = ui.painter();
+    let color = over.look.text;
+    let first = painter
+        .layout_no_wrap(texts[0].clone(), value, color)
+        .size();
+    let second = painter
+        .layout_no_wrap(texts[1].clone(), below, color)
+        .size();
+    vec2(first.x.max(second.x) + 16.0, first.y + second.y + 7.0)
+}
+
+/// The first free place of a plate, its last one before all others; the last resort covers.
+fn place(
+    window: Rect,
+    anchor: Pos2,
+    size: Vec2,
+    before: Option<usize>,
+    taken: &[Rect],
+) -> (usize, Rect) {
+    let room = window.shrink(MARGIN / 2.0);
+    let n = REACHES.len() * DIRECTIONS.len();
+    let at = |choice: usize| {
+        let reach = REACHES[choice / DIRECTIONS.len()];
+        let direction = DIRECTIONS[choice % DIRECTIONS.len()];
+        // The near edge of the plate is where the line ends.
+        let center = anchor + direction * reach + direction * size / 2.0;
+        Rect::from_center_size(center, size)
+    };
+    let is_free = |plate: &Rect| {
+        room.contains_rect(*plate) && !taken.iter().any(|t| t.intersects(plate.expand(3.0)))
+    };
+    let choices = before.into_iter().chain(0..n).filter(|choice| *choice < n);
+    let free = choices
+        .map(|choice| (choice, at(choice)))
+        .find(|(_, plate)| is_free(plate));
+    free.unwrap_or_else(|| (0, at(0)))
+}
+
+/// Line, ring at the node, plate, texts; a click opens the list, the cross takes the label away.
+fn one(
+    ui: &Ui,
+    over: &Overlay<'_>,
+    (placed, texts, plate): (&Placed<'_>, &[String; 2], Rect),
+    commands: &mut Vec<Command>,
+) {
+    let id = ui.make_persistent_id(("label", placed.label.id, over.role().word()));
+    let response = ui.interact(plate, id, Sense::click());
+    response.widget_info(|| {
+        let name = format!("Label {}: {}", texts[1], texts[0]);
+        WidgetInfo::labeled(egui::Role::Button, true, name)
+    });
+    let is_hovered = response.hovered() || response.has_focus();
+    let strength = if placed.is_hidden && !is_hovered {
+        0.45
+    } else {
+        1.0
+    };
+    let fade = |color: Color32| color.gamma_multiply(strength);
+    let painter = over.painter(ui);
+    let end = plate.clamp(placed.anchor);
+    let line = Stroke::new(1.2, fade(over.look.text));
+    let halo = Stroke::new(3.0, fade(over.look.plate));
+    painter.line_segment([placed.anchor, end], halo);
+    if placed.is_hidden {
+        painter.extend(Shape::dashed_line(&[placed.anchor, end], line, 4.0, 3.0));
+    } else {
+        painter.line_segment([placed.anchor, end], line);
+    }
+    let fill = fade(color_of(over, placed));
+    painter.circle(
+        placed.anchor,
+        4.0,
+        fill,
+        Stroke::new(1.5, fade(over.look.text)),
+    );
+    let solid = over.look.plate.to_opaque();
+    let ground = if is_hovered { solid } else { fade(solid) };
+    let edge = fade(over.look.role(placed.role));
+    painter.rect(
+        plate,
+        CornerRadius::same(5),
+        ground,
+        Stroke::new(if is_hovered { 1.8 } else { 1.2 }, edge),
+        egui::StrokeKind::Inside,
+    );
+    let [value, below] = fonts();
+    let at = plate.min + vec2(8.0, 3.0);
+    let drawn = painter.text(
+        at,
+        egui::Align2::LEFT_TOP,
+        &texts[0],
+        value,
+        fade(over.look.text),
+    );
+    painter.text(
+        pos2(at.x, drawn.bottom()),
+        egui::Align2::LEFT_TOP,
+        &texts[1],
+        below,
+        fade(over.look.weak),
+    );
+    if is_hovered {
+        let cross = Rect::from_center_size(plate.right_top(), Vec2::splat(15.0));
+        remove(ui, over, (placed, cross), commands);
+    }
+    if response.clicked() {
+        commands.push(ViewCommand::SetTab(BottomTab::Deviation).into());
+    }
+}
+
+/// The round button with a cross on the corner of a plate.
+fn remove(
+    ui: &Ui,
+    over: &Overlay<'_>,
+    (placed, cross): (&Placed<'_>, Rect),
+    commands: &mut Vec<Command>,
+) {
+    let id = ui.make_persistent_id(("remove label", placed.label.id, over.role().word()));
+    let response = ui.interact(cross, id, Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, "Remove label"));
+    let painter = over.painter(ui);
+    let ground = over.look.plate.to_opaque();
+    painter.circle(
+        cross.center(),
+        7.0,
+        ground,
+        Stroke::new(1.0, over.look.weak),
+    );
+    let color = if response.hovered() {
+        over.look.text
+    } else {
+        over.look.weak
+    };
+    for way in [vec2(3.0, 3.0), vec2(3.0, -3.0)] {
+        let ends = [cross.center() - way, cross.center() + way];
+        painter.line_segment(ends, Stroke::new(1.5, color));
+    }
+    if response.clicked() {
+        commands.push(InspectCommand::Remove(placed.label.id).into());
+    }
+}
+
+/// The colour of the value on the scale, or that of the part.
+fn color_of(over: &Overlay<'_>, placed: &Placed<'_>) -> Color32 {
+    let value = over.state.label_value(placed.label);
+    match (value, &over.scale) {
+        (Some(value), Some((kind, scale))) if kind.is_signed() => {
+            let [r, g, b] = scale.color(value);
+            Color32::from_rgb(r, g, b)
+        }
+        _ => over.look.role(placed.role),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plates_keep_clear_of_each_other_and_stay_where_they_were() {
+        let window = Rect::from_min_size(Pos2::ZERO, vec2(600.0, 400.0));
+        let size = vec2(70.0, 30.0);
+        let mut taken = Vec::new();
+        let mut choices = Vec::new();
+        for i in 0..6 {
+            let anchor = pos2(300.0 + 3.0 * i as f32, 200.0);
+            let (choice, plate) = place(window, anchor, size, None, &taken);
+            assert!(taken.iter().all(|t: &Rect| !t.intersects(plate)), "{i}");
+            assert!(window.contains_rect(plate));
+            taken.push(plate);
+            choices.push(choice);
+        }
+        let (choice, _) = place(window, pos2(310.0, 210.0), size, Some(choices[3]), &[]);
+        assert_eq!(choice, choices[3]);
+    }
+}

@@ -1,0 +1,280 @@
+//! Deviation, labels and section through the real windows: what is clicked is found by its name.
+
+use eframe::egui_wgpu::RendererOptions;
+use egui::{PointerButton, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use shapematch::app::{
+    Action, Axis, AxisFrame, BottomTab, ColorBy, Freshness, InspectCommand, MoveCommand,
+    ViewCommand,
+};
+use shapematch::geometry::Vector3;
+use shapematch::jobs::Role;
+
+use super::story::{click, finish, window};
+use super::viewport::{Desk, area, drag, harness, show};
+
+fn act(desk: &mut Desk, action: Action) {
+    for command in action.to_commands(&desk.state) {
+        desk.apply(command);
+    }
+}
+
+/// Two sheets, the stamped one half a unit above the crash one, with the map on.
+fn with_map() -> Desk {
+    let mut desk = Desk::with_sheets(None);
+    desk.apply(
+        MoveCommand::Translate {
+            axis: Axis::Z,
+            frame: AxisFrame::Global,
+            distance: 0.5,
+        }
+        .into(),
+    );
+    act(&mut desk, Action::ToggleDeviation);
+    desk
+}
+
+fn starts_with(harness: &Harness<'_, Desk>, text: &str) -> usize {
+    let has = |label: Option<String>| label.is_some_and(|label| label.starts_with(text));
+    harness.query_all_by(|node| has(node.label())).count()
+}
+
+#[test]
+fn a_click_on_the_map_pins_a_label_and_its_cross_takes_it_away() {
+    let mut harness = harness(with_map());
+    assert_eq!(harness.state().state.freshness(), Freshness::Current);
+    let at = area(&harness, Role::Stamped).left_center() + vec2(60.0, 0.0);
+    for pressed in [true, false] {
+        harness.event(egui::Event::PointerMoved(at));
+        harness.step();
+        harness.event(egui::Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: egui::Modifiers::NONE,
+        });
+        harness.step();
+    }
+    harness.run_steps(2);
+    let labels = &harness.state().state.document.labels;
+    assert_eq!(labels.len(), 1);
+    let node = labels[0].node.unwrap();
+    assert_eq!(starts_with(&harness, &format!("Label node {node}: +0.")), 1);
+    let id = labels[0].id;
+    harness.state_mut().apply(InspectCommand::Remove(id).into());
+    harness.run_steps(2);
+    assert_eq!(starts_with(&harness, "Label node"), 0);
+    // Panics unless the windows come to rest.
+    harness.run();
+}
+
+#[test]
+fn the_limits_of_the_colours_are_dragged_and_stay_symmetric() {
+    let mut desk = with_map();
+    desk.state.view.display.coloring.tolerance = Some(0.1);
+    let mut harness = Harness::builder()
+        .with_size(vec2(1000.0, 620.0))
+        .build_ui_state(show, desk);
+    harness.run_steps(4);
+    let grip = harness
+        .get_by_label("Upper limit of the colours (stamped)")
+        .rect();
+    let before = harness.state().state.comparison().map(|c| {
+        harness
+            .state()
+            .state
+            .view
+            .display
+            .coloring
+            .deviation_scale(c)
+    });
+    let before = before.unwrap();
+    let from = grip.center();
+    drag(
+        &mut harness,
+        PointerButton::Primary,
+        from,
+        from - vec2(0.0, 40.0),
+    );
+    let limits = harness.state().state.view.display.coloring.limits.unwrap();
+    assert!(limits[1] > 1.2 * before.max, "{limits:?}");
+    assert_eq!(limits[0], -limits[1]);
+    let grip = harness.get_by_label("Upper tolerance (stamped)").rect();
+    let from = grip.center();
+    drag(
+        &mut harness,
+        PointerButton::Primary,
+        from,
+        from - vec2(0.0, 20.0),
+    );
+    let tolerance = harness
+        .state()
+        .state
+        .view
+        .display
+        .coloring
+        .tolerance
+        .unwrap();
+    assert!(tolerance > 0.12, "{tolerance}");
+    assert_eq!(starts_with(&harness, "Tolerance (stamped)"), 1);
+}
+
+#[test]
+fn the_section_has_a_handle_and_an_inset_and_both_move_the_plane() {
+    let mut desk = with_map();
+    act(&mut desk, Action::ToggleSection);
+    let mut harness = Harness::builder()
+        .with_size(vec2(1000.0, 620.0))
+        .build_ui_state(show, desk);
+    harness.run_steps(4);
+    while harness.state().viewports.is_waiting() {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+        harness.step();
+    }
+    assert_eq!(starts_with(&harness, "Outlines in the section plane"), 1);
+    let plane = |harness: &Harness<'_, Desk>| harness.state().state.view.section.shown().unwrap();
+    let before = plane(&harness);
+    let grip = harness
+        .get_by_label("Section plane (stamped)")
+        .rect()
+        .center();
+    drag(
+        &mut harness,
+        PointerButton::Primary,
+        grip,
+        grip + vec2(30.0, 10.0),
+    );
+    let moved = plane(&harness);
+    assert!(moved.distance(&before.point).abs() > 1.0);
+    assert_eq!(moved.normal, before.normal);
+    let grip = harness
+        .get_by_label("Section plane (stamped)")
+        .rect()
+        .center();
+    drag(
+        &mut harness,
+        PointerButton::Secondary,
+        grip,
+        grip + vec2(30.0, 10.0),
+    );
+    let turned = plane(&harness);
+    assert!(turned.normal.angle(&before.normal) > 0.05);
+    harness
+        .get_by_label("Section across Y (section)")
+        .click_accesskit();
+    harness.run_steps(2);
+    assert_eq!(plane(&harness).normal, Vector3::y());
+    harness.get_by_label("Section (section)").click_accesskit();
+    harness.run_steps(2);
+    assert_eq!(harness.state().state.view.section.shown(), None);
+    assert_eq!(starts_with(&harness, "Outlines in the section plane"), 0);
+}
+
+#[test]
+fn the_sign_can_be_told_without_colours() {
+    let state = egui_kittest::wgpu::create_render_state(
+        egui_kittest::wgpu::default_wgpu_setup(),
+        RendererOptions::PREDICTABLE,
+    );
+    let renderer = egui_kittest::wgpu::WgpuTestRenderer::from_render_state(state.clone());
+    let desk = Desk::with_sheets(Some(&state));
+    let builder = Harness::builder()
+        .with_size(vec2(360.0, 180.0))
+        .renderer(renderer);
+    let mut harness = builder.build_ui_state(show, desk);
+    let mut measure = |distance: f64| {
+        let desk = harness.state_mut();
+        desk.apply(MoveCommand::Reset.into());
+        desk.apply(
+            MoveCommand::Translate {
+                axis: Axis::Z,
+                frame: AxisFrame::Global,
+                distance,
+            }
+            .into(),
+        );
+        let mut display = desk.state.view.display.clone();
+        display.color_by = ColorBy::Deviation;
+        display.coloring.has_pattern = true;
+        display.coloring.tolerance = Some(0.1);
+        display.has_feature_edges = false;
+        desk.apply(ViewCommand::SetDisplay(Box::new(display)).into());
+        desk.apply(InspectCommand::Update.into());
+        desk.apply(ViewCommand::FitAll(Role::Stamped).into());
+        harness.run_steps(4);
+        let picture = harness
+            .state_mut()
+            .viewports
+            .window_picture(Role::Stamped, true)
+            .unwrap();
+        let (width, height) = picture.dimensions();
+        // Grey values of a square in the middle of the part.
+        let side = width.min(height) / 5;
+        let grey = |x: u32, y: u32| {
+            let [r, g, b, _] = picture.get_pixel(x, y).0;
+            f64::from(r) * 0.3 + f64::from(g) * 0.6 + f64::from(b) * 0.1
+        };
+        let (x0, y0) = ((width - side) / 2, (height - side) / 2);
+        let rows: Vec<f64> = (0..side)
+            .map(|y| (0..side).map(|x| grey(x0 + x, y0 + y)).sum::<f64>() / f64::from(side))
+            .collect();
+        let columns: Vec<f64> = (0..side)
+            .map(|x| (0..side).map(|y| grey(x0 + x, y0 + y)).sum::<f64>() / f64::from(side))
+            .collect();
+        (spread(&rows), spread(&columns))
+    };
+    let (rows, columns) = measure(-0.5);
+    assert!(
+        rows > 15.0 && rows > 4.0 * columns,
+        "lines: {rows} {columns}"
+    );
+    let (dot_rows, dot_columns) = measure(0.5);
+    let [lines, dots] = [columns / rows, dot_columns / dot_rows];
+    assert!(dots > 1.7 * lines, "{dots} against {lines}");
+}
+
+fn spread(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let sum: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+    (sum / values.len() as f64).sqrt()
+}
+
+#[test]
+fn after_a_match_the_tab_tells_the_numbers_and_goes_to_the_worst_places() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    click(&mut window, "Match the parts");
+    finish(&mut window);
+    click(&mut window, "Deviation");
+    finish(&mut window);
+    assert_eq!(window.state().state().view.tab, BottomTab::Deviation);
+    assert_eq!(window.state().state().freshness(), Freshness::Current);
+    let (_, stats) = window.state().state().deviation_stats().unwrap();
+    assert!(stats.class_shares[0] > 0.9, "{:?}", stats.class_shares);
+    let begins = |window: &Harness<'_, shapematch::ui::Shell>, text: &str| {
+        let has = |label: Option<String>| label.is_some_and(|label| label.starts_with(text));
+        let found = window.query_all_by(|node| has(node.label()));
+        found
+            .filter_map(|node| node.accesskit_node().label())
+            .next()
+    };
+    let pin = begins(&window, "Pin ").unwrap();
+    click(&mut window, &pin);
+    assert_eq!(window.state().state().document.labels.len(), 1);
+    let before = window.state().state().view.cameras;
+    let go = begins(&window, "Go to node").unwrap();
+    click(&mut window, &go);
+    assert_ne!(window.state().state().view.cameras, before);
+    click(&mut window, "Deviation map");
+    finish(&mut window);
+    assert_eq!(
+        window.state().state().view.display.color_by,
+        ColorBy::Deviation
+    );
+    window.key_press(egui::Key::S);
+    window.run_steps(3);
+    assert!(window.state().state().view.section.is_on);
+    window.check_accessibility();
+}
