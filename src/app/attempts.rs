@@ -200,8 +200,11 @@ pub fn group_attempts(attempts: &[Attempt<'_>], corners: &[Point3; 8]) -> Vec<At
         let (a, b) = (attempts[a].rank(), attempts[b].rank());
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
+    // Those that met another come after all that may lead a group, their leader among them.
+    let has_met = |&place: &usize| matches!(attempts[place].fate, Some(Fate::MergedInto { .. }));
+    let (met, leading): (Vec<_>, Vec<_>) = order.into_iter().partition(has_met);
     let mut groups: Vec<AttemptGroup> = Vec::new();
-    for place in order {
+    for place in leading.into_iter().chain(met) {
         let home = home_of(attempts, place, &groups, corners);
         match home {
             Some(group) => groups[group].members.push(place),

@@ -1,8 +1,8 @@
 use super::{Axis, NoticeLevel};
 use super::{
     AxisFrame, BottomTab, Dialog, Display, Document, GestureId, InspectCommand, KeptWork, LikeWhat,
-    ModalInput, MotionKind, MoveFrame, NoticeId, PartRef, Preview, Section, SectionView, Settings,
-    ShownGeometry,
+    ModalInput, MotionKind, MoveFrame, NoticeId, PartRef, PickedPoint, Preview, Section,
+    SectionView, Settings, ShownGeometry,
 };
 use crate::geometry::camera::{OrbitStyle, StandardView};
 use crate::geometry::{Camera, Point3, Similarity};
@@ -28,6 +28,8 @@ pub enum Command {
     Move(MoveCommand),
     /// Alignment, match, sweep.
     Match(MatchCommand),
+    /// Pairs of points.
+    Pair(PairCommand),
     /// What leaves the program.
     Export(ExportCommand),
     /// What is shown and how.
@@ -251,6 +253,8 @@ pub enum MatchCommand {
     UseStart(usize),
     /// Run the match.
     Run,
+    /// Run the match from the present pose, whatever the recipe begins with.
+    Refine,
     /// End the run with the best pose so far.
     Stop,
     /// End the run with the old pose.
@@ -263,6 +267,33 @@ pub enum MatchCommand {
     Measure,
     /// Run the paper's tables.
     Sweep(Box<SweepSettings>),
+}
+
+/// Pairs of points that were picked on both parts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PairCommand {
+    /// Begin to pick, or end.
+    ToggleTool,
+    /// A point was clicked.
+    Pick {
+        /// On which part.
+        role: Role,
+        /// What and where.
+        point: PickedPoint,
+    },
+    /// The next click picks this point of this pair again.
+    Repick {
+        /// Its number, counted from 0.
+        pair: usize,
+        /// On which part.
+        role: Role,
+    },
+    /// Forget a pair.
+    Delete(usize),
+    /// Forget all.
+    DeleteAll,
+    /// Lay the stamped points on the crash points.
+    Fit,
 }
 
 /// What can be written to a file.
@@ -422,6 +453,7 @@ macro_rules! from_group {
 
 from_group!(
     FileCommand => File,
+    PairCommand => Pair,
     ProjectCommand => Project,
     PartCommand => Part,
     ReduceCommand => Reduce,

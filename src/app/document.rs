@@ -1,4 +1,4 @@
-use super::{Label, Shared};
+use super::{Label, PointPairs, Shared};
 use crate::geometry::{Aabb, Similarity, TriMesh};
 use crate::jobs::{MeasuredLevel, PartFacts, PartSource, PerRole, Role, Stamp};
 use crate::pipeline::load::LoadedPart;
@@ -15,6 +15,8 @@ pub struct Document {
     pub parts: PerRole<Option<Part>>,
     /// Where the stamped part lies.
     pub pose: StampedPose,
+    /// Points that were picked on both parts.
+    pub pairs: PointPairs,
     /// Every setting of the match.
     pub recipe: MatchRecipe,
     /// The last match that was taken over.

@@ -11,6 +11,7 @@ mod command;
 mod command_line;
 mod document;
 mod effect;
+mod explain;
 mod facts;
 mod history;
 mod inspect;
@@ -21,6 +22,7 @@ mod log;
 mod modal_move;
 mod motion;
 mod notice;
+mod pairs;
 mod project;
 mod sections;
 mod settings;
@@ -35,10 +37,11 @@ pub use action::{Action, ActionInfo, Key, Menu, Reason, Shortcut};
 pub use attempts::{Attempt, AttemptGroup, Preview, Race, Step, group_attempts, is_same_pose};
 pub use command::{
     Command, ExportCommand, ExportKind, FileCommand, HistoryCommand, MatchCommand, MoveCommand,
-    NoticeCommand, PartCommand, ProjectCommand, ReduceCommand, ViewCommand,
+    NoticeCommand, PairCommand, PartCommand, ProjectCommand, ReduceCommand, ViewCommand,
 };
 pub use document::{Document, MatchResult, Part, StampedPose};
 pub use effect::Effect;
+pub use explain::Cause;
 pub use history::{GestureId, History};
 pub use inspect::{Coloring, Compared, Freshness, InspectCommand, Label, SectionView};
 pub use job_board::{JobBoard, RunningJob};
@@ -50,12 +53,13 @@ pub use motion::{
     Axis, AxisFrame, MoveFrame, rotation_about, translation_along, turns_deg, with_turns_deg,
 };
 pub use notice::{Notice, NoticeId, NoticeLevel, Notices};
+pub use pairs::{PairTool, PairVerdict, PickKind, PickedPoint, PointPair, PointPairs};
 pub(crate) use project::project_title;
 pub use project::{KeptWork, ProjectState};
 pub use sections::Sections;
 pub use settings::{MouseScheme, Settings, StartupOptions, Theme};
 pub use shared::Shared;
-pub use state::{AppState, Starts};
+pub use state::{AppState, PoseOverlap, Starts};
 pub use status::{Section, Stale};
 pub use unit_memory::UnitMemory;
 pub use units::UnitHint;

@@ -23,6 +23,19 @@ pub struct Starts {
     pub shown: Option<usize>,
 }
 
+/// How much of the better covered part lies on the other, measured after each move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseOverlap {
+    /// The state it was measured at.
+    pub stamp: Stamp,
+    /// Share of the area, 0 to 1.
+    pub overlap: f64,
+    /// Distance up to which a place counts as covered.
+    pub limit: f64,
+    /// Against the pose before.
+    pub change: Option<f64>,
+}
+
 /// Everything the window knows. Panels read it; only [`AppState::apply`] changes it.
 #[derive(Debug, Clone, Default)]
 pub struct AppState {
@@ -48,6 +61,11 @@ pub struct AppState {
     pub live_pose: Option<Similarity>,
     /// The starts of the running match, or of the last one if it gave no result.
     pub race: Race,
+    /// The overlap after the last move.
+    pub overlap: Option<PoseOverlap>,
+    /// Why the last match gave no result, with the parts it was run on.
+    pub failed_match: Option<(PerRole<u64>, String)>,
+    pub(super) overlap_asked: Option<Stamp>,
     /// Distances and overlap with the state they were measured in.
     pub measurement: Option<(Stamp, Shared<Coverage>)>,
     /// The last comparison of both parts, up to date or not.
@@ -159,6 +177,12 @@ impl AppState {
         let stamp = self.document.stamp();
         let (at, measurement) = self.measurement.as_ref()?;
         (*at == stamp).then_some(&**measurement)
+    }
+
+    /// The overlap at the pose the part has now.
+    pub fn current_overlap(&self) -> Option<&PoseOverlap> {
+        let stamp = self.document.stamp();
+        self.overlap.as_ref().filter(|known| known.stamp == stamp)
     }
 
     /// The recording of a part's reduction, if one was made.

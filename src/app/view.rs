@@ -1,4 +1,6 @@
-use super::{AxisFrame, Coloring, GestureId, ModalMove, MoveFrame, Preview, SectionView, Sections};
+use super::{
+    AxisFrame, Coloring, GestureId, ModalMove, MoveFrame, PairTool, Preview, SectionView, Sections,
+};
 use crate::geometry::camera::OrbitStyle;
 use crate::geometry::{Camera, Point3};
 use crate::jobs::{PerRole, Role};
@@ -245,6 +247,8 @@ pub struct ViewState {
     pub move_axes: AxisFrame,
     /// The move by keys that is under way.
     pub move_tool: Option<MoveTool>,
+    /// The tool that picks pairs of points.
+    pub pair_tool: Option<PairTool>,
     /// The pose of a start or an iteration that is shown while the pointer is on it.
     pub hovered_preview: Option<Preview>,
     /// The pose of a start or an iteration that is shown until it is let go.
@@ -282,6 +286,7 @@ impl Default for ViewState {
             has_gizmo: false,
             move_axes: AxisFrame::Global,
             move_tool: None,
+            pair_tool: None,
             hovered_preview: None,
             pinned_preview: None,
             chosen_start: None,

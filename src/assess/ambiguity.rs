@@ -1,4 +1,5 @@
-use crate::registration::Alternative;
+use crate::geometry::Similarity;
+use crate::registration::{Alternative, Surface};
 use serde::{Deserialize, Serialize};
 
 /// Below this ratio two poses are equivalent.
@@ -27,6 +28,74 @@ pub struct Ambiguity {
     pub ratio: Option<f64>,
     /// Equivalent positions, the result included.
     pub n_equivalent: usize,
+    /// How the second-best pose differs from the best, if it is nearly as good.
+    #[serde(default)]
+    pub twin: Option<Twin>,
+}
+
+/// Which of the part's own axes a turn is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TwinAxis {
+    /// The direction in which the part is longest.
+    Long,
+    /// Across it, within the sheet.
+    Cross,
+    /// Through the sheet.
+    Through,
+    /// None of them.
+    Other,
+}
+
+/// The motion from the best pose to another, in the source's own terms.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Twin {
+    /// Turn, 0 to π.
+    pub angle: f64,
+    /// About which axis.
+    pub axis: TwinAxis,
+    /// Way of the part's centroid, in target length units.
+    pub shift: f64,
+}
+
+/// Turns smaller than this are none.
+const NO_TURN: f64 = 3.0 * std::f64::consts::PI / 180.0;
+/// An axis is one of the part's own within about 15°.
+const SAME_AXIS: f64 = 0.966;
+
+impl Twin {
+    /// Compares two poses `target_from_source` of one source.
+    pub fn of(source: &Surface, best: &Similarity, other: &Similarity) -> Self {
+        let measures = source.measures();
+        let turn = best.rotation.transpose() * other.rotation;
+        let turn = nalgebra::Rotation3::from_matrix_unchecked(turn);
+        let center = &measures.centroid;
+        let axis = turn.axis().map_or(TwinAxis::Other, |axis| {
+            let along = |k: usize| measures.principal_axes.column(k).dot(&axis).abs();
+            let known = [TwinAxis::Long, TwinAxis::Cross, TwinAxis::Through];
+            let found = (0..3).find(|&k| along(k) > SAME_AXIS);
+            found.map_or(TwinAxis::Other, |k| known[k])
+        });
+        Self {
+            angle: turn.angle(),
+            axis,
+            shift: (other.apply(center) - best.apply(center)).norm(),
+        }
+    }
+
+    /// "turned by 180° about its long axis".
+    pub fn words(&self) -> String {
+        if self.angle < NO_TURN {
+            return format!("shifted by {:.3}", self.shift);
+        }
+        let axis = match self.axis {
+            TwinAxis::Long => " about its long axis",
+            TwinAxis::Cross => " about its short axis",
+            TwinAxis::Through => " in its own plane",
+            TwinAxis::Other => "",
+        };
+        format!("turned by {:.0}°{axis}", self.angle.to_degrees())
+    }
 }
 
 impl Ambiguity {
@@ -45,6 +114,7 @@ impl Ambiguity {
             clarity,
             ratio,
             n_equivalent: 1 + equivalent.count(),
+            twin: None,
         }
     }
 }

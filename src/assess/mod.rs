@@ -6,8 +6,8 @@ pub mod deviation;
 mod sliding;
 mod verdict;
 
-pub use ambiguity::{Ambiguity, Clarity};
-pub use coverage::{Coverage, OneSided, coverage, overlap_limit};
+pub use ambiguity::{Ambiguity, Clarity, Twin, TwinAxis};
+pub use coverage::{Coverage, OneSided, coverage, overlap_limit, quick_overlap};
 use serde::{Deserialize, Serialize};
 pub use sliding::{FreeMotion, FreeMotionKind, Freedom, free_motions};
 pub use verdict::Verdict;
@@ -62,7 +62,11 @@ pub fn assess(
     let coverage = coverage(source, target, pose, limit, monitor)?;
     monitor.progress("verify", 1, Some(2));
     let freedom = free_motions(source, target, pose, limit);
-    let ambiguity = Ambiguity::of(&outcome.alternatives);
+    let mut ambiguity = Ambiguity::of(&outcome.alternatives);
+    if ambiguity.clarity != Clarity::Clear {
+        let other = outcome.alternatives.first();
+        ambiguity.twin = other.map(|a| Twin::of(source, pose, &a.target_from_source));
+    }
     let chordal = |surface: &Surface| surface.measures().chordal_error;
     let noise = chordal(source).max(chordal(target)) + settings.allowance;
     let mut assessment = Assessment {

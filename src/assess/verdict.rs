@@ -190,15 +190,17 @@ fn freedom(assessment: &Assessment) -> Option<Reason> {
 fn ambiguity(assessment: &Assessment) -> Option<Reason> {
     let ambiguity = &assessment.ambiguity;
     let ratio = ambiguity.ratio?;
+    let how = ambiguity.twin.map_or_else(
+        || "in another pose".to_owned(),
+        |twin| format!("{} it", twin.words()),
+    );
     let words = match ambiguity.clarity {
         Clarity::Clear => return None,
         Clarity::Verify => {
-            format!(
-                "another pose is nearly as good (score ratio {ratio:.2}); verify which is meant"
-            )
+            format!("{how} fits nearly as well (score ratio {ratio:.2}): verify which is meant")
         }
         Clarity::Ambiguous => format!(
-            "ambiguous: {} equivalent positions (score ratio {ratio:.3})",
+            "ambiguous: {how} fits as well (score ratio {ratio:.3}), {} equivalent positions in all",
             ambiguity.n_equivalent
         ),
     };

@@ -2,6 +2,7 @@
 
 mod aabb;
 pub mod camera;
+mod landmarks;
 mod mesh;
 mod sampling;
 pub mod section;
@@ -12,6 +13,7 @@ mod weld;
 
 pub use aabb::Aabb;
 pub use camera::{Camera, Projection};
+pub use landmarks::{Hole, Landmarks};
 pub use mesh::{MeshError, TriMesh};
 pub use sampling::{SurfaceSample, sample_surface};
 pub use section::{Gap, Plane, SectionLine, gap_at, nearest_on_lines, section};

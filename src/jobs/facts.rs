@@ -1,5 +1,5 @@
 use crate::formats::PartSummary;
-use crate::geometry::{Aabb, Vector3};
+use crate::geometry::{Aabb, Landmarks, Vector3};
 use crate::pipeline::likeness::{Moments, moments_of_parts};
 use crate::pipeline::load::LoadedPart;
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,6 +23,8 @@ pub struct PartFacts {
     pub edge_length: f64,
     /// Area-weighted mean normal; its length says how flat the part is.
     pub mean_normal: Vector3,
+    /// Holes and corners, to be pointed at.
+    pub landmarks: Landmarks,
     /// Mean thickness of the matched elements, if known.
     pub thickness: Option<f64>,
     /// How much the file looks like the end of a forming simulation: 0 not at all, 1 one part with
@@ -48,6 +50,7 @@ impl PartFacts {
             area: part.mesh.area(),
             edge_length: part.mesh.mean_edge_length(),
             mean_normal: part.mesh.mean_normal(),
+            landmarks: Landmarks::of(&part.mesh),
             thickness: part.mean_thickness(),
             formed,
         }

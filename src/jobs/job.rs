@@ -109,6 +109,8 @@ pub enum JobKey {
     Measure,
     /// Deviation of every node.
     Compare,
+    /// The overlap at a pose, from few points.
+    Overlap,
     /// The paper's tables.
     Sweep,
     /// Reading a project with its parts.
@@ -131,6 +133,7 @@ impl JobKey {
             Self::Match => "Matching",
             Self::Measure => "Measuring distances",
             Self::Compare => "Measuring the deviation",
+            Self::Overlap => "Measuring the overlap",
             Self::Sweep => "Running the sweep",
             Self::OpenProject => "Opening the project",
             Self::Export => "Writing",
@@ -293,6 +296,8 @@ pub enum JobKind {
     Measure(MeasureInput),
     /// Deviation of every node.
     Compare(CompareInput),
+    /// The overlap at a pose, from few points.
+    Overlap(MeasureInput),
     /// Levels × match.
     Sweep(SweepInput),
     /// Reads a project with its parts.
@@ -313,6 +318,7 @@ impl JobKind {
             Self::Match(_) => JobKey::Match,
             Self::Measure(_) => JobKey::Measure,
             Self::Compare(_) => JobKey::Compare,
+            Self::Overlap(_) => JobKey::Overlap,
             Self::Sweep(_) => JobKey::Sweep,
             Self::OpenProject(_) => JobKey::OpenProject,
             Self::Export(_) => JobKey::Export,
@@ -360,6 +366,13 @@ pub enum JobOutput {
     Measured(Arc<Coverage>),
     /// Deviation of every node.
     Compared(Arc<Comparison>),
+    /// The overlap from few points.
+    Overlapped {
+        /// Share of the part that is covered better.
+        overlap: f64,
+        /// Distance up to which a place counts as covered.
+        limit: f64,
+    },
     /// The tables.
     Swept(Arc<Sweep>),
     /// Files were written.

@@ -5,7 +5,7 @@ use super::{
     JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource, Recording,
     ReduceInput, Role,
 };
-use crate::assess::{coverage, overlap_limit};
+use crate::assess::{coverage, overlap_limit, quick_overlap};
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::PipelineError;
 use crate::pipeline::inspect::compare_parts;
@@ -85,6 +85,7 @@ impl Runner for PipelineRunner {
             JobKind::Match(input) => run_match(&input, monitor),
             JobKind::Measure(input) => measure(&input, monitor),
             JobKind::Compare(input) => compare(&input, monitor),
+            JobKind::Overlap(input) => overlap(&input),
             JobKind::Sweep(input) => run_sweep(&input, monitor),
             JobKind::OpenProject(request) => {
                 let opened = open_project(request, monitor)?;
@@ -217,6 +218,19 @@ fn compare(input: &CompareInput, monitor: &Monitor) -> Result<JobOutput, JobErro
     let pose = &input.crash_from_stamped;
     let comparison = compare_parts(&input.crash, &input.stamped, levels, pose, monitor)?;
     Ok(JobOutput::Compared(Arc::new(comparison)))
+}
+
+/// Nodes of each mesh that tell how warm a pose is.
+const OVERLAP_POINTS: usize = 2000;
+
+fn overlap(input: &MeasureInput) -> Result<JobOutput, JobError> {
+    let surface = |part: &LoadedPart| part.surface_for_match().map_err(PipelineError::from);
+    let (target, source) = (surface(&input.crash)?, surface(&input.stamped)?);
+    let limit = overlap_limit(&source, &target, 0.0);
+    let pose = &input.crash_from_stamped;
+    let [a, b] = quick_overlap(&source, &target, pose, limit, OVERLAP_POINTS);
+    let overlap = a.max(b);
+    Ok(JobOutput::Overlapped { overlap, limit })
 }
 
 fn run_sweep(input: &SweepInput, monitor: &Monitor) -> Result<JobOutput, JobError> {

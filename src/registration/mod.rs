@@ -15,6 +15,7 @@ mod icp;
 mod metric;
 mod multi_start;
 mod outcome;
+mod point_pairs;
 mod problem;
 mod reject;
 mod result;
@@ -33,6 +34,7 @@ use std::time::Instant;
 pub use correspondence::PairWith;
 pub use error::RegistrationError;
 pub use metric::Metric;
+pub use point_pairs::{PairDoubt, PointPairFit, fit_point_pairs};
 pub use reject::RejectRules;
 pub use result::{
     Alternative, Fate, IterationRecord, MatchOutcome, MatchTimings, MirrorCheck, Side, StartRecord,

@@ -16,6 +16,7 @@ mod keyword_large;
 mod layering;
 mod mesh_files;
 mod mirrored;
+mod pairs;
 mod pan;
 mod project;
 mod registration;

@@ -44,6 +44,8 @@ impl Action {
                 require(is_moved, "the part is where its file has it")
             }
             A::BringCentersTogether | A::Align | A::Measure => state.can_match(),
+            A::PairTool | A::Refine => state.can_match(),
+            A::FitPairs => state.can_fit_pairs(),
             A::ToggleMoveOver | A::CopyCommandLine => state.has_both_parts(),
             A::Reduce => state.can_reduce(),
             A::NextLevel | A::PreviousLevel => level_step(self, state),
@@ -57,7 +59,8 @@ impl Action {
                 if state.jobs.is_active(JobKey::Match) {
                     Ok(())
                 } else {
-                    state.can_match()
+                    state.can_match()?;
+                    state.has_start_pose()
                 }
             }
             A::CancelRun => require(state.locking_job().is_some(), "nothing is running"),

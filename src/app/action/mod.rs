@@ -139,6 +139,8 @@ actions! {
     ResetPose,
     /// Show the gizmo.
     ToggleGizmo,
+    /// Pick pairs of points.
+    PairTool,
     /// Global, part or view axes.
     CycleMoveAxes,
     /// Move the stamped part over, or back.
@@ -233,6 +235,10 @@ actions! {
     PreviousStart,
     /// Take the shown first pose.
     UseStart,
+    /// Lay picked pairs of points on each other.
+    FitPairs,
+    /// Run the match from the present pose.
+    Refine,
     /// Run the match, or stop it.
     MatchOrStop,
     /// End the run with the old pose.

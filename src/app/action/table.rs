@@ -203,6 +203,11 @@ impl Action {
                 "Show handles that move and turn the stamped part",
                 Some(Shortcut::shift(Key::Letter('G'))),
             ),
+            Self::PairTool => (
+                "Point pairs",
+                "Pick points that belong together, in turn on the crash and the stamped part",
+                Some(key('N')),
+            ),
             _ => (
                 "Next move axes",
                 "Move along the axes of the crash model, of the part, or of the screen",
@@ -409,6 +414,16 @@ impl Action {
                 "Put the stamped part at the first pose that is shown",
                 Some(Shortcut::alt(Key::Enter)),
             ),
+            Self::FitPairs => (
+                "Fit the pairs",
+                "Lay the picked points on each other; with more than three pairs the best mean",
+                None,
+            ),
+            Self::Refine => (
+                "Refine",
+                "Run the match from where the stamped part lies now",
+                Some(Shortcut::ctrl_shift(Key::Enter)),
+            ),
             Self::MatchOrStop => (
                 "Match",
                 "Find the pose; while it runs, stop and keep the best so far",
@@ -418,7 +433,7 @@ impl Action {
             Self::FlipAlternative => (
                 "Other pose",
                 "Show the next pose that fits nearly as well, and round to the best",
-                Some(key('N')),
+                Some(key('V')),
             ),
             _ => (
                 "Measure",

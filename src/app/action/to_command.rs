@@ -2,7 +2,8 @@ use super::Action;
 use crate::app::{
     AppState, Axis, AxisFrame, ColorBy, Command, Dialog, Display, ExportCommand, ExportKind,
     FileCommand, HistoryCommand, InspectCommand, MatchCommand, MotionKind, MoveCommand,
-    PartCommand, ProjectCommand, ReduceCommand, SectionView, Settings, ShownGeometry, ViewCommand,
+    PairCommand, PartCommand, ProjectCommand, ReduceCommand, SectionView, Settings, ShownGeometry,
+    ViewCommand,
 };
 use crate::geometry::Vector3;
 use crate::geometry::camera::{OrbitStyle, StandardView};
@@ -63,6 +64,7 @@ impl Action {
             Self::TurnOverZ => MoveCommand::TurnOver(Axis::Z).into(),
             Self::BringCentersTogether => MoveCommand::BringCentersTogether.into(),
             Self::ResetPose => MoveCommand::Reset.into(),
+            Self::PairTool => PairCommand::ToggleTool.into(),
             Self::ToggleGizmo => ViewCommand::ToggleGizmo.into(),
             Self::CycleMoveAxes => ViewCommand::SetMoveAxes(next_axes(state)).into(),
             _ => return None,
@@ -157,6 +159,8 @@ impl Action {
             Self::NextStart => MatchCommand::StepStart(1).into(),
             Self::PreviousStart => MatchCommand::StepStart(-1).into(),
             Self::UseStart => MatchCommand::UseStart(state.current_starts()?.shown?).into(),
+            Self::FitPairs => PairCommand::Fit.into(),
+            Self::Refine => MatchCommand::Refine.into(),
             Self::MatchOrStop if state.jobs.is_active(JobKey::Match) => MatchCommand::Stop.into(),
             Self::MatchOrStop => MatchCommand::Run.into(),
             Self::CancelRun => MatchCommand::Cancel.into(),

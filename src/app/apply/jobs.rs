@@ -48,6 +48,8 @@ impl AppState {
             }
             // What was measured is written on the level itself, which may be shown again.
             JobKey::MeasureLevel(_) => true,
+            // A number for a pose that has moved on is the one before the next.
+            JobKey::Overlap => now.parts == stamp.parts,
             JobKey::Align | JobKey::Match | JobKey::Sweep | JobKey::Compare => {
                 now.parts == stamp.parts
             }
@@ -87,6 +89,7 @@ impl AppState {
             JobOutput::Aligned(poses) => self.take_aligned(poses, took),
             JobOutput::Measured(measurement) => self.take_measured(measurement, stamp, took),
             JobOutput::Compared(comparison) => self.take_compared(comparison, stamp),
+            JobOutput::Overlapped { overlap, limit } => self.take_overlap(overlap, limit, stamp),
             JobOutput::Swept(table) => self.take_swept(table, took),
             JobOutput::Exported { paths, notes } => {
                 for path in paths {
@@ -112,6 +115,9 @@ impl AppState {
 
     fn take_failed(&mut self, key: JobKey, message: String, elapsed: Duration) {
         self.end_of(key);
+        if key == JobKey::Match {
+            self.failed_match = Some((self.document.stamp().parts, message.clone()));
+        }
         let (step, role) = step_of(key);
         let what_now = match key {
             JobKey::Load(_) => "Nothing was loaded; choose another file or mend this one",
@@ -163,7 +169,7 @@ fn step_of(key: JobKey) -> (&'static str, Option<Role>) {
         JobKey::MeasureLevel(role) => ("measure", Some(role)),
         JobKey::Align => ("align", None),
         JobKey::Match => ("match", None),
-        JobKey::Measure => ("measure", None),
+        JobKey::Measure | JobKey::Overlap => ("measure", None),
         JobKey::Compare => ("compare", None),
         JobKey::Sweep => ("sweep", None),
         JobKey::OpenProject => ("project", None),

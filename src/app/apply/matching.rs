@@ -7,6 +7,7 @@ use crate::geometry::Point3;
 use crate::jobs::{JobKey, JobKind, MatchInput, MeasureInput, Role, Stamp, SweepInput, SweepRows};
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
 use crate::pipeline::sweep::{Sweep, SweepSettings};
+use crate::registration::StartMethod;
 use crate::registration::starts::Start;
 use std::sync::Arc;
 use std::time::Duration;
@@ -26,6 +27,7 @@ impl AppState {
             MatchCommand::UseAttempt(index) => self.use_attempt(index),
             MatchCommand::UseStart(index) => self.use_start(index),
             MatchCommand::Run => return self.run_match(),
+            MatchCommand::Refine => return self.refine(),
             MatchCommand::Stop => return self.stop_run(),
             MatchCommand::Cancel => return self.cancel_run(),
             MatchCommand::ShowAlternative(index) => self.show_alternative(index),
@@ -54,11 +56,16 @@ impl AppState {
             stamped: Arc::clone(stamped.reduced_mesh()),
             max_triangles: [crash, stamped].map(Part::ceiling),
         });
+        let mut recipe = self.document.recipe.clone();
+        if recipe.settings.starts.method == StartMethod::GivenPoses {
+            let fit = self.pair_fit().ok()?;
+            recipe.settings.starts.poses = vec![fit.fit.target_from_source];
+        }
         Some(MatchInput {
             crash: crash.loaded.to_arc(),
             stamped: stamped.loaded.to_arc(),
             reduced,
-            recipe: self.document.recipe.clone(),
+            recipe,
             current: *self.document.crash_from_stamped(),
         })
     }
@@ -72,9 +79,23 @@ impl AppState {
     }
 
     fn run_match(&mut self) -> Vec<Effect> {
-        let effects = self.start_with_input(JobKind::Match);
+        self.run_match_of(JobKind::Match)
+    }
+
+    /// From where the part lies now; a wide search would lead away from it.
+    fn refine(&mut self) -> Vec<Effect> {
+        self.run_match_of(|mut input| {
+            input.recipe.settings.starts.method = StartMethod::CurrentPose;
+            input.recipe.settings.starts.widen = false;
+            JobKind::Match(input)
+        })
+    }
+
+    fn run_match_of(&mut self, kind: impl FnOnce(MatchInput) -> JobKind) -> Vec<Effect> {
+        let effects = self.start_with_input(kind);
         if !effects.is_empty() {
             self.race.clear();
+            self.failed_match = None;
             self.view.chosen_start = None;
             self.live_pose = None;
         }

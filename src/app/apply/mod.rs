@@ -7,6 +7,8 @@ mod inspect;
 mod jobs;
 mod matching;
 mod moving;
+mod overlap;
+mod pairs;
 mod part;
 mod project;
 mod reduce;
@@ -26,6 +28,7 @@ impl AppState {
         let mut effects = self.apply_one(command);
         // Whatever changed, what the window shows of the distances follows.
         effects.extend(self.keep_comparing());
+        effects.extend(self.keep_measuring_overlap());
         effects
     }
 
@@ -37,6 +40,7 @@ impl AppState {
             Command::Reduce(command) => self.apply_reduce(command),
             Command::Move(command) => self.apply_move(command),
             Command::Match(command) => self.apply_match(command),
+            Command::Pair(command) => self.apply_pairs(command),
             Command::Export(command) => self.apply_export(command),
             Command::View(command) => self.apply_view(command),
             Command::Inspect(command) => self.apply_inspect(command),
@@ -74,6 +78,8 @@ impl AppState {
             Vec::new()
         } else if self.view.move_tool.is_some() {
             self.apply_move(MoveCommand::Input(ModalInput::Reject))
+        } else if self.view.pair_tool.take().is_some() {
+            Vec::new()
         } else if let Some(key) = self.locking_job() {
             self.cancel_job(key)
         } else if self.is_preview() {

@@ -1,7 +1,7 @@
 //! Section 3: first poses, the match, what came out.
 
 use super::section::section_ui;
-use super::{manual_move, recipe, result};
+use super::{manual_move, pairs, recipe, result};
 use crate::app::{
     Action, AppState, Command, MatchCommand, Section, ShownGeometry, ViewCommand, duration_text,
 };
@@ -36,6 +36,7 @@ pub fn matching_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
             align_ui(ui, state, commands);
             chain_ui(ui, state, commands);
+            pairs::pairs_ui(ui, state, commands);
             run_ui(ui, state, commands);
             result::result_ui(ui, state, commands);
             compare_ui(ui, state, commands);
@@ -104,6 +105,21 @@ fn named_button(name: &str) -> egui::WidgetInfo {
     egui::WidgetInfo::labeled(egui::Role::Button, true, name)
 }
 
+/// In the window the given pose is that of the picked pairs.
+fn start_label(method: StartMethod) -> &'static str {
+    match method {
+        StartMethod::GivenPoses => "Point pairs",
+        other => other.label(),
+    }
+}
+
+fn start_help(method: StartMethod) -> &'static str {
+    match method {
+        StartMethod::GivenPoses => "Starts from the pose that picked pairs of points give",
+        other => other.help(),
+    }
+}
+
 /// Start, then method: the two links of the chain, and the gear for the rest.
 fn chain_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut recipe = state.document.recipe.clone();
@@ -111,16 +127,14 @@ fn chain_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.add_enabled_ui(is_free, |ui| {
         form_row(ui, "Start", LABEL, |ui| {
             ComboBox::from_id_salt("start")
-                .selected_text(recipe.settings.starts.method.label())
+                .selected_text(start_label(recipe.settings.starts.method))
                 .width(ui.available_width())
                 .show_ui(ui, |ui| {
                     for method in StartMethod::ALL {
-                        if method == StartMethod::GivenPoses {
-                            continue;
-                        }
                         let value = &mut recipe.settings.starts.method;
-                        ui.selectable_value(value, method, method.label())
-                            .on_hover_text(method.help());
+                        let (label, help) = (start_label(method), start_help(method));
+                        ui.selectable_value(value, method, label)
+                            .on_hover_text(help);
                     }
                 });
         });

@@ -5,6 +5,7 @@ pub mod graphics;
 pub mod load;
 pub mod manual_move;
 pub mod matching;
+pub mod pairs;
 pub mod part_filter;
 pub mod part_list;
 pub mod part_row;

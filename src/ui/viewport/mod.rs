@@ -10,6 +10,7 @@ mod meshes;
 mod motion;
 mod navigation;
 mod overlay;
+mod picking;
 mod pointing;
 mod sections;
 mod snapshot;
@@ -32,6 +33,7 @@ pub use look::part_color;
 use meshes::{MeshSource, MeshStore, ShownMesh};
 use motion::{Crossing, SmoothCamera, SmoothPose};
 use navigation::{Navigator, View};
+use picking::Picker;
 use pointing::{Pointing, Target};
 use sections::SectionStore;
 use snapshot::Shot;
@@ -326,6 +328,15 @@ impl Viewports {
             is_busy: window.navigator.drag().is_some() || window.tools.takes_left(),
         };
         let hit = window.pointing.update(&target, commands);
+        let picker = Picker {
+            response,
+            state,
+            camera: &stage.camera,
+            picture,
+            window: stage.window,
+            is_busy: target.is_busy || state.view.move_tool.is_some(),
+        };
+        let pick = picker.update(commands);
         window.tools.paint(&bench);
         let kind = FieldKind::of(state.view.display.color_by);
         let view = overlay::Overlay {
@@ -340,7 +351,9 @@ impl Viewports {
             scale: kind.and_then(|kind| Some((kind, self.fields.scale(state)?))),
             kind,
             hint: window.tools.hint(state),
+            pick,
             is_focused: response.has_focus(),
+            is_hovered: response.contains_pointer(),
             is_preparing: is_preparing(state, stage, picture),
         };
         overlay::show(ui, &view, commands);

@@ -38,7 +38,9 @@ impl Pointing {
             commands.push(PartCommand::Hover(part).into());
         }
         if target.state.view.move_tool.is_none() {
-            self.click(target, hit.as_ref(), commands);
+            if target.state.view.pair_tool.is_none() {
+                self.click(target, hit.as_ref(), commands);
+            }
             if response.secondary_clicked() {
                 self.menu.clone_from(&hit);
             }

@@ -8,7 +8,7 @@ use super::meshes::ShownMesh;
 use super::sections::{self, Cut};
 use crate::app::{AppState, PartRef};
 use crate::geometry::camera::{ScreenSize, ViewRay};
-use crate::geometry::{Aabb, Camera, Plane, Point3};
+use crate::geometry::{Aabb, Camera, Plane, Point3, Similarity, Vector3};
 use crate::jobs::{PerRole, Role};
 use crate::render::{Drawable, FieldLook, PartLook, Scene, Section, Sheet};
 
@@ -35,6 +35,27 @@ pub(super) struct Picture {
     pub section_frame: Option<[Point3; 4]>,
     /// What lies on the side of its normal is cut away.
     clip: Option<Plane>,
+}
+
+/// Where a part lies in a window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Place {
+    window_from_part: Similarity,
+    offset: Vector3,
+}
+
+impl Place {
+    /// A point of the part, in the window's space.
+    pub fn to_window(self, point: &Point3) -> Point3 {
+        self.window_from_part.apply(point) + self.offset
+    }
+
+    /// A point of the window's space, in the part's own.
+    pub fn to_part(self, point: &Point3) -> Point3 {
+        self.window_from_part
+            .inverse()
+            .apply(&(point - self.offset))
+    }
 }
 
 /// What stands behind a drawable.
@@ -145,6 +166,15 @@ impl Picture {
         Role::ALL.into_iter().filter(has).collect()
     }
 
+    /// Where a part lies in this window, if it is drawn.
+    pub fn place_of(&self, role: Role) -> Option<Place> {
+        let layer = self.layers.iter().find(|layer| layer.role == role)?;
+        Some(Place {
+            window_from_part: layer.actor.world_from_part,
+            offset: layer.actor.offset,
+        })
+    }
+
     /// True if nothing is drawn.
     pub fn is_empty(&self) -> bool {
         self.layers.is_empty()
@@ -153,6 +183,17 @@ impl Picture {
     /// What lies under a point of the window; sheets that are hidden or hardly visible do not count.
     /// A few microseconds per sheet.
     pub fn hit(&self, camera: &Camera, pixel: [f64; 2], screen: ScreenSize) -> Option<Hit> {
+        self.hit_of(None, camera, pixel, screen)
+    }
+
+    /// [`Picture::hit`] on one part, whatever lies before it, or on all.
+    pub fn hit_of(
+        &self,
+        only: Option<Role>,
+        camera: &Camera,
+        pixel: [f64; 2],
+        screen: ScreenSize,
+    ) -> Option<Hit> {
         let ray = camera.ray(pixel, screen, &self.bounds);
         let is_left = self
             .scene
@@ -160,6 +201,7 @@ impl Picture {
             .map(|share| pixel[0] < f64::from(share) * screen.width);
         let layers = self.layers.iter().zip(&self.scene.drawables);
         let hits = layers
+            .filter(|(layer, _)| only.is_none_or(|role| layer.role == role))
             .filter(|(_, drawable)| drawable.opacity > PICKED_OPACITY)
             .filter(|(_, drawable)| is_on_side(drawable.wipe, is_left))
             .filter_map(|(layer, drawable)| {

@@ -30,6 +30,7 @@ struct Line<'a> {
 struct Table<'a> {
     state: &'a AppState,
     n_starts: usize,
+    n_best: usize,
     lines: Vec<Line<'a>>,
     open: Vec<usize>,
 }
@@ -51,10 +52,11 @@ pub fn starts_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let table = Table {
         state,
         n_starts: attempts.len(),
+        n_best: groups.first().map_or(0, |group| group.members.len()),
         lines: lines(&attempts, &groups, &open),
         open,
     };
-    head_ui(ui, &table, groups.len());
+    head_ui(ui, &table);
     let hovered = table_ui(ui, &table, commands);
     let shown = state.view.hovered_preview;
     if hovered != shown && state.locking_job().is_none() {
@@ -92,13 +94,15 @@ fn open_groups(ui: &Ui) -> Vec<usize> {
     ui.data(|data| data.get_temp(open_id())).unwrap_or_default()
 }
 
-fn head_ui(ui: &mut Ui, table: &Table<'_>, n_groups: usize) {
+fn head_ui(ui: &mut Ui, table: &Table<'_>) {
     let n_starts = table.n_starts;
     let text = if table.state.locking_job().is_some() {
         format!("{n_starts} starts so far; rows fill while they run")
     } else {
+        let n_best = table.n_best;
         format!(
-            "{n_starts} starts, {n_groups} different ends · point at a row to see its pose, click to take it"
+            "{n_best} of {n_starts} starts ended in the best pose · point at a row to see its pose, \
+             click to take it"
         )
     };
     caption(ui, text);
@@ -173,8 +177,10 @@ fn row_ui(
         thumbnails.show(ui, table.state, pose, egui::vec2(PICTURE, HEIGHT - 4.0));
     });
     row.col(|ui| {
+        let has_more = line.group.is_some_and(|group| group.members.len() > 1);
         ui.vertical(|ui| {
-            ui.add_space(3.0);
+            ui.spacing_mut().interact_size.y = 18.0;
+            ui.add_space(if has_more { 3.0 } else { 12.0 });
             name_ui(ui, table, line, commands);
         });
     });

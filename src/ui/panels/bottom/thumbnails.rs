@@ -1,7 +1,7 @@
 //! Small pictures of poses, drawn without the graphics card by a thread of their own.
 
 use crate::app::{AppState, Part};
-use crate::geometry::{Camera, Point3, Similarity, TriMesh};
+use crate::geometry::{Camera, Similarity, TriMesh};
 use crate::jobs::{PerRole, Role};
 use crate::monitor::Monitor;
 use crate::pipeline::load::LoadedPart;
@@ -18,6 +18,8 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 const SIZE: [usize; 2] = [144, 90];
 /// Triangles of a mesh that is drawn so small.
 const MAX_TRIANGLES: usize = 2000;
+/// A stamped part that lies beside the crash part is still partly seen.
+const AIR: f64 = 1.2;
 /// Pictures kept.
 const KEPT: usize = 256;
 
@@ -162,7 +164,7 @@ impl Thumbnails {
         let colors = [palette.crash, palette.stamped].map(|c| [c.r(), c.g(), c.b()]);
         let task = |(key, pose): (Key, Similarity)| {
             let (crash, stamped) = (Arc::clone(&meshes.crash), Arc::clone(&meshes.stamped));
-            let work = move || draw([&crash, &stamped], &pose, &camera, colors);
+            let work = move || draw([&crash, &stamped], &pose, camera, colors);
             Task {
                 key,
                 work: Box::new(work),
@@ -184,28 +186,26 @@ fn key_of(state: &AppState, pose: &Similarity, is_dark: bool) -> Key {
     }
 }
 
-/// All pictures of a pair are seen from one place: along the sheet's mean normal, the crash part in the
-/// middle with some air around it.
+/// All pictures of a pair are seen from one place: along the sheet's mean normal, the crash part filling
+/// the picture but for some air.
 fn camera(crash: &Part) -> Camera {
-    let corners = crash.bounds().corners();
     let mut camera = Camera::default();
     let normal = crash.facts.mean_normal;
     if normal.norm() > 0.0 {
-        camera.look_along(&-normal, &corners);
+        camera.look_along(&-normal, &crash.bounds().corners());
     }
-    let middle = crash.bounds().center();
-    let apart = |corner: &Point3| middle + (corner - middle) * 1.15;
-    let aspect = SIZE[0] as f64 / SIZE[1] as f64;
-    camera.fit_to_points(&corners.map(|corner| apart(&corner)), aspect);
     camera
 }
 
 fn draw(
     [crash, stamped]: [&SmallMesh; 2],
     pose: &Similarity,
-    camera: &Camera,
+    mut camera: Camera,
     [crash_color, stamped_color]: [[u8; 3]; 2],
 ) -> Picture {
+    let aspect = SIZE[0] as f64 / SIZE[1] as f64;
+    camera.fit_to_points(crash.get().positions(), aspect);
+    camera.height *= AIR;
     let fixed = Similarity::identity();
     let meshes = [
         PictureMesh {
@@ -219,5 +219,5 @@ fn draw(
             paint: Paint::Plain(stamped_color),
         },
     ];
-    picture(SIZE, camera, None, &meshes)
+    picture(SIZE, &camera, None, &meshes)
 }

@@ -7,6 +7,7 @@ mod header;
 mod labels;
 mod legend;
 mod marks;
+mod pairs;
 mod section;
 
 pub(super) use crate::report::grouped;
@@ -16,6 +17,7 @@ use super::cast::Stage;
 use super::fields::FieldKind;
 use super::look::Look;
 use super::navigation::CameraDrag;
+use super::picking::Pick;
 use super::sections::Cut;
 use super::stage::{Hit, Picture};
 use crate::app::{AppState, Command};
@@ -43,7 +45,10 @@ pub(super) struct Overlay<'a> {
     pub cuts: &'a PerRole<Option<Arc<Cut>>>,
     /// What the handle under the pointer does.
     pub hint: Option<String>,
+    /// What a click would pick for a pair of points.
+    pub pick: Option<Pick>,
     pub is_focused: bool,
+    pub is_hovered: bool,
     /// The part is there but not yet its mesh.
     pub is_preparing: bool,
 }
@@ -67,6 +72,8 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     }
     apart::show(ui, over, commands);
     divider::show(ui, over, commands);
+    pairs::show(ui, over);
+    pairs::next(ui, over);
     section::handle(ui, over, commands);
     labels::show(ui, over, commands);
     legend::show(ui, over, commands);

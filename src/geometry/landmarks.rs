@@ -1,0 +1,141 @@
+//! Places of a sheet that two meshes of it share: centres of holes and corners of the rim. Nodes differ
+//! from mesh to mesh, these do not.
+
+use super::{BorderLoop, Point3, Topology, TriMesh, weld};
+
+/// Rims up to this share of the box's diagonal in length are holes.
+const HOLE: f64 = 0.6;
+/// A rim is round if its points differ so little in their distance from the middle.
+const ROUND: f64 = 0.25;
+/// The rim turns by at least so much at a corner, in degrees.
+const CORNER_DEG: f64 = 45.0;
+/// Rims with fewer vertices are slits.
+const LEAST: usize = 6;
+
+/// A hole in a sheet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hole {
+    /// Middle of its rim.
+    pub center: Point3,
+    /// Mean distance of the rim from the middle.
+    pub radius: f64,
+}
+
+/// What can be pointed at besides nodes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Landmarks {
+    /// Round holes.
+    pub holes: Vec<Hole>,
+    /// Corners of the outer rim and of holes that are not round.
+    pub corners: Vec<Point3>,
+}
+
+impl Landmarks {
+    /// Walks along all rims. O(triangles).
+    pub fn of(mesh: &TriMesh) -> Self {
+        let mesh = weld(mesh, 0.0).mesh;
+        let size = mesh.aabb().diagonal();
+        let mut found = Self::default();
+        for rim in Topology::of(&mesh).border_loops(&mesh) {
+            match round_hole(&mesh, &rim, size) {
+                Some(hole) => found.holes.push(hole),
+                None => found.corners.extend(corners(&mesh, &rim)),
+            }
+        }
+        found
+    }
+}
+
+fn point(mesh: &TriMesh, vertex: u32) -> Point3 {
+    mesh.positions()[vertex as usize]
+}
+
+fn round_hole(mesh: &TriMesh, rim: &BorderLoop, size: f64) -> Option<Hole> {
+    if !rim.closed || rim.vertices.len() < LEAST {
+        return None;
+    }
+    let points: Vec<Point3> = rim.vertices.iter().map(|&v| point(mesh, v)).collect();
+    let next = points.iter().cycle().skip(1);
+    let sides: Vec<(f64, Point3)> = points
+        .iter()
+        .zip(next)
+        .map(|(a, b)| ((b - a).norm(), nalgebra::center(a, b)))
+        .collect();
+    let length: f64 = sides.iter().map(|(length, _)| length).sum();
+    if length <= 0.0 || length > HOLE * size {
+        return None;
+    }
+    let sum = sides
+        .iter()
+        .map(|(length, middle)| middle.coords * *length)
+        .sum::<super::Vector3>();
+    let center = Point3::from(sum / length);
+    let far = points.iter().map(|p| (p - center).norm());
+    let (mut least, mut most, mut total) = (f64::INFINITY, 0.0_f64, 0.0);
+    for radius in far {
+        least = least.min(radius);
+        most = most.max(radius);
+        total += radius;
+    }
+    let radius = total / points.len() as f64;
+    (most - least < ROUND * radius).then_some(Hole { center, radius })
+}
+
+fn corners(mesh: &TriMesh, rim: &BorderLoop) -> Vec<Point3> {
+    let n = rim.vertices.len();
+    if n < 3 {
+        return Vec::new();
+    }
+    let at = |i: usize| point(mesh, rim.vertices[i % n]);
+    let range = if rim.closed { 0..n } else { 1..n - 1 };
+    let least = CORNER_DEG.to_radians();
+    let turns = |&i: &usize| {
+        let (before, after) = (at(i) - at(i + n - 1), at(i + 1) - at(i));
+        before.angle(&after) > least
+    };
+    range.filter(turns).map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plate of 40 × 20 with a hole of radius 4 in the middle: a ring of quads between rims.
+    fn plate() -> TriMesh {
+        let n = 48_u32;
+        let mut positions = Vec::new();
+        for k in 0..n {
+            let angle = f64::from(k) / f64::from(n) * std::f64::consts::TAU;
+            let (sin, cos) = angle.sin_cos();
+            positions.push(Point3::new(4.0 * cos, 4.0 * sin, 0.0));
+            let reach = (20.0 / cos.abs()).min(10.0 / sin.abs());
+            positions.push(Point3::new(reach * cos, reach * sin, 0.0));
+        }
+        // The rays miss the corners of the plate; the nearest ones are moved there.
+        for (x, y) in [(20.0, 10.0), (-20.0, 10.0), (-20.0, -10.0), (20.0, -10.0)] {
+            let corner = Point3::new(x, y, 0.0);
+            let far = |i: &usize| (positions[*i] - corner).norm();
+            let rim = (0..positions.len()).filter(|i| i % 2 == 1);
+            let nearest = rim.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap();
+            positions[nearest] = corner;
+        }
+        let cell = |k: u32| {
+            let next = (k + 1) % n;
+            let (a, b, c, d) = (2 * k, 2 * k + 1, 2 * next + 1, 2 * next);
+            [[a, b, c], [a, c, d]]
+        };
+        TriMesh::new(positions, (0..n).flat_map(cell).collect()).unwrap()
+    }
+
+    #[test]
+    fn holes_and_corners_are_found() {
+        let found = Landmarks::of(&plate());
+        assert_eq!(found.holes.len(), 1);
+        assert!(found.holes[0].center.coords.norm() < 1e-9);
+        assert!((found.holes[0].radius - 4.0).abs() < 1e-9);
+        assert_eq!(found.corners.len(), 4);
+        let is_corner =
+            |p: &Point3| (p.x.abs() - 20.0).abs() < 1e-9 && (p.y.abs() - 10.0).abs() < 1e-9;
+        assert!(found.corners.iter().all(is_corner));
+    }
+}

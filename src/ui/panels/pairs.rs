@@ -1,0 +1,146 @@
+//! The picked pairs: what each is, how far it is off, and the pose they stand for.
+
+use crate::app::{Action, AppState, Command, PairCommand, PointPair};
+use crate::jobs::Role;
+use crate::registration::PointPairFit;
+use crate::ui::theme::{Palette, ROW, UNIT};
+use crate::ui::widgets::{
+    Look, action_button, caption, card, icon_button, paragraph, role_mark, secondary,
+};
+use egui::{Button, RichText, Ui, vec2};
+
+/// The card with the pairs, while the tool is on or pairs are there.
+pub fn pairs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    if state.view.pair_tool.is_none() && state.pairs().is_empty() {
+        return;
+    }
+    ui.add_space(2.0);
+    card(ui, |ui| {
+        head_ui(ui, state, commands);
+        let fit = state.pair_fit();
+        for (index, pair) in state.pairs().iter().enumerate() {
+            row_ui(ui, state, (index, pair), fit.as_ref().ok(), commands);
+        }
+        match &fit {
+            Ok(fit) => doubt_ui(ui, state, fit),
+            Err(missing) => {
+                paragraph(ui, sentence(missing));
+            }
+        }
+        ui.horizontal(|ui| {
+            let half = (ui.available_width() - UNIT) / 2.0;
+            let fit = ("Fit", Look::Primary, vec2(half, ROW));
+            action_button(ui, state, Action::FitPairs, fit, commands).widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, true, "Fit the pairs")
+            });
+            let refine = ("Refine", Look::Plain, vec2(half, ROW));
+            action_button(ui, state, Action::Refine, refine, commands);
+        });
+    });
+}
+
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string());
+    format!("{}{}.", first.unwrap_or_default(), letters.as_str())
+}
+
+fn head_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.label("Point pairs");
+        if !state.pairs().is_empty() && icon_button(ui, "✖", "Delete all pairs", true).clicked() {
+            commands.push(PairCommand::DeleteAll.into());
+        }
+        let is_on = state.view.pair_tool.is_some();
+        let label = if is_on { "Done" } else { "Pick more" };
+        if ui
+            .add(Button::new(label).min_size(vec2(0.0, ROW)))
+            .clicked()
+        {
+            commands.push(PairCommand::ToggleTool.into());
+        }
+    });
+    if let Some((pair, role)) = state.next_pick() {
+        ui.horizontal(|ui| {
+            caption(ui, format!("Pair {}: click on", pair + 1));
+            role_mark(ui, role);
+            caption(ui, format!("the {} part", role.word()));
+        });
+    }
+}
+
+fn row_ui(
+    ui: &mut Ui,
+    state: &AppState,
+    (index, pair): (usize, &PointPair),
+    fit: Option<&PointPairFit>,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.label((index + 1).to_string());
+        for role in Role::ALL {
+            role_mark(ui, role);
+            let text = match pair.get(role) {
+                Some(picked) => picked.kind.words(),
+                None => "–".to_owned(),
+            };
+            let name = format!("Pick pair {} on the {} part again", index + 1, role.word());
+            let asks = state.view.pair_tool.and_then(|tool| tool.repick);
+            let is_asked = asks == Some((index, role));
+            let button = Button::new(RichText::new(text).small()).selected(is_asked);
+            let response = ui.add(button.truncate().min_size(vec2(64.0, ROW - 2.0)));
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+            if response.on_hover_text(&name).clicked() {
+                commands.push(PairCommand::Repick { pair: index, role }.into());
+            }
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let name = format!("Delete pair {}", index + 1);
+            if icon_button(ui, "✖", &name, true).clicked() {
+                commands.push(PairCommand::Delete(index).into());
+            }
+            residual_ui(ui, state, (index, pair), fit);
+        });
+    });
+}
+
+/// Distance after the fit; the worst one is marked.
+fn residual_ui(
+    ui: &mut Ui,
+    state: &AppState,
+    (index, pair): (usize, &PointPair),
+    fit: Option<&PointPairFit>,
+) {
+    let is_whole = pair.crash.is_some() && pair.stamped.is_some();
+    let residual = fit
+        .filter(|_| is_whole)
+        .and_then(|fit| fit.residuals.get(index));
+    let Some(residual) = residual else {
+        secondary(ui, "–");
+        return;
+    };
+    let text = state.length_text(*residual);
+    if fit.and_then(PointPairFit::worst) == Some(index) {
+        let color = Palette::of(ui).check;
+        ui.label(RichText::new(format!("⚠ {text}")).color(color))
+            .on_hover_text("The pair that fits worst");
+    } else {
+        secondary(ui, text);
+    }
+}
+
+fn doubt_ui(ui: &mut Ui, state: &AppState, fit: &PointPairFit) {
+    match state.pair_doubt_text(fit) {
+        Some(doubt) => {
+            let color = Palette::of(ui).check;
+            let text = RichText::new(format!("⚠ {doubt}")).color(color);
+            ui.add(egui::Label::new(text).wrap());
+        }
+        None => {
+            let n_pairs = fit.residuals.len();
+            let rmse = state.length_text(fit.fit.rmse);
+            caption(ui, format!("{n_pairs} pairs, RMS {rmse} after the fit"));
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Picking pairs of points: what the pointer snaps to, and the click that takes it.
+
+use egui::{Pos2, Rect, Response};
+
+use super::navigation::{pixel_of, pos_of, screen_of};
+use super::stage::{Hit, Picture};
+use crate::app::{AppState, Command, PairCommand, PickKind, PickedPoint};
+use crate::geometry::{Camera, Point3};
+use crate::jobs::Role;
+
+/// Nodes and corners catch the pointer within so many points.
+const REACH: f32 = 10.0;
+/// The middle of a small hole does too; that of a large one from anywhere in it.
+const HOLE_REACH: f32 = 14.0;
+
+/// What a click would pick now.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pick {
+    pub role: Role,
+    /// In the space of the part.
+    pub picked: PickedPoint,
+    /// In the window.
+    pub at: Pos2,
+}
+
+/// A window as picking meets it.
+pub(super) struct Picker<'a> {
+    pub response: &'a Response,
+    pub state: &'a AppState,
+    pub camera: &'a Camera,
+    pub picture: &'a Picture,
+    pub window: Role,
+    /// The camera or another tool has the pointer.
+    pub is_busy: bool,
+}
+
+impl Picker<'_> {
+    /// What lies under the pointer; a click takes it.
+    pub fn update(&self, commands: &mut Vec<Command>) -> Option<Pick> {
+        let pick = self.pick()?;
+        if self.response.clicked() {
+            let (role, point) = (pick.role, pick.picked);
+            commands.push(PairCommand::Pick { role, point }.into());
+        }
+        Some(pick)
+    }
+
+    /// The part that is asked for in this window: the one of the next click where both are, else the
+    /// window's own.
+    fn role(&self) -> Option<Role> {
+        let (_, asked) = self.state.next_pick()?;
+        let role = if self.state.view.is_moved_over {
+            asked
+        } else {
+            self.window
+        };
+        let is_here = self.window == Role::Crash || !self.state.view.is_moved_over;
+        is_here.then_some(role)
+    }
+
+    fn pick(&self) -> Option<Pick> {
+        if self.is_busy || self.state.is_preview() || self.state.locking_job().is_some() {
+            return None;
+        }
+        let role = self.role()?;
+        let pos = self.response.hover_pos()?;
+        let rect = self.response.rect;
+        let pixel = pixel_of(rect, pos);
+        let hit = self
+            .picture
+            .hit_of(Some(role), self.camera, pixel, screen_of(rect));
+        let place = self.picture.place_of(role)?;
+        let (at, point, kind) = self
+            .landmark(role, pos, hit.as_ref())
+            .or_else(|| snapped(rect, self.camera, pos, hit.as_ref()?))?;
+        let picked = PickedPoint {
+            point: place.to_part(&point),
+            kind,
+        };
+        Some(Pick { role, picked, at })
+    }
+
+    /// The nearest hole or corner within reach that no sheet of the part hides.
+    fn landmark(
+        &self,
+        role: Role,
+        pos: Pos2,
+        hit: Option<&Hit>,
+    ) -> Option<(Pos2, Point3, PickKind)> {
+        let place = self.picture.place_of(role)?;
+        let landmarks = &self.state.document.part(role)?.facts.landmarks;
+        let rect = self.response.rect;
+        let size = |point: &Point3| self.camera.pixel_size(screen_of(rect), point);
+        let holes = landmarks.holes.iter().filter_map(|hole| {
+            let center = place.to_window(&hole.center);
+            let radius = (hole.radius / size(&center)) as f32;
+            let reach = HOLE_REACH.max(0.9 * radius);
+            Some((center, reach, hole.radius, PickKind::HoleCenter))
+        });
+        let corners = landmarks.corners.iter().map(|corner| {
+            let corner = place.to_window(corner);
+            (corner, REACH, 0.0, PickKind::Corner)
+        });
+        let within = holes
+            .chain(corners)
+            .filter_map(|(point, reach, depth, kind)| {
+                let at = pos_of(rect, self.camera, &point)?;
+                let off = at.distance(pos) / reach;
+                let slack = depth + f64::from(2.0 * reach) * size(&point);
+                let is_seen = hit.is_none_or(|hit| !self.is_behind(&point, &hit.point, slack));
+                (off < 1.0 && is_seen).then_some((off, (at, point, kind)))
+            });
+        let nearest = within.min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.map(|(_, found)| found)
+    }
+
+    /// True if a point lies farther from the viewer than another by more than `slack`.
+    fn is_behind(&self, point: &Point3, other: &Point3, slack: f64) -> bool {
+        let ray = self.camera.ray(
+            pixel_of(self.response.rect, self.response.rect.center()),
+            screen_of(self.response.rect),
+            &self.picture.bounds,
+        );
+        (point - other).dot(&ray.direction.normalize()) > slack
+    }
+}
+
+/// The corner of the triangle under the pointer if it is within reach, else the point of the surface.
+fn snapped(rect: Rect, camera: &Camera, pos: Pos2, hit: &Hit) -> Option<(Pos2, Point3, PickKind)> {
+    let at = pos_of(rect, camera, &hit.node)?;
+    if at.distance(pos) <= REACH {
+        return Some((at, hit.node, PickKind::Node(hit.node_id)));
+    }
+    Some((pos, hit.point, PickKind::Surface))
+}

@@ -1,0 +1,189 @@
+//! Pairs of points: picked in turn, fitted as one step, undone one by one, and a start of the match.
+
+use super::app::Window;
+use shapematch::app::*;
+use shapematch::geometry::{Point3, Rotation, Similarity, Vector3};
+use shapematch::jobs::{JobKind, Role};
+use shapematch::registration::StartMethod;
+
+fn picked(point: Point3) -> PickedPoint {
+    PickedPoint {
+        point,
+        kind: PickKind::Surface,
+    }
+}
+
+fn pose() -> Similarity {
+    let turn = Rotation::new(Vector3::new(0.2, -0.3, 1.4));
+    Similarity {
+        rotation: *turn.to_rotation_matrix().matrix(),
+        translation: Vector3::new(50.0, 7.0, -3.0),
+        scale: 1.0,
+    }
+}
+
+const PLACES: [[f64; 3]; 4] = [
+    [0.0, 0.0, 0.0],
+    [18.0, 1.0, 2.0],
+    [3.0, 4.0, 0.5],
+    [15.0, 3.0, 6.0],
+];
+
+fn pick(window: &mut Window, role: Role, point: Point3) {
+    let point = picked(point);
+    window.apply(PairCommand::Pick { role, point });
+}
+
+/// A window with the tool on and `n` pairs of one pose.
+fn with_pairs(n: usize) -> Window {
+    let mut window = Window::with_both();
+    window.act(Action::PairTool);
+    for place in PLACES.into_iter().take(n) {
+        let stamped = Point3::from(place);
+        pick(&mut window, Role::Crash, pose().apply(&stamped));
+        pick(&mut window, Role::Stamped, stamped);
+    }
+    window
+}
+
+#[test]
+fn clicks_alternate_and_each_is_one_step() {
+    let mut window = Window::with_both();
+    assert_eq!(window.state.next_pick(), None);
+    window.act(Action::PairTool);
+    assert_eq!(window.state.next_pick(), Some((0, Role::Crash)));
+    pick(&mut window, Role::Crash, Point3::origin());
+    assert_eq!(window.state.next_pick(), Some((0, Role::Stamped)));
+    // Out of turn the point is picked anew.
+    pick(&mut window, Role::Crash, Point3::new(1.0, 0.0, 0.0));
+    assert_eq!(window.state.pairs().len(), 1);
+    pick(&mut window, Role::Stamped, Point3::origin());
+    assert_eq!(window.state.next_pick(), Some((1, Role::Crash)));
+    let n_steps = window.state.history.n_done();
+    window.act(Action::Undo);
+    assert_eq!(window.state.history.n_done(), n_steps - 1);
+    assert_eq!(window.state.next_pick(), Some((0, Role::Stamped)));
+    window.act(Action::Redo);
+    window.apply(PairCommand::Delete(0));
+    assert!(window.state.pairs().is_empty());
+    window.act(Action::Undo);
+    assert_eq!(window.state.pairs().len(), 1);
+    window.act(Action::Escape);
+    assert_eq!(window.state.view.pair_tool, None);
+}
+
+#[test]
+fn the_fit_is_one_step_and_says_what_is_missing_before() {
+    let window = with_pairs(2);
+    assert_eq!(
+        Action::FitPairs.enabled(&window.state),
+        Err(Reason("pick three pairs of points first"))
+    );
+    assert_eq!(
+        window.state.pair_fit().unwrap_err(),
+        "one more pair is needed"
+    );
+    for n in [3, 4] {
+        let mut window = with_pairs(n);
+        let n_steps = window.state.history.n_done();
+        window.act(Action::FitPairs);
+        assert_eq!(window.state.history.n_done(), n_steps + 1);
+        let corners = window.state.stamped_corners().unwrap();
+        assert!(window.pose().max_displacement(&pose(), &corners) < 1e-9);
+        window.act(Action::Undo);
+        assert_eq!(window.pose(), Similarity::identity());
+        assert_eq!(window.state.pairs().len(), n);
+    }
+}
+
+#[test]
+fn points_on_a_line_are_refused_with_the_reason() {
+    let mut window = Window::with_both();
+    window.act(Action::PairTool);
+    for i in 0..4 {
+        let point = Point3::new(f64::from(i), 0.0, 0.0);
+        pick(&mut window, Role::Crash, point);
+        pick(&mut window, Role::Stamped, point);
+    }
+    assert!(Action::FitPairs.enabled(&window.state).is_err());
+    let reason = window.state.pair_fit().unwrap_err();
+    assert!(reason.contains("one line"), "{reason}");
+    window.apply(PairCommand::Fit);
+    assert_eq!(window.pose(), Similarity::identity());
+}
+
+#[test]
+fn a_wrong_pair_is_named_and_picked_again() {
+    let mut window = with_pairs(4);
+    window.apply(PairCommand::Repick {
+        pair: 1,
+        role: Role::Crash,
+    });
+    assert_eq!(window.state.next_pick(), Some((1, Role::Crash)));
+    pick(&mut window, Role::Stamped, Point3::origin());
+    assert_eq!(
+        window.state.next_pick(),
+        Some((1, Role::Crash)),
+        "not asked for"
+    );
+    let right = pose().apply(&Point3::from(PLACES[1]));
+    pick(
+        &mut window,
+        Role::Crash,
+        right + Vector3::new(0.0, 5.0, 0.0),
+    );
+    assert_eq!(window.state.next_pick(), Some((4, Role::Crash)));
+    let fit = window.state.pair_fit().unwrap();
+    let doubt = window.state.pair_doubt_text(&fit).unwrap();
+    assert!(doubt.starts_with("Pair 2 lies 5"), "{doubt}");
+}
+
+#[test]
+fn pairs_are_a_start_of_the_match() {
+    let mut window = with_pairs(2);
+    let mut recipe = window.state.document.recipe.clone();
+    recipe.settings.starts.method = StartMethod::GivenPoses;
+    window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
+    assert!(Action::MatchOrStop.enabled(&window.state).is_err());
+    let stamped = Point3::from(PLACES[2]);
+    pick(&mut window, Role::Crash, pose().apply(&stamped));
+    pick(&mut window, Role::Stamped, stamped);
+    assert_eq!(Action::MatchOrStop.enabled(&window.state), Ok(()));
+    let effects = window.state.apply(MatchCommand::Run);
+    let [Effect::StartJob(kind, _)] = &effects[..] else {
+        panic!("{effects:?}");
+    };
+    let JobKind::Match(input) = &**kind else {
+        panic!("{kind:?}");
+    };
+    let starts = &input.recipe.settings.starts.poses;
+    let corners = window.state.stamped_corners().unwrap();
+    assert!(starts[0].max_displacement(&pose(), &corners) < 1e-9);
+}
+
+#[test]
+fn refining_starts_from_the_present_pose_and_leaves_the_recipe() {
+    let mut window = with_pairs(3);
+    window.act(Action::FitPairs);
+    let recipe = window.state.document.recipe.clone();
+    let effects = window.state.apply(MatchCommand::Refine);
+    let [Effect::StartJob(kind, _)] = &effects[..] else {
+        panic!("{effects:?}");
+    };
+    let JobKind::Match(input) = &**kind else {
+        panic!("{kind:?}");
+    };
+    let starts = &input.recipe.settings.starts;
+    assert_eq!(starts.method, StartMethod::CurrentPose);
+    assert_eq!(input.current, window.pose());
+    assert_eq!(window.state.document.recipe, recipe);
+}
+
+#[test]
+fn pairs_of_parts_that_are_gone_do_not_count() {
+    let mut window = with_pairs(3);
+    window.open("stamped.k", Role::Stamped);
+    assert!(window.state.pairs().is_empty());
+    window.act(Action::Undo);
+    assert_eq!(window.state.pairs().len(), 3);
+}
