@@ -1,4 +1,4 @@
-use super::{Axis, NoticeLevel};
+use super::{Axis, FreeWindow, NoticeLevel};
 use super::{
     AxisFrame, BottomTab, Dialog, Display, Document, GestureId, InspectCommand, KeptWork, LikeWhat,
     ModalInput, MotionKind, MoveFrame, NoticeId, PartRef, PickedPoint, Preview, Section,
@@ -395,6 +395,8 @@ pub enum ViewCommand {
     SetSection(SectionView),
     /// A tab of the bottom pane.
     SetTab(BottomTab),
+    /// What the right window shows while its part is in the left one.
+    SetFreeWindow(FreeWindow),
     /// Fold or unfold a section.
     OpenSection(Section, bool),
     /// The user works in a section; it is the last to be folded for want of room.

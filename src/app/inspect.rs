@@ -248,8 +248,10 @@ impl AppState {
 
     /// True if something on the screen shows distances between the parts.
     pub fn wants_comparison(&self) -> bool {
-        let by = self.view.display.color_by;
-        let is_shown = matches!(by, ColorBy::Deviation | ColorBy::Overlap)
+        let is_measured = |by| matches!(by, ColorBy::Deviation | ColorBy::Overlap);
+        let is_shown = Role::ALL
+            .into_iter()
+            .any(|window| is_measured(self.color_by(window)))
             || self.view.tab == BottomTab::Deviation;
         is_shown && self.document.both().is_some()
     }

@@ -13,6 +13,7 @@ mod document;
 mod effect;
 mod explain;
 mod facts;
+mod free_window;
 mod history;
 mod inspect;
 mod job_board;
@@ -42,6 +43,7 @@ pub use command::{
 pub use document::{Document, MatchResult, Part, StampedPose};
 pub use effect::Effect;
 pub use explain::Cause;
+pub use free_window::FreeWindow;
 pub use history::{GestureId, History};
 pub use inspect::{Coloring, Compared, Freshness, InspectCommand, Label, SectionView};
 pub use job_board::{JobBoard, RunningJob};

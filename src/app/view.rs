@@ -1,5 +1,6 @@
 use super::{
-    AxisFrame, Coloring, GestureId, ModalMove, MoveFrame, PairTool, Preview, SectionView, Sections,
+    AxisFrame, Coloring, FreeWindow, GestureId, ModalMove, MoveFrame, PairTool, Preview,
+    SectionView, Sections,
 };
 use crate::geometry::camera::OrbitStyle;
 use crate::geometry::{Camera, Point3};
@@ -221,6 +222,8 @@ pub struct ViewState {
     pub focus: Role,
     /// The stamped part is shown in the left window, at its pose.
     pub is_moved_over: bool,
+    /// What the right window is used for meanwhile, if the user chose.
+    pub free_window: Option<FreeWindow>,
     /// Reduced or detailed.
     pub shown: ShownGeometry,
     /// The key that shows the full mesh is held (or hides the moved part, when moved over).
@@ -273,6 +276,7 @@ impl Default for ViewState {
             pivot: PerRole::default(),
             focus: Role::Crash,
             is_moved_over: false,
+            free_window: None,
             shown: ShownGeometry::default(),
             is_blinking: false,
             display: Display::default(),

@@ -1115,3 +1115,26 @@ fn the_stamped_part_is_shown_as_loaded_and_its_pose_stays() {
     window.apply(Command::Escape);
     assert_eq!(window.state.shown_pose(), shifted(5.0));
 }
+
+#[test]
+fn the_free_window_has_a_use_of_its_own_and_the_left_camera() {
+    let mut window = Window::with_both();
+    assert_eq!(window.state.free_window(), None);
+    assert_eq!(window.state.camera_of(Role::Stamped), Role::Stamped);
+    window.apply(ViewCommand::ToggleMoveOver);
+    assert_eq!(window.state.free_window(), Some(FreeWindow::FullMesh));
+    assert_eq!(window.state.camera_of(Role::Stamped), Role::Crash);
+    window.apply(ViewCommand::SetFreeWindow(FreeWindow::SecondPose));
+    assert_eq!(
+        window.state.free_window(),
+        Some(FreeWindow::FullMesh),
+        "there is no second pose without a match"
+    );
+    window.apply(ViewCommand::SetFreeWindow(FreeWindow::Deviation));
+    assert_eq!(window.state.color_by(Role::Stamped), ColorBy::Deviation);
+    assert_eq!(window.state.color_by(Role::Crash), ColorBy::Role);
+    assert!(window.state.wants_comparison());
+    window.apply(ViewCommand::ToggleMoveOver);
+    assert_eq!(window.state.color_by(Role::Stamped), ColorBy::Role);
+    assert!(!window.state.wants_comparison());
+}

@@ -8,7 +8,8 @@ use egui::{Event, MouseWheelUnit, PointerButton, Pos2, Rect, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{
-    AppState, Command, Effect, FileCommand, MoveCommand, PartCommand, Settings, ViewCommand,
+    AppState, Command, Effect, FileCommand, FreeWindow, MoveCommand, PartCommand, Settings,
+    ViewCommand,
 };
 use shapematch::formats::Model;
 use shapematch::geometry::camera::ScreenSize;
@@ -468,4 +469,24 @@ fn move_over_draws_the_stamped_part_in_the_left_picture() {
     let (_, orange) = counts(&mut harness);
     assert!(orange > 2000, "{orange} orange");
     harness.render().unwrap();
+}
+
+#[test]
+fn the_free_window_turns_with_the_left_one() {
+    let mut desk = Desk::with_sheets(None);
+    desk.apply(ViewCommand::ToggleMoveOver.into());
+    let mut harness = harness(desk);
+    harness.run_steps(30);
+    let own = harness.state().camera(Role::Stamped);
+    let before = harness.state().camera(Role::Crash);
+    let center = area(&harness, Role::Stamped).center();
+    let to = center + vec2(40.0, 10.0);
+    drag(&mut harness, PointerButton::Primary, center, to);
+    let turned = harness.state().camera(Role::Crash);
+    assert!(turned.world_from_view.angle_to(&before.world_from_view) > 0.1);
+    assert_eq!(harness.state().camera(Role::Stamped), own);
+    harness.get_by_label("Deviation").click();
+    harness.run_steps(2);
+    let free = harness.state().state.free_window();
+    assert_eq!(free, Some(FreeWindow::Deviation));
 }

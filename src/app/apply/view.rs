@@ -25,6 +25,7 @@ impl AppState {
             ViewCommand::SetDisplay(display) => self.view.display = *display,
             ViewCommand::SetSection(section) => self.view.section = section,
             ViewCommand::SetTab(tab) => self.set_tab(tab),
+            ViewCommand::SetFreeWindow(free) => self.view.free_window = Some(free),
             ViewCommand::OpenSection(section, is_open) => {
                 self.view.sections.set_open(section, is_open);
             }

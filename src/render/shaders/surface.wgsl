@@ -153,7 +153,7 @@ fn shaded(in: Varyings, front: bool) -> vec3<f32> {
     let both = coincidence(in, n, v);
     if both > 0.0 {
         // The same stripes on either sheet, so that it does not matter which one is in front.
-        let stripe = hatch(in.clip.xy + frame.screen.zw, 1.0, 9.0, 4.5);
+        let stripe = hatch(in.clip.xy + frame.screen.zw, 1.0, 7.0, 3.5);
         let share = select(stripe, 1.0 - stripe, has(SECOND_SHEET));
         base = mix(base, linear_from_srgb(drawable.other_sheet.rgb), share * both);
     }

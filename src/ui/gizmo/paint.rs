@@ -5,37 +5,46 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Stroke, pos2, vec2};
 
 /// Draws the gizmo over the parts. `origin` is the top left corner of the 3D view. Letters name
 /// the axes, because their colours do not for everyone; the active handle is thicker and brighter.
-pub fn paint(painter: &Painter, origin: Pos2, view: &GizmoView<'_>, gizmo: &Gizmo) {
+pub fn paint(painter: &Painter, origin: Pos2, view: &GizmoView<'_>, gizmo: &Gizmo, is_dark: bool) {
     let Some(layout) = Layout::new(view) else {
         return;
     };
+    let tint = if is_dark { &DARK } else { &LIGHT };
     let active = gizmo.active();
     for shape in &layout.shapes {
         let is_active = active == Some(shape.handle);
         let is_dimmed = gizmo.is_dragging() && !is_active;
-        paint_shape(painter, origin, shape, is_active, is_dimmed);
+        paint_shape(painter, origin, shape, is_active, is_dimmed, tint);
     }
     let center = at(origin, layout.center);
     let is_active = active == Some(Handle::Dot);
     let fill = if is_active {
-        highlight()
+        tint.highlight
     } else {
         Color32::WHITE
     };
-    let rim = Stroke::new(1.5, Color32::from_black_alpha(160));
+    let rim = Stroke::new(1.5, Color32::from_black_alpha(200));
     painter.circle(center, DOT as f32, fill, rim);
 }
 
-fn paint_shape(painter: &Painter, origin: Pos2, shape: &Shape, is_active: bool, is_dimmed: bool) {
-    let mut color = color_of(shape.handle);
+fn paint_shape(
+    painter: &Painter,
+    origin: Pos2,
+    shape: &Shape,
+    is_active: bool,
+    is_dimmed: bool,
+    tint: &Tint,
+) {
+    let mut color = tint.of(shape.handle);
     if is_active {
-        color = highlight();
+        color = tint.highlight;
     } else if is_dimmed {
         color = color.gamma_multiply(0.25);
     }
     let width = if is_active { 4.0 } else { 2.5 };
-    // A dark rim keeps thin lines readable on light and on coloured parts.
-    let rim = Stroke::new(width + 2.0, Color32::from_black_alpha(90));
+    // A rim of the opposite lightness keeps thin lines readable on any ground and on coloured parts.
+    let strength = if is_dimmed { 0.3 } else { 1.0 };
+    let rim = Stroke::new(width + 2.0, tint.rim.gamma_multiply(strength));
     let stroke = Stroke::new(width, color);
     for line in &shape.lines {
         let points: Vec<Pos2> = line.iter().map(|pixel| at(origin, *pixel)).collect();
@@ -46,13 +55,13 @@ fn paint_shape(painter: &Painter, origin: Pos2, shape: &Shape, is_active: bool, 
         }
         painter.line(points.clone(), rim);
         if let (Handle::Arrow(axis), [foot, tip]) = (shape.handle, points.as_slice()) {
-            paint_tip(painter, *foot, *tip, axis, color);
+            paint_tip(painter, *foot, *tip, axis, color, tint);
         }
         painter.line(points, stroke);
     }
 }
 
-fn paint_tip(painter: &Painter, foot: Pos2, tip: Pos2, axis: Axis, color: Color32) {
+fn paint_tip(painter: &Painter, foot: Pos2, tip: Pos2, axis: Axis, color: Color32, tint: &Tint) {
     let along = (tip - foot).normalized() * 14.0;
     let side = along.rot90() * 0.4;
     let corners = vec![tip, tip - along + side, tip - along - side];
@@ -60,32 +69,77 @@ fn paint_tip(painter: &Painter, foot: Pos2, tip: Pos2, axis: Axis, color: Color3
     let place = tip + along.normalized() * 12.0;
     let letter = axis.letter().to_string();
     let font = FontId::proportional(14.0);
-    let shadow = Color32::from_black_alpha(200);
-    painter.text(
-        place + vec2(1.0, 1.0),
-        Align2::CENTER_CENTER,
-        &letter,
-        font.clone(),
-        shadow,
-    );
-    painter.text(place, Align2::CENTER_CENTER, letter, font, Color32::WHITE);
+    let put = |shift, color| {
+        painter.text(
+            place + shift,
+            Align2::CENTER_CENTER,
+            &letter,
+            font.clone(),
+            color,
+        );
+    };
+    for shift in [
+        vec2(1.0, 1.0),
+        vec2(-1.0, 1.0),
+        vec2(1.0, -1.0),
+        vec2(-1.0, -1.0),
+    ] {
+        put(shift, tint.halo);
+    }
+    put(egui::Vec2::ZERO, tint.letter);
 }
 
 fn at(origin: Pos2, pixel: [f64; 2]) -> Pos2 {
     pos2(origin.x + pixel[0] as f32, origin.y + pixel[1] as f32)
 }
 
-fn highlight() -> Color32 {
-    Color32::from_rgb(255, 225, 90)
+/// Colours of the handles in one theme.
+struct Tint {
+    axes: [Color32; 3],
+    /// The outer ring and the dot.
+    neutral: Color32,
+    highlight: Color32,
+    rim: Color32,
+    letter: Color32,
+    /// Around letters.
+    halo: Color32,
 }
 
-fn color_of(handle: Handle) -> Color32 {
-    match handle {
-        Handle::Arrow(axis) | Handle::Square(axis) | Handle::Ring(axis) => match axis {
-            Axis::X => Color32::from_rgb(226, 75, 75),
-            Axis::Y => Color32::from_rgb(92, 190, 80),
-            Axis::Z => Color32::from_rgb(74, 134, 240),
-        },
-        Handle::ViewRing | Handle::Dot => Color32::from_gray(225),
+const DARK: Tint = Tint {
+    axes: [
+        Color32::from_rgb(226, 75, 75),
+        Color32::from_rgb(92, 190, 80),
+        Color32::from_rgb(74, 134, 240),
+    ],
+    neutral: Color32::from_gray(225),
+    highlight: Color32::from_rgb(255, 225, 90),
+    rim: Color32::from_black_alpha(90),
+    letter: Color32::WHITE,
+    halo: Color32::from_black_alpha(150),
+};
+
+const LIGHT: Tint = Tint {
+    axes: [
+        Color32::from_rgb(198, 40, 40),
+        Color32::from_rgb(30, 123, 52),
+        Color32::from_rgb(29, 78, 196),
+    ],
+    neutral: Color32::from_gray(70),
+    highlight: Color32::from_rgb(123, 31, 162),
+    rim: Color32::from_rgba_unmultiplied_const(255, 255, 255, 150),
+    letter: Color32::from_gray(20),
+    halo: Color32::from_rgba_unmultiplied_const(255, 255, 255, 210),
+};
+
+impl Tint {
+    fn of(&self, handle: Handle) -> Color32 {
+        match handle {
+            Handle::Arrow(axis) | Handle::Square(axis) | Handle::Ring(axis) => match axis {
+                Axis::X => self.axes[0],
+                Axis::Y => self.axes[1],
+                Axis::Z => self.axes[2],
+            },
+            Handle::ViewRing | Handle::Dot => self.neutral,
+        }
     }
 }

@@ -1,10 +1,11 @@
 //! The two 3D windows with what stands in them while there is nothing to draw.
 
-use crate::app::{Action, AppState, Command, FileCommand, Settings, age_text};
+use crate::app::{Action, AppState, Command, FileCommand, FreeWindow, Settings, age_text};
 use crate::jobs::{JobKey, Role};
 use crate::ui::overlays::mouse_choice;
 use crate::ui::theme::{Palette, ROW, TALL, UNIT};
 use crate::ui::viewport::Viewports;
+use crate::ui::viewport::free_choice;
 use crate::ui::widgets::{Look, action_button, card, paragraph, role_mark, secondary};
 use egui::{Align, CursorIcon, Layout, Rect, RichText, Sense, Shape, Stroke, Ui, UiBuilder, vec2};
 
@@ -100,7 +101,9 @@ fn pane_ui(
     viewports: &mut Viewports,
     commands: &mut Vec<Command>,
 ) {
-    let is_away = role == Role::Stamped && state.view.is_moved_over;
+    let is_flying = viewports.is_crossing(ui.input(|input| input.time));
+    let is_free = state.free_window() == Some(FreeWindow::Nothing) && !is_flying;
+    let is_away = role == Role::Stamped && is_free;
     let has_part = state.document.part(role).is_some();
     if has_part && !is_away {
         viewports.show(ui, role, state, commands);
@@ -118,7 +121,7 @@ fn pane_ui(
 
 /// The stamped part is shown in the left window.
 fn away_ui(ui: &mut Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>) {
-    let size = vec2(280.0_f32.min(rect.width() - 32.0), 120.0);
+    let size = vec2(380.0_f32.min(rect.width() - 32.0), 170.0);
     centered(ui, rect, size, |ui| {
         ui.vertical_centered(|ui| {
             role_mark(ui, Role::Stamped);
@@ -126,6 +129,9 @@ fn away_ui(ui: &mut Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command
             ui.add_space(UNIT);
             let look = ("Move back", Look::Plain, vec2(128.0, TALL));
             action_button(ui, state, Action::ToggleMoveOver, look, commands);
+            ui.add_space(UNIT);
+            secondary(ui, "Use this window for");
+            free_choice(ui, state, ui.available_width(), commands);
         });
     });
 }

@@ -1,6 +1,6 @@
 //! Which parts a window shows, where, and how they look: from the state, without a mesh in sight.
 
-use crate::app::{AppState, ColorBy, Part, PartRef, ShownGeometry};
+use crate::app::{AppState, ColorBy, FreeWindow, Part, PartRef, ShownGeometry};
 use crate::geometry::{Camera, Similarity, Vector3};
 use crate::jobs::Role;
 use crate::render::{PartLook, Style, WipeSide};
@@ -64,7 +64,10 @@ pub(super) fn divider(state: &AppState, stage: &Stage) -> Option<Divider> {
     let display = &state.view.display;
     let is_shared = stage.window == Role::Crash && state.view.is_moved_over;
     let wipe = display.wipe.filter(|_| is_shared).map(Divider::Wipe);
-    let split = display.split.filter(|_| has_level(state, stage.window));
+    let is_beside = free_window(state, stage).is_some();
+    let split = display
+        .split
+        .filter(|_| has_level(state, stage.window) && !is_beside);
     wipe.or(split.map(Divider::Split))
 }
 
@@ -75,6 +78,9 @@ fn has_level(state: &AppState, window: Role) -> bool {
 
 /// The parts of a window, crash first.
 pub(super) fn cast(state: &AppState, stage: &Stage) -> Vec<Actor> {
+    if let Some(free) = free_window(state, stage) {
+        return beside(state, stage, free);
+    }
     let mut actors = Vec::new();
     if stage.window == Role::Crash && state.document.part(Role::Crash).is_some() {
         actors.push(crash(state));
@@ -95,6 +101,37 @@ pub(super) fn cast(state: &AppState, stage: &Stage) -> Vec<Actor> {
         Some(Divider::Split(_)) => actors.iter().flat_map(both_sides).collect(),
         None => actors,
     }
+}
+
+/// What the right window is used for, once its part has left it.
+fn free_window(state: &AppState, stage: &Stage) -> Option<FreeWindow> {
+    let is_free = stage.window == Role::Stamped && stage.over >= 1.0;
+    state.free_window().filter(|_| is_free)
+}
+
+/// The parts beside the shared window.
+fn beside(state: &AppState, stage: &Stage, free: FreeWindow) -> Vec<Actor> {
+    let actor = |role, world_from_part| Actor {
+        role,
+        world_from_part,
+        offset: Vector3::zeros(),
+        opacity: 1.0,
+        is_detailed: free == FreeWindow::FullMesh || is_detailed(state),
+        wipe: WipeSide::Both,
+    };
+    let pose = match free {
+        FreeWindow::SecondPose => state.second_pose().unwrap_or(stage.pose),
+        _ => stage.pose,
+    };
+    let both = [(Role::Crash, Similarity::identity()), (Role::Stamped, pose)];
+    let actors = both.map(|(role, pose)| actor(role, pose)).into_iter();
+    let colored = &state.view.display.coloring.on;
+    let is_shown = |actor: &Actor| match free {
+        FreeWindow::Nothing => false,
+        FreeWindow::Deviation => *colored.get(actor.role),
+        FreeWindow::FullMesh | FreeWindow::SecondPose => true,
+    };
+    actors.filter(is_shown).collect()
 }
 
 /// A part as reduced on the left of the line and as full mesh on its right.

@@ -101,7 +101,7 @@ impl FieldStore {
         meshes: &[(Role, Arc<ShownMesh>)],
         wake: &egui::Context,
     ) -> Vec<Option<FieldLook>> {
-        let kind = FieldKind::of(state.view.display.color_by);
+        let kind = FieldKind::of(state.color_by(window));
         if let Some(kind @ (FieldKind::Deviation | FieldKind::Overlap)) = kind {
             let of = |(role, mesh): &(Role, Arc<ShownMesh>)| compared(kind, state, *role, mesh);
             return meshes.iter().map(of).collect();
@@ -128,7 +128,7 @@ impl FieldStore {
         *self.ranges.get_mut(window) = kind.zip(ranges.reduce(union));
         let n = self.ready.len().saturating_sub(KEPT);
         self.ready.drain(..n);
-        let scale = self.scale(state);
+        let scale = self.scale(window, state);
         let look = |field: Arc<Field>| {
             Some(FieldLook {
                 values: Arc::clone(&field.values),
@@ -143,9 +143,9 @@ impl FieldStore {
         self.background.is_waiting()
     }
 
-    /// The scale of what both windows show.
-    pub fn scale(&self, state: &AppState) -> Option<ColorScale> {
-        let kind = FieldKind::of(state.view.display.color_by)?;
+    /// The scale of what a window shows; the same in both if they show the same.
+    pub fn scale(&self, window: Role, state: &AppState) -> Option<ColorScale> {
+        let kind = FieldKind::of(state.color_by(window))?;
         let coloring = &state.view.display.coloring;
         match kind {
             FieldKind::Deviation => return Some(coloring.deviation_scale(state.comparison()?)),
@@ -176,10 +176,10 @@ impl FieldStore {
     }
 }
 
-/// True if a part is to be coloured by a field.
-pub(super) fn is_wanted(state: &AppState, role: Role) -> bool {
+/// True if a part is to be coloured by a field in a window.
+pub(super) fn is_wanted(state: &AppState, window: Role, role: Role) -> bool {
     let display = &state.view.display;
-    match FieldKind::of(display.color_by) {
+    match FieldKind::of(state.color_by(window)) {
         Some(FieldKind::Deviation) => *display.coloring.on.get(role) && has_both(state),
         Some(FieldKind::Overlap) => has_both(state),
         Some(_) => true,

@@ -33,6 +33,7 @@ pub use look::part_color;
 use meshes::{MeshSource, MeshStore, ShownMesh};
 use motion::{Crossing, SmoothCamera, SmoothPose};
 use navigation::{Navigator, View};
+pub use overlay::free_choice;
 use picking::Picker;
 use pointing::{Pointing, Target};
 use sections::SectionStore;
@@ -107,7 +108,7 @@ impl Viewports {
         self.windows
             .get_mut(role)
             .tell_aspect(rect, role, state, commands);
-        tell_focus(&response, role, state, commands);
+        tell_focus(&response, state.camera_of(role), state, commands);
         let stage = self.stage(ui, role, state, rect, commands);
         let picture = self.picture_of(ui, &stage, state, &look);
         let frame = InFrame {
@@ -126,6 +127,11 @@ impl Viewports {
         self.paint(ui, &frame);
         self.interact(ui, &frame, commands);
         self.keep_moving(ui, role);
+    }
+
+    /// True while the stamped part flies from one window to the other.
+    pub fn is_crossing(&self, now: f64) -> bool {
+        self.crossing.is_moving(now)
     }
 
     /// True while meshes or colours are being made that a window wants to show. For tests and
@@ -163,10 +169,16 @@ impl Viewports {
         let over = self
             .crossing
             .follow(state.view.is_moved_over, now, may_move);
-        let is_linked_drag =
-            state.view.are_linked && self.windows.get(role.other()).navigator.drag().is_some();
+        let is_linked = state.view.are_linked || state.view.is_moved_over;
+        let is_linked_drag = is_linked && self.windows.get(role.other()).navigator.drag().is_some();
         let window = self.windows.get_mut(role);
-        let mut camera = *state.view.cameras.get(role);
+        // A part that flies away is seen by its own camera to the end.
+        let of = if over < 1.0 {
+            role
+        } else {
+            state.camera_of(role)
+        };
+        let mut camera = *state.view.cameras.get(of);
         if role == Role::Crash {
             window.fit_pair(state, is_driven, commands);
         }
@@ -240,7 +252,7 @@ impl Viewports {
                 role: actor.role,
                 mesh,
                 field,
-                wants_field: fields::is_wanted(state, actor.role),
+                wants_field: fields::is_wanted(state, stage.window, actor.role),
                 actor,
             });
         let layers = layers.collect();
@@ -259,11 +271,12 @@ impl Viewports {
             ..
         } = *frame;
         let role = stage.window;
+        let camera_of = state.camera_of(role);
         let view = View {
             rect: response.rect,
             camera: stage.camera,
             picture,
-            pivot: *state.view.pivot.get(role),
+            pivot: *state.view.pivot.get(camera_of),
             style: state.view.orbit_style,
             scheme: state.settings.mouse,
         };
@@ -273,7 +286,7 @@ impl Viewports {
         match window.navigator.update(ui, response, &view, is_left_taken) {
             Some(camera) => {
                 window.camera.jump(camera);
-                commands.push(ViewCommand::SetCamera(role, camera).into());
+                commands.push(ViewCommand::SetCamera(camera_of, camera).into());
                 camera
             }
             None => stage.camera,
@@ -338,7 +351,7 @@ impl Viewports {
         };
         let pick = picker.update(commands);
         window.tools.paint(&bench);
-        let kind = FieldKind::of(state.view.display.color_by);
+        let kind = FieldKind::of(state.color_by(stage.window));
         let view = overlay::Overlay {
             rect: response.rect,
             look,
@@ -348,7 +361,7 @@ impl Viewports {
             drag: window.navigator.drag(),
             hit: hit.as_ref(),
             cuts: &self.sections.cuts(state),
-            scale: kind.and_then(|kind| Some((kind, self.fields.scale(state)?))),
+            scale: kind.and_then(|kind| Some((kind, self.fields.scale(stage.window, state)?))),
             kind,
             hint: window.tools.hint(state),
             pick,
@@ -518,9 +531,11 @@ fn summary(state: &AppState, role: Role) -> String {
     let n = overlay::grouped(part.reduced_mesh().n_triangles());
     let with = match role {
         Role::Crash if state.view.is_moved_over => ", with the stamped part",
-        Role::Stamped if state.view.is_moved_over => ", moved to the left window",
         _ => "",
     };
+    if let Some(free) = state.free_window().filter(|_| role == Role::Stamped) {
+        return format!("{name}, moved to the left window; here: {}", free.label());
+    }
     format!("{name}, {n} triangles{with}")
 }
 

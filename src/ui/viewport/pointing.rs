@@ -55,7 +55,7 @@ impl Pointing {
         let is_toggling = target.ui.input(|i| i.modifiers.command);
         if target.response.double_clicked() {
             commands.push(PartCommand::Select(part).into());
-            commands.push(ViewCommand::Focus(target.stage.window).into());
+            commands.push(ViewCommand::Focus(target.state.camera_of(target.stage.window)).into());
         } else if target.response.clicked()
             && let Some(hit) = hit.filter(|hit| target.pins(hit))
         {
@@ -74,7 +74,7 @@ impl Pointing {
 
     /// P takes the point under the pointer; with a pivot picked, the action of that key forgets it.
     fn pick_pivot(&self, target: &Target<'_>, hit: Option<&Hit>, commands: &mut Vec<Command>) {
-        let role = target.stage.window;
+        let role = target.state.camera_of(target.stage.window);
         if target.state.view.pivot.get(role).is_some() {
             return;
         }
@@ -86,7 +86,7 @@ impl Pointing {
     }
 
     fn menu(&self, ui: &mut Ui, target: &Target<'_>, commands: &mut Vec<Command>) {
-        let role = target.stage.window;
+        let role = target.state.camera_of(target.stage.window);
         if let Some(part) = self.menu.as_ref().and_then(|hit| hit.part) {
             ui.weak(format!("Part {}", part.id));
             entry(ui, "Hide", commands, PartCommand::SetVisible(part, false));

@@ -235,7 +235,13 @@ pub(super) fn coincidence(state: &AppState) -> Option<f64> {
     let thickness = known.reduce(f64::min).filter(|t| *t > 0.0);
     let element = facts[0].edge_length.min(facts[1].edge_length);
     let distance = thickness.map_or(COINCIDENT_ELEMENTS * element, |t| COINCIDENT_THICKNESS * t);
-    (distance > 0.0).then_some(distance)
+    (distance > 0.0).then(|| two_digits(distance))
+}
+
+/// A positive length as it is written, with two digits.
+fn two_digits(length: f64) -> f64 {
+    let unit = 10f64.powf(length.log10().floor() - 1.0);
+    (length / unit).round() * unit
 }
 
 fn drawable(state: &AppState, stage: &Stage, look: &Look, layer: &Layer) -> Drawable {

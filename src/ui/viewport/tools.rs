@@ -122,7 +122,14 @@ impl Tools {
         if let Some(frame) = bench.frame().filter(|_| self.has_gizmo) {
             let painter = bench.ui.painter_at(bench.response.rect);
             let view = gizmo_view(bench, &frame);
-            paint(&painter, bench.response.rect.min, &view, &self.gizmo);
+            let is_dark = bench.ui.visuals().dark_mode;
+            paint(
+                &painter,
+                bench.response.rect.min,
+                &view,
+                &self.gizmo,
+                is_dark,
+            );
         }
     }
 

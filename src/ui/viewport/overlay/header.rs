@@ -20,6 +20,9 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
     let small =
         |text: String| painter.layout_no_wrap(text, FontId::proportional(11.5), over.look.weak);
     let notes: Vec<_> = notes(over).into_iter().map(small).collect();
+    if is_free(over) {
+        return;
+    }
     let is_both = over.role() == Role::Crash && over.state.view.is_moved_over;
     let roles = if is_both {
         &Role::ALL[..]
@@ -60,6 +63,13 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
         painter.galley(at - vec2(0.0, 2.0), note, over.look.text);
         at.y += 17.0;
     }
+}
+
+/// True in the right window once its part has left it: it has the left one's camera, and a header of
+/// its own.
+fn is_free(over: &Overlay<'_>) -> bool {
+    let is_gone = over.role() == Role::Stamped && over.stage.over >= 1.0;
+    is_gone && over.state.view.is_moved_over
 }
 
 /// Name of a part and what becomes of it.
@@ -160,7 +170,11 @@ fn stripes(over: &Overlay<'_>) -> Option<String> {
     let scene = &over.picture.scene;
     scene.coinciding()?;
     let distance = scene.coincidence?;
-    Some(format!("striped: both within {}", short_number(distance)))
+    let unit = over.state.unit_suffix();
+    Some(format!(
+        "striped: both within {}{unit}",
+        short_number(distance)
+    ))
 }
 
 /// What is shown instead of the real pose.
@@ -208,6 +222,9 @@ fn start_text(kind: StartKind) -> String {
 
 /// Buttons of the camera, top right.
 pub(super) fn buttons(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
+    if is_free(over) {
+        return;
+    }
     let role = over.role();
     let standard = |view| ViewCommand::Standard(role, view);
     let entries = [

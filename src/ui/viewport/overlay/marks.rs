@@ -180,7 +180,7 @@ fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
 pub(super) fn pivot(ui: &Ui, over: &Overlay<'_>) {
     let painter = over.painter(ui);
     let camera = &over.stage.camera;
-    if let Some(pivot) = over.state.view.pivot.get(over.role())
+    if let Some(pivot) = over.state.view.pivot.get(over.state.camera_of(over.role()))
         && let Some(at) = pos_of(over.rect, camera, pivot)
     {
         for way in [vec2(6.0, 0.0), vec2(0.0, 6.0)] {

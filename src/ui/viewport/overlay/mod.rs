@@ -3,12 +3,15 @@
 mod apart;
 mod cards;
 mod divider;
+mod free;
 mod header;
 mod labels;
 mod legend;
 mod marks;
 mod pairs;
 mod section;
+
+pub use free::free_choice;
 
 pub(super) use crate::report::grouped;
 use egui::{Align2, FontId, Painter, Rect, Ui};
@@ -81,6 +84,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     header::show(ui, over);
     header::buttons(ui, over, commands);
     section::show(ui, over, over.cuts, commands);
+    free::show(ui, over, commands);
 }
 
 /// A text in the place of the picture.

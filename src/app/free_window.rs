@@ -1,0 +1,92 @@
+//! What the right window shows while its part is in the left one.
+
+use super::{AppState, ColorBy};
+use crate::geometry::Similarity;
+use crate::jobs::Role;
+
+/// The uses of the right window while the stamped part is moved over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FreeWindow {
+    /// A card with the way back.
+    Nothing,
+    /// The distances between the parts as colours.
+    Deviation,
+    /// Both parts as they were read, without reduction.
+    FullMesh,
+    /// The stamped part at the best pose that differs from the result.
+    SecondPose,
+}
+
+impl FreeWindow {
+    /// All, in the order of the choice.
+    pub const ALL: [Self; 4] = [
+        Self::Nothing,
+        Self::FullMesh,
+        Self::Deviation,
+        Self::SecondPose,
+    ];
+
+    /// Name in the choice.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Nothing => "Nothing",
+            Self::Deviation => "Deviation",
+            Self::FullMesh => "Full mesh",
+            Self::SecondPose => "Second pose",
+        }
+    }
+}
+
+impl AppState {
+    /// What the right window shows beside the shared one; `None` while it has its own part. Without a
+    /// choice: the deviation where there is a result, else the full meshes.
+    pub fn free_window(&self) -> Option<FreeWindow> {
+        if !self.view.is_moved_over {
+            return None;
+        }
+        let by_itself = match self.document.current_result() {
+            Some(_) => FreeWindow::Deviation,
+            None => FreeWindow::FullMesh,
+        };
+        let chosen = self.view.free_window;
+        Some(
+            chosen
+                .filter(|use_| self.can_use_free(*use_))
+                .unwrap_or(by_itself),
+        )
+    }
+
+    /// True if the right window could be used so now.
+    pub fn can_use_free(&self, free: FreeWindow) -> bool {
+        free != FreeWindow::SecondPose || self.second_pose().is_some()
+    }
+
+    /// The best pose of the last match beside the one that is shown.
+    pub fn second_pose(&self) -> Option<Similarity> {
+        let result = self.document.current_result()?;
+        match result.alternative {
+            Some(_) => Some(result.run.crash_from_stamped),
+            None => {
+                let first = result.run.outcome.alternatives.first()?;
+                Some(first.target_from_source)
+            }
+        }
+    }
+
+    /// What the colours of a window say.
+    pub fn color_by(&self, window: Role) -> ColorBy {
+        match self.free_window().filter(|_| window == Role::Stamped) {
+            Some(FreeWindow::Deviation) => ColorBy::Deviation,
+            _ => self.view.display.color_by,
+        }
+    }
+
+    /// The window whose camera a window has: while the right one is free, both have the left one's.
+    pub fn camera_of(&self, window: Role) -> Role {
+        if self.view.is_moved_over {
+            Role::Crash
+        } else {
+            window
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! What the right window is used for while its part is in the left one.
+
+use egui::{CornerRadius, FontId, Rect, Shape, Ui, UiBuilder, vec2};
+
+use super::{MARGIN, Overlay};
+use crate::app::{AppState, Command, FreeWindow, ViewCommand};
+use crate::jobs::Role;
+use crate::ui::widgets::segments;
+
+/// Size of the choice.
+const WIDTH: f32 = 348.0;
+const HEIGHT: f32 = 28.0;
+
+/// The choice between the uses.
+pub fn free_choice(ui: &mut Ui, state: &AppState, width: f32, commands: &mut Vec<Command>) {
+    let now = state.free_window();
+    let label = |free: FreeWindow| (free.label(), now == Some(free), state.can_use_free(free));
+    let labels = FreeWindow::ALL.map(label);
+    if let Some(index) = segments(ui, &labels, width) {
+        commands.push(ViewCommand::SetFreeWindow(FreeWindow::ALL[index]).into());
+    }
+}
+
+/// The choice in the upper left corner, and below it what is shown.
+pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
+    let is_here = over.role() == Role::Stamped && over.stage.over >= 1.0;
+    let Some(free) = over.state.free_window().filter(|_| is_here) else {
+        return;
+    };
+    let painter = over.painter(ui);
+    let width = WIDTH.min(over.rect.width() - 2.0 * MARGIN - 8.0);
+    let corner = over.rect.min + vec2(MARGIN + 4.0, MARGIN + 2.0);
+    let area = Rect::from_min_size(corner, vec2(width, HEIGHT));
+    let ground = Shape::rect_filled(area.expand(4.0), CornerRadius::same(6), over.look.plate);
+    painter.add(ground);
+    ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {
+        free_choice(ui, over.state, width, commands);
+    });
+    let corner = area.left_bottom() + vec2(-4.0, 8.0);
+    let font = FontId::proportional(11.5);
+    let text = painter.layout_no_wrap(says(free).to_owned(), font, over.look.weak);
+    let plate = Rect::from_min_size(corner, text.size() + vec2(16.0, 8.0));
+    painter.rect_filled(plate, CornerRadius::same(6), over.look.plate);
+    painter.galley(corner + vec2(8.0, 4.0), text, over.look.weak);
+}
+
+fn says(free: FreeWindow) -> &'static str {
+    match free {
+        FreeWindow::Nothing => "",
+        FreeWindow::Deviation => "distance between the parts · same camera",
+        FreeWindow::FullMesh => "both parts without reduction · same camera",
+        FreeWindow::SecondPose => "the next best pose of the match · same camera",
+    }
+}
