@@ -1,15 +1,14 @@
 use super::{Axis, FreeWindow, NoticeLevel};
 use super::{
-    AxisFrame, BottomTab, Dialog, Display, Document, GestureId, InspectCommand, KeptWork, LikeWhat,
-    ModalInput, MotionKind, MoveFrame, NoticeId, PartRef, PickedPoint, Preview, Section,
-    SectionView, Settings, ShownGeometry,
+    AxisFrame, BottomTab, CopyForm, Dialog, Display, Document, ExportKind, GestureId,
+    InspectCommand, KeptWork, LikeWhat, ModalInput, MotionKind, MoveFrame, NoticeId, PartRef,
+    PickedPoint, PictureChoice, Preview, Section, SectionView, Settings, ShownGeometry,
 };
 use crate::geometry::camera::{OrbitStyle, StandardView};
 use crate::geometry::{Camera, Point3, Similarity};
 use crate::jobs::{JobEvent, Live, Located, PartSource, PerRole, ProjectRequest, Role};
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::pipeline::sweep::SweepSettings;
-use crate::report::{CardForm, MatrixForm};
 use crate::units::Units;
 use std::path::PathBuf;
 
@@ -296,41 +295,11 @@ pub enum PairCommand {
     Fit,
 }
 
-/// What can be written to a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ExportKind {
-    /// The matrix as text.
-    Matrix(MatrixForm),
-    /// The whole record of the match as JSON.
-    Record,
-    /// LS-DYNA cards.
-    Cards(CardForm),
-    /// The stamped part, moved onto the crash part.
-    Moved,
-    /// The log as text.
-    Log,
-}
-
-impl ExportKind {
-    /// A file name to start from.
-    pub fn suggested_name(self) -> &'static str {
-        match self {
-            Self::Matrix(MatrixForm::Json) => "matrix.json",
-            Self::Matrix(MatrixForm::Csv) => "matrix.csv",
-            Self::Matrix(_) => "matrix.txt",
-            Self::Record => "match.json",
-            Self::Cards(_) => "stamped_part.k",
-            Self::Moved => "moved.k",
-            Self::Log => "log.txt",
-        }
-    }
-}
-
 /// What leaves the program.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ExportCommand {
-    /// The matrix on the clipboard.
-    CopyMatrix(MatrixForm),
+    /// The matrix, or cards, on the clipboard.
+    Copy(CopyForm),
     /// Ask where to write something.
     AskSave(ExportKind),
     /// Write something.
@@ -351,10 +320,19 @@ pub enum ExportCommand {
         /// What it is, for the toast.
         what: String,
     },
-    /// A picture of the windows.
+    /// A picture as the last one was taken, at once where a folder is known; perhaps without background.
     TakePicture {
-        /// Without background.
+        /// Without background, whatever the last one had.
         is_transparent: bool,
+    },
+    /// Ask where to put a picture that is taken so.
+    AskPicture(PictureChoice),
+    /// A picture into a file.
+    WritePicture {
+        /// How.
+        choice: PictureChoice,
+        /// Where.
+        path: PathBuf,
     },
 }
 

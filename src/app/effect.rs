@@ -1,4 +1,4 @@
-use super::{Document, ExportKind};
+use super::{Document, ExportKind, PictureChoice, PicturePlace};
 use crate::jobs::{JobKey, JobKind, Role, Stamp};
 use crate::pipeline::project::Project;
 use std::path::PathBuf;
@@ -34,15 +34,31 @@ pub enum Effect {
     /// Lost work is no longer to be offered at the start.
     PutOffKept,
     /// Ask where to write; answer with `ExportCommand::Write`.
-    AskSave(ExportKind),
+    AskSave {
+        /// What.
+        kind: ExportKind,
+        /// A file name to start from.
+        name: String,
+    },
     /// Put a text on the clipboard.
     CopyText(String),
     /// Write the preferences.
     SaveSettings,
+    /// Ask where to put a picture; answer with `ExportCommand::WritePicture`.
+    AskPicture {
+        /// How it is taken.
+        choice: PictureChoice,
+        /// A file name to start from.
+        name: String,
+    },
     /// Write a picture of the 3D windows.
     TakePicture {
-        /// Without background.
-        is_transparent: bool,
+        /// How.
+        choice: PictureChoice,
+        /// Where.
+        place: PicturePlace,
+        /// What the file says about itself: keyword and text.
+        texts: Vec<(&'static str, String)>,
     },
     /// Tell the desktop if the window is in the background.
     NotifyDesktop(String),

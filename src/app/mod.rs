@@ -12,6 +12,7 @@ mod command_line;
 mod document;
 mod effect;
 mod explain;
+mod export;
 mod facts;
 mod free_window;
 mod history;
@@ -24,6 +25,7 @@ mod modal_move;
 mod motion;
 mod notice;
 mod pairs;
+mod picture;
 mod project;
 mod sections;
 mod settings;
@@ -37,12 +39,13 @@ mod view;
 pub use action::{Action, ActionInfo, Key, Menu, Reason, Shortcut};
 pub use attempts::{Attempt, AttemptGroup, Preview, Race, Step, group_attempts, is_same_pose};
 pub use command::{
-    Command, ExportCommand, ExportKind, FileCommand, HistoryCommand, MatchCommand, MoveCommand,
-    NoticeCommand, PairCommand, PartCommand, ProjectCommand, ReduceCommand, ViewCommand,
+    Command, ExportCommand, FileCommand, HistoryCommand, MatchCommand, MoveCommand, NoticeCommand,
+    PairCommand, PartCommand, ProjectCommand, ReduceCommand, ViewCommand,
 };
 pub use document::{Document, MatchResult, Part, StampedPose};
 pub use effect::Effect;
 pub use explain::Cause;
+pub use export::{CopyForm, ExportKind, MeshExport};
 pub use free_window::FreeWindow;
 pub use history::{GestureId, History};
 pub use inspect::{Coloring, Compared, Freshness, InspectCommand, Label, SectionView};
@@ -56,6 +59,7 @@ pub use motion::{
 };
 pub use notice::{Notice, NoticeId, NoticeLevel, Notices};
 pub use pairs::{PairTool, PairVerdict, PickKind, PickedPoint, PointPair, PointPairs};
+pub use picture::{PictureChoice, PicturePlace, PictureSize, PictureWindows};
 pub(crate) use project::project_title;
 pub use project::{KeptWork, ProjectState};
 pub use sections::Sections;

@@ -1,4 +1,4 @@
-use super::{NoticeLevel, UnitMemory};
+use super::{NoticeLevel, PictureChoice, UnitMemory};
 use crate::jobs::{PartSource, PerRole};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -96,6 +96,10 @@ pub struct Settings {
     pub reduce_roles: PerRole<bool>,
     /// Name of the form of the matrix that was copied last.
     pub matrix_form: Option<String>,
+    /// How the last picture was taken.
+    pub picture: PictureChoice,
+    /// Where it was put.
+    pub picture_folder: Option<PathBuf>,
     /// Levels that show no toast; log and bell have them all the same.
     pub muted: BTreeSet<NoticeLevel>,
     /// When each recent file was opened last, in seconds since 1970.
@@ -123,6 +127,8 @@ impl Default for Settings {
                 stamped: true,
             },
             matrix_form: None,
+            picture: PictureChoice::default(),
+            picture_folder: None,
             muted: BTreeSet::new(),
             opened: BTreeMap::new(),
             is_log_wide: false,
@@ -168,6 +174,7 @@ impl Settings {
         self.marked_levels.dedup();
         self.max_triangles = self.max_triangles.max(1);
         self.trim_recent();
+        self.picture = self.picture.sanitized();
         self
     }
 }

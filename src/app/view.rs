@@ -132,6 +132,8 @@ pub enum Dialog {
     Preferences,
     /// The list of messages.
     Messages,
+    /// The choices of a picture.
+    Picture,
     /// Name, version, licences.
     About,
     /// Unsaved work, asked about before the program ends.

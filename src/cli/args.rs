@@ -239,6 +239,12 @@ pub struct OutputArgs {
     /// (.k, .dynain, .stl, .ply, .obj).
     #[arg(long, value_name = "FILE")]
     pub moved: Option<PathBuf>,
+    /// Write the stamped mesh where it lies, in the unit of the crash part; endings as for --moved.
+    #[arg(long, value_name = "FILE")]
+    pub converted: Option<PathBuf>,
+    /// Write the crash part, for example as STL; endings as for --moved.
+    #[arg(long, value_name = "FILE")]
+    pub crash_mesh: Option<PathBuf>,
 }
 
 /// `shapematch reduce`.

@@ -1,6 +1,6 @@
 //! `shapematch match`: from two files to the matrix.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use super::args::MatchArgs;
@@ -10,6 +10,7 @@ use super::{
     EXIT_POOR, match_text, print, progress, project, takes_stdout, write_json, write_output,
 };
 use crate::assess::Verdict;
+use crate::geometry::Similarity;
 use crate::monitor::Monitor;
 use crate::pipeline::load::{LoadedPart, load};
 use crate::pipeline::match_parts::{MatchRun, ReducedPair, match_parts};
@@ -99,14 +100,20 @@ fn write_files(
             MatrixForm::Rows.write(&run.crash_from_stamped).as_bytes(),
         )?;
     }
-    if let Some(path) = &output.moved {
-        let comments = [record.direction.to_owned(), record.build.clone()];
-        let silent = Monitor::silent();
-        export::write_moved(path, stamped, &run.crash_from_stamped, &comments, &silent)?;
-    }
-    let silent = Monitor::silent();
+    let (pose, silent) = (&run.crash_from_stamped, Monitor::silent());
+    let write_part = |path: Option<&PathBuf>, part, other, pose: &Similarity| match path {
+        Some(path) => {
+            let lines = export::head_lines(part, Some(other));
+            export::write_moved(path, part, pose, &lines, &silent)
+        }
+        None => Ok(()),
+    };
+    let still = Similarity::identity();
+    write_part(output.moved.as_ref(), stamped, crash, pose)?;
+    write_part(output.converted.as_ref(), stamped, crash, &still)?;
+    write_part(output.crash_mesh.as_ref(), crash, stamped, &still)?;
     if let Some(path) = &output.deviations {
-        let table = node_table::node_table(crash, stamped, &run.crash_from_stamped, &silent)?;
+        let table = node_table::node_table(crash, stamped, pose, &silent)?;
         write_output(path, table.as_bytes())?;
     }
     if let Some(path) = &output.report {

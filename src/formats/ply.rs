@@ -113,11 +113,12 @@ impl PropertyAccess for Skipped {
     }
 }
 
-/// Binary little-endian PLY with 64-bit coordinates.
-pub fn write(mesh: &TriMesh) -> Vec<u8> {
+/// Binary little-endian PLY with 64-bit coordinates; the first line of `name` is its comment.
+pub fn write(mesh: &TriMesh, name: &str) -> Vec<u8> {
+    let name = name.lines().next().unwrap_or_default();
     let (n_vertices, n_triangles) = (mesh.n_vertices(), mesh.n_triangles());
     let header = format!(
-        "ply\nformat binary_little_endian 1.0\n\
+        "ply\nformat binary_little_endian 1.0\ncomment {name}\n\
          element vertex {n_vertices}\nproperty double x\nproperty double y\nproperty double z\n\
          element face {n_triangles}\nproperty list uchar uint vertex_indices\nend_header\n"
     );

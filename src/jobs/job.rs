@@ -1,4 +1,4 @@
-use super::{ExportRequest, OpenedProject, PartFacts, ProjectRequest, SweepRows};
+use super::{ExportRequest, Exported, OpenedProject, PartFacts, ProjectRequest, SweepRows};
 use crate::assess::Coverage;
 use crate::geometry::{Similarity, TriMesh};
 use crate::pipeline::inspect::Comparison;
@@ -375,11 +375,6 @@ pub enum JobOutput {
     },
     /// The tables.
     Swept(Arc<Sweep>),
-    /// Files were written.
-    Exported {
-        /// Which.
-        paths: Vec<PathBuf>,
-        /// What the writing found out, for example the rounding error of a card.
-        notes: Vec<String>,
-    },
+    /// Something was written, or is ready for the clipboard.
+    Exported(Exported),
 }

@@ -15,7 +15,7 @@ mod sweep_rows;
 mod worker;
 
 pub use event::{JobEvent, JobStage};
-pub use export::ExportRequest;
+pub use export::{Destination, ExportContent, ExportRequest, Exported, MatchedPair};
 pub use facts::PartFacts;
 pub use job::{
     CompareInput, JobId, JobKey, JobKind, JobOutput, MatchInput, MeasureInput, MeasureLevelInput,

@@ -91,11 +91,7 @@ impl Runner for PipelineRunner {
                 let opened = open_project(request, monitor)?;
                 Ok(JobOutput::ProjectOpened(Box::new(opened)))
             }
-            JobKind::Export(request) => {
-                let (path, notes) = export(request, monitor)?;
-                let paths = vec![path];
-                Ok(JobOutput::Exported { paths, notes })
-            }
+            JobKind::Export(request) => Ok(JobOutput::Exported(export(request, monitor)?)),
         }
     }
 }

@@ -6,11 +6,13 @@ use std::path::{Path, PathBuf};
 
 use super::PipelineError;
 use super::load::LoadedPart;
+use super::units::PairUnits;
 use crate::formats::keyword::write::{WriteOptions, write};
 use crate::formats::moved::moved;
 use crate::formats::{Format, Model, obj, ply, stl};
 use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::Monitor;
+use crate::report::build_id;
 use crate::samples::SampleFile;
 
 /// Writes bytes to a file.
@@ -62,7 +64,7 @@ pub fn write_mesh(
         )?,
         Format::Stl => stl::write_binary(mesh),
         Format::Obj => obj::write(mesh, title),
-        Format::Ply => ply::write(mesh),
+        Format::Ply => ply::write(mesh, title),
     };
     write_bytes(path, &bytes)
 }
@@ -79,7 +81,8 @@ pub fn write_moved(
 ) -> Result<(), PipelineError> {
     if format_of(path)? != Format::Keyword {
         let mesh = stamped.mesh.transformed(crash_from_stamped);
-        return write_mesh(path, &mesh, "moved", monitor);
+        let title = comments.join(", ");
+        return write_mesh(path, &mesh, &title, monitor);
     }
     let unit = Similarity::from_scale(stamped.settings.length_factor);
     let model = moved(&stamped.model, &crash_from_stamped.after(&unit));
@@ -88,6 +91,24 @@ pub fn write_moved(
         ..WriteOptions::default()
     };
     write_bytes(path, &write(&model, &options, monitor)?)
+}
+
+/// What the head of a written deck says: where it comes from, units, build.
+pub fn head_lines(part: &LoadedPart, other: Option<&LoadedPart>) -> Vec<String> {
+    let factor = part.settings.length_factor;
+    let mut lines = vec![format!("made from {}", part.file_name())];
+    let units = PairUnits::of(other, Some(part));
+    lines.push(match units.lengths {
+        Some(unit) => format!("lengths in {unit}"),
+        None => "unit of lengths unknown".to_owned(),
+    });
+    if factor != 1.0 {
+        lines.push(format!(
+            "lengths and thicknesses were multiplied by {factor}; stresses keep their unit"
+        ));
+    }
+    lines.push(build_id());
+    lines
 }
 
 /// The format that the ending names; unlike in reading, no ending is no format.

@@ -105,11 +105,20 @@ impl Picture {
 
     /// The picture as a PNG file.
     pub fn to_png(&self) -> Vec<u8> {
+        self.to_png_with(&[])
+    }
+
+    /// The picture as a PNG file with texts: keywords of up to 79 Latin letters, and what they say.
+    pub fn to_png_with(&self, texts: &[(&str, String)]) -> Vec<u8> {
         let mut bytes = Vec::new();
         let (width, height) = (self.width as u32, self.height as u32);
         let mut encoder = png::Encoder::new(&mut bytes, width, height);
         encoder.set_color(png::ColorType::Rgba);
         encoder.set_depth(png::BitDepth::Eight);
+        for (keyword, text) in texts {
+            // A keyword that is none is left out.
+            let _ = encoder.add_itxt_chunk((*keyword).to_owned(), text.clone());
+        }
         let written = encoder
             .write_header()
             .and_then(|mut writer| writer.write_image_data(&self.rgba));
@@ -404,6 +413,23 @@ mod tests {
         let info = reader.next_frame(&mut back).unwrap();
         assert_eq!((info.width, info.height), (31, 17));
         assert_eq!(back, drawn.rgba);
+    }
+
+    #[test]
+    fn a_png_tells_what_it_shows() {
+        let drawn = picture([4, 4], &from_above(), None, &[]);
+        let texts = [
+            ("Pose", "ä → 1 0\n0 1".to_owned()),
+            ("Software", "x".to_owned()),
+        ];
+        let bytes = drawn.to_png_with(&texts);
+        let reader = png::Decoder::new(std::io::Cursor::new(bytes))
+            .read_info()
+            .unwrap();
+        let found = &reader.info().utf8_text;
+        assert_eq!(found.len(), 2);
+        assert_eq!(found[0].keyword, "Pose");
+        assert_eq!(found[0].get_text().unwrap(), texts[0].1);
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! Questions for files: the desktop's dialog on a thread of its own, and a field to type a path
 //! into where the desktop has no dialog.
 
-use super::theme::{Palette, ROW, UNIT};
-use super::widgets::{caption, paragraph};
-use crate::app::{Command, ExportCommand, ExportKind, FileCommand, ProjectCommand};
+use super::theme::UNIT;
+use super::widgets::{caption, large_button, paragraph};
+use crate::app::{Command, ExportCommand, ExportKind, FileCommand, PictureChoice, ProjectCommand};
 use crate::formats::Format;
 use crate::jobs::{Located, ProjectRequest, Role};
 use crate::pipeline::project::EXTENSION;
@@ -27,25 +27,30 @@ enum Question {
     Locate(Role),
     /// Where to write the project, beginning there.
     SaveProject(PathBuf),
-    Save(ExportKind),
+    Save {
+        kind: ExportKind,
+        name: String,
+    },
     Picture {
-        is_transparent: bool,
+        choice: PictureChoice,
+        name: String,
     },
 }
 
-struct Answer {
-    question: Question,
-    path: Option<PathBuf>,
-    took: Duration,
-}
-
-/// A picture to be written.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PictureRequest {
-    /// Where.
-    pub path: PathBuf,
-    /// Without background.
-    pub is_transparent: bool,
+/// What a thread found out.
+enum Answer {
+    /// The dialog of the desktop was closed.
+    Dialog {
+        question: Question,
+        path: Option<PathBuf>,
+        took: Duration,
+    },
+    /// A typed path leads to a file, or to nothing yet.
+    Checked {
+        question: Question,
+        path: PathBuf,
+        exists: bool,
+    },
 }
 
 /// Open questions.
@@ -56,7 +61,8 @@ pub struct Dialogs {
     is_asking: bool,
     /// The field for those desktops that have none.
     prompt: Option<(Question, String)>,
-    pictures: Vec<PictureRequest>,
+    /// A file that would be overwritten.
+    overwrite: Option<(Question, PathBuf)>,
 }
 
 impl Default for Dialogs {
@@ -67,7 +73,7 @@ impl Default for Dialogs {
             receiver,
             is_asking: false,
             prompt: None,
-            pictures: Vec::new(),
+            overwrite: None,
         }
     }
 }
@@ -94,18 +100,13 @@ impl Dialogs {
     }
 
     /// Asks where to write.
-    pub fn ask_save(&mut self, kind: ExportKind, ctx: &egui::Context) {
-        self.ask(Question::Save(kind), ctx);
+    pub fn ask_save(&mut self, kind: ExportKind, name: String, ctx: &egui::Context) {
+        self.ask(Question::Save { kind, name }, ctx);
     }
 
     /// Asks where to write a picture.
-    pub fn ask_picture(&mut self, is_transparent: bool, ctx: &egui::Context) {
-        self.ask(Question::Picture { is_transparent }, ctx);
-    }
-
-    /// Pictures whose place is known now.
-    pub fn take_pictures(&mut self) -> Vec<PictureRequest> {
-        std::mem::take(&mut self.pictures)
+    pub fn ask_picture(&mut self, choice: PictureChoice, name: String, ctx: &egui::Context) {
+        self.ask(Question::Picture { choice, name }, ctx);
     }
 
     fn ask(&mut self, question: Question, ctx: &egui::Context) {
@@ -120,7 +121,7 @@ impl Dialogs {
             let begin = Instant::now();
             let path = wait_for(dialog);
             let took = begin.elapsed();
-            let answer = Answer {
+            let answer = Answer::Dialog {
                 question: asked,
                 path,
                 took,
@@ -136,61 +137,96 @@ impl Dialogs {
     }
 
     /// The answers that came since the last frame.
-    pub fn answers(&mut self) -> Vec<Command> {
+    pub fn answers(&mut self, ctx: &egui::Context) -> Vec<Command> {
         let answers: Vec<Answer> = self.receiver.try_iter().collect();
         let mut commands = Vec::new();
         for answer in answers {
-            self.is_asking = false;
-            match answer.path {
-                Some(path) => commands.extend(self.answered(answer.question, path)),
-                None if answer.took < NOT_SHOWN => {
-                    let suggestion = match &answer.question {
-                        Question::Open(_) | Question::OpenProject | Question::Locate(_) => {
-                            String::new()
+            match answer {
+                Answer::Dialog {
+                    question,
+                    path,
+                    took,
+                } => {
+                    self.is_asking = false;
+                    match path {
+                        // The dialog asked about the name as it was typed, not about this one.
+                        Some(path) if question.with_ending(path.clone()) != path => {
+                            self.check(question, path, ctx);
                         }
-                        Question::SaveProject(path) => path.display().to_string(),
-                        Question::Save(kind) => kind.suggested_name().to_owned(),
-                        Question::Picture { .. } => "shapematch.png".to_owned(),
-                    };
-                    self.prompt = Some((answer.question, suggestion));
+                        Some(path) => commands.push(answered(&question, path)),
+                        None if took < NOT_SHOWN => {
+                            let suggestion = question.suggestion();
+                            self.prompt = Some((question, suggestion));
+                        }
+                        None => commands.extend(closed(&question)),
+                    }
                 }
-                None => commands.extend(closed(&answer.question)),
+                Answer::Checked {
+                    question,
+                    path,
+                    exists: true,
+                } => self.overwrite = Some((question, path)),
+                Answer::Checked { question, path, .. } => {
+                    commands.push(answered(&question, path));
+                }
             }
         }
         commands
     }
 
-    fn answered(&mut self, question: Question, path: PathBuf) -> Option<Command> {
-        match question {
-            Question::Open(role) => Some(
-                FileCommand::Open {
-                    paths: vec![path],
-                    role: Some(role),
-                }
-                .into(),
-            ),
-            Question::OpenProject => {
-                let request = ProjectRequest {
-                    path,
-                    ..ProjectRequest::default()
-                };
-                Some(ProjectCommand::Open(request).into())
-            }
-            Question::Locate(role) => Some(ProjectCommand::Locate(role, Located::At(path)).into()),
-            Question::SaveProject(_) => Some(ProjectCommand::Write(path).into()),
-            Question::Save(kind) => Some(ExportCommand::Write { kind, path }.into()),
-            Question::Picture { is_transparent } => {
-                self.pictures.push(PictureRequest {
-                    path,
-                    is_transparent,
-                });
-                None
-            }
+    /// Looks on a thread of its own whether a file would be overwritten.
+    fn check(&mut self, question: Question, path: PathBuf, ctx: &egui::Context) {
+        let path = question.with_ending(path);
+        let (sender, ctx) = (self.sender.clone(), ctx.clone());
+        let answer = move || {
+            let exists = !question.is_open() && path.exists();
+            // The window may have closed meanwhile.
+            let _ = sender.send(Answer::Checked {
+                question,
+                path,
+                exists,
+            });
+            ctx.request_repaint();
+        };
+        std::thread::spawn(answer);
+    }
+
+    /// The fields and questions for desktops without dialogs.
+    pub fn show(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
+        self.overwrite_ui(ctx, commands);
+        self.prompt_ui(ctx, commands);
+    }
+
+    /// Asks before a file is replaced.
+    fn overwrite_ui(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
+        let Some((question, path)) = self.overwrite.take() else {
+            return;
+        };
+        let (mut is_taken, mut is_renamed, mut is_closed) = (false, false, false);
+        let modal = egui::Modal::new(egui::Id::unique("overwrite question")).show(ctx, |ui| {
+            ui.set_width(480.0);
+            ui.spacing_mut().item_spacing.y = UNIT;
+            ui.heading("Replace the file?");
+            paragraph(ui, format!("{} is there already.", path.display()));
+            ui.horizontal(|ui| {
+                is_taken = large_button(ui, "Replace", false).clicked();
+                is_renamed = large_button(ui, "Another name", true).clicked();
+                is_closed = large_button(ui, "Cancel", false).clicked();
+            });
+        });
+        if is_taken {
+            commands.push(answered(&question, path));
+        } else if is_renamed {
+            self.prompt = Some((question, path.display().to_string()));
+        } else if !is_closed && !modal.should_close() {
+            self.overwrite = Some((question, path));
+        } else {
+            commands.extend(closed(&question));
         }
     }
 
     /// The field to type a path into.
-    pub fn show(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
+    fn prompt_ui(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
         let Some((question, mut text)) = self.prompt.take() else {
             return;
         };
@@ -216,14 +252,12 @@ impl Dialogs {
             }
             is_taken |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             ui.horizontal(|ui| {
-                let palette = Palette::of(ui);
-                let label = egui::RichText::new(verb).color(palette.on_accent);
-                let button = egui::Button::new(label)
-                    .fill(palette.accent)
-                    .min_size(egui::vec2(88.0, ROW + 4.0));
-                is_taken |= ui.add_enabled(!text.trim().is_empty(), button).clicked();
-                let cancel = egui::Button::new("Cancel").min_size(egui::vec2(88.0, ROW + 4.0));
-                is_closed |= ui.add(cancel).clicked();
+                let is_typed = !text.trim().is_empty();
+                is_taken |= ui
+                    .add_enabled_ui(is_typed, |ui| large_button(ui, verb, true))
+                    .inner
+                    .clicked();
+                is_closed |= large_button(ui, "Cancel", false).clicked();
                 if matches!(question, Question::Open(_) | Question::Locate(_)) {
                     caption(ui, formats());
                 }
@@ -231,7 +265,7 @@ impl Dialogs {
         });
         let path = text.trim().trim_matches('"').to_owned();
         if is_taken && !path.is_empty() {
-            commands.extend(self.answered(question, PathBuf::from(path)));
+            self.check(question, PathBuf::from(path), ctx);
         } else if !is_closed && !modal.should_close() {
             self.prompt = Some((question, text));
         } else {
@@ -246,6 +280,59 @@ fn closed(question: &Question) -> Option<Command> {
     is_save.then(|| ProjectCommand::NotWritten.into())
 }
 
+/// What an answer asks for.
+fn answered(question: &Question, path: PathBuf) -> Command {
+    match *question {
+        Question::Open(role) => FileCommand::Open {
+            paths: vec![path],
+            role: Some(role),
+        }
+        .into(),
+        Question::OpenProject => {
+            let request = ProjectRequest {
+                path,
+                ..ProjectRequest::default()
+            };
+            ProjectCommand::Open(request).into()
+        }
+        Question::Locate(role) => ProjectCommand::Locate(role, Located::At(path)).into(),
+        Question::SaveProject(_) => ProjectCommand::Write(path).into(),
+        Question::Save { kind, .. } => ExportCommand::Write { kind, path }.into(),
+        Question::Picture { choice, .. } => ExportCommand::WritePicture { choice, path }.into(),
+    }
+}
+
+impl Question {
+    /// True if a file is to be read.
+    fn is_open(&self) -> bool {
+        matches!(self, Self::Open(_) | Self::OpenProject | Self::Locate(_))
+    }
+
+    /// A name to start from.
+    fn suggestion(&self) -> String {
+        match self {
+            Self::Open(_) | Self::OpenProject | Self::Locate(_) => String::new(),
+            Self::SaveProject(path) => path.display().to_string(),
+            Self::Save { name, .. } | Self::Picture { name, .. } => name.clone(),
+        }
+    }
+
+    /// A name without an ending gets the usual one.
+    fn with_ending(&self, path: PathBuf) -> PathBuf {
+        let ending = match self {
+            Self::Save { kind, .. } => return kind.with_ending(path),
+            Self::SaveProject(_) => EXTENSION,
+            Self::Picture { .. } => "png",
+            Self::Open(_) | Self::OpenProject | Self::Locate(_) => return path,
+        };
+        if path.extension().is_some() {
+            path
+        } else {
+            path.with_extension(ending)
+        }
+    }
+}
+
 fn titles(question: &Question) -> (&'static str, &'static str) {
     match question {
         Question::OpenProject => ("Open a project", "Open"),
@@ -254,7 +341,7 @@ fn titles(question: &Question) -> (&'static str, &'static str) {
         Question::SaveProject(_) => ("Save the project", "Save"),
         Question::Open(Role::Crash) => ("Open the crash model", "Open"),
         Question::Open(Role::Stamped) => ("Open the stamped part", "Open"),
-        Question::Save(_) => ("Write to a file", "Write"),
+        Question::Save { .. } => ("Write to a file", "Write"),
         Question::Picture { .. } => ("Write a picture", "Write"),
     }
 }
@@ -292,13 +379,18 @@ fn file_dialog(
             }
             dialog = dialog.add_filter("All files", &["*"]);
         }
-        Question::Save(kind) => dialog = dialog.set_file_name(kind.suggested_name()),
-        Question::Picture { .. } => dialog = dialog.set_file_name("shapematch.png"),
+        Question::Save { kind, .. } => {
+            for (label, ending) in kind.endings() {
+                dialog = dialog.add_filter(*label, &[*ending]);
+            }
+            dialog = dialog.set_file_name(question.suggestion());
+        }
+        Question::Picture { .. } => {
+            dialog = dialog.add_filter("PNG", &["png"]);
+            dialog = dialog.set_file_name(question.suggestion());
+        }
     }
-    let is_open = matches!(
-        question,
-        Question::Open(_) | Question::OpenProject | Question::Locate(_)
-    );
+    let is_open = question.is_open();
     async move {
         if is_open {
             dialog.pick_file().await
@@ -326,5 +418,40 @@ fn wait_for(future: impl Future<Output = Option<rfd::FileHandle>>) -> Option<Pat
             Poll::Ready(handle) => return handle.map(|handle| handle.path().to_owned()),
             Poll::Pending => std::thread::park(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_only_after_a_question() {
+        let folder = tempfile::tempdir().unwrap();
+        let taken = folder.path().join("a.txt");
+        std::fs::write(&taken, "old").unwrap();
+        let ctx = egui::Context::default();
+        let mut dialogs = Dialogs::default();
+        let question = || Question::Save {
+            kind: ExportKind::Log,
+            name: "log.txt".to_owned(),
+        };
+        let mut answer = |typed: &str| {
+            dialogs.check(question(), folder.path().join(typed), &ctx);
+            for _ in 0..500 {
+                let commands = dialogs.answers(&ctx);
+                if !commands.is_empty() || dialogs.overwrite.is_some() {
+                    return (
+                        commands.len(),
+                        dialogs.overwrite.take().map(|(_, path)| path),
+                    );
+                }
+                std::thread::sleep(Duration::from_millis(10));
+            }
+            panic!("no answer");
+        };
+        assert_eq!(answer("b"), (1, None));
+        // The ending is added before the question, not after it.
+        assert_eq!(answer("a"), (0, Some(taken)));
     }
 }

@@ -10,6 +10,8 @@ pub mod keyboard;
 pub mod overlays;
 pub mod palette;
 pub mod panels;
+mod picture_options;
+mod pictures;
 pub mod project_dialogs;
 pub mod shell;
 pub mod storage;

@@ -1,6 +1,7 @@
 //! What lies over the window: help sheet, command search, preferences, messages, about.
 
 use super::palette::palette_ui;
+use super::picture_options::picture_ui;
 use super::project_dialogs::{missing_ui, unsaved_ui};
 use super::theme::{Palette, UNIT};
 use super::widgets::{caption, chip, form_row, level_color, paragraph, secondary};
@@ -27,6 +28,11 @@ pub fn overlays_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Com
             Dialog::Palette => palette_ui(ui, state, room, commands),
             Dialog::Preferences => preferences_ui(ui, state, commands),
             Dialog::Messages => messages_ui(ui, state, room, commands),
+            Dialog::Picture => {
+                ui.set_width(440.0);
+                title(ui, "Picture", Some(commands));
+                picture_ui(ui, state, commands);
+            }
             Dialog::About => about_ui(ui),
             Dialog::Unsaved => unsaved_ui(ui, state, commands),
             Dialog::MissingFiles => missing_ui(ui, state, commands),

@@ -1,7 +1,8 @@
 //! The program behind the panels: worker, dialogs, clipboard, preferences, and the frame.
 
-use super::dialogs::{Dialogs, PictureRequest};
+use super::dialogs::Dialogs;
 use super::keeper::{Keeper, Kept as KeptNews};
+use super::pictures::Pictures;
 use super::storage::{Kept, Storage, WindowPlace};
 use super::viewport::Viewports;
 use super::{keyboard, overlays, panels, project_dialogs, theme, toasts};
@@ -12,7 +13,6 @@ use crate::app::{
 use crate::jobs::{JobEvent, JobStage, Live, PipelineRunner, Role, Worker};
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 /// Least size of the window, in points.
@@ -88,11 +88,8 @@ pub struct Shell {
     may_close: bool,
     begin: Instant,
     title: String,
-    told: (Sender<News>, Receiver<News>),
+    pictures: Pictures,
 }
-
-/// Something a thread of the shell has to say.
-type News = (NoticeLevel, String);
 
 impl Shell {
     /// Starts the worker and opens what the command line named.
@@ -121,7 +118,7 @@ impl Shell {
             may_close: false,
             begin: Instant::now(),
             title: String::new(),
-            told: channel(),
+            pictures: Pictures::default(),
         };
         shell.apply_settings(&cc.egui_ctx);
         shell.keeper.list();
@@ -176,7 +173,7 @@ impl Shell {
             Effect::StopJob(key) => self.worker.stop(key),
             Effect::CancelJob(key) => self.worker.cancel(key),
             Effect::AskOpen(role) => self.dialogs.ask_open(role, ctx),
-            Effect::AskSave(kind) => self.dialogs.ask_save(kind, ctx),
+            Effect::AskSave { kind, name } => self.dialogs.ask_save(kind, name, ctx),
             Effect::AskOpenProject => self.dialogs.ask_open_project(ctx),
             Effect::AskLocate(role) => self.dialogs.ask_locate(role, ctx),
             Effect::AskSaveProject(path) => self.dialogs.ask_save_project(path, ctx),
@@ -187,9 +184,12 @@ impl Shell {
             } => self.keeper.write(path, project, document),
             Effect::KeepWork(project) => self.keeper.keep(project),
             Effect::PutOffKept => self.keeper.put_off(),
-            Effect::TakePicture { is_transparent } => {
-                self.dialogs.ask_picture(is_transparent, ctx);
-            }
+            Effect::AskPicture { choice, name } => self.dialogs.ask_picture(choice, name, ctx),
+            Effect::TakePicture {
+                choice,
+                place,
+                texts,
+            } => self.pictures.want(choice, place, texts, ctx),
             Effect::CopyText(text) => ctx.copy_text(text),
             Effect::SaveSettings => {
                 self.is_unsaved = true;
@@ -235,34 +235,9 @@ impl Shell {
         }
     }
 
-    /// Draws the pictures that are wanted; a thread of its own packs and writes them.
+    /// Draws the pictures that are wanted and tells what became of earlier ones.
     fn take_pictures(&mut self, ctx: &egui::Context) {
-        for PictureRequest {
-            path,
-            is_transparent,
-        } in self.dialogs.take_pictures()
-        {
-            let Some(picture) = self.viewports.picture(&self.state, is_transparent) else {
-                let text = "no picture could be taken: nothing is drawn yet".to_owned();
-                self.state
-                    .apply(NoticeCommand::Tell(NoticeLevel::Error, text));
-                continue;
-            };
-            let (sender, waking) = (self.told.0.clone(), ctx.clone());
-            std::thread::spawn(move || {
-                let news = match picture.save(&path) {
-                    Ok(()) => (NoticeLevel::Success, format!("written: {}", path.display())),
-                    Err(error) => (
-                        NoticeLevel::Error,
-                        format!("the picture could not be written: {error}"),
-                    ),
-                };
-                // The window may have closed meanwhile.
-                let _ = sender.send(news);
-                waking.request_repaint();
-            });
-        }
-        let news: Vec<_> = self.told.1.try_iter().collect();
+        let news = self.pictures.take(&self.state, &mut self.viewports, ctx);
         for (level, text) in news {
             self.state.apply(NoticeCommand::Tell(level, text));
         }
@@ -374,7 +349,7 @@ impl eframe::App for Shell {
         let events: Vec<JobEvent> = self.worker.events().collect();
         let live = self.worker.live();
         let mut commands = with_live(events, live);
-        commands.extend(self.dialogs.answers());
+        commands.extend(self.dialogs.answers(ctx));
         commands.extend(self.keeper.news().flat_map(told_by_keeper));
         commands.extend(self.asked_to_close(ctx));
         commands.extend(self.dropped(ctx));

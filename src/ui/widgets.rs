@@ -305,6 +305,19 @@ pub fn figure(ui: &mut Ui, name: &str, value: &str) {
     });
 }
 
+/// A button of a question; the usual answer is filled.
+pub fn large_button(ui: &mut Ui, label: &str, is_usual: bool) -> Response {
+    let palette = Palette::of(ui);
+    let size = vec2(88.0, ROW + 4.0);
+    let button = if is_usual {
+        let text = RichText::new(label).color(palette.on_accent);
+        Button::new(text).fill(palette.accent)
+    } else {
+        Button::new(label)
+    };
+    ui.add(button.min_size(size))
+}
+
 /// Colour and sign of a level of loudness.
 pub fn level_color(palette: &Palette, level: NoticeLevel) -> Color32 {
     match level {

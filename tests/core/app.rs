@@ -693,7 +693,7 @@ fn a_copied_matrix_pastes_back_to_the_same_bits() {
             frame: AxisFrame::Global,
             degrees: 33.3,
         });
-        window.apply(ExportCommand::CopyMatrix(form));
+        window.apply(ExportCommand::Copy(CopyForm::Matrix(form)));
         let copied = window.effects.iter().find_map(|effect| match effect {
             Effect::CopyText(text) => Some(text.clone()),
             _ => None,

@@ -1,7 +1,8 @@
 //! The worker: what it answers, in which order, and that nothing runs on after stop and cancel.
 
 use shapematch::jobs::{
-    ExportRequest, JobError, JobEvent, JobKey, JobKind, JobOutput, JobStage, Stamp, Worker,
+    Destination, ExportContent, ExportRequest, Exported, JobError, JobEvent, JobKey, JobKind,
+    JobOutput, JobStage, Stamp, Worker,
 };
 use shapematch::monitor::Monitor;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -12,9 +13,9 @@ use std::time::Duration;
 const PATIENCE: Duration = Duration::from_secs(30);
 
 fn export() -> JobKind {
-    JobKind::Export(ExportRequest::Text {
-        path: "nowhere.txt".into(),
-        text: String::new(),
+    JobKind::Export(ExportRequest {
+        to: Destination::File("nowhere.txt".into()),
+        content: ExportContent::Text(String::new()),
     })
 }
 
@@ -28,10 +29,11 @@ fn other_kind() -> JobKind {
 }
 
 fn nothing() -> JobOutput {
-    JobOutput::Exported {
-        paths: Vec::new(),
+    JobOutput::Exported(Exported {
+        to: Destination::Clipboard("Nothing".to_owned()),
+        text: None,
         notes: Vec::new(),
-    }
+    })
 }
 
 fn spawn(

@@ -3,12 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
 
 mod app;
+mod app_exports;
 mod assess;
 mod attempts;
 mod cli;
 mod deck_out;
 mod deviation;
 mod drawn_pan;
+mod exports;
 mod inspect;
 mod jobs;
 mod keyword;

@@ -55,7 +55,7 @@ fn every_kind_reads_back() {
     assert_eq!(model.parts[0].title, "my part");
     let model = check("a.obj", obj::write(&strip(), "left door"), 0.0);
     assert_eq!(model.parts[0].title, "left door");
-    check("a.ply", ply::write(&strip()), 0.0);
+    check("a.ply", ply::write(&strip(), "x"), 0.0);
 }
 
 #[test]
@@ -166,7 +166,7 @@ fn oddities_are_named_with_their_place() {
 
 #[test]
 fn points_that_are_not_finite_spoil_only_their_faces() {
-    let mut bytes = ply::write(&strip());
+    let mut bytes = ply::write(&strip(), "x");
     let first = bytes
         .windows(11)
         .position(|w| w == b"end_header\n")
@@ -185,7 +185,7 @@ fn a_file_cut_anywhere_is_no_panic() {
         ("a.stl", stl::write_binary(&strip())),
         ("a.stl", stl::write_ascii(&strip(), "x")),
         ("a.obj", obj::write(&strip(), "x")),
-        ("a.ply", ply::write(&strip())),
+        ("a.ply", ply::write(&strip(), "x")),
     ];
     for (name, bytes) in files {
         for end in (0..bytes.len()).step_by(3) {
@@ -271,7 +271,7 @@ proptest! {
             ("a.stl", stl::write_binary(&strip())),
             ("a.stl", stl::write_ascii(&strip(), "x")),
             ("a.obj", obj::write(&strip(), "x")),
-            ("a.ply", ply::write(&strip())),
+            ("a.ply", ply::write(&strip(), "x")),
         ].swap_remove(which);
         for (at, byte) in damage {
             let at = at.index(bytes.len());

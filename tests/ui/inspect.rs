@@ -6,7 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use shapematch::app::{
     Action, Axis, AxisFrame, BottomTab, ColorBy, Freshness, InspectCommand, MoveCommand,
-    ViewCommand,
+    PictureChoice, ViewCommand,
 };
 use shapematch::geometry::Vector3;
 use shapematch::jobs::Role;
@@ -203,10 +203,14 @@ fn the_sign_can_be_told_without_colours() {
         desk.apply(InspectCommand::Update.into());
         desk.apply(ViewCommand::FitAll(Role::Stamped).into());
         harness.run_steps(4);
+        let transparent = PictureChoice {
+            is_transparent: true,
+            ..PictureChoice::default()
+        };
         let picture = harness
             .state_mut()
             .viewports
-            .window_picture(Role::Stamped, true)
+            .window_picture(Role::Stamped, &transparent, 1)
             .unwrap();
         let (width, height) = picture.dimensions();
         // Grey values of a square in the middle of the part.

@@ -8,8 +8,8 @@ use egui::{Event, MouseWheelUnit, PointerButton, Pos2, Rect, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{
-    AppState, Command, Effect, FileCommand, FreeWindow, MoveCommand, PartCommand, Settings,
-    ViewCommand,
+    AppState, Command, Effect, FileCommand, FreeWindow, MoveCommand, PartCommand, PictureChoice,
+    Settings, ViewCommand,
 };
 use shapematch::formats::Model;
 use shapematch::geometry::camera::ScreenSize;
@@ -410,7 +410,11 @@ fn drawn() -> Harness<'static, Desk> {
 /// The picture of the left window on transparent ground.
 fn left_picture(harness: &mut Harness<'_, Desk>) -> image::RgbaImage {
     let viewports = &mut harness.state_mut().viewports;
-    viewports.window_picture(Role::Crash, true).unwrap()
+    let choice = PictureChoice {
+        is_transparent: true,
+        ..PictureChoice::default()
+    };
+    viewports.window_picture(Role::Crash, &choice, 1).unwrap()
 }
 
 #[test]

@@ -46,7 +46,7 @@ impl Action {
             A::BringCentersTogether | A::Align | A::Measure => state.can_match(),
             A::PairTool | A::Refine => state.can_match(),
             A::FitPairs => state.can_fit_pairs(),
-            A::ToggleMoveOver | A::CopyCommandLine => state.has_both_parts(),
+            A::ToggleMoveOver | A::CopyCommandLine | A::SaveDeviations => state.has_both_parts(),
             A::Reduce => state.can_reduce(),
             A::NextLevel | A::PreviousLevel => level_step(self, state),
             A::ReduceToFull | A::ToggleDetailed | A::ToggleSplit => is_reduced(state),
@@ -77,7 +77,7 @@ impl Action {
                 require(state.view.section.is_on, "show the section first")
             }
             A::CopyMatrix | A::SaveMatrix | A::SaveMoved => state.has_part(Role::Stamped),
-            A::SaveRecord | A::SaveCards => {
+            A::SaveRecord | A::SaveReport | A::SaveCards => {
                 let has_result = state.document.current_result().is_some();
                 require(has_result, "run a match first")
             }
@@ -85,9 +85,11 @@ impl Action {
                 state.view.pivot.get(state.view.focus).is_some(),
                 "no pivot was picked",
             ),
-            A::TakePicture | A::TakePictureTransparent | A::FitAll | A::FocusSelection => {
-                state.has_any_part()
-            }
+            A::PictureOptions
+            | A::TakePicture
+            | A::TakePictureTransparent
+            | A::FitAll
+            | A::FocusSelection => state.has_any_part(),
             _ => Ok(()),
         }
     }

@@ -249,18 +249,24 @@ actions! {
     Measure,
     /// The matrix on the clipboard.
     CopyMatrix,
-    /// The matrix into a file.
-    SaveMatrix,
-    /// The record of the match into a file.
-    SaveRecord,
-    /// LS-DYNA cards into a file.
-    SaveCards,
-    /// The moved stamped part into a file.
-    SaveMoved,
     /// The match as a line for a shell.
     CopyCommandLine,
     /// The log as text.
     CopyLog,
+    /// The report of the match into a file.
+    SaveReport,
+    /// The record of the match into a file.
+    SaveRecord,
+    /// The distances of all nodes into a file.
+    SaveDeviations,
+    /// The matrix into a file.
+    SaveMatrix,
+    /// LS-DYNA cards into a file.
+    SaveCards,
+    /// The moved stamped part into a file.
+    SaveMoved,
+    /// The choices of a picture.
+    PictureOptions,
     /// A picture.
     TakePicture,
     /// A picture without background.

@@ -456,6 +456,16 @@ impl Action {
                 "Write the whole match as JSON: matrix, verdict, settings, times",
                 None,
             ),
+            Self::SaveReport => (
+                "Save report…",
+                "Write pictures, verdict, tables and settings as one HTML page",
+                None,
+            ),
+            Self::SaveDeviations => (
+                "Save node deviations…",
+                "Write how far every node lies from the other part, as CSV",
+                None,
+            ),
             Self::SaveCards => (
                 "Save LS-DYNA cards…",
                 "Write the cards that map the stamped part, and read them back",
@@ -472,13 +482,18 @@ impl Action {
                 None,
             ),
             Self::CopyLog => ("Copy log", "Copy the rows of the log as text", None),
+            Self::PictureOptions => (
+                "Picture as…",
+                "Choose size, background and windows of a picture, then write it",
+                Some(Shortcut::shift(Key::Function(12))),
+            ),
             Self::TakePicture => (
-                "Picture…",
-                "Write a picture of the 3D windows",
+                "Picture",
+                "Write a picture of the 3D windows as the last one was taken",
                 Some(function(12)),
             ),
             _ => (
-                "Picture without background…",
+                "Picture without background",
                 "Write a picture of the 3D windows on a transparent ground",
                 Some(Shortcut::ctrl(Key::Function(12))),
             ),

@@ -1,9 +1,9 @@
 use super::Action;
 use crate::app::{
-    AppState, Axis, AxisFrame, ColorBy, Command, Dialog, Display, ExportCommand, ExportKind,
-    FileCommand, HistoryCommand, InspectCommand, MatchCommand, MotionKind, MoveCommand,
-    PairCommand, PartCommand, ProjectCommand, ReduceCommand, SectionView, Settings, ShownGeometry,
-    ViewCommand,
+    AppState, Axis, AxisFrame, ColorBy, Command, CopyForm, Dialog, Display, ExportCommand,
+    ExportKind, FileCommand, HistoryCommand, InspectCommand, MatchCommand, MeshExport, MotionKind,
+    MoveCommand, PairCommand, PartCommand, ProjectCommand, ReduceCommand, SectionView, Settings,
+    ShownGeometry, ViewCommand,
 };
 use crate::geometry::Vector3;
 use crate::geometry::camera::{OrbitStyle, StandardView};
@@ -194,13 +194,16 @@ impl Action {
             Self::ScaleUp => scaled(|scale| scale + 0.125),
             Self::ScaleDown => scaled(|scale| scale - 0.125),
             Self::ScaleReset => scaled(|_| 1.0),
-            Self::CopyMatrix => ExportCommand::CopyMatrix(last_form(state)).into(),
-            Self::SaveMatrix => save(ExportKind::Matrix(last_form(state))),
+            Self::CopyMatrix => ExportCommand::Copy(state.copy_form()).into(),
+            Self::SaveMatrix => save(ExportKind::Matrix(last_matrix(state))),
+            Self::SaveReport => save(ExportKind::Report),
+            Self::SaveDeviations => save(ExportKind::Deviations),
             Self::SaveRecord => save(ExportKind::Record),
             Self::SaveCards => save(ExportKind::Cards(CardForm::ALL[0])),
-            Self::SaveMoved => save(ExportKind::Moved),
+            Self::SaveMoved => save(ExportKind::Mesh(MeshExport::Moved)),
             Self::CopyCommandLine => ExportCommand::CopyCommandLine.into(),
             Self::CopyLog => ExportCommand::CopyLog.into(),
+            Self::PictureOptions => dialog(Dialog::Picture).into(),
             Self::TakePicture => picture(false).into(),
             Self::TakePictureTransparent => picture(true).into(),
             Self::Escape => Command::Escape,
@@ -212,11 +215,11 @@ impl Action {
 }
 
 /// The form of the matrix that was copied last.
-fn last_form(state: &AppState) -> MatrixForm {
-    let name = state.settings.matrix_form.as_deref();
-    let of_name = |form: &&MatrixForm| Some(form.name()) == name;
-    let found = MatrixForm::ALL.iter().find(of_name);
-    found.copied().unwrap_or(MatrixForm::Rows)
+fn last_matrix(state: &AppState) -> MatrixForm {
+    match state.copy_form() {
+        CopyForm::Matrix(form) => form,
+        CopyForm::Cards(_) => MatrixForm::Rows,
+    }
 }
 
 /// What the section plane lies across now, or would.

@@ -91,15 +91,7 @@ impl AppState {
             JobOutput::Compared(comparison) => self.take_compared(comparison, stamp),
             JobOutput::Overlapped { overlap, limit } => self.take_overlap(overlap, limit, stamp),
             JobOutput::Swept(table) => self.take_swept(table, took),
-            JobOutput::Exported { paths, notes } => {
-                for path in paths {
-                    let text = format!("written: {}", path.display());
-                    self.log_at(NoticeLevel::Success, "export", None, text, Some(took));
-                }
-                for note in notes {
-                    self.log_step("export", None, note, None);
-                }
-            }
+            JobOutput::Exported(exported) => return self.take_exported(exported, took),
         }
         Vec::new()
     }

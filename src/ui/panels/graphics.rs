@@ -1,7 +1,10 @@
 //! The two 3D windows with what stands in them while there is nothing to draw.
 
-use crate::app::{Action, AppState, Command, FileCommand, FreeWindow, Settings, age_text};
+use crate::app::{
+    Action, AppState, Command, FileCommand, FreeWindow, PictureWindows, Settings, age_text,
+};
 use crate::jobs::{JobKey, Role};
+use crate::report::picture::Picture;
 use crate::ui::overlays::mouse_choice;
 use crate::ui::theme::{Palette, ROW, TALL, UNIT};
 use crate::ui::viewport::Viewports;
@@ -39,6 +42,31 @@ pub fn area(ctx: &egui::Context) -> Rect {
         || ctx.content_rect(),
         |place| place.crash.union(place.stamped),
     )
+}
+
+/// The part of a picture of the screen that shows the 3D windows.
+pub fn cut_out(
+    ctx: &egui::Context,
+    screen: &egui::ColorImage,
+    windows: PictureWindows,
+) -> Option<Picture> {
+    let place = place(ctx)?;
+    let rect = match windows {
+        PictureWindows::AsShown => place.crash.union(place.stamped),
+        PictureWindows::Left => place.crash,
+        PictureWindows::Right => place.stamped,
+    };
+    let part = screen.region(&rect, Some(ctx.pixels_per_point()));
+    let [width, height] = part.size;
+    let rgba = part
+        .pixels
+        .iter()
+        .flat_map(|pixel| pixel.to_srgba_unmultiplied());
+    Some(Picture {
+        width,
+        height,
+        rgba: rgba.collect(),
+    })
 }
 
 /// Both windows side by side, crash left.

@@ -2,7 +2,8 @@
 
 use crate::app::{Action, AppState, Command, ExportCommand, MatchCommand, MatchResult};
 use crate::assess::Verdict;
-use crate::report::{MatrixForm, number};
+use crate::report::number;
+use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, card, chip, figure, length, paragraph, percent, square, tight,
@@ -143,17 +144,19 @@ fn matrix_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let pose = state.document.crash_from_stamped();
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        let last = last_form(state);
+        let last = state.copy_form();
         let width = ui.available_width() - ROW - UNIT;
         let look = ("Copy matrix", Look::Plain, vec2(width, ROW + 4.0));
         let mut none = Vec::new();
         let response = action_button(ui, state, Action::CopyMatrix, look, &mut none);
         if response.clicked() {
-            commands.push(ExportCommand::CopyMatrix(last).into());
+            commands.push(ExportCommand::Copy(last).into());
         }
         response.on_hover_text(format!("As {}", last.label()));
         let menu = egui::containers::menu::MenuButton::from_button(square("▾", ROW + 4.0));
-        let (button, _) = tight(ui, |ui| menu.ui(ui, |ui| copy_menu_ui(ui, commands)));
+        let (button, _) = tight(ui, |ui| {
+            menu.ui(ui, |ui| copy_forms_ui(ui, state, commands))
+        });
         button
             .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Copy matrix as"));
     });
@@ -164,24 +167,6 @@ fn matrix_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             grid_ui(ui, &pose.to_rows());
             moved_ui(ui, state);
         });
-}
-
-/// Every form of the matrix.
-fn copy_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
-    for form in MatrixForm::ALL {
-        if ui.button(form.label()).clicked() {
-            commands.push(ExportCommand::CopyMatrix(*form).into());
-        }
-    }
-}
-
-/// The form that was copied last.
-fn last_form(state: &AppState) -> MatrixForm {
-    let last = state.settings.matrix_form.as_deref();
-    let known = MatrixForm::ALL
-        .iter()
-        .find(|form| Some(form.name()) == last);
-    known.copied().unwrap_or(MatrixForm::Rows)
 }
 
 /// Every digit, in columns that line up; it scrolls sideways rather than being rounded.

@@ -1,7 +1,10 @@
 //! Menus, search, unit, bell.
 
 use super::units::window_unit_ui;
-use crate::app::{Action, AppState, Command, Dialog, ExportCommand, ExportKind, Menu, ViewCommand};
+use crate::app::{
+    Action, AppState, Command, CopyForm, Dialog, ExportCommand, ExportKind, Menu, MeshExport,
+    ViewCommand,
+};
 use crate::jobs::Role;
 use crate::pipeline::project::EXTENSION;
 use crate::report::{CardForm, MatrixForm};
@@ -68,7 +71,8 @@ fn begins_group(action: Action) -> bool {
             | A::Align
             | A::MatchOrStop
             | A::FlipAlternative
-            | A::CopyLog
+            | A::SaveReport
+            | A::PictureOptions
             | A::About
     )
 }
@@ -98,33 +102,51 @@ fn item_ui(ui: &mut Ui, state: &AppState, action: Action, commands: &mut Vec<Com
     }
 }
 
-/// Every form of matrix and card.
+/// Every form of matrix, card and mesh.
 fn export_forms_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let can_copy = Action::CopyMatrix.enabled(state).is_ok();
-    ui.add_enabled_ui(can_copy, |ui| {
-        ui.menu_button("Copy matrix as", |ui| {
-            for form in MatrixForm::ALL {
-                if ui.button(form.label()).clicked() {
-                    commands.push(ExportCommand::CopyMatrix(*form).into());
-                    ui.close();
-                }
-            }
-        });
-        ui.menu_button("Write matrix as", |ui| {
-            for form in MatrixForm::ALL {
-                if ui.button(form.label()).clicked() {
-                    commands.push(ExportCommand::AskSave(ExportKind::Matrix(*form)).into());
-                    ui.close();
-                }
-            }
-        });
-    });
+    ui.menu_button("Copy as", |ui| copy_forms_ui(ui, state, commands));
+    let matrices = MatrixForm::ALL
+        .iter()
+        .map(|form| (form.label(), ExportKind::Matrix(*form)));
+    let can_write = Action::SaveMatrix.enabled(state).is_ok();
+    save_menu(ui, "Write matrix as", can_write, matrices, commands);
+    let cards = CardForm::ALL
+        .iter()
+        .map(|form| (form.label(), ExportKind::Cards(*form)));
     let can_write = Action::SaveCards.enabled(state).is_ok();
-    ui.add_enabled_ui(can_write, |ui| {
-        ui.menu_button("Write cards", |ui| {
-            for form in CardForm::ALL {
-                if ui.button(form.label()).clicked() {
-                    commands.push(ExportCommand::AskSave(ExportKind::Cards(*form)).into());
+    save_menu(ui, "Write cards", can_write, cards, commands);
+    let meshes = MeshExport::ALL
+        .into_iter()
+        .filter(|mesh| mesh.is_possible(state))
+        .map(|mesh| (mesh.label(), ExportKind::Mesh(mesh)));
+    let can_write = state.document.parts.iter().any(|(_, part)| part.is_some());
+    save_menu(ui, "Write part", can_write, meshes, commands);
+}
+
+/// What can be put on the clipboard; what needs a match waits for one.
+pub fn copy_forms_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    for form in CopyForm::all() {
+        let button = ui.add_enabled(form.is_possible(state), Button::new(form.label()));
+        if button.clicked() {
+            commands.push(ExportCommand::Copy(form).into());
+            ui.close();
+        }
+    }
+}
+
+/// A menu of things to write.
+fn save_menu(
+    ui: &mut Ui,
+    name: &str,
+    is_possible: bool,
+    items: impl Iterator<Item = (&'static str, ExportKind)>,
+    commands: &mut Vec<Command>,
+) {
+    ui.add_enabled_ui(is_possible, |ui| {
+        ui.menu_button(name, |ui| {
+            for (label, kind) in items {
+                if ui.button(label).clicked() {
+                    commands.push(ExportCommand::AskSave(kind).into());
                     ui.close();
                 }
             }

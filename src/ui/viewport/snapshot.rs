@@ -1,4 +1,4 @@
-//! Pictures for files: what the windows show, in twice the size and without what lies over it.
+//! Pictures for files: what the windows show, in any size and without what lies over it.
 
 use std::sync::Arc;
 
@@ -7,15 +7,12 @@ use image::imageops::replace;
 
 use super::Viewports;
 use super::gpu::Gpu;
-use crate::app::AppState;
+use crate::app::{AppState, FreeWindow, PictureChoice, PictureSize, PictureWindows};
 use crate::geometry::Camera;
 use crate::jobs::Role;
 use crate::render::{Background, Frame, Scene};
+use crate::report::picture::Picture;
 
-/// How much larger than on the screen.
-const SCALE: u32 = 2;
-/// Longest side of one window's picture.
-const MAX_SIDE: u32 = 4096;
 /// Pixels between the two windows.
 const GAP: u32 = 8;
 
@@ -27,40 +24,81 @@ pub(super) struct Shot {
 }
 
 impl Viewports {
-    /// A picture of what the windows show: side by side, or the left one alone when the stamped part
-    /// is moved over. `None` before the first frame, without a graphics adapter, or if it fails.
-    /// Waits for the graphics card.
-    pub fn picture(&mut self, state: &AppState, is_transparent: bool) -> Option<RgbaImage> {
-        let left = self.window_picture(Role::Crash, is_transparent);
-        if state.view.is_moved_over {
-            return left;
+    /// A picture of what the windows show: as chosen, or side by side, or the left one alone when nothing
+    /// is in the right one. `None` before the first frame, without a graphics adapter, or if it
+    /// fails. Waits for the graphics card.
+    pub fn picture(&mut self, state: &AppState, choice: &PictureChoice) -> Option<Picture> {
+        let is_alone = state.free_window() == Some(FreeWindow::Nothing);
+        let roles: &[Role] = match choice.windows {
+            PictureWindows::AsShown if is_alone => &[Role::Crash],
+            PictureWindows::AsShown => &Role::ALL,
+            PictureWindows::Left => &[Role::Crash],
+            PictureWindows::Right => &[Role::Stamped],
+        };
+        let mut pictures = Vec::new();
+        for &role in roles {
+            pictures.extend(self.window_picture(role, choice, roles.len() as u32));
         }
-        let right = self.window_picture(Role::Stamped, is_transparent);
-        match (left, right) {
-            (Some(left), Some(right)) => Some(side_by_side(&left, &right)),
-            (left, right) => left.or(right),
-        }
+        let picture = match &pictures[..] {
+            [] => return None,
+            [one] => one.clone(),
+            [left, right, ..] => side_by_side(left, right),
+        };
+        Some(Picture {
+            width: picture.width() as usize,
+            height: picture.height() as usize,
+            rgba: picture.into_raw(),
+        })
     }
 
-    /// A picture of one window.
-    pub fn window_picture(&mut self, role: Role, is_transparent: bool) -> Option<RgbaImage> {
+    /// A picture of one of `n_windows` that share the width.
+    pub fn window_picture(
+        &mut self,
+        role: Role,
+        choice: &PictureChoice,
+        n_windows: u32,
+    ) -> Option<RgbaImage> {
         let shot = self.windows.get(role).shot.as_ref()?;
-        let longest = shot.size[0].max(shot.size[1]).max(1);
-        let scale = SCALE.min(MAX_SIDE / longest).max(1);
+        let size = size_of(shot.size, choice.size, n_windows);
         let mut scene = (*shot.scene).clone();
-        scene.pixels_per_point *= scale as f32;
-        if is_transparent {
+        scene.pixels_per_point *= size[1] as f32 / shot.size[1].max(1) as f32;
+        if choice.is_transparent {
             scene.background = Background::Transparent;
         }
+        let mut camera = shot.camera;
+        camera.height *= widened(shot.size, size);
         let frame = Frame {
             scene: &scene,
-            camera: &shot.camera,
-            size: shot.size.map(|side| side * scale),
+            camera: &camera,
+            size,
         };
         let mut renderer = self.render_state.as_ref()?.renderer.write();
         let gpu = renderer.callback_resources.get_mut::<Gpu>()?;
         gpu.renderer.picture(&frame).ok()
     }
+}
+
+/// Pixels of one window's picture, neither side above the largest.
+fn size_of(shown: [u32; 2], wanted: PictureSize, n_windows: u32) -> [u32; 2] {
+    let largest = *PictureSize::SIDES.end();
+    match wanted {
+        PictureSize::Window(factor) => {
+            let longest = shown[0].max(shown[1]).max(1);
+            let factor = factor.min(largest / longest).max(1);
+            shown.map(|side| (side * factor).max(1))
+        }
+        PictureSize::Pixels([width, height]) => {
+            let gaps = GAP * (n_windows - 1);
+            let width = width.saturating_sub(gaps) / n_windows;
+            [width, height].map(|side| side.clamp(1, largest))
+        }
+    }
+}
+
+/// How much higher the view must be so that a narrower picture shows all that the window does.
+fn widened(shown: [u32; 2], size: [u32; 2]) -> f64 {
+    let aspect = |[width, height]: [u32; 2]| f64::from(width.max(1)) / f64::from(height.max(1));
+    (aspect(shown) / aspect(size)).max(1.0)
 }
 
 fn side_by_side(left: &RgbaImage, right: &RgbaImage) -> RgbaImage {
@@ -69,4 +107,26 @@ fn side_by_side(left: &RgbaImage, right: &RgbaImage) -> RgbaImage {
     replace(&mut both, left, 0, 0);
     replace(&mut both, right, i64::from(left.width() + GAP), 0);
     both
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_have_the_size_that_was_chosen() {
+        let shown = [500, 400];
+        assert_eq!(size_of(shown, PictureSize::Window(4), 2), [2000, 1600]);
+        let full = PictureSize::Pixels([1920, 1080]);
+        assert_eq!(size_of(shown, full, 1), [1920, 1080]);
+        let [half, height] = size_of(shown, full, 2);
+        assert_eq!((2 * half + GAP, height), (1920, 1080));
+        assert_eq!(size_of([3000, 10], PictureSize::Window(4), 1), [3000, 10]);
+    }
+
+    #[test]
+    fn nothing_that_was_seen_is_cut_off() {
+        assert_eq!(widened([500, 400], [1000, 400]), 1.0);
+        assert_eq!(widened([500, 400], [250, 400]), 2.0);
+    }
 }

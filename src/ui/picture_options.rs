@@ -1,0 +1,84 @@
+//! The dialog of a picture: size, background, windows.
+
+use super::theme::UNIT;
+use super::widgets::{caption, chip, form_row, large_button};
+use crate::app::{
+    AppState, Command, ExportCommand, PictureChoice, PictureSize, PictureWindows, Settings,
+    ViewCommand,
+};
+use egui::{DragValue, Ui};
+
+const LABEL: f32 = 96.0;
+
+/// The choices, kept at once, and the button that asks where to put the picture.
+pub fn picture_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut choice = state.settings.picture;
+    size_ui(ui, &mut choice);
+    form_row(ui, "Shows", LABEL, |ui| {
+        for windows in PictureWindows::ALL {
+            if chip(ui, windows.label(), choice.windows == windows).clicked() {
+                choice.windows = windows;
+            }
+        }
+    });
+    ui.add_enabled_ui(!choice.has_overlays, |ui| {
+        ui.checkbox(&mut choice.is_transparent, "Without background");
+    });
+    ui.checkbox(&mut choice.has_overlays, "With legend, names and scale")
+        .on_hover_text("As on the screen, in the size it has there");
+    ui.add_space(UNIT);
+    let is_taken = ui
+        .horizontal(|ui| {
+            let is_taken = large_button(ui, "Write picture…", true).clicked();
+            caption(ui, "F12 takes the next one in the same way");
+            is_taken
+        })
+        .inner;
+    if is_taken {
+        commands.push(ViewCommand::SetDialog(None).into());
+        commands.push(ExportCommand::AskPicture(choice).into());
+    } else if choice != state.settings.picture {
+        let settings = Settings {
+            picture: choice,
+            ..state.settings.clone()
+        };
+        commands.push(Command::Settings(Box::new(settings)));
+    }
+}
+
+fn size_ui(ui: &mut Ui, choice: &mut PictureChoice) {
+    ui.add_enabled_ui(!choice.has_overlays, |ui| {
+        form_row(ui, "Size", LABEL, |ui| {
+            for size in &PictureSize::PRESETS[..3] {
+                if chip(ui, &size.label(), choice.size == *size).clicked() {
+                    choice.size = *size;
+                }
+            }
+        });
+        form_row(ui, "", LABEL, |ui| {
+            for size in &PictureSize::PRESETS[3..] {
+                if chip(ui, &size.label(), choice.size == *size).clicked() {
+                    choice.size = *size;
+                }
+            }
+        });
+        form_row(ui, "Own size", LABEL, |ui| {
+            let mut sides = match choice.size {
+                PictureSize::Pixels(sides) => sides,
+                PictureSize::Window(_) => [1920, 1080],
+            };
+            let before = sides;
+            for (side, name) in sides
+                .iter_mut()
+                .zip(["Width in pixels", "Height in pixels"])
+            {
+                let field = DragValue::new(side).range(PictureSize::SIDES).speed(8.0);
+                ui.name_inputs(name, |ui| ui.add(field));
+            }
+            caption(ui, "pixels");
+            if sides != before {
+                choice.size = PictureSize::Pixels(sides);
+            }
+        });
+    });
+}

@@ -1,0 +1,153 @@
+//! Pictures for files: taken from the 3D windows or from the screen, packed and written by a thread of
+//! their own.
+
+use super::panels::graphics;
+use super::viewport::Viewports;
+use crate::app::{AppState, NoticeLevel, PictureChoice, PicturePlace};
+use crate::report::picture::Picture;
+use egui::{ScreenshotCallback, ViewportCommand};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+/// Most names that are tried for a picture without one.
+const MAX_NUMBER: u32 = 9999;
+
+/// Something to say.
+type News = (NoticeLevel, String);
+
+/// A picture that is wanted.
+#[derive(Debug, Clone)]
+struct Wanted {
+    choice: PictureChoice,
+    place: PicturePlace,
+    texts: Vec<(&'static str, String)>,
+}
+
+/// Pictures on their way to files.
+pub struct Pictures {
+    wanted: Vec<Wanted>,
+    told: (Sender<News>, Receiver<News>),
+}
+
+impl Default for Pictures {
+    fn default() -> Self {
+        Self {
+            wanted: Vec::new(),
+            told: channel(),
+        }
+    }
+}
+
+impl Pictures {
+    /// Asks for a picture.
+    pub fn want(
+        &mut self,
+        choice: PictureChoice,
+        place: PicturePlace,
+        texts: Vec<(&'static str, String)>,
+        ctx: &egui::Context,
+    ) {
+        let wanted = Wanted {
+            choice,
+            place,
+            texts,
+        };
+        if choice.has_overlays {
+            let (sender, waking) = (self.told.0.clone(), ctx.clone());
+            let callback = ScreenshotCallback::new(move |screen| {
+                if let Some(picture) = graphics::cut_out(&waking, &screen, choice.windows) {
+                    write(picture, wanted, sender, waking);
+                }
+            });
+            ctx.send_viewport_cmd(ViewportCommand::Screenshot(callback));
+        } else {
+            self.wanted.push(wanted);
+        }
+        ctx.request_repaint();
+    }
+
+    /// Draws what is wanted, which waits for the graphics card, and hands it to threads. Returns what
+    /// became of earlier ones.
+    pub fn take(
+        &mut self,
+        state: &AppState,
+        viewports: &mut Viewports,
+        ctx: &egui::Context,
+    ) -> Vec<News> {
+        let mut news: Vec<News> = self.told.1.try_iter().collect();
+        for wanted in std::mem::take(&mut self.wanted) {
+            match viewports.picture(state, &wanted.choice) {
+                Some(picture) => {
+                    write(picture, wanted, self.told.0.clone(), ctx.clone());
+                }
+                None => news.push((
+                    NoticeLevel::Error,
+                    "no picture could be taken: nothing is drawn yet".to_owned(),
+                )),
+            }
+        }
+        news
+    }
+}
+
+/// Packs and writes on a thread of its own.
+fn write(picture: Picture, wanted: Wanted, sender: Sender<News>, ctx: egui::Context) {
+    std::thread::spawn(move || {
+        let bytes = picture.to_png_with(&wanted.texts);
+        let news = match save(&wanted.place, &bytes) {
+            Ok(path) => (NoticeLevel::Success, format!("written: {}", path.display())),
+            Err(error) => (
+                NoticeLevel::Error,
+                format!("the picture could not be written: {error}"),
+            ),
+        };
+        // The window may have closed meanwhile.
+        let _ = sender.send(news);
+        ctx.request_repaint();
+    });
+}
+
+fn save(place: &PicturePlace, bytes: &[u8]) -> std::io::Result<PathBuf> {
+    match place {
+        PicturePlace::File(path) => {
+            std::fs::write(path, bytes)?;
+            Ok(path.clone())
+        }
+        PicturePlace::Next { folder, stem } => save_next(folder, stem, bytes),
+    }
+}
+
+/// Takes the first number whose file is not there yet; never replaces one.
+fn save_next(folder: &Path, stem: &str, bytes: &[u8]) -> std::io::Result<PathBuf> {
+    use std::io::Write as _;
+    for number in 1..=MAX_NUMBER {
+        let path = folder.join(format!("{stem}_{number}.png"));
+        match std::fs::File::create_new(&path) {
+            Ok(mut file) => {
+                file.write_all(bytes)?;
+                return Ok(path);
+            }
+            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Err(std::io::Error::other("all numbers are taken"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_next_number_is_taken_and_nothing_is_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = PicturePlace::Next {
+            folder: folder.path().to_path_buf(),
+            stem: "bp".to_owned(),
+        };
+        let names = [b"a", b"b"].map(|bytes| save(&place, bytes).unwrap());
+        assert_eq!(names[0], folder.path().join("bp_1.png"));
+        assert_eq!(std::fs::read(&names[0]).unwrap(), b"a");
+        assert_eq!(std::fs::read(&names[1]).unwrap(), b"b");
+    }
+}

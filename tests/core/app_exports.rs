@@ -1,0 +1,106 @@
+//! What leaves the window: names, places, questions.
+
+use super::app::{Window, shifted};
+use shapematch::app::*;
+use shapematch::jobs::{PerRole, Role};
+use std::path::PathBuf;
+
+fn last_effect(window: &Window) -> &Effect {
+    window.effects.last().expect("an effect")
+}
+
+#[test]
+fn the_first_picture_asks_for_a_place_and_the_next_goes_beside_it() {
+    let mut window = Window::with_both();
+    window.act(Action::TakePicture);
+    let choice = match last_effect(&window) {
+        Effect::AskPicture { choice, name } => {
+            assert_eq!(name, "stamped.png");
+            *choice
+        }
+        other => panic!("{other:?}"),
+    };
+    let path = PathBuf::from("pictures/a.png");
+    window.apply(ExportCommand::WritePicture { choice, path });
+    match last_effect(&window) {
+        Effect::TakePicture { place, texts, .. } => {
+            assert_eq!(*place, PicturePlace::File("pictures/a.png".into()));
+            let pose = texts
+                .iter()
+                .find(|(keyword, _)| *keyword == "Pose")
+                .unwrap();
+            let read = shapematch::report::parse_matrix(&pose.1).unwrap();
+            assert_eq!(read.motion, window.pose());
+        }
+        other => panic!("{other:?}"),
+    }
+    window.act(Action::TakePictureTransparent);
+    match last_effect(&window) {
+        Effect::TakePicture { choice, place, .. } => {
+            assert!(choice.is_transparent);
+            let next = PicturePlace::Next {
+                folder: "pictures".into(),
+                stem: "stamped".into(),
+            };
+            assert_eq!(*place, next);
+        }
+        other => panic!("{other:?}"),
+    }
+    assert!(!window.state.settings.picture.is_transparent);
+}
+
+#[test]
+fn a_card_for_a_file_in_another_unit_is_answered_with_the_converted_file() {
+    let mut window = Window::with_both();
+    window.apply(MatchCommand::Run);
+    let cards = ExportKind::Cards(shapematch::report::CardForm::StampedPart);
+    window.apply(ExportCommand::AskSave(cards));
+    assert!(matches!(last_effect(&window), Effect::AskSave { kind, .. } if *kind == cards));
+    window.apply(FileCommand::SetLengthFactor {
+        role: Role::Stamped,
+        factor: 1000.0,
+    });
+    window.apply(ExportCommand::AskSave(cards));
+    match last_effect(&window) {
+        Effect::AskSave { kind, name } => {
+            assert_eq!(*kind, ExportKind::Mesh(MeshExport::Converted));
+            assert_eq!(name, "stamped_converted.k");
+        }
+        other => panic!("{other:?}"),
+    }
+    let told = window.state.notices.kept().next().unwrap();
+    assert!(told.text.contains("1000"), "{}", told.text);
+}
+
+#[test]
+fn the_command_line_says_levels_settings_and_pose() {
+    let mut window = Window::with_both();
+    let plain = window.state.command_line().unwrap();
+    assert_eq!(plain, "shapematch match crash.k stamped.k");
+    let mut recipe = window.state.document.recipe.clone();
+    recipe.settings.starts.method = shapematch::registration::StartMethod::CurrentPose;
+    recipe.settings.allowance = 0.25;
+    window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
+    window.apply(MoveCommand::SetPose {
+        crash_from_stamped: shifted(2.5),
+        name: "by hand".to_owned(),
+    });
+    window.apply(ReduceCommand::To {
+        roles: PerRole {
+            crash: false,
+            stamped: true,
+        },
+        max_triangles: 60,
+    });
+    let line = window.state.command_line().unwrap();
+    for piece in [
+        "--stamped-triangles 60",
+        "--allowance 0.25",
+        "--start current --start-pose",
+        "1.0 0.0 0.0 2.5",
+    ] {
+        assert!(line.contains(piece), "{line}");
+    }
+    window.act(Action::CopyCommandLine);
+    assert!(matches!(last_effect(&window), Effect::CopyText(text) if *text == line));
+}
