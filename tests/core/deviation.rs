@@ -130,6 +130,51 @@ fn a_constant_offset_is_named_by_the_thickness() {
 }
 
 #[test]
+fn an_offset_is_found_although_the_pose_hides_it() {
+    // A hat section whose source is the surface a millimetre above, moved as a match would to
+    // lessen the distances: 0.7 down.
+    let hat = |lift: f64| {
+        sheet(60, move |u, v| {
+            // Web and walls at 80°, joined without rounding.
+            let (x, steep) = (120.0 * (u - 0.5), 80f64.to_radians());
+            let (web, along) = (30.0, x.abs() - 30.0);
+            let at = if along < 0.0 {
+                [x, lift]
+            } else {
+                let y = -along * steep.sin();
+                let x = (web + along * steep.cos()) * x.signum();
+                [x + lift * steep.sin() * x.signum(), y + lift * steep.cos()]
+            };
+            Point3::new(at[0], 200.0 * v + 8.0 * (x / 40.0).sin(), at[1])
+        })
+    };
+    let lowered = Similarity {
+        translation: Vector3::new(0.0, 0.0, -0.7),
+        ..Similarity::identity()
+    };
+    let (source, target) = (surface(&hat(1.0)), surface(&hat(0.0)));
+    let settings = DeviationSettings {
+        thickness: Some(2.0),
+        ..DeviationSettings::default()
+    };
+    let found = compare(&source, &target, &lowered, &settings, &Monitor::silent()).unwrap();
+    let stats = &found.source_on_target.stats;
+    assert!(stats.quantile(0.5).abs() < 0.95, "hidden by the move");
+    let constant = found.source_on_target.field.constant.unwrap();
+    assert!((constant.value.abs() - 1.0).abs() < 0.05, "{constant:?}");
+    let offset = stats.offset.unwrap();
+    assert_eq!(offset.kind, OffsetKind::ToolSideAgainstMidSurface);
+    // The same hat moved has no offset at all, and on a flat plate the two are one.
+    let same = surface(&hat(0.0));
+    let found = compare(&same, &target, &lowered, &settings, &Monitor::silent()).unwrap();
+    assert_eq!(found.source_on_target.stats.offset, None);
+    let plate = |z: f64| sheet(20, move |u, v| Point3::new(90.0 * u, 90.0 * v, z));
+    let found = compared(&plate(1.0), &plate(0.0), &settings);
+    assert_eq!(found.source_on_target.field.constant, None);
+    assert!(found.source_on_target.stats.offset.is_some());
+}
+
+#[test]
 fn what_the_other_part_lacks_is_only_here() {
     for (variant, is_crash_cut) in [
         (SampleVariant::Cut, true),

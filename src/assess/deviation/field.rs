@@ -1,4 +1,5 @@
 use super::DeviationSettings;
+use super::offset::{ConstantPart, Sample};
 use crate::geometry::{Point3, Similarity, Topology, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::Surface;
@@ -51,6 +52,9 @@ pub struct DeviationField {
     pub limit: f64,
     /// Distance beyond which nothing is a counterpart.
     pub reach: f64,
+    /// The constant part of the distances, apart from what a small rigid move would change; `None`
+    /// where the two cannot be told apart, as on a flat plate, or where there is no sign.
+    pub constant: Option<ConstantPart>,
 }
 
 impl DeviationField {
@@ -140,19 +144,41 @@ impl Way<'_> {
             min_cos: None,
         };
         let hits = closest_many(self.model.bvh(), &queries, &[], &[], limits, monitor)?;
-        let found: Vec<(f64, OverlapClass)> = hits
-            .iter()
-            .enumerate()
+        let hits = hits.iter().enumerate();
+        let found: Vec<Judged> = hits
             .map(|(vertex, hit)| match hit {
                 Some(hit) => self.judge(vertex, hit, limit),
-                None => (f64::INFINITY, OverlapClass::OnlyHere),
+                None => Judged::NOTHING,
             })
             .collect();
-        Ok(self.as_given(&found, limit, reach))
+        monitor.check()?;
+        let constant = if self.sides.are_known {
+            ConstantPart::of(&self.samples(&found))
+        } else {
+            None
+        };
+        let mut field = self.as_given(&found, limit, reach);
+        field.constant = constant;
+        Ok(field)
+    }
+
+    /// Places that have a counterpart, for the constant part.
+    fn samples(&self, found: &[Judged]) -> Vec<Sample> {
+        let vertices = found.iter().enumerate();
+        let compared = vertices.filter(|(_, judged)| judged.class != OverlapClass::OnlyHere);
+        let sample = |(vertex, judged): (usize, &Judged)| Sample {
+            point: self
+                .world_from_data
+                .apply(&self.data.mesh().positions()[vertex]),
+            normal: judged.front,
+            distance: judged.signed,
+            weight: self.data.vertex_areas()[vertex],
+        };
+        compared.map(sample).collect()
     }
 
     /// Value and class of a vertex whose closest point is `hit`.
-    fn judge(&self, vertex: usize, hit: &SurfaceHit, limit: f64) -> (f64, OverlapClass) {
+    fn judge(&self, vertex: usize, hit: &SurfaceHit, limit: f64) -> Judged {
         let at = self
             .world_from_data
             .apply(&self.data.mesh().positions()[vertex]);
@@ -175,7 +201,11 @@ impl Way<'_> {
         if self.model.is_on_border(hit) {
             let beside = (away - other * height).norm();
             if beside > limit {
-                return (sign * distance, OverlapClass::OnlyHere);
+                return Judged {
+                    signed: sign * distance,
+                    class: OverlapClass::OnlyHere,
+                    front,
+                };
             }
             distance = height.abs();
         }
@@ -186,7 +216,11 @@ impl Way<'_> {
         } else {
             OverlapClass::OffByMore
         };
-        (sign * distance, class)
+        Judged {
+            signed: sign * distance,
+            class,
+            front,
+        }
     }
 
     /// The normal that tells on which side of the model a point lies whose closest point is `hit`:
@@ -213,7 +247,7 @@ impl Way<'_> {
     }
 
     /// Values of the vertices the surface was made of.
-    fn as_given(&self, found: &[(f64, OverlapClass)], limit: f64, reach: f64) -> DeviationField {
+    fn as_given(&self, found: &[Judged], limit: f64, reach: f64) -> DeviationField {
         let unit = self.world_from_data.scale * self.world_from_data.scale;
         let mut areas: Vec<f64> = self.data.vertex_areas().iter().map(|a| a * unit).collect();
         let given = self.data.vertex_of();
@@ -224,18 +258,37 @@ impl Way<'_> {
             is_signed: self.sides.are_known,
             limit,
             reach,
+            constant: None,
         };
         for &vertex in given {
             let known = found.get(vertex as usize).copied();
-            let (signed, class) = known.unwrap_or((f64::INFINITY, OverlapClass::OnlyHere));
-            field.signed.push(signed);
-            field.class.push(class);
+            let judged = known.unwrap_or(Judged::NOTHING);
+            field.signed.push(judged.signed);
+            field.class.push(judged.class);
             // Of several vertices at one place the first has the area.
             let area = areas.get_mut(vertex as usize).map(std::mem::take);
             field.area.push(area.unwrap_or(0.0));
         }
         field
     }
+}
+
+/// What was found about one vertex.
+#[derive(Debug, Clone, Copy)]
+struct Judged {
+    signed: f64,
+    class: OverlapClass,
+    /// Unit normal of the target's front there.
+    front: Vector3,
+}
+
+impl Judged {
+    /// A vertex with nothing in reach.
+    const NOTHING: Self = Self {
+        signed: f64::INFINITY,
+        class: OverlapClass::OnlyHere,
+        front: Vector3::new(0.0, 0.0, 0.0),
+    };
 }
 
 /// No triangle.

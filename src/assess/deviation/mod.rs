@@ -10,7 +10,7 @@ mod spots;
 mod stats;
 
 pub use field::{DeviationField, OverlapClass, source_on_target, target_on_source};
-pub use offset::{ConstantOffset, OffsetKind};
+pub use offset::{ConstantOffset, ConstantPart, OffsetKind};
 pub use spots::{Spot, worst_spots};
 pub use stats::{DeviationStats, Histogram};
 

@@ -77,7 +77,8 @@ impl DeviationStats {
             values,
         };
         stats.p95 = stats.distance_of_share(0.95);
-        stats.offset = thickness.and_then(|thickness| ConstantOffset::of(&stats, thickness, noise));
+        let offset = |thickness| ConstantOffset::of(field, &stats, thickness, noise);
+        stats.offset = thickness.and_then(offset);
         stats
     }
 

@@ -141,8 +141,10 @@ fn shaded(in: Varyings, front: bool) -> vec3<f32> {
         // Weak light, so that the legend stays true.
         diffuse = mix(1.0, lit.diffuse, 0.45);
         gloss *= 0.3;
-        if in.field.y > 0.999 {
-            let found = field_color(in.field.x);
+        // Between corners with and without a value the border runs half way, and the value is that of
+        // the corners which have one.
+        if in.field.y > 0.5 {
+            let found = field_color(in.field.x / in.field.y);
             base = linear_from_srgb(found.rgb);
             base = mix(base, base * 0.28, pattern(in.clip.xy + frame.screen.zw, found.a));
         } else {

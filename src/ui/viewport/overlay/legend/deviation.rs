@@ -80,7 +80,7 @@ pub(super) fn waiting(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comman
 fn title(ui: &mut Ui, over: &Overlay<'_>, role: Role, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("Deviation").size(12.5).strong());
-        let (rect, response) = ui.allocate_exact_size(vec2(40.0, 14.0), Sense::hover());
+        let (rect, response) = ui.allocate_exact_size(vec2(40.0, 14.0), Sense::click());
         let at =
             |x: f32| Rect::from_center_size(pos2(rect.left() + x, rect.center().y), vec2(9.0, 9.0));
         let other = role.other();
@@ -93,9 +93,30 @@ fn title(ui: &mut Ui, over: &Overlay<'_>, role: Role, commands: &mut Vec<Command
         for leg in [vec2(-3.5, 3.0), vec2(-3.5, -3.0)] {
             ui.painter().line_segment([tip + leg, tip], stroke);
         }
-        let words = format!("{} to {}", capital(role), other.word());
-        response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &words));
-        response.on_hover_text(format!("From the nodes of the {} part", role.word()));
+        let words = format!(
+            "{} to {}, show it on the {} part",
+            capital(role),
+            other.word(),
+            other.word()
+        );
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &words));
+        if response.hovered() {
+            let line = Stroke::new(1.0, over.look.weak);
+            ui.painter()
+                .hline(rect.x_range(), rect.bottom() + 1.0, line);
+        }
+        if response.clicked() {
+            let mut coloring = over.state.view.display.coloring;
+            *coloring.on.get_mut(role) = false;
+            *coloring.on.get_mut(other) = true;
+            menu::set(over, coloring, commands);
+        }
+        let hint = format!(
+            "Measured from the nodes of the {} part; click: on the {} part",
+            role.word(),
+            other.word()
+        );
+        response.on_hover_text(hint);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             super::fold(ui, over);
             menu::maps(ui, over, true, commands);
@@ -433,10 +454,8 @@ fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
     );
     ui.label(small(mean));
     let (least, most) = (signed(stats.min), signed(stats.max));
-    ui.label(small(format!(
-        "95 % within {} · {least} … {most}",
-        length(stats.p95)
-    )));
+    ui.label(small(format!("from {least} to {most}{unit}")));
+    ui.label(small(format!("95 % within {}{unit}", length(stats.p95))));
     let alone = stats.class_shares[2];
     if alone > 5e-4 {
         ui.horizontal(|ui| {

@@ -121,7 +121,9 @@ fn plate(ui: &mut Ui, over: &Overlay<'_>, add: impl FnOnce(&mut Ui)) {
         .layout(Layout::top_down(Align::Min));
     let shown = ui.scope_builder(builder, |ui| {
         ui.set_clip_rect(over.rect);
-        ui.spacing_mut().item_spacing = vec2(6.0, 3.0);
+        ui.spacing_mut().item_spacing = vec2(5.0, 3.0);
+        ui.spacing_mut().button_padding = vec2(4.0, 1.0);
+        ui.spacing_mut().interact_size = vec2(36.0, 18.0);
         ui.visuals_mut().override_text_color = Some(over.look.text);
         Frame::new()
             .inner_margin(Margin::symmetric(10, 8))

@@ -36,14 +36,14 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
         let words = match class {
             OverlapClass::Matched => "matched".to_owned(),
-            OverlapClass::OffByMore => format!("off by > {limit}"),
+            OverlapClass::OffByMore => "off by more".to_owned(),
             OverlapClass::OnlyHere => "only here".to_owned(),
         };
         row(ui, over, class, &words, index, &roles);
     }
     ui.label(
         RichText::new(format!(
-            "shares of each part's area\nmatched: within {limit}"
+            "shares of each part's area\nmatched within {limit}"
         ))
         .size(11.0)
         .color(over.look.weak),
