@@ -1,8 +1,8 @@
 //! The starts of a match as the window lists them: those of the running one as they come in, those of a
 //! finished one from its record.
 
-use super::AppState;
 use super::state::pose_of;
+use super::{AppState, facts};
 use crate::geometry::{Point3, Similarity};
 use crate::jobs::{JobKey, Role};
 use crate::monitor::{Fate, IterationReport, StartReport};
@@ -305,6 +305,19 @@ impl AppState {
         let result = self.document.result.as_ref()?;
         let record = result.run.outcome.starts.get(index)?;
         Some(Attempt::kept((index, record)))
+    }
+
+    /// Poses of the result that fit nearly equally well, itself included; 0 without a result.
+    pub fn n_equal_poses(&self) -> usize {
+        let result = self.document.result.as_ref();
+        result.map_or(0, |result| 1 + facts::n_alternatives(&result.run))
+    }
+
+    /// Starts of the running match that have ended, and those that began.
+    pub fn race_count(&self) -> [usize; 2] {
+        let starts = self.race.starts.values();
+        let n_ended = starts.filter(|runner| runner.fate.is_some()).count();
+        [n_ended, self.race.starts.len()]
     }
 
     /// Corners of the stamped part's box in its own space.

@@ -10,6 +10,7 @@ mod cli;
 mod deck_out;
 mod deviation;
 mod drawn_pan;
+mod explain;
 mod exports;
 mod inspect;
 mod jobs;

@@ -9,8 +9,7 @@ use crate::jobs::{JobKey, Role};
 use crate::registration::{Method, StartMethod};
 use crate::ui::theme::{Palette, ROW, TALL, UNIT};
 use crate::ui::widgets::{
-    Look, action_button, caption, form_row, length, paragraph, percent, secondary, segments, tight,
-    wide_action,
+    Look, action_button, caption, form_row, paragraph, secondary, segments, tight, wide_action,
 };
 use egui::{Button, ComboBox, ProgressBar, RichText, Ui, vec2};
 
@@ -53,9 +52,9 @@ fn summary(state: &AppState) -> String {
         Some(result) => {
             let assessment = &result.run.assessment;
             format!(
-                "{} · rmse {}",
+                "{} · RMS {}",
                 assessment.verdict.label(),
-                length(assessment.coverage.rmse())
+                state.length_text(assessment.coverage.rmse())
             )
         }
         None if state.document.both().is_none() => String::new(),
@@ -193,24 +192,23 @@ fn status_ui(ui: &mut Ui, state: &AppState) {
         return;
     };
     let mut text = String::new();
-    if let Some(progress) = job.progress {
-        text += progress.phase;
-        if let Some(total) = progress.total.filter(|total| *total > 0) {
-            text += &format!(" {}/{total}", progress.done);
-            let share = progress.done as f32 / total as f32;
-            ui.add(ProgressBar::new(share).desired_height(4.0))
-                .accessible_name("Share of the starts");
-        }
-        text += " · ";
+    let [n_ended, n_starts] = state.race_count();
+    if n_starts > 0 {
+        let share = n_ended as f32 / n_starts as f32;
+        ui.add(ProgressBar::new(share).desired_height(4.0))
+            .on_hover_text(format!("{n_ended} of {n_starts} starts have ended"))
+            .accessible_name("Share of the starts that have ended");
     }
     if let Some(latest) = job.latest {
         text += &format!(
-            "start {} · iteration {} · rmse {} · overlap {} · ",
+            "start {}/{n_starts} · iteration {} · RMS {} · overlap {:.0} % · ",
             latest.start_idx + 1,
             latest.iteration + 1,
-            length(latest.rmse),
-            percent(latest.fraction)
+            state.length_text(latest.rmse),
+            100.0 * latest.fraction
         );
+    } else if let Some(progress) = job.progress {
+        text += &format!("{} · ", progress.phase);
     }
     text += &duration_text(state.now.saturating_sub(job.since));
     let color = Palette::of(ui).secondary;

@@ -1,7 +1,11 @@
 //! The verdict card and the matrix.
 
-use crate::app::{Action, AppState, Command, ExportCommand, MatchCommand, MatchResult};
+use super::explain;
+use crate::app::{
+    Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, is_same_pose,
+};
 use crate::assess::Verdict;
+use crate::geometry::Similarity;
 use crate::report::number;
 use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
@@ -12,6 +16,7 @@ use egui::{Color32, RichText, Ui, vec2};
 
 /// Verdict, figures, alternatives, matrix.
 pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    explain::failure_ui(ui, state, commands);
     let Some(result) = &state.document.result else {
         return;
     };
@@ -20,8 +25,9 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let top = ui.cursor().top();
     card(ui, |ui| {
         verdict_ui(ui, result, is_current);
-        figures_ui(ui, result);
+        figures_ui(ui, state, result);
         alternatives_ui(ui, state, result, commands);
+        explain::causes_ui(ui, state.causes(), commands);
     });
     // A new result comes into sight by itself.
     let id = egui::Id::unique("stamp of the result in sight");
@@ -72,24 +78,28 @@ fn verdict_ui(ui: &mut Ui, result: &MatchResult, is_current: bool) {
     }
 }
 
-fn figures_ui(ui: &mut Ui, result: &MatchResult) {
+fn figures_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
     ui.add_space(2.0);
     let coverage = &result.run.assessment.coverage;
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
-        let limit = length(coverage.limit);
+        let limit = state.length_text(coverage.limit);
         let over =
             |one: &crate::assess::OneSided| format!("{} within {limit}", percent(one.overlap));
         figure(ui, "stamped → crash", &over(&coverage.source_on_target));
         figure(ui, "crash → stamped", &over(&coverage.target_on_source));
-        let spread = format!("{} · {}", length(coverage.rmse()), length(coverage.p95()));
-        figure(ui, "rmse · p95", &spread);
+        let spread = format!(
+            "{} · {}",
+            length(coverage.rmse()),
+            state.length_text(coverage.p95())
+        );
+        figure(ui, "RMS · p95", &spread);
         let outcome = &result.run.outcome;
-        let n_same = outcome
-            .starts
-            .iter()
-            .filter(|start| agrees(&start.last, &outcome.target_from_source))
-            .count();
+        let best = &outcome.target_from_source;
+        let corners = state.stamped_corners();
+        let agrees = |pose: &Similarity| corners.is_some_and(|c| is_same_pose(pose, best, &c));
+        let starts = outcome.starts.iter();
+        let n_same = starts.filter(|start| agrees(&start.last)).count();
         figure(
             ui,
             "starts that agree",
@@ -103,11 +113,6 @@ fn figures_ui(ui: &mut Ui, result: &MatchResult) {
         );
         figure(ui, "searched on", &on);
     });
-}
-
-/// Near enough to be called the same pose before the last refinement.
-fn agrees(a: &crate::geometry::Similarity, b: &crate::geometry::Similarity) -> bool {
-    a.is_mirrored() == b.is_mirrored() && a.angle_to(b) < 3.0_f64.to_radians()
 }
 
 /// Poses that fit nearly as well: one click or one key away.

@@ -152,6 +152,7 @@ fn notes(over: &Overlay<'_>) -> Vec<String> {
     }
     if is_left {
         notes.extend(preview(over));
+        notes.extend(overlap(over.state));
     }
     notes.extend(stripes(over));
     let separation = state.view.display.separation;
@@ -175,6 +176,22 @@ fn stripes(over: &Overlay<'_>) -> Option<String> {
         "striped: both within {}{unit}",
         short_number(distance)
     ))
+}
+
+/// How warm the pose is, with the change since the last one.
+fn overlap(state: &AppState) -> Option<String> {
+    let known = state.current_overlap().filter(|_| !state.is_preview())?;
+    let mut text = format!(
+        "overlap {:.0} % within {}",
+        100.0 * known.overlap,
+        state.length_text(known.limit)
+    );
+    // Less than half a percent is no change to speak of.
+    if let Some(change) = known.change.filter(|change| change.abs() >= 0.005) {
+        let sign = if change > 0.0 { "▲ +" } else { "▼ −" };
+        text += &format!("  {sign}{:.0} %", 100.0 * change.abs());
+    }
+    Some(text)
 }
 
 /// What is shown instead of the real pose.

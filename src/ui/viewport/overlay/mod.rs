@@ -1,9 +1,11 @@
 //! What egui draws over a window's picture: names, buttons, marks, cards.
 
 mod apart;
+mod banner;
 mod cards;
 mod divider;
 mod free;
+mod freedom;
 mod header;
 mod labels;
 mod legend;
@@ -75,6 +77,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     }
     apart::show(ui, over, commands);
     divider::show(ui, over, commands);
+    freedom::show(ui, over);
     pairs::show(ui, over);
     pairs::next(ui, over);
     section::handle(ui, over, commands);
@@ -83,6 +86,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     marks::show(ui, over);
     header::show(ui, over);
     header::buttons(ui, over, commands);
+    banner::show(ui, over, commands);
     section::show(ui, over, over.cuts, commands);
     free::show(ui, over, commands);
 }

@@ -1,0 +1,40 @@
+//! Why a match is weak or failed, and one button for each likely cause.
+
+use crate::app::{AppState, Cause, Command};
+use crate::ui::theme::{Palette, ROW};
+use crate::ui::widgets::{card, paragraph};
+use egui::{Button, RichText, Ui, vec2};
+
+/// The causes of a weak result, within its card.
+pub fn causes_ui(ui: &mut Ui, causes: Vec<Cause>, commands: &mut Vec<Command>) {
+    for cause in causes {
+        ui.add_space(4.0);
+        ui.separator();
+        ui.label(RichText::new(cause.title).strong());
+        paragraph(ui, cause.evidence);
+        let Some((label, remedy)) = cause.remedy else {
+            continue;
+        };
+        let button = Button::new(label).min_size(vec2(0.0, ROW));
+        if ui.add(button).clicked() {
+            commands.extend(remedy);
+        }
+    }
+}
+
+/// What to do after a match that gave no pose; the old pose stands.
+pub fn failure_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(message) = state.match_failure() else {
+        return;
+    };
+    ui.add_space(2.0);
+    card(ui, |ui| {
+        let color = Palette::of(ui).check;
+        let label = ui.label(RichText::new("⚠ NO POSE FOUND").color(color).size(17.0));
+        ui.ctx().accesskit_node_builder(label.id, |node| {
+            node.set_live(egui::accesskit::Live::Polite);
+        });
+        paragraph(ui, format!("The part stays where it was: {message}."));
+        causes_ui(ui, state.failure_causes(), commands);
+    });
+}

@@ -1,0 +1,148 @@
+//! What the window says after a move and after a weak or failed match, and that each remedy does something.
+
+use super::app::Window;
+use shapematch::app::*;
+use shapematch::assess::{Twin, TwinAxis, Verdict};
+use shapematch::geometry::{Point3, Rotation, Similarity, TriMesh, Vector3};
+use shapematch::jobs::{JobEvent, JobKey, JobStage};
+use shapematch::registration::Surface;
+
+#[test]
+fn the_overlap_follows_each_move_with_its_change() {
+    let mut window = Window::with_both();
+    assert_eq!(window.state.current_overlap(), None);
+    window.apply(MoveCommand::Translate {
+        axis: Axis::X,
+        frame: AxisFrame::Global,
+        distance: 500.0,
+    });
+    let far = *window.state.current_overlap().unwrap();
+    assert_eq!((far.overlap, far.change), (0.0, None));
+    window.act(Action::Undo);
+    window.apply(MoveCommand::Translate {
+        axis: Axis::Z,
+        frame: AxisFrame::Global,
+        distance: 0.01,
+    });
+    let near = *window.state.current_overlap().unwrap();
+    assert!(near.overlap > 0.99, "{near:?}");
+    assert_eq!(near.change, Some(near.overlap));
+}
+
+#[test]
+fn a_drag_is_measured_when_it_ends() {
+    let mut window = Window::with_both();
+    let gesture = GestureId(0);
+    for x in [1.0, 2.0] {
+        window.apply(MoveCommand::Drag {
+            gesture,
+            delta: Similarity {
+                translation: Vector3::new(x, 0.0, 0.0),
+                ..Similarity::identity()
+            },
+            name: "Drag".to_owned(),
+        });
+        assert_eq!(window.state.current_overlap(), None);
+    }
+    window.apply(MoveCommand::EndDrag);
+    assert!(window.state.current_overlap().is_some());
+}
+
+#[test]
+fn a_weak_match_has_causes_whose_remedies_do_something() {
+    let mut window = Window::with_both();
+    assert!(window.state.causes().is_empty());
+    window.act(Action::MatchOrStop);
+    let result = window.state.document.current_result().unwrap();
+    assert_ne!(result.run.assessment.verdict, Verdict::Good);
+    let causes = window.state.causes();
+    assert!(!causes.is_empty() && causes.len() <= 3);
+    // The strip is bent about one direction only.
+    let slides = causes.iter().find(|cause| cause.title.contains("slides"));
+    assert!(
+        slides.unwrap().evidence.contains("the y axis"),
+        "{slides:?}"
+    );
+    for cause in causes {
+        let (label, remedy) = cause.remedy.unwrap();
+        let mut other = Window::with_both();
+        other.state = window.state.clone();
+        let before = (other.state.document.clone(), other.state.view.clone());
+        for command in remedy {
+            other.apply(command);
+        }
+        let after = (other.state.document.clone(), other.state.view.clone());
+        assert!(before != after, "{label} does nothing");
+    }
+}
+
+#[test]
+fn a_failed_match_leaves_the_pose_and_says_what_to_try() {
+    let mut window = Window::with_both();
+    window.holds = true;
+    window.act(Action::MatchOrStop);
+    let before = window.state.document.clone();
+    let job = window.state.jobs.running().unwrap().id;
+    window.apply(JobEvent {
+        id: job,
+        key: JobKey::Match,
+        stamp: before.stamp(),
+        elapsed: std::time::Duration::from_secs(1),
+        stage: JobStage::Failed("no start found usable pairs".to_owned()),
+    });
+    assert_eq!(window.state.document, before);
+    assert_eq!(
+        window.state.match_failure(),
+        Some("no start found usable pairs")
+    );
+    let labels: Vec<_> = window
+        .state
+        .failure_causes()
+        .into_iter()
+        .filter_map(|cause| Some(cause.remedy?.0))
+        .collect();
+    assert_eq!(labels, ["Try all starts", "Pick point pairs"]);
+    window.holds = false;
+    window.act(Action::MatchOrStop);
+    assert_eq!(window.state.match_failure(), None);
+}
+
+#[test]
+fn a_twin_is_told_by_angle_and_axis() {
+    let corner = |x: f64, y: f64| Point3::new(x, y, 0.0);
+    let positions = vec![
+        corner(0.0, 0.0),
+        corner(100.0, 0.0),
+        corner(100.0, 30.0),
+        corner(0.0, 30.0),
+    ];
+    let mesh = TriMesh::new(positions, vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+    let plate = Surface::new(&mesh, "source").unwrap();
+    let pose = |turn: Vector3| Similarity {
+        rotation: *Rotation::new(turn).to_rotation_matrix().matrix(),
+        ..Similarity::identity()
+    };
+    let best = pose(Vector3::new(0.3, 0.2, 0.1));
+    let half = std::f64::consts::PI;
+    for (turn, axis, words) in [
+        (
+            Vector3::x() * half,
+            TwinAxis::Long,
+            "turned by 180° about its long axis",
+        ),
+        (
+            Vector3::y() * half,
+            TwinAxis::Cross,
+            "turned by 180° about its short axis",
+        ),
+        (
+            Vector3::z() * (half / 2.0),
+            TwinAxis::Through,
+            "turned by 90° in its own plane",
+        ),
+    ] {
+        let twin = Twin::of(&plate, &best, &best.after(&pose(turn)));
+        assert_eq!(twin.axis, axis);
+        assert_eq!(twin.words(), words);
+    }
+}
