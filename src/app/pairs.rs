@@ -21,6 +21,16 @@ pub enum PickKind {
 }
 
 impl PickKind {
+    /// In one word, for narrow columns.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Node(_) => "node",
+            Self::HoleCenter => "hole",
+            Self::Corner => "corner",
+            Self::Surface => "point",
+        }
+    }
+
     /// In words.
     pub fn words(self) -> String {
         match self {

@@ -1,4 +1,5 @@
 use crate::app::{AppState, Effect, PoseOverlap};
+use crate::geometry::Similarity;
 use crate::jobs::{JobKey, JobKind, MeasureInput, Stamp};
 
 impl AppState {
@@ -6,7 +7,9 @@ impl AppState {
     pub(super) fn keep_measuring_overlap(&mut self) -> Vec<Effect> {
         let stamp = self.document.stamp();
         let is_at_rest = self.grab.is_none() && self.view.move_tool.is_none();
-        let is_moved = stamp.pose > 0 && self.overlap_asked != Some(stamp);
+        let is_as_loaded = *self.document.crash_from_stamped() == Similarity::identity();
+        let is_known = self.overlap_asked == Some(stamp);
+        let is_moved = !is_known && (!is_as_loaded || self.overlap.is_some());
         let is_free = self.is_unlocked().is_ok() && !self.jobs.is_active(JobKey::Overlap);
         if !(is_at_rest && is_moved && is_free) {
             return Vec::new();

@@ -7,7 +7,7 @@ use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, card, icon_button, paragraph, role_mark, secondary,
 };
-use egui::{Button, RichText, Ui, vec2};
+use egui::{Align, Button, Layout, RichText, Ui, vec2};
 
 /// The card with the pairs, while the tool is on or pairs are there.
 pub fn pairs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -48,17 +48,17 @@ fn sentence(text: &str) -> String {
 fn head_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.label("Point pairs");
-        if !state.pairs().is_empty() && icon_button(ui, "✖", "Delete all pairs", true).clicked() {
-            commands.push(PairCommand::DeleteAll.into());
-        }
-        let is_on = state.view.pair_tool.is_some();
-        let label = if is_on { "Done" } else { "Pick more" };
-        if ui
-            .add(Button::new(label).min_size(vec2(0.0, ROW)))
-            .clicked()
-        {
-            commands.push(PairCommand::ToggleTool.into());
-        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let button = |label: &'static str| Button::new(label).min_size(vec2(0.0, ROW));
+            let is_on = state.view.pair_tool.is_some();
+            let label = if is_on { "Done" } else { "Pick more" };
+            if ui.add(button(label)).clicked() {
+                commands.push(PairCommand::ToggleTool.into());
+            }
+            if !state.pairs().is_empty() && ui.add(button("Delete all")).clicked() {
+                commands.push(PairCommand::DeleteAll.into());
+            }
+        });
     });
     if let Some((pair, role)) = state.next_pick() {
         ui.horizontal(|ui| {
@@ -82,20 +82,22 @@ fn row_ui(
         for role in Role::ALL {
             role_mark(ui, role);
             let text = match pair.get(role) {
-                Some(picked) => picked.kind.words(),
-                None => "–".to_owned(),
+                Some(picked) => picked.kind.word(),
+                None => "–",
             };
             let name = format!("Pick pair {} on the {} part again", index + 1, role.word());
+            let what = pair.get(role).map(|picked| picked.kind.words());
             let asks = state.view.pair_tool.and_then(|tool| tool.repick);
             let is_asked = asks == Some((index, role));
             let button = Button::new(RichText::new(text).small()).selected(is_asked);
-            let response = ui.add(button.truncate().min_size(vec2(64.0, ROW - 2.0)));
+            let response = ui.add(button.min_size(vec2(54.0, ROW - 2.0)));
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-            if response.on_hover_text(&name).clicked() {
+            let hint = what.map_or_else(|| name.clone(), |what| format!("{what}\n{name}"));
+            if response.on_hover_text(hint).clicked() {
                 commands.push(PairCommand::Repick { pair: index, role }.into());
             }
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let name = format!("Delete pair {}", index + 1);
             if icon_button(ui, "✖", &name, true).clicked() {
                 commands.push(PairCommand::Delete(index).into());

@@ -97,7 +97,14 @@ fn mark(
     number: usize,
     is_worst: bool,
 ) {
-    let end = at + LEADER;
+    // At the right edge the number stands on the other side.
+    let has_room = at.x + 90.0 < over.rect.right();
+    let leader = if has_room {
+        LEADER
+    } else {
+        vec2(-LEADER.x - 46.0, LEADER.y)
+    };
+    let end = at + leader;
     let color = over.look.role(role);
     for (width, color) in [(4.0, over.look.plate), (1.5, color)] {
         painter.line_segment([at, end], Stroke::new(width, color));
@@ -131,6 +138,8 @@ fn plate(
     let galley = painter.layout_no_wrap(text.to_owned(), font, color);
     let size = vec2(galley.size().x + 28.0, 20.0);
     let ground = Rect::from_center_size(left + vec2(size.x / 2.0, 0.0), size);
+    let over_edge = (ground.right() - over.rect.right() + 4.0).max(0.0);
+    let ground = ground.translate(vec2(-over_edge, 0.0));
     painter.rect_filled(ground, CornerRadius::same(5), over.look.plate);
     let edge = Stroke::new(1.0, over.look.role(role));
     painter.rect_stroke(
