@@ -27,7 +27,9 @@ fn main() -> ExitCode {
 /// Messages go to standard error; `RUST_LOG` says more.
 fn start_logging(quiet: bool) {
     let level = if quiet { "error" } else { "warn" };
-    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(level))
+    // Why the window does not open is told once, by us.
+    let filter = format!("{level},winit=error,eframe=off,wgpu_hal::vulkan::instance=off");
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(filter))
         .format_timestamp(None)
         .format_target(false)
         .init();

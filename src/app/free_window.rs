@@ -11,6 +11,8 @@ pub enum FreeWindow {
     Nothing,
     /// The distances between the parts as colours.
     Deviation,
+    /// Both parts, cut open by the section plane.
+    Section,
     /// Both parts as they were read, without reduction.
     FullMesh,
     /// The stamped part at the best pose that differs from the result.
@@ -19,10 +21,11 @@ pub enum FreeWindow {
 
 impl FreeWindow {
     /// All, in the order of the choice.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Nothing,
         Self::FullMesh,
         Self::Deviation,
+        Self::Section,
         Self::SecondPose,
     ];
 
@@ -31,6 +34,7 @@ impl FreeWindow {
         match self {
             Self::Nothing => "Nothing",
             Self::Deviation => "Deviation",
+            Self::Section => "Section",
             Self::FullMesh => "Full mesh",
             Self::SecondPose => "Second pose",
         }
@@ -51,9 +55,14 @@ impl AppState {
         let chosen = self.view.free_window;
         Some(
             chosen
-                .filter(|use_| self.can_use_free(*use_))
+                .filter(|free| self.is_free_use_shown(*free))
                 .unwrap_or(by_itself),
         )
+    }
+
+    fn is_free_use_shown(&self, free: FreeWindow) -> bool {
+        let has_plane = self.view.section.shown().is_some();
+        self.can_use_free(free) && (free != FreeWindow::Section || has_plane)
     }
 
     /// True if the right window could be used so now.

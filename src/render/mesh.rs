@@ -1,3 +1,5 @@
+use rayon::prelude::*;
+
 use super::mesh_build::{self, EdgeClasses};
 use crate::geometry::{Aabb, Point3, Topology, TriMesh};
 
@@ -77,7 +79,7 @@ pub(super) struct Node {
 pub(super) const BORDER_BIT: u32 = 1 << 31;
 
 impl RenderMesh {
-    /// Prepares a mesh. O(triangles · log triangles).
+    /// Prepares a mesh. O(triangles).
     pub fn new(input: MeshInput<'_>) -> Self {
         let mesh = input.mesh;
         let bounds = mesh.aabb();
@@ -88,10 +90,17 @@ impl RenderMesh {
             part.copied().unwrap_or(0) & !BORDER_BIT
         };
         let faces = mesh_build::face_normals(mesh);
-        let normals = mesh_build::creased_normals(mesh, &faces);
+        let (normals, (topology, classes)) = rayon::join(
+            || mesh_build::creased_normals(mesh, &faces),
+            || {
+                let topology = Topology::of(mesh);
+                let classes = EdgeClasses::of(&topology, &faces, input.element_of_triangle);
+                (topology, classes)
+            },
+        );
         let corner_vertices: Vec<u32> = mesh.triangles().iter().flatten().copied().collect();
         let corners = corner_vertices
-            .iter()
+            .par_iter()
             .enumerate()
             .map(|(corner, &vertex)| Corner {
                 position: near(&mesh.positions()[vertex as usize]),
@@ -99,8 +108,6 @@ impl RenderMesh {
                 part: part(corner / 3),
             })
             .collect();
-        let topology = Topology::of(mesh);
-        let classes = EdgeClasses::of(&topology, &faces, input.element_of_triangle);
         let mut wide_edges = Vec::new();
         for (edges, bit) in [(&classes.features, 0), (&classes.borders, BORDER_BIT)] {
             wide_edges.extend(edges.iter().map(|&edge| {

@@ -101,6 +101,15 @@ impl Renderer {
         PickRequest::record(gpu, &self.context, &mut self.cache, frame, pixel)
     }
 
+    /// Submits recorded commands and waits for their end, for measurements. False if the device did not
+    /// answer.
+    pub fn submit_and_wait(&self, encoder: wgpu::CommandEncoder) -> bool {
+        self.queue.submit([encoder.finish()]);
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .is_ok()
+    }
+
     /// The device that everything lives on.
     pub fn device(&self) -> &wgpu::Device {
         &self.device

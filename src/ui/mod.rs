@@ -7,6 +7,7 @@ pub mod dialogs;
 pub mod gizmo;
 pub mod keeper;
 pub mod keyboard;
+mod no_window;
 pub mod overlays;
 pub mod palette;
 pub mod panels;

@@ -90,9 +90,12 @@ fn help_ui(ui: &mut Ui, room: egui::Vec2) {
             group_title(last, "Mouse");
             for (what, how) in [
                 ("Left drag", "Turn"),
+                ("Ctrl + drag", "The same, edges only"),
+                ("Ctrl + Shift + left drag", "Roll"),
                 ("Middle drag", "Pan"),
                 ("Wheel, right drag", "Zoom to the pointer"),
                 ("Click", "Select a part"),
+                ("Ctrl + click", "Add to the selection"),
                 ("Double click", "Bring the part into view"),
             ] {
                 key_row(last, how, what);

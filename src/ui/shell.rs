@@ -2,6 +2,7 @@
 
 use super::dialogs::Dialogs;
 use super::keeper::{Keeper, Kept as KeptNews};
+use super::no_window::explained;
 use super::pictures::Pictures;
 use super::storage::{Kept, Storage, WindowPlace};
 use super::viewport::Viewports;
@@ -39,14 +40,7 @@ pub fn run(options: StartupOptions) -> anyhow::Result<ExitCode> {
         let shell = Shell::new(cc, options, storage, kept)?;
         Ok(Box::new(shell))
     });
-    eframe::run_native("shapematch", native, make).map_err(|error| {
-        anyhow::anyhow!(
-            "the window could not be opened: {error}\n\
-             It needs a display and a graphics adapter for Vulkan, Metal, DirectX 12 or OpenGL \
-             (a software one will do; WGPU_BACKEND chooses).\n\
-             Everything but the window works without: see shapematch --help"
-        )
-    })?;
+    eframe::run_native("shapematch", native, make).map_err(|error| explained(&error))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1130,6 +1130,9 @@ fn the_free_window_has_a_use_of_its_own_and_the_left_camera() {
         Some(FreeWindow::FullMesh),
         "there is no second pose without a match"
     );
+    window.apply(ViewCommand::SetFreeWindow(FreeWindow::Section));
+    assert_eq!(window.state.free_window(), Some(FreeWindow::Section));
+    assert!(window.state.view.section.shown().is_some());
     window.apply(ViewCommand::SetFreeWindow(FreeWindow::Deviation));
     assert_eq!(window.state.color_by(Role::Stamped), ColorBy::Deviation);
     assert_eq!(window.state.color_by(Role::Crash), ColorBy::Role);

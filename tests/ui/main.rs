@@ -5,6 +5,7 @@
 mod inspect;
 mod keyboard;
 mod layout;
+mod no_window;
 mod pairs;
 mod panels;
 mod parts;

@@ -12,7 +12,7 @@ use shapematch::app::{
     Settings, ViewCommand,
 };
 use shapematch::formats::Model;
-use shapematch::geometry::camera::ScreenSize;
+use shapematch::geometry::camera::{OrbitStyle, ScreenSize};
 use shapematch::geometry::{Camera, Point3, TriMesh};
 use shapematch::jobs::{
     JobEvent, JobId, JobKind, JobOutput, JobStage, PartFacts, PartSource, PipelineRunner, Role,
@@ -493,4 +493,71 @@ fn the_free_window_turns_with_the_left_one() {
     harness.run_steps(2);
     let free = harness.state().state.free_window();
     assert_eq!(free, Some(FreeWindow::Deviation));
+}
+
+#[test]
+fn a_free_drag_beside_the_circle_rolls() {
+    let mut desk = Desk::with_sheets(None);
+    desk.apply(ViewCommand::SetOrbitStyle(OrbitStyle::Free).into());
+    let mut harness = harness(desk);
+    let area = area(&harness, Role::Crash);
+    let before = harness.state().camera(Role::Crash);
+    let from = area.center() + vec2(-10.0, 0.42 * area.height());
+    drag(
+        &mut harness,
+        PointerButton::Primary,
+        from,
+        from + vec2(60.0, 0.0),
+    );
+    let rolled = harness.state().camera(Role::Crash);
+    assert!(rolled.up().angle(&before.up()) > 0.1);
+    assert!(
+        rolled.forward().angle(&before.forward()) < 1e-9,
+        "it looks where it did"
+    );
+}
+
+#[test]
+fn the_pivot_is_picked_under_the_pointer_and_forgotten() {
+    let mut harness = harness(Desk::with_sheets(None));
+    let center = area(&harness, Role::Crash).center();
+    harness.event(Event::PointerMoved(center));
+    harness.step();
+    harness.key_press(egui::Key::P);
+    harness.run_steps(2);
+    let pivot = *harness.state().state.view.pivot.get(Role::Crash);
+    let pivot = pivot.expect("the point under the pointer");
+    let camera = harness.state().camera(Role::Crash);
+    let from = center + vec2(40.0, 20.0);
+    drag(
+        &mut harness,
+        PointerButton::Primary,
+        from,
+        from + vec2(30.0, 15.0),
+    );
+    let turned = harness.state().camera(Role::Crash);
+    let area = area(&harness, Role::Crash);
+    let seen = |camera: &Camera| camera.project(&pivot, screen_of(area)).unwrap();
+    let (old, new) = (seen(&camera), seen(&turned));
+    assert!(turned.world_from_view.angle_to(&camera.world_from_view) > 0.1);
+    assert!(
+        (old.x - new.x).hypot(old.y - new.y) < 0.1,
+        "the pivot stays"
+    );
+}
+
+#[test]
+fn shift_and_arrows_pan_and_windows_say_what_they_show() {
+    let mut harness = harness(Desk::with_sheets(None));
+    let before = harness.state().camera(Role::Crash);
+    harness.get_by_label("Crash part, 192 triangles").focus();
+    harness.run_steps(2);
+    harness.key_press_modifiers(egui::Modifiers::SHIFT, egui::Key::ArrowRight);
+    harness.run_steps(2);
+    let panned = harness.state().camera(Role::Crash);
+    assert_eq!(panned.world_from_view, before.world_from_view);
+    assert!((panned.target - before.target).norm() > 0.01 * before.height);
+    harness.key_press(egui::Key::Plus);
+    harness.run_steps(2);
+    assert!(harness.state().camera(Role::Crash).height < before.height);
 }

@@ -1,4 +1,4 @@
-use crate::app::{AppState, BottomTab, Effect, ViewCommand};
+use crate::app::{AppState, BottomTab, Effect, FreeWindow, ViewCommand};
 use crate::geometry::{Aabb, Point3, Similarity};
 use crate::jobs::Role;
 
@@ -25,7 +25,12 @@ impl AppState {
             ViewCommand::SetDisplay(display) => self.view.display = *display,
             ViewCommand::SetSection(section) => self.view.section = section,
             ViewCommand::SetTab(tab) => self.set_tab(tab),
-            ViewCommand::SetFreeWindow(free) => self.view.free_window = Some(free),
+            ViewCommand::SetFreeWindow(free) => {
+                if free == FreeWindow::Section && !self.view.section.is_on {
+                    self.view.section = self.section_toggled();
+                }
+                self.view.free_window = Some(free);
+            }
             ViewCommand::OpenSection(section, is_open) => {
                 self.view.sections.set_open(section, is_open);
             }

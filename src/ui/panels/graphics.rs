@@ -149,7 +149,7 @@ fn pane_ui(
 
 /// The stamped part is shown in the left window.
 fn away_ui(ui: &mut Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>) {
-    let size = vec2(380.0_f32.min(rect.width() - 32.0), 170.0);
+    let size = vec2(430.0_f32.min(rect.width() - 32.0), 170.0);
     centered(ui, rect, size, |ui| {
         ui.vertical_centered(|ui| {
             role_mark(ui, Role::Stamped);

@@ -104,7 +104,7 @@ pub(super) fn cast(state: &AppState, stage: &Stage) -> Vec<Actor> {
 }
 
 /// What the right window is used for, once its part has left it.
-fn free_window(state: &AppState, stage: &Stage) -> Option<FreeWindow> {
+pub(super) fn free_window(state: &AppState, stage: &Stage) -> Option<FreeWindow> {
     let is_free = stage.window == Role::Stamped && stage.over >= 1.0;
     state.free_window().filter(|_| is_free)
 }
@@ -129,7 +129,7 @@ fn beside(state: &AppState, stage: &Stage, free: FreeWindow) -> Vec<Actor> {
     let is_shown = |actor: &Actor| match free {
         FreeWindow::Nothing => false,
         FreeWindow::Deviation => *colored.get(actor.role),
-        FreeWindow::FullMesh | FreeWindow::SecondPose => true,
+        FreeWindow::Section | FreeWindow::FullMesh | FreeWindow::SecondPose => true,
     };
     actors.filter(is_shown).collect()
 }

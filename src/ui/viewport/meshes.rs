@@ -88,14 +88,15 @@ impl ShownMesh {
         let elements = source.level.is_none();
         let elements: Option<Vec<u32>> =
             elements.then(|| triangles.map(|t| source.element(t)).collect());
-        let drawn = RenderMesh::new(MeshInput {
+        let input = MeshInput {
             mesh,
             part_of_triangle: Some(&part_of_triangle),
             element_of_triangle: elements.as_deref(),
-        });
+        };
+        let (drawn, tree) = rayon::join(|| RenderMesh::new(input), || Bvh::build(Arc::clone(mesh)));
         Self {
             drawn: Arc::new(drawn),
-            tree: Bvh::build(Arc::clone(mesh)),
+            tree,
             nodes: node_numbers(&source),
             part_of_triangle,
             source,

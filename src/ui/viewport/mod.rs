@@ -257,7 +257,7 @@ impl Viewports {
             });
         let layers = layers.collect();
         let mut picture = Picture::new(state, stage, look, layers, ui.pixels_per_point());
-        picture.cut(state, look, &cuts);
+        picture.cut(state, stage, look, &cuts);
         picture
     }
 

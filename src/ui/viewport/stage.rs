@@ -6,7 +6,7 @@ use super::cast::{self, Actor, Stage};
 use super::look::Look;
 use super::meshes::ShownMesh;
 use super::sections::{self, Cut};
-use crate::app::{AppState, PartRef};
+use crate::app::{AppState, FreeWindow, PartRef};
 use crate::geometry::camera::{ScreenSize, ViewRay};
 use crate::geometry::{Aabb, Camera, Plane, Point3, Similarity, Vector3};
 use crate::jobs::{PerRole, Role};
@@ -124,7 +124,13 @@ impl Picture {
     }
 
     /// Adds the section plane and the outlines of the parts in it.
-    pub fn cut(&mut self, state: &AppState, look: &Look, cuts: &PerRole<Option<Arc<Cut>>>) {
+    pub fn cut(
+        &mut self,
+        state: &AppState,
+        stage: &Stage,
+        look: &Look,
+        cuts: &PerRole<Option<Arc<Cut>>>,
+    ) {
         let section = &state.view.section;
         let Some(plane) = section.shown().filter(|_| !self.bounds.is_empty()) else {
             return;
@@ -140,7 +146,8 @@ impl Picture {
             }
         }
         self.section_frame = Some(frame);
-        self.clip = Some(plane).filter(|_| section.is_clipped);
+        let is_for_it = cast::free_window(state, stage) == Some(FreeWindow::Section);
+        self.clip = Some(plane).filter(|_| section.is_clipped || is_for_it);
         let scene = Arc::make_mut(&mut self.scene);
         scene.overlay = overlay;
         scene.section = self.clip.map(|plane| Section {

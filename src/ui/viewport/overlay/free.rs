@@ -8,7 +8,7 @@ use crate::jobs::Role;
 use crate::ui::widgets::segments;
 
 /// Size of the choice.
-const WIDTH: f32 = 348.0;
+const WIDTH: f32 = 416.0;
 const HEIGHT: f32 = 28.0;
 
 /// The choice between the uses.
@@ -48,6 +48,7 @@ fn says(free: FreeWindow) -> &'static str {
     match free {
         FreeWindow::Nothing => "",
         FreeWindow::Deviation => "distance between the parts · same camera",
+        FreeWindow::Section => "both parts cut open · same camera",
         FreeWindow::FullMesh => "both parts without reduction · same camera",
         FreeWindow::SecondPose => "the next best pose of the match · same camera",
     }

@@ -74,7 +74,7 @@ fn triad(painter: &Painter, over: &Overlay<'_>) {
             Align2::CENTER_CENTER,
             text,
             FontId::proportional(11.5),
-            color,
+            colors[axis],
         );
     }
     painter.circle_filled(center, 2.0, over.look.weak);
@@ -90,7 +90,7 @@ fn bar(painter: &Painter, over: &Overlay<'_>) -> f32 {
     };
     let left = over.rect.left_bottom() + vec2(MARGIN + 84.0, -MARGIN - 8.0);
     let right = left + vec2(bar.pixels as f32, 0.0);
-    let text = length_text(bar.length);
+    let text = length_text(bar.length) + over.state.unit_suffix();
     let galley = painter.layout_no_wrap(text, FontId::proportional(11.5), over.look.text);
     let ground = Rect::from_min_max(left + vec2(-8.0, -21.0), right + vec2(8.0, 8.0));
     painter.rect_filled(
