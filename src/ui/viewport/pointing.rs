@@ -129,7 +129,8 @@ impl Target<'_> {
         let display = &self.state.view.display;
         let is_toggling = self.ui.input(|i| i.modifiers.command);
         let is_colored = *display.coloring.on.get(hit.role);
-        display.color_by == ColorBy::Deviation && is_colored && !is_toggling
+        let shown = self.state.color_by(self.stage.window);
+        shown == ColorBy::Deviation && is_colored && !is_toggling
     }
 
     fn hit(&self) -> Option<Hit> {

@@ -241,7 +241,7 @@ fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &m
                     role_mark(ui, role);
                 });
                 row.col(|ui| {
-                    ui.label(RichText::new(&value).strong());
+                    ui.label(&value);
                 });
                 row.col(|ui| {
                     let text = RichText::new(&node).color(Palette::of(ui).secondary);
@@ -312,7 +312,7 @@ fn label_ui(
             || format!("vertex {}", label.vertex),
             |n| format!("node {n}"),
         );
-        let go = Button::new(RichText::new(value).strong()).min_size(vec2(60.0, LINE));
+        let go = Button::new(value).min_size(vec2(60.0, LINE));
         let response = ui.add(go).on_hover_text(format!("Go to {node}"));
         let response = response.accessible_name(format!("Go to {node}"));
         if response.clicked() {

@@ -72,14 +72,14 @@ pub(super) fn slim(ui: &mut Ui, over: &Overlay<'_>, scale: &ColorScale) {
 
 /// Before the first measurement has ended.
 pub(super) fn waiting(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
-    ui.label(RichText::new("Deviation").size(12.0).strong());
+    ui.label(RichText::new("Deviation").size(12.5).color(over.look.text));
     freshness(ui, over, commands);
 }
 
 /// From which part to which, and the menu.
 fn title(ui: &mut Ui, over: &Overlay<'_>, role: Role, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        ui.label(RichText::new("Deviation").size(12.5).strong());
+        ui.label(RichText::new("Deviation").size(12.5).color(over.look.text));
         let (rect, response) = ui.allocate_exact_size(vec2(40.0, 14.0), Sense::click());
         let at =
             |x: f32| Rect::from_center_size(pos2(rect.left() + x, rect.center().y), vec2(9.0, 9.0));
@@ -135,6 +135,7 @@ fn capital(role: Role) -> &'static str {
 pub(super) fn freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
     let text = match over.state.freshness() {
         Freshness::Current => return,
+        Freshness::Missing if over.state.locking_job().is_some() => "measured after the run",
         Freshness::Missing => "not measured yet",
         Freshness::Updating => "out of date · measuring",
         Freshness::OutOfDate => "out of date",
@@ -142,10 +143,11 @@ pub(super) fn freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comm
     let palette = crate::ui::theme::Palette::of(ui);
     ui.horizontal(|ui| {
         ui.label(RichText::new(text).size(11.5).color(palette.check));
-        let is_asked = matches!(
+        let is_open = matches!(
             over.state.freshness(),
             Freshness::Missing | Freshness::OutOfDate
         );
+        let is_asked = is_open && over.state.locking_job().is_none();
         if is_asked {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let button = Button::new(RichText::new("Update").size(11.5)).small();
@@ -423,7 +425,7 @@ fn tolerance(
 ) {
     ui.horizontal(|ui| {
         let inside = percent(stats.share_inside(scale.tolerance));
-        ui.label(RichText::new(inside).size(15.0).strong());
+        ui.label(RichText::new(inside).size(15.0).color(over.look.text));
         ui.label(RichText::new("inside ±").size(12.0));
         ui.spacing_mut().item_spacing.x = 2.0;
         let mut value = scale.tolerance;

@@ -17,7 +17,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     };
     let roles = over.picture.roles();
     ui.horizontal(|ui| {
-        ui.label(RichText::new("Overlap").size(12.0).strong());
+        ui.label(RichText::new("Overlap").size(12.5).color(over.look.text));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             for role in roles.iter().rev() {
                 let (rect, _) = ui.allocate_exact_size(vec2(46.0, 12.0), Sense::hover());

@@ -126,7 +126,7 @@ fn content(
 fn head(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
     let state = over.state;
     ui.horizontal(|ui| {
-        ui.label(RichText::new("Section").size(12.0).strong());
+        ui.label(RichText::new("Section").size(12.5).color(over.look.text));
         for role in Role::ALL {
             let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
             let mark = Rect::from_center_size(rect.center(), Vec2::splat(9.0));
