@@ -14,6 +14,7 @@ use crate::geometry::Similarity;
 use crate::monitor::Monitor;
 use crate::pipeline::load::{LoadedPart, load};
 use crate::pipeline::match_parts::{MatchRun, ReducedPair, match_parts};
+use crate::pipeline::units::PairUnits;
 use crate::pipeline::{cards as pipeline_cards, export, node_table, record, report};
 use crate::report::{MatchRecord, MatrixForm};
 
@@ -95,10 +96,9 @@ fn write_files(
         write_json(path, record)?;
     }
     if let Some(path) = &output.matrix {
-        write_output(
-            path,
-            MatrixForm::Rows.write(&run.crash_from_stamped).as_bytes(),
-        )?;
+        let units = PairUnits::sentences(crash, stamped);
+        let text = MatrixForm::Rows.write_with(&run.crash_from_stamped, &units);
+        write_output(path, text.as_bytes())?;
     }
     let (pose, silent) = (&run.crash_from_stamped, Monitor::silent());
     let write_part = |path: Option<&PathBuf>, part, other, pose: &Similarity| match path {

@@ -18,9 +18,12 @@ pub fn cards(
     crash: &LoadedPart,
     stamped: &LoadedPart,
 ) -> Result<Cards, PipelineError> {
-    let factor = stamped.settings.length_factor;
-    if factor != 1.0 {
-        return Err(PipelineError::CardsNeedOneUnit(factor));
+    for part in [stamped, crash] {
+        let factor = part.settings.length_factor;
+        if factor != 1.0 {
+            let name = part.file_name();
+            return Err(PipelineError::CardsNeedOneUnit { name, factor });
+        }
     }
     let coverage = &run.assessment.coverage;
     let mut comments = vec![

@@ -43,12 +43,17 @@ pub enum PipelineError {
          part id or a part set on the crash side"
     )]
     SeveralReceivers(usize),
-    /// The stamped file is in another unit, which the cards cannot say.
+    /// A file was read in another unit, which the cards cannot say.
     #[error(
-        "the stamped file was scaled by {0}, which the cards cannot hold; write the moved or \
-         converted stamped file instead and use that"
+        "the lengths of {name} were multiplied by {factor}, which the cards cannot hold; match two files of \
+         the same unit (--converted writes the stamped one in the crash part's unit)"
     )]
-    CardsNeedOneUnit(f64),
+    CardsNeedOneUnit {
+        /// The file.
+        name: String,
+        /// The factor.
+        factor: f64,
+    },
     /// The cards cannot be written.
     #[error(transparent)]
     Card(#[from] CardError),

@@ -163,6 +163,14 @@ impl LoadedPart {
             .collect()
     }
 
+    /// The first node of the matched surface: its id, and its place in the crash model's unit.
+    pub fn sample_node(&self) -> Option<(u64, Point3)> {
+        let node = *self.surface.vertex_node.first()? as usize;
+        let position = self.surface.mesh.positions().first()?;
+        let id = *self.model.nodes.ids().get(node)?;
+        Some((id, position * self.settings.length_factor))
+    }
+
     /// Id of the element that a triangle of the mesh belongs to.
     pub fn element_id(&self, triangle: u32) -> Option<u64> {
         let of_surface = *self.triangle_of.get(triangle as usize)?;

@@ -3,7 +3,6 @@
 use super::load::LoadedPart;
 use super::match_parts::MatchRun;
 use super::units::PairUnits;
-use crate::geometry::Point3;
 use crate::report::command_line::CommandLine;
 use crate::report::{
     FileRecord, Files, IncludedFile, MatchRecord, RecordContext, TimingsRecord, UnitsRecord,
@@ -26,7 +25,7 @@ pub fn match_record(run: &MatchRun, crash: &LoadedPart, stamped: &LoadedPart) ->
             crash_factor: crash.settings.length_factor,
             stamped_factor: stamped.settings.length_factor,
         },
-        sample_node: sample_node(stamped),
+        sample_node: stamped.sample_node(),
         center: stamped.mesh.aabb().center(),
         files: Files {
             crash: file(crash, units.crash),
@@ -60,14 +59,6 @@ fn command_line<'a>(
         max_triangles: run.max_triangles,
         current: &run.start_pose,
     }
-}
-
-/// The first node of the matched surface: its id and place in the crash model's unit.
-fn sample_node(part: &LoadedPart) -> Option<(u64, Point3)> {
-    let node = *part.surface.vertex_node.first()? as usize;
-    let position = part.surface.mesh.positions().first()?;
-    let id = *part.model.nodes.ids().get(node)?;
-    Some((id, position * part.settings.length_factor))
 }
 
 fn file(part: &LoadedPart, units: Option<KnownUnits>) -> FileRecord {

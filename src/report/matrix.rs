@@ -59,6 +59,17 @@ impl MatrixForm {
         }
     }
 
+    /// [`MatrixForm::write`] with remarks at its head, for a file; JSON has no place for them.
+    pub fn write_with(self, crash_from_stamped: &Similarity, remarks: &[String]) -> String {
+        let text = self.write(crash_from_stamped);
+        if self == Self::Json {
+            return text;
+        }
+        let lines = remarks.iter().flat_map(|remark| remark.lines());
+        let head: String = lines.map(|line| format!("# {line}\n")).collect();
+        head + &text
+    }
+
     /// The text of `crash_from_stamped`, ending in a newline. Every number is the shortest text
     /// that reads back to the same bits. Lines that begin with `#` say what is what.
     pub fn write(self, crash_from_stamped: &Similarity) -> String {
@@ -446,6 +457,26 @@ mod tests {
         let half = "0.7071067811865476 0 0 0.7071067811865476 10.5 20 -30";
         let parsed = parse_matrix(half).unwrap();
         assert!(distance(&parsed.motion, &expected) < 1e-15);
+    }
+
+    #[test]
+    fn remarks_stand_before_the_numbers_and_are_read_past() {
+        let motion = Similarity {
+            translation: Vector3::new(7.0, 8.0, 9.0),
+            ..Similarity::identity()
+        };
+        let remarks = ["lengths in mm".to_owned(), "16 by 9\nx 1000".to_owned()];
+        for form in MatrixForm::ALL
+            .iter()
+            .filter(|form| **form != MatrixForm::Inverse)
+        {
+            let text = form.write_with(&motion, &remarks);
+            assert_eq!(
+                text.starts_with("# lengths in mm\n"),
+                *form != MatrixForm::Json
+            );
+            assert_eq!(parse_matrix(&text).unwrap().motion, motion, "{form:?}");
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
 
+mod exports;
 mod inspect;
 mod keyboard;
 mod layout;

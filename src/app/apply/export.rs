@@ -6,6 +6,7 @@ use crate::geometry::Similarity;
 use crate::jobs::{
     Destination, ExportContent, ExportRequest, Exported, JobKind, MatchedPair, Role,
 };
+use crate::pipeline::units::PairUnits;
 use crate::report::MatrixForm;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -136,7 +137,13 @@ impl AppState {
     fn export_content(&self, kind: ExportKind) -> Option<ExportContent> {
         let pose = *self.document.crash_from_stamped();
         let content = match kind {
-            ExportKind::Matrix(form) => ExportContent::Text(form.write(&pose)),
+            ExportKind::Matrix(form) => {
+                let units = self
+                    .document
+                    .both()
+                    .map(|(crash, stamped)| PairUnits::sentences(&crash.loaded, &stamped.loaded));
+                ExportContent::Text(form.write_with(&pose, &units.unwrap_or_default()))
+            }
             ExportKind::Log => ExportContent::Text(self.log.to_text()),
             ExportKind::Record => ExportContent::Record(self.matched_pair()?),
             ExportKind::Report => ExportContent::Report(self.matched_pair()?),

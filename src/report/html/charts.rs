@@ -103,15 +103,16 @@ pub fn histogram(
         top: 30.0,
         bottom: 232.0,
         x: range,
-        y: [0.0, highest * 1.06],
+        // The square root shows the few that lie far off beside the many that lie near.
+        y: [0.0, (highest * 1.06).sqrt()],
     };
     let mut content = band(&axes, scale.tolerance, range);
-    let percents = ColorScale::new(scale.map, 0.0, 100.0 * highest).ticks(5);
-    let percents: Vec<_> = percents
-        .iter()
-        .map(|&p| (p / 100.0, format!("{} %", trimmed(p))))
+    let shares = [0.0, 0.01, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0];
+    let shares = shares.iter().filter(|share| **share <= highest * 1.06);
+    let shares: Vec<_> = shares
+        .map(|&share| (share.sqrt(), format!("{} %", trimmed(100.0 * share))))
         .collect();
-    content += &axes.left_axis(&percents, "share of the area");
+    content += &axes.left_axis(&shares, "share of the area, square root scale");
     let width = (range[1] - range[0]) / N_BINS as f64;
     for (i, share) in bars.shares.iter().enumerate() {
         let (from, to) = (
@@ -120,7 +121,7 @@ pub fn histogram(
         );
         let [r, g, b] = scale.color((from + to) / 2.0);
         let (x, w) = (axes.x(from), axes.x(to) - axes.x(from));
-        let (y, h) = (axes.y(*share), axes.bottom - axes.y(*share));
+        let (y, h) = (axes.y(share.sqrt()), axes.bottom - axes.y(share.sqrt()));
         if h > 0.05 {
             let _ = write!(
                 content,
@@ -165,7 +166,7 @@ fn outline(axes: &Axes, histogram: &Histogram, width: f64) -> String {
     let mut path = format!("M{:.1} {:.1}", axes.x(histogram.range[0]), axes.bottom);
     for (i, share) in histogram.shares.iter().enumerate() {
         let to = axes.x(histogram.range[0] + width * (i + 1) as f64);
-        let _ = write!(path, "V{:.1}H{to:.1}", axes.y(*share));
+        let _ = write!(path, "V{:.1}H{to:.1}", axes.y(share.sqrt()));
     }
     let bottom = axes.bottom;
     format!("<path class=\"outline\" d=\"{path}V{bottom}\"/>")

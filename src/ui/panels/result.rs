@@ -6,7 +6,7 @@ use crate::app::{
 };
 use crate::assess::Verdict;
 use crate::geometry::Similarity;
-use crate::report::number;
+use crate::report::{PoseRecord, number};
 use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
@@ -202,24 +202,29 @@ fn moved_ui(ui: &mut Ui, state: &AppState) {
         return;
     };
     let center = part.bounds().center();
-    let moved = pose.apply(&center) - center;
-    let angle = pose.angle_to(&crate::geometry::Similarity::identity());
-    let text = format!(
-        "The centre moves by ({}, {}, {}); the part turns by {:.2}°",
-        length(moved.x),
-        length(moved.y),
-        length(moved.z),
-        angle.to_degrees()
+    let record = PoseRecord::new(pose, part.loaded.sample_node(), &center);
+    let [x, y, z] = record.center_move.map(length);
+    let turn = record.rotation_axis_angle;
+    let [u, v, w] = turn.axis.map(|x| format!("{:.3}", x + 0.0));
+    paragraph(ui, format!("The centre moves by ({x}, {y}, {z})."));
+    paragraph(
+        ui,
+        format!(
+            "The part turns by {:.3}° about the axis ({u}, {v}, {w}).",
+            turn.angle_deg
+        ),
     );
-    paragraph(ui, text);
-    if let Some(point) = part.loaded.mesh.positions().first() {
-        let at = pose.apply(point);
-        let words = |p: &crate::geometry::Point3| format!("({:.3}, {:.3}, {:.3})", p.x, p.y, p.z);
-        paragraph(ui, format!("Sample node {} → {}", words(point), words(&at)));
+    if let Some(node) = record.sample_node {
+        let words = |[x, y, z]: [f64; 3]| format!("({x:.3}, {y:.3}, {z:.3})");
+        let (from, to) = (words(node.stamped), words(node.crash));
+        paragraph(ui, format!("Sample node {}: {from} → {to}", node.id));
     }
-    let determinant = pose.rotation.determinant();
     caption(
         ui,
-        format!("det R = {determinant:.9}, c = {}", number(pose.scale)),
+        format!(
+            "det R = {:.9}, c = {}",
+            record.determinant,
+            number(record.scale)
+        ),
     );
 }

@@ -1,0 +1,56 @@
+//! The export menu and the dialog of a picture, by name.
+
+use super::story::{click, finish, window};
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable as _;
+use shapematch::app::{Dialog, PictureSize, PictureWindows};
+
+#[test]
+fn the_export_menu_offers_every_form_and_says_what_waits_for_a_match() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    click(&mut window, "Export");
+    for name in [
+        "Copy as command line",
+        "Save report…",
+        "Save node deviations…",
+        "Save LS-DYNA cards…",
+        "Picture as…",
+        "Copy as",
+        "Write matrix as",
+        "Write part",
+    ] {
+        assert!(window.query_by_label(name).is_some(), "no {name}");
+    }
+    click(&mut window, "Copy as command line");
+    assert!(
+        window
+            .state()
+            .state()
+            .notices
+            .toasts()
+            .any(|notice| notice.text == "Command line copied"),
+        "no toast"
+    );
+}
+
+#[test]
+fn the_choices_of_a_picture_are_kept() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    window.key_press_modifiers(Modifiers::SHIFT, Key::F12);
+    window.run_steps(2);
+    assert_eq!(window.state().state().view.dialog, Some(Dialog::Picture));
+    click(&mut window, "3840 × 2160");
+    click(&mut window, "Left window");
+    click(&mut window, "Without background");
+    let choice = window.state().state().settings.picture;
+    assert_eq!(choice.size, PictureSize::Pixels([3840, 2160]));
+    assert_eq!(choice.windows, PictureWindows::Left);
+    assert!(choice.is_transparent);
+    window.key_press(Key::Escape);
+    window.run_steps(2);
+    assert_eq!(window.state().state().view.dialog, None);
+}
