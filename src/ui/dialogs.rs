@@ -203,7 +203,7 @@ impl Dialogs {
             return;
         };
         let (mut is_taken, mut is_renamed, mut is_closed) = (false, false, false);
-        let modal = egui::Modal::new(egui::Id::unique("overwrite question")).show(ctx, |ui| {
+        let shown = modal(ctx, "overwrite question").show(ctx, |ui| {
             ui.set_width(480.0);
             ui.spacing_mut().item_spacing.y = UNIT;
             ui.heading("Replace the file?");
@@ -218,7 +218,7 @@ impl Dialogs {
             commands.push(answered(&question, path));
         } else if is_renamed {
             self.prompt = Some((question, path.display().to_string()));
-        } else if !is_closed && !modal.should_close() {
+        } else if !is_closed && !shown.should_close() {
             self.overwrite = Some((question, path));
         } else {
             commands.extend(closed(&question));
@@ -233,14 +233,19 @@ impl Dialogs {
         let (title, verb) = titles(&question);
         let mut is_taken = false;
         let mut is_closed = false;
-        let modal = egui::Modal::new(egui::Id::unique("path prompt")).show(ctx, |ui| {
+        let shown = modal(ctx, "path prompt").show(ctx, |ui| {
             ui.set_width(480.0);
             ui.spacing_mut().item_spacing.y = UNIT;
             ui.heading(title);
             paragraph(
                 ui,
-                "This desktop offers no file dialog. Type or paste the path, \
-                 or drop the file on the window.",
+                if question.is_open() {
+                    "This desktop offers no file dialog. Type or paste the path, or drop the file \
+                     on the window."
+                } else {
+                    "This desktop offers no file dialog. Type or paste the path; a missing ending \
+                     is added."
+                },
             );
             let field = egui::TextEdit::singleline(&mut text)
                 .hint_text("/folder/file.k")
@@ -266,7 +271,7 @@ impl Dialogs {
         let path = text.trim().trim_matches('"').to_owned();
         if is_taken && !path.is_empty() {
             self.check(question, PathBuf::from(path), ctx);
-        } else if !is_closed && !modal.should_close() {
+        } else if !is_closed && !shown.should_close() {
             self.prompt = Some((question, text));
         } else {
             commands.extend(closed(&question));
@@ -331,6 +336,14 @@ impl Question {
             path.with_extension(ending)
         }
     }
+}
+
+/// A window over the window, framed like the other dialogs.
+fn modal(ctx: &egui::Context, name: &str) -> egui::Modal {
+    let frame = egui::Frame::popup(&ctx.global_style())
+        .inner_margin(24)
+        .corner_radius(8);
+    egui::Modal::new(egui::Id::unique(name)).frame(frame)
 }
 
 fn titles(question: &Question) -> (&'static str, &'static str) {

@@ -63,10 +63,21 @@ fn mesh(path: &str) -> shapematch::geometry::TriMesh {
 #[test]
 fn the_bundled_pair_is_matched_and_everything_is_written() {
     let pair = Pair::bundled();
-    let [json, matrix, cards, moved] =
-        ["r.json", "m.txt", "c.k", "moved.k"].map(|name| pair.path(name));
+    let names = ["r.json", "m.txt", "c.k", "moved.k", "r.html", "nodes.csv"];
+    let [json, matrix, cards, moved, page, nodes] = names.map(|name| pair.path(name));
     let options = [
-        "--json", &json, "--matrix", &matrix, "--cards", &cards, "--moved", &moved,
+        "--json",
+        &json,
+        "--matrix",
+        &matrix,
+        "--cards",
+        &cards,
+        "--moved",
+        &moved,
+        "--report",
+        &page,
+        "--deviations",
+        &nodes,
     ];
     let output = pair.run(&options);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
@@ -88,6 +99,11 @@ fn the_bundled_pair_is_matched_and_everything_is_written() {
     assert_eq!(typed.motion.to_rows(), found.to_rows());
     let on_cards = read_back(&std::fs::read_to_string(&cards).unwrap()).unwrap();
     assert!(node_distance(&stamped, &on_cards, &found).1 < 1e-3);
+
+    let page = std::fs::read_to_string(&page).unwrap();
+    assert!(page.ends_with("</html>\n") && page.contains("GOOD"));
+    let nodes = std::fs::read_to_string(&nodes).unwrap();
+    assert!(nodes.contains("\npart,node,x,y,z,distance,class,nearest_element\nstamped,"));
 
     // The moved deck lies where the matrix puts the stamped one, node by node.
     let there = mesh(&moved);

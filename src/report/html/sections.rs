@@ -19,7 +19,7 @@ impl Report<'_> {
         let reasons: String = record
             .reasons
             .iter()
-            .map(|reason| format!("<li>{}.</li>", escaped(&capitalized(reason))))
+            .map(|reason| format!("<li>{}</li>", escaped(&sentence_of(reason))))
             .collect();
         let (class, word) = (record.verdict, record.verdict.to_uppercase());
         let links: String = [
@@ -339,8 +339,14 @@ pub(super) fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }
 
-pub(super) fn capitalized(text: &str) -> String {
-    let mut letters = text.chars();
+/// A reason as a sentence.
+fn sentence_of(reason: &str) -> String {
+    let mut letters = reason.chars();
     let first = letters.next().map(|c| c.to_uppercase().to_string());
-    first.unwrap_or_default() + letters.as_str()
+    let end = if reason.ends_with(['.', '?', '!']) {
+        ""
+    } else {
+        "."
+    };
+    first.unwrap_or_default() + letters.as_str() + end
 }
