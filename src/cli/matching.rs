@@ -7,7 +7,8 @@ use super::args::MatchArgs;
 use super::recipe::{Asked, asked};
 use super::text::short;
 use super::{
-    EXIT_POOR, match_text, print, progress, project, takes_stdout, write_json, write_output,
+    EXIT_POOR, EXIT_USAGE, match_text, print, progress, project, takes_stdout, write_json,
+    write_output,
 };
 use crate::assess::Verdict;
 use crate::geometry::Similarity;
@@ -28,11 +29,14 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
             (asked, crash, stamped)
         }
         None if project::is_project(&args.crash) => project::open(&args.crash, &monitor)?,
-        None => anyhow::bail!(
-            "name the stamped part too, or a project alone (.{}): {}",
-            project::EXTENSION,
-            args.crash.display()
-        ),
+        None => {
+            log::error!(
+                "name the stamped part too, or a project alone (.{}): {}",
+                project::EXTENSION,
+                args.crash.display()
+            );
+            return Ok(ExitCode::from(EXIT_USAGE));
+        }
     };
     let run = run_match(&asked, &crash, &stamped, &monitor)?;
     let record = record::match_record(&run, &crash, &stamped);

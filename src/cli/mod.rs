@@ -28,6 +28,8 @@ use serde::Serialize;
 
 /// Exit status for a pose that was found but is poor.
 pub const EXIT_POOR: u8 = 3;
+/// Exit status for wrong usage, as clap gives it.
+pub const EXIT_USAGE: u8 = 2;
 
 /// Runs one subcommand.
 pub fn run(task: &Task, quiet: bool) -> anyhow::Result<ExitCode> {
