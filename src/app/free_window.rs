@@ -3,9 +3,11 @@
 use super::{AppState, ColorBy};
 use crate::geometry::Similarity;
 use crate::jobs::Role;
+use serde::{Deserialize, Serialize};
 
 /// The uses of the right window while the stamped part is moved over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum FreeWindow {
     /// A card with the way back.
     Nothing,

@@ -1,4 +1,7 @@
-use super::Document;
+use super::{Document, Part};
+use crate::jobs::Role;
+use std::cmp::Ordering;
+use std::time::Duration;
 
 /// Undo steps that are kept; an old document costs little, but not nothing.
 const MAX_STEPS: usize = 500;
@@ -10,8 +13,104 @@ pub struct GestureId(pub u64);
 #[derive(Debug, Clone)]
 struct Step {
     name: String,
+    /// When it was done last, since the program began.
+    at: Duration,
     /// For a step that was done: the document before. For one that was undone: the one after.
     document: Document,
+}
+
+/// What a step changed first of all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StepKind {
+    /// Files came, went or changed places.
+    Files,
+    /// Units or chosen parts.
+    Selection,
+    /// A match was taken over.
+    Match,
+    /// A level of reduction.
+    Level,
+    /// The pose.
+    Pose,
+    /// What is shown and in which colours.
+    Display,
+    /// The settings of the match.
+    Settings,
+    /// Anything else, for example a label.
+    Other,
+}
+
+impl StepKind {
+    /// What lies between two documents.
+    pub fn between(before: &Document, after: &Document) -> Self {
+        let differs = |is: fn(&Part, &Part) -> bool| {
+            let of = |role| (before.part(role), after.part(role));
+            Role::ALL.into_iter().any(|role| match of(role) {
+                (Some(old), Some(new)) => is(old, new),
+                (None, None) => false,
+                _ => true,
+            })
+        };
+        let run = |document: &Document| document.result.as_ref().map(|r| r.run.clone());
+        if differs(|old, new| old.source != new.source) {
+            Self::Files
+        } else if after.result.is_some() && run(before) != run(after) {
+            Self::Match
+        } else if differs(|old, new| old.loaded != new.loaded) {
+            Self::Selection
+        } else if differs(|old, new| old.level != new.level) {
+            Self::Level
+        } else if before.pose != after.pose {
+            Self::Pose
+        } else if differs(|old, new| (&old.hidden, &old.colors) != (&new.hidden, &new.colors)) {
+            Self::Display
+        } else if before.recipe != after.recipe {
+            Self::Settings
+        } else {
+            Self::Other
+        }
+    }
+
+    /// A sign for it.
+    pub fn sign(self) -> &'static str {
+        match self {
+            Self::Files => "🗁",
+            Self::Selection => "☑",
+            Self::Match => "🎯",
+            Self::Level => "◢",
+            Self::Pose => "↔",
+            Self::Display => "👁",
+            Self::Settings => "⚙",
+            Self::Other => "✏",
+        }
+    }
+
+    /// The sign in a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Files => "files",
+            Self::Selection => "choice of parts or units",
+            Self::Match => "match",
+            Self::Level => "level",
+            Self::Pose => "pose",
+            Self::Display => "display",
+            Self::Settings => "settings",
+            Self::Other => "note",
+        }
+    }
+}
+
+/// A step as the history's tab shows it.
+#[derive(Debug, Clone)]
+pub struct HistoryRow<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// What it changed.
+    pub kind: StepKind,
+    /// When it was done last, since the program began.
+    pub at: Duration,
+    /// The work after it.
+    pub document: &'a Document,
 }
 
 /// One ordered history of whole documents.
@@ -24,13 +123,20 @@ pub struct History {
 
 impl History {
     /// Notes a step that led away from `before`. Further steps of the same gesture only rename it.
-    pub fn push(&mut self, name: String, before: Document, gesture: Option<GestureId>) {
+    pub fn push(
+        &mut self,
+        name: String,
+        before: Document,
+        gesture: Option<GestureId>,
+        at: Duration,
+    ) {
         self.undone.clear();
         if gesture.is_some()
             && gesture == self.open_gesture
             && let Some(last) = self.done.last_mut()
         {
             last.name = name;
+            last.at = at;
             return;
         }
         self.open_gesture = gesture;
@@ -38,7 +144,7 @@ impl History {
             self.done.remove(0);
         }
         let document = before;
-        self.done.push(Step { name, document });
+        self.done.push(Step { name, at, document });
     }
 
     /// True while the last step is that of this gesture and may still change.
@@ -93,6 +199,30 @@ impl History {
         self.done.iter().chain(undone).map(|s| s.name.as_str())
     }
 
+    /// The step with that number, counted from 0, those that are undone included.
+    pub fn row<'a>(&'a self, index: usize, current: &'a Document) -> Option<HistoryRow<'a>> {
+        let n_done = self.done.len();
+        let undone = |index: usize| {
+            let from_end = index.checked_sub(n_done)?;
+            let at = self.undone.len().checked_sub(from_end + 1)?;
+            self.undone.get(at)
+        };
+        // The document after so many steps.
+        let after = |n: usize| match n.cmp(&n_done) {
+            Ordering::Less => self.done.get(n).map(|step| &step.document),
+            Ordering::Equal => Some(current),
+            Ordering::Greater => undone(n - 1).map(|step| &step.document),
+        };
+        let step = self.done.get(index).or_else(|| undone(index))?;
+        let (before, document) = (after(index)?, after(index + 1)?);
+        Some(HistoryRow {
+            name: &step.name,
+            kind: StepKind::between(before, document),
+            at: step.at,
+            document,
+        })
+    }
+
     /// Steps that are in force.
     pub fn n_done(&self) -> usize {
         self.done.len()
@@ -113,6 +243,7 @@ fn shift(
     let name = step.name.clone();
     to.push(Step {
         name: step.name,
+        at: step.at,
         document: current,
     });
     Some((name, step.document))

@@ -2,13 +2,16 @@
 
 use super::{AppState, Reason};
 use crate::geometry::Point3;
+use crate::geometry::serial::xyz;
 use crate::jobs::{PerRole, Role};
 use crate::registration::{
     PairDoubt, PointPairFit, RegistrationError, StartMethod, fit_point_pairs,
 };
+use serde::{Deserialize, Serialize};
 
 /// What a picked point is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum PickKind {
     /// A node, with its number in the deck where it has one.
     Node(Option<u64>),
@@ -44,9 +47,10 @@ impl PickKind {
 }
 
 /// A picked point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PickedPoint {
     /// Where, in the space of its own part (for the crash part that is the crash model's).
+    #[serde(with = "xyz")]
     pub point: Point3,
     /// What is there.
     pub kind: PickKind,

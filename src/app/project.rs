@@ -1,7 +1,8 @@
 //! The project that is worked on: its file, what of it is saved, and what is written into it.
 
 use super::{
-    AppState, AxisFrame, Display, Document, Label, MatchResult, Part, SectionView, ShownGeometry,
+    AppState, AxisFrame, Display, Document, FreeWindow, Label, MatchResult, Part, PointPair,
+    SectionView, ShownGeometry, age_text, clock_text,
 };
 use crate::geometry::camera::OrbitStyle;
 use crate::geometry::serial::xyz;
@@ -73,7 +74,9 @@ pub(super) struct WindowEntry {
     pub section: SectionView,
     pub has_gizmo: bool,
     pub move_axes: AxisFrame,
+    pub free_window: Option<FreeWindow>,
     pub labels: Vec<LabelEntry>,
+    pub pairs: Vec<PointPair>,
 }
 
 /// A value pinned to a node, as a project keeps it.
@@ -121,7 +124,9 @@ impl WindowEntry {
             section: view.section,
             has_gizmo: view.has_gizmo,
             move_axes: view.move_axes,
+            free_window: view.free_window,
             labels: labels(&state.document),
+            pairs: state.pairs().to_vec(),
         }
     }
 
@@ -136,6 +141,7 @@ impl WindowEntry {
         view.shown = self.shown;
         view.display = self.display;
         view.section = self.section;
+        view.free_window = self.free_window;
         view.has_gizmo = self.has_gizmo;
         view.move_axes = self.move_axes;
     }
@@ -183,6 +189,8 @@ impl AppState {
             && (parts.into_iter().flatten().any(is_touched)
                 || document.pose.crash_from_stamped != crate::geometry::Similarity::identity()
                 || document.result.is_some()
+                || !document.labels.is_empty()
+                || !document.pairs.pairs.is_empty()
                 || document.recipe != MatchRecipe::default()
                 || self.sweep.is_some())
     }
@@ -199,6 +207,20 @@ impl AppState {
             *kept == self.document && *has_sweep == self.sweep.is_some()
         };
         !is_moving && self.has_work() && !self.project.kept.as_ref().is_some_and(is_known)
+    }
+
+    /// A time of the past, in seconds since 1970, as people say it: "14:02", "14:02, 3 days ago".
+    pub fn when_text(&self, unix: u64) -> String {
+        const DAY: i64 = 86_400;
+        let ago = self.clock.unix_at(self.now).saturating_sub(unix);
+        let local = self.clock.day_time_at(self.now).as_secs().cast_signed() - ago.cast_signed();
+        let time = std::time::Duration::from_secs(local.rem_euclid(DAY).cast_unsigned());
+        let minutes = &clock_text(time)[..5];
+        if (0..DAY).contains(&local) {
+            minutes.to_owned()
+        } else {
+            format!("{minutes}, {}", age_text(ago.max(DAY.cast_unsigned())))
+        }
     }
 
     /// What the work is, in a line: "stamped.dynain on crash.k · GOOD".
@@ -243,18 +265,25 @@ fn part_entry(part: &Part) -> PartEntry {
 
 /// The title of a project, as [`AppState::work_title`] has it.
 pub(crate) fn project_title(project: &Project) -> String {
-    let name = |entry: Option<&PartEntry>, example: &str| {
-        entry.map(|entry| match &entry.file {
-            Some(file) => file
-                .file_name()
-                .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
-            None => example.to_owned(),
-        })
-    };
     let [crash, stamped] = project.parts();
-    let names = [name(stamped, "example"), name(crash, "example")];
-    let names: Vec<String> = names.into_iter().flatten().collect();
-    let mut title = names.join(" on ");
+    let name = |entry: &PartEntry| match &entry.file {
+        Some(file) => file
+            .file_name()
+            .map(|name| name.to_string_lossy().into_owned()),
+        None => Some("the example".to_owned()),
+    };
+    let names: Vec<String> = [stamped, crash]
+        .into_iter()
+        .flatten()
+        .filter_map(name)
+        .collect();
+    let mut title = match &names[..] {
+        [a, b] if a == b => format!("{a} pair"),
+        names => names.join(" on "),
+    };
+    if let Some(n) = crash.or(stamped).and_then(|entry| entry.max_triangles) {
+        title += &format!(" · reduced to {}", crate::report::grouped(n));
+    }
     if let Some(result) = project.result.as_ref().filter(|result| result.is_current) {
         title += " · ";
         title += result.run.assessment.verdict.label();

@@ -86,6 +86,8 @@ pub struct Settings {
     pub reduce_motion: bool,
     /// Files opened last, newest first.
     pub recent: Vec<PathBuf>,
+    /// Labels of the commands that were searched for last, newest first.
+    pub recent_commands: Vec<String>,
     /// What was said about the units of files.
     pub unit_memory: UnitMemory,
     /// Marked reduction levels, largest first.
@@ -119,6 +121,7 @@ impl Default for Settings {
             is_mouse_asked: false,
             reduce_motion: false,
             recent: Vec::new(),
+            recent_commands: Vec::new(),
             unit_memory: UnitMemory::default(),
             marked_levels: vec![50_000, 20_000, 8_000, 4_000, 2_000, 1_000, 500],
             max_triangles: 2_000,

@@ -237,7 +237,7 @@ impl AppState {
         change(&mut self.document);
         let has_changed = self.document != before;
         if has_changed {
-            self.history.push(name.into(), before, gesture);
+            self.history.push(name.into(), before, gesture, self.now);
         }
         has_changed
     }

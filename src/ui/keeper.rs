@@ -173,7 +173,7 @@ impl Run {
                 for path in self.others().into_iter().filter(|path| is_running(path)) {
                     end(&path);
                 }
-                None
+                Some(Kept::Works(self.works()))
             }
         }
     }
@@ -310,8 +310,10 @@ mod tests {
         assert_eq!(works.len(), 1);
         assert!(works[0].is_lost && works[0].saved_at > 0);
         assert_eq!(works[0].title, "lost.k");
-        assert!(next.carry_out(Order::PutOff).is_none());
-        let works = next.works();
+        let Some(Kept::Works(works)) = next.carry_out(Order::PutOff) else {
+            panic!("the new places are told");
+        };
+        assert_eq!(works, next.works());
         assert_eq!((works.len(), works[0].is_lost), (1, false));
 
         next.carry_out(Order::Keep(project("/a/ended.k")));

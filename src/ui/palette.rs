@@ -1,66 +1,152 @@
-//! Search over all commands.
+//! Search over all commands, recent files and exports.
 
-use super::theme::ROW;
-use super::widgets::{draft, secondary, set_draft};
-use crate::app::{Action, AppState, Command, ViewCommand};
-use egui::{ScrollArea, Ui, vec2};
+use super::theme::{Palette, ROW, UNIT};
+use super::widgets::{caption, draft, secondary, set_draft};
+use crate::app::{AppState, Command, PaletteEntry, ViewCommand};
+use egui::{Align, Key, Layout, Modifiers, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
+
+/// Width of the search.
+const WIDTH: f32 = 560.0;
 
 /// The field and the list of what fits.
 pub fn palette_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mut Vec<Command>) {
-    ui.set_width(480.0);
-    let id = egui::Id::unique("palette search");
-    let mut text = draft(ui, id);
+    ui.set_width(WIDTH.min(room.x));
+    let ids = [
+        egui::Id::unique("palette search"),
+        egui::Id::unique("palette choice"),
+    ];
+    let before = draft(ui, ids[0]);
+    let mut text = before.clone();
+    let mut at: usize = ui.data(|data| data.get_temp(ids[1])).unwrap_or(0);
+    let steps = arrow_steps(ui);
     let field = egui::TextEdit::singleline(&mut text)
-        .hint_text("Search commands")
+        .hint_text("Search commands, recent files, exports")
         .desired_width(f32::INFINITY)
         .margin(egui::Margin::symmetric(8, 6));
     let field = ui.add(field).accessible_name("Search commands");
     if !field.has_focus() && !field.lost_focus() {
         field.request_focus();
     }
-    let is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-    let wanted = text.to_lowercase();
-    let fits = |action: &&Action| {
-        let info = action.info();
-        let all = format!("{} {}", info.label, info.tooltip).to_lowercase();
-        wanted.split_whitespace().all(|word| all.contains(word))
-    };
-    let found: Vec<Action> = Action::ALL.iter().filter(fits).copied().collect();
-    let mut chosen = None;
-    if is_entered {
-        chosen = found.iter().find(|a| a.enabled(state).is_ok()).copied();
+    let is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+    let found = state.palette(&text);
+    if text != before {
+        at = 0;
     }
+    at = at
+        .saturating_add_signed(steps)
+        .min(found.len().saturating_sub(1));
+    let has_moved = steps != 0 || text != before;
+    let mut chosen = is_entered.then(|| found.get(at)).flatten();
     ScrollArea::vertical()
-        .max_height(room.y.min(400.0))
+        .max_height(room.y.min(13.5 * ROW))
         .auto_shrink([false, true])
         .show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             if found.is_empty() {
                 secondary(ui, "No command of that name");
             }
-            for action in found {
-                let info = action.info();
-                let enabled = action.enabled(state);
-                let keys = info.shortcut.map_or_else(String::new, |s| s.to_string());
-                let button = egui::Button::new(info.label)
-                    .shortcut_text(keys)
-                    .frame_when_inactive(false)
-                    .min_size(vec2(ui.available_width(), ROW));
-                let response = ui.add_enabled(enabled.is_ok(), button);
-                let response = response.on_hover_text(info.tooltip);
-                let response = match enabled {
-                    Ok(()) => response,
-                    Err(reason) => response.on_disabled_hover_text(format!("Not now: {reason}")),
-                };
+            for (index, entry) in found.iter().enumerate() {
+                let response = row_ui(ui, entry, index == at);
+                if index == at && has_moved {
+                    response.scroll_to_me(None);
+                }
                 if response.clicked() {
-                    chosen = Some(action);
+                    chosen = Some(entry);
                 }
             }
         });
-    set_draft(ui, id, text);
-    if let Some(action) = chosen {
-        set_draft(ui, id, String::new());
+    foot_ui(ui, found.get(at));
+    let chosen = chosen
+        .map(|entry| entry.commands(state))
+        .unwrap_or_default();
+    let is_done = !chosen.is_empty();
+    if is_done {
         commands.push(ViewCommand::SetDialog(None).into());
-        commands.extend(action.to_commands(state));
+        commands.extend(chosen);
     }
+    let (text, at) = if is_done {
+        (String::new(), 0)
+    } else {
+        (text, at)
+    };
+    set_draft(ui, ids[0], text);
+    ui.data_mut(|data| data.insert_temp(ids[1], at));
+}
+
+/// Down and up move the choice; the field keeps left and right.
+fn arrow_steps(ui: &Ui) -> isize {
+    ui.input_mut(|input| {
+        let mut pressed = |key| input.count_and_consume_key(Modifiers::NONE, key) as isize;
+        pressed(Key::ArrowDown) - pressed(Key::ArrowUp)
+            + 10 * (pressed(Key::PageDown) - pressed(Key::PageUp))
+    })
+}
+
+/// One entry: name on the left, key or menu on the right.
+fn row_ui(ui: &mut Ui, entry: &PaletteEntry, is_chosen: bool) -> egui::Response {
+    let palette = Palette::of(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+    let is_possible = entry.reason.is_none();
+    let spoken = format!("{}, {}", entry.label, entry.group);
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(egui::Role::ListBoxOption, is_possible, is_chosen, &spoken)
+    });
+    if is_chosen {
+        ui.painter().rect_filled(rect, 4.0, palette.hovered);
+        let line = Rect::from_min_size(rect.min, vec2(3.0, rect.height()));
+        ui.painter().rect_filled(line, 1.5, palette.accent);
+    } else if response.hovered() {
+        ui.painter().rect_filled(rect, 4.0, palette.widget);
+    }
+    let (font, small) = (
+        egui::TextStyle::Body.resolve(ui.style()),
+        egui::TextStyle::Small.resolve(ui.style()),
+    );
+    let color = if is_possible {
+        palette.text
+    } else {
+        palette.secondary
+    };
+    let right = rect.right() - 12.0;
+    let keys = ui
+        .painter()
+        .layout_no_wrap(entry.keys.clone(), font.clone(), palette.secondary);
+    let keys_at = pos2(right - keys.size().x, rect.center().y - keys.size().y / 2.0);
+    let group = if entry.is_recent {
+        format!("used lately · {}", entry.group)
+    } else {
+        entry.group.to_owned()
+    };
+    let group = ui.painter().layout_no_wrap(group, small, palette.secondary);
+    let group_left = right - 104.0_f32.max(keys.size().x + 16.0) - group.size().x;
+    let group_at = pos2(group_left, rect.center().y - group.size().y / 2.0);
+    ui.painter().galley(keys_at, keys, palette.secondary);
+    ui.painter().galley(group_at, group, palette.secondary);
+    let width = group_left - rect.left() - 20.0;
+    let label = super::panels::section::elided(ui, &entry.label, font, color, width);
+    let at = pos2(rect.left() + 12.0, rect.center().y - label.size().y / 2.0);
+    ui.painter().galley(at, label, color);
+    response
+}
+
+/// What the chosen entry does, and why it may not.
+fn foot_ui(ui: &mut Ui, chosen: Option<&PaletteEntry>) {
+    ui.separator();
+    ui.horizontal(|ui| {
+        ui.set_height(ROW);
+        let Some(entry) = chosen else { return };
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            caption(ui, "↑ ↓   Enter   Esc");
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add_space(UNIT);
+                let palette = Palette::of(ui);
+                let (text, color) = match entry.reason {
+                    Some(reason) => (format!("Not now: {reason}"), palette.check),
+                    None => (entry.help.clone(), palette.secondary),
+                };
+                let text = RichText::new(text).small().color(color);
+                ui.add(egui::Label::new(text).truncate());
+            });
+        });
+    });
 }

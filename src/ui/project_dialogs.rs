@@ -2,10 +2,8 @@
 
 use super::theme::{Palette, ROW, UNIT};
 use super::widgets::{caption, paragraph, role_mark, secondary};
-use crate::app::{AppState, Command, KeptWork, ProjectCommand, ViewCommand};
+use crate::app::{AppState, Command, ProjectCommand, ViewCommand};
 use crate::jobs::Located;
-use std::time::{SystemTime, UNIX_EPOCH};
-
 use egui::{Align2, Button, Frame, Margin, RichText, Stroke, Ui, vec2};
 
 /// Least width of the buttons that answer.
@@ -102,7 +100,13 @@ pub fn restore_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Comm
         frame.show(ui, |ui| {
             ui.set_width(400.0);
             ui.spacing_mut().item_spacing.y = UNIT;
-            ui.label(RichText::new(format!("Restore the work from {}?", when(work))).size(16.0));
+            ui.label(
+                RichText::new(format!(
+                    "Restore the work from {}?",
+                    state.when_text(work.saved_at)
+                ))
+                .size(16.0),
+            );
             secondary(ui, work.title.clone());
             caption(ui, "The program ended before it was saved.");
             ui.horizontal(|ui| {
@@ -122,7 +126,7 @@ pub fn restore_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Comm
 pub fn kept_menu_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.menu_button("Kept work", |ui| {
         for work in &state.project.kept_works {
-            let label = format!("{}   {}", when(work), work.title);
+            let label = format!("{}   {}", state.when_text(work.saved_at), work.title);
             if ui.button(label).clicked() {
                 commands.push(ProjectCommand::Restore(work.path.clone()).into());
                 ui.close();
@@ -130,18 +134,6 @@ pub fn kept_menu_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) 
         }
         caption(ui, "The work of the last five runs, kept after each step");
     });
-}
-
-/// How long ago work was kept, roughly.
-fn when(work: &KeptWork) -> String {
-    let now = SystemTime::now().duration_since(UNIX_EPOCH);
-    let now = now.map_or(0, |now| now.as_secs());
-    match now.saturating_sub(work.saved_at) / 60 {
-        0 => "a moment ago".to_owned(),
-        minutes @ 1..60 => format!("{minutes} min ago"),
-        minutes @ 60..1440 => format!("{} h ago", minutes / 60),
-        minutes => format!("{} days ago", minutes / 1440),
-    }
 }
 
 fn primary(ui: &mut Ui, label: &str) -> egui::Response {

@@ -507,3 +507,43 @@ fn a_request_finds_files_beside_the_project() {
     assert_eq!(entry.locate(&project), Some(crash));
     assert_eq!(entry.locate(Path::new("/gone/p.shapematch")), None);
 }
+
+#[test]
+fn the_command_line_runs_and_describes_a_project() {
+    let (folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    save(&mut window, &path);
+    // The same match again, from the pose that was saved.
+    window.apply(MatchCommand::Run);
+    let matrix = folder.path().join("m.txt");
+    let program = |args: &[&str]| {
+        let program = env!("CARGO_BIN_EXE_shapematch");
+        let output = std::process::Command::new(program).args(args).output();
+        let output = output.unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{said}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let project = path.to_str().unwrap();
+    program(&["match", project, "--matrix", matrix.to_str().unwrap()]);
+    let text = std::fs::read_to_string(&matrix).unwrap();
+    let pose = shapematch::report::parse_matrix(&text).unwrap().motion;
+    let here = *window.state.document.crash_from_stamped();
+    assert_eq!(pose_bits(&pose), pose_bits(&here));
+    let told = program(&["info", project]);
+    for words in [
+        "unchanged",
+        "reduced to 400",
+        "in mm",
+        "Fractional ICP",
+        "GOOD",
+    ] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    let both = std::process::Command::new(env!("CARGO_BIN_EXE_shapematch"))
+        .args(["match", crash.to_str().unwrap()])
+        .output()
+        .unwrap();
+    assert!(!both.status.success());
+    assert!(String::from_utf8_lossy(&both.stderr).contains("project"));
+}

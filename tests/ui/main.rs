@@ -10,6 +10,7 @@ mod no_window;
 mod pairs;
 mod panels;
 mod parts;
+mod project;
 mod render;
 mod starts;
 mod story;

@@ -1,6 +1,6 @@
-use crate::app::project::{LabelEntry, WindowEntry};
+use crate::app::project::WindowEntry;
 use crate::app::{
-    AppState, Dialog, Document, Effect, MatchResult, NoticeLevel, Part, ProjectCommand,
+    AppState, Dialog, Document, Effect, MatchResult, NoticeLevel, Part, PointPairs, ProjectCommand,
     ShownGeometry, StampedPose,
 };
 use crate::jobs::{
@@ -182,13 +182,13 @@ impl AppState {
         self.tell_changed_files(&parts);
         self.drop_previews();
         let window = self.read_window(&project);
-        let labels = window.as_ref().map_or_else(Vec::new, |w| w.labels.clone());
-        let effects = self.place_project(&name, &project, &parts, labels);
+        let effects = self.place_project(&name, &project, &parts, window.as_ref());
         self.show_project(&project, window);
-        self.file_project(request, &project);
+        let filed = self.file_project(request, &project);
         let text = format!("opened {name}: {}", self.work_title());
         self.log_step("project", None, text, Some(took));
         let mut all = vec![Effect::SaveSettings];
+        all.extend(filed);
         all.extend(effects);
         all
     }
@@ -212,7 +212,7 @@ impl AppState {
         name: &str,
         project: &Project,
         parts: &PerRole<Option<OpenedPart>>,
-        labels: Vec<LabelEntry>,
+        window: Option<&WindowEntry>,
     ) -> Vec<Effect> {
         let mut effects = Vec::new();
         let mut document = Document {
@@ -251,12 +251,18 @@ impl AppState {
             let stamp = result_stamp(&entry, document.stamp(), is_same);
             MatchResult::restored(entry, stamp)
         });
-        for label in labels {
-            let part = document.part(label.role).map(|part| part.revision);
-            let id = self.next_revision();
-            document
-                .labels
-                .extend(part.map(|part| label.label(id, part)));
+        if let Some(window) = window {
+            for label in window.labels.iter().cloned() {
+                let part = document.part(label.role).map(|part| part.revision);
+                let id = self.next_revision();
+                document
+                    .labels
+                    .extend(part.map(|part| label.label(id, part)));
+            }
+            document.pairs = PointPairs {
+                parts: document.stamp().parts,
+                pairs: window.pairs.clone(),
+            };
         }
         self.commit(format!("Open {name}"), |old| *old = document);
         effects.into_iter().map(|kind| self.start(kind)).collect()
@@ -295,7 +301,7 @@ impl AppState {
     }
 
     /// Where the project lies and what of it is saved.
-    fn file_project(&mut self, request: ProjectRequest, project: &Project) {
+    fn file_project(&mut self, request: ProjectRequest, project: &Project) -> Vec<Effect> {
         self.project.others = project.others.clone();
         if request.is_kept {
             let path = project.window.as_ref().and_then(|window| {
@@ -304,12 +310,15 @@ impl AppState {
             });
             self.project.path = path;
             self.project.saved = None;
+            // From here on this run keeps it.
+            return self.apply_project(ProjectCommand::PutOff);
         } else {
             let now = self.clock.unix_at(self.now);
             self.settings.remember_path(&request.path, now);
             self.project.path = Some(request.path);
             self.project.saved = Some(self.document.clone());
         }
+        Vec::new()
     }
 }
 

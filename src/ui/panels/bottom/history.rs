@@ -1,55 +1,118 @@
-//! Undo steps; a click goes there.
+//! Undo steps with small pictures of poses; a click goes there.
 
-use crate::app::{Action, AppState, Command, HistoryCommand};
-use crate::ui::theme::{Palette, ROW};
+use super::thumbnails::Thumbnails;
+use crate::app::{
+    Action, AppState, Command, Document, HistoryCommand, HistoryRow, StepKind, clock_text,
+};
+use crate::ui::theme::Palette;
 use crate::ui::widgets::plain_action;
-use egui::{Align, Button, Layout, RichText, ScrollArea, Ui, vec2};
+use egui::{Rect, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
 
-/// The list, oldest first; what was undone is quiet.
+/// Height of a row, with room for a picture.
+const HEIGHT: f32 = 34.0;
+/// Size of the pictures.
+const PICTURE: egui::Vec2 = vec2(48.0, 30.0);
+
+/// The list, oldest first; the present step is marked, what was undone is quiet.
 pub fn history_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         plain_action(ui, state, Action::Undo, commands);
         plain_action(ui, state, Action::Redo, commands);
         plain_action(ui, state, Action::BackToAsLoaded, commands);
     });
-    let n_done = state.history.n_done();
-    let names: Vec<&str> = std::iter::once("Start")
-        .chain(state.history.names())
-        .collect();
-    let is_free = Action::OpenExample.enabled(state).is_ok();
+    let thumbnails = Thumbnails::of(ui.ctx());
+    let mut thumbnails = thumbnails.lock();
+    let n_rows = state.history.n_done() + state.history.n_undone() + 1;
     ScrollArea::vertical()
         .id_salt("history")
         .auto_shrink([false, false])
         .stick_to_bottom(true)
-        .show_rows(ui, ROW, names.len(), |ui, range| {
+        .show_rows(ui, HEIGHT, n_rows, |ui, range| {
             ui.spacing_mut().item_spacing.y = 0.0;
-            for index in range {
-                row_ui(ui, (index, names[index]), (n_done, is_free), commands);
+            for number in range {
+                row_ui(ui, number, state, &mut thumbnails, commands);
             }
         });
+    thumbnails.make(ui, state);
 }
 
+/// The work after so many steps.
 fn row_ui(
     ui: &mut Ui,
-    (index, name): (usize, &str),
-    (n_done, is_free): (usize, bool),
+    number: usize,
+    state: &AppState,
+    thumbnails: &mut Thumbnails,
     commands: &mut Vec<Command>,
 ) {
+    let n_done = state.history.n_done();
+    let row = number
+        .checked_sub(1)
+        .and_then(|index| state.history.row(index, &state.document));
+    let name = row.as_ref().map_or("Start", |row| row.name);
+    let (is_now, is_undone) = (number == n_done, number > n_done);
+    let can_jump = Action::OpenExample.enabled(state).is_ok() && !is_now;
+    let sense = if can_jump {
+        Sense::click()
+    } else {
+        Sense::hover()
+    };
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), sense);
+    let when = if is_undone { ", undone" } else { "" };
+    let spoken = format!("Step {number}: {name}{when}");
+    response
+        .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, can_jump, is_now, &spoken));
     let palette = Palette::of(ui);
-    let color = if index > n_done {
-        palette.secondary
+    let painter = ui.painter();
+    if is_now {
+        painter.rect_filled(rect, 4.0, palette.hovered);
+        let line = Rect::from_min_size(rect.min, vec2(3.0, rect.height()));
+        painter.rect_filled(line, 1.5, palette.accent);
+    } else if response.hovered() && can_jump {
+        painter.rect_filled(rect, 4.0, palette.widget);
+    }
+    let color = if is_undone {
+        palette.secondary.gamma_multiply(0.75)
     } else {
         palette.text
     };
-    let text = RichText::new(format!("{index:>3}   {name}")).color(color);
-    let button = Button::new(text)
-        .frame_when_inactive(false)
-        .selected(index == n_done)
-        .min_size(vec2(ui.available_width(), ROW));
-    let layout = Layout::left_to_right(Align::Center).with_main_justify(true);
-    ui.with_layout(layout.with_main_align(Align::Min), |ui| {
-        if ui.add_enabled(is_free, button).clicked() && index != n_done {
-            commands.push(HistoryCommand::JumpTo(index).into());
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let middle = rect.center().y;
+    let left_center = egui::Align2::LEFT_CENTER;
+    let count = pos2(rect.left() + 36.0, middle);
+    let right_center = egui::Align2::RIGHT_CENTER;
+    painter.text(count, right_center, number, font.clone(), palette.secondary);
+    if let Some(row) = &row {
+        let sign = pos2(rect.left() + 58.0, middle);
+        painter.text(
+            sign,
+            egui::Align2::CENTER_CENTER,
+            row.kind.sign(),
+            font.clone(),
+            color,
+        );
+        let at = pos2(rect.right() - 12.0, middle);
+        let time = clock_text(state.clock.day_time_at(row.at));
+        painter.text(at, right_center, time, font.clone(), palette.secondary);
+    }
+    let label = pos2(rect.left() + 136.0, middle);
+    painter.text(label, left_center, name, font, color);
+    if let Some(row) = row.as_ref().filter(|row| has_picture(row, &state.document)) {
+        let place = Rect::from_min_size(pos2(rect.left() + 76.0, middle - 15.0), PICTURE);
+        let mut place = ui.new_child(UiBuilder::new().max_rect(place));
+        if is_undone {
+            place.set_opacity(0.5);
         }
-    });
+        let pose = Some(*row.document.crash_from_stamped());
+        thumbnails.show(&mut place, state, pose, PICTURE);
+    }
+    let hint = row.map_or("The empty window", |row| row.kind.word());
+    if response.on_hover_text(hint).clicked() {
+        commands.push(HistoryCommand::JumpTo(number).into());
+    }
+}
+
+/// A pose has a picture if it is of the parts that are loaded now.
+fn has_picture(row: &HistoryRow<'_>, now: &Document) -> bool {
+    let moves = matches!(row.kind, StepKind::Pose | StepKind::Match);
+    moves && now.both().is_some() && row.document.stamp().parts == now.stamp().parts
 }
