@@ -158,7 +158,7 @@ impl AppState {
         Some(Cause {
             title: "A part that fits twice?".to_owned(),
             evidence: format!(
-                "{} it fits {:.2} times as badly; check holes and beads.",
+                "{} it fits almost as well (score ratio {:.2}): check holes and beads.",
                 capital(&how.unwrap_or_else(|| "in another pose".to_owned())),
                 ambiguity.ratio.unwrap_or(1.0)
             ),

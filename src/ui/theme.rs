@@ -196,7 +196,8 @@ fn visuals(palette: &Palette, is_dark: bool) -> Visuals {
         (&mut rest.noninteractive, palette.card, palette.text),
         (&mut rest.inactive, palette.widget, palette.text),
         (&mut rest.hovered, palette.hovered, palette.text),
-        (&mut rest.active, palette.accent, palette.on_accent),
+        // Its text is that of everything strong, on any ground.
+        (&mut rest.active, palette.hovered, palette.text),
         (&mut rest.open, palette.hovered, palette.text),
     ] {
         widget.bg_fill = fill;

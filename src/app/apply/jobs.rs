@@ -107,9 +107,6 @@ impl AppState {
 
     fn take_failed(&mut self, key: JobKey, message: String, elapsed: Duration) {
         self.end_of(key);
-        if key == JobKey::Match {
-            self.failed_match = Some((self.document.stamp().parts, message.clone()));
-        }
         let (step, role) = step_of(key);
         let what_now = match key {
             JobKey::Load(_) => "Nothing was loaded; choose another file or mend this one",
@@ -118,6 +115,9 @@ impl AppState {
         };
         let text = format!("{message}. {what_now}");
         self.log_at(NoticeLevel::Error, step, role, text, Some(elapsed));
+        if key == JobKey::Match {
+            self.failed_match = Some((self.document.stamp().parts, message));
+        }
     }
 
     fn end_of(&mut self, key: JobKey) {

@@ -10,7 +10,8 @@ pub fn causes_ui(ui: &mut Ui, causes: Vec<Cause>, commands: &mut Vec<Command>) {
     for cause in causes {
         ui.add_space(4.0);
         ui.separator();
-        ui.label(RichText::new(cause.title).strong());
+        let title = RichText::new(cause.title).color(Palette::of(ui).text);
+        ui.label(title.size(14.0));
         paragraph(ui, cause.evidence);
         let Some((label, remedy)) = cause.remedy else {
             continue;

@@ -56,9 +56,9 @@ pub fn recipe_ui(ui: &mut Ui, state: &AppState, recipe: &mut MatchRecipe) {
     card(ui, |ui| {
         starts_ui(ui, recipe);
         ui.separator();
-        pairs_ui(ui, &mut recipe.settings);
+        pairs_ui(ui, &mut recipe.settings, state.unit_suffix());
         ui.separator();
-        iteration_ui(ui, &mut recipe.settings);
+        iteration_ui(ui, &mut recipe.settings, state.unit_suffix());
         ui.separator();
         level_ui(ui, state, recipe);
         ui.add_space(4.0);
@@ -109,7 +109,10 @@ fn starts_ui(ui: &mut Ui, recipe: &mut MatchRecipe) {
                     .speed(0.5)
                     .suffix("°"),
             )
-            .on_hover_text("Angle between neighbouring starts; 40° gives nine, as in the paper");
+            .on_hover_text("Angle between neighbouring starts; 40° gives nine, as in the paper")
+            .on_disabled_hover_text(
+                "Not now: only starts from surface normals are turned; choose them as the start",
+            );
         });
     });
     ui.checkbox(
@@ -128,7 +131,7 @@ fn starts_ui(ui: &mut Ui, recipe: &mut MatchRecipe) {
     });
 }
 
-fn pairs_ui(ui: &mut Ui, settings: &mut MatchSettings) {
+fn pairs_ui(ui: &mut Ui, settings: &mut MatchSettings, unit: &'static str) {
     choice(
         ui,
         "Points of",
@@ -143,7 +146,7 @@ fn pairs_ui(ui: &mut Ui, settings: &mut MatchSettings) {
         &PairWith::ALL,
         |p| (p.label(), p.help()),
     );
-    selection_ui(ui, settings);
+    selection_ui(ui, settings, unit);
     choice(ui, "Minimise", &mut settings.metric, &Metric::ALL, |m| {
         (m.label(), m.help())
     });
@@ -153,7 +156,7 @@ fn pairs_ui(ui: &mut Ui, settings: &mut MatchSettings) {
 }
 
 /// Which pairs count, with the parameters of the choice.
-fn selection_ui(ui: &mut Ui, settings: &mut MatchSettings) {
+fn selection_ui(ui: &mut Ui, settings: &mut MatchSettings, unit: &'static str) {
     form_row(ui, "Pairs kept", LABEL, |ui| {
         ComboBox::from_id_salt("pairs kept")
             .selected_text(settings.selection.label())
@@ -186,13 +189,13 @@ fn selection_ui(ui: &mut Ui, settings: &mut MatchSettings) {
                 ui.add(DragValue::new(lambda).range(0.01..=100.0).speed(0.01))
                     .on_hover_text("Price of leaving points out; larger keeps more");
             });
-            floor_ui(ui, floor);
+            floor_ui(ui, floor, unit);
         }
         Selection::All | Selection::TrimmedSearch => {}
     }
 }
 
-fn floor_ui(ui: &mut Ui, floor: &mut Floor) {
+fn floor_ui(ui: &mut Ui, floor: &mut Floor, unit: &'static str) {
     form_row(ui, "Floor", LABEL, |ui| {
         let words = |floor: &Floor| match floor {
             Floor::Auto => "From the meshes",
@@ -212,13 +215,14 @@ fn floor_ui(ui: &mut Ui, floor: &mut Floor) {
             });
         if let Floor::Length(length) = floor {
             ui.name_inputs("Length of the floor", |ui| {
-                ui.add(DragValue::new(length).range(0.0..=1e6).speed(0.01));
+                let value = DragValue::new(length).range(0.0..=1e6).speed(0.01);
+                ui.add(value.suffix(unit));
             });
         }
     });
 }
 
-fn iteration_ui(ui: &mut Ui, settings: &mut MatchSettings) {
+fn iteration_ui(ui: &mut Ui, settings: &mut MatchSettings, unit: &'static str) {
     let count = |ui: &mut Ui, name: &str, value: &mut usize, help: &str| {
         form_row(ui, name, LABEL, |ui| {
             ui.add(DragValue::new(value).range(1..=1_000_000).speed(1.0))
@@ -256,7 +260,8 @@ fn iteration_ui(ui: &mut Ui, settings: &mut MatchSettings) {
         ui.add(
             DragValue::new(&mut settings.allowance)
                 .range(0.0..=1e6)
-                .speed(0.01),
+                .speed(0.01)
+                .suffix(unit),
         )
         .on_hover_text("Deviation to be expected besides faceting, such as springback");
     });

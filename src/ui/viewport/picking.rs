@@ -91,11 +91,11 @@ impl Picker<'_> {
         let landmarks = &self.state.document.part(role)?.facts.landmarks;
         let rect = self.response.rect;
         let size = |point: &Point3| self.camera.pixel_size(screen_of(rect), point);
-        let holes = landmarks.holes.iter().filter_map(|hole| {
+        let holes = landmarks.holes.iter().map(|hole| {
             let center = place.to_window(&hole.center);
             let radius = (hole.radius / size(&center)) as f32;
             let reach = HOLE_REACH.max(0.9 * radius);
-            Some((center, reach, hole.radius, PickKind::HoleCenter))
+            (center, reach, hole.radius, PickKind::HoleCenter)
         });
         let corners = landmarks.corners.iter().map(|corner| {
             let corner = place.to_window(corner);

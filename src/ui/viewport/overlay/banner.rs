@@ -1,4 +1,4 @@
-//! A line at the top of the left window when what is shown is not simply the part at its pose: a preview
+//! A line at the foot of the left window when what is shown is not simply the part at its pose: a preview
 //! that was pinned, or one of several poses that fit.
 
 use egui::{Button, CornerRadius, FontId, Rect, RichText, Stroke, Ui, vec2};
@@ -9,9 +9,11 @@ use crate::jobs::Role;
 use crate::registration::MatchOutcome;
 use crate::ui::widgets::length;
 
-/// Below the buttons of the camera.
-const TOP: f32 = 46.0;
+/// Above the scale bar and the readout.
+const BOTTOM: f32 = 62.0;
 const HEIGHT: f32 = 32.0;
+/// Residuals below this are rounding.
+const NOTHING: f64 = 1e-5;
 
 /// What the banner says and the button on it.
 struct Banner {
@@ -34,7 +36,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     let label = painter.layout_no_wrap(banner.label.clone(), font, over.look.text);
     let button_width = label.size().x + 20.0;
     let width = text.size().x + button_width + 34.0;
-    let center = over.rect.center_top() + vec2(0.0, TOP + HEIGHT / 2.0);
+    let center = over.rect.center_bottom() - vec2(0.0, BOTTOM + HEIGHT / 2.0);
     let ground = Rect::from_center_size(center, vec2(width, HEIGHT));
     if width > over.rect.width() - 8.0 {
         return;
@@ -84,7 +86,8 @@ fn poses(state: &AppState) -> Option<Banner> {
     }
     let number = result.alternative.map_or(1, |index| index + 2);
     let mut text = format!("Pose {number} of {n_poses}");
-    if let Some([own, best]) = residuals(result) {
+    let told = residuals(result).filter(|both| both.iter().any(|rmse| *rmse > NOTHING));
+    if let Some([own, best]) = told {
         text += &format!(
             " · RMS {} against {}{}",
             length(own),

@@ -68,9 +68,9 @@ fn seen(over: &Overlay<'_>, point: &Point3) -> Option<Pos2> {
 }
 
 /// A line that is seen on any ground.
-fn line(painter: &Painter, over: &Overlay<'_>, points: Vec<Pos2>) {
+fn line(painter: &Painter, over: &Overlay<'_>, points: &[Pos2]) {
     for (width, color) in [(5.0, over.look.plate), (2.5, over.look.tool)] {
-        painter.line(points.clone(), Stroke::new(width, color));
+        painter.line(points.to_vec(), Stroke::new(width, color));
     }
 }
 
@@ -89,7 +89,7 @@ fn draw_arrow(
     if from.distance(to) < 2.0 * HEAD {
         return;
     }
-    line(painter, over, vec![from, to]);
+    line(painter, over, &[from, to]);
     head(painter, over, to, to - from);
     head(painter, over, from, from - to);
 }
@@ -98,7 +98,7 @@ fn head(painter: &Painter, over: &Overlay<'_>, tip: Pos2, way: Vec2) {
     let way = way.normalized();
     let side = way.rot90() * (0.5 * HEAD);
     let back = tip - way * HEAD;
-    line(painter, over, vec![back + side, tip, back - side]);
+    line(painter, over, &[back + side, tip, back - side]);
 }
 
 fn draw_ring(
@@ -119,7 +119,7 @@ fn draw_ring(
         return;
     };
     let (tip, before) = (points[N_POINTS], points[N_POINTS - 1]);
-    line(painter, over, points);
+    line(painter, over, &points);
     head(painter, over, tip, tip - before);
 }
 
@@ -127,7 +127,10 @@ fn label(painter: &Painter, over: &Overlay<'_>, motion: &FreeMotion, size: f64) 
     let Some(at) = seen(over, &motion.point) else {
         return;
     };
-    let text = motion.words();
+    let words = motion.words();
+    let mut letters = words.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string());
+    let text = format!("{}{}", first.unwrap_or_default(), letters.as_str());
     let room = over.rect.width() - 40.0;
     let galley = painter.layout(
         text,
