@@ -20,7 +20,7 @@ pub(super) fn load_line(part: &LoadedPart, facts: &PartFacts) -> String {
         "{}: {}, {} of {}",
         part.file_name(),
         counted(report.n_triangles, "triangle"),
-        facts.used.len(),
+        grouped(facts.used.len()),
         counted(report.n_parts, "part"),
     );
     if report.n_turned > 0 {
@@ -43,14 +43,10 @@ pub(super) fn diagnostics_line(part: &LoadedPart) -> Option<(NoticeLevel, String
     }
     let counted = counted(usize::try_from(n).unwrap_or(usize::MAX), "finding");
     let all = [&part.model.diagnostics, &part.surface.diagnostics];
-    let mut found = all.into_iter().flat_map(|diagnostics| diagnostics.iter());
-    // The gravest tells most; among equals the first.
-    let gravest = found
-        .by_ref()
-        .fold(None, |gravest: Option<&Diagnostic>, one| match gravest {
-            Some(known) if known.severity() >= one.severity() => Some(known),
-            _ => Some(one),
-        });
+    let found = all
+        .into_iter()
+        .filter_map(|diagnostics| diagnostics.gravest());
+    let gravest = found.rev().max_by_key(|one| one.severity());
     let level = match gravest.map(Diagnostic::severity) {
         Some(Severity::Error) => NoticeLevel::Warning,
         _ => NoticeLevel::Note,

@@ -263,6 +263,17 @@ impl Diagnostics {
         self.kept.iter()
     }
 
+    /// The kept finding that matters most; among equals the first.
+    pub fn gravest(&self) -> Option<&Diagnostic> {
+        self.iter().reduce(|gravest, one| {
+            if one.severity() > gravest.severity() {
+                one
+            } else {
+                gravest
+            }
+        })
+    }
+
     /// How many findings of a kind were made.
     pub fn count(&self, kind: DiagnosticKind) -> u64 {
         self.counts[kind as usize]

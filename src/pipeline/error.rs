@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use crate::formats::{FormatError, SelectionError};
+use crate::formats::{Diagnostic, FormatError, SelectionError};
 use crate::monitor::Cancelled;
 use crate::registration::RegistrationError;
 use crate::report::CardError;
@@ -13,12 +13,14 @@ pub enum PipelineError {
     #[error(transparent)]
     Format(#[from] FormatError),
     /// The chosen part is not there or has no area.
-    #[error("{error}: {path:?}")]
+    #[error("{error}: {path:?}{}", because(.finding))]
     Selection {
         /// What is wrong with the choice.
         error: SelectionError,
         /// The file it was made for.
         path: PathBuf,
+        /// The gravest thing the reader found, which may be why.
+        finding: Option<Box<Diagnostic>>,
     },
     /// The build lacks the example.
     #[error("the example is not in this build")]
@@ -66,6 +68,12 @@ pub enum PipelineError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+/// ". The reader found: deck.k:5:7: error: …", if it found anything.
+fn because(finding: &Option<Box<Diagnostic>>) -> String {
+    let words = |finding: &Box<Diagnostic>| format!(". The reader found: {finding}");
+    finding.as_ref().map(words).unwrap_or_default()
 }
 
 impl PipelineError {

@@ -279,6 +279,7 @@ pub fn prepare(
         .map_err(|error| PipelineError::Selection {
             error,
             path: path.to_path_buf(),
+            finding: model.diagnostics.gravest().cloned().map(Box::new),
         })?;
     monitor.check()?;
     let welded = weld(&scaled(&surface.mesh, factor), 0.0);

@@ -6,8 +6,8 @@ use super::project_dialogs::{missing_ui, unsaved_ui};
 use super::theme::{Palette, UNIT};
 use super::widgets::{caption, chip, form_row, level_color, paragraph, secondary};
 use crate::app::{
-    Action, AppState, Command, Dialog, Menu, MouseScheme, NoticeCommand, NoticeLevel, Settings,
-    Theme, ViewCommand,
+    Action, AppState, Command, Dialog, ExportCommand, Menu, MouseScheme, Notice, NoticeCommand,
+    NoticeLevel, Settings, Theme, ViewCommand, clock_text,
 };
 use egui::{Align, Layout, Modal, RichText, ScrollArea, Ui, vec2};
 
@@ -151,7 +151,7 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
     });
     form_row(ui, "Size of the text", label, |ui| {
-        for scale in [0.875_f32, 1.0, 1.25, 1.5, 2.0] {
+        for scale in [0.75_f32, 1.0, 1.25, 1.5, 2.0, 2.5] {
             let is_on = (settings.ui_scale - scale).abs() < 1e-3;
             if chip(ui, &format!("{:.0} %", scale * 100.0), is_on).clicked() {
                 settings.ui_scale = scale;
@@ -194,6 +194,28 @@ pub fn mouse_choice(ui: &mut Ui, settings: &mut Settings) {
         });
 }
 
+/// When, what, and a way to take it along.
+fn message_ui(ui: &mut Ui, state: &AppState, notice: &Notice, commands: &mut Vec<Command>) {
+    ui.horizontal_top(|ui| {
+        let color = level_color(Palette::of(ui), notice.level);
+        ui.label(RichText::new(notice.level.mark()).color(color));
+        caption(ui, clock_text(state.clock.day_time_at(notice.at)));
+        let count = match notice.count {
+            1 => String::new(),
+            n => format!(" (×{n})"),
+        };
+        let room = ui.available_width() - 64.0;
+        ui.vertical(|ui| {
+            ui.set_width(room);
+            ui.add(egui::Label::new(format!("{}{count}", notice.text)).wrap());
+        });
+        if ui.small_button("Copy").clicked() {
+            let (text, what) = (notice.text.clone(), "Message".to_owned());
+            commands.push(ExportCommand::CopyText { text, what }.into());
+        }
+    });
+}
+
 fn messages_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mut Vec<Command>) {
     ui.set_width(520.0);
     title(ui, "Messages", Some(commands));
@@ -207,15 +229,7 @@ fn messages_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mut V
             let mut is_empty = true;
             for notice in state.notices.kept() {
                 is_empty = false;
-                ui.horizontal_top(|ui| {
-                    let color = level_color(Palette::of(ui), notice.level);
-                    ui.label(RichText::new(notice.level.mark()).color(color));
-                    let count = match notice.count {
-                        1 => String::new(),
-                        n => format!(" (×{n})"),
-                    };
-                    ui.add(egui::Label::new(format!("{}{count}", notice.text)).wrap());
-                });
+                message_ui(ui, state, notice, commands);
             }
             if is_empty {
                 secondary(ui, "Nothing to tell");

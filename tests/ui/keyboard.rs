@@ -66,7 +66,8 @@ fn load_reduce_match_and_copy_by_keyboard_alone() {
     finish(&mut window);
     assert!(window.state().state().document.current_result().is_some());
     let keys = Modifiers::COMMAND | Modifiers::SHIFT;
-    window.key_press_modifiers(keys, Key::C);
+    // The desktop turns the key into this event.
+    window.event_modifiers(egui::Event::Copy, keys);
     let copied = copied_text(&mut window);
     let pose = *window.state().state().document.crash_from_stamped();
     assert_eq!(parse_matrix(&copied).expect("a pose").motion, pose);

@@ -242,7 +242,7 @@ impl Action {
             }
             Self::ToggleWipe => (
                 "Wipe",
-                "Show the stamped part on one side of a line only",
+                "A line with the stamped part on one side only; before moving over: reduced | full",
                 Some(key('W')),
             ),
             Self::ToggleSplit => (

@@ -83,6 +83,12 @@ impl Action {
             Self::ToggleDetailed => return Some(ViewCommand::SetShown(shown).into()),
             Self::Blink => return Some(ViewCommand::SetBlinking(true).into()),
             Self::ToggleSeeThrough => display.is_see_through ^= true,
+            // Before the part is moved over, the same key wipes between reduced and full.
+            Self::ToggleWipe
+                if !state.view.is_moved_over && Self::ToggleSplit.enabled(state).is_ok() =>
+            {
+                display.split = toggled(display.split);
+            }
             Self::ToggleWipe => display.wipe = toggled(display.wipe),
             Self::ToggleSplit => display.split = toggled(display.split),
             Self::ToggleEdges => display.has_edges ^= true,

@@ -113,7 +113,13 @@ impl AppState {
             JobKey::Export => "Nothing was written; choose another place",
             _ => "Parts and pose are as they were",
         };
-        let text = format!("{message}. {what_now}");
+        let mut letters = message.chars();
+        let first: String = letters
+            .next()
+            .into_iter()
+            .flat_map(char::to_uppercase)
+            .collect();
+        let text = format!("{first}{}. {what_now}", letters.as_str());
         self.log_at(NoticeLevel::Error, step, role, text, Some(elapsed));
         if key == JobKey::Match {
             self.failed_match = Some((self.document.stamp().parts, message));

@@ -134,7 +134,11 @@ fn detail(role: Role, part: &Part, state: &AppState) -> String {
         None => text += " · unit unknown",
     }
     if report.n_parts > 1 {
-        text += &format!(" · {} of {} parts", part.facts.used.len(), report.n_parts);
+        text += &format!(
+            " · {} of {} parts",
+            grouped(part.facts.used.len()),
+            grouped(report.n_parts)
+        );
     }
     if let Some(thickness) = part.facts.thickness {
         text += &format!(" · t {}", state.length_text(thickness));
@@ -219,6 +223,7 @@ fn display_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut display: Display = state.view.display.clone();
     let size = vec2(ui.available_width(), ROW);
     ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
+        ui.spacing_mut().button_padding.x = 7.0;
         if chip(ui, "Nodes", display.has_points).clicked() {
             display.has_points ^= true;
         }

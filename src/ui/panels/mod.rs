@@ -27,7 +27,7 @@ const COLUMN: f32 = 344.0;
 /// Height of the bottom pane at the first start: tabs, six lines, footer.
 const PANE: f32 = 200.0;
 /// Its height in a low window: tabs, three lines, footer.
-const LOW_PANE: f32 = 132.0;
+const LOW_PANE: f32 = 126.0;
 /// A window lower than this is low.
 const LOW: f32 = 780.0;
 

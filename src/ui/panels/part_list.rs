@@ -2,11 +2,11 @@
 
 use super::part_filter::PartFilter;
 use super::part_row::{Columns, Row, count_text, row_ui};
-use crate::app::{AppState, Command, LikeWhat, PartCommand, PartRef};
+use crate::app::{AppState, ColorBy, Command, LikeWhat, PartCommand, PartRef};
 use crate::jobs::{PerRole, Role};
-use crate::ui::theme::{ROW, UNIT};
+use crate::ui::theme::ROW;
 use crate::ui::widgets::{caption, chip, draft, grouped, icon_button, set_draft};
-use egui::{ScrollArea, TextStyle, Ui, vec2};
+use egui::{Align, Layout, ScrollArea, TextStyle, Ui, vec2};
 use std::sync::Arc;
 
 /// Most rows that are seen at once; the rest scrolls.
@@ -46,22 +46,21 @@ fn filter_ui(ui: &mut Ui, state: &AppState, n_parts: usize, commands: &mut Vec<C
         return text;
     }
     let can_order = state.document.both().is_some();
-    ui.horizontal(|ui| {
-        let beside = if can_order { 64.0 + UNIT } else { 0.0 };
-        let clear = if text.is_empty() { 0.0 } else { ROW + UNIT };
-        let field = egui::TextEdit::singleline(&mut text)
-            .hint_text("2000012, 100-200, pillar, t>1.4")
-            .margin(egui::Margin::symmetric(8, 3))
-            .desired_width(ui.available_width() - beside - clear);
-        ui.add(field)
-            .on_hover_text("Ids, a range of ids, words of the name, thickness; a comma means or")
-            .accessible_name("Filter parts");
-        if clear > 0.0 && icon_button(ui, "×", "Clear the filter", true).clicked() {
-            text.clear();
-        }
+    let size = vec2(ui.available_width(), ROW);
+    ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
         if can_order {
             order_ui(ui, state, commands);
         }
+        if !text.is_empty() && icon_button(ui, "×", "Clear the filter", true).clicked() {
+            text.clear();
+        }
+        let field = egui::TextEdit::singleline(&mut text)
+            .hint_text("2000012, 100-200, pillar, t>1.4")
+            .margin(egui::Margin::symmetric(8, 3))
+            .desired_width(ui.available_width());
+        ui.add(field)
+            .on_hover_text("Ids, a range of ids, words of the name, thickness; a comma means or")
+            .accessible_name("Filter parts");
     });
     set_draft(ui, id, text.clone());
     text
@@ -229,7 +228,13 @@ fn columns(ui: &Ui, state: &AppState, listed: &Listed) -> Columns {
     } else {
         0.0
     };
-    Columns::new(room.left(), room.right() - bar, id, count)
+    let has_colors = Role::ALL
+        .into_iter()
+        .filter_map(|role| state.document.part(role))
+        .any(|part| !part.colors.is_empty());
+    let is_by_part = state.view.display.color_by == ColorBy::Part;
+    let ends = [room.left(), room.right() - bar];
+    Columns::new(ends, [id, count], has_colors || is_by_part)
 }
 
 fn tell_hovered(ui: &Ui, state: &AppState, hovered: Option<PartRef>, commands: &mut Vec<Command>) {
@@ -309,7 +314,10 @@ fn chosen_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let label = format!("Match only {} {}", at.role.mark(), at.id);
     let button = egui::Button::new(label).min_size(vec2(ui.available_width(), ROW));
     let can = state.locking_job().is_none();
-    if ui.add_enabled(can, button).clicked() {
-        commands.push(PartCommand::UseOnly(at).into());
-    }
+    // In a row of its own the text stands in the middle.
+    ui.horizontal(|ui| {
+        if ui.add_enabled(can, button).clicked() {
+            commands.push(PartCommand::UseOnly(at).into());
+        }
+    });
 }

@@ -64,13 +64,18 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// Columns of a list this wide; `id` and `count` are the widths of their longest texts.
-    pub fn new(left: f32, right: f32, id: f32, count: f32) -> Self {
+    /// Columns between two edges; `id` and `count` are the widths of their longest texts. Colours have
+    /// a column only where they say more than the mark of the role.
+    pub fn new([left, right]: [f32; 2], [id, count]: [f32; 2], has_colors: bool) -> Self {
         let from = |start: f32, width: f32| Rangef::new(start, start + width);
         let to = |end: f32, width: f32| Rangef::new(end - width, end);
         let eye = from(left, 22.0);
         let mark = from(eye.max + 2.0, 10.0);
-        let color = from(mark.max + GAP, 10.0);
+        let color = if has_colors {
+            from(mark.max + GAP, 10.0)
+        } else {
+            from(mark.max, 0.0)
+        };
         let id = from(color.max + GAP, id);
         let tick = to(right, 22.0);
         let thickness = to(tick.min - 2.0, 30.0);
@@ -280,8 +285,11 @@ fn paint(ui: &Ui, rect: Rect, row: &Row<'_>, columns: &Columns, state: &AppState
         row.role,
         palette.role(row.role),
     );
-    let color = part_color(ui, row, state);
-    ui.painter().rect_filled(square(columns.color), 2.0, color);
+    if columns.color.span() > 0.0 {
+        let color = part_color(ui, row, state);
+        let at = square(columns.color).center();
+        ui.painter().circle_filled(at, 4.5, color);
+    }
     let body = TextStyle::Body.resolve(ui.style());
     let small = TextStyle::Small.resolve(ui.style());
     let left = |x: Rangef, text: &str, color: Color32| {

@@ -91,8 +91,8 @@ fn tables_ui(ui: &mut Ui, sweep: &Sweep, state: &AppState, commands: &mut Vec<Co
             grouped(row.triangles),
             length(row.time_ms),
             paper(row.paper_ms),
-            length(row.rms),
-            length(row.max),
+            error(row.rms),
+            error(row.max),
         ]
     });
     let title = format!("Reduction of {} triangles", grouped(sweep.n_triangles));
@@ -104,8 +104,8 @@ fn tables_ui(ui: &mut Ui, sweep: &Sweep, state: &AppState, commands: &mut Vec<Co
             level_text(row),
             length(row.time_ms),
             paper(row.paper_ms),
-            length(row.node_rms),
-            length(row.finished_node_rms),
+            error(row.node_rms),
+            error(row.finished_node_rms),
         ]
     });
     let matching: Vec<_> = matching.collect();
@@ -119,6 +119,15 @@ fn tables_ui(ui: &mut Ui, sweep: &Sweep, state: &AppState, commands: &mut Vec<Co
     let clicked = table_ui(ui, "Match", &titles, &matching, Some(help));
     if let Some(row) = clicked.and_then(|index| sweep.matching.get(index)) {
         open_pose(row, state, commands);
+    }
+}
+
+/// A distance; what is only rounding is none.
+fn error(value: f64) -> String {
+    if value < 1e-6 {
+        "0".to_owned()
+    } else {
+        length(value)
     }
 }
 
@@ -321,25 +330,28 @@ fn point_text(hovered: &HoverPosition<'_>) -> Option<String> {
     }
 }
 
-/// A legend in one line: a dash or a dashed dash in the colour, then the name.
+/// A legend in one line: a dash in the colour, then the name; one dashed entry for all references.
 fn names_ui(ui: &mut Ui, curves: &[Curve]) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
     let font = egui::FontId::proportional(11.0);
     let text = Palette::of(ui).secondary;
+    let drawn = || curves.iter().filter(|curve| !curve.points.is_empty());
+    let own = drawn().filter(|curve| !curve.is_reference);
+    let mut entries: Vec<_> = own.map(|curve| (curve.name, curve.color, false)).collect();
+    if drawn().any(|curve| curve.is_reference) {
+        entries.push(("the paper", text, true));
+    }
     let mut x = rect.left() + 48.0;
-    for curve in curves.iter().filter(|curve| !curve.points.is_empty()) {
+    for (name, color, is_dashed) in entries {
         let galley = ui
             .painter()
-            .layout_no_wrap(curve.name.to_owned(), font.clone(), text);
+            .layout_no_wrap(name.to_owned(), font.clone(), text);
         let middle = rect.center().y;
-        if x + 18.0 + galley.size().x > rect.right() {
-            break;
-        }
         let ends = [egui::pos2(x, middle), egui::pos2(x + 14.0, middle)];
-        let stroke = egui::Stroke::new(1.5, curve.color);
-        if curve.is_reference {
-            ui.painter()
-                .extend(egui::Shape::dashed_line(&ends, stroke, 4.0, 2.5));
+        let stroke = egui::Stroke::new(1.5, color);
+        if is_dashed {
+            let dashes = egui::Shape::dashed_line(&ends, stroke, 4.0, 2.5);
+            ui.painter().extend(dashes);
         } else {
             ui.painter().line_segment(ends, stroke);
         }
