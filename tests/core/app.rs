@@ -1199,3 +1199,86 @@ fn the_free_window_has_a_use_of_its_own_and_the_left_camera() {
     assert_eq!(window.state.color_by(Role::Stamped), ColorBy::Role);
     assert!(!window.state.wants_comparison());
 }
+
+#[test]
+fn rows_of_a_sweep_are_shown_while_it_runs_and_cancel_brings_the_old_ones_back() {
+    use shapematch::pipeline::sweep::{ReductionRow, SweepRow};
+    let mut window = Window::with_both();
+    window.holds = true;
+    window.apply(MatchCommand::Sweep(Box::default()));
+    assert_eq!(window.state.view.tab, BottomTab::Sweep);
+    let (id, kind, _) = window.held.last().unwrap().clone();
+    let JobKind::Sweep(input) = kind else {
+        panic!("not a sweep")
+    };
+    input.rows.push(SweepRow::Reduction(ReductionRow {
+        max_triangles: 100,
+        triangles: 98,
+        time_ms: 1.0,
+        rms: 0.1,
+        max: 0.2,
+        border_max: 0.1,
+        loops: 1,
+        paper_ms: None,
+    }));
+    window.apply(Command::Live(Box::new(Live {
+        job: Some(id),
+        ..Live::default()
+    })));
+    let shown = window.state.shown_sweep().unwrap();
+    assert_eq!(shown.reduction.len(), 1);
+    assert_eq!(shown.n_triangles, window.mesh(Role::Stamped).n_triangles());
+    window.apply(MatchCommand::Cancel);
+    assert!(window.state.shown_sweep().is_none());
+}
+
+#[test]
+fn a_level_remembers_its_match_until_a_part_changes() {
+    let mut window = Window::with_both();
+    assert!(window.state.level_result(None).is_none());
+    window.apply(MatchCommand::Run);
+    let full = *window.state.level_result(None).unwrap();
+    assert_eq!(full.crash_from_stamped, shifted(1.0));
+    let roles = PerRole {
+        crash: true,
+        stamped: true,
+    };
+    window.apply(ReduceCommand::To {
+        roles,
+        max_triangles: 60,
+    });
+    assert!(window.state.level_result(Some(60)).is_none());
+    window.apply(MatchCommand::Run);
+    let reduced = *window.state.level_result(Some(60)).unwrap();
+    // Both matches of this window give the same pose.
+    assert!(window.state.distance_to_full(&reduced).unwrap() < 1e-12);
+    window.open("metres.k", Role::Stamped);
+    assert!(window.state.level_result(Some(60)).is_none());
+}
+
+#[test]
+fn a_muted_level_goes_to_the_bell_without_a_toast() {
+    let mut window = Window::new();
+    let mut settings = window.state.settings.clone();
+    settings.muted.insert(NoticeLevel::Warning);
+    window.apply(Command::Settings(Box::new(settings)));
+    for level in [NoticeLevel::Warning, NoticeLevel::Error] {
+        window.apply(NoticeCommand::Tell(level, "look".to_owned()));
+    }
+    assert_eq!(window.state.notices.toasts().count(), 1);
+    assert_eq!(window.state.notices.n_unread(), 2);
+}
+
+#[test]
+fn the_sections_follow_the_work_and_many_parts_are_chosen_from_first() {
+    let mut window = Window::with_both();
+    let in_use = |window: &Window| window.state.view.sections.in_use();
+    // The crash deck of these tests has two parts: there is something to choose.
+    assert_eq!(in_use(&window), Section::Load);
+    window.apply(ReduceCommand::Step(1));
+    assert_eq!(in_use(&window), Section::Reduce);
+    window.apply(MoveCommand::Reset);
+    assert_eq!(in_use(&window), Section::Match);
+    window.apply(ViewCommand::OpenSection(Section::Load, true));
+    assert_eq!(in_use(&window), Section::Load);
+}
