@@ -51,7 +51,7 @@ impl CommandLine<'_> {
         words.side("crash", &self.crash);
         words.side("stamped", &self.stamped);
         for folder in self.include_folders {
-            words.option("include-folder", folder.display());
+            words.option("include-folder", folder.display().to_string());
         }
         words.levels(self.max_triangles);
         words.settings(self.settings, self.current);
@@ -124,9 +124,9 @@ impl Words {
         self.0.push(format!("--{name}"));
     }
 
-    fn option(&mut self, name: &str, value: impl ToString) {
+    fn option(&mut self, name: &str, value: String) {
         self.flag(name);
-        self.0.push(value.to_string());
+        self.0.push(value);
     }
 
     /// An option that stands there only if it is not the default.
@@ -148,18 +148,18 @@ impl Words {
         }
         let unit = format!("{role}-unit");
         if let Some(units) = side.units {
-            self.option(&format!("{role}-units"), units.label());
+            self.option(&format!("{role}-units"), units.label().to_owned());
         }
         self.unless(&1.0, &unit, &side.length_factor, |&v| exact(v));
     }
 
     fn levels(&mut self, [crash, stamped]: [Option<usize>; 2]) {
         if let (Some(n), true) = (crash, crash == stamped) {
-            return self.option("triangles", n);
+            return self.option("triangles", n.to_string());
         }
         for (name, level) in [("crash-triangles", crash), ("stamped-triangles", stamped)] {
             if let Some(n) = level {
-                self.option(name, n);
+                self.option(name, n.to_string());
             }
         }
     }
@@ -213,7 +213,7 @@ impl Words {
 
     fn selection(&mut self, usual: Selection, selection: Selection) {
         if usual.name() != selection.name() {
-            self.option("keep", selection.name());
+            self.option("keep", selection.name().to_owned());
         }
         let base = Selection::of_kind(selection.name(), usual);
         match (selection, base) {
