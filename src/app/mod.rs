@@ -62,8 +62,8 @@ pub use notice::{Notice, NoticeId, NoticeLevel, Notices};
 pub use pairs::{PairTool, PairVerdict, PickKind, PickedPoint, PointPair, PointPairs};
 pub use palette::PaletteEntry;
 pub use picture::{PictureChoice, PicturePlace, PictureSize, PictureWindows};
-pub(crate) use project::project_title;
-pub use project::{KeptWork, ProjectState};
+
+pub use project::{KeptWork, ProjectState, project_title};
 pub use sections::Sections;
 pub use settings::{MouseScheme, Settings, StartupOptions, Theme};
 pub use shared::Shared;

@@ -264,7 +264,7 @@ fn part_entry(part: &Part) -> PartEntry {
 }
 
 /// The title of a project, as [`AppState::work_title`] has it.
-pub(crate) fn project_title(project: &Project) -> String {
+pub fn project_title(project: &Project) -> String {
     let [crash, stamped] = project.parts();
     let name = |entry: &PartEntry| match &entry.file {
         Some(file) => file
