@@ -102,7 +102,7 @@ fn load_reduce_move_over_align_match_detail_copy() {
 }
 
 /// The text of the next frames' clipboard command.
-pub(crate) fn copied_text(window: &mut Harness<'static, Shell>) -> String {
+fn copied_text(window: &mut Harness<'static, Shell>) -> String {
     for _ in 0..4 {
         window.step();
         for command in &window.output().platform_output.commands {
