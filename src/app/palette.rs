@@ -230,7 +230,7 @@ fn fuzzy(text: &str, word: &str) -> Option<f64> {
     let best = starts.filter_map(from).reduce(f64::max)?;
     // Letters strewn over the whole text are no find.
     let is_find = best > 0.9 * word.len() as f64;
-    is_find.then(|| best - 0.01 * text.len() as f64)
+    is_find.then_some(best - 0.01 * text.len() as f64)
 }
 
 #[cfg(test)]

@@ -72,8 +72,8 @@ pub enum PipelineError {
 
 /// ". The reader found: deck.k:5:7: error: …", if it found anything.
 fn because(finding: &Option<Box<Diagnostic>>) -> String {
-    let words = |finding: &Box<Diagnostic>| format!(". The reader found: {finding}");
-    finding.as_ref().map(words).unwrap_or_default()
+    let words = |finding: &Diagnostic| format!(". The reader found: {finding}");
+    finding.as_deref().map(words).unwrap_or_default()
 }
 
 impl PipelineError {

@@ -98,7 +98,6 @@ impl PartEntry {
             units: self.units,
             read: ReadOptions {
                 include_folders: self.include_folders.clone(),
-                ..ReadOptions::default()
             },
         }
     }
@@ -300,10 +299,11 @@ impl Project {
                 "the field {name:?} is not known; it is kept as it is"
             ));
         }
-        for entry in [&mut project.crash, &mut project.stamped] {
-            if let Some(entry) = entry {
-                entry.make_absolute(folder_of(path));
-            }
+        for entry in [&mut project.crash, &mut project.stamped]
+            .into_iter()
+            .flatten()
+        {
+            entry.make_absolute(folder_of(path));
         }
         Ok((project, notes))
     }

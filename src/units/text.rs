@@ -59,7 +59,7 @@ pub fn of_text(line: &str) -> Option<KnownUnits> {
         .filter(|word| !word.is_empty())
         .collect();
     let is_unit = |word: &&str| matches!(*word, "unit" | "units");
-    let named = words.iter().position(|word| is_unit(&word));
+    let named = words.iter().position(is_unit);
     let units = named
         .and_then(|at| units_of(words[at + 1..].iter().map(|w| word(w))))
         .or_else(|| words.windows(3).find_map(triple))?;

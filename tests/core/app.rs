@@ -764,21 +764,15 @@ mod random {
     use shapematch::pipeline::match_parts::MatchRecipe;
     use shapematch::units::LengthUnit;
 
-    fn any_command() -> impl Strategy<Value = Command> {
-        let part = (any::<bool>(), 11u64..13).prop_map(|(is_crash, id)| PartRef {
-            role: if is_crash { Role::Crash } else { Role::Stamped },
-            id,
-        });
+    fn any_move() -> impl Strategy<Value = MoveCommand> {
         let axis = (0usize..3).prop_map(|i| Axis::ALL[i]);
         let frame = (0usize..3).prop_map(|i| AxisFrame::ALL[i]);
-        let roles =
-            (any::<bool>(), any::<bool>()).prop_map(|(crash, stamped)| PerRole { crash, stamped });
         let drag = (0u64..3, -5i32..5).prop_map(|(gesture, x)| MoveCommand::Drag {
             gesture: GestureId(gesture),
             delta: shifted(f64::from(x)),
             name: "Drag".to_owned(),
         });
-        let moves = prop_oneof![
+        prop_oneof![
             drag,
             Just(MoveCommand::EndDrag),
             (0u64..3).prop_map(|g| MoveCommand::AbandonDrag(GestureId(g))),
@@ -806,9 +800,18 @@ mod random {
             }),
             Just(MoveCommand::Input(ModalInput::Accept)),
             Just(MoveCommand::Input(ModalInput::Reject)),
-        ];
+        ]
+    }
+
+    fn any_command() -> impl Strategy<Value = Command> {
+        let part = (any::<bool>(), 11u64..13).prop_map(|(is_crash, id)| PartRef {
+            role: if is_crash { Role::Crash } else { Role::Stamped },
+            id,
+        });
+        let roles =
+            (any::<bool>(), any::<bool>()).prop_map(|(crash, stamped)| PerRole { crash, stamped });
         prop_oneof![
-            6 => moves.prop_map(Command::from),
+            6 => any_move().prop_map(Command::from),
             1 => (roles, 20usize..200).prop_map(|(roles, max_triangles)| {
                 ReduceCommand::To { roles, max_triangles }.into()
             }),

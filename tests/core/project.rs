@@ -211,7 +211,7 @@ fn a_missing_file_is_asked_for_or_done_without() {
     assert_eq!(asked.state.view.dialog, Some(Dialog::MissingFiles));
     let (_, missing) = asked.state.project.missing.clone().unwrap();
     assert_eq!(missing.crash, None);
-    assert_eq!(missing.stamped, Some(stamped.clone()));
+    assert_eq!(missing.stamped, Some(stamped));
     assert!(asked.state.document.part(Role::Crash).is_none());
     asked.apply(ProjectCommand::Locate(Role::Stamped, Located::Without));
     assert!(asked.state.document.part(Role::Crash).is_some());
@@ -360,7 +360,6 @@ fn any_recipe() -> impl Strategy<Value = MatchRecipe> {
                     n_refine_points: n[1],
                     max_iterations: n[2],
                     motion_tolerance: x[5],
-                    ..MatchSettings::default()
                 },
                 max_triangles: is[0].then_some(n[3]),
             }

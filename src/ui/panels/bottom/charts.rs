@@ -2,7 +2,7 @@
 
 use crate::ui::theme::Palette;
 use egui::{Ui, Vec2};
-use egui_plot::{GridInput, GridMark, Plot};
+use egui_plot::{GridMark, Plot};
 use std::ops::RangeInclusive;
 
 /// A chart of logarithms that shows and does not move: no zoom, no drag, quiet grid, and the numbers
@@ -22,8 +22,8 @@ pub fn log_chart(ui: &Ui, name: &str, size: Vec2) -> Plot<'static> {
         .y_axis_min_width(44.0)
         .x_axis_formatter(|mark, _| decade_text(mark.value))
         .y_axis_formatter(|mark, _| decade_text(mark.value))
-        .x_grid_spacer(decades)
-        .y_grid_spacer(decades)
+        .x_grid_spacer(|input| decades(input.bounds))
+        .y_grid_spacer(|input| decades(input.bounds))
 }
 
 /// The number whose logarithm this is: 0.01, 3, 20k. Two digits count.
@@ -49,8 +49,7 @@ pub fn decade_text(log: f64) -> String {
 }
 
 /// Grid of a logarithmic axis: decades, and 2 and 5 between them where few decades are seen.
-fn decades(input: GridInput) -> Vec<GridMark> {
-    let (low, high) = input.bounds;
+fn decades((low, high): (f64, f64)) -> Vec<GridMark> {
     let (first, last) = (low.floor() as i32, high.ceil() as i32);
     let inner: &[f64] = if last - first <= 3 {
         &[1.0, 2.0, 5.0]
@@ -77,7 +76,7 @@ pub fn range(values: impl Iterator<Item = f64>) -> Option<RangeInclusive<f64>> {
         (low.min(value), high.max(value))
     });
     let margin = 0.06 * (high - low).max(0.5);
-    (low <= high).then(|| low - margin..=high + margin)
+    (low <= high).then_some(low - margin..=high + margin)
 }
 
 #[cfg(test)]

@@ -58,11 +58,13 @@ fn head_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
         }
         if let Some(sweep) = state.shown_sweep() {
-            let forms: [(&str, fn(&Sweep) -> String); 2] =
-                [("CSV", Sweep::to_csv), ("JSON", Sweep::to_json)];
-            for (form, write) in forms {
+            for form in ["CSV", "JSON"] {
                 if ui.button(format!("Copy as {form}")).clicked() {
-                    let (text, what) = (write(sweep), format!("Sweep ({form})"));
+                    let what = format!("Sweep ({form})");
+                    let text = match form {
+                        "CSV" => sweep.to_csv(),
+                        _ => sweep.to_json(),
+                    };
                     commands.push(ExportCommand::CopyText { text, what }.into());
                 }
             }
