@@ -69,6 +69,7 @@ pub(super) struct WindowEntry {
     pub are_linked: bool,
     pub orbit_style: OrbitStyle,
     pub is_moved_over: bool,
+    pub is_as_loaded: bool,
     pub shown: ShownGeometry,
     pub display: Display,
     pub section: SectionView,
@@ -119,6 +120,7 @@ impl WindowEntry {
             are_linked: view.are_linked,
             orbit_style: view.orbit_style,
             is_moved_over: view.is_moved_over,
+            is_as_loaded: view.is_as_loaded,
             shown: view.shown,
             display: view.display.clone(),
             section: view.section,
@@ -137,7 +139,9 @@ impl WindowEntry {
         view.cameras = self.cameras;
         view.are_linked = self.are_linked;
         view.orbit_style = self.orbit_style;
+        view.pivot = PerRole::default();
         view.is_moved_over = self.is_moved_over;
+        view.is_as_loaded = self.is_as_loaded;
         view.shown = self.shown;
         view.display = self.display;
         view.section = self.section;

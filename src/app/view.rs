@@ -212,6 +212,8 @@ pub struct ViewState {
     pub cameras: PerRole<Camera>,
     /// The camera before the last big change, for the key "previous view".
     pub previous_cameras: PerRole<Camera>,
+    /// How often a project brought its cameras. The windows then show them at once, as they are.
+    pub n_restored: u64,
     /// Width over height of each window.
     pub aspects: PerRole<f64>,
     /// Rotation and zoom of one window follow the other.
@@ -269,6 +271,7 @@ impl Default for ViewState {
         Self {
             cameras: PerRole::default(),
             previous_cameras: PerRole::default(),
+            n_restored: 0,
             aspects: PerRole {
                 crash: 1.0,
                 stamped: 1.0,

@@ -8,10 +8,11 @@ use super::storage::{Kept, Storage, WindowPlace};
 use super::viewport::Viewports;
 use super::{keyboard, overlays, panels, project_dialogs, theme, toasts};
 use crate::app::{
-    AppState, Clock, Command, Effect, FileCommand, NoticeCommand, NoticeLevel, ProjectCommand,
-    Settings, StartupOptions, Theme,
+    AppState, Clock, Command, Effect, FileCommand, NoticeCommand, NoticeLevel, PictureChoice,
+    PictureSize, ProjectCommand, Settings, StartupOptions, Theme,
 };
 use crate::jobs::{JobEvent, JobStage, Live, PipelineRunner, Role, Worker};
+use crate::report::picture::Picture;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -128,6 +129,19 @@ impl Shell {
     /// True while the worker has nothing to do.
     pub fn is_idle(&self) -> bool {
         self.worker.is_idle()
+    }
+
+    /// A picture of what the 3D windows show, in their size and without what lies over them. `None`
+    /// without a graphics adapter and while anything in it is still being made.
+    pub fn picture(&mut self) -> Option<Picture> {
+        let choice = PictureChoice {
+            size: PictureSize::Window(1),
+            ..PictureChoice::default()
+        };
+        if self.viewports.is_waiting() {
+            return None;
+        }
+        self.viewports.picture(&self.state, &choice)
     }
 
     /// Applies commands as if they came from a panel.

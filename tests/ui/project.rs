@@ -3,11 +3,18 @@
 use super::story::{click, finish, window};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use shapematch::app::{Action, Command, Dialog, HistoryCommand, MoveCommand, StartupOptions};
+use shapematch::app::{
+    Action, Axis, Command, Dialog, FileCommand, HistoryCommand, MatchCommand, MoveCommand,
+    ProjectCommand, StartupOptions, ViewCommand,
+};
+use shapematch::geometry::camera::StandardView;
+use shapematch::jobs::Role;
+use shapematch::report::picture::Picture;
 use shapematch::ui::Shell;
 use shapematch::ui::storage::{Kept, Storage};
-use std::path::Path;
-use std::time::Duration;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 type Window = Harness<'static, Shell>;
 
@@ -17,12 +24,122 @@ fn run(window: &mut Window, command: impl Into<Command>) {
     window.run_steps(2);
 }
 
+/// A window with a graphics adapter in which a step takes so many seconds.
+fn drawn(step_secs: f32) -> Window {
+    let mut window = Harness::builder()
+        .with_size([900.0, 600.0])
+        .with_step_dt(step_secs)
+        .wgpu()
+        .build_eframe(|cc| {
+            let options = StartupOptions::default();
+            Shell::new(cc, options, Storage::none(), Kept::default()).expect("a thread")
+        });
+    window.run_steps(2);
+    window
+}
+
+/// What both windows show as soon as all of it is made.
+fn picture(window: &mut Window) -> Picture {
+    let begin = Instant::now();
+    loop {
+        window.run_steps(2);
+        if let Some(picture) = window.state_mut().picture() {
+            let colors: BTreeSet<&[u8]> = picture.rgba.chunks(4).collect();
+            assert!(colors.len() > 100, "an empty picture proves nothing");
+            return picture;
+        }
+        let patience = Duration::from_secs(120);
+        assert!(begin.elapsed() < patience, "the picture does not end");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// The example as files of a folder, the crash model first.
+fn example_on_disk(folder: &Path) -> Vec<PathBuf> {
+    let mut files = shapematch::samples::bundled();
+    files.retain(|file| !file.name.ends_with("json"));
+    files.sort_by_key(|file| !file.name.starts_with("crash"));
+    let write = |file: &shapematch::samples::SampleFile| {
+        let path = folder.join(file.name);
+        std::fs::write(&path, &file.bytes).expect("a folder");
+        path
+    };
+    files.iter().map(write).collect()
+}
+
+fn open(window: &mut Window, paths: Vec<PathBuf>) {
+    run(window, FileCommand::Open { paths, role: None });
+    finish(window);
+}
+
+fn save(window: &mut Window, path: &Path) {
+    run(window, ProjectCommand::Write(path.to_path_buf()));
+    while window.state().state().is_unsaved() {
+        window.run_steps(1);
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Looks from a side, a little closer than what would be fitted.
+fn look_from(window: &mut Window, role: Role, view: StandardView) {
+    run(window, ViewCommand::Standard(role, view));
+    let mut camera = *window.state().state().view.cameras.get(role);
+    camera.height *= 0.9;
+    run(window, ViewCommand::SetCamera(role, camera));
+}
+
+fn assert_same(a: &Picture, b: &Picture, what: &str) {
+    assert_eq!((a.width, a.height), (b.width, b.height), "{what}");
+    let pixels = a.rgba.chunks(4).zip(b.rgba.chunks(4));
+    let n_differing = pixels.filter(|(a, b)| a != b).count();
+    assert_eq!(n_differing, 0, "pixels differ {what}");
+}
+
+#[test]
+fn a_project_saved_and_opened_gives_the_same_pictures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let paths = example_on_disk(folder.path());
+    let [beside, over] =
+        ["beside", "over"].map(|n| folder.path().join(n).with_extension("shapematch"));
+    // Every flight is over after two steps.
+    let mut first = drawn(1.0);
+    open(&mut first, paths);
+    click(&mut first, "Reduce");
+    finish(&mut first);
+    run(&mut first, MoveCommand::TurnOver(Axis::X));
+    look_from(&mut first, Role::Stamped, StandardView::Front);
+    let mut display = first.state().state().view.display.clone();
+    display.has_edges = true;
+    run(&mut first, ViewCommand::SetDisplay(Box::new(display)));
+    let picture_beside = picture(&mut first);
+    save(&mut first, &beside);
+    run(&mut first, ViewCommand::ToggleMoveOver);
+    run(&mut first, MatchCommand::Run);
+    finish(&mut first);
+    look_from(&mut first, Role::Crash, StandardView::Left);
+    let picture_over = picture(&mut first);
+    save(&mut first, &over);
+    drop(first);
+    assert_ne!(picture_beside, picture_over);
+
+    // No flight gets anywhere in so short a time, so there must be none.
+    let mut again = drawn(1e-6);
+    for turn in ["at first", "after another"] {
+        open(&mut again, vec![beside.clone()]);
+        let now = picture(&mut again);
+        assert_same(&now, &picture_beside, &format!("beside, {turn}"));
+        open(&mut again, vec![over.clone()]);
+        let now = picture(&mut again);
+        assert_same(&now, &picture_over, &format!("moved over, {turn}"));
+    }
+}
+
 #[test]
 fn leaving_with_unsaved_work_asks() {
     let mut window = window();
     click(&mut window, "Open the example pair");
     finish(&mut window);
-    run(&mut window, MoveCommand::TurnOver(shapematch::app::Axis::X));
+    run(&mut window, MoveCommand::TurnOver(Axis::X));
     run(&mut window, Command::Quit);
     for name in ["Save", "Don’t save", "Cancel"] {
         assert!(window.query_by_label(name).is_some(), "{name}");
@@ -40,8 +157,8 @@ fn history_rows_jump_and_say_where_one_is() {
     let mut window = window();
     click(&mut window, "Open the example pair");
     finish(&mut window);
-    run(&mut window, MoveCommand::TurnOver(shapematch::app::Axis::X));
-    run(&mut window, MoveCommand::TurnOver(shapematch::app::Axis::Y));
+    run(&mut window, MoveCommand::TurnOver(Axis::X));
+    run(&mut window, MoveCommand::TurnOver(Axis::Y));
     click(&mut window, "History");
     let end = window.state().state().document.clone();
     click(&mut window, "Step 3: Turn over about X (part)");
@@ -133,7 +250,7 @@ fn lost_work_is_offered_and_comes_back() {
     let mut first = start(folder.path());
     click(&mut first, "Open the example pair");
     finish(&mut first);
-    run(&mut first, MoveCommand::TurnOver(shapematch::app::Axis::X));
+    run(&mut first, MoveCommand::TurnOver(Axis::X));
     let pose = *first.state().state().document.crash_from_stamped();
     let file = loop {
         first.run_steps(1);

@@ -274,6 +274,7 @@ impl AppState {
         self.starts = None;
         self.measurement = None;
         self.view.selected.clear();
+        self.view.n_restored += 1;
         self.race.clear();
         match window {
             Some(window) => window.show(self),

@@ -70,6 +70,10 @@ struct Window {
     known_part: u64,
     /// The pose the camera has followed the part to.
     followed: StampedPose,
+    /// The project whose cameras were taken over last.
+    known_restored: u64,
+    /// A project was opened just now: everything is where it belongs at once.
+    is_restored: bool,
     /// What was drawn last, for pictures in files.
     shot: Option<Shot>,
     has_picture: bool,
@@ -105,9 +109,9 @@ impl Viewports {
         response
             .widget_info(|| WidgetInfo::labeled(egui::Role::Canvas, true, summary(state, role)));
         let look = Look::of(ui.visuals().dark_mode);
-        self.windows
-            .get_mut(role)
-            .tell_aspect(rect, role, state, commands);
+        let window = self.windows.get_mut(role);
+        window.notice_restored(role, state);
+        window.tell_aspect(rect, role, state, commands);
         tell_focus(&response, state.camera_of(role), state, commands);
         let stage = self.stage(ui, role, state, rect, commands);
         let picture = self.picture_of(ui, &stage, state, &look);
@@ -150,7 +154,7 @@ impl Viewports {
         commands: &mut Vec<Command>,
     ) -> Stage {
         let now = ui.input(|i| i.time);
-        let may_move = !state.settings.reduce_motion;
+        let may_move = !state.settings.reduce_motion && !self.windows.get(role).is_restored;
         let bounds = state.document.part(Role::Stamped).map(|part| part.bounds());
         let bounds = bounds.filter(|bounds| !bounds.is_empty());
         let center = bounds.map_or(Point3::origin(), |bounds| bounds.center());
@@ -394,6 +398,17 @@ struct InFrame<'a> {
 }
 
 impl Window {
+    /// A project brings its own cameras: parts and pose that came with it are neither fitted nor
+    /// followed.
+    fn notice_restored(&mut self, role: Role, state: &AppState) {
+        let n_restored = state.view.n_restored;
+        self.is_restored = std::mem::replace(&mut self.known_restored, n_restored) != n_restored;
+        if self.is_restored {
+            self.known_part = state.document.part(role).map_or(0, |part| part.revision);
+            self.followed = state.document.pose;
+        }
+    }
+
     /// Tells the state how wide the window is. A part that was fitted before that was known is fitted
     /// again.
     fn tell_aspect(
