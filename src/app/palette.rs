@@ -196,7 +196,7 @@ fn score(entry: &PaletteEntry, typed: &str) -> Option<f64> {
         .to_lowercase()
         .split_whitespace()
         .try_fold(0.0, |sum, word| {
-            let in_help = help.contains(word).then_some(0.3 * word.len() as f64);
+            let in_help = help.contains(word).then_some(1.5 * word.len() as f64);
             let best = fuzzy(&label, word)
                 .into_iter()
                 .chain(in_help)

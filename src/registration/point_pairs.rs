@@ -68,9 +68,17 @@ pub fn fit_point_pairs(
     let distance = |(x, y): (&Point3, &Point3)| (fit.target_from_source.apply(x) - y).norm();
     let residuals = source.iter().zip(target).map(distance).collect();
     let noise = NEGLIGIBLE * spread(target);
-    let doubt = exchanged(source, target, fit.rmse, noise)
-        .or_else(|| far(source, target, noise))
-        .or_else(|| mirrored(&fit, noise));
+    // Of two explanations the one that leaves less counts; one point fewer explains too much.
+    let whole = [
+        mirrored(&fit, noise),
+        exchanged(source, target, fit.rmse, noise),
+    ];
+    let doubt = whole
+        .into_iter()
+        .flatten()
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, doubt)| doubt)
+        .or_else(|| far(source, target, noise));
     Ok(PointPairFit {
         fit,
         residuals,
@@ -84,7 +92,13 @@ fn spread(points: &[Point3]) -> f64 {
     far.fold(0.0, f64::max)
 }
 
-fn exchanged(source: &[Point3], target: &[Point3], rmse: f64, noise: f64) -> Option<PairDoubt> {
+/// What two exchanged partners would leave, with the doubt.
+fn exchanged(
+    source: &[Point3],
+    target: &[Point3],
+    rmse: f64,
+    noise: f64,
+) -> Option<(f64, PairDoubt)> {
     let mut best: Option<([usize; 2], f64)> = None;
     for a in 0..target.len() {
         for b in a + 1..target.len() {
@@ -100,7 +114,7 @@ fn exchanged(source: &[Point3], target: &[Point3], rmse: f64, noise: f64) -> Opt
     }
     let (pairs, after) = best?;
     let is_better = rmse > noise && EXCHANGED * after.max(noise) < rmse;
-    is_better.then_some(PairDoubt::Exchanged { pairs, rmse: after })
+    is_better.then_some((after, PairDoubt::Exchanged { pairs, rmse: after }))
 }
 
 fn far(source: &[Point3], target: &[Point3], noise: f64) -> Option<PairDoubt> {
@@ -122,10 +136,11 @@ fn far(source: &[Point3], target: &[Point3], noise: f64) -> Option<PairDoubt> {
     (distance > FAR * rmse.max(noise)).then_some(PairDoubt::Far { pair, distance })
 }
 
-fn mirrored(fit: &PairFit, noise: f64) -> Option<PairDoubt> {
+/// What the mirrored fit leaves, with the doubt.
+fn mirrored(fit: &PairFit, noise: f64) -> Option<(f64, PairDoubt)> {
     let rmse = fit.mirrored_rmse;
     let is_better = fit.rmse > noise && EXCHANGED * rmse.max(noise) < fit.rmse;
-    is_better.then_some(PairDoubt::Mirrored { rmse })
+    is_better.then_some((rmse, PairDoubt::Mirrored { rmse }))
 }
 
 #[cfg(test)]
