@@ -63,6 +63,45 @@ fn title(ui: &mut Ui, text: &str, commands: Option<&mut Vec<Command>>) {
     ui.separator();
 }
 
+/// Keys that are no menu entries: group, and for each key what it does.
+const OTHER_KEYS: [(&str, &[(&str, &str)]); 3] = [
+    (
+        "In a 3D window",
+        &[
+            ("Arrows", "Turn"),
+            ("Shift+Arrows", "Pan"),
+            ("+, −", "Zoom"),
+            ("P", "Turn about the point under the cursor"),
+        ],
+    ),
+    (
+        "While moving by keys",
+        &[
+            ("X, Y, Z", "Only along or about this axis"),
+            ("Shift+X, Y, Z", "Only in the plane across it"),
+            ("Digits", "Type the amount"),
+            ("Enter", "Accept"),
+            ("Esc", "Leave as it was"),
+        ],
+    ),
+    (
+        "On the convergence chart",
+        &[("Left, Right", "Step by step")],
+    ),
+];
+
+/// What the mouse does in a 3D window.
+const MOUSE: [(&str, &str); 8] = [
+    ("Left drag", "Turn"),
+    ("Ctrl + drag", "The same, edges only"),
+    ("Ctrl + Shift + left drag", "Roll"),
+    ("Middle drag", "Pan"),
+    ("Wheel, right drag", "Zoom to the pointer"),
+    ("Click", "Select a part"),
+    ("Ctrl + click", "Add to the selection"),
+    ("Double click", "Bring the part into view"),
+];
+
 /// All keys, menu by menu, and the mouse.
 fn help_ui(ui: &mut Ui, room: egui::Vec2) {
     let width = room.x.min(1040.0);
@@ -86,20 +125,10 @@ fn help_ui(ui: &mut Ui, room: egui::Vec2) {
                     help_menu(column, *menu);
                 }
             }
-            let last = &mut columns[2];
-            group_title(last, "Mouse");
-            for (what, how) in [
-                ("Left drag", "Turn"),
-                ("Ctrl + drag", "The same, edges only"),
-                ("Ctrl + Shift + left drag", "Roll"),
-                ("Middle drag", "Pan"),
-                ("Wheel, right drag", "Zoom to the pointer"),
-                ("Click", "Select a part"),
-                ("Ctrl + click", "Add to the selection"),
-                ("Double click", "Bring the part into view"),
-            ] {
-                key_row(last, how, what);
+            for (title, keys) in OTHER_KEYS {
+                help_group(&mut columns[0], title, keys);
             }
+            help_group(&mut columns[2], "Mouse", &MOUSE);
         });
     });
 }
@@ -110,6 +139,13 @@ fn group_title(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).color(color));
 }
 
+fn help_group(ui: &mut Ui, title: &str, keys: &[(&str, &str)]) {
+    group_title(ui, title);
+    for (keys, what) in keys {
+        key_row(ui, what, keys);
+    }
+}
+
 fn help_menu(ui: &mut Ui, menu: Menu) {
     let with_key = |a: &Action| a.info().shortcut.is_some();
     if !Action::in_menu(menu).any(|a| with_key(&a)) {
@@ -118,8 +154,8 @@ fn help_menu(ui: &mut Ui, menu: Menu) {
     group_title(ui, menu.label());
     for action in Action::in_menu(menu).filter(with_key) {
         let info = action.info();
-        if let Some(shortcut) = info.shortcut {
-            key_row(ui, info.label, &shortcut.to_string());
+        if let Some(keys) = info.keys() {
+            key_row(ui, info.label, &keys);
         }
     }
 }

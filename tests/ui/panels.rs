@@ -2,7 +2,7 @@
 
 use super::story::{click, finish, window};
 use egui_kittest::kittest::Queryable as _;
-use shapematch::app::{BottomTab, Dialog, Section};
+use shapematch::app::{Action, BottomTab, Dialog, Menu, Section};
 use shapematch::jobs::Role;
 
 #[test]
@@ -51,6 +51,47 @@ fn sections_fold_tabs_turn_and_dialogs_open_by_key() {
     window.key_press(egui::Key::Escape);
     window.run_steps(2);
     assert_eq!(window.state().state().view.dialog, None);
+}
+
+#[test]
+fn the_help_sheet_has_all_keys() {
+    let mut window = window();
+    window.key_press(egui::Key::F1);
+    window.run_steps(2);
+    let has = |is_it: &dyn Fn(&str) -> bool| {
+        let texts = window.query_all_by(|node| node.value().is_some_and(|text| is_it(&text)));
+        texts.count() > 0
+    };
+    let keyed = Action::ALL.iter().map(|action| action.info());
+    for info in keyed.filter(|info| info.shortcut.is_some()) {
+        assert!(has(&|text| text == info.label), "{}", info.label);
+        for key in [info.shortcut, info.other_shortcut].into_iter().flatten() {
+            let key = key.to_string();
+            assert!(has(&|text| text.split(", ").any(|one| one == key)), "{key}");
+        }
+    }
+}
+
+#[test]
+fn every_action_stands_in_its_menu() {
+    let mut window = window();
+    for menu in Menu::ALL {
+        let bar = window.query_all_by_label(menu.label()).next();
+        bar.expect("the menu").click_accesskit();
+        window.run_steps(2);
+        for action in Action::in_menu(menu) {
+            let info = action.info();
+            let keys = info.shortcut.map_or_else(String::new, |s| s.to_string());
+            let is_item = |text: String| {
+                let rest = text.strip_prefix(info.label);
+                rest.is_some_and(|rest| rest.trim() == keys)
+            };
+            let mut items = window.query_all_by(|node| node.label().is_some_and(is_item));
+            assert!(items.next().is_some(), "{}", info.label);
+        }
+        window.key_press(egui::Key::Escape);
+        window.run_steps(2);
+    }
 }
 
 #[test]

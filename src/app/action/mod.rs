@@ -73,6 +73,17 @@ pub struct ActionInfo {
     pub other_shortcut: Option<Shortcut>,
 }
 
+impl ActionInfo {
+    /// All its keys as people read them, if it has any.
+    pub fn keys(&self) -> Option<String> {
+        let first = self.shortcut?.to_string();
+        Some(match self.other_shortcut {
+            Some(other) => format!("{first}, {other}"),
+            None => first,
+        })
+    }
+}
+
 macro_rules! actions {
     ($($(#[doc = $doc:literal])* $name:ident),* $(,)?) => {
         /// Something the user can do without further data: a menu entry, a key, a palette line.
