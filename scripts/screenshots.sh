@@ -31,7 +31,8 @@ DISPLAY=:$(cat "$folder/display")
 export DISPLAY
 
 "$SHAPEMATCH" >"$folder/log" 2>&1 &
-pids+=($!)
+program=$!
+pids+=("$program")
 window=$(timeout 60 xdotool search --sync --onlyvisible --name shapematch | head -n 1)
 xdotool windowmove "$window" 0 0 windowsize "$window" 1400 900 windowfocus "$window"
 
@@ -63,12 +64,20 @@ drag() {
 }
 # Where nothing reacts to the pointer.
 rest() { xdotool mousemove 1000 890; }
+# choose WORDS: a command by its name in the search over all commands, as Ctrl+K opens it.
+choose() {
+    press ctrl+k
+    sleep 0.5
+    xdotool type --delay 40 -- "$1"
+    sleep 0.5
+    press Return
+    settle
+}
 
 mkdir -p screenshots
 rest
 keep start
-click 607 373 # Open the example pair
-settle
+choose "open the example pair"
 drag 560 420 60 -40
 rest
 keep loaded
@@ -84,19 +93,30 @@ press a
 settle
 press alt+Return
 settle
+# The program stands still for the moment of the picture: a match is over in a tenth of a second.
 press ctrl+Return
-for i in $(seq 8); do shot "$folder/live-$i.png"; done
-cp "$folder/live-3.png" screenshots/live.png
+kill -STOP "$program"
+sleep 0.3
+shot screenshots/live.png
+kill -CONT "$program"
 say "screenshots/live.png"
+await_rest 3
 rest
 keep matched-reduced
 press e
 press shift+d
 rest
 keep matched-detailed
-click 652 715 # Sweep
-click 414 745 # Run the sweep
-await_rest 60
-drag 1100 700 0 -320 # more room for tables and curves
+press s
+rest
+keep section
+press s
+drag 1100 701 0 -200 # more room for tables and curves
+click 492 515 # Starts
+rest
+keep starts
+click 653 515 # Sweep
+click 414 545 # Run the sweep
+await_rest 15
 rest
 keep sweep
