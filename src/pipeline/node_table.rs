@@ -2,6 +2,7 @@
 
 use super::PipelineError;
 use super::load::LoadedPart;
+use super::units::PairUnits;
 use crate::assess::deviation::{
     DeviationField, DeviationSettings, source_on_target, target_on_source,
 };
@@ -100,17 +101,14 @@ pub fn node_table(
             .map_or_else(String::new, |hash| format!(", SHA-256 {hash}"));
         format!("{}{hash}", part.file_name())
     };
-    let factor = |part: &LoadedPart| part.settings.length_factor;
-    let comments = vec![
+    let mut comments = vec![
         "Distances of the nodes of both parts from the other part".to_owned(),
         format!("crash: {}", side(crash)),
         format!("stamped: {}", side(stamped)),
         DIRECTION.to_owned(),
-        format!(
-            "lengths in the crash part's unit; files scaled when read: crash by {}, stamped by {}",
-            factor(crash),
-            factor(stamped)
-        ),
+    ];
+    comments.extend(PairUnits::sentences(crash, stamped));
+    comments.extend([
         "x y z: where the node lies in the crash part's frame, stamped nodes moved".to_owned(),
         format!("distance: to the other part, {sign}"),
         format!(
@@ -118,6 +116,6 @@ pub fn node_table(
             field.limit
         ),
         build_id(),
-    ];
+    ]);
     Ok(deviation_table(&comments, &rows))
 }

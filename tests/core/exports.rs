@@ -217,6 +217,7 @@ fn node_deviations_read_back_to_the_same_bits() {
     let n_nodes = |part: &LoadedPart| part.surface.vertex_node.len();
     assert_eq!(rows.len(), n_nodes(crash) + n_nodes(stamped));
     let text = node_table(crash, stamped, pose, &silent).unwrap();
+    assert!(text.contains("\n# lengths in mm\n"), "no unit in the head");
     let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
     assert_eq!(lines.len(), rows.len() + 1);
     for (line, row) in lines[1..].iter().zip(&rows) {
