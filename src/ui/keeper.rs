@@ -8,12 +8,17 @@ use crate::app::{Document, KeptWork, project_title};
 use crate::pipeline::project::{EXTENSION, Project};
 use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// Runs whose work is kept.
 const MAX_RUNS: usize = 5;
+/// A program that was killed a moment ago may still hold its lock, so work that is held is looked at
+/// so many times more …
+const MORE_LOOKS: usize = 4;
+/// … this long after each other.
+const LOOK_AGAIN: Duration = Duration::from_secs(1);
 
 /// What the thread is asked for.
 enum Order {
@@ -55,7 +60,8 @@ impl Keeper {
         let thread = std::thread::Builder::new().name("keeper".to_owned());
         let thread = thread.spawn(move || {
             let mut run = Run::new(folder);
-            while let Ok(first) = orders.recv() {
+            let mut looks_left = MORE_LOOKS;
+            while let Some(first) = run.next_order(&orders, &mut looks_left) {
                 let mut orders: Vec<Order> =
                     std::iter::once(first).chain(orders.try_iter()).collect();
                 keep_last(&mut orders);
@@ -142,6 +148,8 @@ struct Run {
     name: String,
     /// Held while the program runs.
     lock: Option<File>,
+    /// Some work was held by another program when it was listed last.
+    has_seen_held: bool,
 }
 
 impl Run {
@@ -152,6 +160,22 @@ impl Run {
             folder,
             name,
             lock: None,
+            has_seen_held: false,
+        }
+    }
+
+    /// Waits for an order; meanwhile looks again for work that other programs hold.
+    fn next_order(&self, orders: &Receiver<Order>, looks_left: &mut usize) -> Option<Order> {
+        match orders.recv_timeout(LOOK_AGAIN) {
+            Ok(order) => Some(order),
+            Err(RecvTimeoutError::Disconnected) => None,
+            Err(RecvTimeoutError::Timeout) => {
+                if *looks_left > 0 && self.has_seen_held {
+                    *looks_left -= 1;
+                    return Some(Order::List);
+                }
+                orders.recv().ok()
+            }
         }
     }
 
@@ -168,7 +192,10 @@ impl Run {
                 project.saved_at = unix_now();
                 self.keep(&project).err().map(Kept::NotKept)
             }
-            Order::List => Some(Kept::Works(self.works())),
+            Order::List => {
+                self.has_seen_held = self.runs().iter().any(|path| is_held(path));
+                Some(Kept::Works(self.works()))
+            }
             Order::PutOff => {
                 for path in self.others().into_iter().filter(|path| is_running(path)) {
                     end(&path);
@@ -200,6 +227,13 @@ impl Run {
 
     /// The files of other runs whose programs no longer run, newest first.
     fn others(&self) -> Vec<PathBuf> {
+        let mut paths = self.runs();
+        paths.retain(|path| !is_held(path));
+        paths
+    }
+
+    /// The files of all other runs, newest first.
+    fn runs(&self) -> Vec<PathBuf> {
         let Some(folder) = &self.folder else {
             return Vec::new();
         };
@@ -209,7 +243,7 @@ impl Run {
         paths.sort();
         paths.reverse();
         let own = self.path();
-        paths.retain(|path| Some(path) != own.as_ref() && !is_held(path));
+        paths.retain(|path| Some(path) != own.as_ref());
         paths
     }
 
@@ -321,6 +355,25 @@ mod tests {
         let works = of("000000000003-1").works();
         assert_eq!(works.iter().filter(|work| work.is_lost).count(), 0);
         assert_eq!(works[0].title, "ended.k");
+    }
+
+    #[test]
+    fn work_that_is_held_at_first_is_looked_at_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut dying = Run {
+            name: "000000000001-1".to_owned(),
+            ..Run::new(Some(folder.path().to_owned()))
+        };
+        assert!(dying.carry_out(Order::Keep(project("/a/lost.k"))).is_none());
+        let keeper = Keeper::start(Some(folder.path().to_owned()), || {}).unwrap();
+        keeper.list();
+        let works = || match keeper.receiver.recv_timeout(Duration::from_secs(60)) {
+            Ok(Kept::Works(works)) => works,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(works(), []);
+        dying.lock = None;
+        assert!(works()[0].is_lost);
     }
 
     #[test]
