@@ -2,17 +2,26 @@
 //! simulation on the same part of a crash model.
 //!
 //! The product of a match is `target_from_source`, the similarity of
-//! `crash = c · R · stamped + t` in column vectors. The modules, from the ground up:
+//! `crash = c · R · stamped + t` in column vectors. *The paper* is "A Shape-Matching Algorithm for deep
+//! drawing applications", on the diploma thesis of Markus Brüchele, supervised by Uli Göhner at the
+//! University of Applied Sciences Kempten.
+//!
+//! The modules, from the ground up:
 //!
 //! - [`monitor`]: progress, stop and cancel.
+//! - [`role`]: crash part and stamped part, and one value for each.
 //! - [`units`]: units of length, unit systems, and what a file says of its own.
+//! - [`text`]: counts, lengths and sentences as people read them.
 //! - [`geometry`]: points, meshes, topology, poses, the camera.
 //! - [`colormap`]: colour maps and scales.
+//! - [`palette`]: colours that mean the same everywhere.
 //! - [`formats`]: LS-DYNA keyword decks, STL, OBJ, PLY.
 //! - [`simplify`]: quadric error simplification.
 //! - [`search`]: closest points and rays on triangle meshes.
 //! - [`registration`]: Umeyama, ICP, Trimmed ICP, Fractional ICP, and the race of many starts.
+//! - [`mapping`]: forming results from the stamped shells onto the crash shells.
 //! - [`assess`]: is the pose right? Coverage, ambiguity, free motions, verdict.
+//! - [`settings`]: the settings of a match by name, one row each.
 //! - [`samples`]: generated pairs of sheet parts with a known pose.
 //! - [`report`]: the matrix in all its forms, LS-DYNA cards, the record of a run.
 //! - [`pipeline`]: load, reduce, match, export, as one call each.
@@ -20,25 +29,41 @@
 //! - [`app`]: the window without the window: state, commands, undo.
 //! - `ui` (feature `gui`): the window; draws the state, emits commands.
 //! - `render` (feature `gui`): scenes into pictures with wgpu.
+//! - [`cli`]: the command line.
 //!
 //! `ARCHITECTURE.md` says who may use whom.
 
-pub mod app;
-pub mod assess;
-pub mod cli;
-pub mod colormap;
-pub mod formats;
-pub mod geometry;
-pub mod jobs;
 pub mod monitor;
-pub mod pipeline;
-pub mod registration;
-#[cfg(feature = "gui")]
-pub mod render;
-pub mod report;
-pub mod samples;
+pub mod role;
+pub mod text;
+pub mod units;
+
+pub mod colormap;
+pub mod geometry;
+pub mod palette;
+
+pub mod formats;
 pub mod search;
 pub mod simplify;
+
+pub mod mapping;
+pub mod registration;
+pub mod samples;
+
+pub mod assess;
+pub mod settings;
+
+pub mod report;
+
+pub mod pipeline;
+
+pub mod jobs;
+
+pub mod app;
+
+#[cfg(feature = "gui")]
+pub mod render;
 #[cfg(feature = "gui")]
 pub mod ui;
-pub mod units;
+
+pub mod cli;

@@ -1,5 +1,6 @@
 //! The program: arguments in, exit code out.
 
+use std::io::Write as _;
 use std::process::ExitCode;
 
 use clap::Parser as _;
@@ -20,7 +21,7 @@ fn main() -> ExitCode {
     };
     outcome.unwrap_or_else(|error| {
         log::error!("{error:#}");
-        ExitCode::FAILURE
+        cli::exit_status(&error)
     })
 }
 
@@ -30,8 +31,10 @@ fn start_logging(quiet: bool) {
     // Why the window does not open is told once, by us.
     let filter = format!("{level},winit=error,eframe=off,wgpu_hal::vulkan::instance=off");
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or(filter))
-        .format_timestamp(None)
-        .format_target(false)
+        .format(|line, record| {
+            let text = record.args().to_string();
+            writeln!(line, "[{:<5}] {}", record.level(), cli::printable(&text))
+        })
         .init();
 }
 

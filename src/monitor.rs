@@ -4,7 +4,6 @@
 //! once per chunk of work; chunks are small enough that an answer comes within 100 ms.
 //! *Stop* means "end early and keep the best result so far"; *cancel* means "end and forget".
 
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -24,64 +23,10 @@ pub struct Progress {
     pub total: Option<u64>,
 }
 
-/// One step of an iterative registration, cheap enough to be told at every iteration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct IterationReport {
-    /// Index of the start this iteration belongs to, counted from 0 over the whole match.
-    pub start_idx: usize,
-    /// Iteration within its start, counted from 0.
-    pub iteration: usize,
-    /// Row-major 4×4 `target_from_source`, scale included.
-    pub target_from_source: [[f64; 4]; 4],
-    /// The objective that is minimised (FRMSD for Fractional ICP), in length units.
-    pub objective: f64,
-    /// Root mean square residual of the kept pairs, in length units.
-    pub rmse: f64,
-    /// Share of the data points that are kept, 0 to 1.
-    pub fraction: f64,
-}
-
-/// What became of a start.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Fate {
-    /// It gave the result.
-    Won,
-    /// It went to the last comparison and lost to a better pose.
-    RunnerUp,
-    /// It met another start's pose and was dropped for it.
-    MergedInto {
-        /// Index of the other start.
-        start: usize,
-    },
-    /// Others were ahead after so many iterations.
-    Dropped {
-        /// Iterations made.
-        after: usize,
-    },
-    /// It found no pairs or its pairs fixed no motion.
-    Failed,
-}
-
-/// A start that begins or ends; told twice for each start, never within an iteration.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StartReport {
-    /// Index of the start, counted from 0 over the whole match.
-    pub start_idx: usize,
-    /// How it came to be, in words.
-    pub name: String,
-    /// What became of it; `None` while it runs.
-    pub fate: Option<Fate>,
-}
-
-/// Receives progress and iterations. Called from worker threads, so it must be quick and `Sync`.
+/// Receives progress. Called from worker threads, so it must be quick and `Sync`.
 pub trait Observer: Send + Sync {
     /// A phase began or moved on.
     fn progress(&self, _progress: Progress) {}
-    /// A registration made one iteration.
-    fn iteration(&self, _report: &IterationReport) {}
-    /// A start of a registration began or ended.
-    fn start(&self, _report: StartReport) {}
 }
 
 #[derive(Debug, Default)]
@@ -90,7 +35,7 @@ struct Flags {
     cancel: AtomicBool,
 }
 
-/// Shared handle on a piece of running work: asks for stop or cancel, tells progress.
+/// Shared handle on a piece of running work: asks for stop or cancel, reports progress.
 ///
 /// Clones share the same flags, so one clone can stay with the window and one go to the worker.
 #[derive(Clone, Default)]
@@ -105,7 +50,7 @@ impl Monitor {
         Self::default()
     }
 
-    /// A monitor that tells `observer` what happens.
+    /// A monitor that reports progress to `observer`.
     pub fn with_observer(observer: Arc<dyn Observer>) -> Self {
         Self {
             flags: Arc::default(),
@@ -121,7 +66,7 @@ impl Monitor {
         }
     }
 
-    /// The same flags without anybody watching, for side work that is not part of the story.
+    /// The same flags without anybody watching, for side work that nobody follows.
     pub fn without_observer(&self) -> Self {
         Self {
             flags: self.flags.clone(),
@@ -153,24 +98,10 @@ impl Monitor {
         }
     }
 
-    /// Tells how far a phase has come.
+    /// Reports how far a phase has come.
     pub fn progress(&self, phase: &'static str, done: u64, total: Option<u64>) {
         if let Some(observer) = &self.observer {
             observer.progress(Progress { phase, done, total });
-        }
-    }
-
-    /// Tells that a start began or ended; `report` is only made if somebody listens.
-    pub fn start(&self, report: impl FnOnce() -> StartReport) {
-        if let Some(observer) = &self.observer {
-            observer.start(report());
-        }
-    }
-
-    /// Tells one registration iteration.
-    pub fn iteration(&self, report: &IterationReport) {
-        if let Some(observer) = &self.observer {
-            observer.iteration(report);
         }
     }
 }

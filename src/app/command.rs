@@ -1,16 +1,22 @@
+//! Everything that can happen in the window, as data.
+
+use std::path::PathBuf;
+
 use super::{Axis, FreeWindow, NoticeLevel};
 use super::{
-    AxisFrame, BottomTab, CopyForm, Dialog, Display, Document, ExportKind, GestureId,
-    InspectCommand, KeptWork, LikeWhat, ModalInput, MotionKind, MoveFrame, NoticeId, PartRef,
-    PickedPoint, PictureChoice, Preview, Section, SectionView, Settings, ShownGeometry,
+    AxisFrame, BottomTab, CopyForm, Dialog, Display, Document, GestureId, InspectCommand, LikeWhat,
+    ModalInput, MotionKind, MoveFrame, NoticeId, PartRef, PickedPoint, PictureChoice, Preview,
+    Section, SectionView, Settings, ShownGeometry,
 };
 use crate::geometry::camera::{OrbitStyle, StandardView};
 use crate::geometry::{Camera, Point3, Similarity};
-use crate::jobs::{JobEvent, Live, Located, PartSource, PerRole, ProjectRequest, Role};
+use crate::jobs::{JobEvent, Live, Located, PartSource, ProjectRequest};
+use crate::pipeline::autosave::RecoveredSession;
 use crate::pipeline::match_parts::MatchRecipe;
+use crate::pipeline::outputs::Output;
 use crate::pipeline::sweep::SweepSettings;
+use crate::role::{PerRole, Role};
 use crate::units::Units;
-use std::path::PathBuf;
 
 /// Everything that can happen to the window, with its data.
 #[derive(Debug, Clone)]
@@ -67,6 +73,8 @@ pub enum FileCommand {
     OpenExample,
     /// Read a part again.
     Reload(Role),
+    /// Read all loaded parts again.
+    ReloadAll,
     /// Forget a part.
     Close(Role),
     /// Exchange the two parts without reading anything.
@@ -98,7 +106,7 @@ pub enum ProjectCommand {
     AskOpen,
     /// Open a project.
     Open(ProjectRequest),
-    /// Open work that was kept in case of a crash.
+    /// Open an autosaved session.
     Restore(PathBuf),
     /// Ask where a file of the project is that was not found.
     AskLocate(Role),
@@ -116,12 +124,12 @@ pub enum ProjectCommand {
     Written(PathBuf, Box<Document>),
     /// The shell could not write, or the user closed the dialog.
     NotWritten,
-    /// Keep the work in case of a crash, if there is something new.
-    Keep,
-    /// The shell found work of the last runs.
-    TellKept(Vec<KeptWork>),
-    /// Leave lost work where it is; the menu still offers it.
-    PutOff,
+    /// Save the session in case of a crash, if there is something new.
+    Autosave,
+    /// The shell found sessions of the last runs.
+    NotifyRecovered(Vec<RecoveredSession>),
+    /// Leave lost sessions where they are; the menu still offers them.
+    DismissRecovery,
     /// Save, and leave the program when that is done.
     SaveAndQuit,
     /// Leave the program without saving.
@@ -218,10 +226,10 @@ pub enum MoveCommand {
     },
     /// A pose as text, in any common layout.
     Paste(String),
-    /// Turn by 180° about one of the part's own axes through its centre.
-    TurnOver(Axis),
-    /// Lay the centres of the two boxes on each other.
-    BringCentersTogether,
+    /// Rotate by 180° about one of the part's own axes through its centre.
+    Flip(Axis),
+    /// Make the centres of the two boxes coincide.
+    AlignCenters,
     /// Back to the pose as loaded.
     Reset,
     /// Begin to move or rotate by keys.
@@ -240,14 +248,14 @@ pub enum MoveCommand {
 pub enum MatchCommand {
     /// New settings, as a whole; one undo step for a series of changes.
     SetRecipe(Box<MatchRecipe>),
-    /// "Align surface normal": make the first poses.
+    /// "Align surface normals": make the first poses.
     Align,
     /// Show a first pose without taking it; `None` shows the real pose again.
     ShowStart(Option<usize>),
     /// Show the next (+1) or previous (−1) first pose.
     StepStart(i32),
     /// Put the stamped part where a start of the last match ended.
-    UseAttempt(usize),
+    UseMatchStart(usize),
     /// Take the shown first pose over.
     UseStart(usize),
     /// Run the match.
@@ -261,7 +269,7 @@ pub enum MatchCommand {
     /// Take over one of the alternatives, or with `None` the best pose again.
     ShowAlternative(Option<usize>),
     /// To the next alternative and round to the best.
-    FlipAlternative,
+    NextAlternative,
     /// Measure distances and overlap at the present pose.
     Measure,
     /// Run the paper's tables.
@@ -301,11 +309,11 @@ pub enum ExportCommand {
     /// The matrix, or cards, on the clipboard.
     Copy(CopyForm),
     /// Ask where to write something.
-    AskSave(ExportKind),
+    AskSave(Output),
     /// Write something.
     Write {
         /// What.
-        kind: ExportKind,
+        kind: Output,
         /// Where.
         path: PathBuf,
     },
@@ -407,7 +415,7 @@ pub enum HistoryCommand {
     /// To the state with so many steps in force.
     JumpTo(usize),
     /// Pose, level, visibility and result as they were after loading; itself one step.
-    BackToAsLoaded,
+    ResetAll,
 }
 
 /// Toasts and bell.

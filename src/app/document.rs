@@ -1,10 +1,14 @@
-use super::{Label, PointPairs, Shared};
-use crate::geometry::{Aabb, Similarity, TriMesh};
-use crate::jobs::{MeasuredLevel, PartFacts, PartSource, PerRole, Role, Stamp};
-use crate::pipeline::load::LoadedPart;
-use crate::pipeline::match_parts::{MatchRecipe, MatchRun};
+//! The work that undo brings back: parts, levels, pose, settings, result.
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+
+use super::{Label, PointPairs, Shared};
+use crate::geometry::{Aabb, Similarity, TriMesh};
+use crate::jobs::{MeasuredLevel, PartFacts, PartSource, Stamp};
+use crate::pipeline::load::LoadedPart;
+use crate::pipeline::match_parts::{MatchRecipe, MatchRun};
+use crate::role::{PerRole, Role};
 
 /// What undo covers: a value that is cheap to clone, because all geometry is shared.
 ///

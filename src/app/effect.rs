@@ -1,7 +1,12 @@
-use super::{Document, ExportKind, PictureChoice, PicturePlace};
-use crate::jobs::{JobKey, JobKind, Role, Stamp};
-use crate::pipeline::project::Project;
+//! What must happen outside the state: jobs, dialogs, clipboard, files.
+
 use std::path::PathBuf;
+
+use super::{Document, PictureChoice, PicturePlace};
+use crate::jobs::{JobKey, JobKind, Stamp};
+use crate::pipeline::outputs::Output;
+use crate::pipeline::project::Project;
+use crate::role::Role;
 
 /// What the shell has to do after a command.
 #[derive(Debug, Clone)]
@@ -29,14 +34,14 @@ pub enum Effect {
         /// The state that it holds.
         document: Box<Document>,
     },
-    /// Keep the work in the user's folder in case of a crash.
-    KeepWork(Box<Project>),
-    /// Lost work is no longer to be offered at the start.
-    PutOffKept,
+    /// Save the session in the user's folder in case of a crash.
+    Autosave(Box<Project>),
+    /// Lost sessions are no longer to be offered at the start.
+    DismissRecovery,
     /// Ask where to write; answer with `ExportCommand::Write`.
     AskSave {
         /// What.
-        kind: ExportKind,
+        kind: Output,
         /// A file name to start from.
         name: String,
     },

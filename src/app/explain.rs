@@ -1,14 +1,15 @@
 //! Why a match is weak: the likely causes with what speaks for them, and one thing to do about each.
 
 use super::{Action, AppState, Command, FileCommand, MatchCommand};
-use crate::assess::{Assessment, Clarity, Verdict};
-use crate::jobs::Role;
+use crate::assess::{Assessment, Clarity, Reason, ShapeReason, Verdict};
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::registration::{Hand, StartMethod};
+use crate::role::Role;
+use crate::text::{capital, fixed, sentence, whole_percent};
 
-/// Causes that are told; more would be guessing.
+/// Causes that are listed; more would be guessing.
 const MOST: usize = 3;
-/// The other hand is worth a word below this ratio of scores.
+/// The opposite hand is a likely cause below this ratio of scores.
 const OTHER_HAND: f64 = 0.98;
 /// Less overlap of the better covered part is little.
 const LITTLE_OVERLAP: f64 = 0.6;
@@ -18,9 +19,9 @@ const LITTLE_OVERLAP: f64 = 0.6;
 pub struct Cause {
     /// The cause as a question.
     pub title: String,
-    /// What speaks for it, as a sentence.
+    /// The evidence for it, as a sentence.
     pub evidence: String,
-    /// What can be done: the words on the button and what it does.
+    /// The remedy: the label of its button and what it does.
     pub remedy: Option<(String, Vec<Command>)>,
 }
 
@@ -40,7 +41,7 @@ impl AppState {
             self.twin_cause(assessment),
             self.freedom_cause(assessment),
             self.overlap_cause(assessment),
-            self.shape_cause(assessment, result.run.outcome.p95),
+            self.shape_cause(assessment),
         ];
         found.into_iter().flatten().take(MOST).collect()
     }
@@ -63,15 +64,15 @@ impl AppState {
             remedy: Some(remedy),
         });
         let starts = Cause {
-            title: "Too few first poses?".to_owned(),
-            evidence: "No start found places where the parts meet.".to_owned(),
+            title: "Too few start poses?".to_owned(),
+            evidence: "From no start pose did the parts come into contact.".to_owned(),
             remedy: self.retry("Try all starts", |recipe| {
                 recipe.settings.starts.method = StartMethod::All;
             }),
         };
         let by_hand = Cause {
-            title: "Parts that do not find each other?".to_owned(),
-            evidence: "Three pairs of points give a first pose.".to_owned(),
+            title: "Parts too far apart?".to_owned(),
+            evidence: "Three point pairs give a start pose.".to_owned(),
             remedy: self.do_action(Action::PairTool, "Pick point pairs"),
         };
         units.into_iter().chain([starts, by_hand]).collect()
@@ -96,8 +97,8 @@ impl AppState {
     }
 
     fn do_action(&self, action: Action, label: &str) -> Option<(String, Vec<Command>)> {
-        let commands = action.to_commands(self);
-        (!commands.is_empty()).then(|| (label.to_owned(), commands))
+        let commands = action.command(self);
+        commands.map(|command| (label.to_owned(), vec![command]))
     }
 
     fn unit_remedy(&self) -> Option<(String, Vec<Command>)> {
@@ -124,8 +125,8 @@ impl AppState {
         Some(Cause {
             title: "Different units?".to_owned(),
             evidence: format!(
-                "The crash part is {:.4} times as large as the stamped one.",
-                check.size_ratio
+                "The crash part is {} times as large as the stamped part.",
+                fixed(check.size_ratio, 4)
             ),
             remedy: self.unit_remedy(),
         })
@@ -137,8 +138,8 @@ impl AppState {
         (ratio < OTHER_HAND).then(|| Cause {
             title: "The opposite-hand part?".to_owned(),
             evidence: format!(
-                "Mirrored it fits better: its score is {:.0} % of this one's.",
-                100.0 * ratio
+                "Mirrored, the part fits better: its score is {} of this one's (lower is better).",
+                whole_percent(ratio)
             ),
             remedy: self.retry("Match the opposite hand", |recipe| {
                 recipe.settings.hand = match hand {
@@ -154,15 +155,15 @@ impl AppState {
         if ambiguity.clarity == Clarity::Clear {
             return None;
         }
-        let how = ambiguity.twin.map(|twin| twin.words());
+        let how = ambiguity.twin.map(|twin| twin.words(self.lengths()));
         Some(Cause {
-            title: "A part that fits twice?".to_owned(),
+            title: "A second pose that fits?".to_owned(),
             evidence: format!(
-                "{} it fits almost as well (score ratio {:.2}): check holes and beads.",
-                capital(&how.unwrap_or_else(|| "in another pose".to_owned())),
+                "{}, the part fits almost as well (score ratio {:.2}): check holes and beads.",
+                capital(how.as_deref().unwrap_or("in another pose")),
                 ambiguity.ratio.unwrap_or(1.0)
             ),
-            remedy: self.do_action(Action::FlipAlternative, "Show the other pose"),
+            remedy: self.do_action(Action::NextAlternative, "Show the other pose"),
         })
     }
 
@@ -170,7 +171,7 @@ impl AppState {
         let motion = assessment.freedom.motion?;
         Some(Cause {
             title: "A shape that slides on itself?".to_owned(),
-            evidence: format!("{}.", capital(&motion.words())),
+            evidence: sentence(&motion.words()),
             remedy: self.do_action(Action::PairTool, "Pick point pairs"),
         })
     }
@@ -181,8 +182,8 @@ impl AppState {
         (overlap < LITTLE_OVERLAP).then(|| Cause {
             title: "The wrong place?".to_owned(),
             evidence: format!(
-                "Only {:.0} % of the better covered part lies within {}.",
-                100.0 * overlap,
+                "Only {} of the better covered part lies within {} of the other.",
+                whole_percent(overlap),
                 self.length_text(coverage.limit)
             ),
             remedy: self
@@ -193,27 +194,23 @@ impl AppState {
         })
     }
 
-    fn shape_cause(&self, assessment: &Assessment, p95: f64) -> Option<Cause> {
-        let is_told = assessment
-            .reasons
-            .iter()
-            .any(|r| r.contains("shapes differ"));
-        is_told.then(|| Cause {
+    fn shape_cause(&self, assessment: &Assessment) -> Option<Cause> {
+        let differ = assessment.reasons.iter().find_map(|reason| match reason {
+            Reason::Shape {
+                difference: ShapeReason::Surface { by, .. } | ShapeReason::Bent { by, .. },
+            } => Some(*by),
+            _ => None,
+        });
+        let by = differ?;
+        Some(Cause {
             title: "Springback, or another forming state?".to_owned(),
             evidence: format!(
-                "95 % of the kept pairs lie within {}, more than the facets explain.",
-                self.length_text(p95)
+                "At 95 % of the area the surfaces differ by up to {}, more than the tolerance.",
+                self.length_text(by)
             ),
-            remedy: self.retry(&format!("Allow {}", self.length_text(p95)), |recipe| {
-                recipe.settings.allowance = p95;
+            remedy: self.retry(&format!("Allow {}", self.length_text(by)), |recipe| {
+                recipe.settings.allowance = by;
             }),
         })
     }
-}
-
-/// The text with its first letter large.
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|c| c.to_uppercase().to_string());
-    format!("{}{}", first.unwrap_or_default(), letters.as_str())
 }

@@ -7,7 +7,9 @@ use crate::geometry::Similarity;
 use crate::jobs::{MeasuredLevel, PartFacts};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::MatchRun;
-pub(super) use crate::report::grouped;
+use crate::role::PerRole;
+use crate::text::{Lengths, length, percent};
+pub(super) use crate::text::{counted, grouped};
 use std::time::Duration;
 
 /// A pose this much worse than the best is worth a key: above it, it is simply another pose.
@@ -35,25 +37,25 @@ pub(super) fn load_line(part: &LoadedPart, facts: &PartFacts) -> String {
     }
 }
 
-/// "12 findings in bp.dynain, the first: bp.dynain:48: …", if the reader had any, and how loud it is.
+/// "12 diagnostics in bp.dynain; the most severe: bp.dynain:48: …", if the reader had any, and how loud it is.
 pub(super) fn diagnostics_line(part: &LoadedPart) -> Option<(NoticeLevel, String)> {
     let n = part.report.n_findings;
     if n == 0 {
         return None;
     }
-    let counted = counted(usize::try_from(n).unwrap_or(usize::MAX), "finding");
-    let all = [&part.model.diagnostics, &part.surface.diagnostics];
+    let counted = counted(usize::try_from(n).unwrap_or(usize::MAX), "diagnostic");
+    let all = [&part.model.diagnostics, &*part.surface_diagnostics];
     let found = all
         .into_iter()
-        .filter_map(|diagnostics| diagnostics.gravest());
-    let gravest = found.rev().max_by_key(|one| one.severity());
-    let level = match gravest.map(Diagnostic::severity) {
+        .filter_map(|diagnostics| diagnostics.most_severe());
+    let most_severe = found.rev().max_by_key(|one| one.severity());
+    let level = match most_severe.map(Diagnostic::severity) {
         Some(Severity::Error) => NoticeLevel::Warning,
         _ => NoticeLevel::Note,
     };
     let mut text = format!("{counted} in {}", part.file_name());
-    if let Some(gravest) = gravest {
-        text += &format!("; {gravest}");
+    if let Some(most_severe) = most_severe {
+        text += &format!("; {most_severe}");
     }
     text += ". The rest was read; the tab Diagnostics lists them";
     Some((level, text))
@@ -74,12 +76,14 @@ pub(super) fn reduce_line(measured: &MeasuredLevel) -> String {
     line
 }
 
-/// "rms 0.0412, max 0.312, at borders max 0.1 mm"; lengths are followed by `unit`.
-pub(super) fn deviation_line(measured: &MeasuredLevel, unit: &str) -> String {
+/// "distance to the full mesh: RMS 0.0412, max 0.312, at borders max 0.100 mm".
+pub(super) fn deviation_line(measured: &MeasuredLevel, lengths: Lengths) -> String {
     measured.deviation.get().map_or_else(String::new, |d| {
         format!(
-            "distance to the full mesh: rms {:.4}, max {:.4}, at borders max {:.4}{unit}",
-            d.rms, d.max, d.border_max
+            "distance to the full mesh: RMS {}, max {}, at borders max {}",
+            length(d.rms),
+            length(d.max),
+            lengths.of(d.border_max)
         )
     })
 }
@@ -103,18 +107,18 @@ pub(super) fn n_alternatives(run: &MatchRun) -> usize {
         .count()
 }
 
-/// "GOOD: overlap 87 %, rmse 0.38, p95 0.9 mm; the reason"; lengths are followed by `unit`.
-pub(super) fn match_line(run: &MatchRun, unit: &str) -> String {
+/// "GOOD: overlap 87.0 %, RMS 0.380, p95 0.900 mm; the reason".
+pub(super) fn match_line(run: &MatchRun, lengths: Lengths) -> String {
     let assessment = &run.assessment;
     let mut line = format!(
-        "{}: overlap {:.1} %, rmse {:.4}, p95 {:.4}{unit}",
+        "{}: overlap {}, RMS {}, p95 {}",
         assessment.verdict.label(),
-        100.0 * assessment.coverage.better_overlap(),
-        assessment.coverage.rmse(),
-        assessment.coverage.p95(),
+        percent(assessment.coverage.better_overlap()),
+        length(assessment.coverage.rmse()),
+        lengths.of(assessment.coverage.p95()),
     );
     if let Some(reason) = assessment.reasons.first() {
-        line += &format!("; {reason}");
+        line += &format!("; {}", reason.words(lengths));
     }
     line
 }
@@ -130,7 +134,7 @@ pub(super) fn match_level(run: &MatchRun) -> NoticeLevel {
 /// The phases of a match before its last one, for the log.
 pub(super) fn match_steps(run: &MatchRun) -> Vec<(&'static str, String, Duration)> {
     let took = |ms: f64| Duration::try_from_secs_f64(ms / 1e3).unwrap_or_default();
-    let [crash, stamped] = run.n_triangles.map(grouped);
+    let PerRole { crash, stamped } = run.n_triangles.map(grouped);
     let times = &run.times;
     let n_starts = counted(run.outcome.starts.len(), "start");
     let iterations = run.outcome.starts.iter().map(|s| s.iterations.len()).sum();
@@ -152,20 +156,13 @@ pub(super) fn match_steps(run: &MatchRun) -> Vec<(&'static str, String, Duration
     steps
 }
 
-/// "stamped → crash 87.0 %, crash → stamped 96.0 % within 1.5 mm; rmse 0.38 mm"; lengths are
-/// followed by `unit`.
-pub(super) fn measure_line(coverage: &Coverage, unit: &str) -> String {
+/// "stamped → crash 87.0 %, crash → stamped 96.0 % within 1.50 mm; RMS 0.380 mm".
+pub(super) fn measure_line(coverage: &Coverage, lengths: Lengths) -> String {
     format!(
-        "stamped → crash {:.1} %, crash → stamped {:.1} % within {:.3}{unit}; rmse {:.4}{unit}",
-        100.0 * coverage.source_on_target.overlap,
-        100.0 * coverage.target_on_source.overlap,
-        coverage.limit,
-        coverage.rmse(),
+        "stamped → crash {}, crash → stamped {} within {}; RMS {}",
+        percent(coverage.source_on_target.overlap),
+        percent(coverage.target_on_source.overlap),
+        lengths.of(coverage.limit),
+        lengths.of(coverage.rmse()),
     )
-}
-
-/// "1 triangle", "12,345 triangles".
-pub(super) fn counted(n: usize, noun: &str) -> String {
-    let plural = if n == 1 { "" } else { "s" };
-    format!("{} {noun}{plural}", grouped(n))
 }

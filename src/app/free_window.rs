@@ -1,9 +1,10 @@
 //! What the right window shows while its part is in the left one.
 
+use serde::{Deserialize, Serialize};
+
 use super::{AppState, ColorBy};
 use crate::geometry::Similarity;
-use crate::jobs::Role;
-use serde::{Deserialize, Serialize};
+use crate::role::Role;
 
 /// The uses of the right window while the stamped part is moved over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

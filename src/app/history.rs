@@ -1,7 +1,10 @@
-use super::{Document, Part};
-use crate::jobs::Role;
+//! The steps done and undone, with their names.
+
 use std::cmp::Ordering;
 use std::time::Duration;
+
+use super::{Document, Part};
+use crate::role::Role;
 
 /// Undo steps that are kept; an old document costs little, but not nothing.
 const MAX_STEPS: usize = 500;

@@ -1,13 +1,16 @@
 //! How far the parts lie apart: what is measured, how it is coloured, labels and the section plane.
 
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
 use super::{AppState, BottomTab, ColorBy, Document, GestureId, Shared};
 use crate::assess::deviation::{DeviationStats, OneWay};
 use crate::colormap::{ColorMap, ColorScale};
 use crate::geometry::{Plane, Point3, Vector3};
-use crate::jobs::{JobKey, PerRole, Role, Stamp};
+use crate::jobs::{JobKey, Stamp};
 use crate::pipeline::inspect::Comparison;
-use serde::{Deserialize, Serialize};
-use std::time::Duration;
+use crate::role::{PerRole, Role};
 
 /// A comparison as quick as this follows every move of the hand.
 const LIVE: Duration = Duration::from_millis(100);

@@ -1,6 +1,9 @@
-use crate::jobs::{JobEvent, JobId, JobKey, JobStage, Live};
-use crate::monitor::{IterationReport, Progress};
+//! Which jobs wait and run.
+
 use std::time::Duration;
+
+use crate::jobs::{JobEvent, JobId, JobKey, JobStage, Live, LiveIteration};
+use crate::monitor::Progress;
 
 /// The running job as the window shows it.
 #[derive(Debug, Clone)]
@@ -14,7 +17,7 @@ pub struct RunningJob {
     /// Phase and count.
     pub progress: Option<Progress>,
     /// The latest iteration.
-    pub latest: Option<IterationReport>,
+    pub latest: Option<LiveIteration>,
     /// It was asked to end early.
     pub is_stopping: bool,
     /// It was asked to end without a result.

@@ -1,11 +1,12 @@
 //! What the match gave at each level of reduction, for the chips of section 2.
 
+use std::time::Duration;
+
 use super::AppState;
 use crate::geometry::Similarity;
-use crate::jobs::{PerRole, Role};
 use crate::pipeline::match_parts::MatchRun;
 use crate::pipeline::sweep::Sweep;
-use std::time::Duration;
+use crate::role::{PerRole, Role};
 
 /// The result of a match that searched on one level.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,9 +1,10 @@
 //! The parts of the decks in the order of their likeness to one of them.
 
-use super::{AppState, PartRef};
-use crate::jobs::{PerRole, Role};
-use crate::pipeline::likeness::{Moments, Signature};
 use std::collections::BTreeMap;
+
+use super::{AppState, PartRef};
+use crate::pipeline::likeness::{Moments, Signature};
+use crate::role::{PerRole, Role};
 
 /// A crash model of so many parts is sorted as soon as the stamped part is known.
 const MANY: usize = 20;

@@ -1,6 +1,9 @@
-use super::NoticeLevel;
-use crate::jobs::Role;
+//! The lines of the log with their durations.
+
 use std::time::Duration;
+
+use super::NoticeLevel;
+use crate::role::Role;
 
 /// One line of the log pane, made from the result of a step.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,6 @@
 
 mod action;
 mod apply;
-mod attempts;
 mod command;
 mod command_line;
 mod document;
@@ -15,17 +14,21 @@ mod explain;
 mod export;
 mod facts;
 mod free_window;
+mod fuzzy;
+pub mod gizmo;
 mod history;
 mod inspect;
 mod job_board;
 mod level_result;
 mod likeness;
 mod log;
+mod match_starts;
 mod modal_move;
 mod motion;
 mod notice;
 mod pairs;
 mod palette;
+pub mod part_filter;
 mod picture;
 mod project;
 mod sections;
@@ -37,8 +40,7 @@ mod unit_memory;
 mod units;
 mod view;
 
-pub use action::{Action, ActionInfo, Key, Menu, Reason, Shortcut};
-pub use attempts::{Attempt, AttemptGroup, Preview, Race, Step, group_attempts, is_same_pose};
+pub use action::{Action, ActionRow, Key, KeyMode, Keys, Menu, MenuGroup, Reason, Shortcut};
 pub use command::{
     Command, ExportCommand, FileCommand, HistoryCommand, MatchCommand, MoveCommand, NoticeCommand,
     PairCommand, PartCommand, ProjectCommand, ReduceCommand, ViewCommand,
@@ -46,7 +48,7 @@ pub use command::{
 pub use document::{Document, MatchResult, Part, StampedPose};
 pub use effect::Effect;
 pub use explain::Cause;
-pub use export::{CopyForm, ExportKind, MeshExport};
+pub use export::CopyForm;
 pub use free_window::FreeWindow;
 pub use history::{GestureId, History, HistoryRow, StepKind};
 pub use inspect::{Coloring, Compared, Freshness, InspectCommand, Label, SectionView};
@@ -54,6 +56,7 @@ pub use job_board::{JobBoard, RunningJob};
 pub use level_result::LevelResult;
 pub use likeness::{LikeWhat, Likeness};
 pub use log::{Clock, Log, LogRow, age_text, clock_text, duration_text};
+pub use match_starts::{LiveStarts, Preview};
 pub use modal_move::{Constraint, ModalInput, ModalMove, ModalOutcome, MotionKind, short_number};
 pub use motion::{
     Axis, AxisFrame, MoveFrame, rotation_about, translation_along, turns_deg, with_turns_deg,
@@ -63,7 +66,7 @@ pub use pairs::{PairTool, PairVerdict, PickKind, PickedPoint, PointPair, PointPa
 pub use palette::PaletteEntry;
 pub use picture::{PictureChoice, PicturePlace, PictureSize, PictureWindows};
 
-pub use project::{KeptWork, ProjectState, project_title};
+pub use project::ProjectState;
 pub use sections::Sections;
 pub use settings::{MouseScheme, Settings, StartupOptions, Theme};
 pub use shared::Shared;

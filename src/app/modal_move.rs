@@ -214,7 +214,7 @@ impl ModalMove {
         }
     }
 
-    /// Readable name of the motion: "Rotate 12.5° about Z", "Move 12.5 along X (part)".
+    /// Readable name of the motion: "Rotate 12.5° about Z", "Move 12.5 mm along X (part)".
     pub fn name(&self, frame: &MoveFrame) -> String {
         let motion = match self.kind {
             MotionKind::Rotate => {
@@ -227,7 +227,7 @@ impl ModalMove {
                     }
                     _ => self.translation(frame).norm(),
                 };
-                format!("Move {}", short_number(signed))
+                format!("Move {}{}", short_number(signed), frame.unit)
             }
         };
         format!("{motion}{}", self.constraint_text())
@@ -265,13 +265,7 @@ impl ModalMove {
     }
 }
 
-/// A number for a name: at most four digits behind the point, no trailing zeros, no "-0".
+/// A number for a name: at most three decimals, no trailing zeros, no "-0".
 pub fn short_number(value: f64) -> String {
-    let text = format!("{value:.4}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" {
-        "0".to_owned()
-    } else {
-        text.to_owned()
-    }
+    crate::text::trimmed(value, 3)
 }

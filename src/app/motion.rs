@@ -1,5 +1,8 @@
-use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
+//! A move of the stamped part in words and numbers.
+
 use serde::{Deserialize, Serialize};
+
+use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
 
 /// One of three axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -68,6 +71,8 @@ pub struct MoveFrame {
     pub part: Matrix3,
     /// Right, up and towards the viewer.
     pub view: Matrix3,
+    /// What follows a length in the name of a move: `" mm"`, or nothing where the unit is unknown.
+    pub unit: &'static str,
 }
 
 impl MoveFrame {
@@ -78,7 +83,13 @@ impl MoveFrame {
             pivot,
             part: crash_from_stamped.rotation,
             view,
+            unit: "",
         }
+    }
+
+    /// The same frame with lengths in this unit.
+    pub fn with_unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
     }
 
     /// Unit vector of an axis.

@@ -1,6 +1,10 @@
-use super::Action;
-use serde::{Deserialize, Serialize};
+//! Messages to the user: level, text, repeats.
+
 use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::Action;
 
 /// How loud a message is, quiet first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

@@ -1,13 +1,14 @@
 //! Pairs of points that the user picked on both parts, and the pose they stand for.
 
+use serde::{Deserialize, Serialize};
+
 use super::{AppState, Reason};
 use crate::geometry::Point3;
 use crate::geometry::serial::xyz;
-use crate::jobs::{PerRole, Role};
 use crate::registration::{
     PairDoubt, PointPairFit, RegistrationError, StartMethod, fit_point_pairs,
 };
-use serde::{Deserialize, Serialize};
+use crate::role::{PerRole, Role};
 
 /// What a picked point is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -162,7 +163,7 @@ impl AppState {
         let method = self.document.recipe.settings.starts.method;
         let has = method != StartMethod::GivenPoses || self.pair_fit().is_ok();
         has.then_some(()).ok_or(Reason(
-            "pick three pairs of points first, or choose another start",
+            "Pick three pairs of points first, or choose another start.",
         ))
     }
 
@@ -171,9 +172,9 @@ impl AppState {
         self.can_move()?;
         match self.pair_fit() {
             Ok(_) => Ok(()),
-            Err(_) if self.pairs().len() < 3 => Err(Reason("pick three pairs of points first")),
+            Err(_) if self.pairs().len() < 3 => Err(Reason("Pick three pairs of points first.")),
             Err(_) => Err(Reason(
-                "the pairs do not fix a pose: pick one beside the others",
+                "The pairs do not fix a pose: pick one beside the others.",
             )),
         }
     }

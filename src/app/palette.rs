@@ -1,11 +1,14 @@
 //! What the command search offers: every action, recent files, every form of matrix and card.
 
+use std::path::Path;
+
+use super::fuzzy::Search;
 use super::{
-    Action, AppState, Command, CopyForm, ExportCommand, ExportKind, FileCommand, MeshExport,
+    Action, ActionRow, AppState, Command, CopyForm, ExportCommand, FileCommand, Menu,
     ProjectCommand, Settings,
 };
+use crate::pipeline::outputs::{MeshOutput, Output};
 use crate::report::{CardForm, MatrixForm};
-use std::path::Path;
 
 /// Commands that are remembered as used last.
 const MAX_RECENT: usize = 6;
@@ -32,6 +35,8 @@ pub struct PaletteEntry {
     pub reason: Option<&'static str>,
     /// True if it was used lately.
     pub is_recent: bool,
+    /// The letters of the label that fit what was typed, by their number.
+    pub letters: Vec<usize>,
     does: Does,
 }
 
@@ -54,7 +59,7 @@ impl PaletteEntry {
             &self.label,
         )))];
         match &self.does {
-            Does::Action(action) => commands.extend(action.to_commands(state)),
+            Does::Action(action) => commands.extend(action.command(state)),
             Does::Command(command) => commands.push(Command::clone(command)),
         }
         commands
@@ -73,10 +78,15 @@ impl AppState {
     /// The entries that fit what was typed, the best first. Without text those used last come
     /// first, then all others in the order of the menus.
     pub fn palette(&self, typed: &str) -> Vec<PaletteEntry> {
+        let mut search = Search::new(typed);
         let mut found: Vec<(f64, PaletteEntry)> = self
             .palette_entries()
             .into_iter()
-            .filter_map(|entry| Some((score(&entry, typed)?, entry)))
+            .filter_map(|mut entry| {
+                let find = search.find(&entry.label, &entry.help)?;
+                entry.letters = find.letters;
+                Some((find.score, entry))
+            })
             .collect();
         let recent = &self.settings.recent_commands;
         let rank = |entry: &PaletteEntry| {
@@ -86,7 +96,7 @@ impl AppState {
         for (_, entry) in &mut found {
             entry.is_recent = rank(entry) != usize::MAX;
         }
-        if typed.trim().is_empty() {
+        if search.is_empty() {
             found.sort_by_key(|(_, entry)| rank(entry));
         } else {
             found.sort_by(|a, b| b.0.total_cmp(&a.0).then(rank(&a.1).cmp(&rank(&b.1))));
@@ -95,8 +105,11 @@ impl AppState {
     }
 
     fn palette_entries(&self) -> Vec<PaletteEntry> {
-        let mut entries: Vec<PaletteEntry> =
-            Action::ALL.iter().map(|a| self.action_entry(*a)).collect();
+        let mut entries: Vec<PaletteEntry> = Menu::ALL
+            .into_iter()
+            .flat_map(Menu::rows)
+            .map(|row| self.action_entry(row))
+            .collect();
         let why = |action: Action| action.enabled(self).err().map(|reason| reason.0);
         let (no_part, no_match) = (why(Action::CopyMatrix), why(Action::SaveCards));
         for form in CopyForm::all() {
@@ -110,43 +123,43 @@ impl AppState {
         }
         for form in MatrixForm::ALL {
             let label = format!("Save matrix: {}…", form.label());
-            entries.push(write(label, ExportKind::Matrix(*form), no_part));
+            entries.push(write(label, Output::Matrix(*form), no_part));
         }
         for form in CardForm::ALL {
             let label = format!("Save cards: {}…", form.label());
-            entries.push(write(label, ExportKind::Cards(*form), no_match));
+            entries.push(write(label, Output::Cards(*form), no_match));
         }
-        for mesh in MeshExport::ALL {
-            let is_possible = mesh.is_possible(self);
-            let reason = (!is_possible).then_some("there is no such mesh yet");
+        for mesh in MeshOutput::ALL {
+            let is_possible = self.can_write(Output::Mesh(mesh));
+            let reason = (!is_possible).then_some("There is no such mesh yet.");
             entries.push(write(
                 format!("Save: {}", mesh.label()),
-                ExportKind::Mesh(mesh),
+                Output::Mesh(mesh),
                 reason,
             ));
         }
         let locked = why(Action::OpenExample);
         let recent = self.settings.recent.iter();
         entries.extend(recent.map(|path| file("Open", path, locked)));
-        let works = self.project.kept_works.iter().map(|work| PaletteEntry {
-            label: format!("Restore {}", work.title),
-            does: does(ProjectCommand::Restore(work.path.clone())),
-            ..file("Restore", &work.path, locked)
+        let sessions = self.project.sessions.iter().map(|session| PaletteEntry {
+            label: format!("Restore {}", session.title),
+            does: does(ProjectCommand::Restore(session.path.clone())),
+            ..file("Restore", &session.path, locked)
         });
-        entries.extend(works);
+        entries.extend(sessions);
         entries
     }
 
-    fn action_entry(&self, action: Action) -> PaletteEntry {
-        let info = action.info();
+    fn action_entry(&self, row: &ActionRow) -> PaletteEntry {
         PaletteEntry {
-            label: info.label.to_owned(),
-            group: info.menu.label(),
-            help: info.tooltip.to_owned(),
-            keys: info.shortcut.map_or_else(String::new, |s| s.to_string()),
-            reason: action.enabled(self).err().map(|reason| reason.0),
+            label: row.label.to_owned(),
+            group: row.action.menu().label(),
+            help: row.tooltip.to_owned(),
+            keys: row.shortcut().map_or_else(String::new, |s| s.to_string()),
+            reason: row.action.enabled(self).err().map(|reason| reason.0),
             is_recent: false,
-            does: Does::Action(action),
+            letters: Vec::new(),
+            does: Does::Action(row.action),
         }
     }
 }
@@ -163,11 +176,12 @@ fn export(label: String, command: ExportCommand, reason: Option<&'static str>) -
         keys: String::new(),
         reason,
         is_recent: false,
+        letters: Vec::new(),
         does: does(command),
     }
 }
 
-fn write(label: String, kind: ExportKind, reason: Option<&'static str>) -> PaletteEntry {
+fn write(label: String, kind: Output, reason: Option<&'static str>) -> PaletteEntry {
     export(label, ExportCommand::AskSave(kind), reason)
 }
 
@@ -180,57 +194,12 @@ fn file(verb: &str, path: &Path, reason: Option<&'static str>) -> PaletteEntry {
         keys: String::new(),
         reason,
         is_recent: false,
+        letters: Vec::new(),
         does: does(FileCommand::Open {
             paths: vec![path.to_path_buf()],
             role: None,
         }),
     }
-}
-
-/// How well an entry fits; `None` if it does not. Each word has to be found in the label, letter by
-/// letter with gaps, or as it stands in the help.
-fn score(entry: &PaletteEntry, typed: &str) -> Option<f64> {
-    let label = entry.label.to_lowercase();
-    let help = entry.help.to_lowercase();
-    typed
-        .to_lowercase()
-        .split_whitespace()
-        .try_fold(0.0, |sum, word| {
-            let in_help = help.contains(word).then_some(1.5 * word.len() as f64);
-            let best = fuzzy(&label, word)
-                .into_iter()
-                .chain(in_help)
-                .reduce(f64::max);
-            Some(sum + best?)
-        })
-}
-
-/// The letters of `word` in their order in `text`: more for letters side by side and for those that
-/// begin a word, less for a long text. `None` if a letter is missing.
-fn fuzzy(text: &str, word: &str) -> Option<f64> {
-    let text: Vec<char> = text.chars().collect();
-    let word: Vec<char> = word.chars().collect();
-    let starts = (0..text.len()).filter(|&i| text.get(i) == word.first());
-    let from = |start: usize| {
-        let (mut at, mut sum) = (start, 0.0);
-        let mut last = None;
-        for letter in &word {
-            at += text.get(at..)?.iter().position(|c| c == letter)?;
-            let begins = at == 0 || !text[at - 1].is_alphanumeric();
-            let follows = last.is_some_and(|last: usize| last + 1 == at);
-            sum += 1.0 + f64::from(u8::from(begins)) + 0.8 * f64::from(u8::from(follows));
-            if let Some(last) = last.filter(|_| !follows) {
-                sum -= 0.05 * (at - last) as f64;
-            }
-            last = Some(at);
-            at += 1;
-        }
-        Some(sum)
-    };
-    let best = starts.filter_map(from).reduce(f64::max)?;
-    // Letters strewn over the whole text are no find.
-    let is_find = best > 0.9 * word.len() as f64;
-    is_find.then_some(best - 0.01 * text.len() as f64)
 }
 
 #[cfg(test)]
@@ -256,7 +225,7 @@ mod tests {
     fn what_was_used_comes_first_and_is_remembered() {
         let mut state = AppState::default();
         let all = state.palette("");
-        assert_eq!(all[0].action(), Some(Action::ALL[0]));
+        assert_eq!(all[0].action(), Some(Action::OpenCrash));
         for label in ["Preferences…", "About"] {
             let entry = state.palette(label).remove(0);
             for command in entry.commands(&state) {

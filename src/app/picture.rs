@@ -1,9 +1,13 @@
-use super::AppState;
-use super::export::stem;
-use crate::jobs::Role;
-use crate::report::{DIRECTION, build_id, number};
-use serde::{Deserialize, Serialize};
+//! Choices for pictures of the 3D windows.
+
 use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use super::AppState;
+use crate::pipeline::outputs::stem;
+use crate::report::{DIRECTION, build_id, number};
+use crate::role::Role;
 
 /// Size of a picture file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

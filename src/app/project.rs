@@ -1,5 +1,10 @@
 //! The project that is worked on: its file, what of it is saved, and what is written into it.
 
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
 use super::{
     AppState, AxisFrame, Display, Document, FreeWindow, Label, MatchResult, Part, PointPair,
     SectionView, ShownGeometry, age_text, clock_text,
@@ -7,39 +12,25 @@ use super::{
 use crate::geometry::camera::OrbitStyle;
 use crate::geometry::serial::xyz;
 use crate::geometry::{Camera, Point3};
-use crate::jobs::{PartSource, PerRole, ProjectRequest, Role};
+use crate::jobs::{PartSource, ProjectRequest};
+use crate::pipeline::autosave::RecoveredSession;
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::pipeline::project::{PartEntry, Project, ResultEntry};
-use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
-use std::path::PathBuf;
-
-/// Work that was kept in case of a crash.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct KeptWork {
-    /// Where it is kept.
-    pub path: PathBuf,
-    /// When it was kept last, in seconds since 1970 (UTC).
-    pub saved_at: u64,
-    /// What it holds: the files and what was done.
-    pub title: String,
-    /// True if its program did not end properly.
-    pub is_lost: bool,
-}
+use crate::role::{PerRole, Role};
 
 /// The project that is worked on.
 #[derive(Debug, Clone, Default)]
 pub struct ProjectState {
     /// Its file, if it has one.
     pub path: Option<PathBuf>,
-    /// Works of the last runs, newest first.
-    pub kept_works: Vec<KeptWork>,
+    /// Sessions of the last runs, newest first.
+    pub sessions: Vec<RecoveredSession>,
     /// Its files that were not found, and what was asked for.
     pub missing: Option<(ProjectRequest, PerRole<Option<PathBuf>>)>,
     /// The document as it was saved or opened.
     pub(super) saved: Option<Document>,
-    /// The document and the sweep as they were last kept in case of a crash.
-    pub(super) kept: Option<(Document, bool)>,
+    /// The document and whether there was a sweep when the session was autosaved last.
+    pub(super) autosaved: Option<(Document, bool)>,
     /// Fields of a later program.
     pub(super) others: Map<String, Value>,
     /// The window closes as soon as the project is written.
@@ -53,9 +44,9 @@ impl ProjectState {
         Some(stem.to_string_lossy().into_owned())
     }
 
-    /// Work that its program did not live to save, newest first.
-    pub fn lost_work(&self) -> Option<&KeptWork> {
-        self.kept_works.iter().find(|work| work.is_lost)
+    /// The newest session that its program did not live to save.
+    pub fn lost_session(&self) -> Option<&RecoveredSession> {
+        self.sessions.iter().find(|session| session.is_lost)
     }
 }
 
@@ -63,7 +54,7 @@ impl ProjectState {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(default)]
 pub(super) struct WindowEntry {
-    /// Where the project itself is, for work that was kept in case of a crash.
+    /// Where the project itself is, for an autosaved session.
     pub project: Option<PathBuf>,
     pub cameras: PerRole<Camera>,
     pub are_linked: bool,
@@ -159,8 +150,7 @@ impl AppState {
         Project {
             program: String::new(),
             saved_at,
-            crash: entry(Role::Crash),
-            stamped: entry(Role::Stamped),
+            parts: PerRole::from_fn(entry),
             pose: *document.crash_from_stamped(),
             recipe: document.recipe.clone(),
             result: document.result.as_ref().map(|result| ResultEntry {
@@ -205,12 +195,12 @@ impl AppState {
     }
 
     /// True if there is something new to be kept in case of a crash, and no drag is under way.
-    pub fn is_to_be_kept(&self) -> bool {
+    pub fn needs_autosave(&self) -> bool {
         let is_moving = self.grab.is_some() || self.view.move_tool.is_some();
         let is_known = |(kept, has_sweep): &(Document, bool)| {
             *kept == self.document && *has_sweep == self.sweep.is_some()
         };
-        !is_moving && self.has_work() && !self.project.kept.as_ref().is_some_and(is_known)
+        !is_moving && self.has_work() && !self.project.autosaved.as_ref().is_some_and(is_known)
     }
 
     /// A time of the past, in seconds since 1970, as people say it: "14:02", "14:02, 3 days ago".
@@ -265,34 +255,6 @@ fn part_entry(part: &Part) -> PartEntry {
         colors: part.colors.clone(),
         ..PartEntry::of(&part.loaded, file)
     }
-}
-
-/// The title of a project, as [`AppState::work_title`] has it.
-pub fn project_title(project: &Project) -> String {
-    let [crash, stamped] = project.parts();
-    let name = |entry: &PartEntry| match &entry.file {
-        Some(file) => file
-            .file_name()
-            .map(|name| name.to_string_lossy().into_owned()),
-        None => Some("the example".to_owned()),
-    };
-    let names: Vec<String> = [stamped, crash]
-        .into_iter()
-        .flatten()
-        .filter_map(name)
-        .collect();
-    let mut title = match &names[..] {
-        [a, b] if a == b => format!("{a} pair"),
-        names => names.join(" on "),
-    };
-    if let Some(n) = crash.or(stamped).and_then(|entry| entry.max_triangles) {
-        title += &format!(" · reduced to {}", crate::report::grouped(n));
-    }
-    if let Some(result) = project.result.as_ref().filter(|result| result.is_current) {
-        title += " · ";
-        title += result.run.assessment.verdict.label();
-    }
-    title
 }
 
 impl MatchResult {

@@ -1,8 +1,13 @@
-use super::{NoticeLevel, PictureChoice, UnitMemory};
-use crate::jobs::{PartSource, PerRole};
-use serde::{Deserialize, Serialize};
+//! Preferences that outlive the program.
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::{NoticeLevel, PictureChoice, UnitMemory};
+use crate::jobs::PartSource;
+use crate::role::PerRole;
 
 /// Most entries in the list of recent files.
 const MAX_RECENT: usize = 10;
@@ -60,12 +65,12 @@ impl MouseScheme {
     pub fn help(self) -> &'static str {
         match self {
             Self::LsPrePost => {
-                "Left turns, middle pans, right zooms.\nHolding Shift or Ctrl does the same."
+                "Left rotates, middle pans, right zooms.\nHolding Shift or Ctrl does the same."
             }
-            Self::HyperWorks => "Ctrl + left turns, Ctrl + right pans.\nPlain left turns too.",
-            Self::Ansa => "Ctrl + left turns, Ctrl + middle pans.\nCtrl + right zooms.",
-            Self::Cad => "Middle turns, Ctrl + middle pans.\nShift + middle zooms.",
-            Self::Blender => "Middle turns, Shift + middle pans.\nCtrl + middle zooms.",
+            Self::HyperWorks => "Ctrl + left rotates, Ctrl + right pans.\nPlain left rotates too.",
+            Self::Ansa => "Ctrl + left rotates, Ctrl + middle pans.\nCtrl + right zooms.",
+            Self::Cad => "Middle rotates, Ctrl + middle pans.\nShift + middle zooms.",
+            Self::Blender => "Middle rotates, Shift + middle pans.\nCtrl + middle zooms.",
         }
     }
 }

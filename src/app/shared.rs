@@ -1,3 +1,5 @@
+//! Shared values that are equal if they are the same.
+
 use std::ops::Deref;
 use std::sync::Arc;
 

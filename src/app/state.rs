@@ -1,16 +1,19 @@
+//! The whole state of the window.
+
+use std::sync::Arc;
+use std::time::Duration;
+
 use super::level_result::LevelResults;
 use super::{
-    Clock, Compared, Document, GestureId, History, JobBoard, Likeness, Log, LogRow, NoticeLevel,
-    Notices, ProjectState, Race, Settings, Shared, StampedPose, ViewState,
+    Clock, Compared, Document, GestureId, History, JobBoard, Likeness, LiveStarts, Log, LogRow,
+    NoticeLevel, Notices, ProjectState, Settings, Shared, StampedPose, ViewState,
 };
 use crate::assess::Coverage;
 use crate::geometry::Similarity;
-use crate::jobs::{JobKey, JobKind, PerRole, Recording, Role, Stamp, SweepRows};
-use crate::monitor::IterationReport;
+use crate::jobs::{JobKey, JobKind, Recording, Stamp, SweepRows};
 use crate::pipeline::sweep::Sweep;
 use crate::registration::starts::Start;
-use std::sync::Arc;
-use std::time::Duration;
+use crate::role::{PerRole, Role};
 
 /// The first poses of the last alignment.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,7 +63,7 @@ pub struct AppState {
     /// The best pose of the running match, for the preview.
     pub live_pose: Option<Similarity>,
     /// The starts of the running match, or of the last one if it gave no result.
-    pub race: Race,
+    pub live_starts: LiveStarts,
     /// The overlap after the last move.
     pub overlap: Option<PoseOverlap>,
     /// Why the last match gave no result, with the parts it was run on.
@@ -68,6 +71,8 @@ pub struct AppState {
     pub(super) overlap_asked: Option<Stamp>,
     /// Distances and overlap with the state they were measured in.
     pub measurement: Option<(Stamp, Shared<Coverage>)>,
+    /// The state of the alternative that was measured last without being asked for.
+    pub(super) alternative_asked: Option<Stamp>,
     /// The last comparison of both parts, up to date or not.
     pub compared: Option<Compared>,
     /// The tables of the last sweep.
@@ -177,6 +182,16 @@ impl AppState {
         let stamp = self.document.stamp();
         let (at, measurement) = self.measurement.as_ref()?;
         (*at == stamp).then_some(&**measurement)
+    }
+
+    /// Distances and overlap of the current result at the pose that is shown: those of the match for its
+    /// best pose, for an alternative what was measured there; `None` until that is known.
+    pub fn result_coverage(&self) -> Option<&Coverage> {
+        let result = self.document.current_result()?;
+        match result.alternative {
+            None => Some(&result.run.assessment.coverage),
+            Some(_) => self.current_measurement(),
+        }
     }
 
     /// The overlap at the pose the part has now.
@@ -316,11 +331,4 @@ impl AppState {
         self.jobs.submitted(kind.key());
         super::Effect::StartJob(Box::new(kind), self.document.stamp())
     }
-}
-
-/// The pose of an iteration, if its matrix is one.
-pub(super) fn pose_of(iteration: &IterationReport) -> Option<Similarity> {
-    let rows = &iteration.target_from_source;
-    let matrix = crate::geometry::Matrix4::from_fn(|row, column| rows[row][column]);
-    Similarity::from_matrix4(&matrix, 1e-6).ok()
 }

@@ -1,7 +1,8 @@
 //! What a section says about itself, and what stands in the way of an action.
 
 use super::{AppState, BottomTab, Command, Part, Reason};
-use crate::jobs::{JobKey, Role};
+use crate::jobs::JobKey;
+use crate::role::Role;
 
 /// The paper's three sections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,7 +87,7 @@ impl AppState {
         match tab {
             BottomTab::Timings => self.log.rows().iter().any(|row| row.took.is_some()),
             BottomTab::Starts | BottomTab::Convergence => {
-                !self.race.is_empty()
+                !self.live_starts.is_empty()
                     || self.document.result.is_some()
                     || self.jobs.is_active(JobKey::Match)
             }
@@ -121,29 +122,29 @@ impl AppState {
     pub(super) fn is_unlocked(&self) -> Result<(), Reason> {
         match self.locking_job() {
             None => Ok(()),
-            Some(JobKey::Sweep) => Err(Reason("a sweep is running")),
-            Some(JobKey::Align) => Err(Reason("the surface normals are being aligned")),
-            Some(_) => Err(Reason("a match is running")),
+            Some(JobKey::Sweep) => Err(Reason("A sweep is running.")),
+            Some(JobKey::Align) => Err(Reason("The surface normals are being aligned.")),
+            Some(_) => Err(Reason("A match is running.")),
         }
     }
 
     pub(super) fn has_part(&self, role: Role) -> Result<(), Reason> {
         match (self.document.part(role), role) {
             (Some(_), _) => Ok(()),
-            (None, Role::Crash) => Err(Reason("load the crash part first")),
-            (None, Role::Stamped) => Err(Reason("load the stamped part first")),
+            (None, Role::Crash) => Err(Reason("Load the crash part first.")),
+            (None, Role::Stamped) => Err(Reason("Load the stamped part first.")),
         }
     }
 
     pub(super) fn has_any_part(&self) -> Result<(), Reason> {
         self.has_part(Role::Crash)
             .or_else(|_| self.has_part(Role::Stamped))
-            .map_err(|_| Reason("load a part first"))
+            .map_err(|_| Reason("Load a part first."))
     }
 
     pub(super) fn has_both_parts(&self) -> Result<(), Reason> {
         let any = self.has_any_part();
-        any.map_err(|_| Reason("load both parts first"))?;
+        any.map_err(|_| Reason("Load both parts first."))?;
         self.has_part(Role::Crash)?;
         self.has_part(Role::Stamped)
     }

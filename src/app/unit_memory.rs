@@ -1,7 +1,11 @@
+//! Units that were confirmed for files before.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
 use crate::formats::FileHash;
 use crate::units::Units;
-use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
 
 /// Files whose units are remembered.
 const MAX_FILES: usize = 100;

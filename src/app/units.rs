@@ -1,8 +1,10 @@
+//! The units of both files and the question where they disagree.
+
 use super::AppState;
 use crate::geometry::Aabb;
-use crate::jobs::Role;
 use crate::pipeline::units::PairUnits;
-use crate::report::length;
+use crate::role::{PerRole, Role};
+use crate::text::Lengths;
 use crate::units::{KnownUnits, LengthUnit};
 
 /// Factors between length units people use: cm, inch, foot and metre against millimetre.
@@ -72,7 +74,7 @@ impl AppState {
     /// What is known about the units of both files.
     pub fn units(&self) -> PairUnits {
         let part = |role| self.document.part(role).map(|part| &*part.loaded);
-        PairUnits::of(part(Role::Crash), part(Role::Stamped))
+        PairUnits::of(PerRole::from_fn(part))
     }
 
     /// The units of one file. While it is asked whether the stamped file is in another unit, they
@@ -80,11 +82,11 @@ impl AppState {
     pub fn units_of(&self, role: Role) -> Option<KnownUnits> {
         let own = self.document.part(role)?.loaded.units();
         let is_asked = role == Role::Stamped && self.unit_hint().is_some();
-        let agreed = match role {
-            Role::Crash => self.units().crash,
-            Role::Stamped => self.units().stamped,
-        };
-        if is_asked { own } else { agreed }
+        if is_asked {
+            own
+        } else {
+            *self.units().files.get(role)
+        }
     }
 
     /// The unit of every length in the window, if it is known.
@@ -94,19 +96,17 @@ impl AppState {
 
     /// What follows a length: `" mm"`, or nothing where the unit is unknown.
     pub fn unit_suffix(&self) -> &'static str {
-        match self.length_unit() {
-            Some(LengthUnit::Millimeter) => " mm",
-            Some(LengthUnit::Centimeter) => " cm",
-            Some(LengthUnit::Meter) => " m",
-            Some(LengthUnit::Inch) => " in",
-            Some(LengthUnit::Foot) => " ft",
-            None => "",
-        }
+        self.lengths().suffix()
+    }
+
+    /// Lengths as the window writes them, with their unit.
+    pub fn lengths(&self) -> Lengths {
+        Lengths::new(self.length_unit())
     }
 
     /// A length as the window writes it: "0.380 mm", or "0.380" where the unit is unknown.
     pub fn length_text(&self, value: f64) -> String {
-        format!("{}{}", length(value), self.unit_suffix())
+        self.lengths().of(value)
     }
 
     /// The hint about units, until it is answered.

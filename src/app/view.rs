@@ -1,12 +1,16 @@
+//! What is shown and how: cameras, windows, panels.
+
+use std::collections::BTreeSet;
+
+use serde::{Deserialize, Serialize};
+
 use super::{
     AxisFrame, Coloring, FreeWindow, GestureId, ModalMove, MoveFrame, PairTool, Preview,
     SectionView, Sections,
 };
 use crate::geometry::camera::OrbitStyle;
 use crate::geometry::{Camera, Point3};
-use crate::jobs::{PerRole, Role};
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
+use crate::role::{PerRole, Role};
 
 /// A part of a deck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -1,6 +1,9 @@
+//! Is there a second pose that fits as well?
+
+use serde::{Deserialize, Serialize};
+
 use crate::geometry::Similarity;
 use crate::registration::{Alternative, Surface};
-use serde::{Deserialize, Serialize};
 
 /// Below this ratio two poses are equivalent.
 const AMBIGUOUS_BELOW: f64 = 1.1;
@@ -33,7 +36,7 @@ pub struct Ambiguity {
     pub twin: Option<Twin>,
 }
 
-/// Which of the part's own axes a turn is about.
+/// Which of the part's own axes a rotation is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TwinAxis {
@@ -50,16 +53,14 @@ pub enum TwinAxis {
 /// The motion from the best pose to another, in the source's own terms.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Twin {
-    /// Turn, 0 to π.
+    /// Rotation angle, 0 to π.
     pub angle: f64,
-    /// About which axis.
+    /// Its axis.
     pub axis: TwinAxis,
-    /// Way of the part's centroid, in target length units.
+    /// Displacement of the part's centroid, in target length units.
     pub shift: f64,
 }
 
-/// Turns smaller than this are none.
-const NO_TURN: f64 = 3.0 * std::f64::consts::PI / 180.0;
 /// An axis is one of the part's own within about 15°.
 const SAME_AXIS: f64 = 0.966;
 
@@ -81,20 +82,6 @@ impl Twin {
             axis,
             shift: (other.apply(center) - best.apply(center)).norm(),
         }
-    }
-
-    /// "turned by 180° about its long axis".
-    pub fn words(&self) -> String {
-        if self.angle < NO_TURN {
-            return format!("shifted by {:.3}", self.shift);
-        }
-        let axis = match self.axis {
-            TwinAxis::Long => " about its long axis",
-            TwinAxis::Cross => " about its short axis",
-            TwinAxis::Through => " in its own plane",
-            TwinAxis::Other => "",
-        };
-        format!("turned by {:.0}°{axis}", self.angle.to_degrees())
     }
 }
 

@@ -1,3 +1,5 @@
+//! How much of each surface lies on the other, and how far apart they are there.
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +12,7 @@ use crate::search::ClosestPoint;
 /// Distances of the nodes of one mesh from the triangles of the other, weighted by area.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OneSided {
-    /// Share of this mesh's area that lies within the limit of the other mesh; the denominator is
+    /// Fraction of this mesh's area that lies within the limit of the other mesh; the denominator is
     /// this mesh's own area.
     #[serde(with = "any_float")]
     pub overlap: f64,
@@ -28,7 +30,7 @@ pub struct OneSided {
     pub max_anywhere: f64,
 }
 
-/// Both directions.
+/// Distances and overlap in both directions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
     /// Source nodes against target triangles.

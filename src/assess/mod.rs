@@ -1,19 +1,38 @@
 //! Is the pose right? Measured anew on the full meshes, without anything the search believed.
 
 mod ambiguity;
+mod contact;
 mod coverage;
 pub mod deviation;
+mod pose;
+mod reason;
+mod rims;
+mod settle;
+mod shape;
 mod sliding;
+mod uncertainty;
 mod verdict;
+mod words;
 
 pub use ambiguity::{Ambiguity, Clarity, Twin, TwinAxis};
 pub use coverage::{Coverage, OneSided, coverage, overlap_limit, quick_overlap};
-use serde::{Deserialize, Serialize};
+pub use pose::{PoseKind, PoseStatement};
+pub use reason::Reason;
+pub use settle::settled;
+pub use shape::{RimFit, ShapeKind, ShapeReason, ShapeStatement, ShapeTolerance};
 pub use sliding::{FreeMotion, FreeMotionKind, Freedom, free_motions};
+pub use uncertainty::{PartDirection, PoseUncertainty};
 pub use verdict::Verdict;
 
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{MatchOutcome, MirrorCheck, ScaleCheck, Surface};
+use crate::text::Lengths;
+use contact::Contacts;
+use rims::Rims;
+use shape::ShapeEvidence;
 
 /// What an assessment depends on besides the match.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -23,15 +42,22 @@ pub struct AssessSettings {
     pub limit: Option<f64>,
     /// Deviation of the real shapes that is to be expected besides faceting, such as springback.
     pub allowance: f64,
+    /// Thickness of the sheet in target length units, if known.
+    pub thickness: Option<f64>,
+    /// How far shapes may differ besides springback; by default the larger of a millimetre and the
+    /// thickness.
+    pub shape_tolerance: Option<f64>,
+    /// A millimetre in target length units; 1 if not known.
+    pub millimetre: Option<f64>,
 }
 
 /// Everything that speaks for or against a pose.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Assessment {
-    /// GOOD, CHECK or POOR.
+    /// Whether the pose can be used.
     pub verdict: Verdict,
-    /// Why, one sentence each, the gravest first. For GOOD what was found to be in order.
-    pub reasons: Vec<String>,
+    /// Why, the most severe first. For GOOD what was found to be in order.
+    pub reasons: Vec<Reason>,
     /// Distances and overlap in both directions.
     pub coverage: Coverage,
     /// How clearly the pose beats the second-best.
@@ -44,7 +70,18 @@ pub struct Assessment {
     pub mirror_check: MirrorCheck,
     /// Faceting and allowance: distances of this size mean nothing.
     pub noise: f64,
+    /// How far the pose may be off; `None` in results of earlier versions.
+    #[serde(default)]
+    pub pose: Option<PoseStatement>,
+    /// Whether both parts have one shape; `None` in results of earlier versions.
+    #[serde(default)]
+    pub shape: Option<ShapeStatement>,
 }
+
+/// Distance within which the parts are compared, as a share of the target's diagonal, and rims, in
+/// tolerances.
+const REACH: f64 = 0.03;
+const RIM_REACH: f64 = 8.0;
 
 /// Assesses the pose of `outcome` on the full meshes. O(vertices · log triangles).
 pub fn assess(
@@ -69,6 +106,7 @@ pub fn assess(
     }
     let chordal = |surface: &Surface| surface.measures().chordal_error;
     let noise = chordal(source).max(chordal(target)) + settings.allowance;
+    let (uncertainty, shape) = statements(source, target, pose, noise, settings);
     let mut assessment = Assessment {
         verdict: Verdict::Good,
         reasons: Vec::new(),
@@ -78,9 +116,75 @@ pub fn assess(
         scale_check: outcome.scale_check,
         mirror_check: outcome.mirror_check,
         noise,
+        pose: Some(PoseStatement {
+            kind: PoseKind::Certain,
+            uncertainty,
+            tolerance: shape.tolerance.springback,
+        }),
+        shape: None,
     };
-    (assessment.verdict, assessment.reasons) =
-        verdict::decide(&assessment, outcome, source, target);
+    let half = 0.5 * target.measures().diagonal;
+    verdict::decide(&mut assessment, &shape, outcome, half);
+    assessment.shape = Some(shape);
     monitor.progress("verify", 2, Some(2));
     Ok(assessment)
+}
+
+impl Assessment {
+    /// The statements about pose and shape, one sentence each.
+    pub fn statements(&self, lengths: Lengths) -> Vec<String> {
+        let pose = self.pose.as_ref().map(|pose| pose.words(lengths));
+        let shape = self.shape.as_ref().map(|shape| shape.words(lengths));
+        let pose = pose.map(|words| format!("pose {words}"));
+        let shape = shape.map(|words| format!("shape: {words}"));
+        pose.into_iter().chain(shape).collect()
+    }
+
+    /// How far the pose may be off, where that is known.
+    pub fn uncertainty(&self) -> Option<&PoseUncertainty> {
+        self.pose.as_ref()?.uncertainty.as_ref()
+    }
+
+    /// The reasons in words, one each, without capital and full stop.
+    pub fn sentences(&self, lengths: Lengths) -> Vec<String> {
+        let words = self.reasons.iter().map(|reason| reason.words(lengths));
+        words.collect()
+    }
+}
+
+/// How far the pose may be off, and whether the shapes are one.
+fn statements(
+    source: &Surface,
+    target: &Surface,
+    pose: &Similarity,
+    noise: f64,
+    settings: &AssessSettings,
+) -> (Option<PoseUncertainty>, ShapeStatement) {
+    let tolerance = tolerance_of(target, settings);
+    let diagonal = target.measures().diagonal;
+    let reach = (REACH * diagonal).max(3.0 * tolerance.springback);
+    let Some(contacts) = Contacts::find(source, target, pose, reach) else {
+        return (None, ShapeStatement::nothing_met(tolerance));
+    };
+    let near = (RIM_REACH * tolerance.remainder).min(reach);
+    let rims = Rims::find(source, target, pose, near);
+    let uncertainty = PoseUncertainty::of(source, pose, &contacts, &rims, noise);
+    let evidence = ShapeEvidence {
+        source,
+        pose,
+        contacts: &contacts,
+        rims: &rims,
+        noise,
+    };
+    (uncertainty, ShapeStatement::of(&evidence, tolerance))
+}
+
+fn tolerance_of(target: &Surface, settings: &AssessSettings) -> ShapeTolerance {
+    let usual = ShapeTolerance::new(
+        settings.shape_tolerance,
+        settings.thickness,
+        target.measures().diagonal,
+        settings.millimetre.unwrap_or(1.0),
+    );
+    usual.at_least(settings.allowance)
 }

@@ -1,3 +1,5 @@
+//! Motions that slide the surfaces on each other.
+
 use nalgebra::{SMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +8,7 @@ use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::ClosestPoint;
 
-/// A motion is free if it meets less than this share of the resistance of the stiffest motion.
+/// A motion is free if it meets less than this fraction of the resistance of the stiffest motion.
 /// Shapes that are exactly flat, cylindrical or extruded measure below 1e-5 on real meshes, an
 /// extrusion with one shallow bead above 1e-3.
 const FREE_BELOW: f64 = 1e-4;
@@ -43,42 +45,6 @@ pub struct FreeMotion {
     /// A point of the axis, in the target's frame.
     #[serde(with = "xyz")]
     pub point: Point3,
-}
-
-impl FreeMotion {
-    /// The motion in words, with its axis.
-    pub fn words(&self) -> String {
-        let axis = axis_words(&self.direction);
-        match self.kind {
-            FreeMotionKind::Flat => {
-                format!("the parts are flat: they can slide in their plane, whose normal is {axis}")
-            }
-            FreeMotionKind::Cylindrical => {
-                format!("the parts are cylindrical: they can slide along and turn about {axis}")
-            }
-            FreeMotionKind::Extruded => {
-                format!("the parts are extruded: they can slide along {axis}")
-            }
-            FreeMotionKind::Revolved => {
-                format!("the parts are surfaces of revolution: they can turn about {axis}")
-            }
-            FreeMotionKind::Spherical => {
-                "the parts are spherical: they can turn about their centre".to_owned()
-            }
-            FreeMotionKind::Other => format!("the parts can slide on each other about {axis}"),
-        }
-    }
-}
-
-/// `the x axis` where a direction is one within a degree, else its components.
-fn axis_words(direction: &Vector3) -> String {
-    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-        if direction[axis].abs() > 0.9998 {
-            return format!("the {name} axis");
-        }
-    }
-    let [x, y, z] = [direction.x, direction.y, direction.z];
-    format!("the direction ({x:.3}, {y:.3}, {z:.3})")
 }
 
 /// How firmly the overlap holds the pose.

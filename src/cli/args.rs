@@ -1,26 +1,25 @@
-//! What can be typed: subcommands, options, and their help.
+//! What can be typed: subcommands, options, and their help. The options of the match settings come from
+//! the table of settings.
 
 use std::path::PathBuf;
 
-use clap::builder::BoolishValueParser;
+use clap::builder::RangedU64ValueParser;
 use clap::{Args, Parser, Subcommand};
 
-use super::words::{
-    card_forms, data_sides, floor, hands, methods, pair_targets, residuals, searches, selections,
-    start_methods, units,
-};
-use crate::registration::{DataSide, Floor, Hand, Method, Metric, PairWith, Search, StartMethod};
+use super::map::MapArgs;
+use super::setting_args::SettingArgs;
+use super::words::{card_forms, units};
 use crate::report::CardForm;
 use crate::units::Units;
 
-/// Finds the pose that lays a stamped part on the same part of a crash model.
+/// Finds the pose that aligns a stamped part with the same part of a crash model.
 ///
 /// The result is the matrix of crash = c · R · stamped + t (column vectors), with a verdict, and the
 /// LS-DYNA cards that use it. Without a subcommand the window opens.
 #[derive(Debug, Parser)]
 #[command(name = "shapematch", version, max_term_width = 100)]
 pub struct Cli {
-    /// What to do; the window opens if nothing is named.
+    /// What to do; without a subcommand the window opens.
     #[command(subcommand)]
     pub command: Option<Task>,
 
@@ -32,11 +31,11 @@ pub struct Cli {
     #[arg(long, conflicts_with = "files")]
     pub example: bool,
 
-    /// Threads for the heavy work; 0 takes one per core.
-    #[arg(long, global = true, value_name = "N", default_value_t = 0)]
+    /// Number of threads, at most 1024; 0 uses one per core.
+    #[arg(long, global = true, value_name = "N", default_value_t = 0, value_parser = threads())]
     pub threads: usize,
 
-    /// Say nothing but errors on standard error.
+    /// Print errors only.
     #[arg(long, short, global = true)]
     pub quiet: bool,
 }
@@ -46,11 +45,13 @@ pub struct Cli {
 pub enum Task {
     /// Match a stamped part to a crash part and print the matrix.
     Match(Box<MatchArgs>),
+    /// Carry thickness, plastic strain, strain and stress of stamped parts onto a crash part.
+    Map(Box<MapArgs>),
     /// Reduce a mesh to a maximum number of triangles.
     Reduce(ReduceArgs),
-    /// Tell what a file holds.
+    /// Show the contents of a file.
     Info(InfoArgs),
-    /// Write a generated pair of parts with known pose.
+    /// Write a generated pair of parts with a known pose.
     Sample(SampleArgs),
     /// Measure reduction and matching as in the tables of the paper.
     Bench(BenchArgs),
@@ -60,160 +61,75 @@ pub enum Task {
 #[derive(Debug, Args)]
 #[command(after_help = MATCH_HELP)]
 pub struct MatchArgs {
-    /// The crash part or the whole crash model (fixed); or a project (.shapematch), whose match is
-    /// run as it is stored. Beside a project only the options of the output count.
+    /// The crash part or the whole crash model (fixed), or a project (.shapematch). A project is matched
+    /// with the settings stored in it; only output options can be added.
     pub crash: PathBuf,
     /// The stamped part, for example a dynain (moves).
     pub stamped: Option<PathBuf>,
 
     #[command(flatten)]
-    pub choice: ChoiceArgs,
+    pub input: InputArgs,
     #[command(flatten)]
-    pub method: MethodArgs,
+    pub settings: SettingArgs,
     #[command(flatten)]
-    pub search: SearchArgs,
-    #[command(flatten)]
-    pub starts: StartArgs,
+    pub shorthands: ShorthandArgs,
     #[command(flatten)]
     pub output: OutputArgs,
 }
 
-/// Which elements of the files are matched, and in which unit.
+/// Which elements of the files are matched, in which unit and on which meshes.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "What is matched")]
-pub struct ChoiceArgs {
+#[command(next_help_heading = "Input")]
+pub struct InputArgs {
     /// Part of the crash model: an id, several ids (2001,2002), a title (also title:NAME), or set:ID,
     /// shell-set:ID, node-set:ID.
     #[arg(long, value_name = "PART")]
     pub crash_part: Option<String>,
-    /// Part of the stamped file, written as for --crash-part.
+    /// Part of the stamped file, as for --crash-part.
     #[arg(long, value_name = "PART")]
     pub stamped_part: Option<String>,
-    /// Multiply the stamped coordinates by this before matching, for a file in another unit
-    /// (1000 for metres against millimetres). Stated in the result, never inside the matrix.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
-    pub stamped_unit: f64,
-    /// The same for the crash coordinates. All results are then in the multiplied unit.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
-    pub crash_unit: f64,
-    /// The units of the crash file, to be stated in the results; guessed if not given. They change
-    /// no number.
+    /// Units of the crash file, stated in the results; guessed if not given. They change no number.
     #[arg(long, value_name = "UNITS", value_parser = units())]
     pub crash_units: Option<Units>,
-    /// The units of the stamped file, likewise.
+    /// Units of the stamped file, likewise.
     #[arg(long, value_name = "UNITS", value_parser = units())]
     pub stamped_units: Option<Units>,
-    /// A further folder for included files; may be given several times.
-    #[arg(long, value_name = "FOLDER")]
-    pub include_folder: Vec<PathBuf>,
-}
-
-/// How the pose is computed.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Method")]
-pub struct MethodArgs {
-    /// The method; the options below change single choices of it.
-    #[arg(long, default_value = "fractional", value_parser = methods())]
-    pub method: Method,
-    /// Which pairs count.
-    #[arg(long, value_name = "PAIRS", value_parser = selections())]
-    pub keep: Option<String>,
-    /// λ of Fractional ICP: larger keeps more of the part.
-    #[arg(long, value_name = "LAMBDA")]
-    pub lambda: Option<f64>,
-    /// Floor σ₀ of Fractional ICP: a length, none, or auto to take it from the meshes.
-    #[arg(long, value_name = "LENGTH", value_parser = floor)]
-    pub floor: Option<Floor>,
-    /// Overlap of Trimmed ICP, 0 to 1; searched if not given.
-    #[arg(long, value_name = "SHARE")]
-    pub overlap: Option<f64>,
-    /// Pair points with triangles or with nodes.
-    #[arg(long, value_name = "TARGET", value_parser = pair_targets())]
-    pub pairs: Option<PairWith>,
-    /// The residual that is minimised.
-    #[arg(long, value_parser = residuals())]
-    pub residual: Option<Metric>,
-    /// Whose nodes are laid on the other part's triangles.
-    #[arg(long, value_name = "PART", value_parser = data_sides())]
-    pub points_of: Option<DataSide>,
-    /// Also find a scale c. Off by default: a free scale shrinks parts that only partly overlap.
-    #[arg(long)]
-    pub scale: bool,
-    /// Which hand of the stamped part is tried.
-    #[arg(long, value_parser = hands())]
-    pub hand: Option<Hand>,
-    /// Try both hands (left-hand against right-hand part); short for --hand either.
-    #[arg(long, conflicts_with = "hand")]
-    pub mirror: bool,
-    /// Deviation to be expected besides faceting, such as springback, in length units.
-    #[arg(long, value_name = "LENGTH")]
-    pub allowance: Option<f64>,
-    /// Largest angle between the normals of a pair, 1 to 180 degrees.
-    #[arg(long, value_name = "DEG")]
-    pub normal_angle: Option<f64>,
-    /// Iterations a run may take.
-    #[arg(long, value_name = "N")]
-    pub iterations: Option<usize>,
-    /// A run has settled when a step moves no corner by more than this share of an edge length.
-    #[arg(long, value_name = "SHARE")]
-    pub tolerance: Option<f64>,
-}
-
-/// Which meshes and points the search runs on.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Search")]
-pub struct SearchArgs {
-    /// How the starts are searched.
-    #[arg(long, value_parser = searches())]
-    pub search: Option<Search>,
-    /// Points of the first stage of the race.
-    #[arg(long, value_name = "N")]
-    pub race_points: Option<usize>,
-    /// Points of its second stage.
-    #[arg(long, value_name = "N")]
-    pub refine_points: Option<usize>,
-    /// Run the starts on meshes reduced to so many triangles, as the paper does.
-    #[arg(long, value_name = "N")]
-    pub triangles: Option<usize>,
-    /// Another number for the crash part, or for it alone.
+    /// Multiply the stamped coordinates by this before matching, for files in different units (1000 if
+    /// the stamped file is in m and the crash file in mm). Stated in the result, never part of the
+    /// matrix.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    pub stamped_length_factor: f64,
+    /// The same for the crash coordinates. All results are then in the multiplied unit.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    pub crash_length_factor: f64,
+    /// Maximum triangles of the crash part for the search (overrides --triangles).
     #[arg(long, value_name = "N")]
     pub crash_triangles: Option<usize>,
-    /// Another number for the stamped part, or for it alone.
+    /// Maximum triangles of the stamped part for the search (overrides --triangles).
     #[arg(long, value_name = "N")]
     pub stamped_triangles: Option<usize>,
-    /// Finish the winner on the full meshes.
-    #[arg(long, value_name = "YES|NO", value_parser = BoolishValueParser::new())]
-    pub finish: Option<bool>,
+    /// Another folder to search for included files; may be given several times.
+    #[arg(long, value_name = "FOLDER")]
+    pub include_folder: Vec<PathBuf>,
+    /// Limit on each file with its includes, unpacked, in GiB; the numbers of files and of ids in
+    /// sets are limited in proportion.
+    #[arg(long, value_name = "GIB", default_value_t = 4.0)]
+    pub read_limit: f64,
 }
 
-/// First poses.
+/// Short forms of settings.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "First poses")]
-pub struct StartArgs {
-    /// Where the match starts from; surface-normal unless a --start-pose is given.
-    #[arg(long, value_parser = start_methods())]
-    pub start: Option<StartMethod>,
-    /// Step of the rotations about the mean normal, at most 60 degrees; 40 gives nine.
-    #[arg(long, value_name = "DEG")]
-    pub angle_segment: Option<f64>,
-    /// A pose (crash from stamped) to start from: a text file, or the numbers themselves, 16 by rows.
-    /// Several poses are all tried.
-    #[arg(
-        long,
-        visible_alias = "initial-pose",
-        value_name = "FILE|NUMBERS",
-        allow_hyphen_values = true
-    )]
-    pub start_pose: Vec<String>,
-    /// Try both directions of the mean normal.
-    #[arg(long, value_name = "YES|NO", value_parser = BoolishValueParser::new())]
-    pub both_directions: Option<bool>,
-    /// Add more starts where none convinces.
-    #[arg(long, value_name = "YES|NO", value_parser = BoolishValueParser::new())]
-    pub widen: Option<bool>,
+#[command(next_help_heading = "Correspondences")]
+pub struct ShorthandArgs {
+    /// Short for --motion similarity.
+    #[arg(long, conflicts_with = "motion")]
+    pub scale: bool,
+    /// Short for --hand either.
+    #[arg(long, conflicts_with = "hand")]
+    pub mirror: bool,
 }
 
-/// What is written.
+/// The files to write.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Output")]
 pub struct OutputArgs {
@@ -226,25 +142,29 @@ pub struct OutputArgs {
     /// Write LS-DYNA cards that use the pose.
     #[arg(long, value_name = "FILE")]
     pub cards: Option<PathBuf>,
-    /// Which cards.
+    /// The kind of cards.
     #[arg(long, value_name = "FORM", default_value = "stamped", value_parser = card_forms())]
     pub card_form: CardForm,
     /// Write a report with pictures, tables and charts as one HTML file.
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
-    /// Write how far every node of both parts lies from the other part, as CSV.
+    /// Write the distance of every node of both parts to the other part as CSV.
     #[arg(long, value_name = "FILE")]
     pub deviations: Option<PathBuf>,
-    /// Write the stamped mesh moved onto the crash part; the ending chooses the format
+    /// Write the stamped mesh at its matched pose; the file extension selects the format
     /// (.k, .dynain, .stl, .ply, .obj).
     #[arg(long, value_name = "FILE")]
     pub moved: Option<PathBuf>,
-    /// Write the stamped mesh where it lies, in the unit of the crash part; endings as for --moved.
+    /// Write the stamped mesh at its original pose, in the unit of the crash part; formats as for
+    /// --moved.
     #[arg(long, value_name = "FILE")]
     pub converted: Option<PathBuf>,
-    /// Write the crash part, for example as STL; endings as for --moved.
+    /// Write the mesh of the crash part; formats as for --moved.
     #[arg(long, value_name = "FILE")]
     pub crash_mesh: Option<PathBuf>,
+    /// Report and write this one of the poses that fit nearly as well: 1 is the best, 2 the next.
+    #[arg(long, value_name = "N")]
+    pub pose_number: Option<usize>,
 }
 
 /// `shapematch reduce`.
@@ -253,15 +173,15 @@ pub struct ReduceArgs {
     /// The file to read.
     pub input: PathBuf,
     /// Maximum number of triangles.
-    #[arg(long, short = 'n', value_name = "N")]
+    #[arg(long, short = 'n', value_name = "N", value_parser = at_least_one())]
     pub triangles: usize,
-    /// Where the reduced mesh goes; the ending chooses the format (.k, .stl, .ply, .obj).
+    /// File to write; its extension selects the format (.k, .stl, .ply, .obj).
     #[arg(long, short, value_name = "FILE")]
     pub out: PathBuf,
-    /// Which part, written as for match --crash-part.
+    /// Part to reduce, as for match --crash-part.
     #[arg(long, value_name = "PART")]
     pub part: Option<String>,
-    /// The faster setting, with a larger error.
+    /// Reduce faster, with a larger error.
     #[arg(long)]
     pub fast: bool,
     /// Write the figures as JSON to a file, or to standard output with "-".
@@ -274,7 +194,10 @@ pub struct ReduceArgs {
 pub struct InfoArgs {
     /// The file to read.
     pub input: PathBuf,
-    /// Write what was found as JSON to a file, or to standard output with "-".
+    /// Limit on the file with its includes, unpacked, in GiB.
+    #[arg(long, value_name = "GIB", default_value_t = 4.0)]
+    pub read_limit: f64,
+    /// Write the contents as JSON to a file, or to standard output with "-".
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<PathBuf>,
 }
@@ -282,22 +205,22 @@ pub struct InfoArgs {
 /// `shapematch sample`.
 #[derive(Debug, Args)]
 pub struct SampleArgs {
-    /// Folder to write to; made if it does not exist.
+    /// Folder to write to; created if it does not exist.
     #[arg(required_unless_present = "list")]
     pub folder: Option<PathBuf>,
-    /// The part: floor, rail, pillar, fender or bracket.
+    /// The part; `shapematch sample --list` names them.
     #[arg(long, value_name = "NAME", default_value = "floor")]
     pub part: String,
-    /// A variant of it; `shapematch sample --list` names them.
+    /// Its variant; `shapematch sample --list` lists them.
     #[arg(long, value_name = "NAME", default_value = "plain")]
     pub variant: String,
-    /// Seed of the meshes and of the stamped part's place.
+    /// Random seed of the meshes and of the pose.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Write the bundled pair instead.
     #[arg(long, conflicts_with_all = ["part", "variant", "seed"])]
     pub bundled: bool,
-    /// Only list parts and variants.
+    /// List parts and variants.
     #[arg(long)]
     pub list: bool,
 }
@@ -305,7 +228,7 @@ pub struct SampleArgs {
 /// `shapematch bench`.
 #[derive(Debug, Args)]
 pub struct BenchArgs {
-    /// The crash part; the generated car floor if no files are named.
+    /// The crash part; the generated car floor if no files are given.
     #[arg(requires = "stamped")]
     pub crash: Option<PathBuf>,
     /// The stamped part.
@@ -313,6 +236,31 @@ pub struct BenchArgs {
     /// Write the tables as JSON to a file, or to standard output with "-".
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<PathBuf>,
+    /// Match random shapes of all sample parts under every disturbance instead, and count right poses
+    /// and honest verdicts.
+    #[arg(long, conflicts_with = "crash")]
+    pub robustness: bool,
+    /// Seed of shapes, placements and disturbances.
+    #[arg(long, default_value_t = 1, requires = "robustness")]
+    pub seed: u64,
+    /// Runs of every scenario on every part.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "robustness")]
+    pub runs: usize,
+    /// Only these parts and scenarios, by the beginnings of their names, separated by commas.
+    #[arg(long, value_name = "NAMES", requires = "robustness")]
+    pub only: Option<String>,
+    /// Write the table with plots as a page.
+    #[arg(long, value_name = "FILE", requires = "robustness")]
+    pub html: Option<PathBuf>,
+}
+
+/// More threads than any machine of today has cores only take its memory.
+fn threads() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(0..=1024)
+}
+
+fn at_least_one() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(1..)
 }
 
 const MATCH_HELP: &str = "\

@@ -1,35 +1,32 @@
 //! `shapematch bench`: the paper's tables with its column beside ours.
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use super::args::BenchArgs;
-use super::text::{count, short};
-use super::{print, progress, takes_stdout, write_json};
+use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
 use crate::formats::{Disk, FileSource, Memory};
 use crate::geometry::Similarity;
 use crate::monitor::Monitor;
 use crate::pipeline::load::{LoadSettings, LoadedPart, load_from};
 use crate::pipeline::sweep::{Sweep, SweepSettings, sweep};
+use crate::role::PerRole;
 use crate::samples::{self, SampleSettings};
+use crate::text::{grouped, length};
 
 /// Measures and prints both tables.
 pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let monitor = progress::monitor(quiet);
-    let (crash, stamped, truth) = parts(args, &monitor)?;
+    let named = args.crash.iter().chain(&args.stamped).cloned();
+    let named: Vec<PathBuf> = named.collect();
+    check_outputs(json_target(args.json.as_deref()), &named)?;
+    let (parts, truth) = parts(args, &monitor)?;
     let settings = SweepSettings::default();
-    let tables = sweep(
-        &crash,
-        &stamped,
-        truth.as_ref(),
-        &settings,
-        &monitor,
-        |_| {},
-    )?;
+    let tables = sweep(parts.as_ref(), truth.as_ref(), &settings, &monitor, |_| {})?;
     drop(monitor);
     if !takes_stdout(args.json.as_deref()) {
-        print(&describe(&tables, &crash, &stamped))?;
+        print(&describe(&tables, parts.as_ref()))?;
     }
     if let Some(path) = &args.json {
         write_json(path, &tables.to_record())?;
@@ -41,12 +38,13 @@ pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
 fn parts(
     args: &BenchArgs,
     monitor: &Monitor,
-) -> anyhow::Result<(LoadedPart, LoadedPart, Option<Similarity>)> {
+) -> anyhow::Result<(PerRole<LoadedPart>, Option<Similarity>)> {
     let load = |source: &dyn FileSource, path: &Path| {
         load_from(source, path, &LoadSettings::default(), monitor)
     };
     if let (Some(crash), Some(stamped)) = (&args.crash, &args.stamped) {
-        return Ok((load(&Disk, crash)?, load(&Disk, stamped)?, None));
+        let parts = PerRole::new(load(&Disk, crash)?, load(&Disk, stamped)?);
+        return Ok((parts, None));
     }
     let pair = samples::generate(&SampleSettings {
         seed: 1,
@@ -58,28 +56,28 @@ fn parts(
     }
     let crash = load(&source, Path::new("crash.k"))?;
     let stamped = load(&source, Path::new("stamped.dynain"))?;
-    Ok((crash, stamped, Some(pair.crash_from_stamped)))
+    Ok((PerRole::new(crash, stamped), Some(pair.crash_from_stamped)))
 }
 
-fn describe(tables: &Sweep, crash: &LoadedPart, stamped: &LoadedPart) -> String {
+fn describe(tables: &Sweep, parts: PerRole<&LoadedPart>) -> String {
     let mut text = format!(
         "Crash    {}, {} triangles\nStamped  {}, {} triangles\nThreads  {}\n\n",
-        crash.file_name(),
-        count(crash.mesh.n_triangles()),
-        stamped.file_name(),
-        count(stamped.mesh.n_triangles()),
+        parts.crash.file_name(),
+        grouped(parts.crash.mesh.n_triangles()),
+        parts.stamped.file_name(),
+        grouped(parts.stamped.mesh.n_triangles()),
         rayon::current_num_threads()
     );
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
         "Reduction of {} triangles\n{:>10}{:>12}{:>10}{:>10}{:>10}{:>10}{:>12}{:>8}",
-        count(tables.n_triangles),
+        grouped(tables.n_triangles),
         "maximum",
         "paper ms",
         "here ms",
         "faster",
-        "rms",
+        "RMS",
         "max",
         "border max",
         "loops"
@@ -88,13 +86,13 @@ fn describe(tables: &Sweep, crash: &LoadedPart, stamped: &LoadedPart) -> String 
         let _ = writeln!(
             text,
             "{:>10}{:>12}{:>10.1}{:>10}{:>10}{:>10}{:>12}{:>8}",
-            count(row.max_triangles),
+            grouped(row.max_triangles),
             paper(row.paper_ms),
             row.time_ms,
             faster(row.paper_ms, row.time_ms),
-            short(row.rms),
-            short(row.max),
-            short(row.border_max),
+            length(row.rms),
+            length(row.max),
+            length(row.border_max),
             row.loops
         );
     }
@@ -110,30 +108,30 @@ fn describe(tables: &Sweep, crash: &LoadedPart, stamped: &LoadedPart) -> String 
         "paper ms",
         "here ms",
         "faster",
-        "node rms",
+        "node RMS",
         "node max",
         "finished ms",
-        "finished rms"
+        "finished RMS"
     );
     for row in &tables.matching {
         let _ = writeln!(
             text,
             "{:>10}{:>12}{:>10.1}{:>10}{:>11}{:>11}{:>14.1}{:>15}",
-            row.max_triangles.map_or_else(|| "full".into(), count),
+            row.max_triangles.map_or_else(|| "full".into(), grouped),
             paper(row.paper_ms),
             row.time_ms,
             faster(row.paper_ms, row.time_ms),
-            short(row.node_rms),
-            short(row.node_max),
+            length(row.node_rms),
+            length(row.node_max),
             row.finished_ms,
-            short(row.finished_node_rms)
+            length(row.finished_node_rms)
         );
     }
     text
 }
 
 fn paper(ms: Option<f64>) -> String {
-    ms.map_or_else(|| "-".into(), |ms| count(ms as usize))
+    ms.map_or_else(|| "-".into(), |ms| grouped(ms as usize))
 }
 
 fn faster(paper_ms: Option<f64>, ms: f64) -> String {

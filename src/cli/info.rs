@@ -1,24 +1,32 @@
 //! `shapematch info`: what a file holds.
 
 use std::fmt::Write as _;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use super::args::InfoArgs;
-use super::text::{counted, short};
-use super::{print, progress, project, takes_stdout, write_json};
+use super::{check_outputs, json_target, print, progress, project, takes_stdout, write_json};
 use crate::formats::{self, Diagnostics, ReadOptions};
+use crate::pipeline::project::is_project;
 use crate::report::{FormingInfo, ModelInfo};
+use crate::text::{counted, length};
 
-/// Reads the file and tells what is in it.
+/// Reads the file and shows its contents.
 pub fn run(args: &InfoArgs, quiet: bool) -> anyhow::Result<ExitCode> {
-    if project::is_project(&args.input) {
+    if is_project(&args.input) {
         return project::info(&args.input, args.json.as_deref());
     }
+    check_outputs(
+        json_target(args.json.as_deref()),
+        std::slice::from_ref(&args.input),
+    )?;
     let model = formats::read(
         &args.input,
-        &ReadOptions::default(),
+        &ReadOptions::default().with_limit(args.read_limit),
         &progress::monitor(quiet),
     )?;
+    let files: Vec<PathBuf> = model.files.iter().map(|file| file.path.clone()).collect();
+    check_outputs(json_target(args.json.as_deref()), &files)?;
     let info = ModelInfo::of(&model);
     if !takes_stdout(args.json.as_deref()) {
         print(&describe(&info, &model.diagnostics))?;
@@ -57,7 +65,7 @@ fn describe(info: &ModelInfo, diagnostics: &Diagnostics) -> String {
         counted(info.parts.len(), "part"),
     ));
     if let Some(bounds) = &info.bounds {
-        let axis = |i: usize| format!("{} … {}", short(bounds.min[i]), short(bounds.max[i]));
+        let axis = |i: usize| format!("{} … {}", length(bounds.min[i]), length(bounds.max[i]));
         line(format!(
             "Bounds   x {}   y {}   z {}",
             axis(0),
@@ -74,10 +82,10 @@ fn describe(info: &ModelInfo, diagnostics: &Diagnostics) -> String {
         line(String::new());
         line(format!(
             "{}:",
-            counted(info.n_diagnostics as usize, "finding")
+            counted(info.n_diagnostics as usize, "diagnostic")
         ));
-        for finding in diagnostics.iter() {
-            line(format!("  {finding}"));
+        for diagnostic in diagnostics.iter() {
+            line(format!("  {diagnostic}"));
         }
         let more = info.n_diagnostics as usize - info.diagnostics.len();
         if more > 0 {
@@ -94,7 +102,7 @@ fn describe_forming(forming: &FormingInfo) -> String {
     let mut pieces = Vec::new();
     let range = |range: Option<[f64; 2]>| {
         range.map_or_else(String::new, |[a, b]| {
-            format!(" ({} … {})", short(a), short(b))
+            format!(" ({} … {})", length(a), length(b))
         })
     };
     if forming.thickness > 0 {
@@ -137,7 +145,7 @@ fn parts_table(info: &ModelInfo) -> String {
         "id", "title", "shells", "triangles", "thickness"
     );
     for part in &info.parts {
-        let thickness = part.thickness.map_or_else(|| "-".into(), short);
+        let thickness = part.thickness.map_or_else(|| "-".into(), length);
         let title: String = part.title.chars().take(width).collect();
         // Writing to a string cannot fail.
         let _ = writeln!(

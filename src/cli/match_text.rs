@@ -2,44 +2,50 @@
 
 use std::fmt::Write as _;
 
-use super::text::{count, millis, short};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::PairUnits;
-use crate::report::{MatchRecord, StartEntry, number};
+use crate::registration::{MatchOutcome, StartOutcome, StartRecord};
+use crate::report::{MatchRecord, number, start_name};
+use crate::role::{PerRole, Role};
+use crate::text::{Lengths, capital, counted, grouped, length, millis, percent};
 
 /// Verdict, matrix, fit, starts and times, about twenty lines.
-pub fn report(record: &MatchRecord, crash: &LoadedPart, stamped: &LoadedPart) -> String {
-    let mut text = format!("{}\n", record.verdict.to_uppercase());
+pub fn report(record: &MatchRecord, outcome: &MatchOutcome, parts: PerRole<&LoadedPart>) -> String {
+    let mut text = format!("{}\n", record.verdict.label());
     for reason in &record.reasons {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "  - {reason}");
     }
+    for statement in &record.statements {
+        let _ = writeln!(text, "  {}", capital(statement));
+    }
+    for warning in &record.warnings {
+        let _ = writeln!(text, "  ! {warning}");
+    }
     text.push('\n');
-    side(&mut text, "Crash", crash);
-    side(&mut text, "Stamped", stamped);
-    let units = PairUnits::sentences(crash, stamped);
+    for (role, part) in parts.iter() {
+        side(&mut text, role, part);
+    }
+    let units = PairUnits::sentences(parts);
     let _ = writeln!(text, "Units    {}", units.join("\n         "));
     text.push('\n');
     matrix(&mut text, record);
     text.push('\n');
     fit(&mut text, record);
-    starts(&mut text, &record.starts);
+    starts(&mut text, outcome);
     times(&mut text, record);
     text
 }
 
-fn side(text: &mut String, role: &str, part: &LoadedPart) {
+fn side(text: &mut String, role: Role, part: &LoadedPart) {
     let ids: Vec<String> = part.chosen_part_ids().iter().map(u64::to_string).collect();
     let parts = match ids.len() {
         0..=4 => ids.join(", "),
         n => format!("{} … ({n} parts)", ids[..3].join(", ")),
     };
-    let triangles = count(part.mesh.n_triangles());
-    let _ = writeln!(
-        text,
-        "{role:<8} {}, part {parts}, {triangles} triangles",
-        part.path.display()
-    );
+    let triangles = counted(part.mesh.n_triangles(), "triangle");
+    let (role, path) = (capital(role.word()), part.path.display());
+    let _ = writeln!(text, "{role:<8} {path}, part {parts}, {triangles}");
 }
 
 fn matrix(text: &mut String, record: &MatchRecord) {
@@ -65,44 +71,42 @@ fn matrix(text: &mut String, record: &MatchRecord) {
 }
 
 fn fit(text: &mut String, record: &MatchRecord) {
+    let (metrics, lengths) = (&record.metrics, Lengths::new(record.units.length));
     let _ = writeln!(
         text,
-        "Fit      rms {}, 95 % below {}, largest {}",
-        short(record.metrics.rmse),
-        short(record.metrics.p95),
-        short(record.metrics.max)
+        "Fit      RMS {}, 95 % within {}, max {}",
+        length(metrics.rmse),
+        length(metrics.p95),
+        lengths.of(metrics.max)
     );
-    let overlap = &record.metrics.overlap;
+    let overlap = &metrics.overlap;
     let _ = writeln!(
         text,
-        "Overlap  {:.1} % of the stamped and {:.1} % of the crash part lie within {} of the other",
-        100.0 * overlap.stamped,
-        100.0 * overlap.crash,
-        short(overlap.limit)
+        "Overlap  {} of the stamped part and {} of the crash part within {}",
+        percent(overlap.stamped),
+        percent(overlap.crash),
+        lengths.of(overlap.limit)
     );
     if let Some(other) = record.alternatives.first() {
+        let ratio = other.score_ratio;
         let _ = writeln!(
             text,
-            "Next     the second-best pose fits {} times worse",
-            short(other.score_ratio)
+            "Next     the second-best pose scores {ratio:.2} times as high (lower is better)"
         );
     }
 }
 
-fn starts(text: &mut String, starts: &[StartEntry]) {
-    let iterations: usize = starts.iter().map(|start| start.iterations).sum();
-    if let Some(winner) = starts.iter().find(|start| start.fate == "won") {
-        let side = if winner.flipped {
-            ", normals opposed"
-        } else {
-            ""
-        };
-        let n = starts.len();
-        let kind = &winner.kind;
+fn starts(text: &mut String, outcome: &MatchOutcome) {
+    let starts = &outcome.starts;
+    let iterations: usize = starts.iter().map(|start| start.iterations.len()).sum();
+    let is_best = |start: &&StartRecord| start.outcome == Some(StartOutcome::Won);
+    if let Some(best) = starts.iter().find(is_best) {
         let _ = writeln!(
             text,
-            "Starts   {n}, won by {kind}{side}; {} iterations in all",
-            count(iterations)
+            "Starts   {}, best: {}; {} in all",
+            grouped(starts.len()),
+            start_name(best),
+            counted(iterations, "iteration")
         );
     }
 }

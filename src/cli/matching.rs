@@ -1,140 +1,222 @@
-//! `shapematch match`: from two files to the matrix.
+//! `shapematch match`: two files in, a pose out.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
-use super::args::MatchArgs;
+use anyhow::bail;
+
+use super::args::{MatchArgs, OutputArgs};
 use super::recipe::{Asked, asked};
-use super::text::short;
 use super::{
-    EXIT_POOR, EXIT_USAGE, match_text, print, progress, project, takes_stdout, write_json,
-    write_output,
+    EXIT_POOR, EXIT_USAGE, UsageError, check_outputs, is_stdout, match_text, print, print_exactly,
+    progress, project, takes_stdout,
 };
 use crate::assess::Verdict;
-use crate::geometry::Similarity;
 use crate::monitor::Monitor;
+use crate::pipeline::PipelineError;
 use crate::pipeline::load::{LoadedPart, load};
-use crate::pipeline::match_parts::{MatchRun, ReducedPair, match_parts};
-use crate::pipeline::units::PairUnits;
-use crate::pipeline::{cards as pipeline_cards, export, node_table, record, report};
-use crate::report::{MatchRecord, MatrixForm};
+use crate::pipeline::match_parts::{MatchRun, ReducedPair, match_parts, with_alternative};
+use crate::pipeline::outputs::record::match_record;
+use crate::pipeline::outputs::{MeshOutput, Output, OutputInput, Target};
+use crate::pipeline::project::{EXTENSION, is_project};
+use crate::registration::MatchMonitor;
+use crate::report::MatrixForm;
+use crate::report::cards::check_file_name;
+use crate::role::PerRole;
+use crate::text::counted;
 
-/// Reads, matches, writes what was asked for, and prints the report.
+/// Matches and writes what was asked for.
 pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
-    let monitor = progress::monitor(quiet);
-    let (asked, crash, stamped) = match &args.stamped {
+    let shown = progress::shown(quiet);
+    let monitor = &shown.monitor;
+    let outputs = outputs(&args.output);
+    check_outputs(targets(&outputs), &named_inputs(args))?;
+    check_included_name(&outputs, args.stamped.as_deref())?;
+    let (mut asked, parts) = match &args.stamped {
         Some(path) => {
             let asked = asked(args)?;
-            let (crash, stamped) = load_both([&args.crash, path], &asked, &monitor)?;
-            (asked, crash, stamped)
+            asked.recipe.settings.check().map_err(PipelineError::from)?;
+            let parts = load_both(PerRole::new(&args.crash, path), &asked, monitor)?;
+            (asked, parts)
         }
-        None if project::is_project(&args.crash) => project::open(&args.crash, &monitor)?,
+        None if is_project(&args.crash) => project::open(&args.crash, monitor)?,
         None => {
             log::error!(
-                "name the stamped part too, or a project alone (.{}): {}",
-                project::EXTENSION,
+                "the stamped part is missing; give two files, or one project (.{EXTENSION}): {}",
                 args.crash.display()
             );
             return Ok(ExitCode::from(EXIT_USAGE));
         }
     };
-    let run = run_match(&asked, &crash, &stamped, &monitor)?;
-    let record = record::match_record(&run, &crash, &stamped);
-    drop(monitor);
-    for warning in &record.warnings {
-        log::warn!("{warning}");
+    if let Some(number) = args.output.pose_number {
+        asked.pose_number = number;
     }
-    if !takes_stdout(args.output.json.as_deref()) {
-        print(&match_text::report(&record, &crash, &stamped))?;
+    let parts = parts.map(Arc::new);
+    let input = OutputInput {
+        parts: parts.clone().map(Some),
+        ..OutputInput::default()
+    };
+    // Only now are the included files known.
+    check_outputs(targets(&outputs), &input.files())?;
+    let impossible = impossible(&outputs, parts.as_deref());
+    let run = Arc::new(run_match(&asked, parts.as_deref(), shown.of_match())?);
+    let record = match_record(&run, parts.as_deref());
+    drop(shown);
+    if takes_stdout(args.output.json.as_deref()) {
+        for warning in &record.warnings {
+            log::warn!("{warning}");
+        }
+    } else {
+        print(&match_text::report(&record, &run.outcome, parts.as_deref()))?;
     }
-    write_files(args, &crash, &stamped, &run, &record)?;
+    let input = OutputInput {
+        crash_from_stamped: run.crash_from_stamped,
+        run: Some(Arc::clone(&run)),
+        ..input
+    };
+    let is_printing = !outputs.iter().any(|(_, path)| is_stdout(path));
+    let mut is_complete = impossible.is_empty();
+    for (output, path) in outputs {
+        if impossible.contains(&output) {
+            continue;
+        }
+        if let Err(error) = write(output, path, &input, is_printing) {
+            log::error!("{} is not written: {error:#}", option(output));
+            is_complete = false;
+        }
+    }
     Ok(match run.assessment.verdict {
+        _ if !is_complete => ExitCode::FAILURE,
         Verdict::Good | Verdict::Check => ExitCode::SUCCESS,
         Verdict::Poor => ExitCode::from(EXIT_POOR),
     })
 }
 
-/// Reduces first where another level was asked for one of the parts.
-fn run_match(
-    asked: &Asked,
-    crash: &LoadedPart,
-    stamped: &LoadedPart,
-    monitor: &Monitor,
-) -> anyhow::Result<MatchRun> {
-    let reduced = if asked.max_triangles == [asked.recipe.max_triangles; 2] {
-        None
-    } else {
-        Some(ReducedPair::new(
-            crash,
-            stamped,
-            asked.max_triangles,
-            monitor,
-        )?)
+/// What is to be written, in this order.
+fn outputs(args: &OutputArgs) -> Vec<(Output, &Path)> {
+    let all = [
+        (Output::Record, &args.json),
+        (Output::Matrix(MatrixForm::Rows), &args.matrix),
+        (Output::Mesh(MeshOutput::Moved), &args.moved),
+        (Output::Mesh(MeshOutput::Converted), &args.converted),
+        (Output::Mesh(MeshOutput::Crash), &args.crash_mesh),
+        (Output::Deviations, &args.deviations),
+        (Output::Report, &args.report),
+        (Output::Cards(args.card_form), &args.cards),
+    ];
+    let given = all.into_iter();
+    given
+        .filter_map(|(output, path)| Some((output, path.as_deref()?)))
+        .collect()
+}
+
+fn option(output: Output) -> &'static str {
+    output.option().unwrap_or(output.label())
+}
+
+fn targets(outputs: &[(Output, &Path)]) -> Vec<Target> {
+    let target = |&(output, path): &(Output, &Path)| Target {
+        name: option(output).to_owned(),
+        path: path.to_path_buf(),
+        content: output.content(),
     };
-    let (recipe, current) = (&asked.recipe, &asked.current);
-    let run = match_parts(crash, stamped, reduced.as_ref(), recipe, current, monitor)?;
-    Ok(run)
+    outputs.iter().map(target).collect()
 }
 
-fn load_both(
-    [crash, stamped]: [&Path; 2],
-    asked: &Asked,
-    monitor: &Monitor,
-) -> anyhow::Result<(LoadedPart, LoadedPart)> {
-    let (crash, stamped) = rayon::join(
-        || load(crash, &asked.crash, monitor),
-        || load(stamped, &asked.stamped, monitor),
-    );
-    Ok((crash?, stamped?))
+/// The files that the command line names to be read.
+fn named_inputs(args: &MatchArgs) -> Vec<PathBuf> {
+    let poses = args.settings.start_poses.iter().map(PathBuf::from);
+    let parts = std::iter::once(&args.crash).chain(&args.stamped).cloned();
+    parts.chain(poses).collect()
 }
 
-fn write_files(
-    args: &MatchArgs,
-    crash: &LoadedPart,
-    stamped: &LoadedPart,
-    run: &MatchRun,
-    record: &MatchRecord,
-) -> anyhow::Result<()> {
-    let output = &args.output;
-    if let Some(path) = &output.json {
-        write_json(path, record)?;
-    }
-    if let Some(path) = &output.matrix {
-        let units = PairUnits::sentences(crash, stamped);
-        let text = MatrixForm::Rows.write_with(&run.crash_from_stamped, &units);
-        write_output(path, text.as_bytes())?;
-    }
-    let (pose, silent) = (&run.crash_from_stamped, Monitor::silent());
-    let write_part = |path: Option<&PathBuf>, part, other, pose: &Similarity| match path {
-        Some(path) => {
-            let lines = export::head_lines(part, Some(other));
-            export::write_moved(path, part, pose, &lines, &silent)
+/// Refuses cards for a stamped file whose name no deck can include.
+fn check_included_name(outputs: &[(Output, &Path)], stamped: Option<&Path>) -> anyhow::Result<()> {
+    let is_cards = |(output, _): &(Output, &Path)| matches!(output, Output::Cards(_));
+    let name = stamped
+        .and_then(Path::file_name)
+        .map(|name| name.to_string_lossy());
+    match name {
+        Some(name) if outputs.iter().any(is_cards) => {
+            let checked = check_file_name(name.trim_end_matches(".gz"));
+            checked.map_err(|error| UsageError(format!("--cards: {error}")).into())
         }
-        None => Ok(()),
+        _ => Ok(()),
+    }
+}
+
+/// Outputs that cannot hold what these parts need, said before the match and left out.
+fn impossible(outputs: &[(Output, &Path)], parts: PerRole<&LoadedPart>) -> Vec<Output> {
+    let checked = outputs
+        .iter()
+        .map(|(output, _)| (*output, output.check(parts)));
+    let failed = checked.filter_map(|(output, check)| Some((output, check.err()?)));
+    failed
+        .map(|(output, error)| {
+            log::error!("{} cannot be written: {error}", option(output));
+            output
+        })
+        .collect()
+}
+
+/// Writes one output and says what was found out about cards.
+fn write(
+    output: Output,
+    path: &Path,
+    input: &OutputInput,
+    is_printing: bool,
+) -> anyhow::Result<()> {
+    let silent = Monitor::silent();
+    let notes = if is_stdout(path) {
+        let made = output.make(input, None, &silent)?;
+        print_exactly(std::str::from_utf8(&made.bytes)?)?;
+        made.notes
+    } else {
+        output.write(input, path, &silent)?
     };
-    let still = Similarity::identity();
-    write_part(output.moved.as_ref(), stamped, crash, pose)?;
-    write_part(output.converted.as_ref(), stamped, crash, &still)?;
-    write_part(output.crash_mesh.as_ref(), crash, stamped, &still)?;
-    if let Some(path) = &output.deviations {
-        let table = node_table::node_table(crash, stamped, pose, &silent)?;
-        write_output(path, table.as_bytes())?;
-    }
-    if let Some(path) = &output.report {
-        let page = report::report(run, crash, stamped, &silent)?;
-        write_output(path, page.as_bytes())?;
-    }
-    if let Some(path) = &output.cards {
-        let cards = pipeline_cards::cards(output.card_form, run, crash, stamped)?;
-        write_output(path, cards.text.as_bytes())?;
-        let error = cards.largest_node_error(stamped.surface.mesh.positions());
-        if !takes_stdout(output.json.as_deref()) && path != Path::new("-") {
-            let error = short(error);
-            print(&format!(
-                "Cards    {}; rounding moves no node by more than {error}\n",
-                path.display()
-            ))?;
+    if matches!(output, Output::Cards(_)) && is_printing {
+        for note in notes {
+            print(&format!("Cards    {}; {note}\n", path.display()))?;
         }
     }
     Ok(())
+}
+
+/// Reduces first where another level was asked for one of the parts.
+fn run_match(
+    asked: &Asked,
+    parts: PerRole<&LoadedPart>,
+    monitor: MatchMonitor<'_>,
+) -> anyhow::Result<MatchRun> {
+    let reduced = if asked.max_triangles == PerRole::both(asked.recipe.max_triangles) {
+        None
+    } else {
+        let max_triangles = asked.max_triangles;
+        Some(ReducedPair::new(parts, max_triangles, monitor.monitor)?)
+    };
+    let (recipe, current) = (&asked.recipe, &asked.current);
+    let run = match_parts(parts, reduced.as_ref(), recipe, current, monitor)?;
+    let (number, n_poses) = (asked.pose_number, 1 + run.outcome.alternatives.len());
+    match number {
+        1 => Ok(run),
+        0 => bail!("--pose-number: the best pose is number 1"),
+        _ if number > n_poses => bail!(
+            "--pose-number {number}: the match found {}",
+            counted(n_poses, "pose")
+        ),
+        _ => Ok(with_alternative(&run, number - 2, parts, monitor.monitor)?),
+    }
+}
+
+fn load_both(
+    paths: PerRole<&PathBuf>,
+    asked: &Asked,
+    monitor: &Monitor,
+) -> anyhow::Result<PerRole<LoadedPart>> {
+    let (crash, stamped) = rayon::join(
+        || load(paths.crash, &asked.crash, monitor),
+        || load(paths.stamped, &asked.stamped, monitor),
+    );
+    Ok(PerRole::new(crash?, stamped?))
 }

@@ -6,25 +6,32 @@
 mod args;
 mod bench;
 mod info;
+mod map;
 mod match_text;
 mod matching;
 mod progress;
 mod project;
 mod recipe;
 mod reduce;
+mod robustness;
 mod sample;
-mod text;
+mod setting_args;
+mod terminal;
 mod words;
 
 pub use args::{Cli, Task};
 
-use std::fs;
 use std::io::{self, Write as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
 use serde::Serialize;
+
+pub use self::terminal::printable;
+use crate::pipeline::PipelineError;
+use crate::pipeline::outputs::{Content, Target, check_targets, json_text};
+use crate::pipeline::write_file::write_file;
 
 /// Exit status for a pose that was found but is poor.
 pub const EXIT_POOR: u8 = 3;
@@ -35,30 +42,90 @@ pub const EXIT_USAGE: u8 = 2;
 pub fn run(task: &Task, quiet: bool) -> anyhow::Result<ExitCode> {
     match task {
         Task::Match(args) => matching::run(args, quiet),
+        Task::Map(args) => map::run(args, quiet),
         Task::Reduce(args) => reduce::run(args, quiet),
         Task::Info(args) => info::run(args, quiet),
         Task::Sample(args) => sample::run(args),
+        Task::Bench(args) if args.robustness => robustness::run(args, quiet),
         Task::Bench(args) => bench::run(args, quiet),
+    }
+}
+
+/// What was asked for cannot be done, whatever the files hold.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct UsageError(String);
+
+/// The exit status for an error.
+pub fn exit_status(error: &anyhow::Error) -> ExitCode {
+    let is_setting = match error.downcast_ref::<PipelineError>() {
+        Some(PipelineError::BadUnitFactor(_)) => true,
+        Some(PipelineError::Registration(error)) => error.is_setting(),
+        _ => false,
+    };
+    if is_setting || error.is::<UsageError>() {
+        ExitCode::from(EXIT_USAGE)
+    } else {
+        ExitCode::FAILURE
     }
 }
 
 /// Writes JSON to a file, or to standard output if the path is `-`.
 fn write_json(path: &Path, value: &impl Serialize) -> anyhow::Result<()> {
-    let mut text = serde_json::to_string_pretty(value)?;
-    text.push('\n');
-    write_output(path, text.as_bytes())
+    write_output(path, json_text(value)?.as_bytes())
 }
 
 /// Writes to a file, or to standard output if the path is `-`.
 fn write_output(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    if path == Path::new("-") {
-        return print(std::str::from_utf8(bytes).context("the output is not text")?);
+    if is_stdout(path) {
+        return print_exactly(std::str::from_utf8(bytes).context("the output is not text")?);
     }
-    fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))
+    Ok(write_file(path, bytes)?)
+}
+
+/// What `--json` writes, for the check before the work.
+fn json_target(json: Option<&Path>) -> Option<Target> {
+    Some(Target {
+        name: "--json".to_owned(),
+        path: json?.to_path_buf(),
+        content: Content::Text,
+    })
+}
+
+/// Refuses outputs that cannot be written, share a name or would overwrite one of the `inputs`.
+fn check_outputs(
+    targets: impl IntoIterator<Item = Target>,
+    inputs: &[PathBuf],
+) -> anyhow::Result<()> {
+    let (printed, files): (Vec<Target>, Vec<Target>) = targets
+        .into_iter()
+        .partition(|target| is_stdout(&target.path));
+    let mut reasons: Vec<String> = Vec::new();
+    if let [first, .., last] = &printed[..] {
+        let (first, last) = (&first.name, &last.name);
+        reasons.push(format!("{first} and {last} both write to standard output"));
+    }
+    let refusals = check_targets(&files, inputs);
+    reasons.extend(refusals.iter().map(ToString::to_string));
+    if reasons.is_empty() {
+        return Ok(());
+    }
+    Err(UsageError(reasons.join("; ")).into())
+}
+
+/// True for the path that stands for standard output.
+fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Prints text for people to standard output; control characters that a file smuggled in are
+/// shown, not sent to the terminal.
+fn print(text: &str) -> anyhow::Result<()> {
+    print_exactly(&printable(text))
 }
 
 /// Prints to standard output. A reader that has gone away is no error.
-fn print(text: &str) -> anyhow::Result<()> {
+fn print_exactly(text: &str) -> anyhow::Result<()> {
     match io::stdout().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         other => Ok(other?),
@@ -67,5 +134,5 @@ fn print(text: &str) -> anyhow::Result<()> {
 
 /// True if this JSON target takes over standard output, so that no report may go there.
 fn takes_stdout(json: Option<&Path>) -> bool {
-    json == Some(Path::new("-"))
+    json.is_some_and(is_stdout)
 }

@@ -6,22 +6,53 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::monitor::{IterationReport, Monitor, Observer, Progress};
+use crate::monitor::{Monitor, Observer, Progress};
+use crate::registration::{self, IterationRecord, MatchMonitor};
+use crate::text::{length, whole_percent};
 
 /// A line on standard error that says what is going on, gone when the work is done.
 struct Line {
     bar: ProgressBar,
 }
 
-/// A monitor that shows its progress if standard error is a terminal and `quiet` is off.
-pub fn monitor(quiet: bool) -> Monitor {
+/// A monitor with the line that shows its progress, if standard error is a terminal.
+pub struct Shown {
+    /// The monitor.
+    pub monitor: Monitor,
+    line: Option<Arc<Line>>,
+}
+
+impl Shown {
+    /// For a match, whose iterations the line shows too.
+    pub fn of_match(&self) -> MatchMonitor<'_> {
+        MatchMonitor {
+            monitor: &self.monitor,
+            observer: self.line.as_deref().map(|line| line as _),
+        }
+    }
+}
+
+/// Shows progress if standard error is a terminal and `quiet` is off.
+pub fn shown(quiet: bool) -> Shown {
     if quiet || !std::io::stderr().is_terminal() {
-        return Monitor::silent();
+        return Shown {
+            monitor: Monitor::silent(),
+            line: None,
+        };
     }
     let bar = ProgressBar::new_spinner();
     bar.set_style(spinner());
     bar.enable_steady_tick(Duration::from_millis(100));
-    Monitor::with_observer(Arc::new(Line { bar }))
+    let line = Arc::new(Line { bar });
+    Shown {
+        monitor: Monitor::with_observer(Arc::clone(&line) as Arc<dyn Observer>),
+        line: Some(line),
+    }
+}
+
+/// As [`shown`], for work without a match.
+pub fn monitor(quiet: bool) -> Monitor {
+    shown(quiet).monitor
 }
 
 fn spinner() -> ProgressStyle {
@@ -38,14 +69,16 @@ impl Observer for Line {
         };
         self.bar.set_message(message);
     }
+}
 
-    fn iteration(&self, report: &IterationReport) {
+impl registration::Observer for Line {
+    fn iteration(&self, start: usize, number: usize, record: &IterationRecord) {
         self.bar.set_message(format!(
-            "start {} · iteration {} · RMS {:.3} · overlap {:.0} %",
-            report.start_idx + 1,
-            report.iteration + 1,
-            report.rmse,
-            report.fraction * 100.0
+            "start {} · iteration {} · RMS {} · overlap {}",
+            start + 1,
+            number + 1,
+            length(record.rmse),
+            whole_percent(record.fraction)
         ));
     }
 }

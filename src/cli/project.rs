@@ -5,76 +5,75 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use super::recipe::Asked;
-use super::text::{count, short};
-use super::{print, takes_stdout, write_json};
+use super::{check_outputs, json_target, print, takes_stdout, write_json};
 use crate::formats::{Disk, FileHash};
 use crate::monitor::Monitor;
-use crate::pipeline::load::{LoadedPart, load, load_bundled};
-pub use crate::pipeline::project::EXTENSION;
-use crate::pipeline::project::{PartEntry, Project};
-
-/// True if a path is that of a project.
-pub fn is_project(path: &Path) -> bool {
-    let ending = path.extension().map(|ending| ending.to_string_lossy());
-    ending.is_some_and(|ending| ending.eq_ignore_ascii_case(EXTENSION))
-}
+use crate::pipeline::load::LoadedPart;
+use crate::pipeline::project::{PartEntry, Project, ProjectRequest, open_project};
+use crate::role::PerRole;
+use crate::settings::Choice as _;
+use crate::text::{capital, counted, grouped, length, percent};
 
 /// Reads a project and its parts, and what its match is to be run with.
-pub fn open(path: &Path, monitor: &Monitor) -> anyhow::Result<(Asked, LoadedPart, LoadedPart)> {
-    let project = read(path)?;
-    let (Some(crash), Some(stamped)) = (&project.crash, &project.stamped) else {
+pub fn open(path: &Path, monitor: &Monitor) -> anyhow::Result<(Asked, PerRole<LoadedPart>)> {
+    let request = ProjectRequest {
+        path: path.to_path_buf(),
+        ..ProjectRequest::default()
+    };
+    let found = open_project(request, monitor)?;
+    warn(path, &found.notes);
+    for (_, missing) in found.missing.iter() {
+        if let Some(file) = missing {
+            anyhow::bail!(
+                "a file of the project was not found at its path or beside the project: {file:?}"
+            );
+        }
+    }
+    let project = found.project;
+    let entries = project.parts.as_ref().map(Option::as_ref).all();
+    let (Some(entries), Some(parts)) = (entries, found.parts.all()) else {
         anyhow::bail!(
             "the project has only one of the two parts: {}",
             path.display()
         );
     };
+    for (_, found) in parts.iter().filter(|(_, found)| found.is_changed) {
+        let path = &found.part.path;
+        log::warn!("the file has changed since the project was saved: {path:?}");
+    }
     let asked = Asked {
-        crash: crash.load_settings(),
-        stamped: stamped.load_settings(),
+        crash: entries.crash.load_settings(),
+        stamped: entries.stamped.load_settings(),
         recipe: project.recipe.clone(),
-        max_triangles: match [crash.max_triangles, stamped.max_triangles] {
+        max_triangles: match entries.map(|entry| entry.max_triangles) {
             // Nothing was reduced by hand: the recipe says what to do.
-            [None, None] => [project.recipe.max_triangles; 2],
+            PerRole {
+                crash: None,
+                stamped: None,
+            } => PerRole::both(project.recipe.max_triangles),
             levels => levels,
         },
         current: project.pose,
+        pose_number: project
+            .result
+            .as_ref()
+            .and_then(|result| result.alternative)
+            .map_or(1, |index| index + 2),
     };
-    let load = |entry, starts| load_part(path, entry, starts, monitor);
-    let (crash, stamped) = rayon::join(|| load(crash, "crash"), || load(stamped, "stamped"));
-    Ok((asked, crash?, stamped?))
+    Ok((asked, parts.map(|found| found.part)))
 }
 
-fn read(path: &Path) -> anyhow::Result<Project> {
-    let (project, notes) = Project::read(path)?;
+fn warn(path: &Path, notes: &[String]) {
     for note in notes {
         log::warn!("{}: {note}", path.display());
     }
-    Ok(project)
 }
 
-fn load_part(
-    project: &Path,
-    entry: &PartEntry,
-    starts: &str,
-    monitor: &Monitor,
-) -> anyhow::Result<LoadedPart> {
-    let settings = entry.load_settings();
-    let Some(file) = &entry.file else {
-        return Ok(load_bundled(starts, &settings, monitor)?);
-    };
-    let Some(found) = entry.locate(project) else {
-        anyhow::bail!("a file of the project is neither where it was nor beside it: {file:?}");
-    };
-    let part = load(&found, &settings, monitor)?;
-    if entry.has_changed(&part) {
-        log::warn!("the file has changed since the project was saved: {found:?}");
-    }
-    Ok(part)
-}
-
-/// Tells what a project holds.
+/// Shows the contents of a project.
 pub fn info(path: &Path, json: Option<&Path>) -> anyhow::Result<ExitCode> {
-    let project = read(path)?;
+    check_outputs(json_target(json), &[path.to_path_buf()])?;
+    let (project, notes) = Project::read(path)?;
+    warn(path, &notes);
     if !takes_stdout(json) {
         print(&describe(&project, path))?;
     }
@@ -89,18 +88,20 @@ fn describe(project: &Project, path: &Path) -> String {
     let mut text = format!("Project  {}\n", path.display());
     // Writing to a string cannot fail.
     let _ = writeln!(text, "Saved by {}", project.program);
-    for (role, entry) in ["Crash", "Stamped"].into_iter().zip(project.parts()) {
+    for (role, entry) in project.parts.iter() {
         if let Some(entry) = entry {
+            let role = capital(role.word());
             let _ = writeln!(text, "{role:<8} {}", describe_part(entry, path));
         }
     }
     let pose = &project.pose;
-    let [x, y, z] = [0, 1, 2].map(|axis| short(pose.translation[axis]));
+    let shift: [f64; 3] = pose.translation.into();
     let angle = pose.angle_to(&crate::geometry::Similarity::identity());
     let _ = writeln!(
         text,
-        "Pose     turned by {}°, moved by ({x}, {y}, {z})",
-        short(angle.to_degrees())
+        "Pose     rotated by {}°, translated by ({})",
+        length(angle.to_degrees()),
+        shift.map(length).join(", ")
     );
     let method = project.recipe.settings.method.label();
     let _ = writeln!(text, "Method   {method}");
@@ -115,10 +116,10 @@ fn describe(project: &Project, path: &Path) -> String {
             };
             writeln!(
                 text,
-                "Result   {}{age}: overlap {:.1} %, rms {}",
+                "Result   {}{age}: overlap {}, RMS {}",
                 assessment.verdict.label(),
-                100.0 * assessment.coverage.better_overlap(),
-                short(assessment.coverage.rmse())
+                percent(assessment.coverage.better_overlap()),
+                length(assessment.coverage.rmse())
             )
         }
     };
@@ -129,9 +130,13 @@ fn describe_part(entry: &PartEntry, project: &Path) -> String {
     let Some(file) = &entry.file else {
         return "the example that comes with the program".to_owned();
     };
-    let mut text = format!("{}, {} triangles", file.display(), count(entry.triangles));
+    let mut text = format!(
+        "{}, {}",
+        file.display(),
+        counted(entry.triangles, "triangle")
+    );
     if let Some(n) = entry.max_triangles {
-        let _ = write!(text, " reduced to {}", count(n));
+        let _ = write!(text, " reduced to {}", grouped(n));
     }
     if let Some(units) = entry.units {
         let _ = write!(text, ", in {}", units.label());

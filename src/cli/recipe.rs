@@ -4,15 +4,17 @@ use std::fs;
 
 use anyhow::Context as _;
 
-use super::args::{ChoiceArgs, MatchArgs, MethodArgs, SearchArgs, StartArgs};
+use super::UsageError;
+use super::args::{InputArgs, MatchArgs};
+use super::setting_args::SettingArgs;
 use crate::formats::ReadOptions;
 use crate::geometry::Similarity;
 use crate::pipeline::load::{LoadSettings, parse_selection};
-use crate::pipeline::match_parts::MatchRecipe;
-use crate::registration::{
-    Hand, MatchSettings, Method, Motion, Selection, StartMethod, StartSettings,
-};
+use crate::registration::{Hand, MatchSettings, Method, Motion, StartMethod};
+use crate::report::matrix::ParseMatrixError;
 use crate::report::parse_matrix;
+use crate::role::{PerRole, Role};
+use crate::settings::{Choice as _, MatchRecipe, Value, setting};
 
 /// Everything a match depends on besides the two files.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,162 +25,136 @@ pub struct Asked {
     pub stamped: LoadSettings,
     /// Method and parameters.
     pub recipe: MatchRecipe,
-    /// Ceilings of the crash and the stamped mesh the starts run on.
-    pub max_triangles: [Option<usize>; 2],
+    /// Maximum number of triangles of each mesh the starts run on.
+    pub max_triangles: PerRole<Option<usize>>,
     /// Where the stamped part lies at the start (crash from stamped).
     pub current: Similarity,
+    /// The pose that is taken of those that fit nearly as well, counted from 1, the best.
+    pub pose_number: usize,
 }
 
 /// Understands the options of `shapematch match`; reads the files of `--start-pose`.
 pub fn asked(args: &MatchArgs) -> anyhow::Result<Asked> {
-    let poses: anyhow::Result<Vec<Similarity>> = args
-        .starts
-        .start_pose
-        .iter()
-        .map(|text| pose(text))
-        .collect();
-    let (settings, current) = settings(&args.method, &args.search, &args.starts, poses?)?;
-    let [crash, stamped] = load_settings(&args.choice);
-    let search = &args.search;
-    let level = |own: Option<usize>| own.or(search.triangles);
+    let input = &args.input;
+    let mut recipe = recipe(&args.settings)?;
+    if args.shorthands.scale {
+        recipe.settings.motion = Motion::Similarity;
+    }
+    if args.shorthands.mirror {
+        recipe.settings.hand = Hand::Either;
+    }
+    let current = start_poses(&args.settings, &mut recipe)?;
+    let level = |own: Option<usize>| own.or(recipe.max_triangles);
     Ok(Asked {
-        crash,
-        stamped,
-        recipe: MatchRecipe {
-            settings,
-            max_triangles: search.triangles,
+        crash: load_settings(input, Role::Crash),
+        stamped: load_settings(input, Role::Stamped),
+        max_triangles: PerRole {
+            crash: level(input.crash_triangles),
+            stamped: level(input.stamped_triangles),
         },
-        max_triangles: [
-            level(search.crash_triangles),
-            level(search.stamped_triangles),
-        ],
+        recipe,
         current,
+        pose_number: args.output.pose_number.unwrap_or(1),
     })
 }
 
-/// A pose from the word itself or from the file it names.
-fn pose(word: &str) -> anyhow::Result<Similarity> {
-    if let Ok(parsed) = parse_matrix(word) {
-        return Ok(parsed.motion);
+/// The method's defaults, changed by what was typed.
+fn recipe(args: &SettingArgs) -> anyhow::Result<MatchRecipe> {
+    let typed = |option: &str| args.value(option);
+    let method = match typed("method") {
+        Some(Value::Choice(name)) => Method::from_name(name).unwrap_or_default(),
+        _ => Method::default(),
+    };
+    let is_estimated = typed("overlap").is_none() && typed("pair-selection").is_none();
+    let method = match method {
+        Method::Trimmed if is_estimated => Method::TrimmedSearch,
+        method => method,
+    };
+    let mut recipe = MatchRecipe {
+        settings: MatchSettings::of(method),
+        max_triangles: None,
+    };
+    for (option, value) in args.typed.iter().filter(|(option, _)| *option != "method") {
+        let is_set = setting(option).is_some_and(|row| row.set(&mut recipe, value));
+        if !is_set {
+            let kind = recipe.settings.selection.name();
+            anyhow::bail!("--{option} has no effect with the pair selection {kind}");
+        }
     }
-    let text = fs::read_to_string(word).with_context(|| format!("cannot read {word}"))?;
-    let parsed = parse_matrix(&text).with_context(|| format!("no pose in {word}"))?;
+    Ok(recipe)
+}
+
+/// Takes the start poses that were typed; the value is the pose the stamped part starts from.
+fn start_poses(args: &SettingArgs, recipe: &mut MatchRecipe) -> anyhow::Result<Similarity> {
+    let poses: anyhow::Result<Vec<Similarity>> =
+        args.start_poses.iter().map(|text| pose(text)).collect();
+    let poses = poses?;
+    let starts = &mut recipe.settings.starts;
+    if args.value("start").is_none() {
+        starts.method = match poses.len() {
+            0 => starts.method,
+            1 => StartMethod::CurrentPose,
+            _ => StartMethod::GivenPoses,
+        };
+    }
+    match (starts.method, &poses[..]) {
+        (StartMethod::CurrentPose, []) => {}
+        (StartMethod::CurrentPose, [pose]) => return Ok(*pose),
+        (StartMethod::CurrentPose, _) => {
+            anyhow::bail!("--start current takes one --start-pose; --start given takes several")
+        }
+        (StartMethod::SurfaceNormals, [_, ..]) => {
+            anyhow::bail!("--start surface-normal makes its own poses; omit --start-pose")
+        }
+        _ => starts.poses = poses,
+    }
+    Ok(Similarity::identity())
+}
+
+/// A pose from the word itself or from the file it names.
+pub(super) fn pose(word: &str) -> anyhow::Result<Similarity> {
+    let typed = match parse_matrix(word) {
+        Ok(parsed) => return Ok(parsed.motion),
+        Err(error) => error,
+    };
+    let usage = |error: ParseMatrixError| UsageError(format!("--start-pose {word:?}: {error}"));
+    let text = match fs::read_to_string(word) {
+        Ok(text) => text,
+        // Several numbers are no name of a file.
+        Err(_) if !matches!(typed, ParseMatrixError::Count(0..=1)) => {
+            return Err(usage(typed).into());
+        }
+        Err(error) => return Err(error).with_context(|| format!("cannot read {word}")),
+    };
+    let parsed = parse_matrix(&text).map_err(usage)?;
     for note in &parsed.notes {
         log::warn!("{word}: {note}");
     }
     Ok(parsed.motion)
 }
 
-fn load_settings(choice: &ChoiceArgs) -> [LoadSettings; 2] {
-    let settings = |part: Option<&str>, length_factor: f64, units| LoadSettings {
-        selection: part.map(parse_selection).unwrap_or_default(),
+fn load_settings(input: &InputArgs, role: Role) -> LoadSettings {
+    let (part, length_factor, units) = match role {
+        Role::Crash => (
+            &input.crash_part,
+            input.crash_length_factor,
+            input.crash_units,
+        ),
+        Role::Stamped => (
+            &input.stamped_part,
+            input.stamped_length_factor,
+            input.stamped_units,
+        ),
+    };
+    LoadSettings {
+        selection: part.as_deref().map(parse_selection).unwrap_or_default(),
         length_factor,
         units,
         read: ReadOptions {
-            include_folders: choice.include_folder.clone(),
+            include_folders: input.include_folder.clone(),
+            ..ReadOptions::default().with_limit(input.read_limit)
         },
-    };
-    [
-        settings(
-            choice.crash_part.as_deref(),
-            choice.crash_unit,
-            choice.crash_units,
-        ),
-        settings(
-            choice.stamped_part.as_deref(),
-            choice.stamped_unit,
-            choice.stamped_units,
-        ),
-    ]
-}
-
-/// The settings and the pose to start from.
-fn settings(
-    typed: &MethodArgs,
-    search: &SearchArgs,
-    starts: &StartArgs,
-    poses: Vec<Similarity>,
-) -> anyhow::Result<(MatchSettings, Similarity)> {
-    let is_searched = typed.overlap.is_none() && typed.keep.is_none();
-    let method = match typed.method {
-        Method::Trimmed if is_searched => Method::TrimmedSearch,
-        method => method,
-    };
-    let usual = MatchSettings::of(method);
-    let (starts, current) = start_settings(starts, &usual.starts, poses)?;
-    let hand = if typed.mirror {
-        Some(Hand::Either)
-    } else {
-        typed.hand
-    };
-    let settings = MatchSettings {
-        method,
-        pair_with: typed.pairs.unwrap_or(usual.pair_with),
-        selection: selection(typed, usual.selection),
-        metric: typed.residual.unwrap_or(usual.metric),
-        motion: if typed.scale {
-            Motion::Similarity
-        } else {
-            usual.motion
-        },
-        hand: hand.unwrap_or(usual.hand),
-        starts,
-        search: search.search.unwrap_or(usual.search),
-        finish: search.finish.unwrap_or(usual.finish),
-        data_side: typed.points_of.unwrap_or(usual.data_side),
-        allowance: typed.allowance.unwrap_or(usual.allowance),
-        max_normal_angle_deg: typed.normal_angle.unwrap_or(usual.max_normal_angle_deg),
-        n_race_points: search.race_points.unwrap_or(usual.n_race_points),
-        n_refine_points: search.refine_points.unwrap_or(usual.n_refine_points),
-        max_iterations: typed.iterations.unwrap_or(usual.max_iterations),
-        motion_tolerance: typed.tolerance.unwrap_or(usual.motion_tolerance),
-    };
-    Ok((settings, current))
-}
-
-fn selection(typed: &MethodArgs, usual: Selection) -> Selection {
-    let kind = typed.keep.as_deref().unwrap_or(usual.name());
-    match Selection::of_kind(kind, usual).unwrap_or(usual) {
-        Selection::Trimmed { overlap } => Selection::Trimmed {
-            overlap: typed.overlap.unwrap_or(overlap),
-        },
-        Selection::Fractional { lambda, floor } => Selection::Fractional {
-            lambda: typed.lambda.unwrap_or(lambda),
-            floor: typed.floor.unwrap_or(floor),
-        },
-        plain => plain,
     }
-}
-
-fn start_settings(
-    typed: &StartArgs,
-    usual: &StartSettings,
-    poses: Vec<Similarity>,
-) -> anyhow::Result<(StartSettings, Similarity)> {
-    let method = typed.start.unwrap_or(match poses.len() {
-        0 => usual.method,
-        1 => StartMethod::CurrentPose,
-        _ => StartMethod::GivenPoses,
-    });
-    let (current, poses) = match (method, &poses[..]) {
-        (StartMethod::CurrentPose, []) => (Similarity::identity(), Vec::new()),
-        (StartMethod::CurrentPose, [pose]) => (*pose, Vec::new()),
-        (StartMethod::CurrentPose, _) => {
-            anyhow::bail!("--start current takes one --start-pose; --start given takes several")
-        }
-        (StartMethod::SurfaceNormals, [_, ..]) => {
-            anyhow::bail!("--start surface-normal makes its own poses; leave --start-pose out")
-        }
-        _ => (Similarity::identity(), poses),
-    };
-    let starts = StartSettings {
-        method,
-        angle_segment_deg: typed.angle_segment.unwrap_or(usual.angle_segment_deg),
-        both_signs: typed.both_directions.unwrap_or(usual.both_signs),
-        poses,
-        widen: typed.widen.unwrap_or(usual.widen),
-    };
-    Ok((starts, current))
 }
 
 #[cfg(test)]
@@ -187,8 +163,9 @@ mod tests {
     use super::*;
     use crate::formats;
     use crate::geometry::{Pose, Vector3};
-    use crate::registration::{DataSide, Floor, Metric, PairWith, Search};
+    use crate::registration::{DataSide, Floor, Metric, PairWith, Search, Selection};
     use crate::report::command_line::{CommandLine, CommandSide};
+    use crate::settings::{Domain, SETTINGS, Setting};
     use crate::units::{LengthUnit, UnitSystem};
     use clap::Parser as _;
     use std::path::Path;
@@ -211,12 +188,15 @@ mod tests {
         let leak =
             |load: &LoadSettings| -> &'static LoadSettings { Box::leak(Box::new(load.clone())) };
         CommandLine {
-            crash: side("crash.k", leak(&asked.crash)),
-            stamped: side("stamped.k", leak(&asked.stamped)),
+            sides: PerRole {
+                crash: side("crash.k", leak(&asked.crash)),
+                stamped: side("stamped.k", leak(&asked.stamped)),
+            },
             include_folders: &asked.crash.read.include_folders,
             settings: &asked.recipe.settings,
             max_triangles: asked.max_triangles,
             current: &asked.current,
+            alternative: None,
         }
         .words()
     }
@@ -260,17 +240,17 @@ mod tests {
             |a| a.recipe.settings.hand = Hand::Mirrored,
             |a| a.recipe.settings.hand = Hand::Either,
             |a| a.recipe.settings.search = Search::EveryStart,
-            |a| a.recipe.settings.finish ^= true,
+            |a| a.recipe.settings.refine_on_full ^= true,
             |a| a.recipe.settings.data_side = DataSide::Target,
             |a| a.recipe.settings.allowance = 1.0 / 3.0,
             |a| a.recipe.settings.max_normal_angle_deg = 45.5,
-            |a| a.recipe.settings.n_race_points = 501,
+            |a| a.recipe.settings.n_coarse_points = 501,
             |a| a.recipe.settings.n_refine_points = 7,
             |a| a.recipe.settings.max_iterations = 50,
             |a| a.recipe.settings.motion_tolerance = 1e-9,
             |a| a.recipe.settings.starts.angle_segment_deg = 33.3,
             |a| a.recipe.settings.starts.both_signs ^= true,
-            |a| a.recipe.settings.starts.widen ^= true,
+            |a| a.recipe.settings.starts.extra_starts ^= true,
             |a| a.recipe.settings.starts.method = StartMethod::All,
             |a| {
                 a.recipe.settings.starts.method = StartMethod::GivenPoses;
@@ -292,10 +272,10 @@ mod tests {
             |a| a.stamped.selection = formats::Selection::ShellSet(4),
             |a| {
                 a.recipe.max_triangles = Some(2000);
-                a.max_triangles = [Some(2000); 2];
+                a.max_triangles = PerRole::both(Some(2000));
             },
-            |a| a.max_triangles = [None, Some(500)],
-            |a| a.max_triangles = [Some(700), Some(500)],
+            |a| a.max_triangles = PerRole::new(None, Some(500)),
+            |a| a.max_triangles = PerRole::new(Some(700), Some(500)),
             |a| {
                 let folders = vec!["my includes".into(), "b".into()];
                 a.crash.read.include_folders = folders;
@@ -310,7 +290,98 @@ mod tests {
                 asked
             })
         };
-        Method::ALL.into_iter().flat_map(of_method).collect()
+        Method::ALL.iter().copied().flat_map(of_method).collect()
+    }
+
+    /// Values unlike the one that a setting has, as odd as its domain allows.
+    fn other_values(setting: &Setting, value: &Value) -> Vec<Value> {
+        let candidates = match &setting.domain {
+            Domain::Choice(words) => words().iter().map(|w| Value::Choice(w.name)).collect(),
+            Domain::Switch => [true, false].map(Value::Switch).to_vec(),
+            Domain::Count(range) => [*range.start(), 12_347].map(Value::Count).to_vec(),
+            Domain::Limit(range) => {
+                let limits = [None, Some(*range.start()), Some(777)];
+                limits.map(Value::Limit).to_vec()
+            }
+            Domain::Number { range, .. } => {
+                let (low, high) = (*range.start(), range.end().min(range.start() + 3.0));
+                let odd = low + (high - low) / 3.0;
+                [low, odd, *range.end()].map(Value::Number).to_vec()
+            }
+            Domain::Floor => [Floor::Auto, Floor::None, Floor::Length(0.1 + 0.2)]
+                .map(Value::Floor)
+                .to_vec(),
+            Domain::Poses => vec![Value::Poses(vec![odd_pose(), odd_pose()])],
+        };
+        let others = candidates.into_iter().filter(|other| other != value);
+        others.collect()
+    }
+
+    /// Every value of every row, on every method: what the window copies is understood by the command
+    /// line, and what a project stores is read back.
+    #[test]
+    fn every_row_comes_back_from_command_line_and_json() {
+        let mut n_tried = 0;
+        for &method in Method::ALL {
+            let mut base = usual();
+            base.recipe.settings = MatchSettings::of(method);
+            for setting in &SETTINGS {
+                let Some(value) = setting.get(&base.recipe) else {
+                    continue;
+                };
+                for other in other_values(setting, &value) {
+                    let mut asked = base.clone();
+                    if let Domain::Poses = setting.domain {
+                        asked.recipe.settings.starts.method = StartMethod::GivenPoses;
+                    }
+                    assert!(setting.set(&mut asked.recipe, &other), "{}", setting.option);
+                    assert_eq!(setting.get(&asked.recipe), Some(other));
+                    let json = serde_json::to_string(&asked.recipe).unwrap();
+                    let back: MatchRecipe = serde_json::from_str(&json).unwrap();
+                    assert_eq!(back, asked.recipe, "{json}");
+                    if setting.option == "method" {
+                        // The other settings of this row are those of another method.
+                        continue;
+                    }
+                    asked.max_triangles = PerRole::both(asked.recipe.max_triangles);
+                    let words = typed(&asked);
+                    assert_eq!(understood(&words), asked, "{words:?}");
+                    n_tried += 1;
+                }
+            }
+        }
+        assert!(n_tried > 200, "{n_tried}");
+    }
+
+    #[test]
+    fn earlier_spellings_are_understood() {
+        let line = "--keep trimmed --overlap 0.5 --pairs node --points-of crash --widen no \
+                    --race-points 99 --finish no --search race --initial-pose";
+        let pose = "1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 1".to_owned();
+        let words = "shapematch match a b ".to_owned() + line;
+        let words = words.split_whitespace().map(String::from);
+        let asked = understood(&words.chain([pose]).collect::<Vec<_>>());
+        let settings = &asked.recipe.settings;
+        assert_eq!(settings.selection, Selection::Trimmed { overlap: 0.5 });
+        assert_eq!(settings.pair_with, PairWith::Node);
+        assert_eq!(settings.data_side, DataSide::Target);
+        assert!(!settings.starts.extra_starts && !settings.refine_on_full);
+        assert_eq!(settings.n_coarse_points, 99);
+        assert_eq!(asked.current.translation.x, 5.0);
+    }
+
+    #[test]
+    fn an_option_without_effect_is_refused() {
+        let words = "shapematch match a b --method icp --lambda 2".split(' ');
+        let cli = Cli::try_parse_from(words).unwrap();
+        let Some(Task::Match(args)) = cli.command else {
+            panic!("no match");
+        };
+        let error = asked(&args).unwrap_err().to_string();
+        assert!(
+            error.contains("--lambda") && error.contains("all"),
+            "{error}"
+        );
     }
 
     #[test]

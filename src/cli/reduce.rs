@@ -5,12 +5,13 @@ use std::process::ExitCode;
 use serde::Serialize;
 
 use super::args::ReduceArgs;
-use super::text::{count, millis, short};
-use super::{print, progress, takes_stdout, write_json};
-use crate::pipeline::export;
+use super::{check_outputs, json_target, print, progress, takes_stdout, write_json, write_output};
 use crate::pipeline::load::{LoadSettings, load, parse_selection};
+use crate::pipeline::outputs::deck::{format_of, mesh_bytes};
+use crate::pipeline::outputs::{Content, Target};
 use crate::pipeline::reduce::{Deviation, Level, Levels};
 use crate::simplify::{SimplifySettings, Speed, StopReason};
+use crate::text::{grouped, length, millis};
 
 /// The figures of a reduction.
 #[derive(Debug, Serialize)]
@@ -34,6 +35,7 @@ struct ReduceRecord {
 /// Reduces the file's part and writes it.
 pub fn run(args: &ReduceArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let monitor = progress::monitor(quiet);
+    check_outputs(targets(args), std::slice::from_ref(&args.input))?;
     let selection = args
         .part
         .as_deref()
@@ -47,19 +49,43 @@ pub fn run(args: &ReduceArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         },
         &monitor,
     )?;
+    check_outputs(targets(args), &part.files())?;
     let settings = settings(args);
     let levels = Levels::record(&part, &settings, &monitor)?;
     let level = levels.level(args.triangles);
     let deviation = levels.measure(&level.mesh, &monitor)?;
-    export::write_mesh(&args.out, &level.mesh, &part.file_name(), &monitor)?;
     let record = record(args, &levels, &level, &deviation);
     if !takes_stdout(args.json.as_deref()) {
         print(&describe(&record))?;
     }
+    let title = part.file_name();
+    let bytes = mesh_bytes(format_of(&args.out)?, &level.mesh, &title, &monitor)?;
+    let mut is_complete = true;
+    let mut note = |option: &str, written: anyhow::Result<()>| {
+        if let Err(error) = written {
+            log::error!("{option} is not written: {error:#}");
+            is_complete = false;
+        }
+    };
+    note("--out", write_output(&args.out, &bytes));
     if let Some(path) = &args.json {
-        write_json(path, &record)?;
+        note("--json", write_json(path, &record));
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(if is_complete {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+fn targets(args: &ReduceArgs) -> Vec<Target> {
+    let out = Target {
+        name: "--out".to_owned(),
+        path: args.out.clone(),
+        content: Content::Mesh,
+    };
+    let json = json_target(args.json.as_deref());
+    std::iter::once(out).chain(json).collect()
 }
 
 fn settings(args: &ReduceArgs) -> SimplifySettings {
@@ -97,24 +123,24 @@ fn record(
 fn describe(record: &ReduceRecord) -> String {
     let mut text = format!(
         "{} of {} triangles (maximum {}) in {}\n",
-        count(record.triangles_after),
-        count(record.triangles_before),
-        count(record.max_triangles),
+        grouped(record.triangles_after),
+        grouped(record.triangles_before),
+        grouped(record.max_triangles),
         millis(record.time_ms),
     );
     if !record.reached {
         text.push_str(&format!("Above the maximum: {}\n", record.stopped_by));
     }
     text.push_str(&format!(
-        "Deviation, both ways: rms {}, largest {}\n",
-        short(record.rms),
-        short(record.max)
+        "Deviation, both ways: RMS {}, max {}\n",
+        length(record.rms),
+        length(record.max)
     ));
     if record.border_loops_before > 0 {
         text.push_str(&format!(
-            "Borders moved: rms {}, largest {}; {} of {} loops kept\n",
-            short(record.border_rms),
-            short(record.border_max),
+            "Borders moved: RMS {}, max {}; {} of {} loops kept\n",
+            length(record.border_rms),
+            length(record.border_max),
             record.border_loops_after,
             record.border_loops_before
         ));

@@ -6,7 +6,7 @@ use anyhow::{Context as _, bail};
 
 use super::args::SampleArgs;
 use super::print;
-use crate::pipeline::export::write_sample;
+use crate::pipeline::write_file::write_file_in_new_folder;
 use crate::samples::{self, SamplePart, SampleSettings, SampleVariant};
 
 /// Generates the pair and writes its files.
@@ -15,13 +15,15 @@ pub fn run(args: &SampleArgs) -> anyhow::Result<ExitCode> {
         print(&list())?;
         return Ok(ExitCode::SUCCESS);
     }
-    let folder = args.folder.as_deref().context("no folder was named")?;
+    let folder = args.folder.as_deref().context("no folder was given")?;
     let files = if args.bundled {
         samples::bundled()
     } else {
         samples::files(&pair(args)?)
     };
-    for path in write_sample(folder, &files)? {
+    for file in files {
+        let path = folder.join(file.name);
+        write_file_in_new_folder(&path, &file.bytes)?;
         print(&format!("{}\n", path.display()))?;
     }
     Ok(ExitCode::SUCCESS)
@@ -30,13 +32,13 @@ pub fn run(args: &SampleArgs) -> anyhow::Result<ExitCode> {
 fn pair(args: &SampleArgs) -> anyhow::Result<samples::SamplePair> {
     let Some(part) = SamplePart::from_name(&args.part) else {
         bail!(
-            "there is no sample part {:?}; `shapematch sample --list` names them",
+            "unknown sample part {:?}; `shapematch sample --list` lists them",
             args.part
         );
     };
     let Some(variant) = SampleVariant::from_name(&args.variant) else {
         bail!(
-            "there is no variant {:?}; `shapematch sample --list` names them",
+            "unknown variant {:?}; `shapematch sample --list` lists them",
             args.variant
         );
     };

@@ -1,3 +1,5 @@
+//! From a value to a place on a colour map.
+
 use super::{ColorMap, Rgb};
 
 /// Colour of values inside the tolerance band: the middle of the diverging map.

@@ -39,7 +39,7 @@ impl fmt::Display for Position {
     }
 }
 
-/// How much a finding matters.
+/// How much a diagnostic matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// Worth knowing; nothing is missing from what was read.
@@ -62,7 +62,7 @@ impl Severity {
 }
 
 macro_rules! kinds {
-    ($($(#[$doc:meta])* $kind:ident, $severity:ident, $label:literal;)*) => {
+    ($($(#[$doc:meta])* $kind:ident, $severity:ident, $label:literal $(, $n_kept:literal)?;)*) => {
         /// What went wrong. Diagnostics are counted per kind, and each kind has one severity.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum DiagnosticKind { $($(#[$doc])* $kind,)* }
@@ -76,9 +76,14 @@ macro_rules! kinds {
                 match self { $(Self::$kind => $label,)* }
             }
 
-            /// How much findings of this kind matter.
+            /// How much diagnostics of this kind matter.
             pub fn severity(self) -> Severity {
                 match self { $(Self::$kind => Severity::$severity,)* }
+            }
+
+            /// How many of this kind are kept with their text.
+            fn n_kept(self) -> u64 {
+                match self { $(Self::$kind => [$($n_kept,)? Diagnostics::KEPT_PER_KIND][0],)* }
             }
         }
     };
@@ -89,8 +94,16 @@ kinds! {
     BadField, Error, "unreadable field";
     /// A card that must be there is not.
     MissingCard, Error, "missing card";
+    /// Cards that would be right with fields of another width; told once.
+    ShiftedColumns, Error, "columns look shifted", 1;
+    /// A keyword that does not begin in the first column and is therefore data.
+    MisplacedKeyword, Error, "keyword not in the first column";
     /// A number is NaN or infinite.
     NotFinite, Error, "number not finite";
+    /// A length beyond any unit.
+    NumberTooLarge, Error, "number too large";
+    /// A limit on what is read was reached; the rest was left out.
+    LimitReached, Error, "limit reached";
     /// `&name` with no such parameter.
     UnresolvedParameter, Error, "unresolved parameter";
     /// A parameter whose definition cannot be used.
@@ -101,6 +114,8 @@ kinds! {
     DuplicateParameter, Warning, "duplicate parameter";
     /// A node id is defined twice at different places.
     DuplicateNode, Warning, "duplicate node id";
+    /// A node id is defined twice at the same place.
+    RepeatedNode, Note, "node repeated at the same place";
     /// An element id is defined twice.
     DuplicateElement, Warning, "duplicate element id";
     /// A part id is defined twice.
@@ -133,9 +148,15 @@ kinds! {
     Tabs, Note, "tabs expanded";
     /// A mesh file's own oddities (STL, OBJ, PLY).
     Mesh, Warning, "mesh file";
+    /// The file's name speaks for another format than its content.
+    MisleadingName, Warning, "name of another format";
+    /// A word after `*` that LS-DYNA does not know.
+    UnknownKeyword, Warning, "unknown keyword";
+    /// A deck without shells and solids.
+    NoElements, Warning, "no elements";
 }
 
-/// One finding: where, what was found, what was expected.
+/// One diagnostic: where, what was found, what was expected.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
     /// What went wrong.
@@ -151,7 +172,7 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// A finding with a message only.
+    /// A diagnostic with a message only.
     pub fn new(kind: DiagnosticKind, message: impl Into<String>) -> Self {
         Self {
             kind,
@@ -205,8 +226,9 @@ impl fmt::Display for Diagnostic {
     }
 }
 
-/// Findings in the order they were made. Of each kind the first [`Diagnostics::KEPT_PER_KIND`] are
-/// kept and all are counted, so a deck with a million broken lines costs no memory.
+/// Diagnostics in the order they were made. Of each kind the first [`Diagnostics::KEPT_PER_KIND`]
+/// are kept (of some only one) and all are counted, so a deck with a million broken lines costs no
+/// memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostics {
     kept: Vec<Diagnostic>,
@@ -223,28 +245,28 @@ impl Default for Diagnostics {
 }
 
 impl Diagnostics {
-    /// How many findings of one kind are kept with their text.
+    /// How many diagnostics of one kind are kept with their text.
     pub const KEPT_PER_KIND: u64 = 20;
 
-    /// Adds a finding.
+    /// Adds a diagnostic.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         self.push_with(diagnostic.kind, || diagnostic);
     }
 
-    /// Counts a finding; `describe` is called only if it will be kept.
+    /// Counts a diagnostic; `describe` is called only if it will be kept.
     pub fn push_with(&mut self, kind: DiagnosticKind, describe: impl FnOnce() -> Diagnostic) {
         self.counts[kind as usize] += 1;
-        if self.counts[kind as usize] <= Self::KEPT_PER_KIND {
+        if self.counts[kind as usize] <= kind.n_kept() {
             self.kept.push(describe());
         }
     }
 
-    /// Adds the findings of a later piece of the same work.
+    /// Adds the diagnostics of a later piece of the same work.
     pub fn append(&mut self, later: Self) {
-        let mut room: Vec<u64> = self
-            .counts
+        let mut room: Vec<u64> = DiagnosticKind::ALL
             .iter()
-            .map(|&count| Self::KEPT_PER_KIND.saturating_sub(count))
+            .zip(&self.counts)
+            .map(|(kind, &count)| kind.n_kept().saturating_sub(count))
             .collect();
         for diagnostic in later.kept {
             let room = &mut room[diagnostic.kind as usize];
@@ -258,23 +280,23 @@ impl Diagnostics {
         }
     }
 
-    /// The kept findings in the order they were made.
+    /// The kept diagnostics in the order they were made.
     pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
         self.kept.iter()
     }
 
-    /// The kept finding that matters most; among equals the first.
-    pub fn gravest(&self) -> Option<&Diagnostic> {
-        self.iter().reduce(|gravest, one| {
-            if one.severity() > gravest.severity() {
+    /// The kept diagnostic that matters most; among equals the first.
+    pub fn most_severe(&self) -> Option<&Diagnostic> {
+        self.iter().reduce(|most_severe, one| {
+            if one.severity() > most_severe.severity() {
                 one
             } else {
-                gravest
+                most_severe
             }
         })
     }
 
-    /// How many findings of a kind were made.
+    /// How many diagnostics of a kind were made.
     pub fn count(&self, kind: DiagnosticKind) -> u64 {
         self.counts[kind as usize]
     }
@@ -286,7 +308,7 @@ impl Diagnostics {
             .filter(|&(_, count)| count > 0)
     }
 
-    /// How many findings were made in all.
+    /// How many diagnostics were made in all.
     pub fn total(&self) -> u64 {
         self.counts.iter().sum()
     }
@@ -320,19 +342,19 @@ mod tests {
     }
 
     #[test]
-    fn a_finding_reads_as_one_line() {
+    fn a_diagnostic_reads_as_one_line() {
         let file: Arc<Path> = Arc::from(Path::new("a.k"));
         let position = Position {
             file,
             line: 3,
             column: 9,
         };
-        let finding = Diagnostic::new(DiagnosticKind::BadField, "the part id is not a number")
+        let diagnostic = Diagnostic::new(DiagnosticKind::BadField, "the part id is not a number")
             .at(position)
             .found("x1")
             .expected("an integer");
         assert_eq!(
-            finding.to_string(),
+            diagnostic.to_string(),
             "a.k:3:9: error: the part id is not a number, found \"x1\", expected an integer"
         );
     }

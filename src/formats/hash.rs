@@ -1,18 +1,18 @@
 //! Names for the content of files, so that a result can say what it was made from.
 
 use std::fmt;
-use std::io;
+use std::io::{self, Read as _};
 use std::path::Path;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
-use super::source::FileSource;
+use super::source::{FileSource, interrupted};
 use crate::monitor::Monitor;
 
 /// Bytes between two questions to the monitor.
-const CHUNK: usize = 4 << 20;
+const CHUNK: usize = 1 << 20;
 
 /// SHA-256 of a file as it is stored, packed or not: what `sha256sum` prints for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -32,17 +32,19 @@ impl FileHash {
 
     /// The hash of a regular file. A cancel request ends it with [`io::ErrorKind::Interrupted`].
     pub fn of_file(source: &dyn FileSource, path: &Path, monitor: &Monitor) -> io::Result<Self> {
-        // A pipe can be read only once, and that is the reader's turn.
         let found = source.find(path).ok_or(io::ErrorKind::NotFound)?;
-        let bytes = source.open(&found)?;
+        let mut stream = source.stream(&found)?;
         let mut hasher = Sha256::new();
-        for chunk in bytes.chunks(CHUNK) {
-            monitor
-                .check()
-                .map_err(|cancelled| io::Error::new(io::ErrorKind::Interrupted, cancelled))?;
-            hasher.update(chunk);
+        let mut chunk = Vec::with_capacity(CHUNK);
+        loop {
+            monitor.check().map_err(interrupted)?;
+            chunk.clear();
+            let n = stream.by_ref().take(CHUNK as u64).read_to_end(&mut chunk)?;
+            if n == 0 {
+                return Ok(Self(hasher.finalize().into()));
+            }
+            hasher.update(&chunk);
         }
-        Ok(Self(hasher.finalize().into()))
     }
 
     /// The first eight digits, enough to tell versions of a file apart at a glance.

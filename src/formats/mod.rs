@@ -1,9 +1,11 @@
 //! Reading meshes from files: LS-DYNA keyword decks, STL, OBJ, PLY.
 //!
 //! [`read`] finds out the format and gives a [`Model`]; [`Model::surface`] gives the triangles.
-//! What cannot be understood becomes a [`Diagnostic`] and the rest is read.
+//! What cannot be understood becomes a [`Diagnostic`] and the rest is read. What is no mesh at all
+//! is named for what it is ([`Foreign`]).
 
 pub mod diagnostic;
+mod foreign;
 mod hash;
 pub mod keyword;
 pub mod model;
@@ -11,17 +13,25 @@ pub mod moved;
 pub mod obj;
 pub mod ply;
 mod polygon;
+mod recognise;
 pub mod source;
 pub mod stl;
+mod text;
+mod triangulate;
 
 use std::path::{Path, PathBuf};
 
 pub use diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position, Severity};
+pub use foreign::Foreign;
 pub use hash::{FileHash, HashError};
 pub use model::{Model, PartSummary, Selection, SelectionError, Surface};
 pub use source::{Disk, FileSource, Memory};
 
 use crate::monitor::{Cancelled, Monitor};
+
+/// Coordinates and thicknesses beyond this are no lengths in any unit, and their squares no longer
+/// fit the 32-bit numbers of the search tree and the graphics card.
+pub const MAX_LENGTH: f64 = 1e15;
 
 /// Why a file gives no model at all.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -34,17 +44,11 @@ pub enum FormatError {
         /// What the system says.
         reason: String,
     },
-    /// Neither name nor content belong to a known format.
-    #[error("the file is neither an LS-DYNA deck nor STL, OBJ or PLY: {path:?}")]
-    Unknown {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A format that is recognised but cannot be read.
-    #[error("{what} cannot be read: {path:?}")]
-    Unsupported {
-        /// What the file is.
-        what: &'static str,
+    /// The file is something else than a mesh that can be read.
+    #[error("the file is {kind}; {}: {path:?}", .kind.advice())]
+    Foreign {
+        /// What it is.
+        kind: Foreign,
         /// The file.
         path: PathBuf,
     },
@@ -62,8 +66,11 @@ pub enum FormatError {
 }
 
 impl FormatError {
-    /// An error of the file system.
+    /// An error of the file system, or the cancel request that ended the reading.
     pub fn open(path: &Path, error: &std::io::Error) -> Self {
+        if error.get_ref().is_some_and(|inner| inner.is::<Cancelled>()) {
+            return Self::Cancelled(Cancelled);
+        }
         Self::Open {
             path: path.to_path_buf(),
             reason: error.to_string(),
@@ -72,10 +79,43 @@ impl FormatError {
 }
 
 /// Choices for reading.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReadOptions {
     /// Folders in which included files are looked for after those the deck itself names.
     pub include_folders: Vec<PathBuf>,
+    /// Bytes that are read at most, unpacked and with all included files. A packed file of a few
+    /// megabytes may unpack to terabytes.
+    pub max_bytes: u64,
+    /// Files that are read at most.
+    pub max_files: usize,
+    /// Ids that all sets may list together. A line of a deck may name every node of the model.
+    pub max_set_ids: u64,
+}
+
+impl ReadOptions {
+    /// All limits in proportion, for `gib` times 2^30 bytes. The default is that of 4 GiB.
+    #[must_use]
+    pub fn with_limit(self, gib: f64) -> Self {
+        let usual = Self::default();
+        let factor = gib / 4.0;
+        Self {
+            max_bytes: (usual.max_bytes as f64 * factor) as u64,
+            max_files: (usual.max_files as f64 * factor) as usize,
+            max_set_ids: (usual.max_set_ids as f64 * factor) as u64,
+            ..self
+        }
+    }
+}
+
+impl Default for ReadOptions {
+    fn default() -> Self {
+        Self {
+            include_folders: Vec::new(),
+            max_bytes: 4 << 30,
+            max_files: 5_000,
+            max_set_ids: 200_000_000,
+        }
+    }
 }
 
 /// A file format.
@@ -115,31 +155,37 @@ impl Format {
         }
     }
 
-    /// Finds the format by name and content. `.gz` does not count as an extension.
-    pub fn of(path: &Path, bytes: &[u8]) -> Self {
-        let head = &bytes[..bytes.len().min(256)];
-        if head.starts_with(b"ply\n") || head.starts_with(b"ply\r") {
-            return Self::Ply;
-        }
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let name = name.to_lowercase();
+    /// The format that the file's name speaks for. `.gz` does not count as an extension.
+    pub fn of_name(path: &Path) -> Option<Self> {
+        let name = path.file_name()?.to_string_lossy().to_lowercase();
         let name = name.strip_suffix(".gz").unwrap_or(&name);
-        let has_extension = |format: &&Self| {
-            let known = name.rsplit_once('.').map(|(_, extension)| extension);
-            known.is_some_and(|extension| format.extensions().contains(&extension))
-        };
-        if let Some(&format) = Self::ALL.iter().find(has_extension) {
-            return format;
-        }
-        // A dynain often has no extension at all, so what is nothing else is a deck.
-        let is_solid = head.trim_ascii_start().starts_with(b"solid ");
-        if is_solid { Self::Stl } else { Self::Keyword }
+        let (_, extension) = name.rsplit_once('.')?;
+        let mut all = Self::ALL.iter().copied();
+        all.find(|format| format.extensions().contains(&extension))
+    }
+
+    /// What a file is by its content; the name decides only where the content says nothing.
+    pub fn of(path: &Path, bytes: &[u8]) -> Result<Self, Foreign> {
+        recognise::recognise(path, bytes)
     }
 }
 
 /// Reads a file from disk, whatever its format.
 pub fn read(path: &Path, options: &ReadOptions, monitor: &Monitor) -> Result<Model, FormatError> {
     read_from(&Disk, path, options, monitor)
+}
+
+/// The text of a file as [`read_from`] takes it: unpacked, in UTF-8, with line feeds.
+pub fn read_text(
+    source: &dyn FileSource,
+    path: &Path,
+    options: &ReadOptions,
+    monitor: &Monitor,
+) -> Result<Vec<u8>, FormatError> {
+    let bytes = source::open_unpacked(source, path, options.max_bytes, monitor);
+    Ok(text::normalised(
+        bytes.map_err(|error| FormatError::open(path, &error))?,
+    ))
 }
 
 /// Reads a file from any source, whatever its format.
@@ -149,11 +195,24 @@ pub fn read_from(
     options: &ReadOptions,
     monitor: &Monitor,
 ) -> Result<Model, FormatError> {
-    let bytes = source::open_unpacked(source, path).map_err(|e| FormatError::open(path, &e))?;
-    match Format::of(path, &bytes) {
-        Format::Keyword => keyword::deck::read_opened(source, path, bytes, options, monitor),
-        Format::Stl => stl::read(&bytes, path),
-        Format::Obj => obj::read(&bytes, path),
-        Format::Ply => ply::read(&bytes, path),
+    let bytes = read_text(source, path, options, monitor)?;
+    let format = Format::of(path, &bytes).map_err(|kind| FormatError::Foreign {
+        kind,
+        path: path.to_path_buf(),
+    })?;
+    let mut model = match format {
+        Format::Keyword => keyword::deck::read_opened(source, path, bytes, options, monitor)?,
+        Format::Stl => stl::read(&bytes, path, monitor)?,
+        Format::Obj => obj::read(&bytes, path, monitor)?,
+        Format::Ply => ply::read(&bytes, path, monitor)?,
+    };
+    if let Some(by_name) = Format::of_name(path).filter(|&by_name| by_name != format) {
+        let (named, is) = (by_name.label(), format.label());
+        let message = format!("the file is named like {named} but is {is}, and is read as that");
+        let kind = DiagnosticKind::MisleadingName;
+        let finding = Diagnostic::new(kind, message);
+        let file = std::sync::Arc::from(path);
+        model.diagnostics.push(finding.at(Position::file(&file)));
     }
+    Ok(model)
 }

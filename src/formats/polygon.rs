@@ -5,13 +5,21 @@ use std::sync::Arc;
 
 use super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position};
 use super::model::{Model, Nodes, Part, ReadFile, Shell};
+use super::triangulate::{is_convex, triangulated};
+use super::{MAX_LENGTH, text};
 use crate::geometry::Point3;
+
+/// More points than indices of 32 bits can name, which leaves the last one free.
+const MAX_POINTS: usize = u32::MAX as usize - 1;
 
 /// Collects points and polygons; [`Polygons::finish`] makes the model. Ids count from 1.
 pub(super) struct Polygons {
     positions: Vec<Point3>,
     shells: Vec<Shell>,
     parts: Vec<Part>,
+    /// Index of the part that polygons belong to; `None` until its first polygon makes it.
+    current: Option<u32>,
+    title: String,
     diagnostics: Diagnostics,
     file: Arc<Path>,
 }
@@ -22,6 +30,8 @@ impl Polygons {
             positions: Vec::new(),
             shells: Vec::new(),
             parts: Vec::new(),
+            current: None,
+            title: String::new(),
             diagnostics: Diagnostics::default(),
             file: Arc::from(file),
         }
@@ -35,90 +45,147 @@ impl Polygons {
         self.shells.len()
     }
 
-    /// Begins a part; polygons belong to the part begun last.
-    pub(super) fn begin_part(&mut self, title: &str) {
-        // A part without polygons is a name only and gives way to the next one.
-        let last_used = self.shells.last().map(|shell| shell.part as usize + 1);
-        self.parts.truncate(last_used.unwrap_or(0));
-        self.parts.push(Part {
-            id: self.parts.len() as u64 + 1,
-            title: title.trim().to_owned(),
-            is_defined: true,
-            ..Part::default()
-        });
+    /// Begins a part; polygons belong to the part begun last. One without polygons is not kept.
+    pub(super) fn begin_part(&mut self, title: &[u8]) {
+        self.title = text::shown(title);
+        self.current = None;
     }
 
-    /// Adds a point. One that is not finite is named, and polygons that use it are left out.
-    pub(super) fn point(&mut self, position: Point3) {
-        if !position.iter().all(|x| x.is_finite()) {
-            let kind = DiagnosticKind::NotFinite;
-            let n = self.positions.len() + 1;
-            let file = &self.file;
-            self.diagnostics.push_with(kind, || {
-                let message = format!("point {n} has a coordinate that is not finite");
-                Diagnostic::new(kind, message).at(Position::file(file))
+    /// Goes on with the last part of this title, or begins it.
+    pub(super) fn resume_part(&mut self, title: &[u8]) {
+        self.begin_part(title);
+        let found = self.parts.iter().rposition(|part| part.title == self.title);
+        self.current = found.map(|index| index as u32);
+    }
+
+    fn part(&mut self) -> u32 {
+        *self.current.get_or_insert_with(|| {
+            self.parts.push(Part {
+                id: self.parts.len() as u64 + 1,
+                title: self.title.clone(),
+                is_defined: true,
+                ..Part::default()
             });
+            self.parts.len() as u32 - 1
+        })
+    }
+
+    /// Adds a point. One that is no place is named, and polygons that use it are left out.
+    pub(super) fn point(&mut self, line: Option<usize>, position: Point3) {
+        if self.positions.len() == MAX_POINTS {
+            self.add_diagnostic(DiagnosticKind::LimitReached, line, || {
+                format!("points beyond the first {MAX_POINTS} are left out")
+            });
+            return;
+        }
+        if !is_place(&position) {
+            let n = self.positions.len() + 1;
+            if position.iter().all(|x| x.is_finite()) {
+                self.add_diagnostic(DiagnosticKind::NumberTooLarge, line, || {
+                    format!("point {n} has a coordinate beyond {MAX_LENGTH:e}")
+                });
+            } else {
+                self.add_diagnostic(DiagnosticKind::NotFinite, line, || {
+                    format!("point {n} has a coordinate that is not finite")
+                });
+            }
         }
         self.positions.push(position);
     }
 
-    /// Adds a polygon of three or more corners; beyond four it is cut into a fan.
-    pub(super) fn polygon(&mut self, corners: &[u32]) {
+    /// Adds a polygon of three or more corners; a concave one, and one of more than four corners,
+    /// is cut into triangles.
+    pub(super) fn polygon(&mut self, line: Option<usize>, corners: &[u32]) {
         let usable = |&corner: &u32| {
             let point = self.positions.get(corner as usize);
-            point.is_some_and(|p| p.iter().all(|x| x.is_finite()))
+            point.is_some_and(is_place)
         };
-        if corners.len() < 3 || !corners.iter().all(usable) {
-            let n = self.shells.len() + 1;
-            let message = if corners.len() < 3 {
-                format!(
-                    "the polygon after element {} has fewer than three corners",
-                    n - 1
-                )
-            } else {
-                format!(
-                    "the polygon after element {} names a point that cannot be used",
-                    n - 1
-                )
-            };
-            self.warn(None, message);
+        let n = self.shells.len();
+        if corners.len() < 3 {
+            self.warn(line, || {
+                format!("the polygon after element {n} has fewer than three corners")
+            });
             return;
         }
-        if self.parts.is_empty() {
-            self.begin_part("");
+        if !corners.iter().all(usable) {
+            self.warn(line, || {
+                format!("the polygon after element {n} names a point that cannot be used")
+            });
+            return;
         }
-        match *corners {
-            [a, b, c] => self.shell([a, b, c, c]),
-            [a, b, c, d] => self.shell([a, b, c, d]),
-            _ => {
-                for pair in corners[1..].windows(2) {
-                    self.shell([corners[0], pair[0], pair[1], pair[1]]);
-                }
-            }
+        if let [a, b, c] = *corners {
+            self.shell([a, b, c, c]);
+            return;
+        }
+        let points: Vec<Point3> = corners
+            .iter()
+            .map(|&corner| self.positions[corner as usize])
+            .collect();
+        if let [a, b, c, d] = *corners
+            && is_convex(&points)
+        {
+            self.shell([a, b, c, d]);
+            return;
+        }
+        let Some(triangles) = triangulated(&points) else {
+            let n_corners = corners.len();
+            self.warn(line, || {
+                format!(
+                    "the polygon after element {n} is concave, has {n_corners} corners and is \
+                     left out"
+                )
+            });
+            return;
+        };
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|i| corners[i]);
+            self.shell([a, b, c, c]);
         }
     }
 
     fn shell(&mut self, nodes: [u32; 4]) {
+        let part = self.part();
         self.shells.push(Shell {
             id: self.shells.len() as u64 + 1,
             nodes,
-            part: self.parts.len() as u32 - 1,
+            part,
         });
     }
 
     /// Names an oddity of the file, with its line if that is known.
-    pub(super) fn warn(&mut self, line: Option<usize>, message: impl Into<String>) {
-        let mut position = Position::file(&self.file);
-        position.line = line.unwrap_or(0) as u64;
-        let kind = DiagnosticKind::Mesh;
-        let finding = || Diagnostic::new(kind, message).at(position);
-        self.diagnostics.push_with(kind, finding);
+    pub(super) fn warn(&mut self, line: Option<usize>, message: impl FnOnce() -> String) {
+        self.add_diagnostic(DiagnosticKind::Mesh, line, message);
     }
 
-    /// The model. Points that are not finite are nowhere used and stand at the origin.
+    fn add_diagnostic(
+        &mut self,
+        kind: DiagnosticKind,
+        line: Option<usize>,
+        message: impl FnOnce() -> String,
+    ) {
+        let file = &self.file;
+        self.diagnostics.push_with(kind, || {
+            let mut position = Position::file(file);
+            position.line = line.unwrap_or(0) as u64;
+            Diagnostic::new(kind, message()).at(position)
+        });
+    }
+
+    /// The first diagnostic, which may be why a file holds nothing.
+    pub(super) fn first_diagnostic(&self) -> Option<String> {
+        let first = self.diagnostics.iter().next()?;
+        Some(match &first.position {
+            Some(position) if position.line > 0 => {
+                format!("line {}: {}", position.line, first.message)
+            }
+            _ => first.message.clone(),
+        })
+    }
+
+    /// The model. Points that are no place are nowhere used and stand at the origin.
     pub(super) fn finish(mut self, n_bytes: usize) -> Model {
         for position in &mut self.positions {
-            if !position.iter().all(|x| x.is_finite()) {
+            if !is_place(position) {
                 *position = Point3::origin();
             }
         }
@@ -138,4 +205,9 @@ impl Polygons {
             ..Model::default()
         }
     }
+}
+
+/// True for coordinates that a mesh can have; false for NaN.
+fn is_place(position: &Point3) -> bool {
+    position.iter().all(|x| x.abs() <= MAX_LENGTH)
 }

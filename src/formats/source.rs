@@ -1,35 +1,49 @@
 //! Where files come from: the disk, or memory in tests and for bundled decks.
 //! The only place below the export that touches the disk.
+//!
+//! Files are copied into memory by positional reads on all cores. A memory map would end the whole
+//! process when another program shortens the file or a network drive fails (`SIGBUS`); here both
+//! become an error.
 
 use std::collections::BTreeMap;
-use std::io::{self, Read as _};
-use std::ops::Deref;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 
-/// The bytes of one file, mapped or owned.
-#[derive(Debug)]
-pub enum Bytes {
-    /// A read-only map of a file on disk.
-    Mapped(memmap2::Mmap),
-    /// Bytes in memory, for example an unpacked `.gz`.
-    Owned(Vec<u8>),
+use rayon::prelude::*;
+
+use crate::monitor::{Cancelled, Monitor};
+
+/// Bytes per positional read.
+const PIECE: usize = 1 << 20;
+/// Bytes between two questions to the monitor.
+const WAVE: usize = 64 << 20;
+
+/// More bytes than may be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "more than the limit of {} on what is read, unpacked and with all included files; \
+     --read-limit raises it",
+    in_gib(*.max_bytes)
+)]
+pub struct TooLarge {
+    /// The limit, [`ReadOptions::max_bytes`](super::ReadOptions::max_bytes).
+    pub max_bytes: u64,
 }
 
-impl Deref for Bytes {
-    type Target = [u8];
-
-    fn deref(&self) -> &[u8] {
-        match self {
-            Self::Mapped(map) => map,
-            Self::Owned(bytes) => bytes,
-        }
-    }
+/// "4 GiB", "0.5 GiB".
+fn in_gib(n_bytes: u64) -> String {
+    format!("{} GiB", n_bytes as f64 / f64::from(1u32 << 30))
 }
 
 /// Opens files by path.
 pub trait FileSource: Send + Sync {
-    /// The bytes of a file as they are stored.
-    fn open(&self, path: &Path) -> io::Result<Bytes>;
+    /// The bytes of a regular file as they are stored. [`TooLarge`] beyond `max_bytes`;
+    /// [`io::ErrorKind::Interrupted`] after a cancel request.
+    fn open(&self, path: &Path, max_bytes: u64, monitor: &Monitor) -> io::Result<Vec<u8>>;
+
+    /// A regular file from its start, without holding all of it.
+    fn stream(&self, path: &Path) -> io::Result<Box<dyn Read + '_>>;
 
     /// The path under which a file exists, letter case of its name ignored if need be.
     fn find(&self, path: &Path) -> Option<PathBuf>;
@@ -39,20 +53,42 @@ pub trait FileSource: Send + Sync {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Disk;
 
-impl FileSource for Disk {
-    fn open(&self, path: &Path) -> io::Result<Bytes> {
-        let file = std::fs::File::open(path)?;
-        let metadata = file.metadata()?;
+impl Disk {
+    /// Opens a regular file. Anything else is refused before it is opened: a pipe would wait for
+    /// its writer, a device has no end.
+    fn open_regular(path: &Path) -> io::Result<(File, std::fs::Metadata)> {
+        let metadata = std::fs::metadata(path)?;
         if metadata.is_dir() {
             return Err(io::Error::other("it is a folder"));
         }
-        // An empty file cannot be mapped, and a pipe has no length.
-        if metadata.len() == 0 {
-            let mut bytes = Vec::new();
-            (&file).read_to_end(&mut bytes)?;
-            return Ok(Bytes::Owned(bytes));
+        if !metadata.is_file() {
+            return Err(io::Error::other(
+                "it is a pipe or a device; save it as a file first",
+            ));
         }
-        map(&file).map(Bytes::Mapped)
+        let file = File::open(path)?;
+        let metadata = file.metadata()?;
+        Ok((file, metadata))
+    }
+}
+
+impl FileSource for Disk {
+    fn open(&self, path: &Path, max_bytes: u64, monitor: &Monitor) -> io::Result<Vec<u8>> {
+        let (file, before) = Self::open_regular(path)?;
+        // Files of a system's own making (`/proc`) have content and no length.
+        if before.len() == 0 {
+            return read_stream(file, max_bytes, monitor);
+        }
+        let bytes = read_whole(&file, before.len(), max_bytes, monitor)?;
+        let after = file.metadata()?;
+        if (after.len(), after.modified().ok()) != (before.len(), before.modified().ok()) {
+            return Err(changed());
+        }
+        Ok(bytes)
+    }
+
+    fn stream(&self, path: &Path) -> io::Result<Box<dyn Read + '_>> {
+        Ok(Box::new(Self::open_regular(path)?.0))
     }
 
     fn find(&self, path: &Path) -> Option<PathBuf> {
@@ -78,14 +114,101 @@ impl FileSource for Disk {
     }
 }
 
-#[expect(
-    unsafe_code,
-    reason = "mapping is unsafe because another process may truncate the file meanwhile; \
-              a copy of every large deck would double the memory"
-)]
-fn map(file: &std::fs::File) -> io::Result<memmap2::Mmap> {
-    // SAFETY: the map is read-only and private to this process; decks are not changed while read.
-    unsafe { memmap2::Mmap::map(file) }
+fn changed() -> io::Error {
+    io::Error::other("it changed while it was read; try again when it is complete")
+}
+
+pub(super) fn interrupted(cancelled: Cancelled) -> io::Error {
+    io::Error::new(io::ErrorKind::Interrupted, cancelled)
+}
+
+/// The first `n_bytes` of a file, in pieces on all cores.
+fn read_whole(file: &File, n_bytes: u64, max_bytes: u64, monitor: &Monitor) -> io::Result<Vec<u8>> {
+    let n = usize::try_from(n_bytes).ok();
+    let n = n.filter(|_| n_bytes <= max_bytes);
+    let n = n.ok_or_else(|| io::Error::other(TooLarge { max_bytes }))?;
+    // An allocation that fails is an error here; the zeroed one below would end the process.
+    Vec::<u8>::new()
+        .try_reserve_exact(n)
+        .map_err(|_| io::ErrorKind::OutOfMemory)?;
+    let mut bytes = vec![0; n];
+    for (wave, part) in bytes.chunks_mut(WAVE).enumerate() {
+        monitor.check().map_err(interrupted)?;
+        let pieces = part.par_chunks_mut(PIECE).enumerate();
+        pieces.try_for_each(|(piece, buffer)| {
+            let offset = wave * WAVE + piece * PIECE;
+            read_exact_at(file, buffer, offset as u64)
+        })?;
+    }
+    Ok(bytes)
+}
+
+fn read_exact_at(file: &File, mut buffer: &mut [u8], mut offset: u64) -> io::Result<()> {
+    while !buffer.is_empty() {
+        match read_at(file, buffer, offset) {
+            Ok(0) => return Err(changed()),
+            Ok(n) => {
+                buffer = &mut buffer[n..];
+                offset += n as u64;
+            }
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}
+
+#[cfg(unix)]
+fn read_at(file: &File, buffer: &mut [u8], offset: u64) -> io::Result<usize> {
+    std::os::unix::fs::FileExt::read_at(file, buffer, offset)
+}
+
+#[cfg(windows)]
+fn read_at(file: &File, buffer: &mut [u8], offset: u64) -> io::Result<usize> {
+    std::os::windows::fs::FileExt::seek_read(file, buffer, offset)
+}
+
+/// All of a stream whose length is not known beforehand.
+fn read_stream(stream: impl Read, max_bytes: u64, monitor: &Monitor) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let mut limited = stream.take(max_bytes.saturating_add(1));
+    loop {
+        monitor.check().map_err(interrupted)?;
+        if limited.by_ref().take(WAVE as u64).read_to_end(&mut bytes)? == 0 {
+            break;
+        }
+    }
+    if bytes.len() as u64 > max_bytes {
+        return Err(io::Error::other(TooLarge { max_bytes }));
+    }
+    Ok(bytes)
+}
+
+/// Opens a file and unpacks it if it is gzip by content.
+pub fn open_unpacked(
+    source: &dyn FileSource,
+    path: &Path,
+    max_bytes: u64,
+    monitor: &Monitor,
+) -> io::Result<Vec<u8>> {
+    let mut start = Vec::new();
+    source.stream(path)?.take(2).read_to_end(&mut start)?;
+    if start != [0x1f, 0x8b] {
+        return source.open(path, max_bytes, monitor);
+    }
+    let packed = io::BufReader::new(source.stream(path)?);
+    let unpacked = read_stream(
+        flate2::bufread::MultiGzDecoder::new(packed),
+        max_bytes,
+        monitor,
+    );
+    unpacked.map_err(|error| match error.kind() {
+        io::ErrorKind::UnexpectedEof => io::Error::new(
+            io::ErrorKind::UnexpectedEof,
+            "its gzip data are cut off; copy or download it again",
+        ),
+        _ => error,
+    })
 }
 
 /// Files held in memory, by path.
@@ -106,14 +229,24 @@ impl Memory {
         self.files.insert(tidy(path.as_ref()), bytes.into());
         self
     }
+
+    fn bytes(&self, path: &Path) -> io::Result<&[u8]> {
+        let bytes = self.files.get(&tidy(path));
+        Ok(bytes.ok_or(io::ErrorKind::NotFound)?)
+    }
 }
 
 impl FileSource for Memory {
-    fn open(&self, path: &Path) -> io::Result<Bytes> {
-        match self.files.get(&tidy(path)) {
-            Some(bytes) => Ok(Bytes::Owned(bytes.clone())),
-            None => Err(io::ErrorKind::NotFound.into()),
+    fn open(&self, path: &Path, max_bytes: u64, _monitor: &Monitor) -> io::Result<Vec<u8>> {
+        let bytes = self.bytes(path)?;
+        if bytes.len() as u64 > max_bytes {
+            return Err(io::Error::other(TooLarge { max_bytes }));
         }
+        Ok(bytes.to_vec())
+    }
+
+    fn stream(&self, path: &Path) -> io::Result<Box<dyn Read + '_>> {
+        Ok(Box::new(self.bytes(path)?))
     }
 
     fn find(&self, path: &Path) -> Option<PathBuf> {
@@ -147,29 +280,48 @@ pub(crate) fn tidy(path: &Path) -> PathBuf {
     tidied
 }
 
-/// Opens a file and unpacks it if it is gzip by content.
-pub fn open_unpacked(source: &dyn FileSource, path: &Path) -> io::Result<Bytes> {
-    let bytes = source.open(path)?;
-    if !bytes.starts_with(&[0x1f, 0x8b]) {
-        return Ok(bytes);
-    }
-    let mut unpacked = Vec::new();
-    flate2::read::MultiGzDecoder::new(&bytes[..]).read_to_end(&mut unpacked)?;
-    Ok(Bytes::Owned(unpacked))
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
     use std::io::Write as _;
+
+    use super::*;
+
+    const NO_LIMIT: u64 = u64::MAX;
+
+    fn open(path: &Path) -> io::Result<Vec<u8>> {
+        Disk.open(path, NO_LIMIT, &Monitor::silent())
+    }
+
+    fn packed(bytes: &[u8]) -> Vec<u8> {
+        let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        packer.write_all(bytes).unwrap();
+        packer.finish().unwrap()
+    }
+
+    fn unpacked(bytes: Vec<u8>, max_bytes: u64) -> io::Result<Vec<u8>> {
+        let source = Memory::new().with("deck.k", bytes);
+        open_unpacked(&source, Path::new("deck.k"), max_bytes, &Monitor::silent())
+    }
 
     #[test]
     fn gzip_is_unpacked_by_content() {
-        let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
-        packer.write_all(b"*KEYWORD\n*END\n").unwrap();
-        let source = Memory::new().with("deck.k", packer.finish().unwrap());
-        let bytes = open_unpacked(&source, Path::new("deck.k")).unwrap();
+        let bytes = unpacked(packed(b"*KEYWORD\n*END\n"), NO_LIMIT).unwrap();
         assert_eq!(&bytes[..], b"*KEYWORD\n*END\n");
+        assert_eq!(unpacked(vec![0x1f], NO_LIMIT).unwrap(), [0x1f]);
+        let mut cut = packed(&[b'x'; 5000]);
+        cut.truncate(20);
+        let error = unpacked(cut, NO_LIMIT).unwrap_err();
+        assert!(error.to_string().contains("cut off"), "{error}");
+    }
+
+    #[test]
+    fn a_gzip_bomb_stops_at_the_limit() {
+        let bomb = packed(&vec![b' '; 50 << 20]);
+        assert!(bomb.len() < 1 << 20);
+        let error = unpacked(bomb, 1 << 20).unwrap_err();
+        assert!(error.to_string().contains("--read-limit"), "{error}");
+        let error = unpacked(vec![b' '; 100], 99).unwrap_err();
+        assert!(error.to_string().contains("limit"), "{error}");
     }
 
     #[test]
@@ -179,7 +331,7 @@ mod tests {
         std::fs::write(&path, b"*END").unwrap();
         assert_eq!(Disk.find(&folder.path().join("mesh.k")), Some(path.clone()));
         assert_eq!(Disk.find(&folder.path().join("other.k")), None);
-        assert_eq!(&Disk.open(&path).unwrap()[..], b"*END");
+        assert_eq!(&open(&path).unwrap()[..], b"*END");
         let memory = Memory::new().with("a/./B.k", b"x".to_vec());
         assert_eq!(memory.find(Path::new("a/c/../b.K")), Some("a/B.k".into()));
     }
@@ -189,7 +341,51 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("empty.k");
         std::fs::write(&path, b"").unwrap();
-        assert!(Disk.open(&path).unwrap().is_empty());
-        assert!(Disk.open(folder.path()).is_err());
+        assert!(open(&path).unwrap().is_empty());
+        assert!(open(folder.path()).is_err());
+    }
+
+    #[test]
+    fn a_large_file_is_read_whole_and_a_cancel_request_ends_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("large");
+        let bytes: Vec<u8> = (0..5 * PIECE + 77).map(|i| (i % 251) as u8).collect();
+        std::fs::write(&path, &bytes).unwrap();
+        assert!(open(&path).unwrap() == bytes);
+        let error = Disk.open(&path, 1000, &Monitor::silent()).unwrap_err();
+        assert!(error.to_string().contains("limit"), "{error}");
+        let monitor = Monitor::silent();
+        monitor.request_cancel();
+        let ended = Disk.open(&path, NO_LIMIT, &monitor).unwrap_err();
+        assert_eq!(ended.kind(), io::ErrorKind::Interrupted);
+    }
+
+    #[test]
+    fn a_file_that_is_cut_while_it_is_read_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("cut");
+        std::fs::write(&path, vec![b'x'; 10_000]).unwrap();
+        let file = File::open(&path).unwrap();
+        let n_bytes = file.metadata().unwrap().len();
+        // What happens between the question for the length and the reading.
+        std::fs::write(&path, b"short").unwrap();
+        let error = read_whole(&file, n_bytes, NO_LIMIT, &Monitor::silent()).unwrap_err();
+        assert!(error.to_string().contains("changed"), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn pipes_and_devices_are_refused_at_once() {
+        for path in ["/dev/zero", "/dev/null"] {
+            let error = open(Path::new(path)).unwrap_err();
+            assert!(error.to_string().contains("device"), "{error}");
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe.k");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        if made.is_ok_and(|status| status.success()) {
+            let error = open(&pipe).unwrap_err();
+            assert!(error.to_string().contains("pipe"), "{error}");
+        }
     }
 }

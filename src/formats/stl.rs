@@ -1,9 +1,5 @@
 //! STL, binary and ASCII.
-//!
-//! Binary files go through `stl_io`. ASCII is read here, because `stl_io` ends after the first
-//! solid, rounds to 32 bits and cannot tell the line of an error.
 
-use std::io::Cursor;
 use std::path::Path;
 
 use super::FormatError;
@@ -11,143 +7,239 @@ use super::keyword::number::parse_real;
 use super::model::Model;
 use super::polygon::Polygons;
 use crate::geometry::{Point3, TriMesh, Vector3};
+use crate::monitor::{Cancelled, Monitor};
 
-/// Bytes before the triangles of a binary file, and of each triangle.
-const HEADER: usize = 84;
+/// Bytes before the triangles of a binary file: text and their number.
+pub(super) const HEADER: usize = 84;
+/// Bytes of each triangle: normal, three corners, two bytes of attributes.
 const RECORD: usize = 50;
+/// Triangles between two questions to the monitor.
+const CHUNK: usize = 1 << 14;
 
-/// Reads either kind. Each solid becomes a part; equal points are not joined.
-pub fn read(bytes: &[u8], path: &Path) -> Result<Model, FormatError> {
+/// Reads either kind. Each solid becomes a part; equal points are not joined. What cannot be read
+/// is named and left out.
+pub fn read(bytes: &[u8], path: &Path, monitor: &Monitor) -> Result<Model, FormatError> {
     let mut polygons = Polygons::new(path);
     if is_binary(bytes) {
-        read_binary(bytes, &mut polygons);
+        read_binary(bytes, &mut polygons, monitor)?;
     } else {
-        read_ascii(bytes, &mut polygons);
+        let mut text = Text {
+            words: Words::new(bytes),
+            corners: Vec::new(),
+            polygons,
+        };
+        text.read(monitor)?;
+        polygons = text.polygons;
     }
     if polygons.n_shells() == 0 {
+        let reason = match polygons.first_diagnostic() {
+            Some(first) => format!("it holds no triangle; {first}"),
+            None => "it holds no triangle".to_owned(),
+        };
         return Err(FormatError::Broken {
-            reason: "it holds no triangle".to_owned(),
+            reason,
             path: path.to_path_buf(),
         });
     }
     Ok(polygons.finish(bytes.len()))
 }
 
-/// A count that fits the length decides; binary files may begin with `solid` too.
+/// The number of triangles that a binary file states.
+fn stated_count(bytes: &[u8]) -> Option<usize> {
+    let count = bytes.get(80..HEADER)?;
+    Some(u32::from_le_bytes(count.try_into().ok()?) as usize)
+}
+
+/// True if the length is that of a binary file with as many triangles as it states.
+pub(super) fn has_binary_length(bytes: &[u8]) -> bool {
+    stated_count(bytes).is_some_and(|n| bytes.len() == HEADER + n * RECORD)
+}
+
+/// Binary files may begin with `solid` too; what no text holds tells them then.
 fn is_binary(bytes: &[u8]) -> bool {
-    let Some(&[a, b, c, d]) = bytes.get(80..HEADER) else {
-        return false;
-    };
-    let count = u32::from_le_bytes([a, b, c, d]) as usize;
     let begins_as_text = bytes.trim_ascii_start().get(..5);
     let begins_as_text = begins_as_text.is_some_and(|w| w.eq_ignore_ascii_case(b"solid"));
-    bytes.len() == HEADER + count * RECORD || !begins_as_text
+    let sample = &bytes[..bytes.len().min(512)];
+    has_binary_length(bytes) || bytes.len() >= HEADER && (!begins_as_text || sample.contains(&0))
 }
 
-fn read_binary(bytes: &[u8], polygons: &mut Polygons) {
-    // The library takes a header that begins with `solid` for text.
-    let neutral;
-    let bytes = if bytes.starts_with(b"solid") {
-        neutral = [&[b' '; 80][..], &bytes[80..]].concat();
-        &neutral[..]
-    } else {
-        bytes
-    };
-    let mut cursor = Cursor::new(bytes);
-    let reader = match stl_io::create_stl_reader(&mut cursor) {
-        Ok(reader) => reader,
-        Err(error) => {
-            polygons.warn(None, error.to_string());
-            return;
+fn read_binary(bytes: &[u8], polygons: &mut Polygons, monitor: &Monitor) -> Result<(), Cancelled> {
+    let stated = stated_count(bytes).unwrap_or(0);
+    let body = &bytes[HEADER..];
+    let held = body.len() / RECORD;
+    // Some programs write the number last and, when they are stopped, never.
+    let n = if stated == 0 { held } else { stated.min(held) };
+    for (index, record) in body.chunks_exact(RECORD).take(n).enumerate() {
+        if index.is_multiple_of(CHUNK) {
+            monitor.check()?;
         }
-    };
-    for triangle in reader {
-        let Ok(triangle) = triangle else {
-            let n = polygons.n_shells();
-            polygons.warn(
-                None,
-                format!("the file ends after {n} triangles, before its own count"),
-            );
-            return;
+        let coordinate = |i: usize| {
+            let at = 12 + 4 * i;
+            let four = [record[at], record[at + 1], record[at + 2], record[at + 3]];
+            f64::from(f32::from_le_bytes(four))
         };
-        add(polygons, triangle.vertices.map(|v| v.0.map(f64::from)));
+        let corners = [0, 3, 6].map(|i| [coordinate(i), coordinate(i + 1), coordinate(i + 2)]);
+        add(polygons, None, &corners);
     }
+    if stated > held {
+        polygons.warn(None, || {
+            format!("the file ends after {held} of {stated} triangles")
+        });
+    } else if body.len() > n * RECORD || stated != n {
+        polygons.warn(None, || {
+            let n_more = body.len() - n * RECORD;
+            format!("its header states {stated} triangles; {n} were read, {n_more} bytes left out")
+        });
+    }
+    Ok(())
 }
 
-fn add(polygons: &mut Polygons, corners: [[f64; 3]; 3]) {
+fn add(polygons: &mut Polygons, line: Option<usize>, corners: &[[f64; 3]]) {
     let first = polygons.n_points() as u32;
-    for corner in corners {
-        polygons.point(Point3::from(corner));
+    for &corner in corners {
+        polygons.point(line, Point3::from(corner));
     }
-    polygons.polygon(&[first, first + 1, first + 2]);
+    let corners: Vec<u32> = (0..corners.len() as u32).map(|i| first + i).collect();
+    polygons.polygon(line, &corners);
 }
 
-fn read_ascii(bytes: &[u8], polygons: &mut Polygons) {
-    let mut corners: Vec<[f64; 3]> = Vec::new();
-    let mut lines = 0;
-    for (index, line) in bytes.split(|&b| b == b'\n').enumerate() {
-        lines = index + 1;
-        let mut words = line
-            .split(u8::is_ascii_whitespace)
-            .filter(|w| !w.is_empty());
-        let Some(first) = words.next() else {
-            continue;
-        };
-        match first.to_ascii_lowercase().as_slice() {
-            b"solid" => {
-                let title = line.trim_ascii()[5..].trim_ascii();
-                polygons.begin_part(&String::from_utf8_lossy(title));
-            }
-            b"vertex" => match vertex(words) {
-                Some(corner) => corners.push(corner),
-                None => {
-                    let text = String::from_utf8_lossy(line.trim_ascii()).into_owned();
-                    polygons.warn(Some(lines), format!("{text:?} is not a vertex"));
-                }
-            },
-            b"endfacet" => {
-                match <[[f64; 3]; 3]>::try_from(corners.as_slice()) {
-                    Ok(corners) => add(polygons, corners),
-                    Err(_) => {
-                        let n = corners.len();
-                        polygons.warn(Some(lines), format!("a facet has {n} vertices, expected 3"));
-                    }
-                }
-                corners.clear();
-            }
-            b"facet" | b"outer" | b"endloop" | b"endsolid" | b"color" => {}
-            _ => {
-                let text = String::from_utf8_lossy(first).into_owned();
-                polygons.warn(Some(lines), format!("{text:?} is not a word of STL"));
-            }
+/// The words of a text with their lines.
+#[derive(Clone)]
+struct Words<'a> {
+    rest: &'a [u8],
+    line: usize,
+}
+
+impl<'a> Words<'a> {
+    fn new(bytes: &'a [u8]) -> Self {
+        Self {
+            rest: bytes,
+            line: 1,
         }
     }
-    if !corners.is_empty() {
-        polygons.warn(Some(lines), "the file ends within a facet");
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        let blank = |b: &u8| b.is_ascii_whitespace();
+        let start = self.rest.iter().position(|b| !blank(b))?;
+        self.line += memchr::memchr_iter(b'\n', &self.rest[..start]).count();
+        let rest = &self.rest[start..];
+        let (word, rest) = rest.split_at(rest.iter().position(blank).unwrap_or(rest.len()));
+        self.rest = rest;
+        Some(word)
+    }
+
+    /// The next word if `is_wanted`; else it stays.
+    fn next_if<T>(&mut self, is_wanted: impl Fn(&[u8]) -> Option<T>) -> Option<T> {
+        let mut ahead = self.clone();
+        let value = is_wanted(ahead.next()?)?;
+        *self = ahead;
+        Some(value)
+    }
+
+    /// The rest of the line, up to a word that begins something else in a file of one line.
+    fn name(&mut self) -> &'a [u8] {
+        let end = memchr::memchr(b'\n', self.rest).unwrap_or(self.rest.len());
+        let line = &self.rest[..end];
+        let mut ahead = Words::new(line);
+        let mut before = 0;
+        while let Some(word) = ahead.next() {
+            if [&b"facet"[..], b"solid", b"endsolid"].contains(&&word.to_ascii_lowercase()[..]) {
+                self.rest = &self.rest[before..];
+                return line[..before].trim_ascii();
+            }
+            before = line.len() - ahead.rest.len();
+        }
+        self.rest = &self.rest[end..];
+        line.trim_ascii()
     }
 }
 
-fn vertex<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Option<[f64; 3]> {
-    let mut corner = [0.0; 3];
-    for coordinate in &mut corner {
-        *coordinate = parse_real(words.next()?)?;
+/// An ASCII file that is being read. Its words may stand on any lines.
+struct Text<'a> {
+    words: Words<'a>,
+    corners: Vec<[f64; 3]>,
+    polygons: Polygons,
+}
+
+impl Text<'_> {
+    fn read(&mut self, monitor: &Monitor) -> Result<(), Cancelled> {
+        let mut n = 0usize;
+        while let Some(word) = self.words.next() {
+            if n.is_multiple_of(CHUNK) {
+                monitor.check()?;
+            }
+            n += 1;
+            let line = Some(self.words.line);
+            match word.to_ascii_lowercase().as_slice() {
+                b"solid" => {
+                    let name = self.words.name();
+                    self.polygons.begin_part(name);
+                }
+                b"endsolid" => {
+                    self.words.name();
+                }
+                b"vertex" => self.vertex(),
+                b"endfacet" => self.end_facet(),
+                b"normal" | b"color" => while self.words.next_if(real).is_some() {},
+                b"facet" | b"outer" | b"loop" | b"endloop" => {}
+                _ => self.polygons.warn(line, || {
+                    let text = String::from_utf8_lossy(word).into_owned();
+                    format!("{text:?} is not a word of STL")
+                }),
+            }
+        }
+        if !self.corners.is_empty() {
+            let line = Some(self.words.line);
+            self.polygons
+                .warn(line, || "the file ends within a facet".to_owned());
+        }
+        Ok(())
     }
-    words.next().is_none().then_some(corner)
+
+    fn vertex(&mut self) {
+        let line = Some(self.words.line);
+        let mut corner = [0.0; 3];
+        for (n, coordinate) in corner.iter_mut().enumerate() {
+            let Some(value) = self.words.next_if(real) else {
+                self.polygons
+                    .warn(line, || format!("a vertex has {n} coordinates, expected 3"));
+                return;
+            };
+            *coordinate = value;
+        }
+        self.corners.push(corner);
+    }
+
+    fn end_facet(&mut self) {
+        let line = Some(self.words.line);
+        let n = self.corners.len();
+        if n < 3 {
+            self.polygons
+                .warn(line, || format!("a facet has {n} vertices, expected 3"));
+        } else {
+            add(&mut self.polygons, line, &self.corners);
+        }
+        self.corners.clear();
+    }
+}
+
+/// A number, also one that is not finite, which is named when the point is added.
+fn real(word: &[u8]) -> Option<f64> {
+    parse_real(word).or_else(|| std::str::from_utf8(word).ok()?.parse().ok())
 }
 
 /// Binary STL: 32-bit coordinates, so 5 m from the origin they are rounded to 0.0005 mm.
 pub fn write_binary(mesh: &TriMesh) -> Vec<u8> {
-    let vector = |v: Vector3| [v.x as f32, v.y as f32, v.z as f32];
-    let triangles: Vec<stl_io::Triangle> = (0..mesh.n_triangles())
-        .map(|t| stl_io::Triangle {
-            normal: stl_io::Normal::new(vector(mesh.normal(t))),
-            vertices: mesh
-                .corners(t)
-                .map(|p| stl_io::Vertex::new(vector(p.coords))),
-        })
-        .collect();
-    let mut bytes = Vec::new();
-    stl_io::write_stl(&mut bytes, triangles.iter()).expect("writing to memory does not fail");
+    let mut bytes = vec![0; 80];
+    bytes.extend((mesh.n_triangles() as u32).to_le_bytes());
+    for t in 0..mesh.n_triangles() {
+        let corners = mesh.corners(t).map(|p| p.coords);
+        for v in [mesh.normal(t), corners[0], corners[1], corners[2]] {
+            let v: Vector3 = v;
+            bytes.extend(v.iter().flat_map(|&x| (x as f32).to_le_bytes()));
+        }
+        bytes.extend([0, 0]);
+    }
     bytes
 }
 

@@ -1,3 +1,5 @@
+//! Boxes along the axes.
+
 use super::{Point3, Vector3};
 
 /// An axis-aligned box. The empty box has `min > max` in every axis.

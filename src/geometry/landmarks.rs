@@ -1,7 +1,7 @@
 //! Places of a sheet that two meshes of it share: centres of holes and corners of the rim. Nodes differ
 //! from mesh to mesh, these do not.
 
-use super::{BorderLoop, Point3, Topology, TriMesh, weld};
+use super::{BorderLoop, Point3, Topology, TriMesh};
 
 /// Rims up to this share of the box's diagonal in length are holes.
 const HOLE: f64 = 0.6;
@@ -31,15 +31,14 @@ pub struct Landmarks {
 }
 
 impl Landmarks {
-    /// Walks along all rims. O(triangles).
-    pub fn of(mesh: &TriMesh) -> Self {
-        let mesh = weld(mesh, 0.0).mesh;
+    /// Walks along all rims of a mesh that is joined at equal positions. O(triangles).
+    pub fn of(mesh: &TriMesh, topology: &Topology) -> Self {
         let size = mesh.aabb().diagonal();
         let mut found = Self::default();
-        for rim in Topology::of(&mesh).border_loops(&mesh) {
-            match round_hole(&mesh, &rim, size) {
+        for rim in topology.border_loops(mesh) {
+            match round_hole(mesh, &rim, size) {
                 Some(hole) => found.holes.push(hole),
-                None => found.corners.extend(corners(&mesh, &rim)),
+                None => found.corners.extend(corners(mesh, &rim)),
             }
         }
         found
@@ -129,7 +128,8 @@ mod tests {
 
     #[test]
     fn holes_and_corners_are_found() {
-        let found = Landmarks::of(&plate());
+        let plate = plate();
+        let found = Landmarks::of(&plate, &Topology::of(&plate));
         assert_eq!(found.holes.len(), 1);
         assert!(found.holes[0].center.coords.norm() < 1e-9);
         assert!((found.holes[0].radius - 4.0).abs() < 1e-9);

@@ -1,3 +1,5 @@
+//! Indexed triangle meshes.
+
 use super::{Aabb, Point3, Similarity, Vector3};
 
 /// Why positions and triangles do not make a [`TriMesh`].

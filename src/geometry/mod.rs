@@ -2,8 +2,11 @@
 
 mod aabb;
 pub mod camera;
+pub(crate) mod chunks;
+mod clean;
 mod landmarks;
 mod mesh;
+mod normals;
 mod sampling;
 pub mod section;
 pub mod serial;
@@ -13,8 +16,10 @@ mod weld;
 
 pub use aabb::Aabb;
 pub use camera::{Camera, Projection};
+pub use clean::CleanMesh;
 pub use landmarks::{Hole, Landmarks};
 pub use mesh::{MeshError, TriMesh};
+pub use normals::{CornerNormals, VertexFans, corner_normals, face_normals, vertex_normals};
 pub use sampling::{SurfaceSample, sample_surface};
 pub use section::{Gap, Plane, SectionLine, gap_at, nearest_on_lines, section};
 pub use similarity::{MatrixError, Similarity};

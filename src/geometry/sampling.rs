@@ -1,3 +1,5 @@
+//! Points spread evenly over a surface.
+
 use super::{Aabb, Point3, TriMesh, Vector3};
 
 /// A point on a surface that stands for a piece of its area.

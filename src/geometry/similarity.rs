@@ -1,3 +1,5 @@
+//! Rotation, translation and scale, with or without a mirror.
+
 use super::{Matrix3, Matrix4, Point3, Pose, Vector3};
 
 /// Why a 4×4 matrix is not a similarity.

@@ -1,6 +1,10 @@
+//! Edges of a mesh with the triangles around them; border loops, components, common orientation.
+
 use std::collections::HashMap;
 
 use super::TriMesh;
+use super::chunks::{for_chunks, map_chunks};
+use crate::monitor::{Cancelled, Monitor};
 
 /// One chain of border edges, vertex by vertex. A closed loop does not repeat its first vertex.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -13,7 +17,7 @@ pub struct BorderLoop {
 
 /// Edge adjacency of a mesh. Edges are undirected; an edge with one triangle is a border edge, with
 /// three or more a non-manifold one.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Topology {
     /// Both ends of each edge, the smaller vertex first, sorted.
     pub edges: Vec<[u32; 2]>,
@@ -24,50 +28,37 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// Lists the edges at their smaller vertices, then sorts each short list.
-    /// O(vertices + triangles); the result depends on the mesh alone.
+    /// [`Topology::build`] for meshes of a bounded size, which nobody needs to cancel.
     pub fn of(mesh: &TriMesh) -> Self {
-        let sides = |&[a, b, c]: &[u32; 3]| {
-            [[a, b], [b, c], [c, a]]
-                .into_iter()
-                .filter(|[u, v]| u != v)
-                .map(|[u, v]| (u.min(v), u.max(v)))
-        };
-        // Where the list of each vertex ends; filling it from behind turns that into its start.
-        let mut start = vec![0_u32; mesh.n_vertices() + 1];
-        for (low, _) in mesh.triangles().iter().flat_map(sides) {
-            start[low as usize] += 1;
-        }
-        let mut total = 0;
-        for count in &mut start {
-            total += *count;
-            *count = total;
-        }
-        let mut listed = vec![(0_u32, 0_u32); total as usize];
-        for (t, corners) in mesh.triangles().iter().enumerate() {
-            for (low, high) in sides(corners) {
-                start[low as usize] -= 1;
-                listed[start[low as usize] as usize] = (high, t as u32);
-            }
-        }
+        Self::build(mesh, &Monitor::silent()).expect("nobody cancels a silent monitor")
+    }
+
+    /// Lists the edges at their smaller vertices, then sorts each short list.
+    /// O(vertices + triangles); the result depends on the mesh alone, not on the orientation of its
+    /// triangles.
+    pub fn build(mesh: &TriMesh, monitor: &Monitor) -> Result<Self, Cancelled> {
+        let EdgeSides { start, mut listed } = EdgeSides::of(mesh, monitor)?;
         let mut edges = Vec::with_capacity(listed.len() / 2);
         let mut edge_start = Vec::with_capacity(listed.len() / 2 + 1);
-        for (low, range) in start.windows(2).enumerate() {
-            let list = &mut listed[range[0] as usize..range[1] as usize];
-            list.sort_unstable();
-            for (i, &(high, _)) in list.iter().enumerate() {
-                if i == 0 || list[i - 1].0 != high {
-                    edges.push([low as u32, high]);
-                    edge_start.push(range[0] + i as u32);
+        for_chunks(mesh.n_vertices(), monitor, |range| {
+            for low in range {
+                let begin = start[low];
+                let list = &mut listed[begin as usize..start[low + 1] as usize];
+                list.sort_unstable();
+                for (i, &(high, _)) in list.iter().enumerate() {
+                    if i == 0 || list[i - 1].0 != high {
+                        edges.push([low as u32, high]);
+                        edge_start.push(begin + i as u32);
+                    }
                 }
             }
-        }
-        edge_start.push(total);
-        Self {
+        })?;
+        edge_start.push(listed.len() as u32);
+        Ok(Self {
             edges,
             edge_start,
             edge_triangles: listed.into_iter().map(|(_, t)| t).collect(),
-        }
+        })
     }
 
     /// Triangles that share edge `edge`.
@@ -153,74 +144,149 @@ fn find(parent: &mut [u32], mut node: u32) -> u32 {
     node
 }
 
-/// Turns triangles so that neighbours over manifold edges agree, component by component, each kept
-/// on the side that most of its area already faces. Returns the mesh and how many were turned.
-///
-/// A Möbius strip cannot be oriented; there one seam stays. O(vertices + triangles).
-pub fn orient_consistently(mesh: &TriMesh) -> (TriMesh, usize) {
-    let topology = Topology::of(mesh);
-    let n = mesh.n_triangles();
-    // A triangle has at most three manifold edges; what stays at its own index is none.
-    let mut neighbours: Vec<[(u32, bool); 3]> = (0..n as u32).map(|t| [(t, false); 3]).collect();
-    let mut join = |from: u32, to: u32, disagree: bool| {
-        let free = neighbours[from as usize].iter_mut().find(|n| n.0 == from);
-        if let Some(place) = free {
-            *place = (to, disagree);
+/// The sides of all triangles, listed at their smaller vertices.
+struct EdgeSides {
+    /// For each vertex where its list starts; one entry more than vertices.
+    start: Vec<u32>,
+    /// The larger vertex of each side and the triangle that has it.
+    listed: Vec<(u32, u32)>,
+}
+
+impl EdgeSides {
+    fn of(mesh: &TriMesh, monitor: &Monitor) -> Result<Self, Cancelled> {
+        let sides = |&[a, b, c]: &[u32; 3]| {
+            [[a, b], [b, c], [c, a]]
+                .into_iter()
+                .filter(|[u, v]| u != v)
+                .map(|[u, v]| (u.min(v), u.max(v)))
+        };
+        // Where the list of each vertex ends; filling it from behind turns that into its start.
+        let mut start = vec![0_u32; mesh.n_vertices() + 1];
+        for_chunks(mesh.n_triangles(), monitor, |range| {
+            for (low, _) in mesh.triangles()[range].iter().flat_map(sides) {
+                start[low as usize] += 1;
+            }
+        })?;
+        let mut total = 0;
+        for count in &mut start {
+            total += *count;
+            *count = total;
         }
-    };
-    for (edge, &[u, v]) in topology.edges.iter().enumerate() {
-        if let &[s, t] = topology.triangles_of(edge)
-            && s != t
-        {
-            let runs_forward = |triangle: u32| {
-                let corners = mesh.triangles()[triangle as usize];
-                (0..3).any(|i| corners[i] == u && corners[(i + 1) % 3] == v)
-            };
-            let disagree = runs_forward(s) == runs_forward(t);
-            join(s, t, disagree);
-            join(t, s, disagree);
-        }
-    }
-    let mut turn: Vec<Option<bool>> = vec![None; n];
-    let mut turned = vec![false; n];
-    for seed in 0..n {
-        if turn[seed].is_some() {
-            continue;
-        }
-        turn[seed] = Some(false);
-        let mut component = vec![seed];
-        let mut at = 0;
-        let mut kept_area = 0.0;
-        while at < component.len() {
-            let t = component[at];
-            at += 1;
-            let flip = turn[t] == Some(true);
-            kept_area += if flip {
-                -mesh.triangle_area(t)
-            } else {
-                mesh.triangle_area(t)
-            };
-            for &(other, disagree) in &neighbours[t] {
-                if turn[other as usize].is_none() {
-                    turn[other as usize] = Some(flip != disagree);
-                    component.push(other as usize);
+        let mut listed = vec![(0_u32, 0_u32); total as usize];
+        for_chunks(mesh.n_triangles(), monitor, |range| {
+            for t in range {
+                for (low, high) in sides(&mesh.triangles()[t]) {
+                    let place = &mut start[low as usize];
+                    *place -= 1;
+                    listed[*place as usize] = (high, t as u32);
                 }
             }
-        }
-        let flip_all = kept_area < 0.0;
-        for t in component {
-            turned[t] = (turn[t] == Some(true)) != flip_all;
-        }
+        })?;
+        Ok(Self { start, listed })
     }
+}
+
+/// Whether a triangle runs along an edge from its first to its second end.
+fn runs_forward(mesh: &TriMesh, triangle: u32, [u, v]: [u32; 2]) -> bool {
+    let corners = mesh.triangles()[triangle as usize];
+    (0..3).any(|i| corners[i] == u && corners[(i + 1) % 3] == v)
+}
+
+/// Turns triangles so that neighbours over manifold edges agree, component by component, each kept
+/// on the side that most of its area already faces. Returns the mesh and how many were turned; a
+/// mesh whose triangles agree is handed on as it is. `topology` is that of the mesh, before and after.
+///
+/// A Möbius strip cannot be oriented; there one seam stays. O(vertices + triangles).
+pub fn orient_consistently(
+    mesh: TriMesh,
+    topology: &Topology,
+    monitor: &Monitor,
+) -> Result<(TriMesh, usize), Cancelled> {
+    let disagree = map_chunks(topology.edges.len(), false, monitor, |edge| match *topology
+        .triangles_of(edge)
+    {
+        [s, t] if s != t => {
+            let ends = topology.edges[edge];
+            runs_forward(&mesh, s, ends) == runs_forward(&mesh, t, ends)
+        }
+        _ => false,
+    })?;
+    if !disagree.contains(&true) {
+        return Ok((mesh, 0));
+    }
+    let neighbours = neighbours(&mesh, topology, &disagree);
+    let turned = turned_triangles(&mesh, &neighbours, monitor)?;
     let n_turned = turned.iter().filter(|&&t| t).count();
-    let (positions, mut triangles) = mesh.clone().into_parts();
+    let (positions, mut triangles) = mesh.into_parts();
     for (corners, turned) in triangles.iter_mut().zip(turned) {
         if turned {
             corners.swap(1, 2);
         }
     }
     let mesh = TriMesh::new(positions, triangles).expect("only corner order changed");
-    (mesh, n_turned)
+    Ok((mesh, n_turned))
+}
+
+/// For each triangle its neighbours over manifold edges, of which it has at most three, and whether
+/// they disagree with it. What stays at its own index is none.
+fn neighbours(mesh: &TriMesh, topology: &Topology, disagree: &[bool]) -> Vec<[(u32, bool); 3]> {
+    let n = mesh.n_triangles() as u32;
+    let mut neighbours: Vec<[(u32, bool); 3]> = (0..n).map(|t| [(t, false); 3]).collect();
+    let mut join = |from: u32, to: u32, disagree: bool| {
+        let free = neighbours[from as usize].iter_mut().find(|n| n.0 == from);
+        if let Some(place) = free {
+            *place = (to, disagree);
+        }
+    };
+    for (edge, &disagree) in disagree.iter().enumerate() {
+        if let &[s, t] = topology.triangles_of(edge)
+            && s != t
+        {
+            join(s, t, disagree);
+            join(t, s, disagree);
+        }
+    }
+    neighbours
+}
+
+/// Walks each component from its first triangle and says which triangles must be turned.
+fn turned_triangles(
+    mesh: &TriMesh,
+    neighbours: &[[(u32, bool); 3]],
+    monitor: &Monitor,
+) -> Result<Vec<bool>, Cancelled> {
+    let n = mesh.n_triangles();
+    let mut turn: Vec<Option<bool>> = vec![None; n];
+    let mut turned = vec![false; n];
+    for_chunks(n, monitor, |range| {
+        for seed in range {
+            if turn[seed].is_some() {
+                continue;
+            }
+            turn[seed] = Some(false);
+            let mut component = vec![seed];
+            let mut at = 0;
+            let mut kept_area = 0.0;
+            while at < component.len() {
+                let t = component[at];
+                at += 1;
+                let flip = turn[t] == Some(true);
+                let area = mesh.triangle_area(t);
+                kept_area += if flip { -area } else { area };
+                for &(other, disagree) in &neighbours[t] {
+                    if turn[other as usize].is_none() {
+                        turn[other as usize] = Some(flip != disagree);
+                        component.push(other as usize);
+                    }
+                }
+            }
+            let flip_all = kept_area < 0.0;
+            for t in component {
+                turned[t] = (turn[t] == Some(true)) != flip_all;
+            }
+        }
+    })?;
+    Ok(turned)
 }
 
 #[cfg(test)]
@@ -292,8 +358,11 @@ mod tests {
             triangles[t].swap(0, 1);
         }
         let mixed = TriMesh::new(positions, triangles).unwrap();
-        let (repaired, n_turned) = orient_consistently(&mixed);
+        let topology = Topology::of(&mixed);
+        let monitor = Monitor::silent();
+        let (repaired, n_turned) = orient_consistently(mixed, &topology, &monitor).unwrap();
         assert_eq!(n_turned, 4);
+        assert_eq!(Topology::of(&repaired), topology);
         assert!((repaired.mean_normal() - mesh.mean_normal()).norm() < 1e-12);
     }
 }

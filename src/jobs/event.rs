@@ -1,5 +1,8 @@
-use super::{JobId, JobKey, JobOutput, Stamp};
+//! What the worker reports: begun, ended, failed.
+
 use std::time::Duration;
+
+use super::{JobId, JobKey, JobOutput, Stamp};
 
 /// What became of a job. Every submitted job gives exactly one of the last three.
 #[derive(Debug, Clone)]

@@ -1,8 +1,11 @@
+//! What the window shows of a loaded part, worked out by the worker.
+
+use std::collections::{BTreeMap, BTreeSet};
+
 use crate::formats::PartSummary;
 use crate::geometry::{Aabb, Landmarks, Vector3};
 use crate::pipeline::likeness::{Moments, moments_of_parts};
 use crate::pipeline::load::LoadedPart;
-use std::collections::{BTreeMap, BTreeSet};
 
 /// What the window shows about a part, counted once by the worker so that no frame has to.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +38,7 @@ pub struct PartFacts {
 impl PartFacts {
     /// Counts and measures. O(elements).
     pub fn of(part: &LoadedPart) -> Self {
-        let model = &part.model;
+        let (model, measures) = (&part.model, part.surface.measures());
         let formed = if !model.forming.is_empty() {
             2
         } else {
@@ -47,10 +50,10 @@ impl PartFacts {
             part_bounds: part_bounds(part),
             moments: moments_of_parts(model, part.settings.length_factor),
             bounds: part.mesh.aabb(),
-            area: part.mesh.area(),
-            edge_length: part.mesh.mean_edge_length(),
-            mean_normal: part.mesh.mean_normal(),
-            landmarks: Landmarks::of(&part.mesh),
+            area: measures.area,
+            edge_length: measures.mean_edge_length,
+            mean_normal: measures.mean_normal,
+            landmarks: Landmarks::of(&part.mesh, part.surface.topology()),
             thickness: part.mean_thickness(),
             formed,
         }
@@ -59,10 +62,9 @@ impl PartFacts {
 
 fn part_bounds(part: &LoadedPart) -> BTreeMap<u64, Aabb> {
     let mut bounds = vec![Aabb::empty(); part.model.parts.len()];
-    for (triangle, &of_surface) in part.triangle_of.iter().enumerate() {
-        let part_idx = part.surface.triangle_part[of_surface as usize] as usize;
+    for (triangle, &part_idx) in part.ids.parts().iter().enumerate() {
         for corner in part.mesh.corners(triangle) {
-            bounds[part_idx].insert(&corner);
+            bounds[part_idx as usize].insert(&corner);
         }
     }
     let boxes = part.model.parts.iter().zip(bounds);

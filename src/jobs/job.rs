@@ -1,90 +1,18 @@
-use super::{ExportRequest, Exported, OpenedProject, PartFacts, ProjectRequest, SweepRows};
+//! The kinds of jobs, what they are given and what they give.
+
+use std::sync::{Arc, OnceLock};
+
+use super::{ExportRequest, Exported, OpenedProject, PartFacts, PartSource, SweepRows};
 use crate::assess::Coverage;
 use crate::geometry::{Similarity, TriMesh};
 use crate::pipeline::inspect::Comparison;
 use crate::pipeline::load::{LoadSettings, LoadedPart};
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
+use crate::pipeline::project::ProjectRequest;
 use crate::pipeline::reduce::{Deviation, Level, Levels};
 use crate::pipeline::sweep::{Sweep, SweepSettings};
 use crate::registration::starts::Start;
-use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
-use std::sync::{Arc, OnceLock};
-
-/// Which of the two parts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub enum Role {
-    /// The part of the crash model: fixed, shown left, the target of the match.
-    Crash,
-    /// The part of the stamping simulation: moves, shown right, the source of the match.
-    Stamped,
-}
-
-impl Role {
-    /// Both, crash first.
-    pub const ALL: [Self; 2] = [Self::Crash, Self::Stamped];
-
-    /// The other part.
-    pub fn other(self) -> Self {
-        match self {
-            Self::Crash => Self::Stamped,
-            Self::Stamped => Self::Crash,
-        }
-    }
-
-    /// Lower-case word for sentences.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Crash => "crash",
-            Self::Stamped => "stamped",
-        }
-    }
-
-    /// The mark shown beside everything that belongs to this part: colour is never the only sign.
-    pub fn mark(self) -> &'static str {
-        match self {
-            Self::Crash => "■",
-            Self::Stamped => "▲",
-        }
-    }
-}
-
-/// One value for each part.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct PerRole<T> {
-    /// For the crash part.
-    pub crash: T,
-    /// For the stamped part.
-    pub stamped: T,
-}
-
-impl<T> PerRole<T> {
-    /// The value of one part.
-    pub fn get(&self, role: Role) -> &T {
-        match role {
-            Role::Crash => &self.crash,
-            Role::Stamped => &self.stamped,
-        }
-    }
-
-    /// The value of one part, to be changed.
-    pub fn get_mut(&mut self, role: Role) -> &mut T {
-        match role {
-            Role::Crash => &mut self.crash,
-            Role::Stamped => &mut self.stamped,
-        }
-    }
-
-    /// Both values, crash first.
-    pub fn iter(&self) -> impl Iterator<Item = (Role, &T)> {
-        [(Role::Crash, &self.crash), (Role::Stamped, &self.stamped)].into_iter()
-    }
-
-    /// Exchanges the two values.
-    pub fn swap(&mut self) {
-        std::mem::swap(&mut self.crash, &mut self.stamped);
-    }
-}
+use crate::role::{PerRole, Role};
 
 /// Name of one submitted job, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -151,15 +79,6 @@ pub struct Stamp {
     pub pose: u64,
 }
 
-/// Where a part comes from.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum PartSource {
-    /// A file on disk.
-    File(PathBuf),
-    /// The example pair, generated.
-    Example,
-}
-
 /// A recorded reduction and how far down it was to go.
 pub struct Recording {
     /// Every level from full down.
@@ -214,10 +133,8 @@ pub struct ReduceInput {
 /// Input of an alignment or a match.
 #[derive(Debug, Clone)]
 pub struct MatchInput {
-    /// The target.
-    pub crash: Arc<LoadedPart>,
-    /// The source.
-    pub stamped: Arc<LoadedPart>,
+    /// The two parts.
+    pub parts: PerRole<Arc<LoadedPart>>,
     /// The levels the search runs on; `None` where nothing is reduced.
     pub reduced: Option<ReducedPair>,
     /// Every setting.
@@ -229,10 +146,8 @@ pub struct MatchInput {
 /// Input of a sweep.
 #[derive(Debug, Clone)]
 pub struct SweepInput {
-    /// The target.
-    pub crash: Arc<LoadedPart>,
-    /// The source.
-    pub stamped: Arc<LoadedPart>,
+    /// The two parts.
+    pub parts: PerRole<Arc<LoadedPart>>,
     /// Levels and settings.
     pub settings: SweepSettings,
     /// Where each row goes as soon as it is measured.
@@ -242,10 +157,8 @@ pub struct SweepInput {
 /// Input of a measurement.
 #[derive(Debug, Clone)]
 pub struct MeasureInput {
-    /// The target.
-    pub crash: Arc<LoadedPart>,
-    /// The source.
-    pub stamped: Arc<LoadedPart>,
+    /// The two parts.
+    pub parts: PerRole<Arc<LoadedPart>>,
     /// Where the source lies.
     pub crash_from_stamped: Similarity,
 }
@@ -253,10 +166,8 @@ pub struct MeasureInput {
 /// Input of a comparison.
 #[derive(Debug, Clone)]
 pub struct CompareInput {
-    /// The target.
-    pub crash: Arc<LoadedPart>,
-    /// The source.
-    pub stamped: Arc<LoadedPart>,
+    /// The two parts.
+    pub parts: PerRole<Arc<LoadedPart>>,
     /// The levels that are shown.
     pub levels: PerRole<Option<Arc<TriMesh>>>,
     /// Where the source lies.

@@ -1,12 +1,27 @@
-use super::{JobId, Waker};
-use crate::monitor::{IterationReport, Observer, Progress, StartReport};
+//! The latest progress and pose of the running job.
+
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
+
+use super::{JobId, Waker};
+use crate::monitor::{Observer, Progress};
+use crate::registration::{self, IterationRecord, StartRecord};
 
 /// Shortest time between two wake-ups for progress: 30 a second.
 const WAKE_INTERVAL: Duration = Duration::from_millis(33);
 /// Iterations kept while nobody looks; older ones are dropped from the live curve only.
 const MAX_ITERATIONS: usize = 20_000;
+
+/// One iteration of a running match.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LiveIteration {
+    /// Number of its start, from 0 over the whole match.
+    pub start: usize,
+    /// Its number within the start, from 0.
+    pub number: usize,
+    /// What it found.
+    pub record: IterationRecord,
+}
 
 /// What is going on right now: overwritten, not queued.
 #[derive(Debug, Clone, Default)]
@@ -15,14 +30,15 @@ pub struct Live {
     pub job: Option<JobId>,
     /// The latest phase and count.
     pub progress: Option<Progress>,
-    /// The best pose of the current phase so far, for the preview.
-    pub best: Option<IterationReport>,
+    /// The best iteration of the current phase so far, for the preview of its pose.
+    pub best: Option<IterationRecord>,
     /// The latest iteration, for the status line.
-    pub latest: Option<IterationReport>,
-    /// Iterations since the last look, in the order they were told, for the convergence curve.
-    pub iterations: Vec<IterationReport>,
-    /// Starts that began or ended since the last look, in the order they were told.
-    pub starts: Vec<StartReport>,
+    pub latest: Option<LiveIteration>,
+    /// Iterations since the last look, in the order they came, for the convergence curve.
+    pub iterations: Vec<LiveIteration>,
+    /// Starts that began or ended since the last look, with their numbers, in the order they did.
+    /// Their records hold no iterations.
+    pub starts: Vec<(usize, StartRecord)>,
 }
 
 /// The slot between the worker's threads, which write, and the window, which reads when it draws.
@@ -40,7 +56,7 @@ impl LiveSlot {
         }
     }
 
-    /// Empties the slot for the next job. What the last one told stays until then, so that a window
+    /// Empties the slot for the next job. What the last one reported stays until then, so that a window
     /// that reads the events first and the slot after them misses nothing of a job that ended.
     pub fn begin(&self, job: JobId) {
         let (live, _) = &mut *self.lock();
@@ -98,25 +114,32 @@ impl Observer for LiveSlot {
             new_phase
         });
     }
+}
 
-    fn start(&self, report: StartReport) {
+impl registration::Observer for LiveSlot {
+    fn start(&self, start: usize, record: &StartRecord) {
         self.update(|live| {
-            live.starts.push(report);
+            live.starts.push((start, record.clone()));
             false
         });
     }
 
-    fn iteration(&self, report: &IterationReport) {
+    fn iteration(&self, start: usize, number: usize, record: &IterationRecord) {
         self.update(|live| {
             let better = live
                 .best
-                .is_none_or(|best| report.objective <= best.objective);
+                .is_none_or(|best| record.objective <= best.objective);
             if better {
-                live.best = Some(*report);
+                live.best = Some(*record);
             }
-            live.latest = Some(*report);
+            let iteration = LiveIteration {
+                start,
+                number,
+                record: *record,
+            };
+            live.latest = Some(iteration);
             if live.iterations.len() < MAX_ITERATIONS {
-                live.iterations.push(*report);
+                live.iterations.push(iteration);
             }
             false
         });
@@ -126,33 +149,36 @@ impl Observer for LiveSlot {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Similarity;
+    use crate::registration::{Observer as _, Stage};
     use std::sync::Arc;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
-    fn report(objective: f64) -> IterationReport {
-        IterationReport {
-            start_idx: 0,
-            iteration: 0,
-            target_from_source: [[0.0; 4]; 4],
+    fn iterate(slot: &LiveSlot, number: usize, objective: f64) {
+        let record = IterationRecord {
+            stage: Stage::Coarse,
+            target_from_source: Similarity::identity(),
             objective,
             rmse: objective,
             fraction: 1.0,
-        }
+        };
+        slot.iteration(0, number, &record);
     }
 
     #[test]
-    fn the_best_pose_is_shown_and_no_iteration_is_told_twice() {
+    fn the_best_pose_is_shown_and_no_iteration_comes_twice() {
         let n_wakes = Arc::new(AtomicUsize::new(0));
         let counter = Arc::clone(&n_wakes);
         let slot = LiveSlot::new(Arc::new(move || {
             counter.fetch_add(1, Ordering::Relaxed);
         }));
-        for objective in [3.0, 1.0, 2.0] {
-            slot.iteration(&report(objective));
+        for (number, objective) in [3.0, 1.0, 2.0].into_iter().enumerate() {
+            iterate(&slot, number, objective);
         }
         let live = slot.take();
         assert_eq!(live.best.unwrap().objective, 1.0);
-        assert_eq!(live.latest.unwrap().objective, 2.0);
+        let latest = live.latest.unwrap();
+        assert_eq!((latest.number, latest.record.objective), (2, 2.0));
         assert_eq!(live.iterations.len(), 3);
         assert!(slot.take().iterations.is_empty());
         assert_eq!(slot.take().best.unwrap().objective, 1.0);
@@ -162,13 +188,13 @@ mod tests {
     #[test]
     fn a_new_phase_starts_a_new_best() {
         let slot = LiveSlot::new(Arc::new(|| {}));
-        slot.iteration(&report(1.0));
+        iterate(&slot, 0, 1.0);
         slot.progress(Progress {
             phase: "refine",
             done: 0,
             total: None,
         });
-        slot.iteration(&report(5.0));
+        iterate(&slot, 1, 5.0);
         assert_eq!(slot.take().best.unwrap().objective, 5.0);
     }
 }

@@ -15,14 +15,17 @@ mod sweep_rows;
 mod worker;
 
 pub use event::{JobEvent, JobStage};
-pub use export::{Destination, ExportContent, ExportRequest, Exported, MatchedPair};
+pub use export::{Destination, ExportRequest, Exported};
 pub use facts::PartFacts;
 pub use job::{
     CompareInput, JobId, JobKey, JobKind, JobOutput, MatchInput, MeasureInput, MeasureLevelInput,
-    MeasuredLevel, PartSource, PerRole, Recording, ReduceInput, Role, Stamp, SweepInput,
+    MeasuredLevel, Recording, ReduceInput, Stamp, SweepInput,
 };
-pub use live::{Live, LiveSlot};
-pub use project::{Located, OpenedPart, OpenedProject, ProjectRequest, part_entry};
+pub use live::{Live, LiveIteration, LiveSlot};
+pub use project::{OpenedPart, OpenedProject};
 pub use run::{JobError, PipelineRunner, Runner};
 pub use sweep_rows::SweepRows;
 pub use worker::{Waker, Worker};
+
+pub use crate::pipeline::load::PartSource;
+pub use crate::pipeline::project::{Located, ProjectRequest};

@@ -1,33 +1,14 @@
-use super::run::{load_source, reduce_part};
-use super::{JobError, MeasuredLevel, PartFacts, PartSource, PerRole, Recording, Role};
-use crate::monitor::Monitor;
-use crate::pipeline::load::LoadedPart;
-use crate::pipeline::project::{PartEntry, Project};
-use std::path::{Path, PathBuf};
+//! Opening a project for the window: its parts at the levels they were reduced to.
+
+use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Where a part of a project is looked for.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub enum Located {
-    /// Where the project says, or beside it.
-    #[default]
-    AsStored,
-    /// Where the user says.
-    At(PathBuf),
-    /// Nowhere: the project is opened without it.
-    Without,
-}
-
-/// A project to be opened.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct ProjectRequest {
-    /// The project.
-    pub path: PathBuf,
-    /// Where its files are.
-    pub located: PerRole<Located>,
-    /// True for work that was kept in case of a crash: it has no file of its own.
-    pub is_kept: bool,
-}
+use super::run::reduce_part;
+use super::{JobError, MeasuredLevel, PartFacts, PartSource, Recording};
+use crate::monitor::Monitor;
+use crate::pipeline::load::LoadedPart;
+use crate::pipeline::project::{self, FoundPart, FoundProject, PartEntry, Project, ProjectRequest};
+use crate::role::{PerRole, Role};
 
 /// A project with everything it needs.
 #[derive(Debug, Clone)]
@@ -64,84 +45,44 @@ pub(super) fn open_project(
     request: ProjectRequest,
     monitor: &Monitor,
 ) -> Result<OpenedProject, JobError> {
-    let (project, notes) =
-        Project::read(&request.path).map_err(|error| JobError::Failed(error.to_string()))?;
-    let mut opened = OpenedProject {
+    let FoundProject {
         request,
         project,
         notes,
-        parts: PerRole::default(),
-        missing: PerRole::default(),
-    };
-    let mut sources: PerRole<Option<PartSource>> = PerRole::default();
+        mut parts,
+        missing,
+    } = project::open_project(request, monitor)?;
+    let mut opened = PerRole::default();
     for role in Role::ALL {
-        let Some(entry) = part_entry(&opened.project, role) else {
-            continue;
-        };
-        match source(
-            entry,
-            opened.request.located.get(role),
-            &opened.request.path,
-        ) {
-            Ok(found) => *sources.get_mut(role) = found,
-            Err(missing) => *opened.missing.get_mut(role) = Some(missing),
+        let entry = project.parts.get(role).as_ref();
+        if let Some((entry, found)) = entry.zip(parts.get_mut(role).take()) {
+            *opened.get_mut(role) = Some(at_its_level(entry, found, monitor)?);
         }
     }
-    if opened.missing.iter().any(|(_, missing)| missing.is_some()) {
-        return Ok(opened);
-    }
-    for role in Role::ALL {
-        let (Some(entry), Some(source)) = (part_entry(&opened.project, role), sources.get(role))
-        else {
-            continue;
-        };
-        let part = open_part(role, entry, source.clone(), monitor)?;
-        *opened.parts.get_mut(role) = Some(part);
-    }
-    Ok(opened)
+    Ok(OpenedProject {
+        request,
+        project,
+        notes,
+        parts: opened,
+        missing,
+    })
 }
 
-/// The entry of a role.
-pub fn part_entry(project: &Project, role: Role) -> Option<&PartEntry> {
-    match role {
-        Role::Crash => project.crash.as_ref(),
-        Role::Stamped => project.stamped.as_ref(),
-    }
-}
-
-/// Where a part is to be read; the path that was looked for in vain is an error.
-fn source(
+fn at_its_level(
     entry: &PartEntry,
-    located: &Located,
-    project: &Path,
-) -> Result<Option<PartSource>, PathBuf> {
-    match (located, &entry.file) {
-        (Located::Without, _) => Ok(None),
-        (Located::At(path), _) => Ok(Some(PartSource::File(path.clone()))),
-        (Located::AsStored, None) => Ok(Some(PartSource::Example)),
-        (Located::AsStored, Some(file)) => match entry.locate(project) {
-            Some(path) => Ok(Some(PartSource::File(path))),
-            None => Err(file.clone()),
-        },
-    }
-}
-
-fn open_part(
-    role: Role,
-    entry: &PartEntry,
-    source: PartSource,
+    found: FoundPart,
     monitor: &Monitor,
 ) -> Result<OpenedPart, JobError> {
-    let part = Arc::new(load_source(role, &source, &entry.load_settings(), monitor)?);
+    let part = Arc::new(found.part);
     let facts = Arc::new(PartFacts::of(&part));
     let level = entry
         .max_triangles
         .map(|n| reduce_part(&part, None, n, monitor));
     Ok(OpenedPart {
-        source,
+        source: found.source,
         facts,
         level: level.transpose()?,
-        is_changed: entry.has_changed(&part),
+        is_changed: found.is_changed,
         part,
     })
 }

@@ -1,20 +1,25 @@
+//! Runs a job with the stages of the pipeline.
+
+use std::sync::{Arc, OnceLock};
+
 use super::export::export;
 use super::project::open_project;
 use super::{CompareInput, MatchInput, MeasureInput, SweepInput};
 use super::{
     JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource, Recording,
-    ReduceInput, Role,
+    ReduceInput,
 };
 use crate::assess::{coverage, overlap_limit, quick_overlap};
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::PipelineError;
 use crate::pipeline::inspect::compare_parts;
-use crate::pipeline::load::{self, LoadSettings, LoadedPart};
+use crate::pipeline::load::{self, LoadedPart};
 use crate::pipeline::match_parts::{self, match_parts};
 use crate::pipeline::reduce::Levels;
 use crate::pipeline::sweep::sweep;
+use crate::registration::MatchMonitor;
+use crate::role::Role;
 use crate::simplify::SimplifySettings;
-use std::sync::{Arc, OnceLock};
 
 /// How a job ended without a result.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -39,16 +44,24 @@ impl From<PipelineError> for JobError {
 
 /// Does the work of a job. The window uses [`PipelineRunner`]; tests bring their own.
 pub trait Runner: Send + 'static {
-    /// Runs one job to its end; asks `monitor` once per chunk.
-    fn run(&mut self, kind: JobKind, monitor: &Monitor) -> Result<JobOutput, JobError>;
+    /// Runs one job to its end; asks `monitor` once per chunk. Only a match has starts to follow.
+    fn run<'a>(
+        &mut self,
+        kind: JobKind,
+        monitor: impl Into<MatchMonitor<'a>>,
+    ) -> Result<JobOutput, JobError>;
 }
 
 impl<F> Runner for F
 where
     F: FnMut(JobKind, &Monitor) -> Result<JobOutput, JobError> + Send + 'static,
 {
-    fn run(&mut self, kind: JobKind, monitor: &Monitor) -> Result<JobOutput, JobError> {
-        self(kind, monitor)
+    fn run<'a>(
+        &mut self,
+        kind: JobKind,
+        monitor: impl Into<MatchMonitor<'a>>,
+    ) -> Result<JobOutput, JobError> {
+        self(kind, monitor.into().monitor)
     }
 }
 
@@ -60,14 +73,20 @@ pub struct PipelineRunner;
 const RECORD_DOWN_TO: usize = 200;
 
 impl Runner for PipelineRunner {
-    fn run(&mut self, kind: JobKind, monitor: &Monitor) -> Result<JobOutput, JobError> {
+    fn run<'a>(
+        &mut self,
+        kind: JobKind,
+        monitor: impl Into<MatchMonitor<'a>>,
+    ) -> Result<JobOutput, JobError> {
+        let match_monitor = monitor.into();
+        let monitor = match_monitor.monitor;
         match kind {
             JobKind::Load {
                 role,
                 source,
                 settings,
             } => {
-                let part = load_source(role, &source, &settings, monitor)?;
+                let part = source.load(role, &settings, monitor)?;
                 Ok(loaded(role, source, part))
             }
             JobKind::Reselect {
@@ -82,7 +101,7 @@ impl Runner for PipelineRunner {
             JobKind::Reduce(input) => reduce(input, monitor),
             JobKind::MeasureLevel(input) => measure_level(input, monitor),
             JobKind::Align(input) => align(&input, monitor),
-            JobKind::Match(input) => run_match(&input, monitor),
+            JobKind::Match(input) => run_match(&input, match_monitor),
             JobKind::Measure(input) => measure(&input, monitor),
             JobKind::Compare(input) => compare(&input, monitor),
             JobKind::Overlap(input) => overlap(&input),
@@ -93,19 +112,6 @@ impl Runner for PipelineRunner {
             }
             JobKind::Export(request) => Ok(JobOutput::Exported(export(request, monitor)?)),
         }
-    }
-}
-
-/// Reads a part from where it comes from.
-pub(super) fn load_source(
-    role: Role,
-    source: &PartSource,
-    settings: &LoadSettings,
-    monitor: &Monitor,
-) -> Result<LoadedPart, JobError> {
-    match source {
-        PartSource::File(path) => Ok(load::load(path, settings, monitor)?),
-        PartSource::Example => Ok(load::load_bundled(role.word(), settings, monitor)?),
     }
 }
 
@@ -182,14 +188,13 @@ fn measure_level(input: MeasureLevelInput, monitor: &Monitor) -> Result<JobOutpu
 fn align(input: &MatchInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
     monitor.progress("align", 0, None);
     let settings = &input.recipe.settings.starts;
-    let starts = match_parts::align(&input.crash, &input.stamped, settings)?;
+    let starts = match_parts::align(input.parts.as_deref(), settings)?;
     Ok(JobOutput::Aligned(Arc::new(starts)))
 }
 
-fn run_match(input: &MatchInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
+fn run_match(input: &MatchInput, monitor: MatchMonitor<'_>) -> Result<JobOutput, JobError> {
     let run = match_parts(
-        &input.crash,
-        &input.stamped,
+        input.parts.as_deref(),
         input.reduced.as_ref(),
         &input.recipe,
         &input.current,
@@ -200,19 +205,18 @@ fn run_match(input: &MatchInput, monitor: &Monitor) -> Result<JobOutput, JobErro
 
 fn measure(input: &MeasureInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
     monitor.progress("measure", 0, None);
-    let surface = |part: &LoadedPart| part.surface_for_match().map_err(PipelineError::from);
-    let (target, source) = (surface(&input.crash)?, surface(&input.stamped)?);
-    let limit = overlap_limit(&source, &target, 0.0);
+    let (target, source) = (&input.parts.crash.surface, &input.parts.stamped.surface);
+    let limit = overlap_limit(source, target, 0.0);
     let pose = &input.crash_from_stamped;
-    let coverage = coverage(&source, &target, pose, limit, monitor)?;
+    let coverage = coverage(source, target, pose, limit, monitor)?;
     Ok(JobOutput::Measured(Arc::new(coverage)))
 }
 
 fn compare(input: &CompareInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
     monitor.progress("compare", 0, None);
-    let levels = [input.levels.crash.as_ref(), input.levels.stamped.as_ref()];
+    let levels = input.levels.as_ref().map(Option::as_ref);
     let pose = &input.crash_from_stamped;
-    let comparison = compare_parts(&input.crash, &input.stamped, levels, pose, monitor)?;
+    let comparison = compare_parts(input.parts.as_deref(), levels, pose, monitor)?;
     Ok(JobOutput::Compared(Arc::new(comparison)))
 }
 
@@ -220,11 +224,10 @@ fn compare(input: &CompareInput, monitor: &Monitor) -> Result<JobOutput, JobErro
 const OVERLAP_POINTS: usize = 2000;
 
 fn overlap(input: &MeasureInput) -> Result<JobOutput, JobError> {
-    let surface = |part: &LoadedPart| part.surface_for_match().map_err(PipelineError::from);
-    let (target, source) = (surface(&input.crash)?, surface(&input.stamped)?);
-    let limit = overlap_limit(&source, &target, 0.0);
+    let (target, source) = (&input.parts.crash.surface, &input.parts.stamped.surface);
+    let limit = overlap_limit(source, target, 0.0);
     let pose = &input.crash_from_stamped;
-    let [a, b] = quick_overlap(&source, &target, pose, limit, OVERLAP_POINTS);
+    let [a, b] = quick_overlap(source, target, pose, limit, OVERLAP_POINTS);
     let overlap = a.max(b);
     Ok(JobOutput::Overlapped { overlap, limit })
 }
@@ -234,17 +237,10 @@ fn run_sweep(input: &SweepInput, monitor: &Monitor) -> Result<JobOutput, JobErro
     let n_rows = (settings.reduction.len() + settings.matching.len() + 1) as u64;
     let mut n_done = 0;
     monitor.progress("sweep", n_done, Some(n_rows));
-    let table = sweep(
-        &input.crash,
-        &input.stamped,
-        None,
-        settings,
-        monitor,
-        |row| {
-            input.rows.push(row);
-            n_done += 1;
-            monitor.progress("sweep", n_done, Some(n_rows));
-        },
-    )?;
+    let table = sweep(input.parts.as_deref(), None, settings, monitor, |row| {
+        input.rows.push(row);
+        n_done += 1;
+        monitor.progress("sweep", n_done, Some(n_rows));
+    })?;
     Ok(JobOutput::Swept(Arc::new(table)))
 }

@@ -1,5 +1,8 @@
-use crate::pipeline::sweep::SweepRow;
+//! The rows of a benchmark as they come.
+
 use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::pipeline::sweep::SweepRow;
 
 /// Rows of a running sweep: the worker puts them down, the window takes them up.
 #[derive(Debug, Clone, Default)]

@@ -1,5 +1,5 @@
-use super::{JobError, JobEvent, JobId, JobKey, JobKind, JobStage, Live, LiveSlot, Runner, Stamp};
-use crate::monitor::{Monitor, Observer};
+//! The worker thread and its queue.
+
 use std::any::Any;
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -7,6 +7,10 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
+
+use super::{JobError, JobEvent, JobId, JobKey, JobKind, JobStage, Live, LiveSlot, Runner, Stamp};
+use crate::monitor::{Monitor, Observer};
+use crate::registration::MatchMonitor;
 
 /// Called from the worker when there is something new to look at. Must be quick.
 pub type Waker = Arc<dyn Fn() + Send + Sync>;
@@ -195,7 +199,12 @@ fn work(shared: &Shared, events: &Sender<JobEvent>, mut runner: impl Runner) {
         };
         tell(JobStage::Started, Duration::ZERO);
         let begin = Instant::now();
-        let result = catch_unwind(AssertUnwindSafe(|| runner.run(request.kind, &monitor)));
+        let result = catch_unwind(AssertUnwindSafe(|| {
+            runner.run(
+                request.kind,
+                MatchMonitor::observed(&monitor, &*shared.live),
+            )
+        }));
         let elapsed = begin.elapsed();
         shared.lock().running = None;
         tell(outcome(result, &monitor), elapsed);

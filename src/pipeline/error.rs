@@ -1,6 +1,10 @@
+//! Why a stage of the pipeline has no result.
+
 use std::path::PathBuf;
 
+use super::project::ProjectError;
 use crate::formats::{Diagnostic, FormatError, SelectionError};
+use crate::mapping::MappingError;
 use crate::monitor::Cancelled;
 use crate::registration::RegistrationError;
 use crate::report::CardError;
@@ -13,24 +17,35 @@ pub enum PipelineError {
     #[error(transparent)]
     Format(#[from] FormatError),
     /// The chosen part is not there or has no area.
-    #[error("{error}: {path:?}{}", because(.finding))]
+    #[error("{error}{near}: {path:?}{}", because(.finding))]
     Selection {
         /// What is wrong with the choice.
         error: SelectionError,
+        /// The parts that may have been meant, in words; may be empty.
+        near: String,
         /// The file it was made for.
         path: PathBuf,
-        /// The gravest thing the reader found, which may be why.
+        /// The most severe diagnostic of the reader, which may be why.
         finding: Option<Box<Diagnostic>>,
     },
     /// The build lacks the example.
     #[error("the example is not in this build")]
     NoExample,
-    /// A unit factor that is not a positive number.
-    #[error("the unit factor {0} is not a positive number")]
+    /// A unit factor that no two units have.
+    #[error("the unit factor {0:e} is not between 1e-9 and 1e9")]
     BadUnitFactor(f64),
-    /// The ending of a path names no format that can be written.
-    #[error("the ending is none of .k, .dynain, .stl, .ply, .obj: {0:?}")]
-    UnknownEnding(PathBuf),
+    /// Something that the output needs is not there.
+    #[error("{0} is needed for this")]
+    Lacks(&'static str),
+    /// A record that has no form as JSON.
+    #[error("no JSON can be made of it: {0}")]
+    Json(String),
+    /// A project cannot be opened.
+    #[error(transparent)]
+    Project(#[from] Box<ProjectError>),
+    /// The extension of a path names no format that can be written.
+    #[error("the extension is none of .k, .dynain, .stl, .ply, .obj: {0:?}")]
+    UnknownExtension(PathBuf),
     /// A file cannot be written.
     #[error("cannot write the file ({reason}): {path:?}")]
     Write {
@@ -65,6 +80,29 @@ pub enum PipelineError {
     /// The reduction failed.
     #[error(transparent)]
     Simplify(#[from] SimplifyError),
+    /// The mapping failed.
+    #[error(transparent)]
+    Mapping(#[from] MappingError),
+    /// Neither the deck nor the options say how many layers the elements have.
+    #[error(
+        "the section of part {part} does not say how many layers its shells have; name them (--layers)"
+    )]
+    UnknownLayers {
+        /// Id of the crash part.
+        part: u64,
+    },
+    /// The section's layers lie where a rule of the user's puts them.
+    #[error(
+        "the section of part {part} has an integration rule of its own (QR/IRID below 0), which is not read; \
+         name layers and rule (--layers, --rule)"
+    )]
+    OwnLayerRule {
+        /// Id of the crash part.
+        part: u64,
+    },
+    /// A copy of the deck would leave elements without their thickness.
+    #[error("{0}")]
+    MapOutput(String),
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -82,6 +120,7 @@ impl PipelineError {
         matches!(
             self,
             Self::Cancelled(_)
+                | Self::Mapping(MappingError::Cancelled(_))
                 | Self::Format(FormatError::Cancelled(_))
                 | Self::Registration(RegistrationError::Cancelled(_))
                 | Self::Simplify(SimplifyError::Cancelled(_))

@@ -12,6 +12,7 @@ use crate::assess::deviation::{
 use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::Monitor;
 use crate::registration::Surface;
+use crate::role::{PerRole, Role};
 
 /// The values of one mesh as they are drawn.
 #[derive(Debug, Clone)]
@@ -33,8 +34,8 @@ pub struct Comparison {
     pub deviation: Deviation,
     /// What is drawn: both full meshes and both levels.
     pub drawn: Vec<DrawnDeviation>,
-    /// Nodes of the worst spots, in the order of the spots: stamped, then crash.
-    pub spot_nodes: [Vec<Option<u64>>; 2],
+    /// Nodes of the worst spots of each part, in the order of its spots.
+    pub spot_nodes: PerRole<Vec<Option<u64>>>,
     /// How long it took.
     pub took: Duration,
 }
@@ -44,8 +45,8 @@ pub struct Comparison {
 pub struct FoundSpot {
     /// Value and place.
     pub spot: Spot,
-    /// True for a node of the stamped part.
-    pub is_stamped: bool,
+    /// The part the node belongs to.
+    pub role: Role,
     /// The node in its deck.
     pub node: Option<u64>,
 }
@@ -53,18 +54,17 @@ pub struct FoundSpot {
 impl Comparison {
     /// The worst spots of both directions together, the worst first.
     pub fn worst_spots(&self) -> Vec<FoundSpot> {
-        let [stamped, crash] = &self.spot_nodes;
-        let of = |way: &OneWay, nodes: &[Option<u64>], is_stamped| {
-            let spots = way.spots.iter().zip(nodes);
+        let of = |role: Role, way: &OneWay| {
+            let spots = way.spots.iter().zip(self.spot_nodes.get(role));
             let found = spots.map(|(spot, node)| FoundSpot {
                 spot: *spot,
-                is_stamped,
+                role,
                 node: *node,
             });
             found.collect::<Vec<_>>()
         };
-        let mut found = of(&self.deviation.source_on_target, stamped, true);
-        found.extend(of(&self.deviation.target_on_source, crash, false));
+        let mut found = of(Role::Stamped, &self.deviation.source_on_target);
+        found.extend(of(Role::Crash, &self.deviation.target_on_source));
         found.sort_by(|a, b| b.spot.value.abs().total_cmp(&a.spot.value.abs()));
         found
     }
@@ -77,27 +77,24 @@ impl Comparison {
     }
 }
 
-/// Compares two parts in both directions on their full meshes. Levels, crash first, are measured
-/// against the full mesh of the other part with the same limits, so that their colours mean the
-/// same.
+/// Compares two parts in both directions on their full meshes. Levels are measured against the full
+/// mesh of the other part with the same limits, so that their colours mean the same.
 pub fn compare_parts(
-    crash: &LoadedPart,
-    stamped: &LoadedPart,
-    levels: [Option<&Arc<TriMesh>>; 2],
+    parts: PerRole<&LoadedPart>,
+    levels: PerRole<Option<&Arc<TriMesh>>>,
     crash_from_stamped: &Similarity,
     monitor: &Monitor,
 ) -> Result<Comparison, PipelineError> {
     let begin = Instant::now();
-    let (target, source) =
-        rayon::join(|| crash.surface_for_match(), || stamped.surface_for_match());
-    let (target, source) = (target?, source?);
+    let PerRole { crash, stamped } = parts;
+    let (target, source) = (&crash.surface, &stamped.surface);
     let thickness = crash.mean_thickness().or_else(|| stamped.mean_thickness());
     let settings = DeviationSettings {
         thickness,
         ..DeviationSettings::default()
     };
     let pose = crash_from_stamped;
-    let deviation = deviation::compare(&source, &target, pose, &settings, monitor)?;
+    let deviation = deviation::compare(source, target, pose, &settings, monitor)?;
     let settings = DeviationSettings {
         limit: Some(deviation.limit),
         reach: Some(deviation.source_on_target.field.reach),
@@ -107,25 +104,25 @@ pub fn compare_parts(
         draw(&crash.mesh, &deviation.target_on_source.field),
         draw(&stamped.mesh, &deviation.source_on_target.field),
     ];
-    if let Some(level) = levels[0] {
-        let reduced = Surface::new(level, "target")?;
-        let field = target_on_source(&source, &reduced, pose, &settings, monitor)?;
+    if let Some(level) = levels.crash {
+        let reduced = Surface::build(level, "target", monitor)?;
+        let field = target_on_source(source, &reduced, pose, &settings, monitor)?;
         drawn.push(draw(level, &field));
     }
-    if let Some(level) = levels[1] {
-        let reduced = Surface::new(level, "source")?;
-        let field = source_on_target(&reduced, &target, pose, &settings, monitor)?;
+    if let Some(level) = levels.stamped {
+        let reduced = Surface::build(level, "source", monitor)?;
+        let field = source_on_target(&reduced, target, pose, &settings, monitor)?;
         drawn.push(draw(level, &field));
     }
     let nodes = |part: &LoadedPart, way: &OneWay| {
         let spots = way.spots.iter();
-        spots.map(|spot| part.node_of(spot.vertex)).collect()
+        spots.map(|spot| part.node_id(spot.vertex)).collect()
     };
     Ok(Comparison {
-        spot_nodes: [
-            nodes(stamped, &deviation.source_on_target),
-            nodes(crash, &deviation.target_on_source),
-        ],
+        spot_nodes: PerRole {
+            crash: nodes(crash, &deviation.target_on_source),
+            stamped: nodes(stamped, &deviation.source_on_target),
+        },
         crash_from_stamped: *crash_from_stamped,
         deviation,
         drawn,

@@ -1,22 +1,31 @@
 //! From a file to a mesh that can be shown, reduced and matched.
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use std::time::Instant;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
+use super::id_map::{IdMap, Origins};
 use super::{PipelineError, millis_since};
 use crate::formats::{
-    self, Diagnostics, Disk, FileHash, FileSource, Memory, Model, ReadOptions, Selection, Severity,
-    Surface,
+    self, Diagnostic, Diagnostics, Disk, FileHash, FileSource, Memory, Model, ReadOptions,
+    Selection, SelectionError, Severity,
 };
-use crate::geometry::{Point3, TriMesh, orient_consistently, weld};
+use crate::geometry::{CleanMesh, MeshError, Point3, TriMesh};
 use crate::monitor::Monitor;
-use crate::registration::{self, RegistrationError};
+use crate::registration::Surface;
 use crate::report::command_line::CommandSide;
+use crate::role::Role;
 use crate::samples;
 use crate::units::{self, KnownUnits, UnitOrigin, Units};
+
+/// What lengths may be multiplied by: wider than any two units of length lie apart.
+const UNIT_FACTORS: RangeInclusive<f64> = 1e-9..=1e9;
+/// Parts that are named where one was asked for that does not exist.
+const N_NEAR_PARTS: usize = 5;
 
 /// Choices for loading one side.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +70,7 @@ pub struct LoadReport {
     pub n_findings: u64,
     /// Time to read, in milliseconds; 0 if the model was at hand.
     pub read_ms: f64,
-    /// Time to choose, join and orient, in milliseconds.
+    /// Time to choose, join, orient and build tree and normals, in milliseconds.
     pub prepare_ms: f64,
 }
 
@@ -74,42 +83,51 @@ pub struct LoadedPart {
     pub model: Arc<Model>,
     /// The settings it was loaded with.
     pub settings: LoadSettings,
-    /// The chosen elements as triangles, in the file's own unit, with the way back to the elements.
-    pub surface: Arc<Surface>,
-    /// The surface in the crash model's unit, joined at equal positions, its triangles turned to
-    /// agree with their neighbours. This is what is reduced and matched.
+    /// The chosen elements as triangles in the crash model's unit, joined at equal positions and
+    /// turned to agree with their neighbours. This is what is reduced and matched.
     pub mesh: Arc<TriMesh>,
-    /// For each triangle of `mesh`, the triangle of `surface` it came from.
-    pub triangle_of: Arc<Vec<u32>>,
-    /// For each vertex of `surface`, the vertex of `mesh` it became.
-    pub vertex_of: Arc<Vec<u32>>,
+    /// `mesh` with its edges, tree, normals and measures.
+    pub surface: Arc<Surface>,
+    /// The way from `mesh` back to the deck.
+    pub ids: Arc<IdMap>,
+    /// Elements that were left out of the mesh because they have no area.
+    pub surface_diagnostics: Arc<Diagnostics>,
     /// The units the file states, or those its sizes speak for.
     pub guessed_units: Option<KnownUnits>,
     /// What loading did.
     pub report: LoadReport,
-    /// The mesh prepared for matching, made when first asked for and shared by all clones.
-    for_match: ForMatch,
+    mean_thickness: Option<f64>,
 }
 
-/// A registration surface that is made when first asked for.
-#[derive(Clone, Default)]
-struct ForMatch(Arc<OnceLock<Result<Arc<registration::Surface>, RegistrationError>>>);
+/// Where a part comes from.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum PartSource {
+    /// A file on disk.
+    File(PathBuf),
+    /// The example pair, generated.
+    Example,
+}
 
-impl std::fmt::Debug for ForMatch {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(if self.0.get().is_some() {
-            "made"
-        } else {
-            "not made"
-        })
+impl PartSource {
+    /// Reads the part.
+    pub fn load(
+        &self,
+        role: Role,
+        settings: &LoadSettings,
+        monitor: &Monitor,
+    ) -> Result<LoadedPart, PipelineError> {
+        match self {
+            Self::File(path) => load(path, settings, monitor),
+            Self::Example => load_bundled(role, settings, monitor),
+        }
     }
 }
 
 impl LoadedPart {
-    /// The mesh with its tree and normals, as matching needs it. Made once; later calls are free.
-    pub fn surface_for_match(&self) -> Result<Arc<registration::Surface>, RegistrationError> {
-        let make = || registration::Surface::new(&self.mesh, "chosen").map(Arc::new);
-        self.for_match.0.get_or_init(make).clone()
+    /// The file and all its includes.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let included = self.model.files.iter().map(|file| file.path.to_path_buf());
+        std::iter::once(self.path.clone()).chain(included).collect()
     }
 
     /// The content of the file by name; `None` for a model that was not read from a file.
@@ -150,10 +168,23 @@ impl LoadedPart {
             .map_or_else(String::new, |name| name.to_string_lossy().into_owned())
     }
 
+    /// What the reader could not understand or had to leave out, errors before warnings; notes are
+    /// not among them. Of each kind only the first are kept.
+    pub fn problems(&self) -> Vec<&Diagnostic> {
+        let kept = self
+            .model
+            .diagnostics
+            .iter()
+            .chain(self.surface_diagnostics.iter());
+        let mut problems: Vec<_> = kept.filter(|one| one.severity() > Severity::Note).collect();
+        problems.sort_by_key(|one| std::cmp::Reverse(one.severity()));
+        problems
+    }
+
     /// Ids of the parts that have triangles in the mesh, in the order of the file.
     pub fn chosen_part_ids(&self) -> Vec<u64> {
         let mut used = vec![false; self.model.parts.len()];
-        for &part in &self.surface.triangle_part {
+        for &part in self.ids.parts() {
             used[part as usize] = true;
         }
         let parts = self.model.parts.iter().zip(used);
@@ -165,16 +196,14 @@ impl LoadedPart {
 
     /// The first node of the matched surface: its id, and its place in the crash model's unit.
     pub fn sample_node(&self) -> Option<(u64, Point3)> {
-        let node = *self.surface.vertex_node.first()? as usize;
-        let position = self.surface.mesh.positions().first()?;
-        let id = *self.model.nodes.ids().get(node)?;
-        Some((id, position * self.settings.length_factor))
+        let first = self.ids.nodes().first()?;
+        let id = *self.model.nodes.ids().get(first.node as usize)?;
+        Some((id, *self.mesh.positions().get(first.vertex as usize)?))
     }
 
     /// Id of the element that a triangle of the mesh belongs to.
     pub fn element_id(&self, triangle: u32) -> Option<u64> {
-        let of_surface = *self.triangle_of.get(triangle as usize)?;
-        let element = *self.surface.triangle_element.get(of_surface as usize)? as usize;
+        let element = self.ids.element_of(triangle)? as usize;
         let n_shells = self.model.shells.len();
         match self.model.shells.get(element) {
             Some(shell) => Some(shell.id),
@@ -186,26 +215,16 @@ impl LoadedPart {
         }
     }
 
-    /// Number in the deck of the first node that became a vertex of `mesh`. O(nodes).
-    pub fn node_of(&self, vertex: u32) -> Option<u64> {
-        let of_surface = self.vertex_of.iter().position(|&v| v == vertex)?;
-        let node = *self.surface.vertex_node.get(of_surface)?;
+    /// Id of the first node that became a vertex of the mesh.
+    pub fn node_id(&self, vertex: u32) -> Option<u64> {
+        let node = self.ids.node_of(vertex)?;
         self.model.nodes.ids().get(node as usize).copied()
     }
 
     /// Area-weighted mean thickness of the chosen elements in the crash model's unit, if known.
     pub fn mean_thickness(&self) -> Option<f64> {
-        let (mut sum, mut area_sum) = (0.0, 0.0);
-        for (triangle, &element) in self.surface.triangle_element.iter().enumerate() {
-            if (element as usize) < self.model.shells.len()
-                && let Some(corners) = self.model.shell_thickness(element)
-            {
-                let area = self.surface.mesh.triangle_area(triangle);
-                sum += area * corners.iter().sum::<f64>() / 4.0;
-                area_sum += area;
-            }
-        }
-        (sum > 0.0).then(|| sum / area_sum * self.settings.length_factor)
+        self.mean_thickness
+            .map(|thickness| thickness * self.settings.length_factor)
     }
 }
 
@@ -245,14 +264,16 @@ pub fn load_from(
     Ok(part)
 }
 
-/// One side of the pair that comes with the program: the file whose name begins so.
+/// One part of the pair that comes with the program: the file whose name begins with its role.
 pub fn load_bundled(
-    begins: &str,
+    role: Role,
     settings: &LoadSettings,
     monitor: &Monitor,
 ) -> Result<LoadedPart, PipelineError> {
     let files = samples::bundled();
-    let file = files.into_iter().find(|file| file.name.starts_with(begins));
+    let file = files
+        .into_iter()
+        .find(|file| file.name.starts_with(role.word()));
     let file = file.ok_or(PipelineError::NoExample)?;
     let path = Path::new(file.name);
     let memory = Memory::new().with(path, file.bytes);
@@ -269,58 +290,84 @@ pub fn prepare(
 ) -> Result<LoadedPart, PipelineError> {
     let start = Instant::now();
     let factor = settings.length_factor;
-    if !(factor.is_finite() && factor > 0.0) {
+    if !UNIT_FACTORS.contains(&factor) {
         return Err(PipelineError::BadUnitFactor(factor));
     }
     monitor.check()?;
     monitor.progress("prepare", 0, None);
-    let surface = model
+    let chosen = model
         .surface(&settings.selection)
         .map_err(|error| PipelineError::Selection {
+            near: near_parts(&model, &error),
             error,
             path: path.to_path_buf(),
-            finding: model.diagnostics.gravest().cloned().map(Box::new),
+            finding: model.diagnostics.most_severe().cloned().map(Box::new),
         })?;
     monitor.check()?;
-    let welded = weld(&scaled(&surface.mesh, factor), 0.0);
-    monitor.check()?;
-    let (mesh, n_turned) = orient_consistently(&welded.mesh);
+    let mean_thickness = mean_thickness(&model, &chosen);
+    let guessed_units = model
+        .stated_units
+        .or_else(|| units::of_sizes(chosen.mesh.aabb().diagonal(), mean_thickness));
+    let n_vertices = chosen.mesh.n_vertices();
+    let scaled = scaled(chosen.mesh, factor).map_err(|error| PipelineError::Selection {
+        near: String::new(),
+        error: error.into(),
+        path: path.to_path_buf(),
+        finding: None,
+    })?;
+    let clean = CleanMesh::of(scaled, monitor)?;
+    let origins = Origins {
+        node: chosen.vertex_node,
+        element: chosen.triangle_element,
+        part: chosen.triangle_part,
+    };
+    let ids = IdMap::new(&origins, &clean.vertex_of, &clean.triangle_of);
+    drop(origins);
+    let n_turned = clean.n_turned;
+    let surface = Surface::prepare(clean, "chosen", monitor)?;
+    let mesh = surface.mesh().clone();
     let report = LoadReport {
         n_nodes: model.nodes.len(),
         n_shells: model.shells.len(),
         n_parts: model.parts.len(),
         n_triangles: mesh.n_triangles(),
-        n_joined: surface.mesh.n_vertices() - mesh.n_vertices(),
+        n_joined: n_vertices - mesh.n_vertices(),
         n_turned,
-        n_findings: findings(&model.diagnostics) + findings(&surface.diagnostics),
+        n_findings: findings(&model.diagnostics) + findings(&chosen.diagnostics),
         read_ms: 0.0,
         prepare_ms: millis_since(start),
     };
-    let mut part = LoadedPart {
+    Ok(LoadedPart {
         path: path.to_path_buf(),
         model,
         settings: settings.clone(),
+        mesh,
         surface: Arc::new(surface),
-        mesh: Arc::new(mesh),
-        triangle_of: Arc::new(welded.triangle_of),
-        vertex_of: Arc::new(welded.vertex_of),
-        guessed_units: None,
+        ids: Arc::new(ids),
+        surface_diagnostics: Arc::new(chosen.diagnostics),
+        guessed_units,
         report,
-        for_match: ForMatch::default(),
-    };
-    part.guessed_units = guess_units(&part);
-    Ok(part)
+        mean_thickness,
+    })
 }
 
-/// What the deck states, else what size and thickness in the file's own unit speak for.
-fn guess_units(part: &LoadedPart) -> Option<KnownUnits> {
-    let thickness = || {
-        part.mean_thickness()
-            .map(|t| t / part.settings.length_factor)
-    };
-    let diagonal = part.surface.mesh.aabb().diagonal();
-    let stated = part.model.stated_units;
-    stated.or_else(|| units::of_sizes(diagonal, thickness()))
+/// Area-weighted mean thickness of the chosen elements in the file's own unit, if known.
+fn mean_thickness(model: &Model, chosen: &formats::Surface) -> Option<f64> {
+    // As a difference from the first, so that equal thicknesses have themselves as mean.
+    let (mut first, mut sum, mut area_sum) = (None, 0.0, 0.0);
+    for (triangle, &element) in chosen.triangle_element.iter().enumerate() {
+        if (element as usize) < model.shells.len()
+            && let Some(corners) = model.shell_thickness(element)
+        {
+            let area = chosen.mesh.triangle_area(triangle);
+            let first = *first.get_or_insert(corners[0]);
+            let excess: f64 = corners.iter().map(|corner| corner - first).sum();
+            sum += area * excess / 4.0;
+            area_sum += area;
+        }
+    }
+    let mean = first? + if area_sum > 0.0 { sum / area_sum } else { 0.0 };
+    (mean > 0.0).then_some(mean)
 }
 
 /// How many findings are more than notes.
@@ -331,13 +378,42 @@ fn findings(diagnostics: &Diagnostics) -> u64 {
     graver.map(|(_, count)| count).sum()
 }
 
-fn scaled(mesh: &TriMesh, factor: f64) -> TriMesh {
+/// The mesh in another unit; an error if a product overflows.
+fn scaled(mesh: TriMesh, factor: f64) -> Result<TriMesh, MeshError> {
     if factor == 1.0 {
-        return mesh.clone();
+        return Ok(mesh);
     }
     let positions: Vec<Point3> = mesh.positions().iter().map(|p| p * factor).collect();
-    // A product that overflows leaves the mesh as it was, which the sizes then show.
-    TriMesh::new(positions, mesh.triangles().to_vec()).unwrap_or_else(|_| mesh.clone())
+    TriMesh::new(positions, mesh.triangles().to_vec())
+}
+
+/// The parts that may have been meant, by id or by title: "; the nearest parts are 2001 \"floor\"".
+/// Empty where neither was asked for.
+fn near_parts(model: &Model, error: &SelectionError) -> String {
+    let mut parts: Vec<(u64, &str)> = model
+        .parts
+        .iter()
+        .map(|part| (part.id, part.title.as_str()))
+        .collect();
+    match error {
+        SelectionError::NoSuchPart(id) => parts.sort_by_key(|(other, _)| id.abs_diff(*other)),
+        SelectionError::NoSuchTitle(title) => {
+            let title = title.to_lowercase();
+            let likeness = |other: &str| strsim::jaro_winkler(&title, &other.to_lowercase());
+            parts.sort_by(|(_, a), (_, b)| likeness(b).total_cmp(&likeness(a)));
+        }
+        _ => return String::new(),
+    }
+    let near: Vec<String> = parts
+        .iter()
+        .take(N_NEAR_PARTS)
+        .map(|(id, title)| format!("{id} {title:?}"))
+        .collect();
+    match near.len() {
+        0 => "; the file has no parts".to_owned(),
+        1 => format!("; its only part is {}", near[0]),
+        _ => format!("; the nearest parts are {}", near.join(", ")),
+    }
 }
 
 /// Understands a choice of parts as typed: `2001`, `2001,2002`, a title, `title:2001`, `set:7`,

@@ -1,8 +1,9 @@
 //! The match of two loaded parts, and whether it can be trusted.
 
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
 
 use super::load::LoadedPart;
 use super::reduce::Levels;
@@ -13,19 +14,13 @@ use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::Monitor;
 use crate::registration::starts::{self, Start};
 use crate::registration::{
-    self, MatchInput, MatchOutcome, MatchSettings, StartMethod, StartSettings, Surface,
+    self, MatchInput, MatchMonitor, MatchOutcome, MatchSettings, Method, StartMethod,
+    StartSettings, Surface, Termination,
 };
+use crate::role::PerRole;
+pub use crate::settings::MatchRecipe;
 use crate::simplify::SimplifySettings;
-
-/// Everything a match depends on besides the two parts.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default)]
-pub struct MatchRecipe {
-    /// Method and parameters.
-    pub settings: MatchSettings,
-    /// Reduce both parts to so many triangles for the search, as the paper does.
-    pub max_triangles: Option<usize>,
-}
+use crate::units::LengthUnit;
 
 /// Durations of the steps in milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -57,62 +52,64 @@ pub struct MatchRun {
     pub assessment: Arc<Assessment>,
     /// The pose the stamped part had before.
     pub start_pose: Similarity,
-    /// Ceilings that the crash and the stamped mesh were reduced to for the starts.
-    pub max_triangles: [Option<usize>; 2],
-    /// Triangles of the crash and the stamped mesh the starts ran on.
-    pub n_triangles: [usize; 2],
+    /// Maximum number of triangles each mesh was reduced to for the starts; `None` for a full mesh.
+    #[serde(serialize_with = "PerRole::as_list")]
+    pub max_triangles: PerRole<Option<usize>>,
+    /// Triangles of the meshes the starts ran on.
+    #[serde(serialize_with = "PerRole::as_list")]
+    pub n_triangles: PerRole<usize>,
     /// Durations.
     pub times: MatchTimes,
+    /// The alternative of the match that this is the run of, as [`with_alternative`] makes it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub alternative: Option<usize>,
 }
 
 /// Meshes of both parts at a level of reduction that is at hand already.
 #[derive(Debug, Clone)]
 pub struct ReducedPair {
-    /// The crash part.
-    pub crash: Arc<TriMesh>,
-    /// The stamped part.
-    pub stamped: Arc<TriMesh>,
-    /// Ceilings that the crash and the stamped mesh were reduced to; `None` for a full mesh.
-    pub max_triangles: [Option<usize>; 2],
+    /// The meshes.
+    pub meshes: PerRole<Arc<TriMesh>>,
+    /// Maximum number of triangles each was reduced to; `None` for a full mesh.
+    pub max_triangles: PerRole<Option<usize>>,
 }
 
 impl ReducedPair {
-    /// Reduces both parts to their ceilings; a part without one stays as it is.
+    /// Reduces both parts to their maximum number of triangles; a part without one stays as it is.
     pub fn new(
-        crash: &LoadedPart,
-        stamped: &LoadedPart,
-        max_triangles: [Option<usize>; 2],
+        parts: PerRole<&LoadedPart>,
+        max_triangles: PerRole<Option<usize>>,
         monitor: &Monitor,
     ) -> Result<Self, PipelineError> {
-        let [of_crash, of_stamped] = max_triangles;
+        let level = |role| level(parts.get(role), *max_triangles.get(role), monitor);
         Ok(Self {
-            crash: level(crash, of_crash, monitor)?,
-            stamped: level(stamped, of_stamped, monitor)?,
+            meshes: PerRole::from_fn(level).transpose()?,
             max_triangles,
         })
     }
 }
 
-/// Finds the pose of `stamped` on `crash`, and checks it on the full meshes.
+/// Finds the pose of the stamped part on the crash part, and checks it on the full meshes.
 ///
 /// `current` is the pose of the stamped part now; a recipe that starts from the current pose starts
 /// there. `reduced` are the levels shown in the window; without them the recipe says whether to
 /// reduce. A stop request keeps the best pose so far and still checks it.
-pub fn match_parts(
-    crash: &LoadedPart,
-    stamped: &LoadedPart,
+pub fn match_parts<'a>(
+    parts: PerRole<&LoadedPart>,
     reduced: Option<&ReducedPair>,
     recipe: &MatchRecipe,
     current: &Similarity,
-    monitor: &Monitor,
+    monitor: impl Into<MatchMonitor<'a>>,
 ) -> Result<MatchRun, PipelineError> {
+    let match_monitor = monitor.into();
+    let monitor = match_monitor.monitor;
     let begin = Instant::now();
     let mut times = MatchTimes::default();
     let made;
     let reduced = match (reduced, recipe.max_triangles) {
         (Some(pair), _) => Some(pair),
         (None, Some(n)) => {
-            made = ReducedPair::new(crash, stamped, [Some(n); 2], monitor)?;
+            made = ReducedPair::new(parts, PerRole::both(Some(n)), monitor)?;
             times.reduce_ms = millis_since(begin);
             Some(&made)
         }
@@ -120,43 +117,44 @@ pub fn match_parts(
     };
     let prepare = Instant::now();
     monitor.progress("align", 0, None);
-    let (target, source) =
-        rayon::join(|| crash.surface_for_match(), || stamped.surface_for_match());
-    let (target, source) = (target?, source?);
-    let small = reduced.map(small_surfaces).transpose()?;
+    let (target, source) = (&parts.crash.surface, &parts.stamped.surface);
+    let small = reduced
+        .map(|pair| small_surfaces(pair, monitor))
+        .transpose()?;
     monitor.check()?;
     let prepare_ms = millis_since(prepare);
     let input = MatchInput {
-        source: &source,
-        target: &target,
-        reduced: small.as_ref().map(|[crash, stamped]| (stamped, crash)),
+        source,
+        target,
+        reduced: small.as_ref().map(|small| (&small.stamped, &small.crash)),
     };
     let settings = with_current_pose(&recipe.settings, current);
     monitor.progress("match", 0, None);
-    let outcome = registration::match_surfaces(&input, &settings, monitor)?;
+    let mut outcome = registration::match_surfaces(&input, &settings, match_monitor)?;
+    let check = assess_settings(parts, &settings);
+    settle(&mut outcome, source, target, &settings, &check);
     times.align_ms = prepare_ms + outcome.timings.align.as_secs_f64() * 1e3;
     times.match_ms = (outcome.timings.total - outcome.timings.align).as_secs_f64() * 1e3;
-    let check = AssessSettings {
-        allowance: settings.allowance,
-        ..AssessSettings::default()
-    };
     let verify = Instant::now();
     monitor.progress("verify", 0, None);
-    let assessment = assess::assess(&source, &target, &outcome, &check, monitor)?;
+    let assessment = assess::assess(source, target, &outcome, &check, monitor)?;
     times.verify_ms = millis_since(verify);
     times.total_ms = millis_since(begin);
     Ok(MatchRun {
         crash_from_stamped: outcome.target_from_source,
         recipe: recipe.clone(),
         start_pose: *current,
-        max_triangles: reduced.map_or([None; 2], |pair| pair.max_triangles),
+        max_triangles: reduced.map_or(PerRole::both(None), |pair| pair.max_triangles),
         n_triangles: input.reduced.map_or_else(
-            || [crash.mesh.n_triangles(), stamped.mesh.n_triangles()],
-            |(source, target)| [target.mesh().n_triangles(), source.mesh().n_triangles()],
+            || parts.map(|part| part.mesh.n_triangles()),
+            |(source, target)| {
+                PerRole::new(target, source).map(|surface| surface.mesh().n_triangles())
+            },
         ),
         outcome: Arc::new(outcome),
         assessment: Arc::new(assessment),
         times,
+        alternative: None,
     })
 }
 
@@ -164,8 +162,7 @@ pub fn match_parts(
 pub fn with_alternative(
     run: &MatchRun,
     alternative: usize,
-    crash: &LoadedPart,
-    stamped: &LoadedPart,
+    parts: PerRole<&LoadedPart>,
     monitor: &Monitor,
 ) -> Result<MatchRun, PipelineError> {
     let mut outcome = MatchOutcome::clone(&run.outcome);
@@ -182,34 +179,72 @@ pub fn with_alternative(
     outcome
         .alternatives
         .sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
-    let (target, source) = (crash.surface_for_match()?, stamped.surface_for_match()?);
-    let check = AssessSettings {
-        allowance: run.recipe.settings.allowance,
-        ..AssessSettings::default()
-    };
-    let assessment = assess::assess(&source, &target, &outcome, &check, monitor)?;
+    let (target, source) = (&parts.crash.surface, &parts.stamped.surface);
+    let check = assess_settings(parts, &run.recipe.settings);
+    let assessment = assess::assess(source, target, &outcome, &check, monitor)?;
     Ok(MatchRun {
         crash_from_stamped: outcome.target_from_source,
         outcome: Arc::new(outcome),
         assessment: Arc::new(assessment),
+        alternative: Some(alternative),
         ..run.clone()
     })
 }
 
-/// The first poses of "Align surface normal": centroids and mean normals laid on each other, both
-/// signs, turned in steps. Each is `crash_from_stamped`.
+/// What the assessment of a match of these parts depends on.
+fn assess_settings(parts: PerRole<&LoadedPart>, settings: &MatchSettings) -> AssessSettings {
+    let crash = parts.crash;
+    let unit = crash.units().and_then(|known| {
+        // The crash part's lengths were multiplied by its factor when it was read.
+        known.units.length.times(1.0 / crash.settings.length_factor)
+    });
+    let known = crash.units().map(|known| known.units.length);
+    let millimetre = unit
+        .or(known)
+        .map(|unit| LengthUnit::Millimeter.factor_to(unit));
+    let thickness = crash.mean_thickness().or(parts.stamped.mean_thickness());
+    AssessSettings {
+        allowance: settings.allowance,
+        thickness,
+        shape_tolerance: Some(settings.shape_tolerance).filter(|t| *t > 0.0),
+        millimetre,
+        ..AssessSettings::default()
+    }
+}
+
+/// The last step of a pose that was refined on the full meshes: borders and holes hold what the surfaces
+/// leave free.
+pub(super) fn settle(
+    outcome: &mut MatchOutcome,
+    source: &Surface,
+    target: &Surface,
+    settings: &MatchSettings,
+    check: &AssessSettings,
+) {
+    let is_searched = settings.refine_on_full && settings.method != Method::Umeyama;
+    if !is_searched || outcome.termination == Termination::Stopped {
+        return;
+    }
+    if let Some(pose) = assess::settled(source, target, &outcome.target_from_source, check) {
+        outcome.target_from_source = pose;
+    }
+}
+
+/// The first poses of "Align surface normal": centroids and mean normals aligned, both signs,
+/// rotated in steps. Each is `crash_from_stamped`.
 pub fn align(
-    crash: &LoadedPart,
-    stamped: &LoadedPart,
+    parts: PerRole<&LoadedPart>,
     settings: &StartSettings,
 ) -> Result<Vec<Start>, PipelineError> {
-    let target = crash.surface_for_match()?;
-    let source = stamped.surface_for_match()?;
     let settings = StartSettings {
         method: StartMethod::SurfaceNormals,
         ..settings.clone()
     };
-    Ok(starts::starts(&source, &target, &settings)?)
+    Ok(starts::starts(
+        &parts.stamped.surface,
+        &parts.crash.surface,
+        &settings,
+    )?)
 }
 
 fn level(
@@ -224,13 +259,16 @@ fn level(
     Ok(levels.level(n).mesh)
 }
 
-/// Prepared surfaces of crash and stamped part.
-fn small_surfaces(pair: &ReducedPair) -> Result<[Surface; 2], PipelineError> {
+/// Prepared surfaces of the reduced meshes.
+fn small_surfaces(
+    pair: &ReducedPair,
+    monitor: &Monitor,
+) -> Result<PerRole<Surface>, PipelineError> {
     let (crash, stamped) = rayon::join(
-        || Surface::new(&pair.crash, "target"),
-        || Surface::new(&pair.stamped, "source"),
+        || Surface::build(&pair.meshes.crash, "target", monitor),
+        || Surface::build(&pair.meshes.stamped, "source", monitor),
     );
-    Ok([crash?, stamped?])
+    Ok(PerRole::new(crash?, stamped?))
 }
 
 /// The registration knows no current pose of a window, only poses that it is given.

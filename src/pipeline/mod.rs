@@ -3,21 +3,24 @@
 //! From here up the two meshes have roles: the *crash* part is fixed (target), the *stamped* part
 //! moves (source). Each stage returns what it did and how long it took; nothing here prints.
 
-pub mod cards;
-pub mod export;
+pub mod autosave;
+pub mod id_map;
 pub mod inspect;
 pub mod likeness;
 pub mod load;
+pub mod map;
 pub mod match_parts;
-pub mod node_table;
+pub mod outputs;
+pub mod preferences;
 pub mod project;
-pub mod record;
 pub mod reduce;
-pub mod report;
-mod report_figures;
+pub mod robustness;
+pub mod robustness_page;
+pub mod robustness_table;
 pub mod sweep;
 mod sweep_record;
 pub mod units;
+pub mod write_file;
 
 mod error;
 

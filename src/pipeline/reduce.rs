@@ -9,6 +9,7 @@ use super::load::LoadedPart;
 use super::{PipelineError, millis_since};
 use crate::geometry::{Point3, Topology, TriMesh};
 use crate::monitor::{Cancelled, Monitor};
+use crate::registration::Surface;
 use crate::search::{Bvh, ClosestPoint};
 use crate::simplify::{CollapseSequence, SimplifyReport, SimplifySettings};
 
@@ -48,6 +49,8 @@ pub struct Deviation {
 /// A recorded reduction: every level from full to the coarsest is at hand.
 pub struct Levels {
     full: Arc<TriMesh>,
+    /// The full mesh as it was prepared when the part was loaded.
+    prepared: Option<Arc<Surface>>,
     sequence: CollapseSequence,
     /// Trees over the full surface and its border, made when a deviation is first asked for.
     full_trees: OnceLock<Trees>,
@@ -56,7 +59,7 @@ pub struct Levels {
 }
 
 struct Trees {
-    surface: Bvh,
+    surface: Arc<Bvh>,
     border: Bvh,
     n_loops: usize,
 }
@@ -69,15 +72,18 @@ impl Levels {
         settings: &SimplifySettings,
         monitor: &Monitor,
     ) -> Result<Self, PipelineError> {
-        let part_of = |&t: &u32| part.surface.triangle_part[t as usize];
-        let labels: Vec<u32> = part.triangle_of.iter().map(part_of).collect();
+        let labels = part.ids.parts();
         let several = labels.windows(2).any(|pair| pair[0] != pair[1]);
-        Self::record_mesh(
+        let levels = Self::record_mesh(
             &part.mesh,
-            if several { &labels } else { &[] },
+            if several { labels } else { &[] },
             settings,
             monitor,
-        )
+        )?;
+        Ok(Self {
+            prepared: Some(Arc::clone(&part.surface)),
+            ..levels
+        })
     }
 
     /// [`Levels::record`] for a bare mesh; `labels` names the part of each triangle or is empty.
@@ -92,6 +98,7 @@ impl Levels {
         let sequence = CollapseSequence::record_parts(mesh, labels, settings, monitor)?;
         Ok(Self {
             full: mesh.clone(),
+            prepared: None,
             sequence,
             full_trees: OnceLock::new(),
             record_ms: millis_since(start),
@@ -120,8 +127,19 @@ impl Levels {
 
     /// Measures how far `reduced` lies from the full mesh.
     pub fn measure(&self, reduced: &TriMesh, monitor: &Monitor) -> Result<Deviation, Cancelled> {
-        let full = self.full_trees.get_or_init(|| Trees::of(&self.full));
-        let ours = Trees::of(&Arc::new(reduced.clone()));
+        let full = match self.full_trees.get() {
+            Some(known) => known,
+            None => {
+                let made = match &self.prepared {
+                    Some(full) => {
+                        Trees::new(full.topology(), Arc::clone(full.shared_bvh()), monitor)?
+                    }
+                    None => Trees::of(&self.full, monitor)?,
+                };
+                self.full_trees.get_or_init(|| made)
+            }
+        };
+        let ours = Trees::of(&Arc::new(reduced.clone()), monitor)?;
         let there = spread(&surface_samples(reduced), &full.surface, monitor)?;
         let back = spread(&surface_samples(&self.full), &ours.surface, monitor)?;
         let border_there = spread(&border_samples(ours.border.mesh()), &full.border, monitor)?;
@@ -140,8 +158,14 @@ impl Levels {
 }
 
 impl Trees {
-    fn of(mesh: &Arc<TriMesh>) -> Self {
-        let topology = Topology::of(mesh);
+    fn of(mesh: &Arc<TriMesh>, monitor: &Monitor) -> Result<Self, Cancelled> {
+        let topology = Topology::build(mesh, monitor)?;
+        let surface = Bvh::build_for(Arc::clone(mesh), monitor)?;
+        Self::new(&topology, Arc::new(surface), monitor)
+    }
+
+    fn new(topology: &Topology, surface: Arc<Bvh>, monitor: &Monitor) -> Result<Self, Cancelled> {
+        let mesh = surface.mesh();
         // A border edge as a triangle without area: the tree then answers for the line.
         let segments = topology.border_edges().map(|e| {
             let [u, v] = topology.edges[e];
@@ -149,11 +173,12 @@ impl Trees {
         });
         let border = TriMesh::new(mesh.positions().to_vec(), segments.collect())
             .expect("every edge names vertices of the mesh");
-        Self {
-            surface: Bvh::build(mesh.clone()),
-            border: Bvh::build(border),
-            n_loops: topology.border_loops(mesh).len(),
-        }
+        let n_loops = topology.border_loops(mesh).len();
+        Ok(Self {
+            border: Bvh::build_for(Arc::new(border), monitor)?,
+            n_loops,
+            surface,
+        })
     }
 }
 

@@ -11,6 +11,7 @@ use super::{PipelineError, millis_since};
 use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::Monitor;
 use crate::registration::MatchSettings;
+use crate::role::PerRole;
 use crate::simplify::SimplifySettings;
 
 /// Table 1 of the paper: 34,808 triangles reduced to so many took so many milliseconds.
@@ -57,7 +58,7 @@ impl Default for SweepSettings {
 /// times of all levels compare.
 fn nine_starts() -> MatchSettings {
     let mut settings = MatchSettings::default();
-    settings.starts.widen = false;
+    settings.starts.extra_starts = false;
     settings
 }
 
@@ -89,8 +90,9 @@ pub struct MatchingRow {
     pub max_triangles: Option<usize>,
     /// The pose that was found on the reduced meshes alone.
     pub crash_from_stamped: Similarity,
-    /// Triangles of crash and stamped mesh.
-    pub triangles: [usize; 2],
+    /// Triangles of both meshes.
+    #[serde(serialize_with = "PerRole::as_list")]
+    pub triangles: PerRole<usize>,
     /// Time of the match on the reduced meshes alone, trees included, in milliseconds.
     pub time_ms: f64,
     /// How far the pose puts the stamped nodes from the reference, root mean square.
@@ -140,15 +142,14 @@ impl Sweep {
 /// Measures both tables. Node distances are taken from `truth`, or, where no pose is known, from the
 /// match on the full meshes. A stop request ends after the row at work.
 pub fn sweep(
-    crash: &LoadedPart,
-    stamped: &LoadedPart,
+    parts: PerRole<&LoadedPart>,
     truth: Option<&Similarity>,
     settings: &SweepSettings,
     monitor: &Monitor,
     mut tell: impl FnMut(SweepRow),
 ) -> Result<Sweep, PipelineError> {
     let mut tables = Sweep {
-        n_triangles: stamped.mesh.n_triangles(),
+        n_triangles: parts.stamped.mesh.n_triangles(),
         has_truth: truth.is_some(),
         ..Sweep::default()
     };
@@ -156,26 +157,20 @@ pub fn sweep(
         if monitor.stop_requested() {
             return Ok(tables);
         }
-        let row = reduction_row(stamped, max_triangles, settings.n_repeats, monitor)?;
+        let row = reduction_row(parts.stamped, max_triangles, settings.n_repeats, monitor)?;
         tell(SweepRow::Reduction(row));
         tables.reduction.push(row);
     }
     let reference = match truth {
         Some(truth) => *truth,
-        None => full_pose(crash, stamped, settings, monitor)?,
+        None => full_pose(parts, settings, monitor)?,
     };
     let sizes = settings.matching.iter().map(|&n| Some(n)).chain([None]);
     for max_triangles in sizes {
         if monitor.stop_requested() {
             return Ok(tables);
         }
-        let row = matching_row(
-            [crash, stamped],
-            max_triangles,
-            &reference,
-            settings,
-            monitor,
-        )?;
+        let row = matching_row(parts, max_triangles, &reference, settings, monitor)?;
         tell(SweepRow::Matching(row));
         tables.matching.push(row);
     }
@@ -210,8 +205,7 @@ fn reduction_row(
 }
 
 fn full_pose(
-    crash: &LoadedPart,
-    stamped: &LoadedPart,
+    parts: PerRole<&LoadedPart>,
     settings: &SweepSettings,
     monitor: &Monitor,
 ) -> Result<Similarity, PipelineError> {
@@ -219,37 +213,30 @@ fn full_pose(
         settings: settings.settings.clone(),
         max_triangles: None,
     };
-    let run = match_parts(
-        crash,
-        stamped,
-        None,
-        &recipe,
-        &Similarity::identity(),
-        monitor,
-    )?;
+    let run = match_parts(parts, None, &recipe, &Similarity::identity(), monitor)?;
     Ok(run.crash_from_stamped)
 }
 
 fn matching_row(
-    [crash, stamped]: [&LoadedPart; 2],
+    parts: PerRole<&LoadedPart>,
     max_triangles: Option<usize>,
     reference: &Similarity,
     settings: &SweepSettings,
     monitor: &Monitor,
 ) -> Result<MatchingRow, PipelineError> {
     let pair = max_triangles
-        .map(|n| ReducedPair::new(crash, stamped, [Some(n); 2], monitor))
+        .map(|n| ReducedPair::new(parts, PerRole::both(Some(n)), monitor))
         .transpose()?;
     let run = |finish: bool| {
         let mut settings = settings.settings.clone();
-        settings.finish = finish || max_triangles.is_none();
+        settings.refine_on_full = finish || max_triangles.is_none();
         let recipe = MatchRecipe {
             settings,
             max_triangles: None,
         };
         let start = Instant::now();
         let identity = Similarity::identity();
-        let run = match_parts(crash, stamped, pair.as_ref(), &recipe, &identity, monitor)?;
+        let run = match_parts(parts, pair.as_ref(), &recipe, &identity, monitor)?;
         let total_ms = millis_since(start);
         Ok::<_, PipelineError>((run, total_ms))
     };
@@ -265,10 +252,16 @@ fn matching_row(
             finished = again;
         }
     }
-    let (node_rms, node_max) =
-        node_distance(&stamped.mesh, &searched.0.crash_from_stamped, reference);
-    let (finished_node_rms, _) =
-        node_distance(&stamped.mesh, &finished.0.crash_from_stamped, reference);
+    let (node_rms, node_max) = node_distance(
+        &parts.stamped.mesh,
+        &searched.0.crash_from_stamped,
+        reference,
+    );
+    let (finished_node_rms, _) = node_distance(
+        &parts.stamped.mesh,
+        &finished.0.crash_from_stamped,
+        reference,
+    );
     Ok(MatchingRow {
         max_triangles,
         crash_from_stamped: searched.0.crash_from_stamped,

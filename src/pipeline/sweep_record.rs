@@ -62,8 +62,8 @@ impl From<&MatchingRow> for MatchingEntry {
     fn from(row: &MatchingRow) -> Self {
         Self {
             max_triangles: row.max_triangles,
-            crash_triangles: row.triangles[0],
-            stamped_triangles: row.triangles[1],
+            crash_triangles: row.triangles.crash,
+            stamped_triangles: row.triangles.stamped,
             time_ms: row.time_ms,
             paper_ms: row.paper_ms,
             node_rms: row.node_rms,
@@ -114,7 +114,7 @@ impl Sweep {
             let max = row
                 .max_triangles
                 .map_or_else(String::new, |n| n.to_string());
-            let (n, paper) = (row.triangles[1], number(row.paper_ms));
+            let (n, paper) = (row.triangles.stamped, number(row.paper_ms));
             let (time, rms, far) = (row.time_ms, row.node_rms, row.node_max);
             let (finished, finished_rms) = (row.finished_ms, row.finished_node_rms);
             let _ = writeln!(

@@ -2,15 +2,14 @@
 //! lengths are in.
 
 use super::load::LoadedPart;
+use crate::role::{PerRole, Role};
 use crate::units::{KnownUnits, LengthUnit, UnitOrigin};
 
 /// The units of a pair, or of one part alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PairUnits {
-    /// Units of the crash file.
-    pub crash: Option<KnownUnits>,
-    /// Units of the stamped file, before its factor was applied.
-    pub stamped: Option<KnownUnits>,
+    /// Units of each file, before its factor was applied.
+    pub files: PerRole<Option<KnownUnits>>,
     /// The unit that every length is in once the factors are applied; `None` if unknown.
     pub lengths: Option<LengthUnit>,
 }
@@ -18,34 +17,38 @@ pub struct PairUnits {
 impl PairUnits {
     /// What both files say together. The crash file's units count; a stamped file says only what
     /// that one leaves open, because the factor between the two is what was chosen for it.
-    pub fn of(crash: Option<&LoadedPart>, stamped: Option<&LoadedPart>) -> Self {
-        let [of_crash, of_stamped] = [crash, stamped].map(|part| part?.units());
-        let through = |part: Option<&LoadedPart>, known: Option<KnownUnits>| {
-            after_factor(known?, part?.settings.length_factor)
+    pub fn of(parts: PerRole<Option<&LoadedPart>>) -> Self {
+        let known = parts.map(|part| part?.units());
+        let lengths_of = |role: Role, must_be_firm: bool| {
+            let known = known
+                .get(role)
+                .filter(|known| !must_be_firm || known.origin.is_firm());
+            after_factor(known?, (*parts.get(role))?.settings.length_factor)
         };
-        let firm = |known: Option<KnownUnits>| known.filter(|known| known.origin.is_firm());
-        let lengths = through(crash, firm(of_crash))
-            .or_else(|| through(stamped, firm(of_stamped)))
-            .or_else(|| through(crash, of_crash))
-            .or_else(|| through(stamped, of_stamped));
+        let lengths = lengths_of(Role::Crash, true)
+            .or_else(|| lengths_of(Role::Stamped, true))
+            .or_else(|| lengths_of(Role::Crash, false))
+            .or_else(|| lengths_of(Role::Stamped, false));
         Self {
-            crash: agreed(crash, of_crash, lengths),
-            stamped: agreed(stamped, of_stamped, lengths),
+            files: PerRole::from_fn(|role| agreed(*parts.get(role), *known.get(role), lengths)),
             lengths,
         }
     }
 
     /// The unit of all lengths, the files' units and factors, for exports: "lengths in mm",
     /// "stamped.dynain: m, set by you; its lengths were multiplied by 1000".
-    pub fn sentences(crash: &LoadedPart, stamped: &LoadedPart) -> Vec<String> {
-        let units = Self::of(Some(crash), Some(stamped));
+    pub fn sentences(parts: PerRole<&LoadedPart>) -> Vec<String> {
+        let units = Self::of(parts.map(Some));
         let mut sentences = vec![match units.lengths {
             Some(unit) => format!("lengths in {unit}"),
             None => "unit of lengths unknown".to_owned(),
         }];
-        for (part, known) in [(crash, units.crash), (stamped, units.stamped)] {
+        for (role, part) in parts.iter() {
             let name = part.file_name();
-            let words = known.map_or_else(|| "unit unknown".to_owned(), KnownUnits::words);
+            let words = units
+                .files
+                .get(role)
+                .map_or_else(|| "unit unknown".to_owned(), KnownUnits::words);
             let factor = part.settings.length_factor;
             sentences.push(if factor == 1.0 {
                 format!("{name}: {words}")
@@ -58,7 +61,8 @@ impl PairUnits {
 
     /// A warning where both systems are known and their stresses are in different units, which no
     /// card converts.
-    pub fn stress_warning(crash: &LoadedPart, stamped: &LoadedPart) -> Option<String> {
+    pub fn stress_warning(parts: PerRole<&LoadedPart>) -> Option<String> {
+        let PerRole { crash, stamped } = parts;
         let stress = |part: &LoadedPart| Some(part.units()?.units.system?.stress());
         let (target, source) = (stress(crash)?, stress(stamped)?);
         let has_stress = !stamped.model.forming.is_empty();

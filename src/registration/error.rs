@@ -1,3 +1,7 @@
+//! Why a registration gave no pose.
+
+use std::ops::RangeInclusive;
+
 use crate::monitor::Cancelled;
 
 /// Why a registration gave no pose.
@@ -47,16 +51,32 @@ pub enum RegistrationError {
     #[error("the chosen start method gives no start (no start poses were passed)")]
     NoStarts,
     /// A setting is outside its range.
-    #[error("{name} is {value}, but must lie in {range}")]
+    #[error("{name} is {value}, but must be {}", range_words(.range))]
     Setting {
         /// The setting.
         name: &'static str,
         /// Its value.
         value: f64,
-        /// The allowed range in words.
-        range: &'static str,
+        /// The range it has to lie in.
+        range: RangeInclusive<f64>,
     },
     /// No start had a single usable pair.
     #[error("no start found usable pairs between the two parts")]
     NoPairs,
+}
+
+impl RegistrationError {
+    /// True if a setting is to blame and not the parts.
+    pub fn is_setting(&self) -> bool {
+        matches!(self, Self::Setting { .. } | Self::AngleSegment { .. })
+    }
+}
+
+fn range_words(range: &RangeInclusive<f64>) -> String {
+    let (low, high) = (range.start(), range.end());
+    if *high < f64::MAX {
+        format!("from {low} to {high}")
+    } else {
+        format!("at least {low}")
+    }
 }

@@ -1,7 +1,7 @@
 //! Poses from a few pairs of points that a person picked, with what is suspicious about them.
 
 use super::RegistrationError;
-use super::umeyama::{Motion, PairFit, umeyama};
+use super::closed_form::{Motion, PairFit, umeyama};
 use crate::geometry::Point3;
 
 /// A pair is suspicious if the others put it so many times farther off than they lie themselves.
@@ -42,7 +42,7 @@ pub struct PointPairFit {
     pub fit: PairFit,
     /// Distance of each pair after the motion, in target length units.
     pub residuals: Vec<f64>,
-    /// The gravest doubt, if there is one.
+    /// The most severe doubt, if there is one.
     pub doubt: Option<PairDoubt>,
 }
 

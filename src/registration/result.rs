@@ -1,33 +1,40 @@
-use serde::{Deserialize, Serialize};
+//! The product of a match and the story of its starts.
+
 use std::time::Duration;
 
-use super::starts::StartKind;
-use super::termination::Termination;
-use super::units::ScaleCheck;
+use serde::{Deserialize, Serialize};
+
+use super::icp::{Stage, Termination};
+use super::multi_start::starts::StartKind;
+use super::scale_check::ScaleCheck;
 use crate::geometry::Similarity;
 use crate::geometry::serial::any_float;
-pub use crate::monitor::Fate;
-use crate::monitor::IterationReport;
 
 /// Which of the two meshes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
-    /// The moving (stamped) mesh.
+    /// The moving mesh.
     Source,
-    /// The fixed (crash) mesh.
+    /// The fixed mesh.
     Target,
 }
 
-/// A word that is known beforehand. The name keeps serde from borrowing it from its input.
-type StageWord = &'static str;
+impl Side {
+    /// The other one.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Source => Self::Target,
+            Self::Target => Self::Source,
+        }
+    }
+}
 
 /// One iteration of one start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct IterationRecord {
-    /// Stage of the search in one word: `race`, `refine`, `finish`, `match`.
-    #[serde(deserialize_with = "stage_word")]
-    pub stage: StageWord,
+    /// Stage of the match it belongs to.
+    pub stage: Stage,
     /// The pose whose pairs were measured, before the step.
     pub target_from_source: Similarity,
     /// What the selection minimises, in length units; comparable within one stage only.
@@ -41,28 +48,30 @@ pub struct IterationRecord {
     pub fraction: f64,
 }
 
-/// The words for stages; any other that was stored is not told apart.
-fn stage_word<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<StageWord, D::Error> {
-    let stored = String::deserialize(deserializer)?;
-    let known = ["race", "refine", "finish", "match"];
-    let found = known.into_iter().find(|word| *word == stored);
-    Ok(found.unwrap_or("match"))
+/// What became of a start.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StartOutcome {
+    /// It gave the result.
+    Won,
+    /// It went to the last comparison and lost to a better pose.
+    RunnerUp,
+    /// It met another start's pose and was dropped for it.
+    MergedInto {
+        /// Number of the other start, from 0.
+        start: usize,
+    },
+    /// Others were ahead after so many iterations.
+    Dropped {
+        /// Iterations made.
+        after: usize,
+    },
+    /// It found no pairs or its pairs fixed no motion.
+    Failed,
 }
 
-impl IterationRecord {
-    pub(crate) fn report(&self, start_idx: usize, iteration: usize) -> IterationReport {
-        IterationReport {
-            start_idx,
-            iteration,
-            target_from_source: self.target_from_source.to_rows(),
-            objective: self.objective,
-            rmse: self.rmse,
-            fraction: self.fraction,
-        }
-    }
-}
-
-/// The story of one start.
+/// One start: how it came to be, its iterations and what became of it. While it runs, scores are
+/// infinite until its first iteration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StartRecord {
     /// How it came to be.
@@ -75,45 +84,34 @@ pub struct StartRecord {
     pub data_side: Side,
     /// First pose, `target_from_source`.
     pub first: Similarity,
-    /// Last pose.
+    /// Where it ended, or where it is now.
     pub last: Similarity,
     /// Every iteration, in order.
     pub iterations: Vec<IterationRecord>,
     /// Objective of the last iteration.
     #[serde(with = "any_float")]
     pub score: f64,
-    /// Distance that 95 % of its last kept pairs stay below.
+    /// Distance that 95 % of its last kept pairs stay below; infinite while it runs.
     #[serde(with = "any_float")]
     pub p95: f64,
     /// Time its iterations took. For the reader; nothing depends on it.
     pub took: Duration,
     /// Why its last stage ended, if it was not dropped.
     pub termination: Option<Termination>,
-    /// What became of it.
-    pub fate: Fate,
+    /// What became of it; `None` while it runs, or where its match was cancelled.
+    #[serde(alias = "fate")]
+    pub outcome: Option<StartOutcome>,
 }
 
 impl StartRecord {
-    /// How it came to be, in words: "surface normal 40°, stamped, turned".
-    pub fn name(&self) -> String {
-        start_name(self.kind, self.data_side, self.flipped, self.mirrored)
+    /// Adds an iteration. A start that still runs is where its latest iteration is.
+    pub fn add(&mut self, iteration: IterationRecord) {
+        if self.outcome.is_none() {
+            self.last = iteration.target_from_source;
+            self.score = iteration.objective;
+        }
+        self.iterations.push(iteration);
     }
-}
-
-/// See [`StartRecord::name`].
-pub(crate) fn start_name(kind: StartKind, side: Side, flipped: bool, mirrored: bool) -> String {
-    let side = match side {
-        Side::Source => "stamped",
-        Side::Target => "crash",
-    };
-    let mut name = format!("{}, {side}", kind.label());
-    if flipped {
-        name += ", turned";
-    }
-    if mirrored {
-        name += ", mirrored";
-    }
-    name
 }
 
 /// A distinct pose that came close.
@@ -147,11 +145,13 @@ pub struct MatchTimings {
     /// First poses.
     pub align: Duration,
     /// All starts on few points.
-    pub race: Duration,
+    #[serde(alias = "race")]
+    pub coarse: Duration,
     /// The best distinct ones on more points.
     pub refine: Duration,
     /// The winner on the full meshes.
-    pub finish: Duration,
+    #[serde(alias = "finish")]
+    pub full: Duration,
     /// Everything, preparation of mirrored and reduced meshes included.
     pub total: Duration,
 }

@@ -1,10 +1,13 @@
-use super::RegistrationError;
-use super::correspondence::PairWith;
-use super::metric::Metric;
-use super::select::{Floor, Selection};
-use super::starts::StartSettings;
-use super::umeyama::Motion;
+//! Everything a match depends on besides the meshes.
+
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
+
+use super::RegistrationError;
+use super::closed_form::Motion;
+use super::icp::{Floor, Metric, PairWith, Selection};
+use super::multi_start::starts::StartSettings;
 
 /// The methods by name; each is a choice of pairs, selection, metric and search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -26,59 +29,6 @@ pub enum Method {
     Paper,
 }
 
-impl Method {
-    /// Every method, in the order of menus.
-    pub const ALL: [Self; 6] = [
-        Self::Fractional,
-        Self::Umeyama,
-        Self::Icp,
-        Self::Trimmed,
-        Self::TrimmedSearch,
-        Self::Paper,
-    ];
-
-    /// The word for the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Umeyama => "umeyama",
-            Self::Icp => "icp",
-            Self::Trimmed => "trimmed",
-            Self::TrimmedSearch => "trimmed-search",
-            Self::Fractional => "fractional",
-            Self::Paper => "paper",
-        }
-    }
-
-    /// Short name for menus.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Umeyama => "Umeyama",
-            Self::Icp => "ICP",
-            Self::Trimmed => "Trimmed ICP",
-            Self::TrimmedSearch => "Trimmed ICP, overlap searched",
-            Self::Fractional => "Fractional ICP",
-            Self::Paper => "Fractional ICP as in the paper",
-        }
-    }
-
-    /// One line of help.
-    pub fn help(self) -> &'static str {
-        match self {
-            Self::Umeyama => "Closed form; both meshes must have the same nodes in the same order",
-            Self::Icp => "Iterative closest point with all pairs; for parts that cover each other",
-            Self::Trimmed => "Iterative closest point with a given share of the pairs",
-            Self::TrimmedSearch => "Iterative closest point with a share found by itself",
-            Self::Fractional => "Finds pose and overlap together; the default",
-            Self::Paper => "Node to node, point to point, no floor, every start to its end",
-        }
-    }
-
-    /// The method of that [`Method::name`].
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|method| method.name() == name)
-    }
-}
-
 /// Which hand of the source is tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -92,76 +42,16 @@ pub enum Hand {
     Either,
 }
 
-impl Hand {
-    /// Every choice, in the order of menus.
-    pub const ALL: [Self; 3] = [Self::Same, Self::Mirrored, Self::Either];
-
-    /// The word for the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Same => "same",
-            Self::Mirrored => "opposite",
-            Self::Either => "either",
-        }
-    }
-
-    /// Short name for menus.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Same => "Same hand",
-            Self::Mirrored => "Opposite hand",
-            Self::Either => "Either hand",
-        }
-    }
-
-    /// One line of help.
-    pub fn help(self) -> &'static str {
-        match self {
-            Self::Same => "The part is matched as it is",
-            Self::Mirrored => "The part is mirrored first: left-hand for right-hand",
-            Self::Either => "Both are tried and the better one wins",
-        }
-    }
-}
-
 /// How the starts are searched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Search {
     /// All starts on few points, the best distinct ones on more, the winner refined.
     #[default]
-    Race,
+    #[serde(alias = "race")]
+    CoarseToFine,
     /// Every start on all points to its end.
     EveryStart,
-}
-
-impl Search {
-    /// Every choice, in the order of menus.
-    pub const ALL: [Self; 2] = [Self::Race, Self::EveryStart];
-
-    /// The word for the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Race => "race",
-            Self::EveryStart => "every-start",
-        }
-    }
-
-    /// Short name for menus.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Race => "Race",
-            Self::EveryStart => "Every start to its end",
-        }
-    }
-
-    /// One line of help.
-    pub fn help(self) -> &'static str {
-        match self {
-            Self::Race => "All starts on few points; only the best distinct ones go on",
-            Self::EveryStart => "All starts on all points, as in the paper; slow",
-        }
-    }
 }
 
 /// Which mesh supplies the points.
@@ -175,40 +65,6 @@ pub enum DataSide {
     Source,
     /// The target's nodes on the source's triangles.
     Target,
-}
-
-impl DataSide {
-    /// Every choice, in the order of menus.
-    pub const ALL: [Self; 3] = [Self::Auto, Self::Source, Self::Target];
-
-    /// The word for the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Auto => "auto",
-            Self::Source => "stamped",
-            Self::Target => "crash",
-        }
-    }
-
-    /// Short name for menus.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Auto => "Chosen by size",
-            Self::Source => "Stamped nodes",
-            Self::Target => "Crash nodes",
-        }
-    }
-
-    /// One line of help.
-    pub fn help(self) -> &'static str {
-        match self {
-            Self::Auto => {
-                "The contained part supplies the points; where both overhang, both are tried"
-            }
-            Self::Source => "The moving part's nodes on the fixed part's triangles",
-            Self::Target => "The fixed part's nodes on the moving part's triangles",
-        }
-    }
 }
 
 /// Everything a match depends on besides the meshes. The defaults just work.
@@ -232,23 +88,29 @@ pub struct MatchSettings {
     pub starts: StartSettings,
     /// How they are searched.
     pub search: Search,
-    /// Refine the winner on the full meshes (else only on the reduced ones, if there are any).
-    pub finish: bool,
+    /// Refine the best pose on the full meshes (else only on the reduced ones, if there are any).
+    #[serde(alias = "finish")]
+    pub refine_on_full: bool,
     /// Which mesh supplies the points.
     pub data_side: DataSide,
     /// Deviation of the real shapes that is to be expected besides faceting, such as springback;
     /// added to the floor. In length units.
     pub allowance: f64,
+    /// How far the shapes may differ besides springback before they are another version, in length
+    /// units; 0 takes the larger of a millimetre and the sheet's thickness. It decides nothing in the
+    /// search.
+    pub shape_tolerance: f64,
     /// Largest angle between normals of a pair in the later stages, degrees; 180 lets all through.
     pub max_normal_angle_deg: f64,
-    /// Data points of the first stage of the race.
-    pub n_race_points: usize,
-    /// Data points of its second stage.
+    /// Data points of the coarse stage.
+    #[serde(alias = "n_race_points")]
+    pub n_coarse_points: usize,
+    /// Data points of the refinement.
     pub n_refine_points: usize,
     /// Iteration cap where a run goes to its end.
     pub max_iterations: usize,
-    /// A run has settled when a step moves no corner of the box by more than this share of the
-    /// mean edge length.
+    /// A run has converged when a step moves no corner of the bounding box by more than this
+    /// fraction of the mean edge length.
     pub motion_tolerance: f64,
 }
 
@@ -262,12 +124,13 @@ impl Default for MatchSettings {
             motion: Motion::Rigid,
             hand: Hand::Same,
             starts: StartSettings::default(),
-            search: Search::Race,
-            finish: true,
+            search: Search::CoarseToFine,
+            refine_on_full: true,
             data_side: DataSide::Auto,
             allowance: 0.0,
+            shape_tolerance: 0.0,
             max_normal_angle_deg: 60.0,
-            n_race_points: 500,
+            n_coarse_points: 500,
             n_refine_points: 3000,
             max_iterations: 200,
             motion_tolerance: 1e-3,
@@ -289,7 +152,9 @@ impl MatchSettings {
                 ..base
             },
             Method::Trimmed => Self {
-                selection: Selection::Trimmed { overlap: 0.8 },
+                selection: Selection::Trimmed {
+                    overlap: Selection::USUAL_OVERLAP,
+                },
                 ..base
             },
             Method::TrimmedSearch => Self {
@@ -304,12 +169,12 @@ impl MatchSettings {
                 },
                 metric: Metric::PointToPoint,
                 search: Search::EveryStart,
-                finish: false,
+                refine_on_full: false,
                 data_side: DataSide::Source,
                 max_normal_angle_deg: 180.0,
                 starts: StartSettings {
                     both_signs: false,
-                    widen: false,
+                    extra_starts: false,
                     ..StartSettings::default()
                 },
                 ..base
@@ -320,45 +185,61 @@ impl MatchSettings {
     /// Says which setting lies outside its range.
     pub(crate) fn check(&self) -> Result<(), RegistrationError> {
         self.starts.n_rotations()?;
-        let within = |name, value: f64, low: f64, high: f64, range| {
-            if (low..=high).contains(&value) {
+        let within = |name, value: f64, range: RangeInclusive<f64>| {
+            if range.contains(&value) {
                 Ok(())
             } else {
                 Err(RegistrationError::Setting { name, value, range })
             }
         };
         match self.selection {
-            Selection::Trimmed { overlap } => {
-                within("the overlap", overlap, 1e-3, 1.0, "0.001 to 1")?;
-            }
+            Selection::Trimmed { overlap } => within("the overlap", overlap, limits::OVERLAP)?,
             Selection::Fractional { lambda, floor } => {
-                within("λ", lambda, 0.01, 100.0, "0.01 to 100")?;
+                within("λ", lambda, limits::LAMBDA)?;
                 if let Floor::Length(length) = floor {
-                    within("the floor", length, 0.0, f64::MAX, "0 and above")?;
+                    within("the floor", length, limits::LENGTH)?;
                 }
             }
             Selection::All | Selection::TrimmedSearch => {}
         }
-        within(
-            "the allowance",
-            self.allowance,
-            0.0,
-            f64::MAX,
-            "0 and above",
-        )?;
+        within("the allowance", self.allowance, limits::LENGTH)?;
+        within("the shape tolerance", self.shape_tolerance, limits::LENGTH)?;
         let angle = self.max_normal_angle_deg;
-        within("the normal angle", angle, 1.0, 180.0, "1° to 180°")?;
-        let tolerance = self.motion_tolerance;
         within(
-            "the motion tolerance",
-            tolerance,
-            0.0,
-            1.0,
-            "0 to 1 edge length",
+            "the normal angle in degrees",
+            angle,
+            limits::NORMAL_ANGLE_DEG,
         )?;
-        let at_least = |name, value: usize| within(name, value as f64, 1.0, 1e9, "1 and above");
-        at_least("the number of race points", self.n_race_points)?;
-        at_least("the number of refinement points", self.n_refine_points)?;
-        at_least("the iteration limit", self.max_iterations)
+        let tolerance = self.motion_tolerance;
+        within("the motion tolerance", tolerance, limits::MOTION_TOLERANCE)?;
+        let counts = [
+            ("the number of coarse points", self.n_coarse_points),
+            ("the number of refinement points", self.n_refine_points),
+            ("the iteration limit", self.max_iterations),
+        ];
+        let range = *limits::COUNT.start() as f64..=*limits::COUNT.end() as f64;
+        let mut counts = counts.into_iter();
+        counts.try_for_each(|(name, value)| within(name, value as f64, range.clone()))
     }
+}
+
+/// The ranges outside of which a match refuses a setting.
+pub mod limits {
+    use std::ops::RangeInclusive;
+
+    /// λ of Fractional ICP.
+    pub const LAMBDA: RangeInclusive<f64> = 0.01..=100.0;
+    /// Fraction that Trimmed ICP keeps.
+    pub const OVERLAP: RangeInclusive<f64> = 1e-3..=1.0;
+    /// Lengths: floor, allowance and shape tolerance.
+    pub const LENGTH: RangeInclusive<f64> = 0.0..=f64::MAX;
+    /// Angle between the normals of a pair, in degrees.
+    pub const NORMAL_ANGLE_DEG: RangeInclusive<f64> = 1.0..=180.0;
+    /// Tolerance of convergence, in mean edge lengths.
+    pub const MOTION_TOLERANCE: RangeInclusive<f64> = 0.0..=1.0;
+    /// Step of the rotations about the mean normal, in degrees. Above 60° there are fewer than six
+    /// starts, too few to reach the right minimum from every placement.
+    pub const ANGLE_SEGMENT_DEG: RangeInclusive<f64> = 1.0..=60.0;
+    /// Points and iterations.
+    pub const COUNT: RangeInclusive<usize> = 1..=1_000_000_000;
 }

@@ -1,27 +1,33 @@
+//! A mesh prepared once for everything that searches it.
+
 use std::sync::{Arc, OnceLock};
 
 use nalgebra::SymmetricEigen;
-use rayon::prelude::*;
 
 use super::RegistrationError;
-use crate::geometry::{Matrix3, Point3, Topology, TriMesh, Vector3, orient_consistently, weld};
+use crate::geometry::chunks::for_chunks;
+use crate::geometry::{
+    CleanMesh, CornerNormals, Matrix3, Point3, Similarity, Topology, TriMesh, Vector3, VertexFans,
+    corner_normals, face_normals, vertex_normals,
+};
+use crate::monitor::{Cancelled, Monitor};
 use crate::search::{Bvh, Feature, PointTree, SurfaceHit};
 
 /// Triangles that meet at more than this angle form a sharp edge, which stays flat-sided.
 const SHARP_EDGE_DEG: f64 = 40.0;
 
-/// A mesh made ready for matching: joined at equal positions, consistently oriented, with its tree,
-/// its normals and its measures. Made once per mesh and shared by registration and assessment.
+/// A mesh joined at equal positions and consistently oriented, with its edges, its tree, its normals
+/// and its measures. Made once per mesh; registration, assessment, report and the views share it.
 pub struct Surface {
     mesh: Arc<TriMesh>,
-    bvh: Bvh,
+    topology: Topology,
+    bvh: Arc<Bvh>,
     /// The tree for nearest nodes, made when first asked for.
     nodes: OnceLock<PointTree>,
     vertex_of: Vec<u32>,
-    n_turned: usize,
     vertex_normals: Vec<Vector3>,
     vertex_areas: Vec<f64>,
-    corner_normals: Vec<[Vector3; 3]>,
+    corner_normals: CornerNormals,
     border_edges: Vec<u8>,
     border_vertices: Vec<bool>,
     measures: Measures,
@@ -49,47 +55,92 @@ pub struct Measures {
 }
 
 impl Surface {
-    /// Prepares `mesh`; `side` (`source` or `target`) is for the message. An error if no triangle
-    /// has an area. O(triangles · log triangles).
+    /// Joins, orients and prepares a bare mesh; `side` (`source` or `target`) is for the message. An
+    /// error if no triangle has an area. O(triangles · log triangles).
     pub fn new(mesh: &TriMesh, side: &'static str) -> Result<Self, RegistrationError> {
-        let welded = weld(mesh, 0.0);
-        let mut mesh = welded.mesh;
-        if mesh.area() <= 0.0 || !mesh.area().is_finite() {
+        Self::build(mesh, side, &Monitor::silent())
+    }
+
+    /// [`Surface::new`] that ends when `monitor` is cancelled.
+    pub fn build(
+        mesh: &TriMesh,
+        side: &'static str,
+        monitor: &Monitor,
+    ) -> Result<Self, RegistrationError> {
+        let mut clean = CleanMesh::of(mesh.clone(), monitor)?;
+        let vertex_of = std::mem::take(&mut clean.vertex_of);
+        let mut surface = Self::prepare(clean, side, monitor)?;
+        surface.vertex_of = vertex_of;
+        Ok(surface)
+    }
+
+    /// Prepares a mesh that is joined and oriented; the vertices passed in are those of the surface.
+    /// Asks `monitor` every few ten milliseconds. O(triangles · log triangles), on all threads.
+    pub fn prepare(
+        clean: CleanMesh,
+        side: &'static str,
+        monitor: &Monitor,
+    ) -> Result<Self, RegistrationError> {
+        let CleanMesh { mesh, topology, .. } = clean;
+        let area = mesh.area();
+        if area <= 0.0 || !area.is_finite() {
             return Err(RegistrationError::EmptyMesh { side });
         }
-        let topology = Topology::of(&mesh);
-        let mut n_turned = 0;
-        if !is_consistent(&mesh, &topology) {
-            (mesh, n_turned) = orient_consistently(&mesh);
-        }
         let mesh = Arc::new(mesh);
-        let (bvh, (corner_normals, measures)) = rayon::join(
-            || Bvh::build(mesh.clone()),
-            || (corner_normals(&mesh), measures(&mesh, &topology)),
+        let (bvh, (normals, measures)) = rayon::join(
+            || Bvh::build_for(mesh.clone(), monitor),
+            || {
+                rayon::join(
+                    || Normals::of(&mesh, monitor),
+                    || measures(&mesh, &topology, area, monitor),
+                )
+            },
         );
+        let (normals, measures) = (normals?, measures?);
         let (border_edges, border_vertices) = borders(&mesh, &topology);
         Ok(Self {
-            bvh,
+            bvh: Arc::new(bvh?),
             nodes: OnceLock::new(),
-            vertex_of: welded.vertex_of,
-            n_turned,
-            vertex_normals: mesh.vertex_normals(),
+            vertex_of: (0..mesh.n_vertices() as u32).collect(),
+            vertex_normals: normals.of_vertices,
             vertex_areas: mesh.vertex_areas(),
-            corner_normals,
+            corner_normals: normals.of_corners,
             border_edges,
             border_vertices,
             measures,
+            topology,
             mesh,
         })
     }
 
+    /// The surface mirrored at x = 0; what does not change is not made again.
+    pub(super) fn mirrored(&self, monitor: &Monitor) -> Result<Self, RegistrationError> {
+        let mirrored = CleanMesh {
+            mesh: self.mesh.transformed(&Similarity::mirror_x()),
+            // Edges do not know on which side of them their triangles lie.
+            topology: self.topology.clone(),
+            ..CleanMesh::default()
+        };
+        Self::prepare(mirrored, "source", monitor)
+    }
+
     /// The mesh after joining and orienting.
-    pub fn mesh(&self) -> &TriMesh {
+    pub fn mesh(&self) -> &Arc<TriMesh> {
         &self.mesh
+    }
+
+    /// The edges of [`Surface::mesh`].
+    pub fn topology(&self) -> &Topology {
+        &self.topology
     }
 
     /// The tree over [`Surface::mesh`].
     pub fn bvh(&self) -> &Bvh {
+        &self.bvh
+    }
+
+    /// The same, to be kept by whoever needs it longer than the surface.
+    pub fn shared_bvh(&self) -> &Arc<Bvh> {
         &self.bvh
     }
 
@@ -110,11 +161,6 @@ impl Surface {
         used.map(|&v| self.mesh.positions()[v as usize]).collect()
     }
 
-    /// How many triangles were turned to agree with their neighbours.
-    pub fn n_turned(&self) -> usize {
-        self.n_turned
-    }
-
     /// Unit normals of the vertices.
     pub fn vertex_normals(&self) -> &[Vector3] {
         &self.vertex_normals
@@ -128,7 +174,7 @@ impl Surface {
     /// The unit normal at a hit, interpolated between the triangle's corners; across sharp edges
     /// the corners do not share their normals.
     pub fn normal_at(&self, hit: &SurfaceHit) -> Vector3 {
-        let normals = &self.corner_normals[hit.triangle as usize];
+        let normals = self.corner_normals.of_triangle(hit.triangle as usize);
         let sum: Vector3 = (0..3).map(|i| normals[i] * hit.barycentric[i]).sum();
         sum.try_normalize(0.0)
             .unwrap_or_else(|| self.mesh.normal(hit.triangle as usize))
@@ -139,7 +185,7 @@ impl Surface {
     /// tessellation, Boubekeur and Alexa 2008, with α = ½). Corners stay where they are.
     pub fn curved_point(&self, hit: &SurfaceHit) -> Point3 {
         let corners = self.mesh.corners(hit.triangle as usize);
-        let normals = &self.corner_normals[hit.triangle as usize];
+        let normals = self.corner_normals.of_triangle(hit.triangle as usize);
         let pull: Vector3 = (0..3)
             .map(|i| {
                 let normal = normals[i];
@@ -188,19 +234,31 @@ impl Surface {
     }
 }
 
-/// True if no two neighbours over a manifold edge run along it in the same direction.
-fn is_consistent(mesh: &TriMesh, topology: &Topology) -> bool {
-    let runs_forward = |triangle: u32, [u, v]: [u32; 2]| {
-        let corners = mesh.triangles()[triangle as usize];
-        (0..3).any(|i| corners[i] == u && corners[(i + 1) % 3] == v)
-    };
-    (0..topology.edges.len()).all(|edge| match topology.triangles_of(edge) {
-        &[s, t] => {
-            let ends = topology.edges[edge];
-            runs_forward(s, ends) != runs_forward(t, ends)
-        }
-        _ => true,
-    })
+impl std::fmt::Debug for Surface {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Surface")
+            .field("n_triangles", &self.mesh.n_triangles())
+            .field("measures", &self.measures)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Normals of vertices and corners.
+struct Normals {
+    of_vertices: Vec<Vector3>,
+    of_corners: CornerNormals,
+}
+
+impl Normals {
+    fn of(mesh: &TriMesh, monitor: &Monitor) -> Result<Self, Cancelled> {
+        let faces = face_normals(mesh, monitor)?;
+        let fans = VertexFans::of(mesh, monitor)?;
+        let sharp = SHARP_EDGE_DEG.to_radians();
+        Ok(Self {
+            of_vertices: vertex_normals(mesh, &faces, &fans, monitor)?,
+            of_corners: corner_normals(mesh, &faces, &fans, sharp, monitor)?,
+        })
+    }
 }
 
 /// Per triangle a bit for each border edge, and which vertices lie on a border.
@@ -223,77 +281,34 @@ fn borders(mesh: &TriMesh, topology: &Topology) -> (Vec<u8>, Vec<bool>) {
     (edges, vertices)
 }
 
-/// For each corner of each triangle the angle-weighted mean normal of the triangles around the
-/// vertex that do not turn away by more than [`SHARP_EDGE_DEG`].
-fn corner_normals(mesh: &TriMesh) -> Vec<[Vector3; 3]> {
-    let n_vertices = mesh.n_vertices();
-    let mut start = vec![0u32; n_vertices + 1];
-    for &vertex in mesh.triangles().iter().flatten() {
-        start[vertex as usize + 1] += 1;
-    }
-    for v in 0..n_vertices {
-        start[v + 1] += start[v];
-    }
-    let mut fill = start.clone();
-    let mut around = vec![(0u32, 0u8); 3 * mesh.n_triangles()];
-    for (t, corners) in mesh.triangles().iter().enumerate() {
-        for (i, &vertex) in corners.iter().enumerate() {
-            around[fill[vertex as usize] as usize] = (t as u32, i as u8);
-            fill[vertex as usize] += 1;
-        }
-    }
-    let flat: Vec<(Vector3, [f64; 3])> = (0..mesh.n_triangles())
-        .into_par_iter()
-        .with_min_len(512)
-        .map(|t| (mesh.normal(t), corner_angles(&mesh.corners(t))))
-        .collect();
-    let min_cos = SHARP_EDGE_DEG.to_radians().cos();
-    (0..mesh.n_triangles())
-        .into_par_iter()
-        .with_min_len(512)
-        .map(|t| {
-            let own = flat[t].0;
-            mesh.triangles()[t].map(|vertex| {
-                let fan = start[vertex as usize] as usize..start[vertex as usize + 1] as usize;
-                let sum: Vector3 = around[fan]
-                    .iter()
-                    .map(|&(other, corner)| {
-                        let (normal, angles) = &flat[other as usize];
-                        if normal.dot(&own) >= min_cos {
-                            normal * angles[usize::from(corner)]
-                        } else {
-                            Vector3::zeros()
-                        }
-                    })
-                    .sum();
-                sum.try_normalize(0.0).unwrap_or(own)
-            })
-        })
-        .collect()
-}
-
-fn corner_angles(points: &[Point3; 3]) -> [f64; 3] {
-    std::array::from_fn(|i| {
-        let u = points[(i + 1) % 3] - points[i];
-        let v = points[(i + 2) % 3] - points[i];
-        u.cross(&v).norm().atan2(u.dot(&v))
-    })
-}
-
-fn measures(mesh: &TriMesh, topology: &Topology) -> Measures {
-    let area = mesh.area();
-    let centroid = mesh.centroid();
-    let (principal_axes, principal_spread) = principal_frame(mesh, &centroid, area);
-    Measures {
+fn measures(
+    mesh: &TriMesh,
+    topology: &Topology,
+    area: f64,
+    monitor: &Monitor,
+) -> Result<Measures, Cancelled> {
+    let (of_triangles, chordal_error) = rayon::join(
+        || {
+            let centroid = mesh.centroid();
+            monitor.check()?;
+            let frame = principal_frame(mesh, &centroid, area);
+            monitor.check()?;
+            Ok((centroid, frame, mesh.mean_normal()))
+        },
+        || chordal_error(mesh, topology, monitor),
+    );
+    let (centroid, (principal_axes, principal_spread), mean_normal) = of_triangles?;
+    monitor.check()?;
+    Ok(Measures {
         area,
         centroid,
-        mean_normal: mesh.mean_normal(),
+        mean_normal,
         principal_axes,
         principal_spread,
         diagonal: mesh.aabb().diagonal(),
         mean_edge_length: mesh.mean_edge_length(),
-        chordal_error: chordal_error(mesh, topology),
-    }
+        chordal_error: chordal_error?,
+    })
 }
 
 /// Eigenvectors and square roots of the eigenvalues of the surface's covariance, exact over each
@@ -319,25 +334,28 @@ fn principal_frame(mesh: &TriMesh, centroid: &Point3, area: f64) -> (Matrix3, Ve
 
 /// Over every smooth interior edge the sagitta h·φ/8 of an arc of span h (mean height of both
 /// triangles) that turns by the dihedral angle φ; half its square, averaged over the area.
-fn chordal_error(mesh: &TriMesh, topology: &Topology) -> f64 {
+fn chordal_error(mesh: &TriMesh, topology: &Topology, monitor: &Monitor) -> Result<f64, Cancelled> {
     let (mut sum, mut share_sum) = (0.0, 0.0);
-    for (edge, &[u, v]) in topology.edges.iter().enumerate() {
-        let &[s, t] = topology.triangles_of(edge) else {
-            continue;
-        };
-        let length = (mesh.positions()[v as usize] - mesh.positions()[u as usize]).norm();
-        let (a, b) = (mesh.area_vector(s as usize), mesh.area_vector(t as usize));
-        let share = a.norm() + b.norm();
-        let angle = a.cross(&b).norm().atan2(a.dot(&b));
-        if length > 0.0 && angle < SHARP_EDGE_DEG.to_radians() {
-            let sagitta = share / length * angle / 8.0;
-            sum += share * sagitta * sagitta / 2.0;
+    for_chunks(topology.edges.len(), monitor, |range| {
+        for edge in range {
+            let &[s, t] = topology.triangles_of(edge) else {
+                continue;
+            };
+            let [u, v] = topology.edges[edge].map(|v| mesh.positions()[v as usize]);
+            let length = (v - u).norm();
+            let (a, b) = (mesh.area_vector(s as usize), mesh.area_vector(t as usize));
+            let share = a.norm() + b.norm();
+            let angle = a.cross(&b).norm().atan2(a.dot(&b));
+            if length > 0.0 && angle < SHARP_EDGE_DEG.to_radians() {
+                let sagitta = share / length * angle / 8.0;
+                sum += share * sagitta * sagitta / 2.0;
+            }
+            share_sum += share;
         }
-        share_sum += share;
-    }
-    if share_sum > 0.0 {
+    })?;
+    Ok(if share_sum > 0.0 {
         (sum / share_sum).sqrt()
     } else {
         0.0
-    }
+    })
 }

@@ -1,7 +1,17 @@
+//! A mesh prepared for drawing.
+
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use super::mesh_build::{self, EdgeClasses};
-use crate::geometry::{Aabb, Point3, Topology, TriMesh};
+use crate::geometry::{Aabb, Point3, Topology, TriMesh, VertexFans, corner_normals, face_normals};
+use crate::monitor::Monitor;
+
+/// Neighbours that turn by at most so much look like one curved sheet.
+const CREASE_DEG: f64 = 35.0;
+/// Why preparing a mesh for drawing always ends.
+const NEVER: &str = "nobody cancels a silent monitor";
 
 /// What a [`RenderMesh`] is made of.
 #[derive(Debug, Clone, Copy)]
@@ -13,6 +23,8 @@ pub struct MeshInput<'a> {
     /// Element index of each triangle: edges inside one element are not drawn, so that a quadrilateral
     /// split in two looks like one. `None` if every triangle is an element.
     pub element_of_triangle: Option<&'a [u32]>,
+    /// The edges of the mesh, if they are at hand.
+    pub topology: Option<&'a Topology>,
 }
 
 impl<'a> MeshInput<'a> {
@@ -22,6 +34,7 @@ impl<'a> MeshInput<'a> {
             mesh,
             part_of_triangle: None,
             element_of_triangle: None,
+            topology: None,
         }
     }
 }
@@ -89,11 +102,18 @@ impl RenderMesh {
             let part = input.part_of_triangle.and_then(|parts| parts.get(t));
             part.copied().unwrap_or(0) & !BORDER_BIT
         };
-        let faces = mesh_build::face_normals(mesh);
+        let monitor = Monitor::silent();
+        let faces = face_normals(mesh, &monitor).expect(NEVER);
         let (normals, (topology, classes)) = rayon::join(
-            || mesh_build::creased_normals(mesh, &faces),
             || {
-                let topology = Topology::of(mesh);
+                let fans = VertexFans::of(mesh, &monitor).expect(NEVER);
+                let crease = CREASE_DEG.to_radians();
+                corner_normals(mesh, &faces, &fans, crease, &monitor).expect(NEVER)
+            },
+            || {
+                let topology = input
+                    .topology
+                    .map_or_else(|| Cow::Owned(Topology::of(mesh)), Cow::Borrowed);
                 let classes = EdgeClasses::of(&topology, &faces, input.element_of_triangle);
                 (topology, classes)
             },
@@ -104,7 +124,7 @@ impl RenderMesh {
             .enumerate()
             .map(|(corner, &vertex)| Corner {
                 position: near(&mesh.positions()[vertex as usize]),
-                normal: mesh_build::octahedral(&normals[corner]),
+                normal: mesh_build::octahedral(&normals.of_triangle(corner / 3)[corner % 3]),
                 part: part(corner / 3),
             })
             .collect();

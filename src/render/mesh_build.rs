@@ -1,11 +1,7 @@
-//! Normals and edge lines of a [`RenderMesh`](super::RenderMesh).
-
-use rayon::prelude::*;
+//! Edge lines of a [`RenderMesh`](super::RenderMesh).
 
 use crate::geometry::{Topology, TriMesh, Vector3};
 
-/// Neighbours that turn by less look like one curved sheet: cos 35°.
-const SMOOTH_COS: f64 = 0.819_152_044_288_991_8;
 /// Edges that turn by more are drawn as creases: cos 25°.
 const FEATURE_COS: f64 = 0.906_307_787_036_650;
 /// Creases sharper than this are certain: cos 34°.
@@ -18,68 +14,6 @@ const MIN_CHAIN: u32 = 20;
 /// And where at least one in so many is certain. Radii meshed with three or four elements bend by about
 /// 25° per row, and only some of their edges lie above the limit.
 const CERTAIN_ONE_IN: u32 = 3;
-
-/// Unit normal of each triangle.
-pub(super) fn face_normals(mesh: &TriMesh) -> Vec<Vector3> {
-    let triangles = (0..mesh.n_triangles()).into_par_iter();
-    triangles.map(|t| mesh.normal(t)).collect()
-}
-
-/// Normal at each corner of each triangle: the mean of the triangles around the vertex that turn by
-/// less than 35° against this one, weighted by their angle at the vertex (Thürmer and Wüthrich 1998).
-/// Flat areas do not depend on how they are cut, and bends of pressed sheets stay crisp.
-pub(super) fn creased_normals(mesh: &TriMesh, faces: &[Vector3]) -> Vec<Vector3> {
-    let n_triangles = mesh.n_triangles();
-    let weights: Vec<[f64; 3]> = (0..n_triangles)
-        .into_par_iter()
-        .map(|t| corner_angles(mesh, t))
-        .collect();
-    let (starts, around) = corners_around_vertices(mesh);
-    (0..3 * n_triangles)
-        .into_par_iter()
-        .map(|corner| {
-            let own = faces[corner / 3];
-            let vertex = mesh.triangles()[corner / 3][corner % 3] as usize;
-            let mut sum = Vector3::zeros();
-            for &other in &around[starts[vertex] as usize..starts[vertex + 1] as usize] {
-                let (triangle, place) = (other as usize / 3, other as usize % 3);
-                if faces[triangle].dot(&own) >= SMOOTH_COS {
-                    sum += faces[triangle] * weights[triangle][place];
-                }
-            }
-            sum.try_normalize(1e-12).unwrap_or(own)
-        })
-        .collect()
-}
-
-/// Inner angles of a triangle; zero where a side has no length.
-fn corner_angles(mesh: &TriMesh, triangle: usize) -> [f64; 3] {
-    let points = mesh.corners(triangle);
-    std::array::from_fn(|i| {
-        let u = points[(i + 1) % 3] - points[i];
-        let v = points[(i + 2) % 3] - points[i];
-        u.cross(&v).norm().atan2(u.dot(&v))
-    })
-}
-
-/// For each vertex, where its corners start, and the corners in ascending order.
-fn corners_around_vertices(mesh: &TriMesh) -> (Vec<u32>, Vec<u32>) {
-    let mut starts = vec![0u32; mesh.n_vertices() + 1];
-    for &vertex in mesh.triangles().iter().flatten() {
-        starts[vertex as usize + 1] += 1;
-    }
-    for i in 1..starts.len() {
-        starts[i] += starts[i - 1];
-    }
-    let mut next = starts.clone();
-    let mut around = vec![0u32; 3 * mesh.n_triangles()];
-    for (corner, &vertex) in mesh.triangles().iter().flatten().enumerate() {
-        let place = &mut next[vertex as usize];
-        around[*place as usize] = corner as u32;
-        *place += 1;
-    }
-    (starts, around)
-}
 
 /// Octahedral form of a unit vector (Cigolle et al. 2014) in 16 bits per coordinate; z for zero.
 pub(super) fn octahedral(normal: &Vector3) -> [i16; 2] {
@@ -240,8 +174,8 @@ mod tests {
         TriMesh::new(positions, triangles).unwrap()
     }
 
-    fn normals_of(mesh: &TriMesh) -> Vec<Vector3> {
-        creased_normals(mesh, &face_normals(mesh))
+    fn face_normals(mesh: &TriMesh) -> Vec<Vector3> {
+        (0..mesh.n_triangles()).map(|t| mesh.normal(t)).collect()
     }
 
     /// A sheet of `n` elements along a bend of `angle`.
@@ -280,17 +214,6 @@ mod tests {
             assert!(decode(octahedral(&n)).angle(&n) < 1e-4, "{n}");
         }
         assert_eq!(octahedral(&Vector3::zeros()), [0, 0]);
-    }
-
-    #[test]
-    fn gentle_bends_are_smooth_and_sharp_ones_creased() {
-        let smooth = normals_of(&bent(0.3));
-        // Corner 2 of triangle 0 and corner 1 of triangle 2 are the same vertex.
-        assert!((smooth[2] - smooth[7]).norm() < 1e-12);
-        assert!(smooth[2].angle(&Vector3::z()) > 0.05);
-        let sharp = normals_of(&bent(1.0));
-        assert!((sharp[2] - Vector3::z()).norm() < 1e-12);
-        assert!(sharp[7].angle(&Vector3::z()) > 0.9);
     }
 
     #[test]

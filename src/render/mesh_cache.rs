@@ -6,7 +6,7 @@ use std::sync::{Arc, Weak};
 
 use wgpu::util::DeviceExt as _;
 
-use super::RenderMesh;
+use super::mesh::RenderMesh;
 use super::scene::FieldLook;
 
 /// Buffers of one mesh; `None` where there is nothing to draw.

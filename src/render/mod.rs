@@ -8,23 +8,28 @@
 //! and features of wgpu is used, so that software drivers and OpenGL draw the same picture.
 
 mod context;
+mod frame;
 mod mesh;
 mod mesh_build;
 mod mesh_cache;
 mod pass;
 mod pick;
+mod pipeline;
 mod prepare;
+mod prepare_overlay;
 mod readback;
 mod renderer;
 mod scene;
 mod sheets;
 mod target;
+mod texture;
 mod uniforms;
 
+pub use frame::Frame;
 pub use mesh::{MeshInput, RenderMesh};
 pub use pick::{PickHit, PickRequest};
 pub use readback::ReadbackError;
-pub use renderer::{Frame, Renderer};
+pub use renderer::Renderer;
 pub use scene::{
     Background, DepthMode, Drawable, FieldLook, Fill, LineLook, Marker, MarkerShape, Overlay,
     PartLook, Polyline, Rgba, Scene, Section, Shading, Sheet, Style, WipeSide,

@@ -1,11 +1,12 @@
 //! What lies under a pixel: a few pixels around it are drawn again with indices for colours.
 
-use super::context::{Context, DEPTH_FORMAT, PICK_FORMAT};
+use super::context::Context;
+use super::frame::Frame;
 use super::mesh_cache::MeshCache;
-use super::prepare::{Gpu, Prepared};
+use super::pipeline::{DEPTH_FORMAT, Gpu, PICK_FORMAT};
+use super::prepare::Prepared;
 use super::readback::{Download, ReadbackError};
-use super::renderer::Frame;
-use super::target::{attachment, texture, view};
+use super::texture::{attachment, texture, view};
 use super::uniforms::Region;
 
 /// Pixels on each side of the cursor that still count.

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use wgpu::util::DeviceExt as _;
 
-use super::context::Layouts;
+use super::frame::Frame;
 use super::mesh_cache::{GpuMesh, MeshCache};
-use super::pass::overlay::PreparedOverlay;
-use super::renderer::Frame;
-use super::scene::{Drawable, PartLook, Sheet, Style};
+use super::pipeline::Gpu;
+use super::prepare_overlay::PreparedOverlay;
+use super::scene::{Background, Drawable, PartLook, Sheet, Style};
 use super::uniforms::{DrawableUniform, FrameUniform, Region};
 use crate::colormap::{ColorScale, Pattern};
 
@@ -39,14 +39,6 @@ pub(super) struct PreparedDrawable {
     pub(super) style: Style,
     /// Set if it may coincide with the other sheet.
     pub(super) sheet: Option<Sheet>,
-}
-
-/// The device and the layouts, which every preparation needs.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Gpu<'a> {
-    pub(super) device: &'a wgpu::Device,
-    pub(super) queue: &'a wgpu::Queue,
-    pub(super) layouts: &'a Layouts,
 }
 
 impl Prepared {
@@ -86,7 +78,7 @@ impl Prepared {
             clear: clear.into_iter().map(|(_, prepared)| prepared).collect(),
             overlay: PreparedOverlay::new(gpu.device, frame),
             has_selection: frame.scene.drawables.iter().any(Drawable::has_selection),
-            opaque_background: frame.scene.background != super::Background::Transparent,
+            opaque_background: frame.scene.background != Background::Transparent,
         }
     }
 

@@ -1,21 +1,12 @@
+//! The renderer of one device.
+
 use super::context::Context;
+use super::frame::Frame;
 use super::mesh_cache::MeshCache;
 use super::pick::PickRequest;
-use super::prepare::Gpu;
+use super::pipeline::Gpu;
 use super::readback::{Download, ReadbackError, unpremultiply};
-use super::{Scene, ViewTarget};
-use crate::geometry::Camera;
-
-/// One picture: what, from where, how large.
-#[derive(Debug, Clone, Copy)]
-pub struct Frame<'a> {
-    /// What there is to see.
-    pub scene: &'a Scene,
-    /// From where.
-    pub camera: &'a Camera,
-    /// Width and height in pixels; zero counts as one, sizes beyond the device's limit are cut.
-    pub size: [u32; 2],
-}
+use super::target::ViewTarget;
 
 /// Draws scenes on one device. Keeps the pipelines and the uploaded meshes; any number of
 /// [`ViewTarget`]s share them.

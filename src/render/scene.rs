@@ -3,9 +3,10 @@
 
 use std::sync::Arc;
 
-use super::RenderMesh;
+use super::mesh::RenderMesh;
 use crate::colormap::{ColorScale, Rgb};
 use crate::geometry::{Aabb, Point3, Similarity, Vector3};
+use crate::palette::{DARK_GROUND, LIGHT_GROUND};
 
 /// An sRGB colour with opacity (not premultiplied), a byte per channel.
 pub type Rgba = [u8; 4];
@@ -92,13 +93,13 @@ pub enum Background {
 impl Background {
     /// The dark theme's gradient about #1E2126.
     pub const DARK: Self = Self::Gradient {
-        top: [0x2B, 0x30, 0x37],
-        bottom: [0x17, 0x1A, 0x1E],
+        top: DARK_GROUND[0],
+        bottom: DARK_GROUND[1],
     };
     /// The light theme's gradient about #ECEEF1.
     pub const LIGHT: Self = Self::Gradient {
-        top: [0xF7, 0xF8, 0xFA],
-        bottom: [0xDF, 0xE3, 0xE8],
+        top: LIGHT_GROUND[0],
+        bottom: LIGHT_GROUND[1],
     };
 }
 

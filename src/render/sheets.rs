@@ -1,10 +1,11 @@
 //! The depths of two sheets, drawn before the picture: where they lie in each other, each is striped
 //! with the colour of the other. Both see the same stripes, so that rounding of depths does not show.
 
-use super::context::{Context, DEPTH_FORMAT, SHEET_FORMAT};
-use super::prepare::{Gpu, Prepared};
+use super::pass::surface::Surface;
+use super::pipeline::{DEPTH_FORMAT, SHEET_FORMAT};
+use super::prepare::Prepared;
 use super::scene::Sheet;
-use super::target::{attachment, texture, view};
+use super::texture::{attachment, texture, view};
 
 /// A depth picture of each sheet, one sample per pixel, with the depth buffer they share.
 #[derive(Debug)]
@@ -31,16 +32,14 @@ impl Sheets {
         [&self.first, &self.second]
     }
 
-    /// Records the drawing of both.
+    /// Records the drawing of both; `frame` is the frame's group without them.
     pub(super) fn draw(
         &self,
-        gpu: Gpu<'_>,
-        context: &Context,
+        surface: &Surface,
+        frame: &wgpu::BindGroup,
         encoder: &mut wgpu::CommandEncoder,
         prepared: &Prepared,
     ) {
-        // The frame's own group reads what is drawn here.
-        let frame = prepared.frame_group(gpu, context.no_sheets.views());
         for (sheet, target) in [(Sheet::First, &self.first), (Sheet::Second, &self.second)] {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some("sheet depth"),
@@ -59,10 +58,10 @@ impl Sheets {
                 }),
                 ..Default::default()
             });
-            pass.set_bind_group(0, &frame, &[]);
+            pass.set_bind_group(0, frame, &[]);
             let of_sheet = prepared.solid.iter().filter(|d| d.sheet == Some(sheet));
             for drawable in of_sheet {
-                context.passes.surface.draw_depth(&mut pass, drawable);
+                surface.draw_depth(&mut pass, drawable);
             }
         }
     }

@@ -1,9 +1,13 @@
-use super::context::{COLOR_FORMAT, Context, DEPTH_FORMAT, MASK_FORMAT, SAMPLES};
+//! The textures of a viewport.
+
+use super::context::Context;
+use super::frame::Frame;
 use super::mesh_cache::MeshCache;
-use super::prepare::{Gpu, Prepared};
-use super::renderer::Frame;
+use super::pipeline::{COLOR_FORMAT, DEPTH_FORMAT, Gpu, MASK_FORMAT, SAMPLES};
+use super::prepare::Prepared;
 use super::scene::Scene;
 use super::sheets::Sheets;
+use super::texture::{attachment, texture, view};
 use super::uniforms::Region;
 use crate::geometry::Camera;
 
@@ -89,7 +93,9 @@ impl ViewTarget {
             let views = sheets.unwrap_or(&context.no_sheets).views();
             let prepared = Prepared::new(gpu, cache, &frame, Region::whole(size), views);
             if let Some(sheets) = sheets {
-                sheets.draw(gpu, context, encoder, &prepared);
+                // The frame's own group reads what is drawn here.
+                let group = prepared.frame_group(gpu, context.no_sheets.views());
+                sheets.draw(&context.passes.surface, &group, encoder, &prepared);
             }
             textures.draw(gpu, context, encoder, &prepared);
         }
@@ -216,50 +222,4 @@ impl Mask {
             group,
         }
     }
-}
-
-pub(super) fn attachment<'a>(
-    view: &'a wgpu::TextureView,
-    resolve_target: Option<&'a wgpu::TextureView>,
-    load: wgpu::LoadOp<wgpu::Color>,
-) -> wgpu::RenderPassColorAttachment<'a> {
-    // Once resolved, the samples are not needed any more.
-    let store = if resolve_target.is_some() {
-        wgpu::StoreOp::Discard
-    } else {
-        wgpu::StoreOp::Store
-    };
-    wgpu::RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target,
-        ops: wgpu::Operations { load, store },
-    }
-}
-
-pub(super) fn texture(
-    device: &wgpu::Device,
-    [width, height]: [u32; 2],
-    format: wgpu::TextureFormat,
-    sample_count: u32,
-    usage: wgpu::TextureUsages,
-) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("viewport"),
-        size: wgpu::Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
-}
-
-pub(super) fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

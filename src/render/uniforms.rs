@@ -1,7 +1,7 @@
 //! The numbers shaders read once per frame and once per drawable. Poses and the camera meet here in
 //! `f64`; only their product, small near the target, becomes `f32`.
 
-use super::renderer::Frame;
+use super::frame::Frame;
 use super::scene::{Background, Drawable, Rgba, Shading, Sheet, WipeSide};
 use crate::colormap::{Rgb, UNMATCHED};
 use crate::geometry::camera::ScreenSize;

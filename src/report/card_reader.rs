@@ -1,8 +1,9 @@
 //! Reads cards back as a solver would.
 
 use crate::formats::Diagnostics;
-use crate::formats::keyword::block::{Block, Blocks, SourceFile};
+use crate::formats::keyword::block::{Block, Blocks};
 use crate::formats::keyword::card::{Card, EIGHT_BY_10, FieldError, Layout};
+use crate::formats::keyword::source_file::SourceFile;
 use crate::formats::keyword::transform::{TransformError, Transformation};
 use crate::geometry::{Matrix3, Matrix4, MatrixError, Point3, Similarity, Vector3};
 
@@ -54,7 +55,7 @@ impl From<FieldError> for ReadBackError {
 
 /// The pose `crash_from_stamped` that a text of cards holds, mirror included.
 pub fn read_back(text: &str) -> Result<Similarity, ReadBackError> {
-    let file = SourceFile::from_text("cards", text);
+    let file = SourceFile::new("cards", text);
     for block in Blocks::new(&file, Layout::Standard) {
         let name = block.name.as_str();
         if name.starts_with("DEFINE_TRANSFORMATION") {

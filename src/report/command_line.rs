@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use crate::formats::Selection as PartSelection;
 use crate::geometry::Similarity;
-use crate::registration::{
-    Floor, MatchSettings, Method, Motion, Selection, StartMethod, StartSettings,
-};
+use crate::registration::{MatchSettings, StartMethod};
+use crate::role::{PerRole, Role};
+use crate::settings::{Domain, MatchRecipe, SETTINGS, Setting, exact};
 use crate::units::Units;
 
 /// One file of a match and what is taken from it.
@@ -27,34 +27,47 @@ pub struct CommandSide<'a> {
 /// Everything a match depends on.
 #[derive(Debug, Clone, Copy)]
 pub struct CommandLine<'a> {
-    /// The fixed part.
-    pub crash: CommandSide<'a>,
-    /// The moving part.
-    pub stamped: CommandSide<'a>,
+    /// The two files.
+    pub sides: PerRole<CommandSide<'a>>,
     /// Further folders for included files.
     pub include_folders: &'a [PathBuf],
     /// Method and parameters.
     pub settings: &'a MatchSettings,
-    /// Ceilings of the crash and the stamped mesh the starts run on.
-    pub max_triangles: [Option<usize>; 2],
+    /// Maximum number of triangles of each mesh the starts run on.
+    pub max_triangles: PerRole<Option<usize>>,
     /// Where the stamped part lay (crash from stamped); counts only for starts from the current pose.
     pub current: &'a Similarity,
+    /// The pose that is taken instead of the best: the first, second … of those that fit nearly as well.
+    pub alternative: Option<usize>,
 }
 
 impl CommandLine<'_> {
     /// Program, subcommand, files and options, one word each. What is the default is left out.
     pub fn words(&self) -> Vec<String> {
         let mut words = Words(vec!["shapematch".into(), "match".into()]);
-        for side in [&self.crash, &self.stamped] {
+        for (_, side) in self.sides.iter() {
             words.0.push(file_word(side.path));
         }
-        words.side("crash", &self.crash);
-        words.side("stamped", &self.stamped);
+        for (role, side) in self.sides.iter() {
+            words.side(role, side);
+        }
         for folder in self.include_folders {
             words.option("include-folder", folder.display().to_string());
         }
-        words.levels(self.max_triangles);
-        words.settings(self.settings, self.current);
+        let PerRole { crash, stamped } = self.max_triangles;
+        let is_common = crash == stamped;
+        if !is_common {
+            words.levels(self.max_triangles);
+        }
+        let recipe = MatchRecipe {
+            settings: self.settings.clone(),
+            max_triangles: crash.filter(|_| is_common),
+        };
+        words.settings(&recipe, self.current);
+        if let Some(index) = self.alternative {
+            // The best pose is the first one.
+            words.option("pose-number", (index + 2).to_string());
+        }
         words.0
     }
 
@@ -92,11 +105,6 @@ fn quoted(word: &str) -> String {
     }
 }
 
-/// The shortest text of a number that reads back to the same bits.
-fn exact(value: f64) -> String {
-    format!("{value:?}")
-}
-
 /// A pose as one word: 16 numbers by rows, or with a scale R by rows, t and c, so that nothing is
 /// multiplied and divided again.
 fn pose_word(pose: &Similarity) -> String {
@@ -129,151 +137,72 @@ impl Words {
         self.0.push(value);
     }
 
-    /// An option that stands there only if it is not the default.
-    fn unless<T: PartialEq>(
-        &mut self,
-        usual: &T,
-        name: &str,
-        value: &T,
-        word: impl Fn(&T) -> String,
-    ) {
-        if value != usual {
-            self.option(name, word(value));
-        }
-    }
-
-    fn side(&mut self, role: &str, side: &CommandSide<'_>) {
+    fn side(&mut self, role: Role, side: &CommandSide<'_>) {
+        let role = role.word();
         if let Some(parts) = side.selection.typed() {
             self.option(&format!("{role}-part"), parts);
         }
-        let unit = format!("{role}-unit");
         if let Some(units) = side.units {
             self.option(&format!("{role}-units"), units.label().to_owned());
         }
-        self.unless(&1.0, &unit, &side.length_factor, |&v| exact(v));
+        if side.length_factor != 1.0 {
+            let factor = exact(side.length_factor);
+            self.option(&format!("{role}-length-factor"), factor);
+        }
     }
 
-    fn levels(&mut self, [crash, stamped]: [Option<usize>; 2]) {
-        if let (Some(n), true) = (crash, crash == stamped) {
-            return self.option("triangles", n.to_string());
-        }
-        for (name, level) in [("crash-triangles", crash), ("stamped-triangles", stamped)] {
+    /// Where the parts are reduced to different levels, each has an option of its own.
+    fn levels(&mut self, max_triangles: PerRole<Option<usize>>) {
+        for (role, level) in max_triangles.iter() {
             if let Some(n) = level {
-                self.option(name, n.to_string());
+                self.option(&format!("{}-triangles", role.word()), n.to_string());
             }
         }
     }
 
-    fn settings(&mut self, settings: &MatchSettings, current: &Similarity) {
-        // Every field by name: a new setting is not forgotten here.
-        let MatchSettings {
-            method,
-            pair_with,
-            selection,
-            metric,
-            motion,
-            hand,
-            starts,
-            search,
-            finish,
-            data_side,
-            allowance,
-            max_normal_angle_deg,
-            n_race_points,
-            n_refine_points,
-            max_iterations,
-            motion_tolerance,
-        } = settings;
-        let usual = MatchSettings::of(*method);
-        let word = |name: &'static str| name.to_owned();
-        self.unless(&Method::default(), "method", method, |v| word(v.name()));
-        self.selection(usual.selection, *selection);
-        self.unless(&usual.pair_with, "pairs", pair_with, |v| word(v.name()));
-        self.unless(&usual.metric, "residual", metric, |v| word(v.name()));
-        if *motion == Motion::Similarity {
-            self.flag("scale");
-        }
-        self.unless(&usual.hand, "hand", hand, |v| word(v.name()));
-        self.unless(&usual.data_side, "points-of", data_side, |v| word(v.name()));
-        self.unless(&usual.search, "search", search, |v| word(v.name()));
-        self.unless(&usual.finish, "finish", finish, |&v| word(yes_or_no(v)));
-        self.unless(&usual.allowance, "allowance", allowance, |&v| exact(v));
-        let angle = &usual.max_normal_angle_deg;
-        self.unless(angle, "normal-angle", max_normal_angle_deg, |&v| exact(v));
-        let n_race = &usual.n_race_points;
-        self.unless(n_race, "race-points", n_race_points, usize::to_string);
-        let n_refine = &usual.n_refine_points;
-        self.unless(n_refine, "refine-points", n_refine_points, usize::to_string);
-        let n_iterations = &usual.max_iterations;
-        self.unless(n_iterations, "iterations", max_iterations, usize::to_string);
-        let tolerance = &usual.motion_tolerance;
-        self.unless(tolerance, "tolerance", motion_tolerance, |&v| exact(v));
-        self.starts(&usual.starts, starts, current);
-    }
-
-    fn selection(&mut self, usual: Selection, selection: Selection) {
-        if usual.name() != selection.name() {
-            self.option("keep", selection.name().to_owned());
-        }
-        let base = Selection::of_kind(selection.name(), usual);
-        match (selection, base) {
-            // The bare method "trimmed" searches the overlap.
-            (Selection::Trimmed { overlap }, _) => self.option("overlap", exact(overlap)),
-            (
-                Selection::Fractional { lambda, floor },
-                Some(Selection::Fractional {
-                    lambda: usual_lambda,
-                    floor: usual_floor,
-                }),
-            ) => {
-                self.unless(&usual_lambda, "lambda", &lambda, |&v| exact(v));
-                self.unless(&usual_floor, "floor", &floor, floor_word);
+    /// What has to be said to turn the defaults of the method into the recipe, row by row.
+    fn settings(&mut self, recipe: &MatchRecipe, current: &Similarity) {
+        let mut base = MatchRecipe::default();
+        for setting in &SETTINGS {
+            let value = setting.get(recipe);
+            if let Domain::Poses = setting.domain {
+                self.poses(setting, recipe, current);
+            } else if (value != setting.get(&base) || is_always_said(setting))
+                && let Some(value) = value
+                && let Some(word) = value.word()
+            {
+                self.option(setting.option, word);
+                setting.set(&mut base, &value);
             }
-            _ => {}
+            if setting.option == "method" {
+                base.settings = MatchSettings::of(recipe.settings.method);
+            }
         }
     }
 
-    fn starts(&mut self, usual: &StartSettings, starts: &StartSettings, current: &Similarity) {
-        let StartSettings {
-            method,
-            angle_segment_deg,
-            both_signs,
-            poses,
-            widen,
-        } = starts;
-        self.unless(&usual.method, "start", method, |v| v.name().to_owned());
-        let poses: &[Similarity] = match method {
+    fn poses(&mut self, setting: &Setting, recipe: &MatchRecipe, current: &Similarity) {
+        let starts = &recipe.settings.starts;
+        let poses: &[Similarity] = match starts.method {
             StartMethod::SurfaceNormals => &[],
             StartMethod::CurrentPose if *current == Similarity::identity() => &[],
             StartMethod::CurrentPose => std::slice::from_ref(current),
-            StartMethod::GivenPoses | StartMethod::All => poses,
+            StartMethod::GivenPoses | StartMethod::All => &starts.poses,
         };
         for pose in poses {
-            self.option("start-pose", pose_word(pose));
+            self.option(setting.option, pose_word(pose));
         }
-        let segment = &usual.angle_segment_deg;
-        self.unless(segment, "angle-segment", angle_segment_deg, |&v| exact(v));
-        let yes_no = |value: &bool| yes_or_no(*value).to_owned();
-        self.unless(&usual.both_signs, "both-directions", both_signs, yes_no);
-        self.unless(&usual.widen, "widen", widen, yes_no);
     }
 }
 
-fn yes_or_no(value: bool) -> &'static str {
-    if value { "yes" } else { "no" }
-}
-
-fn floor_word(floor: &Floor) -> String {
-    match floor {
-        Floor::Auto => "auto".to_owned(),
-        Floor::None => "none".to_owned(),
-        Floor::Length(length) => exact(*length),
-    }
+/// Trimmed ICP estimates its overlap unless it is told one.
+fn is_always_said(setting: &Setting) -> bool {
+    setting.option == "overlap"
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::registration::Method;
 
     fn line(settings: &MatchSettings, current: &Similarity) -> String {
         let side = |path, selection, length_factor| CommandSide {
@@ -284,12 +213,15 @@ mod tests {
         };
         let parts = PartSelection::Parts(vec![2001, 2002]);
         let command = CommandLine {
-            crash: side("my car.k", &parts, 1.0),
-            stamped: side("-it's.dynain", &PartSelection::All, 25.4),
+            sides: PerRole {
+                crash: side("my car.k", &parts, 1.0),
+                stamped: side("-it's.dynain", &PartSelection::All, 25.4),
+            },
             include_folders: &[],
             settings,
-            max_triangles: [None, Some(2000)],
+            max_triangles: PerRole::new(None, Some(2000)),
             current,
+            alternative: None,
         };
         command.line()
     }
@@ -300,7 +232,7 @@ mod tests {
         let mut settings = MatchSettings::of(Method::Paper);
         settings.allowance = 0.1;
         let written = line(&settings, &Similarity::identity());
-        let expected = r"shapematch match 'my car.k' './-it'\''s.dynain' --crash-part 2001,2002 --stamped-unit 25.4 --stamped-triangles 2000 --method paper --allowance 0.1";
+        let expected = r"shapematch match 'my car.k' './-it'\''s.dynain' --crash-part 2001,2002 --stamped-length-factor 25.4 --stamped-triangles 2000 --method paper --allowance 0.1";
         assert_eq!(written, expected);
     }
 

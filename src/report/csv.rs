@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::matrix::number;
 use crate::assess::deviation::OverlapClass;
 use crate::geometry::Point3;
+use crate::role::Role;
 
 /// The head of a table of node deviations.
 pub const DEVIATION_COLUMNS: &str = "part,node,x,y,z,distance,class,nearest_element";
@@ -12,8 +13,8 @@ pub const DEVIATION_COLUMNS: &str = "part,node,x,y,z,distance,class,nearest_elem
 /// One node seen from the other part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodeDeviation {
-    /// `stamped` or `crash`: whose node it is.
-    pub part: &'static str,
+    /// Whose node it is.
+    pub role: Role,
     /// Its id in its file.
     pub node: u64,
     /// Where it lies, in the frame and unit of the crash part.
@@ -57,7 +58,7 @@ pub fn deviation_table(comments: &[String], rows: &[NodeDeviation]) -> String {
         let element = row
             .nearest_element
             .map_or_else(String::new, |id| id.to_string());
-        let (part, node, class) = (row.part, row.node, class_word(row.class));
+        let (part, node, class) = (row.role.word(), row.node, class_word(row.class));
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
@@ -74,7 +75,7 @@ mod tests {
     #[test]
     fn rows_read_back_and_missing_values_are_empty() {
         let near = NodeDeviation {
-            part: "stamped",
+            role: Role::Stamped,
             node: 12,
             at: Point3::new(0.1 + 0.2, -1e-7, 5000.0),
             distance: -1.0 / 3.0,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::formats::{Model, Severity};
+use crate::formats::{Diagnostic, Model};
 use crate::units::KnownUnits;
 
 /// What a file holds. The JSON form has exactly these keys.
@@ -140,7 +140,7 @@ impl ModelInfo {
             parts: parts.collect(),
             bounds: (!aabb.is_empty()).then_some(bounds),
             forming: FormingInfo::of(model),
-            diagnostics: diagnostics(model),
+            diagnostics: model.diagnostics.iter().map(DiagnosticInfo::of).collect(),
             n_diagnostics: model.diagnostics.total(),
         }
     }
@@ -194,11 +194,21 @@ fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     })
 }
 
-fn diagnostics(model: &Model) -> Vec<DiagnosticInfo> {
-    let info = |diagnostic: &crate::formats::Diagnostic| {
+impl DiagnosticInfo {
+    /// The severity at the begin of a line.
+    pub(super) fn severity_title(&self) -> &'static str {
+        match self.severity {
+            "error" => "Error",
+            "warning" => "Warning",
+            _ => "Note",
+        }
+    }
+
+    /// The finding field by field.
+    pub fn of(diagnostic: &Diagnostic) -> Self {
         let position = diagnostic.position.as_ref();
-        DiagnosticInfo {
-            severity: Severity::label(diagnostic.severity()),
+        Self {
+            severity: diagnostic.severity().label(),
             kind: diagnostic.kind.label(),
             file: position.map(|p| p.file.display().to_string()),
             line: position.map(|p| p.line).filter(|&line| line > 0),
@@ -207,6 +217,5 @@ fn diagnostics(model: &Model) -> Vec<DiagnosticInfo> {
             found: diagnostic.found.clone(),
             expected: diagnostic.expected.clone(),
         }
-    };
-    model.diagnostics.iter().map(info).collect()
+    }
 }

@@ -10,17 +10,14 @@ pub mod matrix;
 pub mod picture;
 mod pose;
 mod record;
-mod start_groups;
-mod text;
+mod starts;
 
 pub use cards::{CardError, CardForm, CardOptions, Cards, Receiver, write as write_cards};
 pub use info::{Bounds, DiagnosticInfo, FileInfo, FormingInfo, ModelInfo, PartInfo};
 pub use matrix::{MatrixForm, ParsedMatrix, number, parse_matrix};
 pub use pose::{AxisAngle, PoseRecord, SampleNode};
 pub use record::{
-    AlternativeRecord, DIRECTION, FileRecord, Files, IncludedFile, Machine, MatchRecord, Metrics,
-    OneWay, OverlapRecord, Parameters, RecordContext, StartEntry, TimingsRecord, UnitsRecord,
-    build_id, fate_words, side_word,
+    AlternativeRecord, DIRECTION, FileRecord, IncludedFile, Machine, MatchRecord, Metrics, OneWay,
+    OverlapRecord, Parameters, RecordContext, TimingsRecord, UnitsRecord, build_id, role_of,
 };
-pub use start_groups::{StartGroup, start_groups};
-pub use text::{grouped, length, signed};
+pub use starts::{outcome_words, start_kind_words, start_name};

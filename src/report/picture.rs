@@ -63,7 +63,7 @@ pub fn picture(
         height: canvas.height as f64,
     };
     for (place, item) in meshes.iter().enumerate() {
-        // Sheets laid on each other would show through each other in spots.
+        // Coinciding sheets would show through each other in spots.
         let lift = place as f64 * 0.001 * camera.height;
         canvas.draw(item, camera, screen, lift);
     }

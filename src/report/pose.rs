@@ -14,9 +14,9 @@ pub struct PoseRecord {
     pub inverse: [[f64; 4]; 4],
     /// R as rows.
     pub rotation: [[f64; 3]; 3],
-    /// The turn as one angle about one axis.
+    /// The rotation as one angle about one axis.
     pub rotation_axis_angle: AxisAngle,
-    /// The turn as a unit quaternion w, x, y, z.
+    /// The rotation as a unit quaternion w, x, y, z.
     pub quaternion: [f64; 4],
     /// t.
     pub translation: [f64; 3],
@@ -24,7 +24,7 @@ pub struct PoseRecord {
     pub scale: f64,
     /// Determinant of R: 1, or −1 for a mirrored part.
     pub determinant: f64,
-    /// How the centre of the stamped part moves: what people expect of a translation.
+    /// Displacement of the centre of the stamped part: what people expect of a translation.
     pub center_move: [f64; 3],
     /// One node before and after, to try a reader of the matrix with.
     pub sample_node: Option<SampleNode>,
@@ -66,25 +66,35 @@ impl PoseRecord {
             });
         let rotation = std::array::from_fn(|i| std::array::from_fn(|j| pose.rotation[(i, j)]));
         Self {
-            matrix: pose.to_rows(),
-            inverse: pose.inverse().to_rows(),
-            rotation,
+            matrix: rows(pose),
+            inverse: rows(&pose.inverse()),
+            rotation: rotation.map(unsigned_zeros),
             rotation_axis_angle: AxisAngle {
-                axis,
+                axis: unsigned_zeros(axis),
                 angle_deg: angle.to_degrees(),
             },
-            quaternion: [q.w, q.i, q.j, q.k],
-            translation: pose.translation.into(),
+            quaternion: unsigned_zeros([q.w, q.i, q.j, q.k]),
+            translation: unsigned_zeros(pose.translation.into()),
             scale: pose.scale,
             determinant: pose.rotation.determinant(),
-            center_move: (pose.apply(center) - center).into(),
+            center_move: unsigned_zeros((pose.apply(center) - center).into()),
             sample_node: sample_node.map(|(id, point)| SampleNode {
                 id,
-                stamped: point.into(),
-                crash: pose.apply(&point).into(),
+                stamped: unsigned_zeros(point.into()),
+                crash: unsigned_zeros(pose.apply(&point).into()),
             }),
         }
     }
+}
+
+/// 4×4 as rows, for people and other programs: no zero has a sign.
+pub(super) fn rows(pose: &Similarity) -> [[f64; 4]; 4] {
+    pose.to_rows().map(unsigned_zeros)
+}
+
+/// A sum with zero is the number itself, but for a negative zero.
+fn unsigned_zeros<const N: usize>(numbers: [f64; N]) -> [f64; N] {
+    numbers.map(|x| x + 0.0)
 }
 
 #[cfg(test)]
@@ -111,6 +121,12 @@ mod tests {
                 record.center_move
             );
         }
+        let json = |pose| serde_json::to_string(&PoseRecord::new(pose, None, &point)).unwrap();
+        let zeros = Similarity {
+            translation: Vector3::new(-0.0, 0.0, -0.0),
+            ..Similarity::mirror_x()
+        };
+        assert!(!json(&zeros).contains("-0.0"), "{}", json(&zeros));
         let still = PoseRecord::new(&Similarity::identity(), None, &point);
         assert_eq!(still.rotation_axis_angle.axis, [1.0, 0.0, 0.0]);
         assert_eq!(still.rotation_axis_angle.angle_deg, 0.0);

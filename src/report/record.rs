@@ -1,21 +1,28 @@
 //! The record of a match: everything that is needed to use, judge and repeat it.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
-use super::pose::PoseRecord;
-use crate::assess::{Assessment, Clarity, Coverage, OneSided};
+use super::DiagnosticInfo;
+use super::pose::{PoseRecord, rows};
+use super::starts;
+use crate::assess::{
+    Assessment, Clarity, Coverage, OneSided, PoseKind, PoseUncertainty, Reason, ShapeStatement,
+    Verdict,
+};
 use crate::formats::FileHash;
 use crate::geometry::Point3;
-use crate::registration::{
-    Fate, MatchOutcome, MatchSettings, Selection, Side, StartMethod, StartRecord,
-};
+use crate::registration::{MatchOutcome, Method, Selection, Side, StartMethod, StartRecord};
+use crate::role::{PerRole, Role};
+use crate::settings::{MatchRecipe, SETTINGS};
+use crate::text::Lengths;
+use crate::units::LengthUnit;
 
 /// Which way the matrix goes, in words.
 pub const DIRECTION: &str = "crash = c · R · stamped + t (column vectors)";
 
 /// How the numbers of a record are laid out, in words.
 const CONVENTION: &str = "matrices row by row for column vectors; a mirrored part is mirrored at \
-    x = 0 first, then turned by quaternion or axis and angle";
+    x = 0 first, then rotated by quaternion or axis and angle";
 
 /// Name and version of this program, with the source revision where it is known.
 pub fn build_id() -> String {
@@ -40,10 +47,22 @@ pub struct MatchRecord {
     /// The transformation in every form.
     #[serde(flatten)]
     pub pose: PoseRecord,
-    /// `good`, `check` or `poor`.
-    pub verdict: &'static str,
-    /// Why, one sentence each, the gravest first.
+    /// Whether the pose can be used.
+    pub verdict: Verdict,
+    /// Why, one sentence each, the most severe first.
     pub reasons: Vec<String>,
+    /// The same reasons by name, with their numbers.
+    pub reason_details: Vec<Reason>,
+    /// What can be said about the pose, with its uncertainty.
+    pub pose_statement: Option<PoseKind>,
+    /// How far the pose may be off: the largest uncertainty of a stamped node, its direction and place.
+    pub pose_uncertainty: Option<PoseUncertainty>,
+    /// Uncertainty up to which the pose is certain.
+    pub pose_tolerance: Option<f64>,
+    /// Whether both parts have one shape, with its numbers and reasons.
+    pub shape: Option<ShapeStatement>,
+    /// Both statements in words.
+    pub statements: Vec<String>,
     /// True if a distinct pose fits equally well.
     pub ambiguous: bool,
     /// Distinct poses that came close, best first.
@@ -52,20 +71,21 @@ pub struct MatchRecord {
     pub metrics: Metrics,
     /// Motions that change nothing, in words; absent if the shape fixes the pose.
     pub free_motion: Option<String>,
-    /// The method by name.
-    pub method: &'static str,
+    /// The method.
+    pub method: Method,
     /// All choices of the method.
     pub parameters: Parameters,
     /// Seed of random numbers. A match draws none, so there is none: same input, same bits.
     pub seed: Option<u64>,
     /// Every start.
-    pub starts: Vec<StartEntry>,
+    #[serde(serialize_with = "starts::entries")]
+    pub starts: Vec<StartRecord>,
     /// Durations.
     pub timings: TimingsRecord,
     /// What the user should know besides the verdict.
     pub warnings: Vec<String>,
     /// The two files.
-    pub files: Files,
+    pub files: PerRole<FileRecord>,
     /// The line that does the match again without the window.
     pub command_line: String,
     /// Program, version, revision.
@@ -77,14 +97,20 @@ pub struct MatchRecord {
 /// What the lengths of a record are counted in.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UnitsRecord {
-    /// The unit of every length: `mm`, `cm`, `m`, `in` or `ft`; none if unknown.
-    pub length: Option<&'static str>,
+    /// The unit of every length, as its symbol; none if unknown.
+    #[serde(serialize_with = "symbol")]
+    pub length: Option<LengthUnit>,
     /// The angle unit of everything that ends in `_deg`.
     pub angle: &'static str,
     /// Coordinates of the crash file were multiplied by this before anything else.
     pub crash_factor: f64,
     /// Coordinates of the stamped file were multiplied by this before the matrix.
     pub stamped_factor: f64,
+}
+
+/// `mm`, `cm`, `m`, `in` or `ft`.
+fn symbol<S: Serializer>(unit: &Option<LengthUnit>, serializer: S) -> Result<S::Ok, S::Error> {
+    unit.map(LengthUnit::symbol).serialize(serializer)
 }
 
 /// Distances between the parts at the pose, in length units.
@@ -96,7 +122,7 @@ pub struct Metrics {
     pub p95: f64,
     /// Largest distance within the overlap limit, of both directions.
     pub max: f64,
-    /// How much of the parts lies on each other.
+    /// How much of the parts overlaps.
     pub overlap: OverlapRecord,
     /// Stamped nodes against the crash part.
     pub stamped_on_crash: OneWay,
@@ -107,7 +133,7 @@ pub struct Metrics {
 /// Distances of the nodes of one part from the triangles of the other, weighted by area.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct OneWay {
-    /// Share of the area within the limit.
+    /// Fraction of the area within the limit.
     pub overlap: f64,
     /// Root mean square distance within the limit.
     pub rmse: f64,
@@ -162,97 +188,56 @@ pub struct AlternativeRecord {
     pub score_ratio: f64,
 }
 
-/// Shares of area whose nodes lie within `limit` of the other part.
+/// Fractions of area whose nodes lie within `limit` of the other part.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct OverlapRecord {
-    /// Share of the stamped part's area that lies on the crash part.
+    /// Fraction of the stamped part's area that overlaps the crash part.
     pub stamped: f64,
-    /// Share of the crash part's area that lies on the stamped part.
+    /// Fraction of the crash part's area that overlaps the stamped part.
     pub crash: f64,
-    /// The distance that counts as lying on each other, in the crash model's unit.
+    /// Distance up to which a place overlaps, in the crash model's unit.
     pub limit: f64,
 }
 
-/// The choices of a match.
+/// The settings of a match, and what became of them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Parameters {
-    /// What points are paired with.
-    pub pairs: &'static str,
-    /// Which pairs are kept.
-    pub selection: &'static str,
-    /// λ of Fractional ICP.
-    pub lambda: Option<f64>,
-    /// The floor of the last stage, as it was used.
+    /// The settings, each under its key.
+    #[serde(flatten)]
+    pub settings: SettingsRecord,
+    /// The floor of the last stage, as it was used; none without Fractional ICP.
     pub floor: Option<f64>,
-    /// Overlap of Trimmed ICP, if it was given.
-    pub trimmed_overlap: Option<f64>,
-    /// The residual.
-    pub residual: &'static str,
-    /// What may move.
-    pub motion: &'static str,
-    /// Which hand was tried.
-    pub hand: &'static str,
-    /// Where first poses came from.
-    pub start_method: &'static str,
-    /// Step of the rotations about the mean normal.
-    pub angle_segment_deg: f64,
-    /// Number of those rotations, for one direction of the normal.
+    /// Number of rotations about the mean normal, for one direction of it.
     pub n_rotations: Option<usize>,
-    /// True if both directions of the mean normal were tried.
-    pub both_directions: bool,
-    /// True if more starts were to be added where none convinced.
-    pub widen: bool,
-    /// How the starts were searched.
-    pub search: &'static str,
-    /// Points of the first stage of the race.
-    pub race_points: usize,
-    /// Points of its second stage.
-    pub refine_points: usize,
-    /// Iterations a run might take.
-    pub max_iterations: usize,
-    /// A run has settled when a step moves no corner by more than this share of an edge length.
-    pub motion_tolerance: f64,
-    /// Largest angle between the normals of a pair.
-    pub max_normal_angle_deg: f64,
-    /// Deviation to be expected besides faceting.
-    pub allowance: f64,
-    /// True if the winner was finished on the full meshes.
-    pub finish_on_full: bool,
-    /// Whose nodes were to be laid on the other part's triangles.
-    pub points_of: &'static str,
-    /// Whose nodes were laid on the other part's triangles in the end.
-    pub data_side: &'static str,
-    /// Ceilings of the crash and the stamped mesh the starts ran on; none for a full mesh.
-    pub max_triangles: [Option<usize>; 2],
+    /// The part whose nodes were paired with the other part's surface in the end.
+    #[serde(serialize_with = "role_word")]
+    pub data_side: Role,
+    /// Maximum triangles of the meshes the starts ran on, crash first; none for a full mesh.
+    #[serde(serialize_with = "PerRole::as_list")]
+    pub max_triangles: PerRole<Option<usize>>,
     /// Triangles of the crash mesh the starts ran on.
     pub crash_triangles: usize,
     /// Triangles of the stamped mesh the starts ran on.
     pub stamped_triangles: usize,
 }
 
-/// The story of one start.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct StartEntry {
-    /// How it came to be.
-    pub kind: String,
-    /// True if the stamped normals counted reversed.
-    pub flipped: bool,
-    /// True if the stamped part was mirrored.
-    pub mirrored: bool,
-    /// Which part supplied the points.
-    pub data_side: &'static str,
-    /// Iterations made.
-    pub iterations: usize,
-    /// Objective in the end; comparable between starts that went equally far.
-    pub score: f64,
-    /// What became of it.
-    pub fate: String,
-    /// Why its last stage ended.
-    pub termination: Option<&'static str>,
-    /// First pose, 4×4 as rows, crash from stamped.
-    pub first: [[f64; 4]; 4],
-    /// Last pose, 4×4 as rows, crash from stamped.
-    pub last: [[f64; 4]; 4],
+/// Settings that are written by walking the table of settings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SettingsRecord(pub MatchRecipe);
+
+impl Serialize for SettingsRecord {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let rows = SETTINGS.iter().map(|row| (row.key, row.get(&self.0)));
+        serializer.collect_map(rows)
+    }
+}
+
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde calls it with a reference"
+)]
+fn role_word<S: Serializer>(role: &Role, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(role.word())
 }
 
 /// Durations in milliseconds.
@@ -262,23 +247,14 @@ pub struct TimingsRecord {
     pub read_ms: f64,
     /// Reducing both meshes; 0 if nothing was reduced.
     pub reduce_ms: f64,
-    /// Trees, normals and first poses.
+    /// Trees, normals and start poses.
     pub align_ms: f64,
-    /// All starts and the finish.
+    /// All starts and the refinement of the best.
     pub match_ms: f64,
     /// The independent check.
     pub verify_ms: f64,
     /// Everything together.
     pub total_ms: f64,
-}
-
-/// The two sides of a match.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Files {
-    /// The fixed side.
-    pub crash: FileRecord,
-    /// The moving side.
-    pub stamped: FileRecord,
 }
 
 /// One side of a match.
@@ -307,8 +283,10 @@ pub struct FileRecord {
     pub units: Option<&'static str>,
     /// How its units became known, in words.
     pub units_from: Option<&'static str>,
-    /// Warnings and errors of the reader.
+    /// How many warnings and errors the reader has.
     pub findings: u64,
+    /// The first of them, errors before warnings.
+    pub diagnostics: Vec<DiagnosticInfo>,
 }
 
 /// A file that another one includes.
@@ -325,11 +303,11 @@ pub struct IncludedFile {
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordContext {
     /// The settings of the match.
-    pub settings: MatchSettings,
+    pub recipe: MatchRecipe,
     /// Ceilings of the crash and the stamped mesh the starts ran on.
-    pub max_triangles: [Option<usize>; 2],
+    pub max_triangles: PerRole<Option<usize>>,
     /// Triangles of the crash and the stamped mesh the starts ran on.
-    pub n_triangles: [usize; 2],
+    pub n_triangles: PerRole<usize>,
     /// What lengths are counted in.
     pub units: UnitsRecord,
     /// A node of the stamped part: its id and place in the crash model's unit.
@@ -337,7 +315,7 @@ pub struct RecordContext {
     /// Centre of the stamped part's box, in the crash model's unit.
     pub center: Point3,
     /// The two sides.
-    pub files: Files,
+    pub files: PerRole<FileRecord>,
     /// Durations.
     pub timings: TimingsRecord,
     /// What the user should know besides the verdict.
@@ -352,25 +330,31 @@ impl MatchRecord {
         let pose = &outcome.target_from_source;
         let coverage = &assessment.coverage;
         let alternatives = outcome.alternatives.iter().map(|other| AlternativeRecord {
-            matrix: other.target_from_source.to_rows(),
+            matrix: rows(&other.target_from_source),
             score_ratio: other.score_ratio,
         });
         Self {
-            schema: "shapematch.match/1",
+            schema: "shapematch.match/2",
             direction: DIRECTION,
             convention: CONVENTION,
             pose: PoseRecord::new(pose, context.sample_node, &context.center),
             units: context.units.clone(),
-            verdict: assessment.verdict.name(),
-            reasons: assessment.reasons.clone(),
+            verdict: assessment.verdict,
+            reasons: assessment.sentences(Lengths::new(context.units.length)),
+            reason_details: assessment.reasons.clone(),
+            pose_statement: assessment.pose.as_ref().map(|pose| pose.kind),
+            pose_uncertainty: assessment.uncertainty().cloned(),
+            pose_tolerance: assessment.pose.as_ref().map(|pose| pose.tolerance),
+            shape: assessment.shape.clone(),
+            statements: assessment.statements(Lengths::new(context.units.length)),
             ambiguous: assessment.ambiguity.clarity == Clarity::Ambiguous,
             alternatives: alternatives.collect(),
             metrics: Metrics::of(coverage),
             free_motion: assessment.freedom.motion.map(|motion| motion.words()),
-            method: context.settings.method.name(),
+            method: context.recipe.settings.method,
             parameters: Parameters::of(outcome, &context),
             seed: None,
-            starts: outcome.starts.iter().map(StartEntry::of).collect(),
+            starts: outcome.starts.clone(),
             timings: context.timings,
             warnings: context.warnings,
             files: context.files,
@@ -402,79 +386,28 @@ impl Metrics {
 
 impl Parameters {
     fn of(outcome: &MatchOutcome, context: &RecordContext) -> Self {
-        let settings = &context.settings;
-        let (lambda, overlap) = match settings.selection {
-            Selection::Fractional { lambda, .. } => (Some(lambda), None),
-            Selection::Trimmed { overlap } => (None, Some(overlap)),
-            Selection::All | Selection::TrimmedSearch => (None, None),
-        };
+        let settings = &context.recipe.settings;
         let by_normals = matches!(
             settings.starts.method,
             StartMethod::SurfaceNormals | StartMethod::All
         );
+        let has_floor = matches!(settings.selection, Selection::Fractional { .. });
         Self {
-            pairs: settings.pair_with.label(),
-            selection: settings.selection.label(),
-            lambda,
-            floor: lambda.map(|_| outcome.floor),
-            trimmed_overlap: overlap,
-            residual: settings.metric.label(),
-            motion: settings.motion.label(),
-            hand: settings.hand.label(),
-            start_method: settings.starts.method.label(),
-            angle_segment_deg: settings.starts.angle_segment_deg,
+            settings: SettingsRecord(context.recipe.clone()),
+            floor: has_floor.then_some(outcome.floor),
             n_rotations: settings.starts.n_rotations().ok().filter(|_| by_normals),
-            both_directions: settings.starts.both_signs,
-            widen: settings.starts.widen,
-            search: settings.search.label(),
-            race_points: settings.n_race_points,
-            refine_points: settings.n_refine_points,
-            max_iterations: settings.max_iterations,
-            motion_tolerance: settings.motion_tolerance,
-            max_normal_angle_deg: settings.max_normal_angle_deg,
-            allowance: settings.allowance,
-            finish_on_full: settings.finish,
-            points_of: settings.data_side.label(),
-            data_side: side_word(outcome.data_side),
+            data_side: role_of(outcome.data_side),
             max_triangles: context.max_triangles,
-            crash_triangles: context.n_triangles[0],
-            stamped_triangles: context.n_triangles[1],
+            crash_triangles: context.n_triangles.crash,
+            stamped_triangles: context.n_triangles.stamped,
         }
     }
 }
 
-impl StartEntry {
-    fn of(start: &StartRecord) -> Self {
-        Self {
-            kind: start.kind.label(),
-            flipped: start.flipped,
-            mirrored: start.mirrored,
-            data_side: side_word(start.data_side),
-            iterations: start.iterations.len(),
-            score: start.score,
-            fate: fate_words(start.fate),
-            termination: start.termination.map(|reason| reason.label()),
-            first: start.first.to_rows(),
-            last: start.last.to_rows(),
-        }
-    }
-}
-
-/// `stamped` for the source, `crash` for the target.
-pub fn side_word(side: Side) -> &'static str {
+/// The part that was the source or the target of a match.
+pub fn role_of(side: Side) -> Role {
     match side {
-        Side::Source => "stamped",
-        Side::Target => "crash",
-    }
-}
-
-/// What became of a start, in words.
-pub fn fate_words(fate: Fate) -> String {
-    match fate {
-        Fate::Won => "won".into(),
-        Fate::RunnerUp => "runner-up".into(),
-        Fate::MergedInto { start } => format!("met start {}", start + 1),
-        Fate::Dropped { after } => format!("dropped after {after} iterations"),
-        Fate::Failed => "found no fit".into(),
+        Side::Source => Role::Stamped,
+        Side::Target => Role::Crash,
     }
 }

@@ -10,6 +10,7 @@ pub fn bundled_settings() -> SampleSettings {
         seed: 12,
         crash_size: Some(14.0),
         stamped_size: Some(38.0),
+        ..SampleSettings::default()
     }
 }
 

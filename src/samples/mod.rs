@@ -5,20 +5,27 @@
 
 mod bundle;
 mod decks;
+pub mod disturb;
+mod floor;
 mod forming;
+mod hard_parts;
 mod mesher;
 mod pair;
 mod parts;
 mod path;
 mod placement;
+mod random;
 mod scatter;
+pub mod scenario;
 mod sheet;
+mod variation;
 
 pub use bundle::{bundled, bundled_settings};
 pub use decks::{SampleFile, files, write_crash_deck, write_stamped_deck, write_truth};
 pub use forming::{FormingLayer, ShellForming, Tensor};
 pub use pair::{SampleMesh, SamplePair, generate};
 pub use placement::random_placement;
+pub use variation::SampleShape;
 
 /// A part that can be generated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -34,11 +41,38 @@ pub enum SamplePart {
     Fender,
     /// Small bracket that a half turn almost lays on itself.
     Bracket,
+    /// Closed hat profile, whose normals cancel.
+    Sill,
+    /// Large, gently curved outer panel with few features.
+    Door,
+    /// Flat plate with holes.
+    Plate,
+    /// Round cup with one small hole in its flange.
+    Cup,
+    /// U-rail with a regular row of holes.
+    Channel,
+    /// Cross member whose left-hand and right-hand parts differ by one hole.
+    Crossmember,
 }
 
 impl SamplePart {
     /// All parts.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 11] = [
+        Self::Floor,
+        Self::Rail,
+        Self::Pillar,
+        Self::Fender,
+        Self::Bracket,
+        Self::Sill,
+        Self::Door,
+        Self::Plate,
+        Self::Cup,
+        Self::Channel,
+        Self::Crossmember,
+    ];
+
+    /// Those that stand together in a whole model.
+    pub(crate) const OF_CAR: [Self; 5] = [
         Self::Floor,
         Self::Rail,
         Self::Pillar,
@@ -54,6 +88,12 @@ impl SamplePart {
             Self::Pillar => "pillar",
             Self::Fender => "fender",
             Self::Bracket => "bracket",
+            Self::Sill => "sill",
+            Self::Door => "door",
+            Self::Plate => "plate",
+            Self::Cup => "cup",
+            Self::Channel => "channel",
+            Self::Crossmember => "crossmember",
         }
     }
 
@@ -65,6 +105,12 @@ impl SamplePart {
             Self::Pillar => "B-PILLAR REINFORCEMENT LH",
             Self::Fender => "FENDER OUTER LH",
             Self::Bracket => "SEAT BRACKET",
+            Self::Sill => "SILL REINFORCEMENT CLOSED LH",
+            Self::Door => "DOOR OUTER LH",
+            Self::Plate => "MOUNTING PLATE",
+            Self::Cup => "DAMPER CUP",
+            Self::Channel => "SEAT RAIL",
+            Self::Crossmember => "CROSS MEMBER REAR LH",
         }
     }
 
@@ -178,6 +224,11 @@ pub struct SampleSettings {
     pub variant: SampleVariant,
     /// Chooses the pose. The meshes do not depend on it.
     pub seed: u64,
+    /// Other dimensions of the part, on both sides; its own if `None`.
+    pub shape: Option<SampleShape>,
+    /// Further changes of the dimensions on the stamped side only: another version of the part,
+    /// for which no pose is true.
+    pub version: Option<SampleShape>,
     /// Edge length of the crash mesh in millimetres; the part's own if `None`.
     pub crash_size: Option<f64>,
     /// Largest edge length of the stamped mesh in millimetres; if `None`, the part's own, which for

@@ -93,10 +93,16 @@ pub struct SamplePair {
 /// Makes a pair. Deterministic. A floor takes about a tenth of a second.
 pub fn generate(settings: &SampleSettings) -> SamplePair {
     let SampleSettings { part, variant, .. } = *settings;
-    let design = Design::of(part);
+    let mut design = Design::of(part);
+    if let Some(shape) = &settings.shape {
+        design = design.varied(shape);
+    }
     let placement = random_placement(settings.seed);
     let crash_from_die = Similarity::from(placement);
     let crash = crash_mesh(part, variant, &design, settings.crash_size);
+    if let Some(version) = &settings.version {
+        design = design.varied(version);
+    }
     let stamped = stamped_mesh(part, variant, &design, settings.stamped_size);
     let stamped_from_die = if variant == SampleVariant::OppositeHand {
         Similarity::mirror_x()
@@ -179,6 +185,7 @@ fn station(part: SamplePart) -> Pose {
         SamplePart::Pillar => (Vector3::new(260.0, 640.0, 470.0), Vector3::y() * 1.5),
         SamplePart::Fender => (Vector3::new(-1100.0, 600.0, 330.0), Vector3::x() * -0.5),
         SamplePart::Bracket => (Vector3::new(250.0, 330.0, 60.0), Vector3::z() * 0.4),
+        _ => (Vector3::new(0.0, 0.0, 600.0), Vector3::zeros()),
     };
     Pose::new(offset, turn)
 }
@@ -186,7 +193,7 @@ fn station(part: SamplePart) -> Pose {
 /// The other parts as they stand around `part` in the car.
 fn neighbours(part: SamplePart, placement: &Pose) -> Vec<SampleMesh> {
     let crash_from_car = placement * station(part).inverse();
-    SamplePart::ALL
+    SamplePart::OF_CAR
         .into_iter()
         .filter(|&other| other != part)
         .map(|other| {

@@ -1,23 +1,30 @@
-//! The five parts: surfaces, trims, holes. Lengths in millimetres, die axes: drawing along z.
+//! The five parts of the car: surfaces, trims, holes. Lengths in millimetres, die axes: drawing along z.
 
-use super::path::Path;
+use super::floor::floor;
+use super::hard_parts::{channel, crossmember, cup, door, plate, sill};
+use super::path::{Corner, Path};
 use super::scatter::{Layout, Trim};
 use super::sheet::{Emboss, Ramp, Sheet};
 use super::{SamplePart, SampleVariant};
 
-/// A corner of a trim polygon over the die plane: (x, y, radius).
-type Corner = (f64, f64, f64);
-
 /// Everything that makes a part.
+#[derive(Debug, Clone)]
 pub(super) struct Design {
     pub(super) sheet: Sheet,
     pub(super) thickness: f64,
-    outline: Vec<Corner>,
-    addendum: Vec<Corner>,
-    unflanged: Vec<Corner>,
+    /// Whether outlines and cut are given over the die plane; else in the sheet's own (u, v), for
+    /// sections that turn back over themselves.
+    pub(super) over_die: bool,
+    /// Whether rows of holes must stay regular when the dimensions change.
+    pub(super) is_regular: bool,
+    /// Trim polygons.
+    pub(super) outline: Vec<Corner>,
+    pub(super) addendum: Vec<Corner>,
+    pub(super) unflanged: Vec<Corner>,
     /// Where the crash part is cut: x·cos + y·sin ≤ d, as (angle, d).
-    cut: (f64, f64),
-    holes: Vec<Path>,
+    pub(super) cut: (f64, f64),
+    /// Holes in (u, v).
+    pub(super) holes: Vec<Path>,
     pub(super) crash: Layout,
     pub(super) stamped: Layout,
     /// Triangles of the stamped mesh where the number is part of the design.
@@ -32,6 +39,12 @@ impl Design {
             SamplePart::Pillar => pillar(),
             SamplePart::Fender => fender(),
             SamplePart::Bracket => bracket(),
+            SamplePart::Sill => sill(),
+            SamplePart::Door => door(),
+            SamplePart::Plate => plate(),
+            SamplePart::Cup => cup(),
+            SamplePart::Channel => channel(),
+            SamplePart::Crossmember => crossmember(),
         }
     }
 
@@ -61,17 +74,15 @@ impl Design {
 
     /// A closed trim through die-plane corners with the holes that lie well inside.
     fn trim(&self, corners: &[Corner], holes: &[Path]) -> Trim {
-        let unrolled: Vec<Corner> = corners
-            .iter()
-            .map(|&(x, y, r)| {
-                (
-                    unroll(&self.sheet.spine, x),
-                    unroll(&self.sheet.section, y),
-                    r,
-                )
-            })
-            .collect();
-        let outline = Path::closed(&unrolled);
+        let unrolled = |&(x, y, r): &Corner| {
+            let (u, v) = (unroll(&self.sheet.spine, x), unroll(&self.sheet.section, y));
+            (u, v, r)
+        };
+        let outline = if self.over_die {
+            Path::closed(&corners.iter().map(unrolled).collect::<Vec<_>>())
+        } else {
+            Path::closed(corners)
+        };
         let border = super::scatter::Scatter {
             points: outline.nodes(2.0, 0),
             loops: vec![outline.nodes(2.0, 0).len()],
@@ -89,7 +100,7 @@ impl Design {
 
 /// Arc length from the middle of a curve to where its first coordinate, which must grow along it,
 /// is `x`. Sections and spines are laid out so.
-fn unroll(path: &Path, x: f64) -> f64 {
+pub(super) fn unroll(path: &Path, x: f64) -> f64 {
     let (mut low, mut high) = (-path.length(), 2.0 * path.length());
     // Eighty halvings leave nothing of any part's length.
     for _ in 0..80 {
@@ -123,13 +134,19 @@ fn clip(corners: &[Corner], (angle, limit): (f64, f64)) -> Vec<Corner> {
 }
 
 /// A section from its right half, y ≥ 0, outwards.
-fn mirrored(half: &[Corner]) -> Path {
+pub(super) fn mirrored(half: &[Corner]) -> Path {
     let mut corners: Vec<Corner> = half.iter().rev().map(|&(y, z, r)| (-y, z, r)).collect();
     corners.extend(half);
     Path::open(&corners)
 }
 
-fn box_at(center: (f64, f64), half: (f64, f64), radius: f64, ramp: f64, height: f64) -> Emboss {
+pub(super) fn box_at(
+    center: (f64, f64),
+    half: (f64, f64),
+    radius: f64,
+    ramp: f64,
+    height: f64,
+) -> Emboss {
     Emboss {
         center,
         half,
@@ -140,7 +157,7 @@ fn box_at(center: (f64, f64), half: (f64, f64), radius: f64, ramp: f64, height: 
     }
 }
 
-fn crash_layout(size: f64) -> Layout {
+pub(super) fn crash_layout(size: f64) -> Layout {
     Layout {
         size,
         levels: 0,
@@ -150,7 +167,7 @@ fn crash_layout(size: f64) -> Layout {
     }
 }
 
-fn stamped_layout(size: f64, levels: u32, angle: f64) -> Layout {
+pub(super) fn stamped_layout(size: f64, levels: u32, angle: f64) -> Layout {
     Layout {
         size,
         levels,
@@ -158,143 +175,6 @@ fn stamped_layout(size: f64, levels: u32, angle: f64) -> Layout {
         shift: (0.0, 0.0),
         rings: false,
     }
-}
-
-/// A car floor: toe board, tunnel that sinks towards the rear, heel, side flanges, beads, seat
-/// pads and twelve holes.
-fn floor() -> Design {
-    let spine = Path::open(&[
-        (-700.0, 150.0, 0.0),
-        (-455.0, 0.0, 330.0),
-        (400.0, 0.0, 160.0),
-        (510.0, 55.0, 120.0),
-        (690.0, 70.0, 0.0),
-    ]);
-    let section = mirrored(&[
-        (62.0, 118.0, 26.0),
-        (138.0, 0.0, 30.0),
-        (500.0, 0.0, 12.0),
-        (515.0, 42.0, 10.0),
-        (620.0, 42.0, 0.0),
-    ]);
-    let holes = vec![
-        Path::rectangle(-60.0, 0.0, 90.0, 34.0, 20.0),
-        Path::rectangle(270.0, 0.0, 55.0, 14.0, 14.0),
-        Path::circle(-290.0, 400.0, 22.0),
-        Path::circle(-290.0, -320.0, 22.0),
-        Path::circle(320.0, 410.0, 22.0),
-        Path::circle(340.0, -330.0, 18.0),
-        Path::circle(60.0, 480.0, 12.0),
-        Path::circle(60.0, -300.0, 12.0),
-        Path::circle(-560.0, 250.0, 14.0),
-        Path::rectangle(-560.0, -250.0, 22.0, 12.0, 12.0),
-        Path::circle(590.0, 300.0, 15.0),
-        Path::circle(590.0, -330.0, 15.0),
-    ];
-    Design {
-        sheet: Sheet {
-            height: Ramp(vec![(-650.0, 1.0), (-200.0, 1.0), (560.0, 0.55)]),
-            height_band: 240.0,
-            embosses: floor_embosses(),
-            ..Sheet::sweep(spine, section)
-        },
-        thickness: 0.8,
-        outline: floor_outline(),
-        addendum: vec![
-            (-690.0, -430.0, 90.0),
-            (-480.0, -596.0, 120.0),
-            (655.0, -596.0, 60.0),
-            (655.0, 596.0, 60.0),
-            (-480.0, 596.0, 120.0),
-            (-690.0, 430.0, 90.0),
-        ],
-        unflanged: vec![
-            (620.0, -485.0, 30.0),
-            (620.0, 485.0, 30.0),
-            (-380.0, 485.0, 60.0),
-            (-500.0, 340.0, 60.0),
-            (-630.0, 340.0, 25.0),
-            (-630.0, -340.0, 25.0),
-            (-500.0, -340.0, 60.0),
-            (-380.0, -485.0, 60.0),
-        ],
-        cut: (0.12, 215.0),
-        holes,
-        crash: crash_layout(7.8),
-        stamped: stamped_layout(20.98, 2, 0.22),
-        n_stamped_triangles: Some(34_808),
-    }
-}
-
-fn floor_outline() -> Vec<Corner> {
-    let flange = 511.5;
-    let root = 484.0;
-    vec![
-        (622.0, -470.0, 30.0),
-        (622.0, 470.0, 30.0),
-        (545.0, root, 12.0),
-        (530.0, flange, 8.0),
-        (120.0, flange, 6.0),
-        (112.0, 504.0, 6.0),
-        (76.0, 504.0, 6.0),
-        (68.0, flange, 6.0),
-        (-350.0, flange, 8.0),
-        (-366.0, root, 12.0),
-        (-415.0, 478.0, 40.0),
-        (-500.0, 360.0, 50.0),
-        (-634.0, 350.0, 25.0),
-        (-634.0, 150.0, 20.0),
-        (-600.0, 110.0, 30.0),
-        (-600.0, -110.0, 30.0),
-        (-634.0, -150.0, 20.0),
-        (-634.0, -350.0, 25.0),
-        (-500.0, -360.0, 50.0),
-        (-415.0, -478.0, 40.0),
-        (-366.0, -root, 12.0),
-        (-350.0, -flange, 8.0),
-        (-60.0, -flange, 6.0),
-        (-52.0, -504.0, 6.0),
-        (-16.0, -504.0, 6.0),
-        (-8.0, -flange, 6.0),
-        (530.0, -flange, 8.0),
-        (545.0, -root, 12.0),
-    ]
-}
-
-fn floor_embosses() -> Vec<Emboss> {
-    let mut embosses = Vec::new();
-    // Stiffening beads of the foot wells, three a side, and of the rear seat's footing.
-    for v in [270.0, 345.0, 420.0] {
-        embosses.push(box_at((-70.0, v), (110.0, 0.0), 7.0, 16.0, 7.0));
-    }
-    for v in [-250.0, -505.0] {
-        embosses.push(box_at((-80.0, v), (120.0, 0.0), 7.0, 16.0, 7.0));
-    }
-    for v in [290.0, 350.0, 470.0, -400.0, -470.0] {
-        embosses.push(box_at((320.0, v), (52.0, 0.0), 6.0, 15.0, -6.0));
-    }
-    // Seat cross member pads and the recess of a control unit on one side only.
-    embosses.push(box_at((150.0, 380.0), (20.0, 105.0), 12.0, 22.0, 12.0));
-    embosses.push(box_at((150.0, -385.0), (20.0, 105.0), 12.0, 22.0, 12.0));
-    embosses.push(box_at((-90.0, -380.0), (75.0, 55.0), 14.0, 24.0, -10.0));
-    // Beads up the toe board.
-    for v in [215.0, 300.0, -200.0, -310.0] {
-        embosses.push(box_at((-480.0, v), (55.0, 0.0), 7.0, 16.0, 6.0));
-    }
-    // Sunk rims of the drain holes.
-    for (u, v, r) in [
-        (-290.0, 400.0, 30.0),
-        (-290.0, -320.0, 30.0),
-        (320.0, 410.0, 28.0),
-        (340.0, -330.0, 26.0),
-    ] {
-        embosses.push(box_at((u, v), (0.0, 0.0), r, 12.0, -4.0));
-    }
-    embosses.push(Emboss {
-        angle: 0.5,
-        ..box_at((570.0, 60.0), (60.0, 0.0), 7.0, 16.0, 5.0)
-    });
-    embosses
 }
 
 /// A front side member: open hat section with a kick and a depth that runs out.
@@ -332,6 +212,8 @@ fn rail() -> Design {
             ..Sheet::sweep(spine, section)
         },
         thickness: 1.8,
+        over_die: true,
+        is_regular: false,
         outline: vec![
             (262.0, -66.0, 5.0),
             (262.0, 66.0, 5.0),
@@ -411,6 +293,8 @@ fn pillar() -> Design {
             ..Sheet::sweep(spine, section)
         },
         thickness: 1.5,
+        over_die: true,
+        is_regular: false,
         outline: vec![
             (430.0, -96.0, 12.0),
             (430.0, 96.0, 12.0),
@@ -477,6 +361,8 @@ fn fender() -> Design {
             ..Sheet::sweep(spine, section)
         },
         thickness: 0.7,
+        over_die: true,
+        is_regular: false,
         outline: vec![
             (405.0, -214.0, 10.0),
             (405.0, 60.0, 50.0),
@@ -546,6 +432,8 @@ fn bracket() -> Design {
             ..Sheet::sweep(spine, section)
         },
         thickness: 2.0,
+        over_die: true,
+        is_regular: false,
         outline: vec![
             (85.0, -30.0, 6.0),
             (85.0, 30.0, 6.0),

@@ -60,9 +60,20 @@ impl Piece {
     }
 }
 
+/// A corner of a polyline or polygon: (x, y, radius).
+pub(super) type Corner = (f64, f64, f64);
+
+/// What a curve was made from.
+#[derive(Debug, Clone)]
+enum Recipe {
+    Corners(Vec<Corner>),
+    Circle(Corner),
+}
+
 /// A curve of lines and arcs, parametrised by its arc length.
 #[derive(Debug, Clone)]
 pub(super) struct Path {
+    recipe: Recipe,
     pieces: Vec<Piece>,
     /// Arc lengths of the sharp corners, where a mesh must have a node.
     corners: Vec<f64>,
@@ -72,12 +83,12 @@ pub(super) struct Path {
 
 impl Path {
     /// A polyline `(x, y, corner radius)` with its inner corners rounded; the ends' radii are unused.
-    pub(super) fn open(vertices: &[(f64, f64, f64)]) -> Self {
+    pub(super) fn open(vertices: &[Corner]) -> Self {
         Self::rounded(vertices, false)
     }
 
     /// A polygon `(x, y, corner radius)` with rounded corners. Radius 0 keeps a corner sharp.
-    pub(super) fn closed(vertices: &[(f64, f64, f64)]) -> Self {
+    pub(super) fn closed(vertices: &[Corner]) -> Self {
         Self::rounded(vertices, true)
     }
 
@@ -89,7 +100,7 @@ impl Path {
             start_angle: 0.0,
             sense: 1.0,
         };
-        let mut path = Self::empty(true);
+        let mut path = Self::empty(Recipe::Circle((x, y, radius)), true);
         path.push(shape, std::f64::consts::TAU * radius);
         path
     }
@@ -104,8 +115,33 @@ impl Path {
         ])
     }
 
-    fn empty(closed: bool) -> Self {
+    /// The same kind of curve through other corners; a circle's centre counts as a corner.
+    pub(super) fn remade(&self, corner: impl Fn(&Corner) -> Corner) -> Self {
+        match &self.recipe {
+            Recipe::Corners(corners) => {
+                let corners: Vec<Corner> = corners.iter().map(corner).collect();
+                Self::rounded(&corners, self.closed)
+            }
+            Recipe::Circle(circle) => {
+                let (x, y, radius) = corner(circle);
+                Self::circle(x, y, radius)
+            }
+        }
+    }
+
+    /// Mean of the corners.
+    pub(super) fn middle(&self) -> Flat {
+        let corners = match &self.recipe {
+            Recipe::Corners(corners) => corners.as_slice(),
+            Recipe::Circle(circle) => std::slice::from_ref(circle),
+        };
+        let sum: Vector2<f64> = corners.iter().map(|c| Vector2::new(c.0, c.1)).sum();
+        Flat::from(sum / corners.len().max(1) as f64)
+    }
+
+    fn empty(recipe: Recipe, closed: bool) -> Self {
         Self {
+            recipe,
             pieces: Vec::new(),
             corners: Vec::new(),
             length: 0.0,
@@ -125,10 +161,10 @@ impl Path {
         }
     }
 
-    fn rounded(vertices: &[(f64, f64, f64)], closed: bool) -> Self {
+    fn rounded(vertices: &[Corner], closed: bool) -> Self {
         let n = vertices.len();
         let point = |i: usize| Flat::new(vertices[i % n].0, vertices[i % n].1);
-        let mut path = Self::empty(closed);
+        let mut path = Self::empty(Recipe::Corners(vertices.to_vec()), closed);
         let mut at = if closed {
             // Half way along the closing edge no rounding interferes.
             nalgebra::center(&point(n - 1), &point(0))

@@ -2,26 +2,13 @@
 
 use nalgebra::{Quaternion, UnitQuaternion};
 
+use super::random::Random;
 use crate::geometry::{Pose, Vector3};
-
-/// Random numbers from a counter (SplitMix64, Steele, Lea and Flood 2014).
-struct SplitMix(u64);
-
-impl SplitMix {
-    /// Uniform in 0 … 1.
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
 
 /// A pose from a seed: rotation uniform over all rotations (Shoemake 1992), translation uniform
 /// within ±5000 mm on each axis.
 pub fn random_placement(seed: u64) -> Pose {
-    let mut random = SplitMix(seed);
+    let mut random = Random::new(seed);
     let (u, v, w) = (
         random.unit(),
         random.unit() * std::f64::consts::TAU,

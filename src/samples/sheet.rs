@@ -69,8 +69,11 @@ pub(super) fn smooth_step(x: f64) -> f64 {
 pub(super) struct Sheet {
     /// Curve in (x, z) that the section follows.
     pub(super) spine: Path,
-    /// Curve in (y, z), from negative to positive y.
+    /// Curve in (y, z), from negative to positive y; of a turned sheet in (radius, z), from its axis.
     pub(super) section: Path,
+    /// Whether the section is turned about z instead of swept along the spine; (u, v) are then a
+    /// plane wound around the axis, with the arc length from the axis as radius.
+    pub(super) is_turned: bool,
     /// Factor on the section's z, within `height_band` of the middle.
     pub(super) height: Ramp,
     /// Half width in v where `height` acts. The section must lie at z = 0 on its border.
@@ -89,6 +92,7 @@ impl Sheet {
         Self {
             spine,
             section,
+            is_turned: false,
             height: Ramp::default(),
             height_band: f64::INFINITY,
             flare: Ramp::default(),
@@ -97,8 +101,19 @@ impl Sheet {
         }
     }
 
+    /// A section in (radius, z) turned about z.
+    pub(super) fn turned(section: Path) -> Self {
+        Self {
+            is_turned: true,
+            ..Self::sweep(Path::open(&[(-1.0, 0.0, 0.0), (1.0, 0.0, 0.0)]), section)
+        }
+    }
+
     /// The point of the surface over (u, v).
     pub(super) fn point(&self, p: &Flat) -> Point3 {
+        if self.is_turned {
+            return self.turned_point(p);
+        }
         let (along, tangent) = self.spine.at(p.x + self.spine.length() / 2.0);
         let (across, slope) = self.section.at(p.y + self.section.length() / 2.0);
         let factor = if p.y.abs() < self.height_band {
@@ -111,6 +126,14 @@ impl Sheet {
         let y = across.x + side * self.flare.at(p.x, 0.0) - slope.y * raised;
         let z = across.y * factor + slope.x * raised;
         Point3::new(along.x - tangent.y * z, y, along.y + tangent.x * z)
+    }
+
+    fn turned_point(&self, p: &Flat) -> Point3 {
+        let (profile, slope) = self.section.at(p.coords.norm());
+        let raised: f64 = self.embosses.iter().map(|emboss| emboss.at(p)).sum();
+        let radius = profile.x - slope.y * raised;
+        let (sin, cos) = p.y.atan2(p.x).sin_cos();
+        Point3::new(radius * cos, radius * sin, profile.y + slope.x * raised)
     }
 
     /// Unit normal, on the +z side of a flat part, by central differences.

@@ -1,3 +1,5 @@
+//! Closest points by asking every triangle: what the tree is held against.
+
 use std::sync::Arc;
 
 use super::{ClosestPoint, NormalFilter, SurfaceHit, closest_point_on_triangle};

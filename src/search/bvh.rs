@@ -1,6 +1,6 @@
-use std::sync::Arc;
+//! The tree over the triangles of a mesh.
 
-use rayon::prelude::*;
+use std::sync::Arc;
 
 use super::pack::TrianglePack;
 use super::traverse::{Nearest, OUT_OF_SIGHT, Walk};
@@ -9,11 +9,12 @@ use super::{
     ClosestPoint, NormalFilter, SurfaceHit, TrianglePoint, brute, closest_point_on_triangle,
 };
 use crate::geometry::{Point3, TriMesh};
+use crate::monitor::{Cancelled, Monitor};
 
 /// Rounding of a normal's cosine in `f32`, generously.
 const COS_SLACK: f32 = 4e-6;
 
-/// A tree of boxes over the triangles of a mesh: built by obvhs, folded to four children per node
+/// A tree of boxes over the triangles of a mesh: built piece by piece with obvhs, folded to four children per node
 /// and four triangles per leaf (after Wald, Benthin and Boulos 2008).
 ///
 /// The tree works in `f32` about the mesh's centre and only rules triangles out, with all rounding
@@ -29,18 +30,24 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Builds the tree over a mesh, shared or not. O(triangles · log triangles), on all threads.
+    /// [`Bvh::build_for`] for meshes of a bounded size, which nobody needs to cancel.
     pub fn build(mesh: impl Into<Arc<TriMesh>>) -> Self {
-        let mesh: Arc<TriMesh> = mesh.into();
+        Self::build_for(mesh.into(), &Monitor::silent()).expect("nobody cancels a silent monitor")
+    }
+
+    /// Builds the tree over a mesh. O(triangles · log triangles), on all threads; asks `monitor`
+    /// every few ten milliseconds.
+    pub fn build_for(mesh: Arc<TriMesh>, monitor: &Monitor) -> Result<Self, Cancelled> {
         let frame = LocalFrame::around(&mesh.aabb());
-        let local: Vec<_> = mesh.positions().iter().map(|p| frame.to_local(p)).collect();
-        let corners = |t: u32| mesh.triangles()[t as usize].map(|v| local[v as usize]);
-        let boxes: Vec<_> = (0..mesh.n_triangles() as u32)
-            .into_par_iter()
-            .map(|t| box_around(&corners(t)))
-            .collect();
-        let tree = WideTree::build(&boxes, corners);
-        Self { mesh, frame, tree }
+        let corners = |t: u32| mesh.corners(t as usize).map(|p| frame.to_local(&p));
+        let box_of = |t: u32| box_around(&corners(t));
+        let tree = WideTree::build(mesh.n_triangles(), box_of, corners, monitor)?;
+        Ok(Self { mesh, frame, tree })
+    }
+
+    /// The mesh, shared.
+    pub fn shared_mesh(&self) -> &Arc<TriMesh> {
+        &self.mesh
     }
 
     /// The exact answer for one triangle, if it counts.

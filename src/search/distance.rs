@@ -1,3 +1,5 @@
+//! Distances of many points from a surface.
+
 use rayon::prelude::*;
 
 use super::{ClosestPoint, NormalFilter, SurfaceHit};

@@ -3,12 +3,15 @@
 //! [`Bvh`] is the tree for work, [`BruteForce`] the plain loop that the tests hold it against. Both
 //! decide with the same `f64` function, [`closest_point_on_triangle`], so their answers agree to
 //! the last bit: the smallest squared distance, and of equal ones the lowest triangle index.
-//! [`PointTree`] is the same tree over points. [`Bvh::first_hit`] follows a ray.
+//! [`PointTree`] is the same tree over points. [`Bvh::first_hit`] follows a ray. [`FeatureGrid`]
+//! answers roughly, but in constant time, for searches over many poses.
 
 mod brute;
 mod bvh;
 mod distance;
+mod feature_grid;
 mod pack;
+mod pieces;
 mod points;
 mod ray;
 mod traverse;
@@ -18,6 +21,7 @@ mod wide;
 pub use brute::BruteForce;
 pub use bvh::Bvh;
 pub use distance::{DistanceStats, SearchLimits, closest_many, surface_distance};
+pub use feature_grid::{FeatureGrid, GridFeature, GridSettings};
 pub use points::{NearestPoint, PointTree};
 pub use ray::RayHit;
 pub use triangle::{TrianglePoint, closest_point_on_triangle};

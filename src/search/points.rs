@@ -1,9 +1,12 @@
+//! The tree over points.
+
 use std::sync::Arc;
 
 use super::pack::PointPack;
 use super::traverse::{Nearest, OUT_OF_SIGHT, Walk};
 use super::wide::{LocalFrame, WideTree, box_around};
 use crate::geometry::{Aabb, Point3};
+use crate::monitor::{Cancelled, Monitor};
 
 /// The point of a set that is closest to a query.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +31,14 @@ pub struct PointTree {
 impl PointTree {
     /// Builds the tree. Points that are not finite are never found. O(points · log points).
     pub fn build(points: impl Into<Arc<[Point3]>>) -> Self {
+        Self::build_for(points, &Monitor::silent()).expect("nobody cancels a silent monitor")
+    }
+
+    /// [`PointTree::build`] that ends when `monitor` is cancelled.
+    pub fn build_for(
+        points: impl Into<Arc<[Point3]>>,
+        monitor: &Monitor,
+    ) -> Result<Self, Cancelled> {
         let points: Arc<[Point3]> = points.into();
         let finite: Vec<u32> = (0..points.len() as u32)
             .filter(|&i| points[i as usize].iter().all(|x| x.is_finite()))
@@ -36,18 +47,19 @@ impl PointTree {
             finite.iter().map(|&i| &points[i as usize]),
         ));
         let local = |i: u32| frame.to_local(&points[i as usize]);
-        let boxes: Vec<_> = finite.iter().map(|&i| box_around(&[local(i)])).collect();
-        let mut tree = WideTree::<PointPack>::build(&boxes, |i| local(finite[i as usize]));
+        let item = |i: u32| local(finite[i as usize]);
+        let box_of = |i: u32| box_around(&[item(i)]);
+        let mut tree = WideTree::<PointPack>::build(finite.len(), box_of, item, monitor)?;
         if finite.len() < points.len() {
             for pack in &mut tree.packs {
                 pack.rename(&finite);
             }
         }
-        Self {
+        Ok(Self {
             points,
             frame,
             tree,
-        }
+        })
     }
 
     /// The points, as given.

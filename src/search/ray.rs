@@ -1,8 +1,9 @@
+//! Rays through the tree, for picking.
+
 use super::Bvh;
+use super::ClosestPoint;
 use super::wide::{Link, Node, WIDTH};
 use crate::geometry::{Point3, Vector3};
-
-use super::ClosestPoint;
 
 /// Where a ray first meets the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]

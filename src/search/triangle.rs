@@ -1,3 +1,5 @@
+//! The closest point of one triangle.
+
 use super::Feature;
 use crate::geometry::{Point3, Vector3};
 

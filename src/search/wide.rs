@@ -1,6 +1,6 @@
-//! The tree itself: obvhs builds a binary tree, which is folded to nodes of four children whose
-//! boxes lie side by side, with leaves of up to four items in the same manner. One query then
-//! tests four boxes or four items with the instructions of one.
+//! The tree itself: binary trees, built by obvhs over pieces of the items, are folded to nodes of four
+//! children whose boxes lie side by side, with leaves of up to four items in the same manner. One query
+//! then tests four boxes or four items with the instructions of one.
 //!
 //! Everything here is `f32` in a frame in which the items fill the cube −1 … 1. It only rules items
 //! out; what remains is decided in `f64` by the caller.
@@ -14,7 +14,9 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use rayon::prelude::*;
 
+use super::pieces::{Cut, cut_to_pieces};
 use crate::geometry::{Aabb, Point3, Vector3};
+use crate::monitor::{Cancelled, Monitor};
 
 /// Items per leaf and children per node. Eight children were measured slower without a hint (too
 /// many to sort while nothing is ruled out) and no faster with one.
@@ -146,35 +148,138 @@ pub(super) struct WideTree<P> {
 }
 
 impl<P: Pack> WideTree<P> {
-    /// Builds the tree over items given by their local boxes; `item` makes what is packed.
-    pub(super) fn build(boxes: &[Box32], item: impl Fn(u32) -> P::Item + Sync) -> Self {
+    /// Builds the tree over items `0..n`: `box_of` gives their local boxes, `item` what is packed.
+    /// Asks `monitor` once per piece of the items.
+    pub(super) fn build(
+        n: usize,
+        box_of: impl Fn(u32) -> Box32 + Sync,
+        item: impl Fn(u32) -> P::Item + Sync,
+        monitor: &Monitor,
+    ) -> Result<Self, Cancelled> {
         let mut tree = Self {
             root: None,
             nodes: Vec::new(),
             packs: Vec::new(),
             stack_size: 0,
         };
-        if boxes.is_empty() {
-            return tree;
+        if n == 0 {
+            return Ok(tree);
         }
-        let params = BvhBuildParams {
-            max_prims_per_leaf: 1,
-            ..BvhBuildParams::medium_build()
-        };
-        let binary = build_bvh2(boxes, params, &mut Duration::default());
-        let leaves = tree.fold(&binary);
+        let cut = cut_to_pieces(n, &box_of, monitor)?;
+        let mut pieces = Vec::new();
+        cut.pieces(&mut pieces);
+        let folded: Vec<Folded> = pieces
+            .into_par_iter()
+            .map(|ids| {
+                monitor.check()?;
+                Ok(Folded::of(ids, &box_of))
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        let mut leaves = Vec::new();
+        let mut joined = folded.into_iter();
+        tree.root = Some(tree.join(&cut, &mut joined, &mut leaves, 1).link);
+        monitor.check()?;
         tree.packs = leaves
             .par_iter()
             .map(|leaf| P::new(leaf.as_slice(), &item))
             .collect();
-        tree
+        monitor.check()?;
+        Ok(tree)
+    }
+
+    /// Lays the nodes of all pieces one after another, with the nodes that tell the pieces apart
+    /// before them.
+    fn join(
+        &mut self,
+        cut: &Cut,
+        folded: &mut impl Iterator<Item = Folded>,
+        leaves: &mut Vec<Few>,
+        depth: usize,
+    ) -> Joined {
+        let parts = match cut {
+            Cut::Piece(_) => {
+                let piece = folded.next().expect("each piece was folded");
+                return self.append(piece, leaves, depth);
+            }
+            Cut::Parts(parts) => parts,
+        };
+        let number = self.nodes.len();
+        self.nodes.push(Node::unused());
+        let mut bounds = Box32::empty();
+        for (slot, part) in parts.iter().enumerate() {
+            let below = self.join(part, folded, leaves, depth + 1);
+            self.nodes[number].set(slot, &below.bounds);
+            self.nodes[number].child[slot] = below.link;
+            bounds = bounds.union(&below.bounds);
+        }
+        Joined {
+            link: Link(number as u32),
+            bounds,
+        }
+    }
+
+    fn append(&mut self, piece: Folded, leaves: &mut Vec<Few>, depth: usize) -> Joined {
+        let (nodes_before, leaves_before) = (self.nodes.len() as u32, leaves.len() as u32);
+        let moved = |link: Link| match link.leaf() {
+            Ok(leaf) => Link((leaf as u32 + leaves_before) | Link::LEAF),
+            Err(node) => Link(node as u32 + nodes_before),
+        };
+        self.nodes.extend(piece.nodes.into_iter().map(|mut node| {
+            node.child = node.child.map(moved);
+            node
+        }));
+        leaves.extend(piece.leaves);
+        let depth = depth + piece.depth;
+        self.stack_size = self.stack_size.max(depth * (WIDTH - 1) + WIDTH);
+        Joined {
+            link: moved(piece.root),
+            bounds: piece.bounds,
+        }
+    }
+}
+
+/// A part of the tree that stands at its final place.
+struct Joined {
+    link: Link,
+    bounds: Box32,
+}
+
+/// The tree over one piece of the items; links count from its own first node and leaf.
+struct Folded {
+    root: Link,
+    nodes: Vec<Node>,
+    leaves: Vec<Few>,
+    depth: usize,
+    bounds: Box32,
+}
+
+impl Folded {
+    /// Builds a binary tree over the items and folds it.
+    fn of(ids: &[u32], box_of: impl Fn(u32) -> Box32) -> Self {
+        let params = BvhBuildParams {
+            max_prims_per_leaf: 1,
+            ..BvhBuildParams::medium_build()
+        };
+        let boxes: Vec<Box32> = ids.iter().map(|&id| box_of(id)).collect();
+        let binary = build_bvh2(&boxes, params, &mut Duration::default());
+        let mut folded = Self {
+            root: Link(0),
+            nodes: Vec::new(),
+            leaves: Vec::with_capacity(binary.nodes.len() / WIDTH),
+            depth: 0,
+            bounds: *binary.nodes[0].aabb(),
+        };
+        folded.fold(&binary);
+        for number in folded.leaves.iter_mut().flat_map(Few::as_mut_slice) {
+            *number = ids[*number as usize];
+        }
+        folded
     }
 
     /// Folds the binary tree from the root down, depth first, so that what is visited together
-    /// lies together. Returns the leaves' items.
-    fn fold(&mut self, binary: &Bvh2) -> Vec<Few> {
+    /// lies together.
+    fn fold(&mut self, binary: &Bvh2) {
         let sizes = subtree_sizes(binary);
-        let mut leaves = Vec::with_capacity(binary.nodes.len() / WIDTH);
         let mut waiting = vec![Waiting {
             binary_node: 0,
             parent: None,
@@ -185,8 +290,8 @@ impl<P: Pack> WideTree<P> {
             let link = if is_leaf {
                 let mut leaf = Few::default();
                 gather_items(binary, next.binary_node, &mut leaf);
-                leaves.push(leaf);
-                Link((leaves.len() - 1) as u32 | Link::LEAF)
+                self.leaves.push(leaf);
+                Link((self.leaves.len() - 1) as u32 | Link::LEAF)
             } else {
                 let number = self.nodes.len();
                 let mut node = Node::unused();
@@ -204,11 +309,10 @@ impl<P: Pack> WideTree<P> {
             };
             match next.parent {
                 Some((parent, slot)) => self.nodes[parent].child[slot] = link,
-                None => self.root = Some(link),
+                None => self.root = link,
             }
-            self.stack_size = self.stack_size.max(next.depth * (WIDTH - 1) + WIDTH);
+            self.depth = self.depth.max(next.depth);
         }
-        leaves
     }
 }
 
@@ -235,6 +339,10 @@ impl Few {
 
     fn as_slice(&self) -> &[u32] {
         &self.numbers[..self.len]
+    }
+
+    fn as_mut_slice(&mut self) -> &mut [u32] {
+        &mut self.numbers[..self.len]
     }
 }
 

@@ -1,19 +1,20 @@
 //! Questions for files: the desktop's dialog on a thread of its own, and a field to type a path
 //! into where the desktop has no dialog.
 
-use super::theme::UNIT;
-use super::widgets::{caption, large_button, paragraph};
-use crate::app::{Command, ExportCommand, ExportKind, FileCommand, PictureChoice, ProjectCommand};
-use crate::formats::Format;
-use crate::jobs::{Located, ProjectRequest, Role};
-use crate::pipeline::project::EXTENSION;
 use std::future::Future;
 use std::path::PathBuf;
-use std::pin::pin;
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::task::{Context, Poll, Wake, Waker};
 use std::time::{Duration, Instant};
+
+use super::background::run_once;
+use super::theme::UNIT;
+use super::widgets::{caption, large_button, paragraph};
+use crate::app::{Command, ExportCommand, FileCommand, PictureChoice, ProjectCommand};
+use crate::formats::Format;
+use crate::jobs::{Located, ProjectRequest};
+use crate::pipeline::outputs::Output;
+use crate::pipeline::project::EXTENSION;
+use crate::role::Role;
 
 /// A dialog that ends sooner was not shown: no one closes a window so fast.
 const NOT_SHOWN: Duration = Duration::from_millis(400);
@@ -28,7 +29,7 @@ enum Question {
     /// Where to write the project, beginning there.
     SaveProject(PathBuf),
     Save {
-        kind: ExportKind,
+        kind: Output,
         name: String,
     },
     Picture {
@@ -100,7 +101,7 @@ impl Dialogs {
     }
 
     /// Asks where to write.
-    pub fn ask_save(&mut self, kind: ExportKind, name: String, ctx: &egui::Context) {
+    pub fn ask_save(&mut self, kind: Output, name: String, ctx: &egui::Context) {
         self.ask(Question::Save { kind, name }, ctx);
     }
 
@@ -116,10 +117,10 @@ impl Dialogs {
         let dialog = file_dialog(&question);
         let asked = question.clone();
         let (sender, ctx) = (self.sender.clone(), ctx.clone());
-        let thread = std::thread::Builder::new().name("file dialog".to_owned());
-        let spawned = thread.spawn(move || {
+        let is_asked = run_once("file dialog", move || {
             let begin = Instant::now();
-            let path = wait_for(dialog);
+            let file = pollster::block_on(dialog);
+            let path = file.map(|file| file.path().to_owned());
             let took = begin.elapsed();
             let answer = Answer::Dialog {
                 question: asked,
@@ -130,9 +131,10 @@ impl Dialogs {
             let _ = sender.send(answer);
             ctx.request_repaint();
         });
-        match spawned {
-            Ok(_) => self.is_asking = true,
-            Err(_) => self.prompt = Some((question, String::new())),
+        if is_asked {
+            self.is_asking = true;
+        } else {
+            self.prompt = Some((question, String::new()));
         }
     }
 
@@ -188,7 +190,12 @@ impl Dialogs {
             });
             ctx.request_repaint();
         };
-        std::thread::spawn(answer);
+        run_once("file check", answer);
+    }
+
+    /// True while a question of ours lies over the window.
+    pub fn is_open(&self) -> bool {
+        self.prompt.is_some() || self.overwrite.is_some()
     }
 
     /// The fields and questions for desktops without dialogs.
@@ -206,11 +213,11 @@ impl Dialogs {
         let shown = modal(ctx, "overwrite question").show(ctx, |ui| {
             ui.set_width(480.0);
             ui.spacing_mut().item_spacing.y = UNIT;
-            ui.heading("Replace the file?");
-            paragraph(ui, format!("{} is there already.", path.display()));
+            ui.heading("Replace the existing file?");
+            paragraph(ui, format!("{} already exists.", path.display()));
             ui.horizontal(|ui| {
                 is_taken = large_button(ui, "Replace", false).clicked();
-                is_renamed = large_button(ui, "Another name", true).clicked();
+                is_renamed = large_button(ui, "Choose another name", true).clicked();
                 is_closed = large_button(ui, "Cancel", false).clicked();
             });
         });
@@ -240,11 +247,9 @@ impl Dialogs {
             paragraph(
                 ui,
                 if question.is_open() {
-                    "This desktop offers no file dialog. Type or paste the path, or drop the file \
-                     on the window."
+                    "No file dialog available. Enter a path, or drop the file on the window."
                 } else {
-                    "This desktop offers no file dialog. Type or paste the path; a missing ending \
-                     is added."
+                    "No file dialog available. Enter a path; the extension is added."
                 },
             );
             let field = egui::TextEdit::singleline(&mut text)
@@ -325,7 +330,7 @@ impl Question {
     /// A name without an ending gets the usual one.
     fn with_ending(&self, path: PathBuf) -> PathBuf {
         let ending = match self {
-            Self::Save { kind, .. } => return kind.with_ending(path),
+            Self::Save { kind, .. } => return kind.with_extension(path),
             Self::SaveProject(_) => EXTENSION,
             Self::Picture { .. } => "png",
             Self::Open(_) | Self::OpenProject | Self::Locate(_) => return path,
@@ -393,7 +398,7 @@ fn file_dialog(
             dialog = dialog.add_filter("All files", &["*"]);
         }
         Question::Save { kind, .. } => {
-            for (label, ending) in kind.endings() {
+            for (label, ending) in kind.extensions() {
                 dialog = dialog.add_filter(*label, &[*ending]);
             }
             dialog = dialog.set_file_name(question.suggestion());
@@ -413,30 +418,10 @@ fn file_dialog(
     }
 }
 
-struct Unpark(std::thread::Thread);
-
-impl Wake for Unpark {
-    fn wake(self: Arc<Self>) {
-        self.0.unpark();
-    }
-}
-
-/// Waits on this thread, which has nothing else to do.
-fn wait_for(future: impl Future<Output = Option<rfd::FileHandle>>) -> Option<PathBuf> {
-    let waker = Waker::from(Arc::new(Unpark(std::thread::current())));
-    let mut context = Context::from_waker(&waker);
-    let mut future = pin!(future);
-    loop {
-        match future.as_mut().poll(&mut context) {
-            Poll::Ready(handle) => return handle.map(|handle| handle.path().to_owned()),
-            Poll::Pending => std::thread::park(),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ui::keyboard::{KeyOwner, Keyboard};
 
     #[test]
     fn a_file_is_replaced_only_after_a_question() {
@@ -446,7 +431,7 @@ mod tests {
         let ctx = egui::Context::default();
         let mut dialogs = Dialogs::default();
         let question = || Question::Save {
-            kind: ExportKind::Log,
+            kind: Output::Log,
             name: "log.txt".to_owned(),
         };
         let mut answer = |typed: &str| {
@@ -466,5 +451,15 @@ mod tests {
         assert_eq!(answer("b"), (1, None));
         // The ending is added before the question, not after it.
         assert_eq!(answer("a"), (0, Some(taken)));
+    }
+
+    #[test]
+    fn a_question_has_the_keys_for_itself() {
+        let ctx = egui::Context::default();
+        let mut dialogs = Dialogs::default();
+        let keyboard = Keyboard::default();
+        assert_eq!(keyboard.owner(&ctx, dialogs.is_open()), KeyOwner::Window);
+        dialogs.prompt = Some((Question::OpenProject, String::new()));
+        assert_eq!(keyboard.owner(&ctx, dialogs.is_open()), KeyOwner::Question);
     }
 }

@@ -1,60 +1,107 @@
 //! Keys to commands, through the table of actions.
 
-use crate::app::{
-    Action, AppState, Axis, Command, Key, ModalInput, MoveCommand, Shortcut, ViewCommand,
-};
 use egui::{Event, Modifiers};
 
-/// The commands of this frame's keys.
-pub fn commands(ctx: &egui::Context, state: &AppState) -> Vec<Command> {
-    let is_typing = ctx.text_edit_focused();
-    let is_popup_open = ctx.any_popup_open();
-    let (events, held) = ctx.input(|input| (input.events.clone(), input.modifiers));
-    let mut commands = Vec::new();
-    for event in &events {
-        if is_popup_open && !matches!(event, Event::Key { pressed: false, .. }) {
-            continue;
-        }
-        let is_moving = state.view.move_tool.is_some() && !is_typing;
-        if is_moving && let Some(input) = modal_input(event) {
-            commands.push(MoveCommand::Input(input).into());
-        } else {
-            commands.extend(of_event(event, held, is_typing, state));
-        }
-    }
-    commands
+use crate::app::{
+    Action, AppState, Axis, Command, Key, KeyMode, ModalInput, MoveCommand, Shortcut, ViewCommand,
+};
+
+/// Actions whose keys act while a dialog lies over the window.
+const WITH_DIALOG: [Action; 9] = [
+    Action::Escape,
+    Action::Help,
+    Action::Palette,
+    Action::Preferences,
+    Action::PictureOptions,
+    Action::Quit,
+    Action::ScaleUp,
+    Action::ScaleDown,
+    Action::ScaleReset,
+];
+
+/// What the keys of a frame belong to: the topmost thing that is open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum KeyOwner {
+    /// A question over the window, such as the field for a path.
+    Question,
+    /// A menu or another popup.
+    Popup,
+    /// A text field, perhaps in a dialog. Keys that write nothing still act.
+    TextField,
+    /// The window, or the dialog over it.
+    Window,
 }
 
-fn of_event(event: &Event, held: Modifiers, is_typing: bool, state: &AppState) -> Vec<Command> {
-    let Some((shortcut, is_pressed, is_repeat)) = pressed(event, held) else {
-        return Vec::new();
-    };
-    if is_typing && is_pressed && !shortcut.works_in_text() {
-        return Vec::new();
+/// Keys to commands. Whatever is open has the first word: it may consume keys while it is drawn, and
+/// keys that close it close nothing else.
+#[derive(Debug, Default)]
+pub struct Keyboard {
+    /// A text field had the focus at the end of the last frame. Escape takes the focus away before the
+    /// frame begins, but belongs to the field nevertheless.
+    was_typing: bool,
+}
+
+impl Keyboard {
+    /// Who owns the keys of this frame; to be asked before anything is drawn.
+    pub fn owner(&self, ctx: &egui::Context, has_question: bool) -> KeyOwner {
+        if has_question {
+            KeyOwner::Question
+        } else if egui::Popup::is_any_open(ctx) {
+            KeyOwner::Popup
+        } else if self.was_typing || ctx.text_edit_focused() {
+            KeyOwner::TextField
+        } else {
+            KeyOwner::Window
+        }
     }
-    let Some(action) = Action::of_shortcut(shortcut) else {
-        return Vec::new();
-    };
-    if action.is_held() {
+
+    /// The commands of the keys that nothing consumed; to be asked when everything is drawn.
+    pub fn commands(
+        &mut self,
+        ctx: &egui::Context,
+        state: &AppState,
+        owner: KeyOwner,
+    ) -> Vec<Command> {
+        self.was_typing = ctx.text_edit_focused();
+        let (events, held) = ctx.input(|input| (input.events.clone(), input.modifiers));
+        let is_moving = state.view.move_tool.is_some() && owner == KeyOwner::Window;
+        let mut commands = Vec::new();
+        for event in &events {
+            if is_moving && let Some(input) = modal_input(event) {
+                commands.push(MoveCommand::Input(input).into());
+            } else {
+                commands.extend(of_event(event, held, owner, state));
+            }
+        }
+        commands
+    }
+}
+
+fn of_event(event: &Event, held: Modifiers, owner: KeyOwner, state: &AppState) -> Option<Command> {
+    let (shortcut, is_pressed, is_repeat) = pressed(event, held)?;
+    let action = Action::of_shortcut(shortcut)?;
+    if is_pressed && !is_ours(shortcut, action, owner, state.view.dialog.is_some()) {
+        return None;
+    }
+    let mode = action.row().keys.mode;
+    if mode == KeyMode::WhileHeld {
         let is_new = is_pressed != state.view.is_blinking;
-        let command = ViewCommand::SetBlinking(is_pressed).into();
-        return is_new.then_some(command).into_iter().collect();
+        return is_new.then(|| ViewCommand::SetBlinking(is_pressed).into());
     }
-    let repeats = matches!(
-        action,
-        Action::Undo
-            | Action::Redo
-            | Action::NextLevel
-            | Action::PreviousLevel
-            | Action::NextStart
-            | Action::PreviousStart
-            | Action::ScaleUp
-            | Action::ScaleDown
-    );
-    if is_pressed && (repeats || !is_repeat) {
-        action.to_commands(state)
-    } else {
-        Vec::new()
+    let acts = is_pressed && (mode == KeyMode::Repeats || !is_repeat);
+    acts.then(|| action.command(state)).flatten()
+}
+
+/// True if a key that goes down is the window's.
+fn is_ours(shortcut: Shortcut, action: Action, owner: KeyOwner, has_dialog: bool) -> bool {
+    if has_dialog && !WITH_DIALOG.contains(&action) {
+        return false;
+    }
+    match owner {
+        KeyOwner::Question | KeyOwner::Popup => false,
+        // The field of a dialog leaves Escape to the dialog.
+        KeyOwner::TextField => shortcut.works_in_text() || (has_dialog && action == Action::Escape),
+        KeyOwner::Window => true,
     }
 }
 
@@ -161,13 +208,35 @@ mod tests {
     #[test]
     fn every_key_of_the_table_can_be_pressed() {
         for action in Action::ALL {
-            let info = action.info();
-            for shortcut in [info.shortcut, info.other_shortcut].into_iter().flatten() {
+            let info = action.row();
+            for shortcut in info.keys.shortcuts {
                 let name = shortcut.key.name();
                 let key = egui::Key::from_name(&name).unwrap_or_else(|| panic!("no key {name}"));
                 assert_eq!(our_key(key), Some(shortcut.key), "{name}");
             }
         }
+    }
+
+    #[test]
+    fn keys_belong_to_what_is_open() {
+        let is_ours = |action: Action, owner, has_dialog| {
+            let shortcut = action.row().shortcut().expect("a key");
+            is_ours(shortcut, action, owner, has_dialog)
+        };
+        let (escape, search, move_over) = (Action::Escape, Action::Palette, Action::ToggleMoveOver);
+        for action in [escape, search, move_over] {
+            assert!(is_ours(action, KeyOwner::Window, false));
+            assert!(!is_ours(action, KeyOwner::Question, false));
+            assert!(!is_ours(action, KeyOwner::Popup, true));
+        }
+        assert!(is_ours(search, KeyOwner::TextField, false));
+        assert!(!is_ours(escape, KeyOwner::TextField, false));
+        assert!(!is_ours(move_over, KeyOwner::TextField, false));
+        // Under a dialog the window keeps still; the dialog itself can be closed or changed.
+        assert!(is_ours(escape, KeyOwner::TextField, true));
+        assert!(is_ours(search, KeyOwner::Window, true));
+        assert!(!is_ours(move_over, KeyOwner::Window, true));
+        assert!(!is_ours(Action::MatchOrStop, KeyOwner::TextField, true));
     }
 
     #[test]

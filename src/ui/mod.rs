@@ -3,9 +3,9 @@
 //! Panels have the form `fn xxx_ui(ui, state, commands)`. They hold no logic: what may be done and
 //! what follows is decided in [`crate::app`], and everything numeric runs on the worker.
 
+mod background;
 pub mod dialogs;
 pub mod gizmo;
-pub mod keeper;
 pub mod keyboard;
 mod no_window;
 pub mod overlays;
@@ -13,9 +13,9 @@ pub mod palette;
 pub mod panels;
 mod picture_options;
 mod pictures;
+pub mod preferences;
 pub mod project_dialogs;
 pub mod shell;
-pub mod storage;
 pub mod theme;
 pub mod toasts;
 pub mod viewport;

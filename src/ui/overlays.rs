@@ -1,18 +1,22 @@
 //! What lies over the window: help sheet, command search, preferences, messages, about.
 
-use super::palette::palette_ui;
+use egui::{Align, Layout, Modal, RichText, ScrollArea, Ui, vec2};
+
+use super::palette::{self, palette_ui};
 use super::picture_options::picture_ui;
 use super::project_dialogs::{missing_ui, unsaved_ui};
 use super::theme::{Palette, UNIT};
 use super::widgets::{caption, chip, form_row, level_color, paragraph, secondary};
 use crate::app::{
-    Action, AppState, Command, Dialog, ExportCommand, Menu, MouseScheme, Notice, NoticeCommand,
+    AppState, Command, Dialog, ExportCommand, Menu, MouseScheme, Notice, NoticeCommand,
     NoticeLevel, Settings, Theme, ViewCommand, clock_text,
 };
-use egui::{Align, Layout, Modal, RichText, ScrollArea, Ui, vec2};
 
 /// Draws the open dialog, if any.
 pub fn overlays_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Command>) {
+    if state.view.dialog != Some(Dialog::Palette) {
+        palette::forget(ctx);
+    }
     let Some(dialog) = state.view.dialog else {
         return;
     };
@@ -55,7 +59,7 @@ fn title(ui: &mut Ui, text: &str, commands: Option<&mut Vec<Command>>) {
                     }
                 }
                 None => {
-                    caption(ui, "Esc closes");
+                    caption(ui, "Esc to close");
                 }
             };
         });
@@ -68,10 +72,10 @@ const OTHER_KEYS: [(&str, &[(&str, &str)]); 3] = [
     (
         "In a 3D window",
         &[
-            ("Arrows", "Turn"),
+            ("Arrows", "Rotate"),
             ("Shift+Arrows", "Pan"),
             ("+, −", "Zoom"),
-            ("P", "Turn about the point under the cursor"),
+            ("P", "Rotate about the point under the pointer"),
         ],
     ),
     (
@@ -81,7 +85,7 @@ const OTHER_KEYS: [(&str, &[(&str, &str)]); 3] = [
             ("Shift+X, Y, Z", "Only in the plane across it"),
             ("Digits", "Type the amount"),
             ("Enter", "Accept"),
-            ("Esc", "Leave as it was"),
+            ("Esc", "Cancel"),
         ],
     ),
     (
@@ -92,7 +96,7 @@ const OTHER_KEYS: [(&str, &[(&str, &str)]); 3] = [
 
 /// What the mouse does in a 3D window.
 const MOUSE: [(&str, &str); 8] = [
-    ("Left drag", "Turn"),
+    ("Left drag", "Rotate"),
     ("Ctrl + drag", "The same, edges only"),
     ("Ctrl + Shift + left drag", "Roll"),
     ("Middle drag", "Pan"),
@@ -147,16 +151,16 @@ fn help_group(ui: &mut Ui, title: &str, keys: &[(&str, &str)]) {
 }
 
 fn help_menu(ui: &mut Ui, menu: Menu) {
-    let with_key = |a: &Action| a.info().shortcut.is_some();
-    if !Action::in_menu(menu).any(|a| with_key(&a)) {
+    let keyed: Vec<_> = menu
+        .rows()
+        .filter_map(|row| Some((row.label, row.key_text()?)))
+        .collect();
+    if keyed.is_empty() {
         return;
     }
     group_title(ui, menu.label());
-    for action in Action::in_menu(menu).filter(with_key) {
-        let info = action.info();
-        if let Some(keys) = info.keys() {
-            key_row(ui, info.label, &keys);
-        }
+    for (label, keys) in keyed {
+        key_row(ui, label, &keys);
     }
 }
 
@@ -177,7 +181,7 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let label = 120.0;
     form_row(ui, "Theme", label, |ui| {
         for (theme, name) in [
-            (Theme::System, "As the desktop"),
+            (Theme::System, "System"),
             (Theme::Dark, "Dark"),
             (Theme::Light, "Light"),
         ] {
@@ -186,7 +190,7 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
         }
     });
-    form_row(ui, "Size of the text", label, |ui| {
+    form_row(ui, "UI scale", label, |ui| {
         for scale in [0.75_f32, 1.0, 1.25, 1.5, 2.0, 2.5] {
             let is_on = (settings.ui_scale - scale).abs() < 1e-3;
             if chip(ui, &format!("{:.0} %", scale * 100.0), is_on).clicked() {
@@ -194,14 +198,14 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
         }
     });
-    form_row(ui, "Mouse like", label, |ui| {
+    form_row(ui, "Mouse controls", label, |ui| {
         mouse_choice(ui, &mut settings);
     });
     ui.horizontal(|ui| {
         ui.add_space(label + UNIT);
         paragraph(ui, settings.mouse.help());
     });
-    form_row(ui, "Show toasts for", label, |ui| {
+    form_row(ui, "Notifications", label, |ui| {
         for level in NoticeLevel::TOLD {
             let is_shown = !settings.muted.contains(&level);
             if chip(ui, level.label(), is_shown).clicked() && !settings.muted.remove(&level) {
@@ -210,8 +214,8 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
     });
     ui.add_space(UNIT);
-    ui.checkbox(&mut settings.reduce_motion, "No animations");
-    ui.checkbox(&mut settings.is_log_wide, "Log under the left column too");
+    ui.checkbox(&mut settings.reduce_motion, "Reduce motion");
+    ui.checkbox(&mut settings.is_log_wide, "Full-width log");
     if settings != state.settings {
         commands.push(Command::Settings(Box::new(settings)));
     }
@@ -268,7 +272,7 @@ fn messages_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mut V
                 message_ui(ui, state, notice, commands);
             }
             if is_empty {
-                secondary(ui, "Nothing to tell");
+                secondary(ui, "No messages");
             }
         });
 }

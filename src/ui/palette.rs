@@ -1,9 +1,10 @@
 //! Search over all commands, recent files and exports.
 
+use egui::{Align, Key, Layout, Modifiers, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
+
 use super::theme::{Palette, ROW, UNIT};
 use super::widgets::{caption, draft, secondary, set_draft};
 use crate::app::{AppState, Command, PaletteEntry, ViewCommand};
-use egui::{Align, Key, Layout, Modifiers, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
 
 /// Width of the search.
 const WIDTH: f32 = 560.0;
@@ -11,10 +12,7 @@ const WIDTH: f32 = 560.0;
 /// The field and the list of what fits.
 pub fn palette_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mut Vec<Command>) {
     ui.set_width(WIDTH.min(room.x));
-    let ids = [
-        egui::Id::unique("palette search"),
-        egui::Id::unique("palette choice"),
-    ];
+    let ids = ids();
     let before = draft(ui, ids[0]);
     let mut text = before.clone();
     let mut at: usize = ui.data(|data| data.get_temp(ids[1])).unwrap_or(0);
@@ -43,7 +41,7 @@ pub fn palette_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mu
         .show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             if found.is_empty() {
-                secondary(ui, "No command of that name");
+                secondary(ui, "No matching command");
             }
             for (index, entry) in found.iter().enumerate() {
                 let response = row_ui(ui, entry, index == at);
@@ -64,13 +62,25 @@ pub fn palette_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mu
         commands.push(ViewCommand::SetDialog(None).into());
         commands.extend(chosen);
     }
-    let (text, at) = if is_done {
-        (String::new(), 0)
-    } else {
-        (text, at)
-    };
     set_draft(ui, ids[0], text);
     ui.data_mut(|data| data.insert_temp(ids[1], at));
+}
+
+/// Where the text and the chosen line are kept while the search is open.
+fn ids() -> [egui::Id; 2] {
+    [
+        egui::Id::unique("palette search"),
+        egui::Id::unique("palette choice"),
+    ]
+}
+
+/// Empties the field, so that the search begins anew when it is opened again.
+pub fn forget(ctx: &egui::Context) {
+    let [text, choice] = ids();
+    ctx.data_mut(|data| {
+        data.remove::<String>(text);
+        data.remove::<usize>(choice);
+    });
 }
 
 /// Down and up move the choice; the field keeps left and right.
@@ -113,7 +123,7 @@ fn row_ui(ui: &mut Ui, entry: &PaletteEntry, is_chosen: bool) -> egui::Response 
         .layout_no_wrap(entry.keys.clone(), font.clone(), palette.secondary);
     let keys_at = pos2(right - keys.size().x, rect.center().y - keys.size().y / 2.0);
     let group = if entry.is_recent {
-        format!("used lately · {}", entry.group)
+        format!("recent · {}", entry.group)
     } else {
         entry.group.to_owned()
     };
@@ -123,10 +133,31 @@ fn row_ui(ui: &mut Ui, entry: &PaletteEntry, is_chosen: bool) -> egui::Response 
     ui.painter().galley(keys_at, keys, palette.secondary);
     ui.painter().galley(group_at, group, palette.secondary);
     let width = group_left - rect.left() - 20.0;
-    let label = super::panels::section::elided(ui, &entry.label, font, color, width);
+    let label = marked(ui, entry, &font, color, width);
     let at = pos2(rect.left() + 12.0, rect.center().y - label.size().y / 2.0);
     ui.painter().galley(at, label, color);
     response
+}
+
+/// The label with the letters that were found standing out, cut at the width.
+fn marked(
+    ui: &Ui,
+    entry: &PaletteEntry,
+    font: &egui::FontId,
+    color: egui::Color32,
+    width: f32,
+) -> std::sync::Arc<egui::Galley> {
+    let found = Palette::of(ui).accent_text;
+    let mut job = egui::text::LayoutJob::default();
+    let mut letters = entry.letters.iter().copied().peekable();
+    for (index, letter) in entry.label.chars().enumerate() {
+        let is_found = letters.next_if_eq(&index).is_some();
+        let color = if is_found { found } else { color };
+        let format = egui::TextFormat::simple(font.clone(), color);
+        job.append(letter.encode_utf8(&mut [0; 4]), 0.0, format);
+    }
+    job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(0.0));
+    ui.painter().layout_job(job)
 }
 
 /// What the chosen entry does, and why it may not.
@@ -141,7 +172,7 @@ fn foot_ui(ui: &mut Ui, chosen: Option<&PaletteEntry>) {
                 ui.add_space(UNIT);
                 let palette = Palette::of(ui);
                 let (text, color) = match entry.reason {
-                    Some(reason) => (format!("Not now: {reason}"), palette.check),
+                    Some(reason) => (reason.to_owned(), palette.check),
                     None => (entry.help.clone(), palette.secondary),
                 };
                 let text = RichText::new(text).small().color(color);

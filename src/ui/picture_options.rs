@@ -1,12 +1,13 @@
 //! The dialog of a picture: size, background, windows.
 
+use egui::{DragValue, Ui};
+
 use super::theme::UNIT;
 use super::widgets::{caption, chip, form_row, large_button};
 use crate::app::{
     AppState, Command, ExportCommand, PictureChoice, PictureSize, PictureWindows, Settings,
     ViewCommand,
 };
-use egui::{DragValue, Ui};
 
 const LABEL: f32 = 96.0;
 

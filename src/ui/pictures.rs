@@ -1,13 +1,18 @@
 //! Pictures for files: taken from the 3D windows or from the screen, packed and written by a thread of
 //! their own.
 
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use egui::{ScreenshotCallback, ViewportCommand};
+
+use super::background::run_once;
 use super::panels::graphics;
 use super::viewport::Viewports;
 use crate::app::{AppState, NoticeLevel, PictureChoice, PicturePlace};
+use crate::pipeline::outputs::{Output, Target, check_targets};
+use crate::pipeline::write_file::{write_file, write_new_file};
 use crate::report::picture::Picture;
-use egui::{ScreenshotCallback, ViewportCommand};
-use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, Sender, channel};
 
 /// Most names that are tried for a picture without one.
 const MAX_NUMBER: u32 = 9999;
@@ -17,10 +22,15 @@ type News = (NoticeLevel, String);
 
 /// A picture that is wanted.
 #[derive(Debug, Clone)]
-struct Wanted {
-    choice: PictureChoice,
-    place: PicturePlace,
-    texts: Vec<(&'static str, String)>,
+pub struct Wanted {
+    /// How it is taken.
+    pub choice: PictureChoice,
+    /// Where it goes.
+    pub place: PicturePlace,
+    /// What the file says about itself: keyword and text.
+    pub texts: Vec<(&'static str, String)>,
+    /// Files that it may not overwrite.
+    pub inputs: Vec<PathBuf>,
 }
 
 /// Pictures on their way to files.
@@ -40,18 +50,8 @@ impl Default for Pictures {
 
 impl Pictures {
     /// Asks for a picture.
-    pub fn want(
-        &mut self,
-        choice: PictureChoice,
-        place: PicturePlace,
-        texts: Vec<(&'static str, String)>,
-        ctx: &egui::Context,
-    ) {
-        let wanted = Wanted {
-            choice,
-            place,
-            texts,
-        };
+    pub fn want(&mut self, wanted: Wanted, ctx: &egui::Context) {
+        let choice = wanted.choice;
         if choice.has_overlays {
             let (sender, waking) = (self.told.0.clone(), ctx.clone());
             let callback = ScreenshotCallback::new(move |screen| {
@@ -92,9 +92,9 @@ impl Pictures {
 
 /// Packs and writes on a thread of its own.
 fn write(picture: Picture, wanted: Wanted, sender: Sender<News>, ctx: egui::Context) {
-    std::thread::spawn(move || {
+    run_once("picture", move || {
         let bytes = picture.to_png_with(&wanted.texts);
-        let news = match save(&wanted.place, &bytes) {
+        let news = match save(&wanted.place, &wanted.inputs, &bytes) {
             Ok(path) => (NoticeLevel::Success, format!("written: {}", path.display())),
             Err(error) => (
                 NoticeLevel::Error,
@@ -107,10 +107,18 @@ fn write(picture: Picture, wanted: Wanted, sender: Sender<News>, ctx: egui::Cont
     });
 }
 
-fn save(place: &PicturePlace, bytes: &[u8]) -> std::io::Result<PathBuf> {
+fn save(place: &PicturePlace, inputs: &[PathBuf], bytes: &[u8]) -> anyhow::Result<PathBuf> {
     match place {
         PicturePlace::File(path) => {
-            std::fs::write(path, bytes)?;
+            let target = Target {
+                name: "the picture".to_owned(),
+                path: path.clone(),
+                content: Output::Picture.content(),
+            };
+            if let Some(refusal) = check_targets(&[target], inputs).into_iter().next() {
+                return Err(refusal.into());
+            }
+            write_file(path, bytes)?;
             Ok(path.clone())
         }
         PicturePlace::Next { folder, stem } => save_next(folder, stem, bytes),
@@ -118,20 +126,14 @@ fn save(place: &PicturePlace, bytes: &[u8]) -> std::io::Result<PathBuf> {
 }
 
 /// Takes the first number whose file is not there yet; never replaces one.
-fn save_next(folder: &Path, stem: &str, bytes: &[u8]) -> std::io::Result<PathBuf> {
-    use std::io::Write as _;
+fn save_next(folder: &Path, stem: &str, bytes: &[u8]) -> anyhow::Result<PathBuf> {
     for number in 1..=MAX_NUMBER {
         let path = folder.join(format!("{stem}_{number}.png"));
-        match std::fs::File::create_new(&path) {
-            Ok(mut file) => {
-                file.write_all(bytes)?;
-                return Ok(path);
-            }
-            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
-            Err(error) => return Err(error),
+        if write_new_file(&path, bytes)? {
+            return Ok(path);
         }
     }
-    Err(std::io::Error::other("all numbers are taken"))
+    anyhow::bail!("all numbers up to {MAX_NUMBER} are taken")
 }
 
 #[cfg(test)]
@@ -145,7 +147,7 @@ mod tests {
             folder: folder.path().to_path_buf(),
             stem: "bp".to_owned(),
         };
-        let names = [b"a", b"b"].map(|bytes| save(&place, bytes).unwrap());
+        let names = [b"a", b"b"].map(|bytes| save(&place, &[], bytes).unwrap());
         assert_eq!(names[0], folder.path().join("bp_1.png"));
         assert_eq!(std::fs::read(&names[0]).unwrap(), b"a");
         assert_eq!(std::fs::read(&names[1]).unwrap(), b"b");

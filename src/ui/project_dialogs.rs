@@ -1,10 +1,11 @@
 //! Questions about the work as a whole: save it, restore it, find its files.
 
+use egui::{Align2, Button, Frame, Margin, RichText, Stroke, Ui, vec2};
+
 use super::theme::{Palette, ROW, UNIT};
 use super::widgets::{caption, paragraph, role_mark, secondary};
 use crate::app::{AppState, Command, ProjectCommand, ViewCommand};
 use crate::jobs::Located;
-use egui::{Align2, Button, Frame, Margin, RichText, Stroke, Ui, vec2};
 
 /// Least width of the buttons that answer.
 const BUTTON: f32 = 104.0;
@@ -12,12 +13,12 @@ const BUTTON: f32 = 104.0;
 /// Unsaved work, before the program ends.
 pub fn unsaved_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.set_width(400.0);
-    ui.heading("Save the work before leaving?");
+    ui.heading("Save changes before closing?");
     let name = state.project.name().unwrap_or_else(|| state.work_title());
     paragraph(ui, name);
     paragraph(
         ui,
-        "Without saving, pose, levels, settings and result of this work are given up.",
+        "Unsaved changes to pose, levels, settings and results will be lost.",
     );
     ui.add_space(UNIT);
     ui.horizontal(|ui| {
@@ -81,7 +82,7 @@ pub fn restore_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Comm
     let is_empty = state.document.parts.iter().all(|(_, part)| part.is_none());
     let Some(work) = state
         .project
-        .lost_work()
+        .lost_session()
         .filter(|_| is_empty && !state.jobs.is_busy())
     else {
         return;
@@ -102,7 +103,7 @@ pub fn restore_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Comm
             ui.spacing_mut().item_spacing.y = UNIT;
             ui.label(
                 RichText::new(format!(
-                    "Restore the work from {}?",
+                    "Recover unsaved project from {}?",
                     state.when_text(work.saved_at)
                 ))
                 .size(16.0),
@@ -114,25 +115,25 @@ pub fn restore_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Comm
                     commands.push(ProjectCommand::Restore(work.path.clone()).into());
                 }
                 if plain(ui, "Not now").clicked() {
-                    commands.push(ProjectCommand::PutOff.into());
+                    commands.push(ProjectCommand::DismissRecovery.into());
                 }
-                caption(ui, "File › Kept work has it too");
+                caption(ui, "Also under File › Recovered sessions");
             });
         });
     });
 }
 
-/// The works of the last runs, in the menu.
-pub fn kept_menu_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    ui.menu_button("Kept work", |ui| {
-        for work in &state.project.kept_works {
+/// The sessions of the last runs, in the menu.
+pub fn recovered_menu_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.menu_button("Recovered sessions", |ui| {
+        for work in &state.project.sessions {
             let label = format!("{}   {}", state.when_text(work.saved_at), work.title);
             if ui.button(label).clicked() {
                 commands.push(ProjectCommand::Restore(work.path.clone()).into());
                 ui.close();
             }
         }
-        caption(ui, "The work of the last five runs, kept after each step");
+        caption(ui, "The last five sessions, saved after each step");
     });
 }
 

@@ -1,21 +1,25 @@
 //! The program behind the panels: worker, dialogs, clipboard, preferences, and the frame.
 
-use super::dialogs::Dialogs;
-use super::keeper::{Keeper, Kept as KeptNews};
-use super::no_window::explained;
-use super::pictures::Pictures;
-use super::storage::{Kept, Storage, WindowPlace};
-use super::viewport::Viewports;
-use super::{keyboard, overlays, panels, project_dialogs, theme, toasts};
-use crate::app::{
-    AppState, Clock, Command, Effect, FileCommand, NoticeCommand, NoticeLevel, PictureChoice,
-    PictureSize, ProjectCommand, Settings, StartupOptions, Theme,
-};
-use crate::jobs::{JobEvent, JobStage, Live, PipelineRunner, Role, Worker};
-use crate::report::picture::Picture;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+
+use super::dialogs::Dialogs;
+use super::keyboard::Keyboard;
+use super::no_window::explained;
+use super::pictures::{Pictures, Wanted};
+use super::preferences::{Preferences, UserFiles, WindowPlace};
+use super::viewport::Viewports;
+use super::{overlays, panels, project_dialogs, theme, toasts};
+use crate::app::{
+    AppState, Clock, Command, Document, Effect, FileCommand, NoticeCommand, NoticeLevel,
+    PictureChoice, PictureSize, ProjectCommand, Settings, StartupOptions, Theme,
+};
+use crate::jobs::{JobEvent, JobStage, Live, PipelineRunner, Worker};
+use crate::pipeline::autosave::{Autosave, AutosaveEvent};
+use crate::pipeline::preferences::PreferencesFile;
+use crate::report::picture::Picture;
+use crate::role::Role;
 
 /// Least size of the window, in points.
 const MIN_SIZE: [f32; 2] = [960.0, 600.0];
@@ -26,31 +30,31 @@ const FIRST_SIZE: [f32; 2] = [1400.0, 900.0];
 ///
 /// Fails, before anything is drawn, if there is no display or no graphics adapter.
 pub fn run(options: StartupOptions) -> anyhow::Result<ExitCode> {
-    let storage = if options.forget_settings {
-        Storage::none()
+    let files = if options.forget_settings {
+        UserFiles::none()
     } else {
-        Storage::of_user()
+        UserFiles::of_user()
     };
-    let kept = storage.read();
+    let preferences: Preferences = files.preferences.read();
     let native = eframe::NativeOptions {
-        viewport: window(&kept),
+        viewport: window(&preferences),
         renderer: eframe::Renderer::Wgpu,
         ..eframe::NativeOptions::default()
     };
     let make: eframe::AppCreator<'_> = Box::new(move |cc| {
-        let shell = Shell::new(cc, options, storage, kept)?;
+        let shell = Shell::new(cc, options, files, preferences)?;
         Ok(Box::new(shell))
     });
     eframe::run_native("shapematch", native, make).map_err(|error| explained(&error))?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn window(kept: &Kept) -> egui::ViewportBuilder {
+fn window(preferences: &Preferences) -> egui::ViewportBuilder {
     let window = egui::ViewportBuilder::default()
         .with_title("shapematch")
         .with_app_id("shapematch")
         .with_min_inner_size(MIN_SIZE);
-    let Some(place) = kept.window else {
+    let Some(place) = preferences.window else {
         return window.with_inner_size(FIRST_SIZE);
     };
     let size = place.size.map(|s| {
@@ -75,8 +79,8 @@ pub struct Shell {
     worker: Worker,
     viewports: Viewports,
     dialogs: Dialogs,
-    storage: Storage,
-    keeper: Keeper,
+    preferences: PreferencesFile,
+    autosave: Autosave<Box<Document>>,
     place: Option<WindowPlace>,
     is_unsaved: bool,
     /// The question about unsaved work was answered.
@@ -84,6 +88,7 @@ pub struct Shell {
     begin: Instant,
     title: String,
     pictures: Pictures,
+    keyboard: Keyboard,
 }
 
 impl Shell {
@@ -91,32 +96,33 @@ impl Shell {
     pub fn new(
         cc: &eframe::CreationContext<'_>,
         options: StartupOptions,
-        storage: Storage,
-        kept: Kept,
+        files: UserFiles,
+        preferences: Preferences,
     ) -> std::io::Result<Self> {
         theme::install(&cc.egui_ctx);
         let ctx = cc.egui_ctx.clone();
         let waking = ctx.clone();
-        let keeper = Keeper::start(storage.kept_folder(), move || waking.request_repaint())?;
+        let autosave = Autosave::start(files.sessions, move || waking.request_repaint())?;
         let worker = Worker::spawn(PipelineRunner, Arc::new(move || ctx.request_repaint()))?;
-        let mut state = AppState::new(kept.settings);
+        let mut state = AppState::new(preferences.settings);
         state.clock = clock();
         let mut shell = Self {
             state,
             worker,
             viewports: Viewports::new(cc.wgpu_render_state.as_ref()),
             dialogs: Dialogs::default(),
-            storage,
-            keeper,
-            place: kept.window,
+            preferences: files.preferences,
+            autosave,
+            place: preferences.window,
             is_unsaved: false,
             may_close: false,
             begin: Instant::now(),
             title: String::new(),
             pictures: Pictures::default(),
+            keyboard: Keyboard::default(),
         };
         shell.apply_settings(&cc.egui_ctx);
-        shell.keeper.list();
+        shell.autosave.list();
         shell.open_at_start(options, &cc.egui_ctx);
         Ok(shell)
     }
@@ -189,15 +195,26 @@ impl Shell {
                 path,
                 project,
                 document,
-            } => self.keeper.write(path, project, document),
-            Effect::KeepWork(project) => self.keeper.keep(project),
-            Effect::PutOffKept => self.keeper.put_off(),
+            } => self.autosave.save(path, project, document),
+            Effect::Autosave(project) => self.autosave.autosave(project),
+            Effect::DismissRecovery => self.autosave.dismiss_recovery(),
             Effect::AskPicture { choice, name } => self.dialogs.ask_picture(choice, name, ctx),
             Effect::TakePicture {
                 choice,
                 place,
                 texts,
-            } => self.pictures.want(choice, place, texts, ctx),
+            } => {
+                let inputs = self.state.files();
+                self.pictures.want(
+                    Wanted {
+                        choice,
+                        place,
+                        texts,
+                        inputs,
+                    },
+                    ctx,
+                );
+            }
             Effect::CopyText(text) => ctx.copy_text(text),
             Effect::SaveSettings => {
                 self.is_unsaved = true;
@@ -232,12 +249,12 @@ impl Shell {
         if !std::mem::take(&mut self.is_unsaved) {
             return;
         }
-        let kept = Kept {
+        let preferences = Preferences {
             settings: self.state.settings.clone(),
             window: self.place,
         };
-        if let Err(error) = self.storage.write(&kept) {
-            let text = format!("the preferences could not be written: {error}");
+        if let Err(error) = self.preferences.write(&preferences) {
+            let text = format!("the preferences are not saved: {error}");
             self.state
                 .apply(NoticeCommand::Tell(NoticeLevel::Note, text));
         }
@@ -358,12 +375,12 @@ impl eframe::App for Shell {
         let live = self.worker.live();
         let mut commands = with_live(events, live);
         commands.extend(self.dialogs.answers(ctx));
-        commands.extend(self.keeper.news().flat_map(told_by_keeper));
+        commands.extend(self.autosave.events().flat_map(from_autosave));
         commands.extend(self.asked_to_close(ctx));
         commands.extend(self.dropped(ctx));
         self.run_commands(commands, ctx);
-        if self.state.is_to_be_kept() {
-            self.run_commands(vec![ProjectCommand::Keep.into()], ctx);
+        if self.state.needs_autosave() {
+            self.run_commands(vec![ProjectCommand::Autosave.into()], ctx);
         }
         self.take_pictures(ctx);
         self.update_title(ctx);
@@ -373,12 +390,14 @@ impl eframe::App for Shell {
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        let mut commands = keyboard::commands(&ctx, &self.state);
+        let owner = self.keyboard.owner(&ctx, self.dialogs.is_open());
+        let mut commands = Vec::new();
         panels::window_ui(ui, &self.state, &mut self.viewports, &mut commands);
         toasts::toasts_ui(&ctx, &self.state, &mut commands);
         project_dialogs::restore_ui(&ctx, &self.state, &mut commands);
         overlays::overlays_ui(&ctx, &self.state, &mut commands);
         self.dialogs.show(&ctx, &mut commands);
+        commands.extend(self.keyboard.commands(&ctx, &self.state, owner));
         if !commands.is_empty() {
             self.run_commands(commands, &ctx);
             ctx.request_repaint();
@@ -395,21 +414,25 @@ impl eframe::App for Shell {
     }
 }
 
-/// What follows from what the keeper says.
-fn told_by_keeper(news: KeptNews) -> Vec<Command> {
-    match news {
-        KeptNews::Written(path, document) => vec![ProjectCommand::Written(path, document).into()],
-        KeptNews::Failed(reason) => {
+/// What follows from what was saved.
+fn from_autosave(event: AutosaveEvent<Box<Document>>) -> Vec<Command> {
+    match event {
+        AutosaveEvent::Saved(path, document) => {
+            vec![ProjectCommand::Written(path, document).into()]
+        }
+        AutosaveEvent::SaveFailed(reason) => {
             let text = format!("the project is not saved: {reason}");
             vec![
                 NoticeCommand::Tell(NoticeLevel::Error, text).into(),
                 ProjectCommand::NotWritten.into(),
             ]
         }
-        KeptNews::NotKept(reason) => {
-            let text = format!("the work is not kept in case of a crash: {reason}");
+        AutosaveEvent::AutosaveFailed(reason) => {
+            let text = format!("Autosave is off: {reason}");
             vec![NoticeCommand::Tell(NoticeLevel::Note, text).into()]
         }
-        KeptNews::Works(works) => vec![ProjectCommand::TellKept(works).into()],
+        AutosaveEvent::Sessions(sessions) => {
+            vec![ProjectCommand::NotifyRecovered(sessions).into()]
+        }
     }
 }

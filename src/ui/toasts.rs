@@ -1,13 +1,14 @@
 //! Short messages in the lower right corner; at most three.
 
+use egui::text::LayoutJob;
+use egui::{Align2, Color32, Frame, Margin, RichText, Stroke, TextStyle, Ui, vec2};
+
 use super::theme::{Palette, ROW, UNIT};
 use super::widgets::{icon_button, level_color};
 use crate::app::{
     Action, AppState, BottomTab, Command, ExportCommand, Notice, NoticeCommand, NoticeLevel,
     ViewCommand,
 };
-use egui::text::LayoutJob;
-use egui::{Align2, Color32, Frame, Margin, RichText, Stroke, TextStyle, Ui, vec2};
 
 /// Width of a toast, if there is so much room.
 const WIDTH: f32 = 344.0;
@@ -118,11 +119,11 @@ fn buttons_ui(ui: &mut Ui, notice: &Notice, state: &AppState, commands: &mut Vec
     if let Some(action) = notice.offer {
         let label = match action {
             Action::Swap => "Swap",
-            other => other.info().label,
+            other => other.row().label,
         };
         let can = action.enabled(state).is_ok();
         if ui.add_enabled(can, egui::Button::new(label)).clicked() {
-            commands.extend(action.to_commands(state));
+            commands.extend(action.command(state));
             commands.push(NoticeCommand::Dismiss(notice.id).into());
         }
     }

@@ -2,17 +2,12 @@
 
 use super::theme::{Palette, ROW, TALL, UNIT};
 use crate::app::{Action, AppState, Command, NoticeLevel};
-use crate::jobs::Role;
-pub use crate::report::{grouped, length, signed};
+use crate::role::Role;
+pub use crate::text::{grouped, length, percent, signed};
 use egui::{
     Align, Button, Color32, CornerRadius, Frame, Layout, Margin, Rect, Response, RichText, Sense,
     Stroke, Ui, Vec2, pos2, vec2,
 };
-
-/// A share in percent: 87.0 %.
-pub fn percent(share: f64) -> String {
-    format!("{:.1} %", 100.0 * share)
-}
 
 /// A count on a chip: full, 50k, 2k, 500.
 pub fn short_count(n: usize) -> String {
@@ -76,8 +71,8 @@ pub fn paragraph(ui: &mut Ui, text: impl Into<String>) -> Response {
 
 /// Tooltip of an action: what it does and its key.
 pub fn action_tooltip(action: Action) -> String {
-    let info = action.info();
-    match info.shortcut {
+    let info = action.row();
+    match info.shortcut() {
         Some(shortcut) => format!("{}   {shortcut}", info.tooltip),
         None => info.tooltip.to_owned(),
     }
@@ -126,11 +121,12 @@ pub fn action_button(
     let response = ui.add_enabled(enabled.is_ok(), button);
     let response = match enabled {
         Ok(()) => response.on_hover_text(action_tooltip(action)),
-        Err(reason) => response
-            .on_disabled_hover_text(format!("{}\nNot now: {reason}", action_tooltip(action))),
+        Err(reason) => {
+            response.on_disabled_hover_text(format!("{}\n{reason}", action_tooltip(action)))
+        }
     };
     if response.clicked() {
-        commands.extend(action.to_commands(state));
+        commands.extend(action.command(state));
     }
     response
 }
@@ -211,7 +207,7 @@ pub fn plain_action(
     action: Action,
     commands: &mut Vec<Command>,
 ) -> Response {
-    let label = action.info().label;
+    let label = action.row().label;
     action_button(
         ui,
         state,

@@ -1,3 +1,5 @@
+//! Units guessed from sizes and thicknesses.
+
 use super::{KnownUnits, LengthUnit, UnitOrigin, UnitSystem};
 
 /// Density in kg/m³ and Young's modulus in Pa of what sheet parts are made of: steel, aluminium,

@@ -50,6 +50,17 @@ impl LengthUnit {
         }
     }
 
+    /// What follows a number in a text: `" mm"`.
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::Millimeter => " mm",
+            Self::Centimeter => " cm",
+            Self::Meter => " m",
+            Self::Inch => " in",
+            Self::Foot => " ft",
+        }
+    }
+
     /// Its name in the plural: "millimetres".
     pub fn plural(self) -> &'static str {
         match self {

@@ -1,3 +1,5 @@
+//! Consistent systems of units.
+
 use serde::{Deserialize, Serialize};
 
 use super::LengthUnit;

@@ -1,3 +1,5 @@
+//! Units as files and people spell them.
+
 use super::{KnownUnits, LengthUnit, UnitOrigin, UnitSystem, Units};
 
 /// What a word of a comment is a unit of.

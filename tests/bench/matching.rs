@@ -12,6 +12,7 @@ use shapematch::assess::{AssessSettings, assess};
 use shapematch::monitor::Monitor;
 use shapematch::registration::{MatchInput, MatchSettings, Method, Surface, match_surfaces};
 use shapematch::samples::{SamplePart, SampleSettings, generate};
+use shapematch::settings::Choice;
 
 fn matching(c: &mut Criterion) {
     let monitor = Monitor::silent();

@@ -7,12 +7,14 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use shapematch::geometry::weld;
+use shapematch::monitor::Monitor;
 use shapematch::samples::{SampleSettings, generate};
 use shapematch::simplify::Speed;
 
 fn reduce_floor(criterion: &mut Criterion) {
     let pair = generate(&SampleSettings::default());
-    let mesh = weld(&pair.stamped.to_trimesh(), 0.0).mesh;
+    let joined = weld(pair.stamped.to_trimesh(), &Monitor::silent());
+    let mesh = joined.expect("nobody cancels").mesh;
     let mut group = criterion.benchmark_group("simplify");
     group.sample_size(20);
     for speed in [Speed::Exact, Speed::Fast] {

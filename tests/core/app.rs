@@ -1,5 +1,9 @@
 //! The window without the window: commands in, state and effects out.
 
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
 use shapematch::app::*;
 use shapematch::formats::Model;
 use shapematch::geometry::{Point3, Similarity, TriMesh, Vector3};
@@ -10,9 +14,9 @@ use shapematch::pipeline::match_parts::MatchRun;
 use shapematch::registration::starts::{Start, StartKind};
 use shapematch::registration::{Alternative, MatchOutcome};
 use shapematch::report::MatrixForm;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::Duration;
+use shapematch::role::{PerRole, Role};
+
+use super::match_starts::{live_iteration, running_start};
 
 /// A bent strip of n × 4 cells, so that its three sizes differ.
 fn strip(n: u32, size: f64) -> TriMesh {
@@ -149,7 +153,7 @@ impl Window {
     }
 
     pub fn act(&mut self, action: Action) {
-        for command in action.to_commands(&self.state) {
+        if let Some(command) = action.command(&self.state) {
             self.apply(command);
         }
     }
@@ -332,6 +336,26 @@ fn units_are_hinted_once_and_the_factor_is_one_undo_step() {
 }
 
 #[test]
+fn levels_that_reduce_nothing_are_not_offered() {
+    let mut window = Window::with_both();
+    let n_full = Role::ALL
+        .map(|role| window.part(role).loaded.report.n_triangles)
+        .into_iter()
+        .max()
+        .unwrap();
+    let settings = Settings {
+        marked_levels: vec![50_000, n_full, n_full - 1, 60],
+        ..window.state.settings.clone()
+    };
+    window.apply(Command::Settings(Box::new(settings)));
+    assert_eq!(window.state.reachable_levels(), [n_full - 1, 60]);
+    assert_eq!(window.state.next_level(1), Some(Some(n_full - 1)));
+    window.act(Action::NextLevel);
+    assert_eq!(window.part(Role::Crash).wanted_level, Some(n_full - 1));
+    assert_eq!(window.state.next_level(-1), Some(None), "the full mesh");
+}
+
+#[test]
 fn reducing_is_one_step_per_part_and_levels_follow_the_keys() {
     let mut window = Window::with_both();
     let settings = Settings {
@@ -354,7 +378,7 @@ fn reducing_is_one_step_per_part_and_levels_follow_the_keys() {
     assert!(window.part(Role::Crash).level.is_none());
     assert_eq!(
         Action::PreviousLevel.enabled(&window.state),
-        Err(Reason("this is the full mesh"))
+        Err(Reason("This is the full mesh."))
     );
 }
 
@@ -480,7 +504,7 @@ fn escape_takes_a_move_by_keys_back_without_a_trace() {
 
 #[test]
 fn turning_over_twice_comes_back() {
-    for action in [Action::TurnOverX, Action::TurnOverY, Action::TurnOverZ] {
+    for action in [Action::FlipX, Action::FlipY, Action::FlipZ] {
         let mut window = Window::with_both();
         window.act(action);
         let center = window.part(Role::Stamped).bounds().center();
@@ -497,7 +521,7 @@ fn turning_over_twice_comes_back() {
 #[test]
 fn centers_meet() {
     let mut window = Window::with_both();
-    window.act(Action::BringCentersTogether);
+    window.act(Action::AlignCenters);
     let here = window.state.document.stamped_center().unwrap();
     let there = window.part(Role::Crash).bounds().center();
     assert!((here - there).norm() < 1e-12);
@@ -510,17 +534,94 @@ fn a_match_is_one_step_and_its_alternatives_are_one_key_away() {
     assert_eq!(window.pose(), shifted(1.0));
     assert!(window.state.document.current_result().is_some());
     for x in [2.0, 3.0, 1.0] {
-        window.act(Action::FlipAlternative);
+        window.act(Action::NextAlternative);
         assert_eq!(window.pose(), shifted(x));
         assert!(window.state.document.current_result().is_some());
     }
-    window.apply(MoveCommand::TurnOver(Axis::X));
+    window.apply(MoveCommand::Flip(Axis::X));
     assert!(window.state.stale(Section::Match).is_some());
     for _ in 0..5 {
         window.act(Action::Undo);
     }
     assert_eq!(window.pose(), Similarity::identity());
     assert!(window.state.document.result.is_none());
+}
+
+#[test]
+fn the_numbers_of_the_result_are_those_of_the_shown_pose() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    let of_match = {
+        let result = window.state.document.current_result().unwrap();
+        result.run.assessment.coverage
+    };
+    let shown = |window: &Window| *window.state.result_coverage().unwrap();
+    assert_eq!(shown(&window), of_match);
+    window.act(Action::NextAlternative);
+    let pair = PerRole::new(window.part(Role::Crash), window.part(Role::Stamped));
+    let input = MeasureInput {
+        parts: pair.map(|part| part.loaded.to_arc()),
+        crash_from_stamped: shifted(2.0),
+    };
+    let measured = PipelineRunner.run(JobKind::Measure(input), &Monitor::silent());
+    let Ok(JobOutput::Measured(measured)) = measured else {
+        panic!("not measured");
+    };
+    assert_eq!(shown(&window), *measured);
+    assert_ne!(shown(&window), of_match);
+    window.act(Action::NextAlternative);
+    window.act(Action::NextAlternative);
+    assert_eq!(shown(&window), of_match, "the best pose again");
+}
+
+#[test]
+fn the_command_line_gives_the_shown_pose_or_says_why_not() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    let line = |window: &Window| window.state.command_line().unwrap();
+    assert!(!line(&window).contains("--pose-number"));
+    for number in [2, 3] {
+        window.act(Action::NextAlternative);
+        let expected = format!("--pose-number {number}");
+        assert!(line(&window).contains(&expected), "{}", line(&window));
+    }
+    window.act(Action::NextAlternative);
+    assert!(!line(&window).contains("--pose-number"));
+    assert_eq!(Action::CopyCommandLine.enabled(&window.state), Ok(()));
+    window.apply(MoveCommand::Flip(Axis::X));
+    assert!(Action::CopyCommandLine.enabled(&window.state).is_err());
+    window.act(Action::Undo);
+    assert_eq!(Action::CopyCommandLine.enabled(&window.state), Ok(()));
+}
+
+#[test]
+fn moves_by_hand_are_in_the_log_with_their_unit() {
+    let mut window = Window::new();
+    window.open("says_mm.k", Role::Crash);
+    window.open("stamped.k", Role::Stamped);
+    assert_eq!(window.state.unit_suffix(), " mm");
+    let last = |window: &Window| {
+        let row = window.state.log.latest("move");
+        row.map(|row| row.text.clone())
+    };
+    assert_eq!(last(&window), None);
+    window.apply(MoveCommand::Translate {
+        axis: Axis::Z,
+        frame: AxisFrame::Global,
+        distance: 69.175_83,
+    });
+    assert_eq!(last(&window).as_deref(), Some("Move 69.176 mm along Z"));
+    window.apply(MoveCommand::Drag {
+        gesture: GestureId(1),
+        delta: shifted(2.0),
+        name: "Move 2 mm along X".to_owned(),
+    });
+    assert_eq!(last(&window).as_deref(), Some("Move 69.176 mm along Z"));
+    window.apply(MoveCommand::EndDrag);
+    assert_eq!(last(&window).as_deref(), Some("Move 2 mm along X"));
+    window.act(Action::MoveTool);
+    let tool = window.state.view.move_tool.clone().unwrap();
+    assert_eq!(tool.frame.unit, " mm");
 }
 
 #[test]
@@ -531,16 +632,18 @@ fn while_a_match_runs_inputs_are_locked_and_cancel_restores() {
     let before = window.state.document.clone();
     assert_eq!(
         Action::OpenCrash.enabled(&window.state),
-        Err(Reason("a match is running"))
+        Err(Reason("A match is running."))
     );
     assert_eq!(Action::MatchOrStop.enabled(&window.state), Ok(()));
-    window.apply(MoveCommand::TurnOver(Axis::X));
+    window.apply(MoveCommand::Flip(Axis::X));
     window.act(Action::Undo);
     assert_eq!(window.state.document, before);
+    let iteration = live_iteration(0, 0, 5.0);
     let live = Live {
         job: window.state.jobs.running().map(|job| job.id),
-        best: Some(iteration(5.0)),
-        iterations: vec![iteration(5.0)],
+        best: Some(iteration.record),
+        starts: vec![(0, running_start())],
+        iterations: vec![iteration],
         ..Live::default()
     };
     window.apply(Command::Live(Box::new(live)));
@@ -549,18 +652,7 @@ fn while_a_match_runs_inputs_are_locked_and_cancel_restores() {
     assert_eq!(window.state.shown_pose(), Similarity::identity());
     assert_eq!(window.state.document, before);
     assert!(!window.state.jobs.is_busy());
-    assert_eq!(window.state.attempts().len(), 1);
-}
-
-fn iteration(x: f64) -> shapematch::monitor::IterationReport {
-    shapematch::monitor::IterationReport {
-        start_idx: 0,
-        iteration: 0,
-        target_from_source: shifted(x).to_rows(),
-        objective: 1.0,
-        rmse: 1.0,
-        fraction: 1.0,
-    }
+    assert_eq!(window.state.match_starts().len(), 1);
 }
 
 #[test]
@@ -576,7 +668,11 @@ fn a_result_for_parts_that_are_gone_is_dropped_with_a_line() {
     assert!(window.part(Role::Crash).level.is_none());
     assert!(window.part(Role::Stamped).level.is_some());
     let dropped = window.state.log.rows().iter();
-    assert!(dropped.into_iter().any(|row| row.text.contains("dropped")));
+    assert!(
+        dropped
+            .into_iter()
+            .any(|row| row.text.contains("discarded"))
+    );
 }
 
 #[test]
@@ -613,14 +709,14 @@ fn every_action_says_why_it_is_not_possible() {
     let window = Window::new();
     for &action in Action::ALL {
         if action.enabled(&window.state).is_err() {
-            assert!(action.to_commands(&window.state).is_empty());
+            assert!(action.command(&window.state).is_none());
         }
     }
     let reason = |action: Action| action.enabled(&window.state).unwrap_err().0;
-    assert_eq!(reason(Action::MatchOrStop), "load both parts first");
-    assert_eq!(reason(Action::ToggleMoveOver), "load both parts first");
-    assert_eq!(reason(Action::Undo), "nothing to undo");
-    assert_eq!(reason(Action::MoveTool), "load the stamped part first");
+    assert_eq!(reason(Action::MatchOrStop), "Load both parts first.");
+    assert_eq!(reason(Action::ToggleMoveOver), "Load both parts first.");
+    assert_eq!(reason(Action::Undo), "Nothing to undo.");
+    assert_eq!(reason(Action::MoveTool), "Load the stamped part first.");
 }
 
 #[test]
@@ -635,7 +731,7 @@ fn every_enabled_action_does_something() {
     })));
     for &action in Action::ALL {
         let is_enabled = action.enabled(&window.state).is_ok();
-        let does = !action.to_commands(&window.state).is_empty();
+        let does = action.command(&window.state).is_some();
         assert_eq!(is_enabled, does, "{action:?}");
     }
 }
@@ -645,10 +741,10 @@ fn labels_and_keys_are_unique() {
     let mut labels = std::collections::BTreeSet::new();
     let mut keys = std::collections::HashMap::new();
     for &action in Action::ALL {
-        let info = action.info();
+        let info = action.row();
         assert!(labels.insert(info.label), "{:?}", info.label);
         assert!(!info.tooltip.is_empty() && !info.tooltip.ends_with('.'));
-        for shortcut in [info.shortcut, info.other_shortcut].into_iter().flatten() {
+        for &shortcut in info.keys.shortcuts {
             let other = keys.insert(shortcut, action);
             assert_eq!(other, None, "{shortcut} is taken by {action:?}");
             assert_eq!(Action::of_shortcut(shortcut), Some(action));
@@ -788,8 +884,8 @@ mod random {
                 frame,
                 degrees: f64::from(10 * d),
             }),
-            axis.clone().prop_map(MoveCommand::TurnOver),
-            Just(MoveCommand::BringCentersTogether),
+            axis.clone().prop_map(MoveCommand::Flip),
+            Just(MoveCommand::AlignCenters),
             Just(MoveCommand::Reset),
             axis.prop_map(|axis| MoveCommand::Input(ModalInput::Axis {
                 axis,
@@ -863,7 +959,7 @@ mod random {
             1 => Just(ViewCommand::ToggleMoveOver.into()),
             1 => Just(HistoryCommand::Undo.into()),
             1 => Just(HistoryCommand::Redo.into()),
-            1 => Just(HistoryCommand::BackToAsLoaded.into()),
+            1 => Just(HistoryCommand::ResetAll.into()),
             1 => Just(Command::Escape),
         ]
     }
@@ -879,7 +975,7 @@ mod random {
             Just(Action::Align),
             Just(Action::NextStart),
             Just(Action::UseStart),
-            Just(Action::FlipAlternative),
+            Just(Action::NextAlternative),
         ]
     }
 
@@ -978,7 +1074,7 @@ fn the_papers_story_with_the_real_worker() {
     ];
     for action in actions {
         assert_eq!(action.enabled(&state), Ok(()), "{action:?}");
-        for command in action.to_commands(&state) {
+        if let Some(command) = action.command(&state) {
             let effects = state.apply(command);
             settle(&mut state, &worker, effects);
         }
@@ -1051,10 +1147,10 @@ mod modal {
                 "{keys:?}"
             );
         };
-        check("", [3.0, 4.0, 5.0], "Move 7.0711");
+        check("", [3.0, 4.0, 5.0], "Move 7.071");
         check("x", [3.0, 0.0, 0.0], "Move 3 along X");
         check("xx", [0.0, 4.0, 0.0], "Move 4 along X (part)");
-        check("xxx", [3.0, 4.0, 5.0], "Move 7.0711");
+        check("xxx", [3.0, 4.0, 5.0], "Move 7.071");
         check("Z", [3.0, 4.0, 0.0], "Move 5 across Z");
         check("Z10", [6.0, 8.0, 0.0], "Move 10 across Z");
         check("y-2,5", [0.0, -2.5, 0.0], "Move -2.5 along Y");
@@ -1069,7 +1165,7 @@ mod modal {
             ("z90", "Rotate 90° about Z"),
             ("Z90", "Rotate 90° about Z"),
             ("xx-30", "Rotate -30° about X (part)"),
-            ("", "Rotate 28.6479° about the view axis"),
+            ("", "Rotate 28.648° about the view axis"),
         ] {
             let (motion, said) = typed(MotionKind::Rotate, keys);
             assert_eq!(said, name);

@@ -1,9 +1,12 @@
 //! What leaves the window: names, places, questions.
 
-use super::app::{Window, shifted};
-use shapematch::app::*;
-use shapematch::jobs::{PerRole, Role};
 use std::path::PathBuf;
+
+use shapematch::app::*;
+use shapematch::pipeline::outputs::{MeshOutput, Output};
+use shapematch::role::{PerRole, Role};
+
+use super::app::{Window, shifted};
 
 fn last_effect(window: &Window) -> &Effect {
     window.effects.last().expect("an effect")
@@ -53,7 +56,7 @@ fn the_first_picture_asks_for_a_place_and_the_next_goes_beside_it() {
 fn a_card_for_a_file_in_another_unit_is_answered_with_the_converted_file() {
     let mut window = Window::with_both();
     window.apply(MatchCommand::Run);
-    let cards = ExportKind::Cards(shapematch::report::CardForm::StampedPart);
+    let cards = Output::Cards(shapematch::report::CardForm::StampedPart);
     window.apply(ExportCommand::AskSave(cards));
     assert!(matches!(last_effect(&window), Effect::AskSave { kind, .. } if *kind == cards));
     window.apply(FileCommand::SetLengthFactor {
@@ -63,7 +66,7 @@ fn a_card_for_a_file_in_another_unit_is_answered_with_the_converted_file() {
     window.apply(ExportCommand::AskSave(cards));
     match last_effect(&window) {
         Effect::AskSave { kind, name } => {
-            assert_eq!(*kind, ExportKind::Mesh(MeshExport::Converted));
+            assert_eq!(*kind, Output::Mesh(MeshOutput::Converted));
             assert_eq!(name, "stamped_converted.k");
         }
         other => panic!("{other:?}"),

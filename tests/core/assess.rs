@@ -4,6 +4,8 @@ use shapematch::assess::*;
 use shapematch::geometry::{Point3, Pose, Similarity, TriMesh, Vector3};
 use shapematch::monitor::Monitor;
 use shapematch::registration::*;
+use shapematch::text::Lengths;
+use shapematch::units::LengthUnit;
 
 use super::drawn_pan::{everywhere, pan, placement};
 
@@ -142,4 +144,99 @@ fn parts_that_have_nothing_in_common_are_poor() {
     let (_, assessed) = judge(&wave, &pan(9.0, 0.0, everywhere));
     assert_eq!(assessed.verdict, Verdict::Poor, "{:?}", assessed.reasons);
     assert!(!assessed.reasons.is_empty());
+}
+
+/// One of each kind of reason, with the verdict it stands for.
+fn every_reason() -> Vec<(Reason, Verdict)> {
+    let unit = guess_unit(25.4).unwrap();
+    let (source, target, limit) = (0.1, 0.2, 4.0);
+    let at = Point3::new(1.0, 2.0, 3.0);
+    let shape = |difference| Reason::Shape { difference };
+    let twin = Some(Twin {
+        angle: std::f64::consts::PI,
+        axis: TwinAxis::Long,
+        shift: 0.25,
+    });
+    let motion = FreeMotion {
+        kind: FreeMotionKind::Extruded,
+        direction: Vector3::y(),
+        point: Point3::origin(),
+    };
+    let poor = [
+        Reason::OppositeHand { score_ratio: 0.5 },
+        Reason::DifferentUnits {
+            size_ratio: 25.0,
+            unit,
+        },
+        shape(ShapeReason::HardlyMet { share: 0.2 }),
+        shape(ShapeReason::Surface {
+            by: 40.0,
+            limit,
+            at,
+        }),
+        Reason::EndedEarly {
+            termination: Termination::NoPairs,
+        },
+    ];
+    let check = [
+        Reason::NearMirrorImage { score_ratio: 0.9 },
+        Reason::PairScale { scale: 1.1 },
+        Reason::Uncertain {
+            by: f64::INFINITY,
+            limit,
+            along: PartDirection::Along,
+        },
+        shape(ShapeReason::Surface { by: 5.0, limit, at }),
+        shape(ShapeReason::Bent { by: 5.0, limit }),
+        shape(ShapeReason::Rims { by: 5.0, limit, at }),
+        shape(ShapeReason::Hole { by: 5.0, limit, at }),
+        shape(ShapeReason::Holes {
+            only_source: 1,
+            only_target: 2,
+            at,
+        }),
+        Reason::BothOverhang { source, target },
+        Reason::Sliding { motion },
+        Reason::NearAlternative {
+            score_ratio: 1.2,
+            twin,
+        },
+        Reason::EqualAlternative {
+            score_ratio: 1.01,
+            twin: None,
+            n_equivalent: 2,
+        },
+        Reason::Stopped,
+        Reason::Sentence("the shapes differ".to_owned()),
+    ];
+    let good = Reason::InOrder {
+        overlap: 0.98,
+        p95: 0.1,
+    };
+    let poor = poor.map(|reason| (reason, Verdict::Poor)).into_iter();
+    let check = check.map(|reason| (reason, Verdict::Check));
+    poor.chain(check).chain([(good, Verdict::Good)]).collect()
+}
+
+#[test]
+fn every_reason_has_words_a_weight_and_comes_back_from_text() {
+    let lengths = Lengths::new(Some(LengthUnit::Millimeter));
+    for (reason, severity) in every_reason() {
+        assert_eq!(reason.severity(), severity, "{reason:?}");
+        let words = reason.words(lengths);
+        assert!(words.len() > 10 && !words.ends_with('.'), "{words}");
+        let text = serde_json::to_string(&reason).unwrap();
+        let back: Reason = serde_json::from_str(&text).unwrap();
+        assert_eq!(back, reason, "{text}");
+    }
+    let differ = Reason::Shape {
+        difference: ShapeReason::Bent {
+            by: 0.5,
+            limit: 0.1234,
+        },
+    };
+    let words = differ.words(lengths);
+    assert!(words.contains("0.500 mm") && words.contains("0.123 mm"));
+    let stored = r#"{"kind":"shape","difference":{"what":"bent","by":0.5,"limit":0.1234}}"#;
+    assert_eq!(serde_json::to_string(&differ).unwrap(), stored);
 }

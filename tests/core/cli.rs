@@ -163,7 +163,7 @@ fn the_record_has_its_keys() {
         let bytes = std::fs::read(pair.path(name)).unwrap();
         assert_eq!(file["sha256"], FileHash::of(&bytes).to_string());
     }
-    assert_eq!(record["schema"], "shapematch.match/1");
+    assert_eq!(record["schema"], "shapematch.match/2");
     let there = similarity(&record["matrix"]);
     let back = similarity(&record["inverse"]);
     let still = Similarity::identity().to_matrix4();
@@ -211,7 +211,7 @@ fn the_line_in_a_record_does_the_match_again_bit_for_bit() {
             pose,
             "--method",
             "icp",
-            "--stamped-unit",
+            "--stamped-length-factor",
             "1.001",
             "--normal-angle",
             "70",
@@ -227,6 +227,29 @@ fn the_line_in_a_record_does_the_match_again_bit_for_bit() {
         assert_eq!(second["parameters"], first["parameters"], "{line}");
         assert_eq!(second["command_line"], first["command_line"]);
     }
+}
+
+#[test]
+fn another_pose_of_the_match_is_written_by_its_number() {
+    let pair = Pair::bundled();
+    let best = record(&pair.run(&["--json", "-"]));
+    let alternatives = best["alternatives"].as_array().unwrap();
+    let too_large = (alternatives.len() + 2).to_string();
+    let output = pair.run(&["--pose-number", &too_large]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("the match found"));
+    let Some(first) = alternatives.first() else {
+        return;
+    };
+    let second = record(&pair.run(&["--json", "-", "--pose-number", "2"]));
+    assert_eq!(second["matrix"], first["matrix"]);
+    let line = second["command_line"].as_str().unwrap();
+    assert!(line.contains("--pose-number 2"), "{line}");
+    assert_eq!(run_line(line, &["--json", "-"])["matrix"], second["matrix"]);
+}
+
+fn record(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap()
 }
 
 #[test]
@@ -355,6 +378,6 @@ fn wrong_usage_and_missing_files_have_their_own_status() {
     assert!(text(&missing.stderr).contains("no-such-file.k"));
     let pair = Pair::bundled();
     let wide = pair.run(&["--angle-segment", "90"]);
-    assert_eq!(wide.status.code(), Some(1));
+    assert_eq!(wide.status.code(), Some(2));
     assert!(text(&wide.stderr).contains("60°"), "{}", text(&wide.stderr));
 }

@@ -5,7 +5,8 @@ use std::path::Path;
 use proptest::prelude::*;
 use shapematch::formats::keyword::write::{WriteOptions, write};
 use shapematch::formats::model::{
-    Nodes, Part, Section, Set, Shell, ShellExtra, Solid, SolidKind, StrainPoint, StressPoint,
+    Nodes, Part, Section, Set, Shell, ShellExtra, ShellFormulation, Solid, SolidKind, StrainPoint,
+    StressPoint,
 };
 use shapematch::formats::moved::moved;
 use shapematch::formats::{Memory, Model, ReadOptions, read_from};
@@ -62,6 +63,11 @@ fn add_parts(model: &mut Model) {
     model.sections = vec![Section {
         id: 3,
         thickness: [1.25, 1.25, 1.5, 1.25],
+        formulation: ShellFormulation {
+            elform: -16,
+            n_layers: 5,
+            has_own_rule: false,
+        },
     }];
 }
 

@@ -1,11 +1,13 @@
 //! What the window says after a move and after a weak or failed match, and that each remedy does something.
 
-use super::app::Window;
 use shapematch::app::*;
-use shapematch::assess::{Twin, TwinAxis, Verdict};
+use shapematch::assess::{Reason, ShapeReason, Twin, TwinAxis, Verdict};
 use shapematch::geometry::{Point3, Rotation, Similarity, TriMesh, Vector3};
 use shapematch::jobs::{JobEvent, JobKey, JobStage};
 use shapematch::registration::Surface;
+use shapematch::text::Lengths;
+
+use super::app::Window;
 
 #[test]
 fn the_overlap_follows_each_move_with_its_change() {
@@ -72,6 +74,34 @@ fn a_weak_match_has_causes_whose_remedies_do_something() {
 }
 
 #[test]
+fn shapes_that_differ_are_explained_from_the_reason_not_from_its_words() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    let mut result = window.state.document.result.clone().unwrap();
+    let mut run = (*result.run).clone();
+    let mut assessment = (*run.assessment).clone();
+    let mut with = |reasons: Vec<Reason>, window: &mut Window| {
+        assessment.reasons = reasons;
+        run.assessment = assessment.clone().into();
+        result.run = std::sync::Arc::new(run.clone()).into();
+        window.state.document.result = Some(result.clone());
+        let causes = window.state.causes();
+        causes
+            .iter()
+            .any(|cause| cause.title.contains("Springback"))
+    };
+    let differ = Reason::Shape {
+        difference: ShapeReason::Bent {
+            by: 0.5,
+            limit: 0.1,
+        },
+    };
+    assert!(with(vec![differ], &mut window));
+    let words = Reason::Sentence("the shapes differ".to_owned());
+    assert!(!with(vec![words], &mut window));
+}
+
+#[test]
 fn a_failed_match_leaves_the_pose_and_says_what_to_try() {
     let mut window = Window::with_both();
     window.holds = true;
@@ -123,21 +153,21 @@ fn a_twin_is_told_by_angle_and_axis() {
         (
             Vector3::x() * half,
             TwinAxis::Long,
-            "turned by 180° about its long axis",
+            "rotated by 180° about its long axis",
         ),
         (
             Vector3::y() * half,
             TwinAxis::Cross,
-            "turned by 180° about its short axis",
+            "rotated by 180° about its short axis",
         ),
         (
             Vector3::z() * (half / 2.0),
             TwinAxis::Through,
-            "turned by 90° in its own plane",
+            "rotated by 90° in its own plane",
         ),
     ] {
         let twin = Twin::of(&plate, &best, &best.after(&pose(turn)));
         assert_eq!(twin.axis, axis);
-        assert_eq!(twin.words(), words);
+        assert_eq!(twin.words(Lengths::default()), words);
     }
 }

@@ -1,30 +1,31 @@
 //! Everything that leaves the program, read back.
 
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
 use base64::Engine as _;
 use shapematch::formats::{Memory, ReadOptions, read};
 use shapematch::geometry::{Point3, Similarity, TriMesh};
 use shapematch::jobs::{
-    Destination, ExportContent, ExportRequest, Exported, JobKind, JobOutput, MatchedPair,
-    PipelineRunner, Runner as _,
+    Destination, ExportRequest, Exported, JobError, JobKind, JobOutput, PipelineRunner, Runner as _,
 };
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::load::{LoadSettings, LoadedPart, load_from};
 use shapematch::pipeline::match_parts::{MatchRecipe, MatchRun, match_parts};
-use shapematch::pipeline::node_table::{node_deviations, node_table};
-use shapematch::pipeline::record::match_record;
-use shapematch::pipeline::report::report;
+use shapematch::pipeline::outputs::node_table::{node_deviations, node_table};
+use shapematch::pipeline::outputs::record::match_record;
+use shapematch::pipeline::outputs::report::report;
+use shapematch::pipeline::outputs::{MeshOutput, Output, OutputInput};
 use shapematch::report::cards::read_back;
 use shapematch::report::{CardForm, parse_matrix};
+use shapematch::role::{PerRole, Role};
 use shapematch::samples;
-use std::path::Path;
-use std::sync::{Arc, OnceLock};
 
 /// A name that would break a page that does not guard itself.
 const HOSTILE: &str = "<b>\"crash\" & 'co'.k.gz";
 
 struct Matched {
-    crash: Arc<LoadedPart>,
-    stamped: Arc<LoadedPart>,
+    parts: PerRole<Arc<LoadedPart>>,
     run: Arc<MatchRun>,
 }
 
@@ -43,42 +44,44 @@ fn matched() -> &'static Matched {
             let part = load_from(&memory, Path::new(name), &settings, &Monitor::silent());
             Arc::new(part.unwrap())
         };
-        let (crash, stamped) = (load("crash", HOSTILE), load("stamped", "stamped.dynain.gz"));
+        let parts = PerRole {
+            crash: load("crash", HOSTILE),
+            stamped: load("stamped", "stamped.dynain.gz"),
+        };
         let (recipe, current) = (MatchRecipe::default(), Similarity::identity());
         let run = match_parts(
-            &crash,
-            &stamped,
+            parts.as_deref(),
             None,
             &recipe,
             &current,
             &Monitor::silent(),
         );
         let run = Arc::new(run.unwrap());
-        Matched {
-            crash,
-            stamped,
-            run,
-        }
+        Matched { parts, run }
     })
 }
 
 impl Matched {
-    fn pair(&self) -> MatchedPair {
-        MatchedPair {
-            run: Arc::clone(&self.run),
-            alternative: None,
-            crash: Arc::clone(&self.crash),
-            stamped: Arc::clone(&self.stamped),
+    fn input(&self) -> OutputInput {
+        OutputInput {
+            parts: self.parts.clone().map(Some),
+            crash_from_stamped: self.run.crash_from_stamped,
+            run: Some(Arc::clone(&self.run)),
+            ..OutputInput::default()
         }
     }
 }
 
-fn export(to: Destination, content: ExportContent) -> Exported {
-    let kind = JobKind::Export(ExportRequest { to, content });
-    match PipelineRunner.run(kind, &Monitor::silent()).unwrap() {
-        JobOutput::Exported(exported) => exported,
+fn try_export(to: Destination, output: Output, input: OutputInput) -> Result<Exported, JobError> {
+    let kind = JobKind::Export(ExportRequest { to, output, input });
+    match PipelineRunner.run(kind, &Monitor::silent())? {
+        JobOutput::Exported(exported) => Ok(exported),
         other => panic!("{other:?}"),
     }
+}
+
+fn export(to: Destination, output: Output) -> Exported {
+    try_export(to, output, matched().input()).unwrap()
 }
 
 /// Start tags without an end.
@@ -134,12 +137,8 @@ fn unescaped(text: &str) -> String {
 
 #[test]
 fn the_report_is_one_page_that_needs_nothing_else() {
-    let Matched {
-        crash,
-        stamped,
-        run,
-    } = matched();
-    let page = report(run, crash, stamped, &Monitor::silent()).unwrap();
+    let Matched { parts, run } = matched();
+    let page = report(run, parts.as_deref(), &Monitor::silent()).unwrap();
     assert!(page.len() < 2_000_000, "{} bytes", page.len());
     let attributes = well_formed(&page);
     assert!(!page.contains("<b>\"crash\""), "a file name became markup");
@@ -174,13 +173,9 @@ fn the_report_is_one_page_that_needs_nothing_else() {
 
 #[test]
 fn the_numbers_of_the_report_are_those_of_the_record() {
-    let Matched {
-        crash,
-        stamped,
-        run,
-    } = matched();
-    let page = report(run, crash, stamped, &Monitor::silent()).unwrap();
-    let record = match_record(run, crash, stamped);
+    let Matched { parts, run } = matched();
+    let page = report(run, parts.as_deref(), &Monitor::silent()).unwrap();
+    let record = match_record(run, parts.as_deref());
     let blocks: Vec<String> = page
         .split("<pre")
         .skip(1)
@@ -196,51 +191,49 @@ fn the_numbers_of_the_report_are_those_of_the_record() {
         .iter()
         .find(|text| text.contains("*INCLUDE_STAMPED_PART_MATRIX"));
     let on_card = read_back(&format!("{}\n", card.unwrap())).unwrap();
-    let corners = stamped.mesh.aabb().corners();
+    let corners = parts.stamped.mesh.aabb().corners();
     assert!(on_card.max_displacement(&run.crash_from_stamped, &corners) < 1e-3);
-    for hash in [crash, stamped].map(|part| part.hash().unwrap()) {
+    for (_, part) in parts.iter() {
+        let hash = part.hash().unwrap();
         assert!(page.contains(&hash.to_string()));
     }
-    assert!(page.contains(&record.verdict.to_uppercase()));
+    assert!(page.contains(record.verdict.label()));
 }
 
 #[test]
 fn node_deviations_read_back_to_the_same_bits() {
-    let Matched {
-        crash,
-        stamped,
-        run,
-    } = matched();
+    let Matched { parts, run } = matched();
     let pose = &run.crash_from_stamped;
     let silent = Monitor::silent();
-    let (rows, _) = node_deviations(crash, stamped, pose, &silent).unwrap();
-    let n_nodes = |part: &LoadedPart| part.surface.vertex_node.len();
-    assert_eq!(rows.len(), n_nodes(crash) + n_nodes(stamped));
-    let text = node_table(crash, stamped, pose, &silent).unwrap();
+    let (rows, _) = node_deviations(parts.as_deref(), pose, &silent).unwrap();
+    let n_nodes = |part: &LoadedPart| part.ids.nodes().len();
+    assert_eq!(rows.len(), n_nodes(&parts.crash) + n_nodes(&parts.stamped));
+    let text = node_table(parts.as_deref(), pose, &silent).unwrap();
     assert!(text.contains("\n# lengths in mm\n"), "no unit in the head");
     let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
     assert_eq!(lines.len(), rows.len() + 1);
     for (line, row) in lines[1..].iter().zip(&rows) {
         let cells: Vec<&str> = line.split(',').collect();
         let number = |i: usize| cells[i].parse::<f64>().unwrap();
-        assert_eq!((cells[0], number(1)), (row.part, row.node as f64));
+        assert_eq!((cells[0], number(1)), (row.role.word(), row.node as f64));
         assert_eq!(Point3::new(number(2), number(3), number(4)), row.at);
         assert_eq!(number(5), row.distance);
     }
     // The nearest element is as far as the distance says, where the other part is there.
     let row = rows
         .iter()
-        .find(|row| row.part == "stamped" && row.distance.abs() > 0.5)
+        .find(|row| row.role == Role::Stamped && row.distance.abs() > 0.5)
         .unwrap();
     let element = row.nearest_element.unwrap();
-    let shell = crash
+    let shell = parts
+        .crash
         .model
         .shells
         .iter()
         .find(|shell| shell.id == element)
         .unwrap();
     let reach = 30.0 + row.distance.abs();
-    let corner = &crash.model.nodes.positions()[shell.nodes[0] as usize];
+    let corner = &parts.crash.model.nodes.positions()[shell.nodes[0] as usize];
     assert!((corner - row.at).norm() < reach);
 }
 
@@ -261,42 +254,27 @@ fn same_positions(path: &Path, expected: &TriMesh, tolerance: f64) {
 
 #[test]
 fn the_moved_part_is_the_same_in_every_format() {
-    let Matched {
-        crash,
-        stamped,
-        run,
-    } = matched();
+    let Matched { parts, run } = matched();
     let folder = tempfile::tempdir().unwrap();
+    let stamped = &parts.stamped;
     let moved = stamped.mesh.transformed(&run.crash_from_stamped);
     // STL holds 32 bits; at 5 m that is a quarter of a thousandth.
     for (name, tolerance) in [("a.stl", 3e-4), ("a.ply", 0.0), ("a.obj", 0.0)] {
         let path = folder.path().join(name);
-        let content = ExportContent::Part {
-            part: Arc::clone(stamped),
-            world_from_part: run.crash_from_stamped,
-            other: Some(Arc::clone(crash)),
-        };
         let to = Destination::File(path.clone());
-        assert_eq!(export(to.clone(), content).to, to);
+        assert_eq!(export(to.clone(), Output::Mesh(MeshOutput::Moved)).to, to);
         same_positions(&path, &moved, tolerance);
     }
 }
 
 #[test]
 fn the_moved_deck_keeps_ids_and_turns_its_tensors() {
-    let Matched {
-        crash,
-        stamped,
-        run,
-    } = matched();
+    let Matched { parts, run } = matched();
+    let stamped = &parts.stamped;
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("moved.k");
-    let content = ExportContent::Part {
-        part: Arc::clone(stamped),
-        world_from_part: run.crash_from_stamped,
-        other: Some(Arc::clone(crash)),
-    };
-    export(Destination::File(path.clone()), content);
+    let to = Destination::File(path.clone());
+    export(to, Output::Mesh(MeshOutput::Moved));
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(text.contains("$ lengths in mm"), "no unit in the head");
     let back = read(&path, &ReadOptions::default(), &Monitor::silent()).unwrap();
@@ -329,7 +307,7 @@ fn the_moved_deck_keeps_ids_and_turns_its_tensors() {
 
 #[test]
 fn the_converted_part_lies_where_it_was_in_the_other_unit() {
-    let Matched { crash, stamped, .. } = matched();
+    let stamped = &matched().parts.stamped;
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("converted.k");
     let settings = LoadSettings {
@@ -343,12 +321,10 @@ fn the_converted_part_lies_where_it_was_in_the_other_unit() {
         &settings,
         &Monitor::silent(),
     );
-    let content = ExportContent::Part {
-        part: Arc::new(scaled.unwrap()),
-        world_from_part: Similarity::identity(),
-        other: Some(Arc::clone(crash)),
-    };
-    export(Destination::File(path.clone()), content);
+    let mut input = matched().input();
+    input.parts.stamped = Some(Arc::new(scaled.unwrap()));
+    let output = Output::Mesh(MeshOutput::Converted);
+    try_export(Destination::File(path.clone()), output, input).unwrap();
     let back = read(&path, &ReadOptions::default(), &Monitor::silent()).unwrap();
     let before = stamped.model.nodes.positions();
     for (is, was) in back.nodes.positions().iter().zip(before) {
@@ -360,20 +336,18 @@ fn the_converted_part_lies_where_it_was_in_the_other_unit() {
 
 #[test]
 fn cards_go_to_the_clipboard_with_what_rounding_costs() {
-    let Matched { stamped, run, .. } = matched();
+    let Matched { parts, run } = matched();
     let to = Destination::Clipboard("Include card".to_owned());
-    let content = ExportContent::Cards(CardForm::StampedPart, matched().pair());
-    let exported = export(to, content);
+    let exported = export(to, Output::Cards(CardForm::StampedPart));
     let on_card = read_back(&exported.text.unwrap()).unwrap();
-    let corners = stamped.mesh.aabb().corners();
+    let corners = parts.stamped.mesh.aabb().corners();
     assert!(on_card.max_displacement(&run.crash_from_stamped, &corners) < 1e-3);
     assert!(exported.notes[0].contains("read back"));
 }
 
 #[test]
 fn an_alternative_is_measured_anew_before_it_is_written() {
-    let pair = matched().pair();
-    let mut run = MatchRun::clone(&pair.run);
+    let mut run = MatchRun::clone(&matched().run);
     let mut outcome = shapematch::registration::MatchOutcome::clone(&run.outcome);
     let up = Similarity {
         translation: shapematch::geometry::Vector3::new(0.0, 0.0, 400.0),
@@ -386,14 +360,14 @@ fn an_alternative_is_measured_anew_before_it_is_written() {
         start: 0,
     }];
     run.outcome = Arc::new(outcome);
-    let pair = MatchedPair {
-        run: Arc::new(run),
+    let input = OutputInput {
+        run: Some(Arc::new(run)),
         alternative: Some(0),
-        ..pair
+        ..matched().input()
     };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("match.json");
-    export(Destination::File(path.clone()), ExportContent::Record(pair));
+    try_export(Destination::File(path.clone()), Output::Record, input).unwrap();
     let record: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
     assert_eq!(record["matrix"][2][3].as_f64(), Some(other.translation.z));
     assert_eq!(record["verdict"], "poor");
@@ -406,9 +380,9 @@ fn an_alternative_is_measured_anew_before_it_is_written() {
 
 #[test]
 fn a_level_of_the_window_is_that_of_the_command_line() {
-    use shapematch::jobs::{ReduceInput, Role};
+    use shapematch::jobs::ReduceInput;
     use shapematch::pipeline::match_parts::ReducedPair;
-    let Matched { crash, stamped, .. } = matched();
+    let PerRole { crash, stamped } = &matched().parts;
     for max_triangles in [150, 900, 6000] {
         let kind = JobKind::Reduce(ReduceInput {
             role: Role::Stamped,
@@ -420,10 +394,35 @@ fn a_level_of_the_window_is_that_of_the_command_line() {
             JobOutput::Reduced { level, .. } => level,
             other => panic!("{other:?}"),
         };
-        let ceilings = [None, Some(max_triangles)];
-        let pair = ReducedPair::new(crash, stamped, ceilings, &Monitor::silent()).unwrap();
-        assert_eq!(pair.stamped.positions(), level.level.mesh.positions());
-        assert_eq!(pair.stamped.triangles(), level.level.mesh.triangles());
-        assert!(Arc::ptr_eq(&pair.crash, &crash.mesh));
+        let ceilings = PerRole::new(None, Some(max_triangles));
+        let pair =
+            ReducedPair::new(matched().parts.as_deref(), ceilings, &Monitor::silent()).unwrap();
+        assert_eq!(
+            pair.meshes.stamped.positions(),
+            level.level.mesh.positions()
+        );
+        assert_eq!(
+            pair.meshes.stamped.triangles(),
+            level.level.mesh.triangles()
+        );
+        assert!(Arc::ptr_eq(&pair.meshes.crash, &crash.mesh));
     }
+}
+
+#[test]
+fn the_window_overwrites_no_file_it_has_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("stamped.dynain.gz");
+    let files = samples::bundled();
+    let file = files.iter().find(|file| file.name.starts_with("stamped"));
+    std::fs::write(&path, &file.unwrap().bytes).unwrap();
+    let settings = LoadSettings::default();
+    let part = shapematch::pipeline::load::load(&path, &settings, &Monitor::silent()).unwrap();
+    let mut input = matched().input();
+    input.parts.stamped = Some(Arc::new(part));
+    let before = std::fs::read(&path).unwrap();
+    let refused = try_export(Destination::File(path.clone()), Output::Record, input);
+    let reason = refused.unwrap_err().to_string();
+    assert!(reason.contains("would overwrite"), "{reason}");
+    assert_eq!(std::fs::read(&path).unwrap(), before);
 }

@@ -5,8 +5,9 @@ use std::time::Duration;
 
 use shapematch::app::*;
 use shapematch::geometry::{Plane, Point3, Vector3};
-use shapematch::jobs::{JobKey, JobKind, PerRole, Role};
+use shapematch::jobs::{JobKey, JobKind};
 use shapematch::pipeline::inspect::Comparison;
+use shapematch::role::{PerRole, Role};
 
 use super::app::Window;
 
@@ -144,14 +145,10 @@ fn labels_are_steps_of_the_history_and_belong_to_their_part() {
     let part = window.state.document.part(Role::Stamped).unwrap();
     let loaded = &part.loaded;
     let ids = loaded.model.nodes.ids();
-    let node = loaded
-        .surface
-        .vertex_node
-        .iter()
-        .zip(loaded.vertex_of.iter());
-    let mut node = node
-        .filter(|(_, v)| **v == label.vertex)
-        .map(|(n, _)| ids[*n as usize]);
+    let nodes = loaded.ids.nodes().iter();
+    let mut node = nodes
+        .filter(|n| n.vertex == label.vertex)
+        .map(|n| ids[n.node as usize]);
     assert_eq!(label.node, node.next());
     nudge(&mut window, 0.5);
     window.act(Action::UpdateDeviation);

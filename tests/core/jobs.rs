@@ -1,28 +1,31 @@
 //! The worker: what it answers, in which order, and that nothing runs on after stop and cancel.
 
-use shapematch::jobs::{
-    Destination, ExportContent, ExportRequest, Exported, JobError, JobEvent, JobKey, JobKind,
-    JobOutput, JobStage, Stamp, Worker,
-};
-use shapematch::monitor::Monitor;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
+
+use shapematch::jobs::{
+    Destination, ExportRequest, Exported, JobError, JobEvent, JobKey, JobKind, JobOutput, JobStage,
+    Stamp, Worker,
+};
+use shapematch::monitor::Monitor;
+use shapematch::pipeline::outputs::{Output, OutputInput};
 
 const PATIENCE: Duration = Duration::from_secs(30);
 
 fn export() -> JobKind {
     JobKind::Export(ExportRequest {
         to: Destination::File("nowhere.txt".into()),
-        content: ExportContent::Text(String::new()),
+        output: Output::Log,
+        input: OutputInput::default(),
     })
 }
 
 fn other_kind() -> JobKind {
     let source = shapematch::jobs::PartSource::Example;
     JobKind::Load {
-        role: shapematch::jobs::Role::Crash,
+        role: shapematch::role::Role::Crash,
         source,
         settings: shapematch::pipeline::load::LoadSettings::default(),
     }

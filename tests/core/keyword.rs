@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use shapematch::formats::model::{Forming, ShellStrain, ShellStress, StrainPoint, StressPoint};
 use shapematch::formats::{
     self, Diagnostic, DiagnosticKind, Disk, FileSource, FormatError, Memory, Model, ReadOptions,
-    Selection, source::Bytes,
+    Selection,
 };
 use shapematch::monitor::Monitor;
 
@@ -31,8 +31,13 @@ fn decks() -> Vec<PathBuf> {
 struct DataFolder;
 
 impl FileSource for DataFolder {
-    fn open(&self, path: &Path) -> std::io::Result<Bytes> {
-        Disk.open(&data_folder().join(path))
+    fn open(&self, path: &Path, max: u64, monitor: &Monitor) -> std::io::Result<Vec<u8>> {
+        Disk.open(&data_folder().join(path), max, monitor)
+    }
+
+    fn stream(&self, path: &Path) -> std::io::Result<Box<dyn std::io::Read + '_>> {
+        let file = std::fs::File::open(data_folder().join(path))?;
+        Ok(Box::new(file))
     }
 
     fn find(&self, path: &Path) -> Option<PathBuf> {
@@ -407,7 +412,9 @@ fn a_million_broken_lines_cost_no_memory() {
     let deck = format!("*NODE\n{}", "       x\n".repeat(200_000));
     let model = read_text(deck);
     assert_eq!(model.diagnostics.count(DiagnosticKind::BadField), 200_000);
-    assert_eq!(model.diagnostics.iter().count(), 20);
+    let kept = model.diagnostics.iter();
+    let kept = kept.filter(|d| d.kind == DiagnosticKind::BadField);
+    assert_eq!(kept.count(), 20);
     assert_eq!(
         first(&model, DiagnosticKind::BadField)
             .position
@@ -449,7 +456,7 @@ fn includes_that_double_at_every_level_come_to_an_end() {
         files = files.with(format!("{level}.k"), text);
     }
     let model = read_files(&files);
-    assert!(model.diagnostics.count(DiagnosticKind::IncludeCycle) > 0);
+    assert!(model.diagnostics.count(DiagnosticKind::LimitReached) > 0);
 }
 
 #[test]

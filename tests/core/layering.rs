@@ -3,104 +3,59 @@
 use std::path::{Path, PathBuf};
 
 /// Each module with the modules it may use besides itself. Everything else is forbidden.
-const MAY_USE: &[(&str, &[&str])] = &[
-    ("monitor", &[]),
-    ("colormap", &[]),
-    ("units", &[]),
-    ("geometry", &["monitor"]),
-    ("formats", &["geometry", "monitor", "units"]),
-    ("simplify", &["geometry", "monitor"]),
-    ("search", &["geometry", "monitor"]),
-    ("samples", &["formats", "geometry", "monitor"]),
-    ("registration", &["search", "geometry", "monitor"]),
-    ("assess", &["registration", "search", "geometry", "monitor"]),
+const MAY_USE: &[(&str, &str)] = &[
+    ("monitor", ""),
+    ("role", ""),
+    ("colormap", ""),
+    ("units", ""),
+    ("text", "units"),
+    ("palette", "colormap role"),
+    ("geometry", "monitor"),
+    ("formats", "geometry monitor units"),
+    ("simplify", "geometry monitor"),
+    ("search", "geometry monitor"),
+    ("samples", "formats geometry monitor"),
+    ("registration", "search geometry monitor"),
+    ("mapping", "search geometry monitor"),
+    ("assess", "registration search geometry monitor text units"),
+    (
+        "settings",
+        "registration search geometry monitor text units",
+    ),
     (
         "report",
-        &[
-            "assess",
-            "registration",
-            "formats",
-            "geometry",
-            "colormap",
-            "units",
-        ],
+        "settings assess mapping registration formats geometry colormap role text units",
     ),
     (
         "pipeline",
-        &[
-            "report",
-            "assess",
-            "registration",
-            "samples",
-            "search",
-            "simplify",
-            "formats",
-            "geometry",
-            "colormap",
-            "monitor",
-            "units",
-        ],
+        "report settings assess mapping registration samples search simplify formats geometry colormap \
+         monitor palette role text units",
     ),
     (
         "jobs",
-        &[
-            "pipeline",
-            "report",
-            "assess",
-            "registration",
-            "samples",
-            "search",
-            "simplify",
-            "formats",
-            "geometry",
-            "colormap",
-            "monitor",
-            "units",
-        ],
+        "pipeline report settings assess mapping registration samples search simplify formats geometry \
+         colormap monitor palette role text units",
     ),
     (
         "app",
-        &[
-            "jobs",
-            "pipeline",
-            "report",
-            "assess",
-            "registration",
-            "samples",
-            "search",
-            "simplify",
-            "formats",
-            "geometry",
-            "colormap",
-            "monitor",
-            "units",
-        ],
+        "jobs pipeline report settings assess mapping registration samples search simplify formats \
+         geometry colormap monitor palette role text units",
     ),
-    ("render", &["geometry", "colormap"]),
+    (
+        "cli",
+        "pipeline report settings assess mapping registration samples search simplify formats geometry \
+         colormap monitor palette role text units",
+    ),
+    ("render", "geometry colormap monitor palette"),
     (
         "ui",
-        &[
-            "render",
-            "app",
-            "jobs",
-            "pipeline",
-            "report",
-            "assess",
-            "registration",
-            "samples",
-            "search",
-            "simplify",
-            "formats",
-            "geometry",
-            "colormap",
-            "monitor",
-            "units",
-        ],
+        "render app jobs pipeline report settings assess mapping registration samples search simplify \
+         formats geometry colormap monitor palette role text units",
     ),
 ];
 
-/// Modules above the glass floor, the only ones that may name egui, eframe or wgpu.
-const ABOVE_THE_FLOOR: &[&str] = &["ui", "render"];
+/// Modules above the UI boundary, the only ones that may name egui, eframe or wgpu.
+const ABOVE_THE_BOUNDARY: &[&str] = &["ui", "render"];
 
 pub fn rust_files(root: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
@@ -153,7 +108,7 @@ fn modules_look_down_only() {
     let mut broken = Vec::new();
     for path in rust_files(&source_root()) {
         let module = module_of(&path);
-        if ["lib", "main", "cli"].contains(&module.as_str()) {
+        if ["lib", "main"].contains(&module.as_str()) {
             continue;
         }
         let row = MAY_USE.iter().find(|(name, _)| *name == module);
@@ -163,7 +118,7 @@ fn modules_look_down_only() {
             let code = line.split("//").next().unwrap();
             for used in crate_paths(code) {
                 let known = MAY_USE.iter().any(|(name, _)| *name == used);
-                if known && used != module && !allowed.contains(&used.as_str()) {
+                if known && used != module && !allowed.split(' ').any(|name| name == used) {
                     let line = number + 1;
                     broken.push(format!("{}:{line}: {module} uses {used}", path.display()));
                 }
@@ -174,11 +129,11 @@ fn modules_look_down_only() {
 }
 
 #[test]
-fn nothing_below_the_glass_floor_knows_the_window() {
+fn nothing_below_the_ui_boundary_knows_the_window() {
     let mut broken = Vec::new();
     for path in rust_files(&source_root()) {
         let module = module_of(&path);
-        if ABOVE_THE_FLOOR.contains(&module.as_str()) || module == "main" {
+        if ABOVE_THE_BOUNDARY.contains(&module.as_str()) || module == "main" {
             continue;
         }
         let text = std::fs::read_to_string(&path).unwrap();

@@ -60,21 +60,36 @@ fn every_kind_reads_back() {
 
 #[test]
 fn content_tells_the_format_where_the_name_does_not() {
+    let stl = b"solid a\nfacet normal 0 0 1\n";
     let cases = [
         ("x", &b"ply\nformat"[..], Format::Ply),
-        ("x.K", b"", Format::Keyword),
+        ("x.stl", b"ply \nformat", Format::Ply),
         ("dynain", b"*KEYWORD", Format::Keyword),
-        ("part.STL.gz", b"", Format::Stl),
-        ("x", b"solid a\n", Format::Stl),
-        ("x.Obj", b"", Format::Obj),
-        ("floor.dynain", b"$ results", Format::Keyword),
-        ("floor.DYNAIN.gz", b"", Format::Keyword),
+        ("x", stl, Format::Stl),
+        ("deck.k", stl, Format::Stl),
         ("dynain_ini", b"*INITIAL_STRESS_SHELL\n", Format::Keyword),
-        ("floor.dyn", b"", Format::Keyword),
-        ("no_extension", b"", Format::Keyword),
+        ("part.stl", b"$ by hand\n*NODE\n1,2,3,4\n", Format::Keyword),
+        ("part.ply", b"a title\n\n*node\n1,2,3,4\n", Format::Keyword),
+        (
+            "part.k",
+            b"# from a modeller\nv 0 0 0\nf 1 2 3\n",
+            Format::Obj,
+        ),
+        ("x.Obj", b"o only a name\n", Format::Obj),
+        ("part.STL.gz", b"no word of it\n", Format::Stl),
     ];
     for (name, bytes, format) in cases {
-        assert_eq!(Format::of(Path::new(name), bytes), format, "{name}");
+        assert_eq!(Format::of(Path::new(name), bytes), Ok(format), "{name}");
+    }
+    let by_name = [
+        ("floor.dynain", Some(Format::Keyword)),
+        ("floor.DYNAIN.gz", Some(Format::Keyword)),
+        ("floor.dyn", Some(Format::Keyword)),
+        ("part.STL.gz", Some(Format::Stl)),
+        ("no_extension", None),
+    ];
+    for (name, format) in by_name {
+        assert_eq!(Format::of_name(Path::new(name)), format, "{name}");
     }
 }
 
@@ -96,7 +111,7 @@ fn all_solids_of_an_ascii_stl_become_parts() {
 }
 
 #[test]
-fn quads_stay_quads_and_polygons_become_fans() {
+fn quads_stay_quads_and_polygons_become_triangles() {
     let points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 .5 0\n";
     let text = format!(
         "# text\n{points}g first\nf 1 2 3 4\ng second\nf 1/1 2/2 3/3 4/4 5/5\nf -5 -4 -3\n"
@@ -156,11 +171,9 @@ fn oddities_are_named_with_their_place() {
         read("a.ply", lie),
         Err(FormatError::Broken { .. })
     ));
-    for name in ["a.stl", "a.obj", "a.ply"] {
-        assert!(
-            matches!(read(name, ""), Err(FormatError::Broken { .. })),
-            "{name}"
-        );
+    for name in ["a.stl", "a.obj", "a.ply", "a.k"] {
+        let error = read(name, "").unwrap_err().to_string();
+        assert!(error.starts_with("the file is empty"), "{error}");
     }
 }
 
@@ -279,6 +292,263 @@ proptest! {
         }
         if let Ok(model) = read(name, bytes) {
             let _ = model.surface(&Selection::All);
+        }
+    }
+}
+
+/// Positions of the corners of all shells, triangles with three.
+fn polygons_of(model: &Model) -> Vec<Vec<[f64; 3]>> {
+    let at = |&n: &u32| {
+        let p = model.nodes.positions()[n as usize];
+        [p.x, p.y, p.z]
+    };
+    let shells = model.shells.iter();
+    shells
+        .map(|shell| shell.corners().iter().map(at).collect())
+        .collect()
+}
+
+fn area(model: &Model) -> f64 {
+    model.surface(&Selection::All).unwrap().mesh.area()
+}
+
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+#[test]
+fn lines_and_points_of_an_obj_are_no_faces_and_weights_no_divisors() {
+    let model = read(
+        "a.obj",
+        format!("{SQUARE}l 1 2 3\np 1 2 3\nf 1 2 3 4\nl 4 3 2\n"),
+    )
+    .unwrap();
+    assert_eq!((model.shells.len(), model.diagnostics.total()), (1, 0));
+    let model = read("a.obj", "v 0 0 0 2\nv 4 0 0 2\nv 0 4 0 0.5\nf 1 2 3\n").unwrap();
+    assert_eq!(area(&model), 8.0);
+    let error = read("a.obj", format!("{SQUARE}l 1 2 3 4\n")).unwrap_err();
+    assert!(error.to_string().contains("no face"), "{error}");
+}
+
+#[test]
+fn what_exporters_write_into_an_obj_is_read() {
+    let text = "\u{feff}# Rhino\nmtllib\nusemtl \n\
+        V 0 0 0 # the corner\nv 1 0 0 1 0 0\nv 1 1 0 0.5 0.5 0.5 1\nv  0\t1 \\\n 0\n\
+        vn 0 0 1\nvt 0 0\ng lid#2 left # a comment\nF 1/1/1 2//1 3/1 \\\n 4\n\
+        f 1 2 99\nf 1 2 0\nf 1 2 x\nv 0 nan 0\nv 0 zero 0\nf 1 2 5\nf 1 3 6\nf -6 -5 -4\n";
+    let model = read("a.obj", text).unwrap();
+    assert_eq!(model.parts[0].title, "lid#2 left");
+    assert_eq!(polygons_of(&model)[0].len(), 4);
+    assert_eq!((model.shells.len(), area(&model)), (2, 1.5));
+    let lines: Vec<u64> = model
+        .diagnostics
+        .iter()
+        .map(|d| d.position.as_ref().unwrap().line)
+        .collect();
+    assert_eq!(
+        lines,
+        [17, 18, 18, 14, 15, 16, 19, 20],
+        "{:?}",
+        model.diagnostics
+    );
+}
+
+#[test]
+fn groups_of_an_obj_are_parts_also_when_they_come_back() {
+    let text = format!("{SQUARE}g a\nf 1 2 3\ng b\nf 1 2 4\ng a\nf 1 3 4\ng empty\n");
+    let model = read("a.obj", text).unwrap();
+    let rows: Vec<_> = model
+        .part_summaries()
+        .iter()
+        .map(|p| (p.title.clone(), p.n_shells))
+        .collect();
+    assert_eq!(rows, [("a".to_owned(), 2), ("b".to_owned(), 1)]);
+}
+
+#[test]
+fn concave_polygons_are_cut_inside_themselves() {
+    // An L of three squares, and an arrow of four corners: fans would lie outside.
+    let bracket = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 2 3 4 5 6 1\n";
+    let model = read("a.obj", bracket).unwrap();
+    assert_eq!(model.shells.len(), 4);
+    assert!((area(&model) - 3.0).abs() < 1e-12);
+    let arrow = "v 0 0 0\nv 2 1 0\nv 0 2 0\nv .5 1 0\nf 1 2 3 4\n";
+    let model = read("a.obj", arrow).unwrap();
+    assert!((area(&model) - 1.5).abs() < 1e-12);
+    assert_eq!(model.shells.len(), 2);
+    let mut star = String::new();
+    let mut face = "f".to_owned();
+    for i in 0..3000 {
+        let angle = f64::from(i) / 3000.0 * std::f64::consts::TAU;
+        let r = if i % 2 == 0 { 1.0 } else { 2.0 };
+        star += &format!("v {} {} 0\n", r * angle.cos(), r * angle.sin());
+        face += &format!(" {}", i + 1);
+    }
+    let model = read("a.obj", format!("{star}{face}\nf 1 2 3\n")).unwrap();
+    assert_eq!((model.shells.len(), model.diagnostics.total()), (1, 1));
+}
+
+const PLY_SQUARE: &str = "property float x\nproperty float y\nproperty float z\n";
+
+#[test]
+fn strips_of_a_ply_are_triangles() {
+    let strips = "ply\nformat ascii 1.0\nelement vertex 6\n";
+    let rest = "element tristrips 1\nproperty list int int vertex_indices\nend_header\n\
+        0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n12 0 1 2 3 -1 2 3 4 5 5 -1 0\n";
+    let model = read("a.ply", format!("{strips}{PLY_SQUARE}{rest}")).unwrap();
+    assert_eq!((model.shells.len(), model.diagnostics.total()), (4, 0));
+    assert!((area(&model) - 2.0).abs() < 1e-12);
+    // Every second triangle of a strip is turned, so that all look to the same side.
+    let mesh = model.surface(&Selection::All).unwrap().mesh;
+    assert!((0..4).all(|t| mesh.normal(t).z > 0.0));
+}
+
+#[test]
+fn what_exporters_write_into_a_ply_is_read() {
+    let text = "PLY \r\nformat ascii 1.0\r\ncomment Created by Blender3D 2.49 - b\u{fc}ro\r\n\
+        obj_info something\r\nelement vertex 4\r\nproperty float32 X\r\nproperty float32 Y\r\n\
+        property float32 Z\r\nproperty list uchar float extra\r\nelement face 2\r\n\
+        property uchar red\r\nproperty list uchar int vertex_index\r\nend_header\r\n\
+        .0 -.0 0. 0\r\n\r\n1. 0 0 1 .5\r\n1 1 0 0 spare\r\n\r\n\r\n-.0 1.e0 0 0\r\n\
+        9 3 0 1\r\n 2\r\n9 3 0 2 3\r\n";
+    let model = read("a.ply", text).unwrap();
+    assert_eq!((model.shells.len(), model.diagnostics.total()), (2, 0));
+    assert_eq!(area(&model), 1.0);
+    let cut = text.trim_end().trim_end_matches(" 3");
+    let model = read("a.ply", cut).unwrap();
+    assert_eq!((model.shells.len(), model.diagnostics.total()), (1, 1));
+}
+
+#[test]
+fn what_exporters_write_into_an_stl_is_read() {
+    let one_line = "solid a part facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 \
+        vertex 0 1 0 endloop endfacet endsolid a part solid b facet normal nan nan nan outer loop \
+        vertex 0 0 0 vertex 1 0 0 vertex 1 1 0 vertex 0 1 0 endloop endfacet endsolid b";
+    let model = read("a.stl", one_line).unwrap();
+    assert!(model.diagnostics.is_empty(), "{:?}", model.diagnostics);
+    let rows: Vec<_> = model
+        .part_summaries()
+        .iter()
+        .map(|p| (p.title.clone(), p.n_triangles))
+        .collect();
+    assert_eq!(rows, [("a part".to_owned(), 1), ("b".to_owned(), 2)]);
+    // "solid" in the header of a binary file whose end is cut, longer, or whose count is missing.
+    let mut bytes = stl::write_binary(&strip());
+    bytes[..11].copy_from_slice(b"solid blah\n");
+    let n = strip().n_triangles();
+    let cut = bytes[..bytes.len() - 60].to_vec();
+    let longer = [&bytes[..], b"trailing"].concat();
+    let mut uncounted = bytes.clone();
+    uncounted[80..84].fill(0);
+    for (bytes, n) in [(cut, n - 2), (longer, n), (uncounted, n)] {
+        let model = read("a.stl", bytes).unwrap();
+        assert_eq!((model.shells.len(), model.diagnostics.total()), (n, 1));
+    }
+}
+
+/// The readers of public crates give the same meshes where they give any.
+mod twins {
+    use super::*;
+
+    fn tables(bytes: &[u8]) -> (Vec<[f64; 3]>, Vec<Vec<u32>>) {
+        let options = tobj::LoadOptions::default();
+        let no_materials = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
+        let (objects, _) = tobj::load_obj_buf(&mut &bytes[..], &options, no_materials).unwrap();
+        let (mut points, mut faces) = (Vec::new(), Vec::new());
+        for object in objects {
+            let first = points.len() as u32;
+            let mesh = object.mesh;
+            points.extend(mesh.positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]]));
+            let mut rest = &mesh.indices[..];
+            let mut sizes = mesh.face_arities.iter();
+            while !rest.is_empty() {
+                let n = sizes.next().map_or(3, |&n| n as usize);
+                faces.push(rest[..n].iter().map(|i| i + first).collect());
+                rest = &rest[n..];
+            }
+        }
+        (points, faces)
+    }
+
+    /// A point, its three axes, and quads between neighbours of a grid.
+    fn grid() -> impl Strategy<Value = Vec<[f64; 3]>> {
+        proptest::collection::vec(proptest::array::uniform3(-1e3f64..1e3), 12)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn of_obj(points in grid(), faces in proptest::collection::vec(proptest::sample::subsequence((1..=12).collect::<Vec<i32>>(), 3), 1..9), negative: bool) {
+            let mut text = "o first\n".to_owned();
+            for [x, y, z] in &points {
+                text += &format!("v {x} {y} {z}\n");
+            }
+            for face in &faces {
+                text += "f";
+                for corner in face {
+                    let corner = if negative { corner - 13 } else { *corner };
+                    text += &format!(" {corner}//1");
+                }
+                text += "\n";
+            }
+            let model = read("a.obj", text.clone()).unwrap();
+            let (points, faces) = tables(text.replace("//1", "").as_bytes());
+            let expected: Vec<Vec<[f64; 3]>> = faces
+                .iter()
+                .map(|face| face.iter().map(|&i| points[i as usize]).collect())
+                .collect();
+            prop_assert_eq!(polygons_of(&model), expected);
+        }
+
+        #[test]
+        fn of_stl(points in grid()) {
+            let points: Vec<Point3> = points.into_iter().map(Point3::from).collect();
+            let triangles = (0..10).map(|i| [i, i + 1, i + 2]).collect();
+            let mesh = TriMesh::new(points, triangles).unwrap();
+            let bytes = stl::write_binary(&mesh);
+            let mut cursor = std::io::Cursor::new(bytes.clone());
+            let twin = stl_io::create_stl_reader(&mut cursor).unwrap();
+            let expected: Vec<Vec<[f64; 3]>> = twin
+                .map(|t| t.unwrap().vertices.map(|v| v.0.map(f64::from)).to_vec())
+                .collect();
+            prop_assert_eq!(polygons_of(&read("a.stl", bytes).unwrap()), expected);
+        }
+
+        #[test]
+        fn of_ply(points in grid(), is_ascii: bool) {
+            use ply_rs_bw::ply::{DefaultElement, Property};
+            let mesh_points: Vec<Point3> = points.iter().copied().map(Point3::from).collect();
+            let triangles = (0..10).map(|i| [i, i + 1, i + 2]).collect();
+            let mesh = TriMesh::new(mesh_points, triangles).unwrap();
+            let mut bytes = ply::write(&mesh, "x");
+            if is_ascii {
+                let mut text = String::from_utf8_lossy(&bytes).split("end_header").next().unwrap()
+                    .replace("binary_little_endian", "ascii") + "end_header\n";
+                for [x, y, z] in &points {
+                    text += &format!("{x} {y} {z}\n");
+                }
+                for [a, b, c] in mesh.triangles() {
+                    text += &format!("3 {a} {b} {c}\n");
+                }
+                bytes = text.into_bytes();
+            }
+            let parser = ply_rs_bw::parser::Parser::<DefaultElement>::new();
+            let twin = parser.read_ply(&mut &bytes[..]).unwrap();
+            let number = |element: &DefaultElement, name: &str| match element[name] {
+                Property::Double(value) => value,
+                ref other => panic!("{other:?}"),
+            };
+            let vertices: Vec<[f64; 3]> = twin.payload["vertex"]
+                .iter()
+                .map(|v| [number(v, "x"), number(v, "y"), number(v, "z")])
+                .collect();
+            let expected: Vec<Vec<[f64; 3]>> = twin.payload["face"]
+                .iter()
+                .map(|face| match face["vertex_indices"] {
+                    Property::ListUInt(ref list) => list.iter().map(|&i| vertices[i as usize]).collect(),
+                    ref other => panic!("{other:?}"),
+                })
+                .collect();
+            prop_assert_eq!(polygons_of(&read("a.ply", bytes).unwrap()), expected);
         }
     }
 }

@@ -1,10 +1,12 @@
 //! Pairs of points: picked in turn, fitted as one step, undone one by one, and a start of the match.
 
-use super::app::Window;
 use shapematch::app::*;
 use shapematch::geometry::{Point3, Rotation, Similarity, Vector3};
-use shapematch::jobs::{JobKind, Role};
+use shapematch::jobs::JobKind;
 use shapematch::registration::StartMethod;
+use shapematch::role::Role;
+
+use super::app::Window;
 
 fn picked(point: Point3) -> PickedPoint {
     PickedPoint {
@@ -77,7 +79,7 @@ fn the_fit_is_one_step_and_says_what_is_missing_before() {
     let window = with_pairs(2);
     assert_eq!(
         Action::FitPairs.enabled(&window.state),
-        Err(Reason("pick three pairs of points first"))
+        Err(Reason("Pick three pairs of points first."))
     );
     assert_eq!(
         window.state.pair_fit().unwrap_err(),

@@ -1,10 +1,12 @@
 //! Projects: saved and opened, moved, changed on disk, from later programs, and kept in case of a crash.
 
-use super::app::{Window, shifted};
+use std::path::{Path, PathBuf};
+
 use proptest::prelude::*;
 use shapematch::app::*;
+use shapematch::assess::{Reason, Verdict};
 use shapematch::geometry::Similarity;
-use shapematch::jobs::{Located, PerRole, PipelineRunner, ProjectRequest, Role, Runner as _};
+use shapematch::jobs::{Located, PipelineRunner, ProjectRequest, Runner as _};
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::match_parts::MatchRecipe;
 use shapematch::pipeline::project::{PartEntry, Project};
@@ -12,8 +14,11 @@ use shapematch::registration::{
     DataSide, Floor, Hand, MatchSettings, Method, Metric, Motion, PairWith, Search, Selection,
     StartMethod, StartSettings,
 };
+use shapematch::role::{PerRole, Role};
+use shapematch::settings::Choice;
 use shapematch::units::LengthUnit;
-use std::path::{Path, PathBuf};
+
+use super::app::{Window, shifted};
 
 /// The example on disk, and a place for a project beside it.
 fn folder() -> (tempfile::TempDir, [PathBuf; 3]) {
@@ -262,6 +267,27 @@ fn later_programs_are_named_and_their_additions_kept() {
     );
 }
 
+/// The reasons as the program stored them before they had names.
+#[test]
+fn reasons_stored_as_sentences_are_kept_as_they_are() {
+    let (_folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    save(&mut window, &path);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let old = "the shapes differ: 95 % lie within 0.412, the facets alone explain 0.120";
+    let assessment = &mut value["result"]["run"]["assessment"];
+    assessment["reasons"] = serde_json::json!([old]);
+    assessment["verdict"] = "check".into();
+    let (project, notes) = Project::parse(&value.to_string(), &path).unwrap();
+    assert!(notes.is_empty(), "{notes:?}");
+    let result = project.result.as_ref().unwrap();
+    let assessment = &result.run.assessment;
+    assert_eq!(assessment.reasons, [Reason::Sentence(old.to_owned())]);
+    assert_eq!(assessment.verdict, Verdict::Check);
+    assert!(project.to_text(&path).contains(old));
+}
+
 #[test]
 fn rubbish_is_refused_with_a_message() {
     let path = Path::new("a.shapematch");
@@ -341,22 +367,23 @@ fn any_recipe() -> impl Strategy<Value = MatchRecipe> {
                         angle_segment_deg: x[2],
                         both_signs: is[2],
                         poses: vec![shifted(x[3]), shifted(-x[4])],
-                        widen: is[3],
+                        extra_starts: is[3],
                     },
                     search: if is[4] {
-                        Search::Race
+                        Search::CoarseToFine
                     } else {
                         Search::EveryStart
                     },
-                    finish: is[5],
+                    refine_on_full: is[5],
                     data_side: if is[6] {
                         DataSide::Auto
                     } else {
                         DataSide::Target
                     },
                     allowance: x[3],
+                    shape_tolerance: x[3],
                     max_normal_angle_deg: x[4],
-                    n_race_points: n[0],
+                    n_coarse_points: n[0],
                     n_refine_points: n[1],
                     max_iterations: n[2],
                     motion_tolerance: x[5],
@@ -375,15 +402,15 @@ proptest! {
         let project = Project {
             recipe,
             saved_at,
-            crash: Some(PartEntry::default()),
+            parts: PerRole::new(Some(PartEntry::default()), None),
             ..Project::default()
         };
-        let path = Path::new("/tmp/x/a.shapematch");
+        let path = Path::new("folder/a.shapematch");
         let (read, notes) = Project::parse(&project.to_text(path), path).unwrap();
         prop_assert_eq!(notes, Vec::<String>::new());
         prop_assert_eq!(read.recipe, project.recipe);
         prop_assert_eq!(read.saved_at, project.saved_at);
-        prop_assert_eq!(read.crash, project.crash);
+        prop_assert_eq!(read.parts, project.parts);
     }
 }
 
@@ -392,29 +419,29 @@ fn work_is_kept_after_each_step_and_restored_as_unsaved() {
     let (folder, [crash, stamped, _]) = folder();
     let mut window = worked(&crash, &stamped);
     let kept = |window: &mut Window| {
-        window.apply(ProjectCommand::Keep);
+        window.apply(ProjectCommand::Autosave);
         let effects = std::mem::take(&mut window.effects);
         let kept = effects.into_iter().find_map(|effect| match effect {
-            Effect::KeepWork(project) => Some(*project),
+            Effect::Autosave(project) => Some(*project),
             _ => None,
         });
         kept.map(|project| {
             let path = folder.path().join("kept/run.shapematch");
-            project.write(&path).unwrap();
+            project.write_in_new_folder(&path).unwrap();
             path
         })
     };
-    assert!(window.state.is_to_be_kept());
+    assert!(window.state.needs_autosave());
     assert!(kept(&mut window).is_some());
-    assert!(!window.state.is_to_be_kept());
+    assert!(!window.state.needs_autosave());
     assert!(kept(&mut window).is_none());
     window.apply(MoveCommand::Begin {
         kind: MotionKind::Move,
         frame: window.state.move_frame().unwrap(),
     });
-    assert!(!window.state.is_to_be_kept(), "a move is under way");
+    assert!(!window.state.needs_autosave(), "a move is under way");
     window.apply(Command::Escape);
-    window.act(Action::TurnOverX);
+    window.act(Action::FlipX);
     let path = kept(&mut window).unwrap();
 
     let mut again = Window::real();
@@ -444,7 +471,7 @@ fn leaving_asks_only_if_something_would_be_lost() {
         quits(&mut window),
         "opening the files again brings this back"
     );
-    window.act(Action::TurnOverX);
+    window.act(Action::FlipX);
     assert!(!quits(&mut window));
     assert_eq!(window.state.view.dialog, Some(Dialog::Unsaved));
     window.apply(Command::Escape);
@@ -469,7 +496,7 @@ fn leaving_asks_only_if_something_would_be_lost() {
     assert_eq!(window.state.project.name().as_deref(), Some("a"));
 
     // A dialog that was closed keeps the window open, also after a later save.
-    window.act(Action::TurnOverY);
+    window.act(Action::FlipY);
     window.project_dialog_closed();
     window.effects.clear();
     save(&mut window, &folder.path().join("a.shapematch"));

@@ -1,11 +1,12 @@
 //! Registration against known poses on an analytic pan, meshed twice without a common node.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 
 use shapematch::assess::{AssessSettings, Verdict, assess};
 use shapematch::geometry::{Point3, Pose, Similarity, TriMesh, Vector3};
-use shapematch::monitor::{IterationReport, Monitor, Observer};
+use shapematch::monitor::Monitor;
 use shapematch::registration::*;
+use shapematch::settings::Choice;
 
 use super::drawn_pan::{everywhere, pan, panel, placement, worst_node};
 
@@ -96,7 +97,7 @@ fn current_pose() -> StartSettings {
     StartSettings {
         method: StartMethod::CurrentPose,
         both_signs: false,
-        widen: false,
+        extra_starts: false,
         ..StartSettings::default()
     }
 }
@@ -112,12 +113,12 @@ fn every_selection_metric_and_motion_finds_the_pose() {
     for situation in situations() {
         let source = situation.source.transformed(&nudge.inverse());
         let edge = situation.target.mean_edge_length();
-        for mut selection in Selection::ALL {
+        for &(mut selection) in Selection::ALL {
             if let Selection::Trimmed { overlap } = &mut selection {
                 *overlap = 0.95 * situation.overlap;
             }
-            for metric in Metric::ALL {
-                for motion in Motion::ALL {
+            for &metric in Metric::ALL {
+                for &motion in Motion::ALL {
                     let settings = MatchSettings {
                         selection,
                         metric,
@@ -179,7 +180,7 @@ fn methods_by_name_work_on_their_own() {
     let target = pan(13.0, 0.35, everywhere);
     let stamped = pan(10.0, 0.0, everywhere);
     let (source, truth) = moved(&stamped, 3);
-    for method in Method::ALL {
+    for &method in Method::ALL {
         assert_eq!(Method::from_name(method.name()), Some(method));
         let mut settings = MatchSettings::of(method);
         settings.starts.both_signs = false;
@@ -384,7 +385,7 @@ fn reduced_meshes_carry_the_search_and_the_full_ones_the_result() {
     };
     for (finish, limit) in [(true, 0.05), (false, 4.0)] {
         let settings = MatchSettings {
-            finish,
+            refine_on_full: finish,
             ..MatchSettings::default()
         };
         let outcome = match_surfaces(&input, &settings, &Monitor::silent()).unwrap();
@@ -458,33 +459,36 @@ fn bad_input_is_named() {
 }
 
 #[derive(Default)]
-struct Listener(Mutex<Vec<IterationReport>>);
+struct Listener(Mutex<Vec<(usize, usize, IterationRecord)>>);
 
 impl Observer for Listener {
-    fn iteration(&self, report: &IterationReport) {
-        self.0.lock().unwrap().push(*report);
+    fn iteration(&self, start: usize, number: usize, record: &IterationRecord) {
+        self.0.lock().unwrap().push((start, number, *record));
     }
 }
 
 #[test]
-fn every_iteration_is_told_and_kept() {
+fn every_iteration_is_reported_and_kept() {
     let target = pan(16.0, 0.35, everywhere);
     let (source, _) = moved(&pan(14.0, 0.0, everywhere), 1);
-    let listener = Arc::new(Listener::default());
-    let monitor = Monitor::with_observer(listener.clone());
-    let outcome = match_meshes(&source, &target, &MatchSettings::default(), &monitor).unwrap();
+    let listener = Listener::default();
+    let monitor = Monitor::silent();
+    let monitor = MatchMonitor::observed(&monitor, &listener);
+    let outcome = match_meshes(&source, &target, &MatchSettings::default(), monitor).unwrap();
     let heard = listener.0.lock().unwrap();
     let kept: usize = outcome.starts.iter().map(|s| s.iterations.len()).sum();
     assert_eq!(heard.len(), kept);
-    for report in heard.iter() {
-        let record = &outcome.starts[report.start_idx].iterations[report.iteration];
-        assert_eq!(
-            record.target_from_source.to_rows(),
-            report.target_from_source
-        );
+    for (start, number, record) in heard.iter() {
+        assert_eq!(outcome.starts[*start].iterations[*number], *record);
     }
-    assert_eq!(outcome.starts[outcome.winner].fate, Fate::Won);
-    let won = outcome.starts.iter().filter(|s| s.fate == Fate::Won);
+    assert_eq!(
+        outcome.starts[outcome.winner].outcome,
+        Some(StartOutcome::Won)
+    );
+    let won = outcome
+        .starts
+        .iter()
+        .filter(|s| s.outcome == Some(StartOutcome::Won));
     assert_eq!(won.count(), 1);
 }
 
@@ -495,7 +499,7 @@ struct Brake {
 }
 
 impl Observer for Brake {
-    fn iteration(&self, _: &IterationReport) {
+    fn iteration(&self, _: usize, _: usize, _: &IterationRecord) {
         if self.cancel {
             self.flags.request_cancel();
         } else {
@@ -514,8 +518,8 @@ fn stop_keeps_the_best_and_cancel_keeps_nothing() {
             flags: flags.clone(),
             cancel,
         };
-        let monitor = flags.observed_by(Arc::new(brake));
-        let result = match_meshes(&source, &target, &MatchSettings::default(), &monitor);
+        let monitor = MatchMonitor::observed(&flags, &brake);
+        let result = match_meshes(&source, &target, &MatchSettings::default(), monitor);
         if cancel {
             assert!(matches!(result, Err(RegistrationError::Cancelled(_))));
         } else {
@@ -533,4 +537,98 @@ fn other_units_are_guessed_and_not_applied() {
     let unit = outcome.scale_check.unit.unwrap();
     assert!((unit.factor - 25.4).abs() < 1e-12, "{unit:?}");
     assert!(guess_unit(1.5).is_none() && guess_unit(0.5).is_none());
+}
+
+/// Numbers and first poses of the starts as they begin.
+#[derive(Default)]
+struct Begun(Mutex<Vec<(usize, Similarity)>>);
+
+impl Observer for Begun {
+    fn start(&self, start: usize, record: &StartRecord) {
+        if record.outcome.is_none() {
+            self.0.lock().unwrap().push((start, record.first));
+        }
+    }
+}
+
+#[test]
+fn starts_of_both_hands_and_extra_starts_are_numbered_once() {
+    // Half of a pan on another half: nothing acceptable is found at once, so extra starts follow.
+    let target = pan(16.0, 0.35, |x, _| x < 10.0);
+    let (source, _) = moved(&pan(14.0, 0.0, |x, _| x > -10.0), 1);
+    let settings = MatchSettings {
+        hand: Hand::Either,
+        n_coarse_points: 60,
+        n_refine_points: 100,
+        refine_on_full: false,
+        ..MatchSettings::default()
+    };
+    let begun = Begun::default();
+    let monitor = Monitor::silent();
+    let monitor = MatchMonitor::observed(&monitor, &begun);
+    let outcome = match_meshes(&source, &target, &settings, monitor).unwrap();
+    let is_extra = |s: &StartRecord| matches!(s.kind, StartKind::Covering { .. });
+    for mirrored in [false, true] {
+        let of_hand = |s: &&StartRecord| s.mirrored == mirrored && is_extra(s);
+        assert!(outcome.starts.iter().filter(of_hand).count() > 0);
+    }
+    let first_poses = begun.0.into_inner().unwrap();
+    assert_eq!(first_poses.len(), outcome.starts.len());
+    for (place, (number, first)) in first_poses.iter().enumerate() {
+        assert_eq!(*number, place);
+        assert_eq!(outcome.starts[place].first, *first);
+    }
+    let winner = &outcome.starts[outcome.winner];
+    assert_eq!(winner.outcome, Some(StartOutcome::Won));
+}
+
+#[test]
+fn words_of_earlier_versions_are_still_read() {
+    let stage = |word: &str| serde_json::from_str::<Stage>(&format!("\"{word}\"")).unwrap();
+    assert_eq!(stage("race"), Stage::Coarse);
+    assert_eq!(stage("refine"), Stage::Refine);
+    assert_eq!(stage("finish"), Stage::Full);
+    assert_eq!(stage("catch"), Stage::WideBasin);
+    assert_eq!(stage("settle"), Stage::Converge);
+    assert_eq!(stage("match"), Stage::Converge);
+
+    let settings = MatchSettings {
+        refine_on_full: false,
+        n_coarse_points: 77,
+        starts: StartSettings {
+            extra_starts: false,
+            ..StartSettings::default()
+        },
+        ..MatchSettings::default()
+    };
+    let former = serde_json::to_string(&settings)
+        .unwrap()
+        .replace("refine_on_full", "finish")
+        .replace("n_coarse_points", "n_race_points")
+        .replace("extra_starts", "widen")
+        .replace("coarse-to-fine", "race");
+    assert!(former.contains("\"race\""), "{former}");
+    assert_eq!(
+        serde_json::from_str::<MatchSettings>(&former).unwrap(),
+        settings
+    );
+
+    let part = pan(30.0, 0.35, everywhere);
+    let mut settings = MatchSettings::default();
+    settings.starts.method = StartMethod::CurrentPose;
+    let outcome = run(&part, &part, &settings);
+    let former = serde_json::to_string(&outcome)
+        .unwrap()
+        .replace("\"outcome\":", "\"fate\":")
+        .replace("\"coarse\":{", "\"race\":{")
+        .replace("\"full\":{", "\"finish\":{")
+        .replace("\"stage\":\"coarse\"", "\"stage\":\"race\"")
+        .replace("\"stage\":\"full\"", "\"stage\":\"finish\"");
+    assert!(former.contains("\"fate\":\"won\"") && former.contains("\"race\":{"));
+    assert_eq!(
+        serde_json::from_str::<MatchOutcome>(&former).unwrap(),
+        outcome
+    );
+    let swapped = former.replace("\"kind\":\"current-pose\"", "\"kind\":\"swapped\"");
+    assert!(serde_json::from_str::<MatchOutcome>(&swapped).is_ok());
 }

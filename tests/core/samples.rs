@@ -3,9 +3,8 @@
 use std::io::{Read, Write};
 use std::path::Path;
 
-use shapematch::formats::keyword::deck;
-use shapematch::formats::{Memory, Model, Severity};
-use shapematch::geometry::{Topology, TriMesh};
+use shapematch::formats::{self, Memory, Model, Severity};
+use shapematch::geometry::{Topology, TriMesh, orient_consistently};
 use shapematch::monitor::Monitor;
 use shapematch::samples::{
     SampleMesh, SamplePart, SampleSettings, SampleVariant, bundled, bundled_settings, files,
@@ -66,7 +65,9 @@ fn elements_of_every_part_are_well_shaped_and_agree_on_their_side() {
                 let triangles = mesh.to_trimesh();
                 let topology = Topology::of(&triangles);
                 assert_eq!(topology.components(triangles.n_triangles()).1, 1, "{what}");
-                let (_, n_turned) = shapematch::geometry::orient_consistently(&triangles);
+                let monitor = Monitor::silent();
+                let oriented = orient_consistently(triangles, &topology, &monitor);
+                let (_, n_turned) = oriented.unwrap();
                 assert_eq!(n_turned, 0, "{what}");
             }
         }
@@ -188,7 +189,7 @@ fn variants_do_what_they_say() {
 
 fn read(bytes: &[u8]) -> Model {
     let source = Memory::new().with("deck.k", bytes);
-    deck::read(
+    formats::read_from(
         &source,
         Path::new("deck.k"),
         &Default::default(),

@@ -272,7 +272,9 @@ fn rms(a: &TriMesh, b: &TriMesh) -> f64 {
 
 #[test]
 fn no_worse_than_the_textbook() {
-    let mesh = shapematch::geometry::weld(&pan(70.0), 0.0).mesh;
+    let mesh = shapematch::geometry::weld(pan(70.0), &Monitor::silent())
+        .unwrap()
+        .mesh;
     for (n, speed, factor) in [
         (250, Speed::Exact, 1.05),
         (120, Speed::Exact, 1.05),

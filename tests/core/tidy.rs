@@ -1,4 +1,6 @@
-//! Habits that no compiler checks: file sizes, stray marks, printing below the door.
+//! Habits that no compiler checks: file sizes, stray marks, imports, words, threads.
+
+use std::path::Path;
 
 use super::layering::{rust_files, source_root};
 
@@ -46,4 +48,180 @@ fn nothing_is_left_lying_about() {
         }
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+/// Colours stand in the theme, in the palette and in the colour maps; elsewhere they have names.
+#[test]
+fn colours_are_written_in_one_place() {
+    let homes = ["src/ui/theme", "src/palette.rs", "src/colormap"];
+    let signs = [
+        "from_rgb(",
+        "from_gray(",
+        "from_black_alpha(",
+        "from_rgba_unmultiplied_const(",
+        "[0x",
+    ];
+    let mut found = Vec::new();
+    for path in rust_files(&source_root()) {
+        let place = path.display().to_string();
+        let is_window = place.contains("src/ui") || place.contains("src/render");
+        if !is_window || homes.iter().any(|home| place.contains(home)) {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).unwrap();
+        let code = text.split("#[cfg(test)]").next().unwrap();
+        for (number, line) in code.lines().enumerate() {
+            let code = line.split("//").next().unwrap();
+            if signs.iter().any(|sign| code.contains(sign)) {
+                found.push(format!("{place}:{}: {}", number + 1, line.trim()));
+            }
+        }
+    }
+    assert!(
+        found.is_empty(),
+        "name these colours in the theme:\n{}",
+        found.join("\n")
+    );
+}
+
+/// All source files with their text.
+fn sources() -> Vec<(String, String)> {
+    let read = |path: std::path::PathBuf| {
+        let name = path
+            .strip_prefix(source_root())
+            .unwrap()
+            .display()
+            .to_string();
+        (name, std::fs::read_to_string(&path).unwrap())
+    };
+    rust_files(&source_root()).into_iter().map(read).collect()
+}
+
+#[test]
+fn every_file_says_what_it_is_for() {
+    let silent: Vec<String> = sources()
+        .into_iter()
+        .filter(|(_, text)| !text.starts_with("//! "))
+        .map(|(name, _)| name)
+        .collect();
+    assert!(silent.is_empty(), "no `//!` head:\n{}", silent.join("\n"));
+}
+
+/// 0 for the standard library, 1 for crates, 2 for modules of ours.
+fn import_group(line: &str, modules: &[&str]) -> u8 {
+    let path = line.trim_start_matches("use ").trim_start_matches("::");
+    let first: &str = path.split([':', ';', ' ', '{']).next().unwrap_or_default();
+    match first {
+        "std" | "core" | "alloc" => 0,
+        "crate" | "self" | "super" => 2,
+        name if modules.contains(&name) => 2,
+        _ => 1,
+    }
+}
+
+#[test]
+fn imports_stand_in_three_groups() {
+    let mut broken = Vec::new();
+    for (name, text) in sources() {
+        let modules: Vec<&str> = text
+            .lines()
+            .filter_map(|line| line.split("mod ").nth(1)?.strip_suffix(';'))
+            .collect();
+        let mut last: Option<u8> = None;
+        let mut is_after_blank = true;
+        let mut is_open = false;
+        for (number, line) in text.lines().enumerate() {
+            if is_open {
+                is_open = !line.ends_with(';');
+            } else if line.starts_with("use ") {
+                let group = import_group(line, &modules);
+                let fits = match last {
+                    None => true,
+                    Some(last) => {
+                        group == last && !is_after_blank || group > last && is_after_blank
+                    }
+                };
+                if !fits {
+                    broken.push(format!("{name}:{}: {line}", number + 1));
+                }
+                last = Some(group);
+                is_open = !line.ends_with(';');
+                is_after_blank = false;
+            } else if line.is_empty() {
+                is_after_blank = true;
+            } else if !line.starts_with("#[cfg") {
+                last = None;
+            }
+        }
+    }
+    let broken = broken.join("\n");
+    assert!(broken.is_empty(), "std, then crates, then ours:\n{broken}");
+}
+
+/// Words that ARCHITECTURE.md replaces by those of the field, with what to say instead.
+const REPLACED_WORDS: &[(&str, &str)] = &[
+    ("Contest", "MultiStart"),
+    ("Entrant", "Candidate"),
+    ("Contender", "RankedCandidate"),
+    ("Heat", "Round"),
+    ("Judge", "PoseScorer"),
+    ("Fate", "StartOutcome"),
+    ("Draughtsman", "FigureRenderer"),
+    ("Keeper", "Autosave"),
+    ("gravest", "most severe"),
+    ("hopeless", "sizes incompatible"),
+    ("laid on", "aligned to"),
+];
+
+#[test]
+fn words_of_the_glossary_are_used() {
+    let mut found = Vec::new();
+    for (name, text) in sources() {
+        for (number, line) in text.lines().enumerate() {
+            for (word, better) in REPLACED_WORDS {
+                if has_word(line, word) {
+                    found.push(format!("{name}:{}: {word} → {better}", number + 1));
+                }
+            }
+        }
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+/// True if the line holds the word, not as a part of a longer one.
+fn has_word(line: &str, word: &str) -> bool {
+    let is_letter = |c: char| c.is_alphanumeric() || c == '_';
+    line.match_indices(word).any(|(at, _)| {
+        let before = line[..at].chars().next_back();
+        let after = line[at + word.len()..].chars().next();
+        !before.is_some_and(is_letter) && !after.is_some_and(is_letter)
+    })
+}
+
+#[test]
+fn threads_have_names() {
+    let unnamed: Vec<String> = sources()
+        .into_iter()
+        .filter(|(_, text)| text.contains("thread::spawn("))
+        .map(|(name, _)| name)
+        .collect();
+    let unnamed = unnamed.join(", ");
+    assert!(
+        unnamed.is_empty(),
+        "name the threads (thread::Builder): {unnamed}"
+    );
+}
+
+#[test]
+fn the_readme_shows_every_subcommand() {
+    use clap::CommandFactory as _;
+    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    let readme = std::fs::read_to_string(readme).unwrap();
+    let command = shapematch::cli::Cli::command();
+    let missing: Vec<&str> = command
+        .get_subcommands()
+        .map(clap::Command::get_name)
+        .filter(|name| !readme.contains(&format!("shapematch {name}")))
+        .collect();
+    assert!(missing.is_empty(), "not in README.md: {missing:?}");
 }

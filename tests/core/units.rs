@@ -1,17 +1,19 @@
 //! Units: guessed, shown, asked about once, remembered with the file, stated in exports.
 
-use super::app::Window;
+use std::path::Path;
+
 use shapematch::app::*;
 use shapematch::formats::Memory;
 use shapematch::geometry::Similarity;
-use shapematch::jobs::Role;
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::load::{LoadSettings, LoadedPart, load_from};
 use shapematch::pipeline::match_parts::{MatchRecipe, match_parts};
-use shapematch::pipeline::record::match_record;
+use shapematch::pipeline::outputs::record::match_record;
 use shapematch::pipeline::units::PairUnits;
+use shapematch::role::{PerRole, Role};
 use shapematch::units::{LengthUnit, UnitSystem};
-use std::path::Path;
+
+use super::app::Window;
 
 fn words(window: &Window, role: Role) -> String {
     window
@@ -127,7 +129,7 @@ fn every_export_states_units_and_factors() {
     let known = crash.units().unwrap();
     assert_eq!(known.words(), "kg-mm-ms, from title or comment");
     assert_eq!(
-        PairUnits::sentences(&crash, &stamped)[2],
+        PairUnits::sentences(PerRole::new(&crash, &stamped))[2],
         "stamped.dynain.gz: cm, set by you; its lengths were multiplied by 10"
     );
 
@@ -140,13 +142,14 @@ fn every_export_states_units_and_factors() {
     };
     let silent = Monitor::silent();
     let identity = Similarity::identity();
-    let run = match_parts(&crash, &stamped, None, &recipe, &identity, &silent).unwrap();
-    let record = match_record(&run, &crash, &stamped);
-    assert_eq!(record.units.length, Some("mm"));
+    let parts = PerRole::new(&crash, &stamped);
+    let run = match_parts(parts, None, &recipe, &identity, &silent).unwrap();
+    let record = match_record(&run, parts);
+    assert_eq!(record.units.length, Some(LengthUnit::Millimeter));
     assert_eq!(record.files.crash.units, Some("kg-mm-ms"));
     assert_eq!(record.files.stamped.units, Some("mm"));
     let form = shapematch::report::CardForm::ALL[0];
-    let cards = shapematch::pipeline::cards::cards(form, &run, &crash, &stamped).unwrap();
+    let cards = shapematch::pipeline::outputs::cards::cards(form, &run, parts).unwrap();
     assert!(cards.text.contains("lengths in mm"), "{}", cards.text);
     assert!(cards.text.contains("stamped.dynain.gz: mm, guessed"));
 }
@@ -159,11 +162,14 @@ fn stresses_in_other_units_are_told() {
         ..LoadSettings::default()
     };
     let stamped = bundled("stamped", &settings);
-    let warning = PairUnits::stress_warning(&crash, &stamped).unwrap();
+    let warning = PairUnits::stress_warning(PerRole::new(&crash, &stamped)).unwrap();
     assert!(
         warning.contains("in MPa") && warning.contains("in GPa"),
         "{warning}"
     );
     let alike = bundled("stamped", &LoadSettings::default());
-    assert_eq!(PairUnits::stress_warning(&crash, &alike), None);
+    assert_eq!(
+        PairUnits::stress_warning(PerRole::new(&crash, &alike)),
+        None
+    );
 }

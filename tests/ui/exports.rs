@@ -1,9 +1,10 @@
 //! The export menu and the dialog of a picture, by name.
 
-use super::story::{click, finish, window};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{Dialog, PictureSize, PictureWindows};
+
+use super::story::{click, finish, window};
 
 #[test]
 fn the_export_menu_offers_every_form_and_says_what_waits_for_a_match() {
@@ -16,10 +17,10 @@ fn the_export_menu_offers_every_form_and_says_what_waits_for_a_match() {
         "Save report…",
         "Save node deviations…",
         "Save LS-DYNA cards…",
-        "Picture as…",
+        "Save image…",
         "Copy as",
-        "Write matrix as",
-        "Write part",
+        "Save matrix as",
+        "Save part as",
     ] {
         // A key may stand behind the name.
         let mut found = window.query_all_by_label_contains(name);

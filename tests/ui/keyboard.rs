@@ -1,11 +1,13 @@
 //! The story without a pointer: Tab, Enter and keys.
 
-use super::story::{finish, window};
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use shapematch::jobs::Role;
+use shapematch::app::{Axis, MoveCommand, PartCommand, PartRef};
+use shapematch::role::Role;
 use shapematch::ui::Shell;
+
+use super::story::{click, finish, window};
 
 type Window = Harness<'static, Shell>;
 
@@ -87,4 +89,110 @@ fn what_has_the_keyboard_can_be_told() {
         window.run_steps(2);
     }
     assert!(window.query_by_label("1 Load & display").is_some());
+}
+
+/// Selects a part of the crash deck, for Escape to let go where nothing else is open.
+fn select_a_part(window: &mut Window) {
+    let id = window.state().state().document.part(Role::Crash);
+    let id = id.expect("loaded").facts.parts[0].id;
+    let select = PartCommand::Select(Some(PartRef {
+        role: Role::Crash,
+        id,
+    }));
+    let ctx = window.ctx.clone();
+    window.state_mut().run_commands(vec![select.into()], &ctx);
+}
+
+fn n_selected(window: &Window) -> usize {
+    window.state().state().view.selected.len()
+}
+
+#[test]
+fn escape_closes_what_is_open_and_nothing_else() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    select_a_part(&mut window);
+    // A menu.
+    click(&mut window, "View");
+    assert!(egui::Popup::is_any_open(&window.ctx));
+    window.key_press(Key::Escape);
+    window.run_steps(2);
+    assert!(!egui::Popup::is_any_open(&window.ctx));
+    assert_eq!(n_selected(&window), 1, "the menu's key went to the window");
+    // A text field.
+    click(&mut window, "Move by hand");
+    window.get_by_label("Matrix to paste").focus();
+    window.run_steps(2);
+    assert_eq!(focused(&window).as_deref(), Some("Matrix to paste"));
+    window.key_press(Key::Escape);
+    window.run_steps(2);
+    assert_eq!(n_selected(&window), 1, "the field's key went to the window");
+    // Nothing is open any more.
+    window.key_press(Key::Escape);
+    window.run_steps(2);
+    assert_eq!(n_selected(&window), 0);
+}
+
+#[test]
+fn ctrl_enter_in_the_field_sets_the_pose_and_runs_no_match() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    click(&mut window, "Move by hand");
+    window.get_by_label("Matrix to paste").focus();
+    window.run_steps(2);
+    let matrix = "1 0 0 7\n0 1 0 8\n0 0 1 9\n0 0 0 1";
+    window.get_by_label("Matrix to paste").type_text(matrix);
+    window.run_steps(2);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+    window.run_steps(2);
+    finish(&mut window);
+    let document = &window.state().state().document;
+    let moved = document.crash_from_stamped().translation;
+    assert_eq!([moved.x, moved.y, moved.z], [7.0, 8.0, 9.0]);
+    assert!(document.result.is_none(), "the match ran");
+}
+
+#[test]
+fn under_a_dialog_the_window_keeps_still() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    window.key_press(Key::F1);
+    window.run_steps(2);
+    window.key_press(Key::M);
+    window.run_steps(2);
+    assert!(!window.state().state().view.is_moved_over);
+    window.key_press(Key::Escape);
+    window.run_steps(2);
+    window.key_press(Key::M);
+    window.run_steps(2);
+    assert!(window.state().state().view.is_moved_over);
+}
+
+#[test]
+fn a_pose_moved_by_hand_can_be_copied_and_the_result_is_one_click_away() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+    window.run_steps(2);
+    finish(&mut window);
+    let matched = *window.state().state().document.crash_from_stamped();
+    assert!(window.query_by_label("Copy matrix").is_some());
+    let ctx = window.ctx.clone();
+    let flip = MoveCommand::Flip(Axis::X).into();
+    window.state_mut().run_commands(vec![flip], &ctx);
+    window.run_steps(3);
+    assert!(
+        window
+            .query_by_label("Copy matrix (pose by hand)")
+            .is_some()
+    );
+    click(&mut window, "Back to the result");
+    window.run_steps(2);
+    let document = &window.state().state().document;
+    assert_eq!(*document.crash_from_stamped(), matched);
+    assert!(document.current_result().is_some());
 }

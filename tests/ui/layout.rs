@@ -1,12 +1,13 @@
 //! Nothing is cut and nothing lies on something else: what was painted is looked at, not a picture.
 
-use super::story::{click, finish, window};
 use egui::{Pos2, Rect, Shape, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::NodeT as _;
 use shapematch::app::{Command, Theme};
 use shapematch::ui::Shell;
 use shapematch::ui::panels::graphics;
+
+use super::story::{click, finish, window};
 
 type Window = Harness<'static, Shell>;
 

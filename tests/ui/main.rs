@@ -1,4 +1,4 @@
-//! Tests above the glass floor: pictures on the software driver, then panels. One binary.
+//! Tests above the UI boundary: pictures on the software driver, then panels. One binary.
 
 #![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
 

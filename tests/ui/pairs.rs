@@ -1,11 +1,12 @@
 //! Pairs of points clicked with the mouse in both windows.
 
-use super::story::{click, finish, window};
 use egui::{Event, Modifiers, PointerButton};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use shapematch::jobs::Role;
+use shapematch::role::Role;
 use shapematch::ui::Shell;
+
+use super::story::{click, finish, window};
 
 /// Presses and lets go in the middle of a window, a little off.
 fn click_in(window: &mut Harness<'static, Shell>, role: Role, off: egui::Vec2) {

@@ -1,9 +1,10 @@
 //! Panels clicked by name, with the keyboard, at several sizes.
 
-use super::story::{click, finish, window};
 use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{Action, BottomTab, Dialog, Menu, Section};
-use shapematch::jobs::Role;
+use shapematch::role::Role;
+
+use super::story::{click, finish, window};
 
 #[test]
 fn an_empty_window_invites_and_says_why_the_rest_waits() {
@@ -13,8 +14,8 @@ fn an_empty_window_invites_and_says_why_the_rest_waits() {
         "Drop the stamped part here",
         "Open crash model…",
         "Open stamped part…",
-        "Not now: load a part first.",
-        "Not now: load both parts first.",
+        "Load a part first.",
+        "Load both parts first.",
     ] {
         assert!(window.query_by_label(name).is_some(), "{name}");
     }
@@ -47,7 +48,7 @@ fn sections_fold_tabs_turn_and_dialogs_open_by_key() {
     window.key_press(egui::Key::F1);
     window.run_steps(2);
     assert_eq!(window.state().state().view.dialog, Some(Dialog::Help));
-    assert!(window.query_by_label("Esc closes").is_some());
+    assert!(window.query_by_label("Esc to close").is_some());
     window.key_press(egui::Key::Escape);
     window.run_steps(2);
     assert_eq!(window.state().state().view.dialog, None);
@@ -62,10 +63,10 @@ fn the_help_sheet_has_all_keys() {
         let texts = window.query_all_by(|node| node.value().is_some_and(|text| is_it(&text)));
         texts.count() > 0
     };
-    let keyed = Action::ALL.iter().map(|action| action.info());
-    for info in keyed.filter(|info| info.shortcut.is_some()) {
+    let keyed = Action::ALL.iter().map(|action| action.row());
+    for info in keyed.filter(|info| info.shortcut().is_some()) {
         assert!(has(&|text| text == info.label), "{}", info.label);
-        for key in [info.shortcut, info.other_shortcut].into_iter().flatten() {
+        for key in info.keys.shortcuts {
             let key = key.to_string();
             assert!(has(&|text| text.split(", ").any(|one| one == key)), "{key}");
         }
@@ -79,15 +80,24 @@ fn every_action_stands_in_its_menu() {
         let bar = window.query_all_by_label(menu.label()).next();
         bar.expect("the menu").click_accesskit();
         window.run_steps(2);
-        for action in Action::in_menu(menu) {
-            let info = action.info();
-            let keys = info.shortcut.map_or_else(String::new, |s| s.to_string());
-            let is_item = |text: String| {
-                let rest = text.strip_prefix(info.label);
-                rest.is_some_and(|rest| rest.trim() == keys)
-            };
-            let mut items = window.query_all_by(|node| node.label().is_some_and(is_item));
-            assert!(items.next().is_some(), "{}", info.label);
+        for group in menu.groups() {
+            if let Some(name) = group.submenu {
+                let opener = window.get_by(|node| {
+                    let label = node.label();
+                    label.is_some_and(|text| text.trim_end_matches(['⏵', ' ']) == name)
+                });
+                opener.hover();
+                window.run_steps(20);
+            }
+            for info in group.rows {
+                let keys = info.shortcut().map_or_else(String::new, |s| s.to_string());
+                let is_item = |text: String| {
+                    let rest = text.strip_prefix(info.label);
+                    rest.is_some_and(|rest| rest.trim() == keys)
+                };
+                let mut items = window.query_all_by(|node| node.label().is_some_and(is_item));
+                assert!(items.next().is_some(), "{}", info.label);
+            }
         }
         window.key_press(egui::Key::Escape);
         window.run_steps(2);
@@ -122,7 +132,7 @@ fn every_state_of_the_window_has_names_at_every_size() {
     let mut window = window();
     click(&mut window, "Open the example pair");
     finish(&mut window);
-    click(&mut window, "Settings of the match");
+    click(&mut window, "Match settings");
     click(&mut window, "Move by hand");
     for size in [[1280.0, 720.0], [700.0, 450.0], [2560.0, 1440.0]] {
         window.set_size(egui::Vec2::from(size));

@@ -1,13 +1,15 @@
 //! A deck of five thousand parts: only what is seen is laid out, and the keys reach the rest.
 
-use super::story::{finish, window};
+use std::fmt::Write as _;
+
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use shapematch::app::{FileCommand, PartCommand, PartRef};
-use shapematch::jobs::Role;
+use shapematch::role::Role;
 use shapematch::ui::Shell;
-use std::fmt::Write as _;
+
+use super::story::{finish, window};
 
 const N_PARTS: u64 = 5_000;
 const FIRST: u64 = 2_000_000;
@@ -99,6 +101,17 @@ fn five_thousand_parts_are_listed_filtered_and_walked_through() {
         id: FIRST + 30,
     };
     assert!(window.state().state().view.selected.contains(&selected));
+
+    // Letters typed one after the other all go into the field, the × comes and goes beside it.
+    window.get_by_label("Filter parts").focus();
+    window.run_steps(2);
+    for letter in ["p", "a", "n"] {
+        window.event(egui::Event::Text(letter.to_owned()));
+        window.run_steps(2);
+    }
+    assert!(window.get_by_label("Filter parts").is_focused());
+    let value = window.get_by_label("Filter parts").value();
+    assert_eq!(value.as_deref(), Some("pan"));
 
     // The filter of the specification.
     for (text, n) in [

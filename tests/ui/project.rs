@@ -1,6 +1,9 @@
 //! Projects, kept work, history and command search in the real window.
 
-use super::story::{click, finish, window};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{
@@ -8,13 +11,12 @@ use shapematch::app::{
     ProjectCommand, StartupOptions, ViewCommand,
 };
 use shapematch::geometry::camera::StandardView;
-use shapematch::jobs::Role;
 use shapematch::report::picture::Picture;
+use shapematch::role::Role;
 use shapematch::ui::Shell;
-use shapematch::ui::storage::{Kept, Storage};
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use shapematch::ui::preferences::{Preferences, UserFiles};
+
+use super::story::{click, finish, window};
 
 type Window = Harness<'static, Shell>;
 
@@ -32,7 +34,7 @@ fn drawn(step_secs: f32) -> Window {
         .wgpu()
         .build_eframe(|cc| {
             let options = StartupOptions::default();
-            Shell::new(cc, options, Storage::none(), Kept::default()).expect("a thread")
+            Shell::new(cc, options, UserFiles::none(), Preferences::default()).expect("a thread")
         });
     window.run_steps(2);
     window
@@ -106,7 +108,7 @@ fn a_project_saved_and_opened_gives_the_same_pictures() {
     open(&mut first, paths);
     click(&mut first, "Reduce");
     finish(&mut first);
-    run(&mut first, MoveCommand::TurnOver(Axis::X));
+    run(&mut first, MoveCommand::Flip(Axis::X));
     look_from(&mut first, Role::Stamped, StandardView::Front);
     let mut display = first.state().state().view.display.clone();
     display.has_edges = true;
@@ -139,7 +141,7 @@ fn leaving_with_unsaved_work_asks() {
     let mut window = window();
     click(&mut window, "Open the example pair");
     finish(&mut window);
-    run(&mut window, MoveCommand::TurnOver(Axis::X));
+    run(&mut window, MoveCommand::Flip(Axis::X));
     run(&mut window, Command::Quit);
     for name in ["Save", "Don’t save", "Cancel"] {
         assert!(window.query_by_label(name).is_some(), "{name}");
@@ -157,13 +159,13 @@ fn history_rows_jump_and_say_where_one_is() {
     let mut window = window();
     click(&mut window, "Open the example pair");
     finish(&mut window);
-    run(&mut window, MoveCommand::TurnOver(Axis::X));
-    run(&mut window, MoveCommand::TurnOver(Axis::Y));
+    run(&mut window, MoveCommand::Flip(Axis::X));
+    run(&mut window, MoveCommand::Flip(Axis::Y));
     click(&mut window, "History");
     let end = window.state().state().document.clone();
-    click(&mut window, "Step 3: Turn over about X (part)");
+    click(&mut window, "Step 3: Flip about X (180°)");
     assert_eq!(window.state().state().history.n_done(), 3);
-    click(&mut window, "Step 4: Turn over about Y (part), undone");
+    click(&mut window, "Step 4: Flip about Y (180°), undone");
     assert_eq!(window.state().state().document, end);
     run(&mut window, HistoryCommand::JumpTo(2));
     assert!(
@@ -190,6 +192,12 @@ fn the_command_search_is_driven_by_keys() {
         window.state().state().view.dialog,
         Some(Dialog::Preferences)
     );
+    window.key_press(egui::Key::Escape);
+    window.run_steps(2);
+    // What was typed last is gone.
+    open(&mut window);
+    window.event(egui::Event::Text("xyz".to_owned()));
+    window.run_steps(2);
     window.key_press(egui::Key::Escape);
     window.run_steps(2);
     // Used lately: it stands first now, and the arrow leads to what is next.
@@ -223,7 +231,7 @@ fn every_action_is_found_by_its_name() {
             .filter(|entry| entry.action() == Some(*action))
             .count();
         assert_eq!(n, 1, "{action:?} in the command search");
-        let found = state.palette(action.info().label);
+        let found = state.palette(action.row().label);
         let is_first = found
             .iter()
             .take(3)
@@ -236,12 +244,12 @@ fn every_action_is_found_by_its_name() {
 fn lost_work_is_offered_and_comes_back() {
     let folder = tempfile::tempdir().expect("a folder");
     let start = |folder: &Path| {
-        let storage = Storage::at(&folder.join("settings.json"));
+        let files = UserFiles::at(folder);
         let mut window = Harness::builder()
             .with_size([1400.0, 900.0])
             .build_eframe(move |cc| {
                 let options = StartupOptions::default();
-                Shell::new(cc, options, storage, Kept::default()).expect("a thread")
+                Shell::new(cc, options, files, Preferences::default()).expect("a thread")
             });
         window.run_steps(2);
         window
@@ -250,7 +258,7 @@ fn lost_work_is_offered_and_comes_back() {
     let mut first = start(folder.path());
     click(&mut first, "Open the example pair");
     finish(&mut first);
-    run(&mut first, MoveCommand::TurnOver(Axis::X));
+    run(&mut first, MoveCommand::Flip(Axis::X));
     let pose = *first.state().state().document.crash_from_stamped();
     let file = loop {
         first.run_steps(1);
@@ -282,5 +290,5 @@ fn lost_work_is_offered_and_comes_back() {
     finish(&mut next);
     assert_eq!(*next.state().state().document.crash_from_stamped(), pose);
     assert!(next.state().state().is_unsaved());
-    assert!(next.state().state().project.lost_work().is_none());
+    assert!(next.state().state().project.lost_session().is_none());
 }

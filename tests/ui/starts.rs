@@ -1,8 +1,9 @@
 //! The rows of the starts and the curves of the iterations, by name.
 
-use super::story::{click, finish, window};
 use egui_kittest::kittest::Queryable as _;
 use shapematch::app::Preview;
+
+use super::story::{click, finish, window};
 
 #[test]
 fn a_match_leaves_rows_to_take_and_curves_to_step_through() {
@@ -21,7 +22,7 @@ fn a_match_leaves_rows_to_take_and_curves_to_step_through() {
     let winner = outcome.winner;
     let name = format!("Use the pose of start {}", winner + 1);
     assert!(window.query_by_label(&name).is_some(), "{name}");
-    assert!(window.query_by_label("✔ won").is_some());
+    assert!(window.query_by_label("✔ best").is_some());
     click(&mut window, "Convergence");
     click(&mut window, "Iteration before");
     let n_steps = outcome.starts[winner].iterations.len();

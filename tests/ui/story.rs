@@ -1,13 +1,14 @@
 //! The paper's whole story through the real window: what is clicked is found by its name.
 
+use std::time::{Duration, Instant};
+
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{ShownGeometry, StartupOptions};
-use shapematch::jobs::Role;
 use shapematch::report::parse_matrix;
+use shapematch::role::Role;
 use shapematch::ui::Shell;
-use shapematch::ui::storage::{Kept, Storage};
-use std::time::{Duration, Instant};
+use shapematch::ui::preferences::{Preferences, UserFiles};
 
 /// Longest time for one step; a slow machine is no failure, a stuck one is.
 const PATIENCE: Duration = Duration::from_secs(240);
@@ -20,7 +21,7 @@ pub(crate) fn window() -> Harness<'static, Shell> {
     let mut window = Harness::builder()
         .with_size([1400.0, 900.0])
         .build_eframe(|cc| {
-            Shell::new(cc, options, Storage::none(), Kept::default()).expect("a thread")
+            Shell::new(cc, options, UserFiles::none(), Preferences::default()).expect("a thread")
         });
     window.run_steps(2);
     window
@@ -63,7 +64,7 @@ fn load_reduce_move_over_align_match_detail_copy() {
 
     click(&mut window, "Move over");
     assert!(window.state().state().view.is_moved_over);
-    click(&mut window, "Align surface normal");
+    click(&mut window, "Align surface normals");
     finish(&mut window);
     assert!(window.state().state().shown_start().is_some());
     let before = *window.state().state().document.crash_from_stamped();

@@ -15,11 +15,12 @@ use shapematch::formats::Model;
 use shapematch::geometry::camera::{OrbitStyle, ScreenSize};
 use shapematch::geometry::{Camera, Point3, TriMesh};
 use shapematch::jobs::{
-    JobEvent, JobId, JobKind, JobOutput, JobStage, PartFacts, PartSource, PipelineRunner, Role,
+    JobEvent, JobId, JobKind, JobOutput, JobStage, PartFacts, PartSource, PipelineRunner,
     Runner as _,
 };
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::load::prepare;
+use shapematch::role::Role;
 use shapematch::ui::viewport::Viewports;
 
 const SIZE: Vec2 = vec2(640.0, 320.0);

@@ -1,21 +1,19 @@
-//! What menus, keys, palette and help sheet offer. One table; all of them read it.
+//! What menus, keys, command search and help sheet offer. One row per action; all of them read it.
 
-mod enabled;
+mod conditions;
+mod edit;
+mod export;
+mod file;
+mod help;
+mod match_;
+mod row;
 mod shortcut;
-mod table;
-mod to_command;
+mod view;
 
+pub use row::{ActionRow, KeyMode, Keys, MenuGroup, Reason};
 pub use shortcut::{Key, Shortcut};
 
-/// Why an action is not possible now, as a piece of a sentence: "load both parts first".
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Reason(pub &'static str);
-
-impl std::fmt::Display for Reason {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.0)
-    }
-}
+use super::{AppState, Command, Dialog, ViewCommand};
 
 /// The menus, from left to right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -56,42 +54,34 @@ impl Menu {
             Self::Help => "Help",
         }
     }
-}
 
-/// What is written about an action.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ActionInfo {
-    /// The menu it stands in.
-    pub menu: Menu,
-    /// Its name, in sentence case; "…" where more input follows.
-    pub label: &'static str,
-    /// What it does, in a sentence.
-    pub tooltip: &'static str,
-    /// Its key.
-    pub shortcut: Option<Shortcut>,
-    /// A second key.
-    pub other_shortcut: Option<Shortcut>,
-}
+    /// Its rows, in groups from top to bottom.
+    pub const fn groups(self) -> &'static [MenuGroup] {
+        match self {
+            Self::File => file::GROUPS,
+            Self::Edit => edit::GROUPS,
+            Self::View => view::GROUPS,
+            Self::Match => match_::GROUPS,
+            Self::Export => export::GROUPS,
+            Self::Help => help::GROUPS,
+        }
+    }
 
-impl ActionInfo {
-    /// All its keys as people read them, if it has any.
-    pub fn keys(&self) -> Option<String> {
-        let first = self.shortcut?.to_string();
-        Some(match self.other_shortcut {
-            Some(other) => format!("{first}, {other}"),
-            None => first,
-        })
+    /// Its rows without the groups.
+    pub fn rows(self) -> impl Iterator<Item = &'static ActionRow> {
+        self.groups().iter().flat_map(|group| group.rows)
     }
 }
 
 macro_rules! actions {
     ($($(#[doc = $doc:literal])* $name:ident),* $(,)?) => {
-        /// Something the user can do without further data: a menu entry, a key, a palette line.
+        /// Something the user can do without further data: a menu entry, a key, a line of the command
+        /// search. Its row says the rest.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Action { $($(#[doc = $doc])* $name),* }
 
         impl Action {
-            /// Every action, in the order of the menus.
+            /// Every action.
             pub const ALL: &'static [Self] = &[$(Self::$name),*];
         }
     };
@@ -114,20 +104,20 @@ actions! {
     ReloadAll,
     /// Exchange the two parts.
     Swap,
-    /// Forget the crash part.
+    /// Remove the crash part.
     CloseCrash,
-    /// Forget the stamped part.
+    /// Remove the stamped part.
     CloseStamped,
     /// Preferences.
     Preferences,
-    /// Leave the program.
+    /// Close the program.
     Quit,
     /// One step back.
     Undo,
     /// One step forward.
     Redo,
     /// Pose, levels and display as loaded.
-    BackToAsLoaded,
+    ResetAll,
     /// Hide the selected part.
     HideSelected,
     /// Hide all other parts.
@@ -138,14 +128,14 @@ actions! {
     MoveTool,
     /// Rotate by keys.
     RotateTool,
-    /// Turn over about the part's first axis.
-    TurnOverX,
-    /// Turn over about the part's second axis.
-    TurnOverY,
-    /// Turn over about the part's third axis.
-    TurnOverZ,
-    /// Lay the centres on each other.
-    BringCentersTogether,
+    /// Rotate by 180° about the part's first axis.
+    FlipX,
+    /// Rotate by 180° about the part's second axis.
+    FlipY,
+    /// Rotate by 180° about the part's third axis.
+    FlipZ,
+    /// Make the centres of both boxes coincide.
+    AlignCenters,
     /// Take all moves back.
     ResetPose,
     /// Show the gizmo.
@@ -160,7 +150,7 @@ actions! {
     ToggleDetailed,
     /// Hold to see the full mesh.
     Blink,
-    /// See through the crash part.
+    /// Make the crash part transparent.
     ToggleSeeThrough,
     /// A line that wipes the stamped part away.
     ToggleWipe,
@@ -220,7 +210,7 @@ actions! {
     ToggleLink,
     /// Turntable or free orbit.
     ToggleOrbitStyle,
-    /// Forget the picked pivot.
+    /// Clear the picked pivot.
     ClearPivot,
     /// Only the 3D windows.
     ToggleGraphicsOnly,
@@ -246,7 +236,7 @@ actions! {
     PreviousStart,
     /// Take the shown first pose.
     UseStart,
-    /// Lay picked pairs of points on each other.
+    /// Align picked pairs of points.
     FitPairs,
     /// Run the match from the present pose.
     Refine,
@@ -255,7 +245,7 @@ actions! {
     /// End the run with the old pose.
     CancelRun,
     /// The next pose that fits nearly as well.
-    FlipAlternative,
+    NextAlternative,
     /// Distances and overlap at the present pose.
     Measure,
     /// The matrix on the clipboard.
@@ -290,4 +280,39 @@ actions! {
     Escape,
     /// Name, version, licences.
     About,
+}
+
+impl Action {
+    /// What is written about it, its keys, when it is possible and what it does.
+    pub fn row(self) -> &'static ActionRow {
+        row::TABLE[self as usize].1
+    }
+
+    /// The menu it stands in.
+    pub fn menu(self) -> Menu {
+        row::TABLE[self as usize].0
+    }
+
+    /// The action of a key.
+    pub fn of_shortcut(shortcut: Shortcut) -> Option<Self> {
+        let has = |action: &Self| action.row().keys.shortcuts.contains(&shortcut);
+        Self::ALL.iter().copied().find(has)
+    }
+
+    /// `Ok` if the action is possible now, else why it is not.
+    pub fn enabled(self, state: &AppState) -> Result<(), Reason> {
+        (self.row().enabled)(state)
+    }
+
+    /// The command the action stands for now; none if it is not enabled.
+    pub fn command(self, state: &AppState) -> Option<Command> {
+        self.enabled(state).ok()?;
+        (self.row().command)(state)
+    }
+}
+
+/// Opens a dialog, or closes it where it is open.
+fn toggled_dialog(state: &AppState, dialog: Dialog) -> ViewCommand {
+    let is_open = state.view.dialog == Some(dialog);
+    ViewCommand::SetDialog((!is_open).then_some(dialog))
 }

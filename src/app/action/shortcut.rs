@@ -1,3 +1,5 @@
+//! Keys of an action and how they are shown.
+
 /// A key of the keyboard, by what is printed on it; digits by their place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Key {

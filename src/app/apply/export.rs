@@ -1,15 +1,15 @@
-use crate::app::{
-    AppState, CopyForm, Effect, ExportCommand, ExportKind, MeshExport, NoticeLevel, PictureChoice,
-    PicturePlace, Settings,
-};
-use crate::geometry::Similarity;
-use crate::jobs::{
-    Destination, ExportContent, ExportRequest, Exported, JobKind, MatchedPair, Role,
-};
-use crate::pipeline::units::PairUnits;
-use crate::report::MatrixForm;
+//! What exports change: the questions before them and what was written.
+
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+use crate::app::{
+    AppState, CopyForm, Effect, ExportCommand, NoticeLevel, PictureChoice, PicturePlace, Settings,
+};
+use crate::jobs::{Destination, ExportRequest, Exported, JobKind};
+use crate::pipeline::outputs::{MeshOutput, Output, OutputInput};
+use crate::report::MatrixForm;
+use crate::role::{PerRole, Role};
 
 impl AppState {
     pub(super) fn apply_export(&mut self, command: ExportCommand) -> Vec<Effect> {
@@ -91,8 +91,7 @@ impl AppState {
             CopyForm::Cards(cards) => {
                 let what = format!("{} (stamped → crash, ten columns)", form.label());
                 let to = Destination::Clipboard(what);
-                let kind = ExportKind::Cards(cards);
-                self.request(kind, to)
+                self.request(Output::Cards(cards), to)
             }
         };
         effects.extend(self.set_settings(Settings {
@@ -104,99 +103,54 @@ impl AppState {
 
     /// Asks for a name. Cards cannot hold a unit factor, so the converted stamped file is offered
     /// in their place.
-    fn ask_place(&mut self, kind: ExportKind) -> Vec<Effect> {
+    fn ask_place(&mut self, kind: Output) -> Vec<Effect> {
         let stamped = self.document.part(Role::Stamped);
         let factor = stamped.map_or(1.0, |part| part.length_factor());
-        let kind = if matches!(kind, ExportKind::Cards(_)) && factor != 1.0 {
+        let kind = if matches!(kind, Output::Cards(_)) && factor != 1.0 {
             let text = format!(
                 "The lengths of the stamped file are multiplied by {factor}, and the include card has \
                  no field for that. Write the stamped file in the crash part's unit, open it in place \
                  of the present one, match again, and then write the card."
             );
             self.notify(NoticeLevel::Warning, text);
-            ExportKind::Mesh(MeshExport::Converted)
+            Output::Mesh(MeshOutput::Converted)
         } else {
             kind
         };
-        let name = kind.suggested_name(self);
+        let name = self.suggested_name(kind);
         vec![Effect::AskSave { kind, name }]
     }
 
-    fn write(&mut self, kind: ExportKind, path: PathBuf) -> Vec<Effect> {
-        let path = kind.with_ending(path);
-        self.request(kind, Destination::File(path))
+    fn write(&mut self, output: Output, path: PathBuf) -> Vec<Effect> {
+        let path = output.with_extension(path);
+        self.request(output, Destination::File(path))
     }
 
-    fn request(&mut self, kind: ExportKind, to: Destination) -> Vec<Effect> {
-        match self.export_content(kind) {
-            Some(content) => vec![self.start(JobKind::Export(ExportRequest { to, content }))],
-            None => Vec::new(),
+    fn request(&mut self, output: Output, to: Destination) -> Vec<Effect> {
+        if !self.can_write(output) {
+            return Vec::new();
         }
+        let input = self.output_input(output);
+        let request = ExportRequest { to, output, input };
+        vec![self.start(JobKind::Export(request))]
     }
 
-    fn export_content(&self, kind: ExportKind) -> Option<ExportContent> {
-        let pose = *self.document.crash_from_stamped();
-        let content = match kind {
-            ExportKind::Matrix(form) => {
-                let units = self
-                    .document
-                    .both()
-                    .map(|(crash, stamped)| PairUnits::sentences(&crash.loaded, &stamped.loaded));
-                ExportContent::Text(form.write_with(&pose, &units.unwrap_or_default()))
-            }
-            ExportKind::Log => ExportContent::Text(self.log.to_text()),
-            ExportKind::Record => ExportContent::Record(self.matched_pair()?),
-            ExportKind::Report => ExportContent::Report(self.matched_pair()?),
-            ExportKind::Cards(form) => ExportContent::Cards(form, self.matched_pair()?),
-            ExportKind::Deviations => {
-                let (crash, stamped) = self.document.both()?;
-                ExportContent::Deviations {
-                    crash: crash.loaded.to_arc(),
-                    stamped: stamped.loaded.to_arc(),
-                    crash_from_stamped: pose,
-                }
-            }
-            ExportKind::Mesh(mesh) => self.mesh_content(mesh)?,
-        };
-        Some(content)
-    }
-
-    fn mesh_content(&self, export: MeshExport) -> Option<ExportContent> {
-        let role = export.role();
-        let part = self.document.part(role)?;
-        let other = self.document.part(role.other());
-        let pose = match export {
-            MeshExport::Moved | MeshExport::MovedReduced => *self.document.crash_from_stamped(),
-            MeshExport::Converted | MeshExport::Crash | MeshExport::CrashReduced => {
-                Similarity::identity()
-            }
-        };
-        Some(if export.is_reduced() {
-            let name = part.loaded.file_name();
-            ExportContent::Mesh {
-                mesh: part.reduced_mesh().clone(),
-                world_from_mesh: pose,
-                title: format!("{name}, reduced"),
-            }
-        } else {
-            ExportContent::Part {
-                part: part.loaded.to_arc(),
-                world_from_part: pose,
-                other: other.map(|other| other.loaded.to_arc()),
-            }
-        })
-    }
-
-    /// The match as it is shown, with the chosen alternative.
-    fn matched_pair(&self) -> Option<MatchedPair> {
-        let result = self.document.current_result()?;
-        let (crash, stamped) = self.document.both()?;
-        Some(MatchedPair {
-            run: result.run.to_arc(),
-            alternative: result.alternative,
-            crash: crash.loaded.to_arc(),
-            stamped: stamped.loaded.to_arc(),
-        })
+    /// What an output is made from: the parts, the pose, and the match as it is shown, with the
+    /// chosen alternative.
+    fn output_input(&self, output: Output) -> OutputInput {
+        let part = |role| self.document.part(role);
+        let result = self.document.current_result();
+        OutputInput {
+            parts: PerRole::from_fn(|role| part(role).map(|part| part.loaded.to_arc())),
+            crash_from_stamped: *self.document.crash_from_stamped(),
+            run: result.map(|result| result.run.to_arc()),
+            alternative: result.and_then(|result| result.alternative),
+            reduced: PerRole::from_fn(|role| part(role).map(|part| part.reduced_mesh().clone())),
+            log: match output {
+                Output::Log => self.log.to_text(),
+                _ => String::new(),
+            },
+        }
     }
 
     pub(super) fn take_exported(&mut self, exported: Exported, took: Duration) -> Vec<Effect> {

@@ -1,13 +1,17 @@
-use super::project::is_project;
+//! What opening, swapping and reloading of files change.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
 use crate::app::state::Guess;
 use crate::app::{
     Action, AppState, Effect, FileCommand, NoticeLevel, Part, Section, StampedPose, facts,
 };
-use crate::jobs::{JobKey, JobKind, PartFacts, PartSource, ProjectRequest, Role};
+use crate::jobs::{JobKey, JobKind, PartFacts, PartSource, ProjectRequest};
 use crate::pipeline::load::{LoadSettings, LoadedPart};
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::time::Duration;
+use crate::pipeline::project::is_project;
+use crate::role::Role;
 
 impl AppState {
     pub(super) fn apply_file(&mut self, command: FileCommand) -> Vec<Effect> {
@@ -19,6 +23,10 @@ impl AppState {
             FileCommand::Open { paths, role } => self.open(paths, role),
             FileCommand::OpenExample => self.open_example(),
             FileCommand::Reload(role) => self.reload(role),
+            FileCommand::ReloadAll => Role::ALL
+                .into_iter()
+                .flat_map(|role| self.reload(role))
+                .collect(),
             FileCommand::Close(role) => self.close(role),
             FileCommand::Swap => self.swap(),
             FileCommand::SetLengthFactor { role, factor } => self.set_length_factor(role, factor),

@@ -1,5 +1,7 @@
+//! Undo, redo, and jumps in the history.
+
 use crate::app::{AppState, Effect, HistoryCommand, ModalInput, MoveCommand, PartRef, StampedPose};
-use crate::jobs::Role;
+use crate::role::Role;
 
 impl AppState {
     pub(super) fn apply_history(&mut self, command: HistoryCommand) -> Vec<Effect> {
@@ -13,7 +15,7 @@ impl AppState {
             HistoryCommand::Undo => self.undo(),
             HistoryCommand::Redo => self.redo(),
             HistoryCommand::JumpTo(n_done) => self.jump_to(n_done),
-            HistoryCommand::BackToAsLoaded => self.back_to_as_loaded(),
+            HistoryCommand::ResetAll => self.reset_all(),
         }
         Vec::new()
     }
@@ -51,10 +53,10 @@ impl AppState {
         self.view.selected.retain(is_there);
     }
 
-    fn back_to_as_loaded(&mut self) {
+    fn reset_all(&mut self) {
         let revision = self.next_revision();
         self.drop_previews();
-        self.commit("Back to as loaded", |document| {
+        self.commit("Reset to initial state", |document| {
             for role in Role::ALL {
                 if let Some(part) = document.parts.get_mut(role) {
                     part.level = None;

@@ -1,9 +1,13 @@
+//! What deviation, overlap, section and labels change.
+
+use std::sync::Arc;
+
 use crate::app::inspect::Compared;
 use crate::app::{AppState, Effect, InspectCommand, Label};
 use crate::geometry::{Aabb, Point3, Vector3};
-use crate::jobs::{CompareInput, JobKey, JobKind, PerRole, Role, Stamp};
+use crate::jobs::{CompareInput, JobKey, JobKind, Stamp};
 use crate::pipeline::inspect::Comparison;
-use std::sync::Arc;
+use crate::role::{PerRole, Role};
 
 /// How much of the part is in view around a place that is looked at.
 const CLOSE: f64 = 0.12;
@@ -58,8 +62,7 @@ impl AppState {
                     .as_ref()
                     .map(|level| Arc::clone(&level.level.mesh)),
             },
-            crash: crash.loaded.to_arc(),
-            stamped: stamped.loaded.to_arc(),
+            parts: PerRole::new(crash, stamped).map(|part| part.loaded.to_arc()),
             crash_from_stamped: self.shown_pose(),
         };
         if self.jobs.is_active(JobKey::Compare) {
@@ -95,7 +98,7 @@ impl AppState {
         if self.document.labels.iter().any(is_there) {
             return;
         }
-        let node = part.loaded.node_of(vertex);
+        let node = part.loaded.node_id(vertex);
         let id = self.next_revision();
         let name = match node {
             Some(node) => format!("Label at node {node}"),

@@ -1,7 +1,10 @@
-use crate::app::state::pose_of;
-use crate::app::{AppState, Effect, NoticeLevel};
-use crate::jobs::{JobEvent, JobKey, JobOutput, JobStage, Live, Role, Stamp};
+//! What the events of background jobs change.
+
 use std::time::Duration;
+
+use crate::app::{AppState, Effect, NoticeLevel};
+use crate::jobs::{JobEvent, JobKey, JobOutput, JobStage, Live, Stamp};
+use crate::role::Role;
 
 impl AppState {
     pub(super) fn take_job_event(&mut self, event: JobEvent) -> Vec<Effect> {
@@ -27,7 +30,7 @@ impl AppState {
             }
             JobStage::Finished(_) if !self.is_wanted(event.key, event.stamp) => {
                 let (step, role) = step_of(event.key);
-                let text = "result dropped: its inputs have changed since";
+                let text = "discarded: inputs changed";
                 self.log_step(step, role, text, Some(event.elapsed));
                 self.live_pose = None;
                 Vec::new()
@@ -109,7 +112,7 @@ impl AppState {
         self.end_of(key);
         let (step, role) = step_of(key);
         let what_now = match key {
-            JobKey::Load(_) => "Nothing was loaded; choose another file or mend this one",
+            JobKey::Load(_) => "Nothing was loaded; choose another file or fix this one",
             JobKey::Export => "Nothing was written; choose another place",
             _ => "Parts and pose are as they were",
         };
@@ -132,7 +135,7 @@ impl AppState {
                 self.live_pose = None;
                 // The starts of a run without a result are worth seeing only where nothing better is.
                 if self.document.result.is_some() {
-                    self.race.clear();
+                    self.live_starts.clear();
                 }
             }
             JobKey::Load(_) => self.guess.n_pending = self.guess.n_pending.saturating_sub(1),
@@ -150,9 +153,9 @@ impl AppState {
             .is_some_and(|job| job.key == JobKey::Match && live.job == Some(job.id));
         if is_match && self.jobs.is_active(JobKey::Match) {
             if let Some(best) = &live.best {
-                self.live_pose = pose_of(best).or(self.live_pose);
+                self.live_pose = Some(best.target_from_source);
             }
-            self.race.add(live.starts, live.iterations);
+            self.live_starts.add(live.starts, live.iterations);
         }
         Vec::new()
     }

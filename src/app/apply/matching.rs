@@ -1,16 +1,20 @@
+//! What aligning, matching, sweeps and poses to choose from change.
+
+use std::sync::Arc;
+use std::time::Duration;
+
 use crate::app::state::Starts;
 use crate::app::{
     AppState, BottomTab, Effect, MatchCommand, MatchResult, NoticeLevel, Part, ViewCommand, facts,
 };
 use crate::assess::Coverage;
 use crate::geometry::Point3;
-use crate::jobs::{JobKey, JobKind, MatchInput, MeasureInput, Role, Stamp, SweepInput, SweepRows};
+use crate::jobs::{JobKey, JobKind, MatchInput, MeasureInput, Stamp, SweepInput, SweepRows};
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
 use crate::pipeline::sweep::{Sweep, SweepSettings};
 use crate::registration::StartMethod;
 use crate::registration::starts::Start;
-use std::sync::Arc;
-use std::time::Duration;
+use crate::role::{PerRole, Role};
 
 /// A run that took longer is worth a word to the desktop.
 const LONG_RUN: Duration = Duration::from_secs(10);
@@ -24,14 +28,14 @@ impl AppState {
             MatchCommand::Align => return self.start_with_input(JobKind::Align),
             MatchCommand::ShowStart(index) => self.show_start(index),
             MatchCommand::StepStart(direction) => self.step_start(direction),
-            MatchCommand::UseAttempt(index) => self.use_attempt(index),
+            MatchCommand::UseMatchStart(index) => self.use_match_start(index),
             MatchCommand::UseStart(index) => self.use_start(index),
             MatchCommand::Run => return self.run_match(),
             MatchCommand::Refine => return self.refine(),
             MatchCommand::Stop => return self.stop_run(),
             MatchCommand::Cancel => return self.cancel_run(),
             MatchCommand::ShowAlternative(index) => self.show_alternative(index),
-            MatchCommand::FlipAlternative => self.flip_alternative(),
+            MatchCommand::NextAlternative => self.next_alternative(),
             MatchCommand::Measure => return self.measure(),
             MatchCommand::Sweep(settings) => return self.run_sweep(*settings),
         }
@@ -52,9 +56,8 @@ impl AppState {
         let (crash, stamped) = self.document.both()?;
         let is_reduced = crash.level.is_some() || stamped.level.is_some();
         let reduced = is_reduced.then(|| ReducedPair {
-            crash: Arc::clone(crash.reduced_mesh()),
-            stamped: Arc::clone(stamped.reduced_mesh()),
-            max_triangles: [crash, stamped].map(Part::ceiling),
+            meshes: PerRole::new(crash, stamped).map(|part| Arc::clone(part.reduced_mesh())),
+            max_triangles: PerRole::new(crash, stamped).map(Part::ceiling),
         });
         let mut recipe = self.document.recipe.clone();
         if recipe.settings.starts.method == StartMethod::GivenPoses {
@@ -62,8 +65,7 @@ impl AppState {
             recipe.settings.starts.poses = vec![fit.fit.target_from_source];
         }
         Some(MatchInput {
-            crash: crash.loaded.to_arc(),
-            stamped: stamped.loaded.to_arc(),
+            parts: PerRole::new(crash, stamped).map(|part| part.loaded.to_arc()),
             reduced,
             recipe,
             current: *self.document.crash_from_stamped(),
@@ -86,7 +88,7 @@ impl AppState {
     fn refine(&mut self) -> Vec<Effect> {
         self.run_match_of(|mut input| {
             input.recipe.settings.starts.method = StartMethod::CurrentPose;
-            input.recipe.settings.starts.widen = false;
+            input.recipe.settings.starts.extra_starts = false;
             JobKind::Match(input)
         })
     }
@@ -94,7 +96,7 @@ impl AppState {
     fn run_match_of(&mut self, kind: impl FnOnce(MatchInput) -> JobKind) -> Vec<Effect> {
         let effects = self.start_with_input(kind);
         if !effects.is_empty() {
-            self.race.clear();
+            self.live_starts.clear();
             self.failed_match = None;
             self.view.chosen_start = None;
             self.live_pose = None;
@@ -107,8 +109,7 @@ impl AppState {
         let told = rows.clone();
         let effects = self.start_with_input(|input| {
             JobKind::Sweep(SweepInput {
-                crash: input.crash,
-                stamped: input.stamped,
+                parts: input.parts,
                 settings,
                 rows,
             })
@@ -133,13 +134,27 @@ impl AppState {
             return Vec::new();
         };
         let input = MeasureInput {
-            crash: crash.loaded.to_arc(),
-            stamped: stamped.loaded.to_arc(),
+            parts: PerRole::new(crash, stamped).map(|part| part.loaded.to_arc()),
             crash_from_stamped: *self.document.crash_from_stamped(),
         };
         let mut effects = self.cancel_job(JobKey::Measure);
         effects.push(self.start(JobKind::Measure(input)));
         effects
+    }
+
+    /// The match measured its best pose; an alternative that is shown is measured as soon as it is.
+    pub(super) fn keep_measuring_alternative(&mut self) -> Vec<Effect> {
+        let stamp = self.document.stamp();
+        let result = self.document.current_result();
+        let is_alternative = result.is_some_and(|result| result.alternative.is_some());
+        let is_known =
+            self.current_measurement().is_some() || self.alternative_asked == Some(stamp);
+        let is_free = self.is_unlocked().is_ok() && !self.jobs.is_active(JobKey::Measure);
+        if !is_alternative || is_known || !is_free {
+            return Vec::new();
+        }
+        self.alternative_asked = Some(stamp);
+        self.measure()
     }
 
     fn stop_run(&mut self) -> Vec<Effect> {
@@ -208,8 +223,8 @@ impl AppState {
 
     /// A start that gave the result or one of its alternatives shows that, so that the result stays
     /// current; any other start moves the part.
-    fn use_attempt(&mut self, index: usize) {
-        let Some(pose) = self.attempt(index).and_then(|a| a.last_pose()) else {
+    fn use_match_start(&mut self, index: usize) {
+        let Some(pose) = self.match_start(index).map(|start| start.last) else {
             return;
         };
         if self.can_move().is_err() {
@@ -219,7 +234,7 @@ impl AppState {
             .document
             .result
             .as_ref()
-            .filter(|_| self.race.is_empty());
+            .filter(|_| self.live_starts.is_empty());
         let known = outcome.and_then(|result| {
             let outcome = &result.run.outcome;
             let alternative = outcome.alternatives.iter().position(|a| a.start == index);
@@ -249,7 +264,7 @@ impl AppState {
         }
         let name = match alternative {
             None => "Best pose".to_owned(),
-            Some(index) => format!("Alternative {}", index + 1),
+            Some(index) => format!("Alternative {}", index + 2),
         };
         self.take_pose_as_result(name, crash_from_stamped, |stamp| MatchResult {
             alternative,
@@ -258,7 +273,7 @@ impl AppState {
         });
     }
 
-    fn flip_alternative(&mut self) {
+    fn next_alternative(&mut self) {
         let Some(result) = &self.document.result else {
             return;
         };
@@ -286,14 +301,14 @@ impl AppState {
 
     pub(super) fn take_matched(&mut self, run: Arc<MatchRun>, took: Duration) -> Vec<Effect> {
         let (line, level) = (
-            facts::match_line(&run, self.unit_suffix()),
+            facts::match_line(&run, self.lengths()),
             facts::match_level(&run),
         );
         for (step, text, took) in facts::match_steps(&run) {
             self.log_step(step, None, text, Some(took));
         }
         self.live_pose = None;
-        self.race.clear();
+        self.live_starts.clear();
         self.keep_match_level(&run);
         let pose = run.crash_from_stamped;
         let before = self.document.stamped_center();
@@ -345,7 +360,7 @@ impl AppState {
         stamp: Stamp,
         took: Duration,
     ) {
-        let line = facts::measure_line(&measurement, self.unit_suffix());
+        let line = facts::measure_line(&measurement, self.lengths());
         self.log_step("measure", None, line, Some(took));
         self.measurement = Some((stamp, measurement.into()));
     }

@@ -29,6 +29,7 @@ impl AppState {
         // Whatever changed, what the window shows of the distances follows.
         effects.extend(self.keep_comparing());
         effects.extend(self.keep_measuring_overlap());
+        effects.extend(self.keep_measuring_alternative());
         effects
     }
 

@@ -1,3 +1,7 @@
+//! What moves by hand change: handles, keys, numbers, pasted matrices.
+
+use std::f64::consts::PI;
+
 use crate::app::view::MoveTool;
 use crate::app::{
     AppState, Axis, AxisFrame, Effect, GestureId, ModalInput, ModalMove, ModalOutcome, MotionKind,
@@ -5,7 +9,7 @@ use crate::app::{
 };
 use crate::geometry::{Point3, Similarity};
 use crate::report::parse_matrix;
-use std::f64::consts::PI;
+use crate::role::Role;
 
 impl AppState {
     pub(super) fn apply_move(&mut self, command: MoveCommand) -> Vec<Effect> {
@@ -37,15 +41,11 @@ impl AppState {
             MoveCommand::SetPose {
                 crash_from_stamped,
                 name,
-            } => {
-                self.commit_pose(name, None, crash_from_stamped);
-            }
+            } => self.set_pose(name, crash_from_stamped),
             MoveCommand::Paste(text) => self.paste(&text),
-            MoveCommand::TurnOver(axis) => self.turn_over(axis),
-            MoveCommand::BringCentersTogether => self.bring_centers_together(),
-            MoveCommand::Reset => {
-                self.commit_pose("Pose as loaded", None, Similarity::identity());
-            }
+            MoveCommand::Flip(axis) => self.flip(axis),
+            MoveCommand::AlignCenters => self.align_centers(),
+            MoveCommand::Reset => self.set_pose("Reset pose".to_owned(), Similarity::identity()),
             MoveCommand::Begin { kind, frame } => self.begin_move(kind, frame),
             MoveCommand::Input(input) => self.input_move(input),
         }
@@ -56,11 +56,8 @@ impl AppState {
         let pivot = self.document.stamped_center()?;
         let camera = self.view.cameras.get(self.view.focus);
         let view = *camera.world_from_view.to_rotation_matrix().matrix();
-        Some(MoveFrame::new(
-            pivot,
-            self.document.crash_from_stamped(),
-            view,
-        ))
+        let frame = MoveFrame::new(pivot, self.document.crash_from_stamped(), view);
+        Some(frame.with_unit(self.unit_suffix()))
     }
 
     /// The pose at the grab plus one motion, so that rounding does not pile up over a drag.
@@ -78,8 +75,24 @@ impl AppState {
     }
 
     fn end_drag(&mut self) {
-        self.grab = None;
+        let grabbed = self.grab.take();
         self.history.end_gesture(&self.document);
+        let has_moved = grabbed.is_some_and(|(_, begin)| begin != self.document.pose);
+        let name = self.history.undo_name().filter(|_| has_moved);
+        if let Some(name) = name.map(str::to_owned) {
+            self.log_move(name);
+        }
+    }
+
+    /// A new pose as a step of its own, with a row in the log.
+    fn set_pose(&mut self, name: String, crash_from_stamped: Similarity) {
+        if self.commit_pose(name.clone(), None, crash_from_stamped) {
+            self.log_move(name);
+        }
+    }
+
+    fn log_move(&mut self, name: String) {
+        self.log_step("move", Some(Role::Stamped), name, None);
     }
 
     fn abandon(&mut self, gesture: GestureId) {
@@ -95,8 +108,7 @@ impl AppState {
 
     /// Applies a motion of the crash model's space to the stamped part.
     fn move_by(&mut self, name: String, delta: &Similarity) {
-        let pose = delta.after(self.document.crash_from_stamped());
-        self.commit_pose(name, None, pose);
+        self.set_pose(name, delta.after(self.document.crash_from_stamped()));
     }
 
     fn translate(&mut self, axis: Axis, of: AxisFrame, distance: f64) {
@@ -144,15 +156,15 @@ impl AppState {
         }
     }
 
-    fn turn_over(&mut self, axis: Axis) {
+    fn flip(&mut self, axis: Axis) {
         let Some(frame) = self.move_frame() else {
             return;
         };
         let delta = rotation_about(&frame.pivot, &frame.axis(axis, AxisFrame::Part), PI);
-        self.move_by(format!("Turn over about {} (part)", axis.letter()), &delta);
+        self.move_by(format!("Flip about {} (180°)", axis.letter()), &delta);
     }
 
-    fn bring_centers_together(&mut self) {
+    fn align_centers(&mut self) {
         let (Some(here), Some(there)) = (self.document.stamped_center(), self.crash_center())
         else {
             return;
@@ -161,7 +173,7 @@ impl AppState {
             translation: there - here,
             ..Similarity::identity()
         };
-        self.move_by("Bring centres together".to_owned(), &delta);
+        self.move_by("Align centres".to_owned(), &delta);
     }
 
     fn crash_center(&self) -> Option<Point3> {

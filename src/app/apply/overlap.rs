@@ -1,6 +1,9 @@
+//! The overlap number that follows a move.
+
 use crate::app::{AppState, Effect, PoseOverlap};
 use crate::geometry::Similarity;
 use crate::jobs::{JobKey, JobKind, MeasureInput, Stamp};
+use crate::role::PerRole;
 
 impl AppState {
     /// After each move the overlap is measured anew, so that one feels warmer or colder.
@@ -18,8 +21,7 @@ impl AppState {
             return Vec::new();
         };
         let input = MeasureInput {
-            crash: crash.loaded.to_arc(),
-            stamped: stamped.loaded.to_arc(),
+            parts: PerRole::new(crash, stamped).map(|part| part.loaded.to_arc()),
             crash_from_stamped: *self.document.crash_from_stamped(),
         };
         self.overlap_asked = Some(stamp);

@@ -1,5 +1,7 @@
+//! What picking, changing and fitting of point pairs change.
+
 use crate::app::{AppState, Effect, PairCommand, PairTool, PickedPoint, PointPair};
-use crate::jobs::Role;
+use crate::role::Role;
 
 impl AppState {
     pub(super) fn apply_pairs(&mut self, command: PairCommand) -> Vec<Effect> {

@@ -1,6 +1,8 @@
+//! What the choice, look and visibility of parts change.
+
 use crate::app::{AppState, Effect, Part, PartCommand, PartRef};
 use crate::formats::Selection;
-use crate::jobs::Role;
+use crate::role::Role;
 
 impl AppState {
     pub(super) fn apply_part(&mut self, command: PartCommand) -> Vec<Effect> {

@@ -1,22 +1,19 @@
+//! What saving and opening of projects change.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
 use crate::app::project::WindowEntry;
 use crate::app::{
     AppState, Dialog, Document, Effect, MatchResult, NoticeLevel, Part, PointPairs, ProjectCommand,
     ShownGeometry, StampedPose,
 };
 use crate::jobs::{
-    JobKind, Located, MeasureLevelInput, OpenedPart, OpenedProject, PerRole, ProjectRequest, Role,
-    Stamp,
+    JobKind, Located, MeasureLevelInput, OpenedPart, OpenedProject, ProjectRequest, Stamp,
 };
-use crate::pipeline::project::{EXTENSION, PartEntry, Project, ResultEntry};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::Duration;
-
-/// True if a path is that of a project.
-pub(super) fn is_project(path: &Path) -> bool {
-    let ending = path.extension().map(|ending| ending.to_string_lossy());
-    ending.is_some_and(|ending| ending.eq_ignore_ascii_case(EXTENSION))
-}
+use crate::pipeline::project::{EXTENSION, PartEntry, Project, ResultEntry, is_project};
+use crate::role::{PerRole, Role};
 
 impl AppState {
     pub(super) fn apply_project(&mut self, command: ProjectCommand) -> Vec<Effect> {
@@ -25,7 +22,7 @@ impl AppState {
             ProjectCommand::Open(request) => self.open_project(request),
             ProjectCommand::Restore(path) => self.open_project(ProjectRequest {
                 path,
-                is_kept: true,
+                is_autosave: true,
                 ..ProjectRequest::default()
             }),
             ProjectCommand::AskLocate(role) => vec![Effect::AskLocate(role)],
@@ -46,16 +43,16 @@ impl AppState {
                 self.project.quits_when_saved = false;
                 Vec::new()
             }
-            ProjectCommand::Keep => self.keep(),
-            ProjectCommand::TellKept(works) => {
-                self.project.kept_works = works;
+            ProjectCommand::Autosave => self.autosave(),
+            ProjectCommand::NotifyRecovered(sessions) => {
+                self.project.sessions = sessions;
                 Vec::new()
             }
-            ProjectCommand::PutOff => {
-                for work in &mut self.project.kept_works {
-                    work.is_lost = false;
+            ProjectCommand::DismissRecovery => {
+                for session in &mut self.project.sessions {
+                    session.is_lost = false;
                 }
-                vec![Effect::PutOffKept]
+                vec![Effect::DismissRecovery]
             }
             ProjectCommand::SaveAndQuit => {
                 self.view.dialog = None;
@@ -125,12 +122,12 @@ impl AppState {
         effects
     }
 
-    fn keep(&mut self) -> Vec<Effect> {
-        if !self.is_to_be_kept() {
+    fn autosave(&mut self) -> Vec<Effect> {
+        if !self.needs_autosave() {
             return Vec::new();
         }
-        self.project.kept = Some((self.document.clone(), self.sweep.is_some()));
-        vec![Effect::KeepWork(Box::new(self.to_project(0)))]
+        self.project.autosaved = Some((self.document.clone(), self.sweep.is_some()));
+        vec![Effect::Autosave(Box::new(self.to_project(0)))]
     }
 
     pub(super) fn open_project(&mut self, request: ProjectRequest) -> Vec<Effect> {
@@ -170,8 +167,8 @@ impl AppState {
             parts,
             ..
         } = opened;
-        let name = if request.is_kept {
-            "the kept work".to_owned()
+        let name = if request.is_autosave {
+            "the recovered session".to_owned()
         } else {
             file_name(&request.path)
         };
@@ -224,7 +221,7 @@ impl AppState {
             ..Document::default()
         };
         for role in Role::ALL {
-            let entry = crate::jobs::part_entry(project, role);
+            let entry = project.parts.get(role).as_ref();
             let (Some(opened), Some(entry)) = (parts.get(role), entry) else {
                 *self.recordings.get_mut(role) = None;
                 continue;
@@ -245,7 +242,7 @@ impl AppState {
         let is_complete = |opened: &Option<OpenedPart>, entry: Option<&PartEntry>| {
             opened.is_some() == entry.is_some() && opened.as_ref().is_none_or(|p| !p.is_changed)
         };
-        let [crash, stamped] = project.parts();
+        let PerRole { crash, stamped } = project.parts.as_ref().map(Option::as_ref);
         let is_same = is_complete(&parts.crash, crash) && is_complete(&parts.stamped, stamped);
         document.result = project.result.clone().map(|entry| {
             let stamp = result_stamp(&entry, document.stamp(), is_same);
@@ -275,7 +272,7 @@ impl AppState {
         self.measurement = None;
         self.view.selected.clear();
         self.view.n_restored += 1;
-        self.race.clear();
+        self.live_starts.clear();
         match window {
             Some(window) => window.show(self),
             None => self.fit_project(),
@@ -304,7 +301,7 @@ impl AppState {
     /// Where the project lies and what of it is saved.
     fn file_project(&mut self, request: ProjectRequest, project: &Project) -> Vec<Effect> {
         self.project.others = project.others.clone();
-        if request.is_kept {
+        if request.is_autosave {
             let path = project.window.as_ref().and_then(|window| {
                 let path = window.get("project")?.as_str()?;
                 Some(PathBuf::from(path))
@@ -312,7 +309,7 @@ impl AppState {
             self.project.path = path;
             self.project.saved = None;
             // From here on this run keeps it.
-            return self.apply_project(ProjectCommand::PutOff);
+            return self.apply_project(ProjectCommand::DismissRecovery);
         } else {
             let now = self.clock.unix_at(self.now);
             self.settings.remember_path(&request.path, now);

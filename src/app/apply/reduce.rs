@@ -1,9 +1,11 @@
-use crate::app::{AppState, Effect, ReduceCommand, ShownGeometry, facts};
-use crate::jobs::{
-    JobKind, MeasureLevelInput, MeasuredLevel, PerRole, Recording, ReduceInput, Role,
-};
+//! What levels of reduction change.
+
 use std::sync::Arc;
 use std::time::Duration;
+
+use crate::app::{AppState, Effect, ReduceCommand, ShownGeometry, facts};
+use crate::jobs::{JobKind, MeasureLevelInput, MeasuredLevel, Recording, ReduceInput};
+use crate::role::{PerRole, Role};
 
 impl AppState {
     pub(super) fn apply_reduce(&mut self, command: ReduceCommand) -> Vec<Effect> {
@@ -64,6 +66,21 @@ impl AppState {
         }
     }
 
+    /// The marked levels that can be reached: those with fewer triangles than the largest ticked part,
+    /// the finest first. Chips and keys offer these.
+    pub fn reachable_levels(&self) -> Vec<usize> {
+        let roles = self.settings.reduce_roles;
+        let ticked = Role::ALL.into_iter().filter(|role| *roles.get(*role));
+        let n_full = ticked
+            .filter_map(|role| self.document.part(role))
+            .map(|part| part.loaded.report.n_triangles)
+            .max();
+        let marked = self.settings.marked_levels.iter().copied();
+        marked
+            .filter(|n| n_full.is_some_and(|n_full| *n < n_full))
+            .collect()
+    }
+
     /// The next coarser (+1) or finer (−1) marked level of the ticked parts: `None` without one,
     /// `Some(None)` for the full mesh, which is finer than the finest mark.
     pub fn next_level(&self, direction: i32) -> Option<Option<usize>> {
@@ -71,13 +88,13 @@ impl AppState {
         let level = |role: Role| self.document.part(role).map(|part| part.wanted_level);
         let ticked = Role::ALL.into_iter().filter(|role| *roles.get(*role));
         let current = ticked.filter_map(level).next()?;
-        let marked = self.settings.marked_levels.iter().copied();
+        let reachable = self.reachable_levels().into_iter();
         if direction > 0 {
             let n_current = current.unwrap_or(usize::MAX);
-            marked.filter(|n| *n < n_current).max().map(Some)
+            reachable.filter(|n| *n < n_current).max().map(Some)
         } else {
             let n_current = current?;
-            Some(marked.filter(|n| *n > n_current).min())
+            Some(reachable.filter(|n| *n > n_current).min())
         }
     }
 
@@ -129,7 +146,7 @@ impl AppState {
         self.log_step(
             "measure",
             Some(role),
-            facts::deviation_line(level, self.unit_suffix()),
+            facts::deviation_line(level, self.lengths()),
             Some(took),
         );
         Vec::new()

@@ -1,8 +1,11 @@
-use crate::app::{AppState, Effect};
-use crate::jobs::Role;
-use crate::pipeline::load::LoadedPart;
-use crate::units::Units;
+//! What the units of the files change.
+
 use std::sync::Arc;
+
+use crate::app::{AppState, Effect};
+use crate::pipeline::load::LoadedPart;
+use crate::role::Role;
+use crate::units::Units;
 
 impl AppState {
     /// Says which units a file is in: one undo step, together with the factor that follows.

@@ -1,6 +1,8 @@
+//! What cameras, windows, panels and display choices change.
+
 use crate::app::{AppState, BottomTab, Effect, FreeWindow, ViewCommand};
 use crate::geometry::{Aabb, Point3, Similarity};
-use crate::jobs::Role;
+use crate::role::Role;
 
 /// Nodes that a camera is fitted to at most; those between them lie within the margin.
 const MAX_FITTED: usize = 20_000;

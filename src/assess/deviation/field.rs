@@ -1,6 +1,8 @@
+//! Signed distances of the nodes of one part from the other.
+
 use super::DeviationSettings;
 use super::offset::{ConstantPart, Sample};
-use crate::geometry::{Point3, Similarity, Topology, Vector3};
+use crate::geometry::{Point3, Similarity, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::Surface;
 use crate::search::{Feature, SearchLimits, SurfaceHit, closest_many};
@@ -307,7 +309,7 @@ struct Sides {
 impl Sides {
     fn of(surface: &Surface) -> Self {
         let mesh = surface.mesh();
-        let topology = Topology::of(mesh);
+        let topology = surface.topology();
         let mut beyond = vec![[NOBODY; 3]; mesh.n_triangles()];
         let mut are_known = true;
         for (edge, &[u, v]) in topology.edges.iter().enumerate() {

@@ -1,3 +1,5 @@
+//! A constant distance between the sheets, such as half a thickness.
+
 use nalgebra::{SMatrix, SVector};
 
 use super::{DeviationField, DeviationStats};

@@ -1,5 +1,7 @@
+//! The places where the parts lie farthest apart.
+
 use super::DeviationField;
-use crate::geometry::{Point3, Topology};
+use crate::geometry::Point3;
 use crate::registration::Surface;
 
 /// A place where the deviation is larger than everywhere around it.
@@ -56,7 +58,7 @@ pub fn worst_spots(
 /// Vertices with no neighbour that deviates more; of equal neighbours the first.
 fn peaks(surface: &Surface, value: impl Fn(u32) -> Option<f64>) -> Vec<(u32, f64)> {
     let mut is_peak = vec![true; surface.mesh().n_vertices()];
-    for &[u, v] in &Topology::of(surface.mesh()).edges {
+    for &[u, v] in &surface.topology().edges {
         if let (Some(a), Some(b)) = (value(u), value(v)) {
             // u comes before v.
             let lower = if b.abs() > a.abs() { u } else { v };

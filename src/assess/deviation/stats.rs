@@ -1,3 +1,5 @@
+//! Mean, spread and percentiles of distances.
+
 use super::offset::ConstantOffset;
 use super::{DeviationField, OverlapClass};
 

@@ -6,22 +6,23 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position};
-use super::super::model::{Model, Part, ReadFile, Section, Shell, ShellExtra};
-use super::block::{Block, SourceFile};
+use super::super::model::{
+    Part, RawTitles, ReadFile, Section, Shell, ShellControl, ShellExtra, Solid,
+};
+use super::block::Block;
 use super::card::Layout;
 use super::forming::RawForming;
 use super::include::Context;
 use super::nodes::{NodeChunk, NodeThickness, find_node};
 use super::parts::RawPart;
-use super::resolve;
 use super::results::FormingCount;
 use super::sets::RawSet;
 use super::shells::{ElementOffsets, PackedIds, PartIds, ShellChunk, find_element};
 use super::solids::{RawSolid, SolidChunk};
+use super::source_file::SourceFile;
 use super::transform::Transformation;
 use super::unit_clues::UnitClues;
 use crate::geometry::Point3;
-use crate::monitor::{Cancelled, Monitor};
 
 /// Where a run of nodes or elements comes from, so that a finding can name its line.
 #[derive(Clone)]
@@ -135,12 +136,15 @@ pub(crate) enum Motion {
 #[derive(Default)]
 pub(crate) struct Assembly {
     pub title: String,
+    /// The bytes of titles that are not written back as they are shown.
+    pub raw_titles: RawTitles,
     pub files: Vec<ReadFile>,
     pub found: Diagnostics,
     pub unit_clues: UnitClues,
     pub forming: RawForming,
     pub sections: Vec<Section>,
-    pub sets: Vec<RawSet>,
+    pub shell_control: ShellControl,
+    pub sets: Vec<(Arc<SourceFile>, RawSet)>,
     pub transformations: BTreeMap<u64, Transformation>,
     pub node_thickness: Vec<NodeThickness>,
     pub(super) node_ids: Vec<u64>,
@@ -263,7 +267,7 @@ impl Assembly {
             self.part_positions[index] = Some(file.position(raw.at));
             self.parts[index] = Part {
                 id: raw.id,
-                title: raw.title,
+                title: self.raw_titles.add(&raw.title),
                 section_id: raw.section_id,
                 thickness: raw.thickness.map(|sum| [sum; 4]),
                 is_defined: true,
@@ -274,6 +278,7 @@ impl Assembly {
     /// Gives the parts with text labels ids that no other part has, now that all are known.
     pub(super) fn number_labelled_parts(&mut self) {
         let mut seen: HashMap<String, Position> = HashMap::new();
+        let mut last_id = self.part_ids.iter().max().copied().unwrap_or(0);
         for (label, position, raw) in std::mem::take(&mut self.labelled) {
             if let Some(first) = seen.get(&label) {
                 let message = format!("part {label:?} is defined again (first at {first})");
@@ -282,17 +287,14 @@ impl Assembly {
                 continue;
             }
             seen.insert(label.clone(), position.clone());
-            let id = self
-                .part_ids
-                .iter()
-                .max()
-                .map_or(1, |&id| id.saturating_add(1));
+            last_id = last_id.saturating_add(1);
+            let id = last_id;
+            let title = self.raw_titles.add(&raw.title);
             let index = self.part_number(id) as usize;
             let kind = DiagnosticKind::Unsupported;
             let message = format!(
-                "part {:?} has a text label for an id; it is kept as part {id}, but elements can \
-                 name it by a number only",
-                raw.title
+                "part {title:?} has a text label for an id; it is kept as part {id}, but elements \
+                 can name it by a number only"
             );
             let finding = Diagnostic::new(kind, message).at(position.clone());
             self.found
@@ -300,7 +302,7 @@ impl Assembly {
             self.part_positions[index] = Some(position);
             self.parts[index] = Part {
                 id,
-                title: raw.title,
+                title,
                 section_id: raw.section_id,
                 thickness: raw.thickness.map(|sum| [sum; 4]),
                 is_defined: true,
@@ -352,14 +354,16 @@ impl Assembly {
         }
     }
 
-    pub(super) fn solid_position(&self, index: usize) -> Option<Position> {
+    /// For solids that are not linked to their nodes yet.
+    pub(super) fn raw_solid_position(&self, index: usize) -> Option<Position> {
         let solid = &self.solids[index];
         let part = self.part_ids[solid.part as usize];
         origin_of(&self.solid_origins, index).map(|origin| origin.element(solid.id, part))
     }
 
-    /// The model.
-    pub(crate) fn finish(self, monitor: &Monitor) -> Result<Model, Cancelled> {
-        resolve::finish(self, monitor)
+    /// For linked solids. Those before it that were left out make the line that of a piece.
+    pub(super) fn solid_position(&self, index: usize, solid: &Solid) -> Option<Position> {
+        let part = self.part_ids[solid.part as usize];
+        origin_of(&self.solid_origins, index).map(|origin| origin.element(solid.id, part))
     }
 }

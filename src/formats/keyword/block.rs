@@ -2,77 +2,15 @@
 //! but the keyword's name, and line numbers are worked out only when a finding needs one.
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
 
-use memchr::{memchr, memchr_iter, memmem};
+use memchr::{memchr, memmem};
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Position};
-use super::super::source::Bytes;
 use super::card::{Card, Layout, Parameters};
+use super::source_file::SourceFile;
 
 const PGP_BEGIN: &[u8] = b"-----BEGIN PGP";
 const PGP_END: &[u8] = b"-----END PGP";
-/// Newlines are counted once per this many bytes when a first position is asked for.
-const LINE_INDEX_STEP: usize = 1 << 16;
-
-/// A file with its bytes, able to tell the line of a byte offset.
-#[derive(Debug)]
-pub struct SourceFile {
-    path: Arc<Path>,
-    bytes: Bytes,
-    /// Newlines before each multiple of [`LINE_INDEX_STEP`].
-    line_index: OnceLock<Vec<u64>>,
-}
-
-impl SourceFile {
-    /// A file of the given path with the given bytes.
-    pub fn new(path: impl Into<PathBuf>, bytes: Bytes) -> Self {
-        Self {
-            path: Arc::from(path.into()),
-            bytes,
-            line_index: OnceLock::new(),
-        }
-    }
-
-    /// A file in memory.
-    pub fn from_text(path: &str, text: impl Into<Vec<u8>>) -> Self {
-        Self::new(path, Bytes::Owned(text.into()))
-    }
-
-    /// The path it was opened under.
-    pub fn path(&self) -> &Arc<Path> {
-        &self.path
-    }
-
-    /// Its bytes.
-    pub fn bytes(&self) -> &[u8] {
-        &self.bytes
-    }
-
-    /// Line and column of a byte offset. The first call counts the newlines of the whole file.
-    pub fn position(&self, offset: usize) -> Position {
-        let offset = offset.min(self.bytes.len());
-        let index = self.line_index.get_or_init(|| {
-            let mut total = 0;
-            let mut before = Vec::with_capacity(self.bytes.len() / LINE_INDEX_STEP + 1);
-            for chunk in self.bytes.chunks(LINE_INDEX_STEP) {
-                before.push(total);
-                total += memchr_iter(b'\n', chunk).count() as u64;
-            }
-            before.push(total);
-            before
-        });
-        let step = (offset / LINE_INDEX_STEP).min(index.len() - 1);
-        let tail = &self.bytes[step * LINE_INDEX_STEP..offset];
-        let line_start = memchr::memrchr(b'\n', &self.bytes[..offset]).map_or(0, |i| i + 1);
-        Position {
-            file: self.path.clone(),
-            line: index[step] + memchr_iter(b'\n', tail).count() as u64 + 1,
-            column: u32::try_from(offset - line_start + 1).unwrap_or(u32::MAX),
-        }
-    }
-}
 
 /// A keyword line and the data lines below it.
 #[derive(Clone)]
@@ -112,6 +50,43 @@ impl<'a> Block<'a> {
             layout: self.layout,
             parameters: self.parameters,
         }
+    }
+
+    /// The first data line, if it and the next ones are cards of another layout only: `is_good`
+    /// tells whether a card can be read. One card tells where an element has several.
+    pub(crate) fn shifted_columns(
+        &self,
+        n_cards: usize,
+        is_certain: bool,
+        is_good: impl Fn(&Card<'_>) -> bool,
+    ) -> Option<(Card<'a>, Layout)> {
+        let cards = self.cards().filter(|card| !card.is_blank()).take(n_cards);
+        let cards: Vec<Card<'a>> = cards.collect();
+        let is_shifted = |card: &Card<'a>| !card.is_free() && (is_certain || !is_good(card));
+        if cards.is_empty() || !cards.iter().all(is_shifted) {
+            return None;
+        }
+        let layouts = [Layout::Standard, Layout::I10, Layout::Long];
+        let fits = |layout: &Layout| {
+            let layout = *layout;
+            layout != self.layout && cards.iter().all(|card| is_good(&card.with_layout(layout)))
+        };
+        let layout = layouts.into_iter().find(fits)?;
+        Some((cards.into_iter().next()?, layout))
+    }
+
+    /// The first data line that would be a known keyword without the blanks before its `*`.
+    pub(crate) fn misplaced_keyword(&self) -> Option<Card<'a>> {
+        let bytes = self.file.bytes();
+        let stars = memchr::memchr_iter(b'*', &bytes[self.body.clone()]);
+        let starts = stars.filter_map(|star| {
+            let before = &bytes[self.body.start..self.body.start + star];
+            let blanks = before.len() - before.trim_ascii_end().len();
+            let line = memchr::memrchr(b'\n', before).map_or(0, |at| at + 1);
+            (blanks > 0 && before.len() - line <= blanks).then_some(self.body.start + line)
+        });
+        let mut cards = starts.filter_map(|start| self.cards_in(start..self.body.end).next());
+        cards.find(Card::is_misplaced_keyword)
     }
 
     /// True if the name ends in the given option or holds it between underscores.
@@ -261,9 +236,10 @@ impl<'a> Blocks<'a> {
             if bytes.get(at) != Some(&b'*') {
                 at += memmem::find(bytes.get(at..)?, b"\n*")? + 1;
             }
-            match self.encrypted.iter().find(|range| range.contains(&at)) {
-                Some(range) => at = range.end,
-                None => return Some(at),
+            let after = self.encrypted.partition_point(|range| range.end <= at);
+            match self.encrypted.get(after) {
+                Some(range) if range.contains(&at) => at = range.end,
+                _ => return Some(at),
             }
         }
     }
@@ -338,7 +314,7 @@ mod tests {
     use super::*;
 
     fn names(text: &str) -> Vec<(String, Layout, usize)> {
-        let file = SourceFile::from_text("t.k", text);
+        let file = SourceFile::new("t.k", text);
         let blocks = Blocks::new(&file, Layout::Standard);
         blocks
             .map(|b| (b.name.clone(), b.layout, b.cards().count()))
@@ -373,17 +349,5 @@ mod tests {
             names("*NODE\n-----BEGIN PGP MESSAGE-----\nabc\n*X").len(),
             1
         );
-    }
-
-    #[test]
-    fn positions_are_found_across_index_steps() {
-        let text: String = (0..20_000).map(|i| format!("line {i}\n")).collect();
-        let file = SourceFile::from_text("t.k", text.clone());
-        for line in [0usize, 1, 6_000, 12_345, 19_999] {
-            let offset = text.find(&format!("line {line}\n")).unwrap() + 3;
-            let position = file.position(offset);
-            assert_eq!((position.line, position.column), (line as u64 + 1, 4));
-        }
-        assert_eq!(file.position(usize::MAX).line, 20_001);
     }
 }

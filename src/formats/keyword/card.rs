@@ -6,8 +6,10 @@
 use std::borrow::Cow;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Position};
-use super::block::SourceFile;
+use super::super::{MAX_LENGTH, text};
+use super::names::{is_known, keyword_name};
 use super::number::{parse_int, parse_real};
+use super::source_file::SourceFile;
 
 /// Ten fields of eight columns: element cards.
 pub const TEN_BY_8: &[u8] = &[8; 10];
@@ -81,7 +83,7 @@ pub trait Parameters: Sync {
 /// Why a field cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldError {
-    /// `BadField`, `NotFinite` or `UnresolvedParameter`.
+    /// `BadField`, `NotFinite`, `NumberTooLarge` or `UnresolvedParameter`.
     pub kind: DiagnosticKind,
     /// Column of the field's text, from 0.
     pub column: usize,
@@ -144,9 +146,14 @@ impl<'a> Card<'a> {
         &self.text
     }
 
-    /// The whole line as text without blanks at its end; for titles and file names.
+    /// The whole line as text without blanks at its end; for file names.
     pub fn line_text(&self) -> String {
-        String::from_utf8_lossy(self.text.trim_ascii_end()).into_owned()
+        text::decoded(self.text.trim_ascii_end()).into_owned()
+    }
+
+    /// The whole line without blanks around it, byte by byte; for titles.
+    pub fn title(&self) -> &[u8] {
+        self.text.trim_ascii()
     }
 
     /// True if there is nothing but blanks.
@@ -292,12 +299,27 @@ impl<'a> Card<'a> {
         if value.is_finite() {
             Ok(Some(value))
         } else {
-            Err(field_error(
-                DiagnosticKind::NotFinite,
-                field,
-                "a finite number",
-            ))
+            let kind = DiagnosticKind::NumberTooLarge;
+            Err(field_error(kind, field, "a number below 1.8e308"))
         }
+    }
+
+    /// A length: a real number of at most [`MAX_LENGTH`]; `None` for a blank field.
+    #[inline]
+    pub fn length(&self, widths: &[u8], index: usize) -> Result<Option<f64>, FieldError> {
+        let value = self.real(widths, index)?;
+        if value.is_some_and(|value| value.abs() > MAX_LENGTH) {
+            let field = self.field(widths, index);
+            let kind = DiagnosticKind::NumberTooLarge;
+            return Err(field_error(kind, field, "a length of at most 1e15"));
+        }
+        Ok(value)
+    }
+
+    /// A length; 0 for a blank field.
+    #[inline]
+    pub fn length_or_zero(&self, widths: &[u8], index: usize) -> Result<f64, FieldError> {
+        Ok(self.length(widths, index)?.unwrap_or(0.0))
     }
 
     /// A finite real number; 0 for a blank field.
@@ -306,7 +328,7 @@ impl<'a> Card<'a> {
         Ok(self.real(widths, index)?.unwrap_or(0.0))
     }
 
-    /// Text; a parameter stands for its value. Bytes that are not UTF-8 are replaced.
+    /// Text; a parameter stands for its value.
     pub fn text(&self, widths: &[u8], index: usize) -> Result<String, FieldError> {
         let field = self.field(widths, index);
         if field.text.first() == Some(&b'&') {
@@ -316,7 +338,7 @@ impl<'a> Card<'a> {
                 Value::Real(value) => value.to_string(),
             });
         }
-        Ok(String::from_utf8_lossy(field.text).into_owned())
+        Ok(text::decoded(field.text).into_owned())
     }
 
     /// The sign before `&` and the parameter's value.
@@ -347,7 +369,13 @@ impl<'a> Card<'a> {
             return Err(field_error(DiagnosticKind::NotFinite, field, "an integer"));
         }
         if !field.text.contains(&b'&') {
-            return Err(bad());
+            let digits = field.text.strip_prefix(b"-").unwrap_or(field.text);
+            return Err(if digits.iter().all(u8::is_ascii_digit) {
+                let kind = DiagnosticKind::NumberTooLarge;
+                field_error(kind, field, "an integer of at most 18 digits")
+            } else {
+                bad()
+            });
         }
         let (negative, value) = self.parameter(field)?;
         let value = match value {
@@ -355,8 +383,12 @@ impl<'a> Card<'a> {
             Value::Real(value) => parse_int(format!("{value:e}").as_bytes()),
             Value::Text(text) => parse_int(text.trim().as_bytes()),
         };
-        let value = value.ok_or_else(bad)?;
-        Ok(if negative { -value } else { value })
+        let value = if negative {
+            value.and_then(i64::checked_neg)
+        } else {
+            value
+        };
+        value.ok_or_else(bad)
     }
 
     #[cold]
@@ -390,6 +422,7 @@ impl<'a> Card<'a> {
         let message = match error.kind {
             DiagnosticKind::UnresolvedParameter => format!("{what} uses an undefined parameter"),
             DiagnosticKind::NotFinite => format!("{what} holds a number that is not finite"),
+            DiagnosticKind::NumberTooLarge => format!("{what} holds a number too large"),
             DiagnosticKind::Unsupported => {
                 format!("{what} has an option that is not carried out")
             }
@@ -406,8 +439,116 @@ fn field_error(kind: DiagnosticKind, field: Field<'_>, expected: &'static str) -
     FieldError {
         kind,
         column: field.column,
-        found: String::from_utf8_lossy(field.text).into_owned(),
+        found: text::decoded(field.text).into_owned(),
         expected,
+    }
+}
+
+/// What the writer of a card that cannot be read probably meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Misread {
+    /// Fixed columns with commas in place of decimal points.
+    DecimalComma,
+    /// A keyword, which must begin in the first column.
+    Keyword,
+}
+
+impl<'a> Card<'a> {
+    /// Looks for the reason why a card cannot be read; `is_good` tells whether another reading of
+    /// it can.
+    pub(crate) fn misread(&self, is_good: impl Fn(&Card<'_>) -> bool) -> Option<Misread> {
+        if self.is_misplaced_keyword() {
+            return Some(Misread::Keyword);
+        }
+        if self.free {
+            let with_points = self.text.iter().map(|&b| if b == b',' { b'.' } else { b });
+            let card = Card {
+                text: Cow::Owned(with_points.collect()),
+                free: false,
+                ..self.clone()
+            };
+            return is_good(&card).then_some(Misread::DecimalComma);
+        }
+        None
+    }
+
+    /// The same line in fields of other widths.
+    pub(crate) fn with_layout(&self, layout: Layout) -> Self {
+        Self {
+            layout,
+            ..self.clone()
+        }
+    }
+
+    /// A blank before the `*` of a known keyword makes it data.
+    pub(crate) fn is_misplaced_keyword(&self) -> bool {
+        let text = self.text.trim_ascii_start();
+        let name = text.strip_prefix(b"*").and_then(keyword_name);
+        text.len() < self.text.len() && name.is_some_and(|name| is_known(&name))
+    }
+
+    /// A finding about a card that cannot be read, with the probable reason. `what` names the
+    /// thing that is lost.
+    pub(crate) fn diagnose_misread(
+        &self,
+        error: &FieldError,
+        misread: Option<Misread>,
+        what: &str,
+    ) -> Diagnostic {
+        let line = || self.line_text();
+        match misread {
+            Some(Misread::Keyword) => self.diagnose_keyword(),
+            Some(Misread::DecimalComma) => {
+                let message = format!("{what} cannot be read: a decimal comma?");
+                Diagnostic::new(error.kind, message)
+                    .at(self.position(0))
+                    .found(line())
+                    .expected("decimal points; commas separate fields")
+            }
+            None => self.diagnose(error, what),
+        }
+    }
+
+    /// A finding about a block whose cards, of which this is the first, are those of `layout`.
+    pub(crate) fn diagnose_shifted(&self, layout: Layout) -> Diagnostic {
+        let (message, expected) = match layout {
+            Layout::Standard => (
+                "columns look shifted: is this a standard deck below a keyword that asks for \
+                 wider fields?",
+                "fields of the width that the keyword asks for",
+            ),
+            Layout::I10 => (
+                "columns look shifted: is this an I10 or long deck without the keyword?",
+                "*KEYWORD I10=Y, or % after the keyword's name",
+            ),
+            Layout::Long => (
+                "columns look shifted: is this an I10 or long deck without the keyword?",
+                "*KEYWORD LONG=Y, or + after the keyword's name",
+            ),
+        };
+        Diagnostic::new(DiagnosticKind::ShiftedColumns, message)
+            .at(self.position(0))
+            .found(self.line_text())
+            .expected(expected)
+    }
+
+    /// A finding about a keyword that is read as data.
+    pub(crate) fn diagnose_keyword(&self) -> Diagnostic {
+        let message = "the keyword is taken for data because a blank stands before it";
+        Diagnostic::new(DiagnosticKind::MisplacedKeyword, message)
+            .at(self.position(0))
+            .found(self.line_text())
+            .expected("* in the first column")
+    }
+}
+
+impl Misread {
+    /// The kind of the finding; that of the field's error where the reason does not change it.
+    pub(crate) fn kind(this: Option<Self>, error: &FieldError) -> DiagnosticKind {
+        match this {
+            Some(Self::Keyword) => DiagnosticKind::MisplacedKeyword,
+            Some(Self::DecimalComma) | None => error.kind,
+        }
     }
 }
 

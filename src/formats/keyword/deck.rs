@@ -3,56 +3,44 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::super::diagnostic::{Diagnostic, DiagnosticKind};
+use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Model, ReadFile};
-use super::super::source::{Bytes, FileSource, open_unpacked, tidy};
-use super::super::{FormatError, ReadOptions};
+use super::super::recognise::recognise;
+use super::super::source::{FileSource, TooLarge, open_unpacked, tidy};
+use super::super::{Foreign, Format, FormatError, ReadOptions, text};
 use super::assemble::{Assembly, Motion, Origin};
-use super::block::{Block, Blocks, SourceFile};
+use super::block::{Block, Blocks};
 use super::card::Layout;
 use super::forming::{is_forming, read_block};
 use super::include::{
     Context, Include, SearchPath, layout_of_keyword, read_include_transform, read_includes,
     read_paths,
 };
-use super::mesh::{ElementKeyword, element_keyword};
+use super::mesh::{ElementKeyword, ShellCards, element_keyword};
+use super::names::{is_known, probably_meant};
 use super::parameter::ParameterTable;
-use super::parts::{read_parts, read_shell_sections};
+use super::parts::{read_parts, read_shell_control, read_shell_sections};
 use super::results::FormingCount;
 use super::sets::{SetKind, read_set};
+use super::source_file::SourceFile;
 use super::transform::Transformation;
-use super::{chunks, nodes, shells, solids};
+use super::{chunks, nodes, resolve, shells, solids};
 use crate::monitor::{Cancelled, Monitor};
 
 /// Includes may be nested this deep.
 const MAX_DEPTH: usize = 64;
-/// So many files may be included; a deck that includes twice in each of many levels asks for more.
-const MAX_FILES: usize = 5_000;
+/// Units that differ by more than this are a mistake.
+const MAX_UNIT_FACTOR: f64 = 1e12;
 
-/// Reads the deck at `path` and everything it includes. What cannot be understood is told in the
-/// model's diagnostics.
-pub fn read(
+/// Reads the deck at `path`, whose text is at hand, and everything it includes; includes are looked
+/// for by `source`. What cannot be understood is told in the model's diagnostics.
+pub(crate) fn read_opened(
     source: &dyn FileSource,
     path: &Path,
+    bytes: Vec<u8>,
     options: &ReadOptions,
     monitor: &Monitor,
 ) -> Result<Model, FormatError> {
-    let bytes = open_unpacked(source, path).map_err(|error| FormatError::open(path, &error))?;
-    read_opened(source, path, bytes, options, monitor)
-}
-
-/// Reads a deck whose bytes are at hand; includes are looked for by `source`.
-pub fn read_opened(
-    source: &dyn FileSource,
-    path: &Path,
-    bytes: Bytes,
-    options: &ReadOptions,
-    monitor: &Monitor,
-) -> Result<Model, FormatError> {
-    if let Some(what) = binary_kind(&bytes) {
-        let path = path.to_path_buf();
-        return Err(FormatError::Unsupported { what, path });
-    }
     let master = path.parent().unwrap_or(Path::new("")).to_path_buf();
     let mut reader = Reader {
         source,
@@ -61,7 +49,7 @@ pub fn read_opened(
             master,
             folders: Vec::new(),
         },
-        option_folders: &options.include_folders,
+        options,
         parameters: ParameterTable::new(),
         assembly: Assembly::default(),
         open: vec![tidy(path)],
@@ -70,29 +58,14 @@ pub fn read_opened(
     let file = Arc::new(SourceFile::new(path, bytes));
     reader.file(&file, Context::default())?;
     reader.monitor.check()?;
-    Ok(reader.assembly.finish(monitor)?)
-}
-
-/// What a file of results is that is no keyword file; `None` for text.
-pub(crate) fn binary_kind(bytes: &[u8]) -> Option<&'static str> {
-    let head = &bytes[..bytes.len().min(512)];
-    // An LSDA file begins with the sizes of its own integers: header length 8, lengths, offsets.
-    let is_lsda = matches!(head, [8, 8, 8, 1, 1, ..] | [7 | 8, 4 | 8, 4 | 8, 1, ..]);
-    if is_lsda {
-        return Some("a binary dynain (LSDA)");
-    }
-    let n_control = head
-        .iter()
-        .filter(|&&b| b < 9 || (14..27).contains(&b))
-        .count();
-    (head.contains(&0) && n_control * 20 > head.len()).then_some("a binary file")
+    Ok(resolve::finish(reader.assembly, options, monitor)?)
 }
 
 struct Reader<'a> {
     source: &'a dyn FileSource,
     monitor: &'a Monitor,
     search: SearchPath,
-    option_folders: &'a [PathBuf],
+    options: &'a ReadOptions,
     parameters: ParameterTable,
     assembly: Assembly,
     /// The files that are being read, the innermost last.
@@ -112,6 +85,7 @@ impl Reader<'_> {
         if context.length == 1.0 {
             self.assembly.unit_clues.read_head(file);
         }
+        self.n_bytes += file.bytes().len() as u64;
         let mut blocks = Blocks::new(file, context.layout);
         self.report_encrypted(file, &blocks);
         while let Some(block) = blocks.next() {
@@ -125,7 +99,6 @@ impl Reader<'_> {
                 _ => self.block(file, &block, &context)?,
             }
         }
-        self.n_bytes += file.bytes().len() as u64;
         self.monitor.progress("read deck", self.n_bytes, None);
         Ok(())
     }
@@ -177,6 +150,9 @@ impl Reader<'_> {
             self.parameters.define(block, &mut self.assembly.found);
             return Ok(());
         }
+        if !name.is_empty() && !is_known(name) {
+            self.tell_unknown(block);
+        }
         let first_word = name.split('_').next().unwrap_or_default();
         match first_word {
             "INCLUDE" => self.include(file, block, context),
@@ -188,6 +164,20 @@ impl Reader<'_> {
         }
     }
 
+    fn tell_unknown(&mut self, block: &Block<'_>) {
+        let kind = DiagnosticKind::UnknownKeyword;
+        self.assembly.found.push_with(kind, || {
+            let name = &block.name;
+            let message = match probably_meant(name) {
+                Some(meant) => format!(
+                    "*{name} is not an LS-DYNA keyword and is skipped; *{meant} was probably meant"
+                ),
+                None => format!("*{name} is not an LS-DYNA keyword and is skipped"),
+            };
+            block.diagnose(kind, message)
+        });
+    }
+
     /// Nodes and elements.
     fn mesh(
         &mut self,
@@ -195,12 +185,14 @@ impl Reader<'_> {
         block: &Block<'_>,
         context: &Context,
     ) -> Result<(), Cancelled> {
-        let parameters = &self.parameters;
-        let assembly = &mut self.assembly;
         let block = &Block {
-            parameters: Some(parameters),
+            parameters: Some(&self.parameters),
             ..block.clone()
         };
+        let assembly = &mut self.assembly;
+        if is_shifted(block, &mut assembly.found) {
+            return Ok(());
+        }
         let origin = Origin::new(file, block, context);
         let offsets = context.elements();
         match element_keyword(block) {
@@ -248,10 +240,14 @@ impl Reader<'_> {
             parameters: Some(&self.parameters),
             ..block.clone()
         };
+        if let Some(card) = block.misplaced_keyword() {
+            let kind = DiagnosticKind::MisplacedKeyword;
+            assembly.found.push_with(kind, || card.diagnose_keyword());
+        }
         if name == "TITLE" {
-            let title = block.cards().next().map(|card| card.line_text());
-            let title = title.unwrap_or_default().trim().to_owned();
-            if assembly.title.is_empty() && self.open.len() == 1 {
+            let card = block.cards().next();
+            if let Some(card) = card.filter(|_| assembly.title.is_empty() && self.open.len() == 1) {
+                let title = assembly.raw_titles.add(card.title());
                 assembly.unit_clues.read_text(&title);
                 assembly.title = title;
             }
@@ -261,9 +257,11 @@ impl Reader<'_> {
         } else if name == "SECTION_SHELL" || name.starts_with("SECTION_SHELL_") {
             let sections = read_shell_sections(block, &context.parts(), &mut assembly.found);
             assembly.sections.extend(sections);
+        } else if name == "CONTROL_SHELL" {
+            read_shell_control(block, &mut assembly.shell_control);
         } else if let Some(kind) = SetKind::of_keyword(name) {
             let set = read_set(block, kind, &context.sets(), &mut assembly.found);
-            assembly.sets.extend(set);
+            assembly.sets.extend(set.map(|set| (file.clone(), set)));
         } else if name.starts_with("DEFINE_TRANSFORMATION") {
             let read = Transformation::from_block(block, &mut assembly.found);
             if let Some((id, mut transformation)) = read {
@@ -273,7 +271,8 @@ impl Reader<'_> {
             }
         } else if is_forming(name) {
             let units = context.results();
-            read_block(block, units, &mut assembly.forming, &mut assembly.found);
+            let into = &mut assembly.forming;
+            read_block(file, block, units, into, &mut assembly.found);
         } else if context.length == 1.0 {
             assembly.unit_clues.read_block(block);
         }
@@ -293,14 +292,14 @@ impl Reader<'_> {
         match block.name.as_str() {
             "INCLUDE" => {
                 for include in read_includes(block) {
-                    self.included(file, block, &include, context)?;
+                    self.included(file, block, include, context)?;
                 }
             }
             "INCLUDE_TRANSFORM" => {
                 let by = context.offsets.define;
                 let found = &mut self.assembly.found;
                 if let Some(include) = read_include_transform(&with_parameters, by, found) {
-                    self.included(file, block, &include, context)?;
+                    self.included(file, block, include, context)?;
                 }
             }
             "INCLUDE_PATH" => {
@@ -328,10 +327,13 @@ impl Reader<'_> {
         &mut self,
         file: &Arc<SourceFile>,
         block: &Block<'_>,
-        include: &Include,
+        mut include: Include,
         context: &Context,
     ) -> Result<(), Cancelled> {
-        let Some(child) = self.open_include(file, include) else {
+        self.monitor.check()?;
+        self.check_units(file, &mut include, context);
+        let include = &include;
+        let Some(child) = self.open_include(file, include)? else {
             return Ok(());
         };
         let first_node = self.assembly.n_nodes();
@@ -360,46 +362,138 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// Unit factors of an include that are none, or that multiply up to none, count as 1.
+    fn check_units(&mut self, file: &SourceFile, include: &mut Include, context: &Context) {
+        let is_unit = |factor: f64| (1.0 / MAX_UNIT_FACTOR..=MAX_UNIT_FACTOR).contains(&factor);
+        let mut refuse = |name: &str, factor: f64| {
+            let kind = DiagnosticKind::BadTransformation;
+            let message = format!("the include's factor on {name} is no unit factor and left out");
+            self.assembly.found.push_with(kind, || {
+                let finding = Diagnostic::new(kind, message).at(file.position(include.at));
+                finding
+                    .found(format!("{factor:e}"))
+                    .expected("a positive number of at most 1e12")
+            });
+        };
+        if !is_unit(include.length) || !is_unit(include.length * context.length) {
+            refuse("lengths (FCTLEN)", include.length);
+            include.length = 1.0;
+        }
+        // Stresses go with the square of time and may differ by more.
+        let is_stress_unit = |factor: f64| factor > 0.0 && (1e-50..=1e50).contains(&factor);
+        if !is_stress_unit(include.stress) || !is_stress_unit(include.stress * context.stress) {
+            refuse("stresses (FCTMAS / FCTLEN / FCTTIM²)", include.stress);
+            include.stress = 1.0;
+        }
+    }
+
     /// Finds and opens an included file and notes it as open; says so if that cannot be done.
-    fn open_include(&mut self, file: &SourceFile, include: &Include) -> Option<Arc<SourceFile>> {
+    fn open_include(
+        &mut self,
+        file: &SourceFile,
+        include: &Include,
+    ) -> Result<Option<Arc<SourceFile>>, Cancelled> {
         let name = self.parameters.substitute(&include.name).into_owned();
         let folder = file.path().parent().unwrap_or(Path::new(""));
         let mut search = self.search.clone();
-        search.folders.extend(self.option_folders.iter().cloned());
-        let path = search.find(self.source, folder, &name);
-        let result = match path {
-            None => Err((DiagnosticKind::MissingInclude, "is not found".to_owned())),
-            Some(path) if self.open.contains(&tidy(&path)) => {
-                Err((DiagnosticKind::IncludeCycle, "includes itself".to_owned()))
+        let of_options = self.options.include_folders.iter().cloned();
+        search.folders.extend(of_options);
+        let result = match search.find(self.source, folder, &name) {
+            Some(path) => self.open_found(path),
+            None => {
+                let tried = search.tried(folder, &name);
+                Err((
+                    DiagnosticKind::MissingInclude,
+                    format!("is not found; tried {tried}"),
+                ))
             }
-            Some(_) if self.open.len() >= MAX_DEPTH || self.assembly.files.len() >= MAX_FILES => {
-                let message = "is left out because there are too many includes";
-                Err((DiagnosticKind::IncludeCycle, message.to_owned()))
-            }
-            Some(path) => match open_unpacked(self.source, &path) {
-                Ok(bytes) => match binary_kind(&bytes) {
-                    Some(what) => Err((DiagnosticKind::Unsupported, format!("is {what}"))),
-                    None => Ok((path, bytes)),
-                },
-                Err(error) => {
-                    let message = format!("cannot be read ({error})");
-                    Err((DiagnosticKind::MissingInclude, message))
-                }
-            },
         };
+        self.monitor.check()?;
         match result {
             Ok((path, bytes)) => {
                 self.open.push(tidy(&path));
-                Some(Arc::new(SourceFile::new(path, bytes)))
+                Ok(Some(Arc::new(SourceFile::new(path, bytes))))
             }
             Err((kind, what)) => {
-                let finding = Diagnostic::new(kind, format!("the included file {what}"));
-                let finding = finding.at(file.position(include.at)).found(name);
-                self.assembly.found.push(finding);
-                None
+                self.assembly.found.push_with(kind, || {
+                    let finding = Diagnostic::new(kind, format!("the included file {what}"));
+                    finding.at(file.position(include.at)).found(name)
+                });
+                Ok(None)
             }
         }
     }
+
+    /// The bytes of an include at a path that exists; what keeps it from being read otherwise.
+    fn open_found(&self, path: PathBuf) -> Result<(PathBuf, Vec<u8>), (DiagnosticKind, String)> {
+        if self.open.contains(&tidy(&path)) {
+            return Err((DiagnosticKind::IncludeCycle, "includes itself".to_owned()));
+        }
+        if self.open.len() >= MAX_DEPTH {
+            let message = format!("is left out: it is nested deeper than {MAX_DEPTH} includes");
+            return Err((DiagnosticKind::IncludeCycle, message));
+        }
+        let max_files = self.options.max_files;
+        if self.assembly.files.len() >= max_files {
+            let message = format!(
+                "is left out: {max_files} files were read, which is the limit; --read-limit raises it"
+            );
+            return Err((DiagnosticKind::LimitReached, message));
+        }
+        let n_left = self.options.max_bytes.saturating_sub(self.n_bytes);
+        let bytes = open_unpacked(self.source, &path, n_left, self.monitor).map_err(|error| {
+            let is_limit = error.get_ref().is_some_and(|inner| inner.is::<TooLarge>());
+            if is_limit {
+                let max_bytes = self.options.max_bytes;
+                let message = format!("is left out: {}", TooLarge { max_bytes });
+                (DiagnosticKind::LimitReached, message)
+            } else {
+                let message = format!("cannot be read ({error})");
+                (DiagnosticKind::MissingInclude, message)
+            }
+        })?;
+        let bytes = text::normalised(bytes);
+        match recognise(&path, &bytes) {
+            Ok(Format::Keyword) | Err(Foreign::Empty) => Ok((path, bytes)),
+            Ok(format) => Err((
+                DiagnosticKind::Unsupported,
+                format!("is {} and left out", format.label()),
+            )),
+            Err(Foreign::Text) if is_comment(&bytes) => Ok((path, bytes)),
+            Err(foreign) => Err((
+                DiagnosticKind::Unsupported,
+                format!("is {foreign}; {}", foreign.advice()),
+            )),
+        }
+    }
+}
+
+/// True if the cards of a mesh block are those of another layout; told once. Where one block
+/// is such, others may look right by chance.
+fn is_shifted(block: &Block<'_>, found: &mut Diagnostics) -> bool {
+    let is_certain = found.count(DiagnosticKind::ShiftedColumns) > 0;
+    let shifted = match element_keyword(block) {
+        ElementKeyword::Shell(cards) => {
+            let n_cards = if cards == ShellCards::default() { 3 } else { 1 };
+            block.shifted_columns(n_cards, is_certain, shells::is_whole_shell)
+        }
+        ElementKeyword::Skipped if nodes::holds_nodes(&block.name) => {
+            block.shifted_columns(3, is_certain, nodes::is_node)
+        }
+        _ => None,
+    };
+    let Some((card, layout)) = shifted else {
+        return false;
+    };
+    let kind = DiagnosticKind::ShiftedColumns;
+    found.push_with(kind, || card.diagnose_shifted(layout));
+    true
+}
+
+/// True for a text of comments and blank lines.
+fn is_comment(bytes: &[u8]) -> bool {
+    let mut lines = bytes.split(|&b| b == b'\n');
+    lines.all(|line| line.first() == Some(&b'$') || line.trim_ascii().is_empty())
 }
 
 /// `*NODE_TRANSFORM` and `*NODE_THICKNESS`.

@@ -2,16 +2,21 @@
 //! sets; those of solids and thick shells are read past and counted.
 
 use std::iter::Peekable;
+use std::sync::Arc;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Forming, StrainPoint, StressPoint};
 use super::block::{Block, Cards};
 use super::card::{Card, EIGHT_BY_10, FIVE_BY_16, FieldError};
 use super::nodes::shifted;
+use super::source_file::{Place, SourceFile};
 
 /// More points or history variables than any solver writes for one shell; such a count means that
 /// the cards are out of step.
 const MAX_COUNT: i64 = 10_000;
+
+/// The square of a larger stress or strain is still a number, and so is its turned tensor.
+const MAX_TENSOR: f64 = 1e100;
 
 /// What an include does to the results in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,6 +36,9 @@ pub(crate) struct RawForming {
     pub of_shells: Forming,
     /// Results for all shells of a set; the set's id stands in place of the element's.
     pub of_sets: Forming,
+    /// Where the results of sets begin, stresses and strains each in the order of the file.
+    pub stress_places: Vec<Place>,
+    pub strain_places: Vec<Place>,
 }
 
 /// The forms of results that are understood.
@@ -66,6 +74,7 @@ impl Results {
 /// are not understood are named and left out. An element that cannot be read is named and left
 /// out; counts that make no sense end the block.
 pub(crate) fn read_block(
+    file: &Arc<SourceFile>,
     block: &Block<'_>,
     units: ResultUnits,
     into: &mut RawForming,
@@ -104,6 +113,11 @@ pub(crate) fn read_block(
             }
             Results::ThickShellStrain => reader.tensors(&card, 2, &mut others.thick_shell_strain),
         };
+        let place = || Place::new(file, card.offset());
+        into.stress_places
+            .resize_with(into.of_sets.n_stress(), place);
+        into.strain_places
+            .resize_with(into.of_sets.n_strain(), place);
         if let Err(Stop) = read {
             return;
         }
@@ -189,15 +203,17 @@ impl Reader<'_, '_> {
         };
         let n_points = n_plane.max(1) * n_thick.max(1);
         let factor = self.units.stress;
-        let mut points = Vec::with_capacity(n_points);
-        let mut history = Vec::with_capacity(n_points * n_history);
+        // The counts are the file's word; memory is taken for what is there.
+        let (mut points, mut history) = (Vec::new(), Vec::new());
         for _ in 0..n_points {
             let values = self.take(8, lines)?;
-            points.push(StressPoint {
+            let point = StressPoint {
                 t: values[0],
                 stress: std::array::from_fn(|i| values[i + 1] * factor),
                 plastic_strain: values[7],
-            });
+            };
+            self.check_size(head, &point.stress);
+            points.push(point);
             history.extend_from_slice(self.take(n_history, lines)?);
             self.take(n_tensor, tensor_lines)?;
         }
@@ -217,13 +233,15 @@ impl Reader<'_, '_> {
             0 => (1, 2),
             n => (n_plane, n),
         };
-        let mut points = Vec::with_capacity(n_points);
+        let mut points = Vec::new();
         for _ in 0..n_points {
             let values = self.take(7, lines)?;
-            points.push(StrainPoint {
+            let point = StrainPoint {
                 t: values[6],
                 strain: std::array::from_fn(|i| values[i]),
-            });
+            };
+            self.check_size(head, &point.strain);
+            points.push(point);
         }
         let Some(id) = self.finish_element(head, id, offset) else {
             return Ok(());
@@ -410,6 +428,24 @@ impl Reader<'_, '_> {
         n_found
     }
 
+    /// Names a tensor that cannot be turned without leaving the range of numbers.
+    fn check_size(&mut self, head: &Card<'_>, tensor: &[f64; 6]) {
+        let largest = tensor.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        if largest <= MAX_TENSOR || self.bad_field.is_some() {
+            return;
+        }
+        let error = FieldError {
+            kind: DiagnosticKind::NumberTooLarge,
+            column: 0,
+            found: format!("{largest:e}"),
+            expected: "stresses and strains of at most 1e100",
+        };
+        let what = "the element's result";
+        self.diagnostics
+            .push_with(error.kind, || head.diagnose(&error, what));
+        self.bad_field = Some(error);
+    }
+
     /// The element's or set's id, unless one of its fields could not be read.
     fn finish_element(&mut self, head: &Card<'_>, id: i64, offset: i64) -> Option<u64> {
         if self.bad_field.take().is_some() {
@@ -430,241 +466,4 @@ impl Reader<'_, '_> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::super::model::OtherResults;
-    use super::super::block::{Blocks, SourceFile};
-    use super::super::card::Layout;
-    use super::*;
-
-    fn read(text: &str) -> (Forming, Diagnostics) {
-        let file = SourceFile::from_text("dynain", text);
-        let (mut forming, mut diagnostics) = (RawForming::default(), Diagnostics::default());
-        for block in Blocks::new(&file, Layout::Standard) {
-            read_block(&block, AS_IT_IS, &mut forming, &mut diagnostics);
-        }
-        (forming.of_shells, diagnostics)
-    }
-
-    const AS_IT_IS: ResultUnits = ResultUnits {
-        element: 0,
-        set: 0,
-        stress: 1.0,
-    };
-
-    fn clean(text: &str) -> Forming {
-        let (forming, diagnostics) = read(text);
-        assert!(diagnostics.is_empty(), "{diagnostics:?}");
-        forming
-    }
-
-    fn row(width: usize, values: &[f64]) -> String {
-        let fields = values.iter().map(|v| format!("{v:>width$}"));
-        fields.collect::<String>() + "\n"
-    }
-
-    fn ints(width: usize, values: &[i64]) -> String {
-        let fields = values.iter().map(|v| format!("{v:>width$}"));
-        fields.collect::<String>() + "\n"
-    }
-
-    const POINT: [f64; 8] = [-0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.25];
-    const HISTORY: [f64; 9] = [10., 11., 12., 13., 14., 15., 16., 17., 18.];
-
-    #[track_caller]
-    fn check(forming: &Forming, n_elements: usize, n_points: usize, n_history: usize) {
-        assert_eq!(forming.n_stress(), n_elements);
-        for (i, shell) in forming.stresses().enumerate() {
-            assert_eq!(shell.element_id, 100 + i as u64);
-            assert_eq!(shell.points.len(), n_points);
-            for point in shell.points {
-                assert_eq!(point.t, -0.5);
-                assert_eq!(point.stress, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-                assert_eq!(point.plastic_strain, 0.25);
-            }
-            assert_eq!(shell.n_history, n_history);
-            for history in shell.history.chunks(n_history.max(1)) {
-                assert_eq!(history, &HISTORY[..n_history]);
-            }
-        }
-    }
-
-    /// Two elements, one point in the plane and two through the thickness, nine history
-    /// variables and six tensor values, in any width.
-    fn stress_deck(keyword: &str, narrow: usize, wide: usize, large: bool) -> String {
-        let mut deck = format!("*INITIAL_STRESS_SHELL{keyword}\n$ comment\n");
-        for id in [100, 101] {
-            deck += &ints(narrow, &[id, 1, 2, 9, 6, large.into(), 1, 2]);
-            for _ in 0..2 {
-                let (width, per_line) = if large { (wide, 5) } else { (narrow, 8) };
-                for line in POINT.chunks(per_line) {
-                    deck += &row(width, line);
-                }
-                for line in HISTORY.chunks(per_line) {
-                    deck += &row(width, line);
-                }
-                for line in HISTORY[..6].chunks(per_line.min(6)) {
-                    deck += &row(width, line);
-                }
-                deck += "$ between points\n";
-            }
-            deck += &row(if large { wide } else { narrow }, &[300.0, 301.0]);
-        }
-        deck
-    }
-
-    #[test]
-    fn stresses_in_every_width() {
-        check(&clean(&stress_deck("", 10, 16, false)), 2, 2, 9);
-        check(&clean(&stress_deck("", 10, 16, true)), 2, 2, 9);
-        check(&clean(&stress_deck(" %", 10, 16, true)), 2, 2, 9);
-        check(&clean(&stress_deck("+", 20, 20, false)), 2, 2, 9);
-        check(&clean(&stress_deck("+", 20, 20, true)), 2, 2, 9);
-    }
-
-    #[test]
-    fn the_header_of_openradioss() {
-        let mut deck = String::from("*INITIAL_STRESS_SHELL\n");
-        for id in [100, 101] {
-            deck += &format!("{id:>8}{:>8}{:>8}{:16}{:>8}\n", 1, 3, "", 1);
-            for _ in 0..3 {
-                deck += &row(16, &POINT[..5]);
-                deck += &row(16, &POINT[5..]);
-            }
-        }
-        check(&clean(&deck), 2, 3, 0);
-        // One real tensor value a point is read as such.
-        let mut deck = String::from("*INITIAL_STRESS_SHELL\n");
-        deck += &ints(10, &[100, 1, 1, 0, 1]);
-        deck += &(row(10, &POINT) + &row(10, &[7.0]));
-        check(&clean(&deck), 1, 1, 0);
-    }
-
-    #[test]
-    fn plastic_strain_on_a_line_of_its_own() {
-        let mut deck = String::from("*INITIAL_STRESS_SHELL\n");
-        for id in [100, 101] {
-            deck += &ints(10, &[id, 1, 1]);
-            deck += &(row(10, &POINT[..7]) + &row(10, &POINT[7..]));
-        }
-        check(&clean(&deck), 2, 1, 0);
-    }
-
-    #[test]
-    fn free_format_and_missing_fields() {
-        let deck = "*INITIAL_STRESS_SHELL\n100,1,1\n-.5,1.,2.,3.,4.,5.,6.,.25\n101,1,1\n-.5,1.\n";
-        let forming = clean(deck);
-        assert_eq!(forming.stress(0).points[0].plastic_strain, 0.25);
-        assert_eq!(
-            forming.stress(1).points[0].stress,
-            [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
-        );
-    }
-
-    #[test]
-    fn strains_small_large_and_without_counts() {
-        let values = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, -1.0];
-        let mut deck = String::from("*INITIAL_STRAIN_SHELL\n");
-        deck += &(ints(10, &[100]) + &row(10, &values) + &row(10, &values));
-        deck += &ints(10, &[101, 1, 3, 1]);
-        for _ in 0..3 {
-            deck += &(row(16, &values[..5]) + &row(16, &values[5..]));
-        }
-        // OpenRadioss: 4I8.
-        deck += &ints(8, &[102, 1, 1, 1]);
-        deck += &(row(16, &values[..5]) + &row(16, &values[5..]));
-        let forming = clean(&deck);
-        let n_points: Vec<_> = forming.strains().map(|s| s.points.len()).collect();
-        assert_eq!(n_points, [2, 3, 1]);
-        for shell in forming.strains() {
-            for point in shell.points {
-                assert_eq!(point.strain, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-                assert_eq!(point.t, -1.0);
-            }
-        }
-    }
-
-    #[test]
-    fn what_cannot_be_used_is_said() {
-        let (forming, diagnostics) =
-            read("*INITIAL_STRESS_BEAM\n1\n*INITIAL_STRESS_SOLID_SET\n2\n");
-        assert!(forming.is_empty());
-        assert_eq!(diagnostics.count(DiagnosticKind::Unsupported), 2);
-        let (_, diagnostics) = read("*INITIAL_STRESS_SHELL\n1,99999,99999\n");
-        assert_eq!(diagnostics.count(DiagnosticKind::BadForming), 1);
-        let (forming, diagnostics) =
-            read("*INITIAL_STRESS_SHELL\n1,1,1\n0,x\n2,1,1\n0,1,1,1,1,1,1,0\n");
-        assert_eq!((forming.n_stress(), diagnostics.total()), (1, 1));
-        let (_, diagnostics) = read("*INITIAL_STRAIN_SHELL\n1,1,1,0,,,,1\n0,1,1,1,1,1,1\n");
-        assert_eq!(diagnostics.count(DiagnosticKind::Unsupported), 1);
-    }
-
-    #[test]
-    fn ids_are_shifted_either_way_and_stresses_scaled() {
-        let deck = "*INITIAL_STRESS_SHELL\n100,1,1\n-.5,1.,2.,3.,4.,5.,6.,.25\n\
-            *INITIAL_STRESS_SHELL_SET\n9,1,1\n-.5,1.,2.,3.,4.,5.,6.,.25\n";
-        let file = SourceFile::from_text("dynain", deck);
-        let (mut forming, mut diagnostics) = (RawForming::default(), Diagnostics::default());
-        let units = ResultUnits {
-            element: -40,
-            set: 1,
-            stress: 10.0,
-        };
-        for block in Blocks::new(&file, Layout::Standard) {
-            read_block(&block, units, &mut forming, &mut diagnostics);
-        }
-        let of_set = forming.of_sets.stress(0);
-        let of_shell = forming.of_shells.stress(0);
-        assert_eq!((of_shell.element_id, of_set.element_id), (60, 10));
-        assert_eq!(of_shell.points, of_set.points);
-        assert_eq!(
-            of_set.points[0].stress,
-            [10.0, 20.0, 30.0, 40.0, 50.0, 60.0]
-        );
-        assert_eq!(of_set.points[0].plastic_strain, 0.25);
-    }
-
-    #[test]
-    fn results_of_solids_and_thick_shells_are_counted() {
-        let values: Vec<f64> = (1..=30).map(f64::from).collect();
-        let mut deck = String::from("*INITIAL_STRESS_SOLID\n");
-        for id in [1, 2] {
-            // Two points with four history variables run on over three lines each.
-            deck += &ints(10, &[id, 2, 4, 1, 1, 0, 1, 6]);
-            for _ in 0..2 {
-                deck += &(row(16, &values[..5]) + &row(16, &values[5..10]) + &row(16, &[11.0]));
-            }
-            deck += &(row(16, &values[..5]) + &row(16, &[6.0]));
-        }
-        deck += &(ints(10, &[3, 1]) + &row(10, &values[..7]));
-        deck += "*INITIAL_STRAIN_SOLID\n";
-        deck += &(ints(10, &[1]) + &row(10, &values[..6]));
-        deck += &(ints(10, &[2]) + &row(10, &values[..6]));
-        deck += "*INITIAL_STRESS_TSHELL\n";
-        deck += &ints(10, &[1, 1, 2, 3, 1]);
-        for _ in 0..2 {
-            deck += &(row(16, &values[..5]) + &row(16, &values[..3]) + &row(16, &values[..3]));
-        }
-        deck += &(ints(10, &[2, 1, 1]) + &row(10, &POINT));
-        deck += "*INITIAL_STRAIN_TSHELL\n";
-        deck += &(ints(10, &[7]) + &row(10, &values[..6]) + &row(10, &values[..6]));
-        let forming = clean(&deck);
-        assert!(forming.is_empty());
-        let expected = OtherResults {
-            solid_stress: 3,
-            solid_strain: 2,
-            thick_shell_stress: 2,
-            thick_shell_strain: 1,
-        };
-        assert_eq!(forming.others, expected);
-    }
-
-    #[test]
-    fn a_deck_cut_anywhere_is_no_panic() {
-        let deck = stress_deck("", 10, 16, true) + "*INITIAL_STRAIN_SHELL\n 1,1,1\n1,2,3,4,5,6,7\n";
-        let whole = clean(&deck).n_stress();
-        for end in 0..deck.len() {
-            let (forming, _) = read(&deck[..end]);
-            assert!(forming.n_stress() <= whole);
-        }
-    }
-}
+mod tests;

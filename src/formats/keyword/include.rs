@@ -261,36 +261,73 @@ pub(crate) struct SearchPath {
 
 impl SearchPath {
     /// The file that `name` means in a file of `folder`: as given, beside the including file,
-    /// beside the master, in the folders; then the same with Windows separators, and last the bare
-    /// name, because decks carry the drives of the machine they come from.
+    /// beside the master, in the folders; then the same with Windows separators, and with ever
+    /// fewer of its leading folders, because decks carry the paths of the machine they come from
+    /// and whole trees are moved.
     pub(crate) fn find(
         &self,
         source: &dyn FileSource,
         folder: &Path,
         name: &str,
     ) -> Option<PathBuf> {
-        let with_slashes = name.replace('\\', "/");
-        let bare = with_slashes.rsplit('/').next().unwrap_or_default();
-        let mut names = vec![name, &with_slashes, bare];
-        names.dedup();
-        let folders = || {
-            let near = [folder, &self.master];
-            near.into_iter()
-                .chain(self.folders.iter().map(PathBuf::as_path))
+        names_of(name).into_iter().find_map(|name| {
+            let name = Path::new(&name);
+            if name.is_absolute() {
+                return source.find(name);
+            }
+            let mut folders = self.folders(folder);
+            folders.find_map(|folder| source.find(&tidy(&folder.join(name))))
+        })
+    }
+
+    /// What [`SearchPath::find`] tries, in words.
+    pub(crate) fn tried(&self, folder: &Path, name: &str) -> String {
+        const MAX_LISTED: usize = 4;
+        let listed = |all: Vec<String>| {
+            let n_more = all.len().saturating_sub(MAX_LISTED);
+            let mut text = all[..all.len() - n_more].join(", ");
+            if n_more > 0 {
+                text += &format!(" and {n_more} more");
+            }
+            text
         };
-        for name in names.into_iter().filter(|name| !name.is_empty()) {
-            let name = Path::new(name);
-            let found = if name.is_absolute() {
-                source.find(name)
-            } else {
-                folders().find_map(|folder| source.find(&tidy(&folder.join(name))))
+        let names = names_of(name).into_iter().map(|name| format!("{name:?}"));
+        let mut folders: Vec<String> = Vec::new();
+        for folder in self.folders(folder) {
+            let folder = match folder.display().to_string() {
+                empty if empty.is_empty() => "the deck's folder".to_owned(),
+                folder => folder,
             };
-            if found.is_some() {
-                return found;
+            if !folders.contains(&folder) {
+                folders.push(folder);
             }
         }
-        None
+        format!("{} in {}", listed(names.collect()), listed(folders))
     }
+
+    fn folders<'a>(&'a self, folder: &'a Path) -> impl Iterator<Item = &'a Path> {
+        let near = [folder, &self.master];
+        near.into_iter()
+            .chain(self.folders.iter().map(PathBuf::as_path))
+    }
+}
+
+/// A file name as given, with slashes, and with ever fewer leading folders.
+fn names_of(name: &str) -> Vec<String> {
+    let with_slashes = name.replace('\\', "/");
+    let mut names = vec![name.to_owned()];
+    let mut rest = with_slashes.as_str();
+    loop {
+        if !rest.is_empty() && !names.iter().any(|known| known == rest) {
+            names.push(rest.to_owned());
+        }
+        match rest.split_once('/') {
+            Some((_, after)) => rest = after,
+            None => break,
+        }
+    }
+    names.retain(|name| !name.is_empty());
+    names
 }
 
 /// What a `*KEYWORD` line says about the width of fields: `LONG=Y`, `I10 = Y`.
@@ -313,11 +350,12 @@ pub(crate) fn layout_of_keyword(remark: &[u8]) -> Option<Layout> {
 #[cfg(test)]
 mod tests {
     use super::super::super::source::Memory;
-    use super::super::block::{Blocks, SourceFile};
+    use super::super::block::Blocks;
+    use super::super::source_file::SourceFile;
     use super::*;
 
     fn names(text: &str) -> Vec<String> {
-        let file = SourceFile::from_text("t.k", text);
+        let file = SourceFile::new("t.k", text);
         let block = Blocks::new(&file, Layout::Standard).next().unwrap();
         read_includes(&block).into_iter().map(|i| i.name).collect()
     }
@@ -369,6 +407,13 @@ mod tests {
         assert_eq!(find("master.k"), Some("m/master.k".into()));
         assert_eq!(find("far.k"), Some("lib/far.k".into()));
         assert_eq!(find("D:\\work\\mesh.k"), Some("m/Mesh.K".into()));
+        let moved = "Z:\\project\\m\\sub\\near.k";
+        let from_elsewhere = search.find(&source, Path::new(""), moved);
+        assert_eq!(from_elsewhere, Some("m/sub/near.k".into()));
+        assert_eq!(
+            search.tried(Path::new("m"), "Z:\\a\\x.k"),
+            r#""Z:\\a\\x.k", "Z:/a/x.k", "a/x.k", "x.k" in m, lib"#
+        );
         assert_eq!(find("nowhere.k"), None);
     }
 }

@@ -55,6 +55,24 @@ const SOLID_ORDERS: &[(&str, usize, usize)] = &[
 /// Options of `*ELEMENT_SOLID` that ask for other elements to be made and have no cards.
 const SOLID_CONVERSIONS: &[&str] = &["TET4TOTET10", "H8TOH20", "H8TOH27", "H8TOH64"];
 
+/// First words of the element keywords that have no surface, or none that is read.
+const WITHOUT_SURFACE: &[&str] = &[
+    "BEAM",
+    "BEARING",
+    "BLANKING",
+    "DIRECT",
+    "DISCRETE",
+    "GENERALIZED",
+    "INERTIA",
+    "INTERPOLATION",
+    "LANCING",
+    "MASS",
+    "PLOTEL",
+    "SEATBELT",
+    "SPH",
+    "TRIM",
+];
+
 /// What the cards of a block's keyword are.
 pub(crate) fn element_keyword(block: &Block<'_>) -> ElementKeyword {
     let Some(rest) = block.name.strip_prefix("ELEMENT_") else {
@@ -65,7 +83,8 @@ pub(crate) fn element_keyword(block: &Block<'_>) -> ElementKeyword {
         Some("SHELL") => shell_cards(words).map(ElementKeyword::Shell),
         Some("SOLID") => solid_cards(words).map(ElementKeyword::Solid),
         Some("TSHELL") => thick_shell_cards(words).map(ElementKeyword::Solid),
-        _ => Some(ElementKeyword::Skipped),
+        Some(other) if WITHOUT_SURFACE.contains(&other) => Some(ElementKeyword::Skipped),
+        _ => None,
     };
     keyword.unwrap_or(ElementKeyword::Unknown)
 }

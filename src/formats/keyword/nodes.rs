@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
+use super::super::MAX_LENGTH;
 use super::super::diagnostic::Diagnostics;
 use super::block::Block;
-use super::card::{Card, EIGHT_BY_10, FieldError, columns};
+use super::card::{Card, EIGHT_BY_10, FieldError, Misread, columns};
 use super::chunks::{Cut, Irregular};
 use super::number::{parse_digits, parse_real};
 use crate::geometry::Point3;
@@ -58,8 +59,10 @@ pub(crate) fn read_nodes(
                 chunk.positions.push(position);
             }
             Err(error) => {
-                let describe = || card.diagnose(&error, &node_name(&card));
-                chunk.diagnostics.push_with(error.kind, describe);
+                let misread = card.misread(is_node);
+                let kind = Misread::kind(misread, &error);
+                let describe = || card.diagnose_misread(&error, misread, &node_name(&card));
+                chunk.diagnostics.push_with(kind, describe);
             }
         }
     }
@@ -75,19 +78,24 @@ pub(crate) fn shifted(id: u64, offset: i64) -> u64 {
     }
 }
 
+/// True if a card is a node.
+pub(crate) fn is_node(card: &Card<'_>) -> bool {
+    node(card).is_ok()
+}
+
 fn node_name(card: &Card<'_>) -> String {
     match card.id(NODE, 0) {
-        Ok(id) => format!("node {id}"),
-        Err(_) => "the node".to_owned(),
+        Ok(id) if id != 0 => format!("node {id}"),
+        _ => "the node".to_owned(),
     }
 }
 
 /// A node from its card. Exactly what [`fixed_node`] does, for every form of card.
 fn node(card: &Card<'_>) -> Result<(u64, Point3), FieldError> {
     let id = card.required_id(NODE, 0)?;
-    let x = card.real_or_zero(NODE, 1)?;
-    let y = card.real_or_zero(NODE, 2)?;
-    let z = card.real_or_zero(NODE, 3)?;
+    let x = card.length_or_zero(NODE, 1)?;
+    let y = card.length_or_zero(NODE, 2)?;
+    let z = card.length_or_zero(NODE, 3)?;
     Ok((id, Point3::new(x, y, z)))
 }
 
@@ -101,7 +109,7 @@ fn fixed_node(line: &[u8], columns: &[usize; 5]) -> Option<(u64, Point3)> {
     let id = parse_digits(&line[..columns[1]])?;
     let real = |from: usize, to: usize| {
         let text = line[from..to].trim_ascii();
-        parse_real(text).filter(|value| value.is_finite())
+        parse_real(text).filter(|value| value.abs() <= MAX_LENGTH)
     };
     let x = real(columns[1], columns[2])?;
     let y = real(columns[2], columns[3])?;
@@ -153,7 +161,7 @@ pub(crate) fn read_node_thickness(
                 first
             },
             step: card.id(EIGHT_BY_10, 3)?.max(1),
-            thickness: card.real_or_zero(EIGHT_BY_10, 1)?,
+            thickness: card.length_or_zero(EIGHT_BY_10, 1)?,
             is_set,
         })
     };
@@ -207,13 +215,13 @@ pub(crate) fn read_node_transforms(
 
 #[cfg(test)]
 mod tests {
-    use super::super::block::SourceFile;
     use super::super::card::Layout;
+    use super::super::source_file::SourceFile;
     use super::*;
     use proptest::prelude::*;
 
     fn check_line(line: &str) {
-        let file = SourceFile::from_text("t.k", line);
+        let file = SourceFile::new("t.k", line);
         for layout in [Layout::Standard, Layout::I10, Layout::Long] {
             let card = Card::new(line.as_bytes(), 0, layout, &file, None);
             if let Some(fast) = fixed_node(line.as_bytes(), &columns::<5>(NODE, layout)) {

@@ -16,59 +16,7 @@ use super::number::{parse_int, parse_real};
 use super::parameter_card::{
     ExpressionCard, Kind, expression_cards, is_name, is_name_char, pairs, typed_name,
 };
-
-/// Why a field with a parameter in it has no value.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum FieldError {
-    /// No such parameter is visible here.
-    #[error("parameter {0:?} is not defined")]
-    Unresolved(String),
-    /// Text with a minus sign before it.
-    #[error("parameter {0:?} is text and has no negative")]
-    NotANumber(String),
-    /// Arithmetic in the field fails.
-    #[error(transparent)]
-    Expression(#[from] ExpressionError),
-}
-
-/// What a definition did wrong.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ParameterProblem {
-    /// No `R`, `I` or `C` before the name, or a name that is none.
-    #[error("{0:?} is not a parameter name with its type R, I or C before it")]
-    BadName(String),
-    /// LS-DYNA keeps this name for itself.
-    #[error("parameter name {0:?} is reserved")]
-    Reserved(String),
-    /// The value does not suit the type.
-    #[error("{found:?} is not a value for parameter {name:?}")]
-    BadValue {
-        /// The parameter.
-        name: String,
-        /// What stands in the value field.
-        found: String,
-    },
-    /// The value names a parameter that does not exist.
-    #[error(transparent)]
-    Field(#[from] FieldError),
-    /// A second definition that does not count.
-    #[error("parameter {0:?} is defined again, the first definition stays")]
-    KeptFirst(String),
-    /// A second definition that counts.
-    #[error("parameter {0:?} is defined again, the later definition counts")]
-    TookLater(String),
-}
-
-/// A problem with its place in the block.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ParameterFinding {
-    /// Index into the lines given to [`ParameterTable::read_block`].
-    pub line_idx: usize,
-    /// Column in bytes, from 1.
-    pub column: usize,
-    /// What is wrong.
-    pub problem: ParameterProblem,
-}
+use super::parameter_error::{ParameterError, ParameterFinding, ParameterProblem};
 
 /// The number, or `None` for text.
 fn number(value: &Value) -> Option<Number> {
@@ -253,7 +201,7 @@ impl ParameterTable {
                 ParameterProblem::KeptFirst(_) | ParameterProblem::TookLater(_) => {
                     DiagnosticKind::DuplicateParameter
                 }
-                ParameterProblem::Field(FieldError::Unresolved(_)) => {
+                ParameterProblem::Field(ParameterError::Unresolved(_)) => {
                     DiagnosticKind::UnresolvedParameter
                 }
                 _ => DiagnosticKind::BadParameter,
@@ -321,7 +269,7 @@ impl ParameterTable {
 
     /// The value of a field that holds `&name`, `-&name`, `<expression>` or arithmetic with `&`;
     /// `None` if the field holds none of these.
-    pub fn field(&self, text: &str) -> Option<Result<Value, FieldError>> {
+    pub fn field(&self, text: &str) -> Option<Result<Value, ParameterError>> {
         let text = text.trim();
         if let Some(inner) = text.strip_prefix('<').and_then(|t| t.strip_suffix('>')) {
             return Some(self.evaluate(inner).map_err(Into::into));
@@ -340,12 +288,12 @@ impl ParameterTable {
         })
     }
 
-    fn reference(&self, name: &str, negative: bool) -> Result<Value, FieldError> {
+    fn reference(&self, name: &str, negative: bool) -> Result<Value, ParameterError> {
         let value = self
             .resolve(name)
-            .ok_or_else(|| FieldError::Unresolved(name.to_owned()))?;
+            .ok_or_else(|| ParameterError::Unresolved(name.to_owned()))?;
         if negative {
-            negated(value).ok_or_else(|| FieldError::NotANumber(name.to_owned()))
+            negated(value).ok_or_else(|| ParameterError::NotANumber(name.to_owned()))
         } else {
             Ok(value.clone())
         }
@@ -453,7 +401,7 @@ impl ParameterTable {
         let value = if kind == Kind::Text {
             Value::Text(text.trim().to_owned())
         } else {
-            self.evaluate(&text).map_err(FieldError::from)?
+            self.evaluate(&text).map_err(ParameterError::from)?
         };
         let value = convert(kind, value).ok_or_else(|| ParameterProblem::BadValue {
             name: name.clone(),
@@ -488,166 +436,4 @@ fn convert(kind: Kind, value: Value) -> Option<Value> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn read(table: &mut ParameterTable, keyword: &str, text: &str) -> Vec<ParameterFinding> {
-        let keyword = ParameterKeyword::parse(keyword).unwrap();
-        let lines: Vec<&str> = text.lines().collect();
-        table.read_block(keyword, &lines, 10)
-    }
-
-    fn table(blocks: &[(&str, &str)]) -> ParameterTable {
-        let mut table = ParameterTable::new();
-        for (keyword, text) in blocks {
-            assert_eq!(read(&mut table, keyword, text), [], "{text}");
-        }
-        table
-    }
-
-    #[test]
-    fn every_way_of_writing_a_pair() {
-        let table = table(&[
-            ("parameter", "rterm, 0.2, istaTES, 80 "),
-            ("PARAMETER", "r E          12.3\nr pR          00.321"),
-            (
-                "PARAMETER_NOECHO",
-                "R   thick      1.5-3I     pid         17",
-            ),
-            ("PARAMETER", "cpaR1, foo, CPar2, bar"),
-            ("PARAMETER", "I    copy       &pidR     neg        -&e"),
-            ("PARAMETER", "R loose 2.5"),
-            ("PARAMETER_TYPE", "I      nid       100       NID"),
-            ("parameter_expression", "rPlot, tErm/(States-30)"),
-            (
-                "PARAMETER_EXPRESSION",
-                "R     both   max(plot,\n             4.0) + 1.0",
-            ),
-        ]);
-        let expected = [
-            ("term", Value::Real(0.2)),
-            ("STATES", Value::Int(80)),
-            ("e", Value::Real(12.3)),
-            ("&pr", Value::Real(0.321)),
-            ("thick", Value::Real(1.5e-3)),
-            ("pid", Value::Int(17)),
-            ("par1", Value::Text("foo".into())),
-            ("Par2", Value::Text("bar".into())),
-            ("copy", Value::Int(17)),
-            ("neg", Value::Real(-12.3)),
-            ("loose", Value::Real(2.5)),
-            ("nid", Value::Int(100)),
-            ("plot", Value::Real(0.004)),
-            ("both", Value::Real(5.0)),
-        ];
-        for (name, value) in expected {
-            assert_eq!(table.resolve(name), Some(&value), "{name}");
-        }
-    }
-
-    #[test]
-    fn long_fields_are_twenty_wide() {
-        let mut table = ParameterTable::new();
-        let line = format!("{:<20}{:>20}{:<20}{:>20}", "R a", "1.25", "I b", "7");
-        let keyword = ParameterKeyword::parse("PARAMETER").unwrap();
-        assert_eq!(table.read_block(keyword, &[&line], 20), []);
-        assert_eq!(table.resolve("a"), Some(&Value::Real(1.25)));
-        assert_eq!(table.resolve("b"), Some(&Value::Int(7)));
-    }
-
-    #[test]
-    fn fields_with_parameters() {
-        let table = table(&[("PARAMETER", "rthk, 1.5, ipid, 3, cname, door")]);
-        let value = |text| table.field(text).transpose();
-        assert_eq!(value("1.5"), Ok(None));
-        assert_eq!(value(" &THK "), Ok(Some(Value::Real(1.5))));
-        assert_eq!(value("-&pid"), Ok(Some(Value::Int(-3))));
-        assert_eq!(value("&thk/3."), Ok(Some(Value::Real(0.5))));
-        assert_eq!(value("<thk*pid>"), Ok(Some(Value::Real(4.5))));
-        assert_eq!(value("&nope"), Err(FieldError::Unresolved("nope".into())));
-        assert_eq!(value("-&name"), Err(FieldError::NotANumber("name".into())));
-        assert!(matches!(value("&"), Err(FieldError::Expression(_))));
-        assert_eq!(table.substitute("a/&name^_&pid.k"), "a/door_3.k");
-        assert_eq!(table.substitute("&&x &"), "&&x &");
-    }
-
-    #[test]
-    fn a_local_parameter_ends_with_its_file() {
-        let mut table = table(&[("PARAMETER", "rgbl, 200., rloc, 1.")]);
-        table.push_scope();
-        table.push_scope();
-        assert_eq!(
-            read(&mut table, "PARAMETER_LOCAL", "Rloc          999.0"),
-            []
-        );
-        assert_eq!(table.resolve("loc"), Some(&Value::Real(999.0)));
-        table.push_scope();
-        assert_eq!(
-            table.resolve("loc"),
-            Some(&Value::Real(999.0)),
-            "seen below"
-        );
-        table.pop_scope();
-        table.pop_scope();
-        assert_eq!(table.resolve("loc"), Some(&Value::Real(1.0)));
-        assert_eq!(table.resolve("gbl"), Some(&Value::Real(200.0)));
-        table.pop_scope();
-        table.pop_scope();
-    }
-
-    #[test]
-    fn second_definitions() {
-        let case = |flag: Option<i64>, first: &str| {
-            let mut table = ParameterTable::new();
-            if let Some(flag) = flag {
-                assert!(table.set_duplication(Duplication::from_flag(flag)));
-                assert!(!table.set_duplication(Duplication::TakeLater));
-            }
-            read(&mut table, first, "rx, 1.0");
-            let findings = read(&mut table, "PARAMETER", "rx, 2.0");
-            (table.resolve("x").cloned(), findings.len())
-        };
-        assert_eq!(case(None, "PARAMETER"), (Some(Value::Real(1.0)), 1));
-        assert_eq!(case(Some(1), "PARAMETER"), (Some(Value::Real(1.0)), 1));
-        assert_eq!(case(Some(2), "PARAMETER"), (Some(Value::Real(2.0)), 1));
-        assert_eq!(case(Some(4), "PARAMETER"), (Some(Value::Real(2.0)), 0));
-        assert_eq!(case(Some(5), "PARAMETER"), (Some(Value::Real(1.0)), 0));
-        assert_eq!(case(None, "PARAMETER_MUTABLE"), (Some(Value::Real(2.0)), 0));
-    }
-
-    #[test]
-    fn findings_have_a_place() {
-        let mut table = ParameterTable::new();
-        let findings = read(
-            &mut table,
-            "PARAMETER",
-            "rok, 1, ibad, x1\n1abc, 3\nrtime, 1",
-        );
-        let places: Vec<_> = findings.iter().map(|f| (f.line_idx, f.column)).collect();
-        assert_eq!(places, [(0, 15), (1, 1), (2, 1)]);
-        let text = "R        x2.0*\n          (1.0 + nope)";
-        let findings = read(&mut table, "PARAMETER_EXPRESSION", text);
-        assert_eq!((findings[0].line_idx, findings[0].column), (1, 18));
-        assert_eq!(ParameterKeyword::parse("PARAMETER_DUPLICATION"), None);
-        assert_eq!(ParameterKeyword::parse("PARAMETERS"), None);
-    }
-
-    proptest! {
-        #[test]
-        fn never_panics(
-            lines in proptest::collection::vec("[-+*/()., &a-zé0-9<>]{0,60}", 0..5),
-            expression: bool,
-        ) {
-            let mut table = ParameterTable::new();
-            let keyword = if expression { "PARAMETER_EXPRESSION" } else { "PARAMETER_LOCAL" };
-            let keyword = ParameterKeyword::parse(keyword).unwrap();
-            let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
-            table.read_block(keyword, &lines, 10);
-            for line in lines {
-                table.field(line);
-                table.substitute(line);
-            }
-        }
-    }
-}
+mod tests;

@@ -1,6 +1,6 @@
 //! Cutting the cards of `*PARAMETER…` into names and values.
 
-use super::parameter::{FieldError, ParameterFinding, ParameterProblem};
+use super::parameter_error::{ParameterError, ParameterFinding, ParameterProblem};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -137,7 +137,7 @@ impl ExpressionCard<'_> {
     /// Places a problem on the line it belongs to.
     pub(super) fn finding(&self, problem: ParameterProblem) -> ParameterFinding {
         let (mut line_idx, mut column) = (self.lines[0].0, self.name_column);
-        if let ParameterProblem::Field(FieldError::Expression(error)) = &problem {
+        if let ParameterProblem::Field(ParameterError::Expression(error)) = &problem {
             let mut rest = error.column - 1;
             for &(idx, text, start) in &self.lines {
                 (line_idx, column) = (idx, start + rest.min(text.len()));

@@ -1,7 +1,8 @@
 //! Parts and shell sections: titles and thickness.
 
 use super::super::diagnostic::{DiagnosticKind, Diagnostics};
-use super::super::model::Section;
+use super::super::model::{Section, ShellControl, ShellFormulation};
+use super::super::text;
 use super::block::{Block, Cards};
 use super::card::{Card, EIGHT_BY_10, FieldError};
 use super::nodes::shifted;
@@ -18,7 +19,8 @@ pub(crate) struct PartOffsets {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RawPart {
     pub id: u64,
-    pub title: String,
+    /// The title, byte by byte.
+    pub title: Vec<u8>,
     pub section_id: u64,
     /// The text that stands in place of the part's id, which is 0 then.
     pub label: Option<String>,
@@ -54,27 +56,39 @@ pub(crate) fn read_parts(
     let mut parts = Vec::new();
     let mut cards = block.cards();
     while let Some(heading) = cards.next() {
+        if heading.is_blank() && !is_heading(cards.clone()) {
+            continue;
+        }
         let Some(card) = cards.next() else {
-            // Blank lines at the end of a block are no heading.
-            if !heading.is_blank() {
-                found.push_with(DiagnosticKind::MissingCard, || {
-                    let message = "the last part has a heading but no card";
-                    block
-                        .diagnose(DiagnosticKind::MissingCard, message)
-                        .at(heading.position(0))
-                });
-            }
+            found.push_with(DiagnosticKind::MissingCard, || {
+                let message = "the last part has a heading but no card";
+                block
+                    .diagnose(DiagnosticKind::MissingCard, message)
+                    .at(heading.position(0))
+            });
             break;
         };
         match part(block, &heading, &card, &mut cards, offsets) {
             Ok(part) => parts.push(part),
             Err(error) => {
-                let what = format!("part {:?}", heading.line_text().trim());
+                let what = format!("part {:?}", text::shown(heading.title()));
                 found.push_with(error.kind, || card.diagnose(&error, &what));
             }
         }
     }
     parts
+}
+
+/// True if a blank line before these cards is the empty title of a part, and not one of those
+/// that stand between parts or at a block's end.
+fn is_heading(mut rest: Cards<'_>) -> bool {
+    let has_id =
+        |card: Option<Card<'_>>| card.is_some_and(|card| card.required_id(EIGHT_BY_10, 0).is_ok());
+    let Some(next) = rest.next().filter(|card| !card.is_blank()) else {
+        return false;
+    };
+    // A text before a line with an id is the title of the part below.
+    has_id(Some(next)) || !has_id(rest.next())
 }
 
 fn part(
@@ -102,7 +116,7 @@ fn part(
     let (section, section_label) = or_label(section)?;
     Ok(RawPart {
         id: shifted(id, offsets.part),
-        title: heading.line_text().trim().to_owned(),
+        title: heading.title().to_owned(),
         section_id: shifted(section, offsets.section),
         label,
         section_label,
@@ -163,7 +177,7 @@ fn composite_thickness(block: &Block<'_>, cards: &mut Cards<'_>) -> f64 {
 fn plies(card: &Card<'_>) -> Option<(f64, f64)> {
     let mut values = [None; 8];
     for (i, value) in values.iter_mut().enumerate() {
-        *value = card.real(EIGHT_BY_10, i).ok()?;
+        *value = card.length(EIGHT_BY_10, i).ok()?;
     }
     card.required_id(EIGHT_BY_10, 0).ok()?;
     values[1]?;
@@ -215,15 +229,36 @@ fn section<'a, 'b>(
     let id = first.required_id(EIGHT_BY_10, 0).map_err(|e| (first, e))?;
     let mut thickness = [0.0; 4];
     for i in 0..4 {
-        let value = second.real(EIGHT_BY_10, i).map_err(|e| (second, e))?;
+        let value = second.length(EIGHT_BY_10, i).map_err(|e| (second, e))?;
         // Blank corners take the first one's thickness.
         let value = value.filter(|&t| t != 0.0).map(|t| t * offsets.length);
         thickness[i] = value.unwrap_or(thickness[0]);
     }
+    let number = |index| first.real_or_zero(EIGHT_BY_10, index).unwrap_or(0.0);
+    let elform = first.int_or_zero(EIGHT_BY_10, 1).unwrap_or(0);
     Ok(Section {
         id: shifted(id, offsets.section),
         thickness,
+        formulation: ShellFormulation::new(elform, number(3), number(5)),
     })
+}
+
+/// Reads `*CONTROL_SHELL`; fields that cannot be read and cards that are missing keep what was there.
+pub(crate) fn read_shell_control(block: &Block<'_>, control: &mut ShellControl) {
+    let cards: Vec<Card<'_>> = block.cards().take(5).collect();
+    let int = |card: usize, field| {
+        let card = cards.get(card)?;
+        card.int(EIGHT_BY_10, field).ok().flatten()
+    };
+    if let Some(theory) = int(0, 4) {
+        control.elform = theory;
+    }
+    if let Some(rule) = int(1, 1) {
+        control.is_lobatto = rule == 1;
+    }
+    if let Some(set) = int(4, 1) {
+        control.element_axes_set = set.unsigned_abs();
+    }
 }
 
 /// Passes over angle cards, the cards of options and those of user-defined shells.

@@ -8,9 +8,11 @@ use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position
 use super::super::model::{
     AppliedMotion, IdIndex, Model, Nodes, Set, Sets, Shell, ShellExtra, Solid, has_area,
 };
+use super::super::{MAX_LENGTH, ReadOptions};
 use super::assemble::{Assembly, Motion};
 use super::results::{Results, Turned};
-use super::sets::{Members, SetKind, resolve_sets};
+use super::set_members::{Intervals, Surroundings, resolve_sets};
+use super::sets::SetKind;
 use crate::geometry::Matrix4;
 use crate::monitor::{Cancelled, Monitor};
 
@@ -20,14 +22,18 @@ const MISSING: u32 = u32::MAX;
 const PIECE: usize = 1 << 14;
 
 /// Puts the model together.
-pub(super) fn finish(mut assembly: Assembly, monitor: &Monitor) -> Result<Model, Cancelled> {
+pub(super) fn finish(
+    mut assembly: Assembly,
+    options: &ReadOptions,
+    monitor: &Monitor,
+) -> Result<Model, Cancelled> {
     let mut model = Model {
         title: std::mem::take(&mut assembly.title),
         files: std::mem::take(&mut assembly.files),
         stated_units: assembly.unit_clues.units(),
         ..Model::default()
     };
-    number_nodes(&mut assembly, &mut model);
+    let repeated = number_nodes(&mut assembly, &mut model);
     monitor.check()?;
     link_shells(&mut assembly, &mut model);
     monitor.check()?;
@@ -35,34 +41,44 @@ pub(super) fn finish(mut assembly: Assembly, monitor: &Monitor) -> Result<Model,
     monitor.check()?;
     assembly.number_labelled_parts();
     give_thickness_to_parts(&mut assembly, &mut model);
-    collect_sets(&mut assembly, &mut model);
-    spread_node_thickness(&assembly, &mut model);
+    let around = Surroundings {
+        model: &model,
+        max_ids: options.max_set_ids,
+        monitor,
+    };
+    model.sets = collect_sets(&mut assembly, &around)?;
+    spread_node_thickness(&assembly, &mut model, monitor)?;
     let raw = std::mem::take(&mut assembly.forming);
     let mut results = Results::new(raw, &model, &mut assembly.found);
-    carry_out_motions(&mut assembly, &mut model, &mut results);
+    carry_out_motions(&mut assembly, &mut model, &mut results, monitor)?;
     model.forming = results.finish();
+    leave_out_nodes(&repeated, &mut model);
     monitor.check()?;
     tell_flat_shells(&assembly, &mut model);
+    tell_no_elements(&mut assembly, &model);
+    model.raw_titles = std::mem::take(&mut assembly.raw_titles);
     let mut found = assembly.found;
     found.append(std::mem::take(&mut model.diagnostics));
     model.diagnostics = found;
     Ok(model)
 }
 
-fn number_nodes(assembly: &mut Assembly, model: &mut Model) {
+/// Gives back the indices of nodes whose id an earlier one has.
+fn number_nodes(assembly: &mut Assembly, model: &mut Model) -> Vec<u32> {
     let ids = std::mem::take(&mut assembly.node_ids);
     let positions = std::mem::take(&mut assembly.positions);
     let (nodes, repeated) = Nodes::new(ids, positions);
     let mut found = Diagnostics::default();
-    for index in repeated {
-        let kind = DiagnosticKind::DuplicateNode;
+    for &index in &repeated {
+        let id = nodes.ids()[index as usize];
+        let here = nodes.positions()[index as usize];
+        let (kind, place) = if nodes.position_of(id) == Some(here) {
+            (DiagnosticKind::RepeatedNode, "at the same place")
+        } else {
+            let place = "at another place, the first counts";
+            (DiagnosticKind::DuplicateNode, place)
+        };
         found.push_with(kind, || {
-            let id = nodes.ids()[index as usize];
-            let here = nodes.positions()[index as usize];
-            let place = match nodes.position_of(id) {
-                Some(first) if first == here => "at the same place",
-                _ => "at another place, the first counts",
-            };
             let message = format!("node {id} is defined again {place}");
             with_position(
                 Diagnostic::new(kind, message),
@@ -72,6 +88,52 @@ fn number_nodes(assembly: &mut Assembly, model: &mut Model) {
     }
     assembly.found.append(found);
     model.nodes = nodes;
+    repeated
+}
+
+/// Leaves out repeated nodes, which no element uses, so that each node is counted once.
+fn leave_out_nodes(repeated: &[u32], model: &mut Model) {
+    if repeated.is_empty() {
+        return;
+    }
+    let mut repeated = repeated.iter().peekable();
+    let (mut ids, mut positions) = (Vec::new(), Vec::new());
+    let mut new_index = Vec::with_capacity(model.nodes.len());
+    let all = model.nodes.ids().iter().zip(model.nodes.positions());
+    for (index, (&id, &position)) in (0u32..).zip(all) {
+        if repeated.next_if(|&&r| r == index).is_some() {
+            new_index.push(MISSING);
+            continue;
+        }
+        new_index.push(ids.len() as u32);
+        ids.push(id);
+        positions.push(position);
+    }
+    model.nodes = Nodes::new(ids, positions).0;
+    let of_shells = model.shells.iter_mut().flat_map(|shell| &mut shell.nodes);
+    let of_solids = model.solids.iter_mut().flat_map(|solid| &mut solid.nodes);
+    let of_sides = model.mid_side.iter_mut().flat_map(|(_, nodes)| nodes);
+    for node in of_shells.chain(of_solids).chain(of_sides) {
+        // Some mid-side nodes are missing from the start.
+        *node = new_index.get(*node as usize).copied().unwrap_or(MISSING);
+    }
+}
+
+fn tell_no_elements(assembly: &mut Assembly, model: &Model) {
+    if !model.shells.is_empty() || !model.solids.is_empty() {
+        return;
+    }
+    let kind = DiagnosticKind::NoElements;
+    let message = match model.nodes.len() {
+        0 => "the deck has neither nodes nor shells nor solids".to_owned(),
+        n => format!("the deck has {n} nodes and neither shells nor solids"),
+    };
+    let position = model.files.first().map(|file| {
+        let path: std::sync::Arc<std::path::Path> = std::sync::Arc::from(file.path.as_path());
+        Position::file(&path)
+    });
+    let finding = with_position(Diagnostic::new(kind, message), position);
+    assembly.found.push(finding);
 }
 
 fn with_position(finding: Diagnostic, position: Option<Position>) -> Diagnostic {
@@ -116,8 +178,15 @@ fn link_shells(assembly: &mut Assembly, model: &mut Model) {
         assembly.found.append(found);
     }
     let mut shells = std::mem::take(&mut assembly.shells);
+    let n_before = shells.len() - n_broken;
     if n_broken > 0 {
-        let n_kept = |first: usize| kept[..first].iter().filter(|&&new| new != MISSING).count();
+        // The new index of the first kept shell from `first` on.
+        let n_kept = |first: usize| {
+            let mut later = kept[first..].iter();
+            later
+                .find(|&&new| new != MISSING)
+                .map_or(n_before, |&new| new as usize)
+        };
         assembly.renumber_shells(n_kept);
         let mut index = 0;
         shells.retain(|_| {
@@ -197,7 +266,7 @@ fn link_solids(assembly: &mut Assembly, model: &mut Model) {
                 let message = format!("solid {} is defined again, both count", raw.id);
                 with_position(
                     Diagnostic::new(DiagnosticKind::DuplicateElement, message),
-                    assembly.solid_position(index),
+                    assembly.raw_solid_position(index),
                 )
             });
         }
@@ -206,7 +275,7 @@ fn link_solids(assembly: &mut Assembly, model: &mut Model) {
             .map(|id| model.nodes.index_of(id).unwrap_or(MISSING));
         if nodes.contains(&MISSING) {
             found.push_with(DiagnosticKind::MissingNode, || {
-                let position = assembly.solid_position(index);
+                let position = assembly.raw_solid_position(index);
                 missing_node("solid", raw.id, &raw.nodes, &model.nodes, position)
             });
             continue;
@@ -228,13 +297,9 @@ fn give_thickness_to_parts(assembly: &mut Assembly, model: &mut Model) {
     for (index, section) in assembly.sections.iter().enumerate() {
         by_id.entry(section.id).or_insert(index);
     }
+    tell_undefined_parts(assembly, model);
     for part in &mut assembly.parts {
         if !part.is_defined {
-            let kind = DiagnosticKind::UndefinedPart;
-            let message = format!("elements name part {}, which is not defined", part.id);
-            assembly
-                .found
-                .push_with(kind, || Diagnostic::new(kind, message));
             continue;
         }
         if part.thickness.is_none() {
@@ -245,43 +310,59 @@ fn give_thickness_to_parts(assembly: &mut Assembly, model: &mut Model) {
     }
     model.parts = std::mem::take(&mut assembly.parts);
     model.sections = std::mem::take(&mut assembly.sections);
+    model.shell_control = assembly.shell_control;
 }
 
-impl Members for Model {
-    fn all(&self, kind: SetKind) -> Vec<u64> {
-        match kind {
-            SetKind::Part => self.parts.iter().map(|part| part.id).collect(),
-            SetKind::Shell => self.shells.iter().map(|shell| shell.id).collect(),
-            SetKind::Node => self.nodes.ids().to_vec(),
-        }
+/// With the line of the first element that names the part.
+fn tell_undefined_parts(assembly: &mut Assembly, model: &Model) {
+    let undefined = assembly
+        .parts
+        .iter()
+        .filter(|part| !part.is_defined)
+        .count();
+    if undefined == 0 {
+        return;
     }
-
-    fn of_part(&self, kind: SetKind, part: u64) -> Vec<u64> {
-        let Some(index) = self.part_index(part) else {
-            return Vec::new();
-        };
-        let shells = || self.shells.iter().filter(|shell| shell.part == index);
-        match kind {
-            SetKind::Part => vec![part],
-            SetKind::Shell => shells().map(|shell| shell.id).collect(),
-            SetKind::Node => {
-                let solids = self.solids.iter().filter(|solid| solid.part == index);
-                let of_shells = shells().flat_map(|shell| shell.nodes);
-                let of_solids = solids.flat_map(|solid| solid.nodes);
-                let mut nodes: Vec<u32> = of_shells.chain(of_solids).collect();
-                nodes.sort_unstable();
-                nodes.dedup();
-                nodes
-                    .iter()
-                    .map(|&n| self.nodes.ids()[n as usize])
-                    .collect()
+    // Index of the first shell, or of the first solid behind all shells.
+    let mut first_use = vec![usize::MAX; assembly.parts.len()];
+    let mut n_left = undefined;
+    let of_shells = model.shells.iter().map(|shell| shell.part);
+    let of_solids = model.solids.iter().map(|solid| solid.part);
+    for (index, part) in of_shells.chain(of_solids).enumerate() {
+        let first = &mut first_use[part as usize];
+        if *first == usize::MAX {
+            *first = index;
+            n_left -= usize::from(!assembly.parts[part as usize].is_defined);
+            if n_left == 0 {
+                break;
             }
         }
     }
+    let mut found = Diagnostics::default();
+    for (part, &first) in assembly.parts.iter().zip(&first_use) {
+        if part.is_defined {
+            continue;
+        }
+        let kind = DiagnosticKind::UndefinedPart;
+        found.push_with(kind, || {
+            let message = format!("elements name part {}, which is not defined", part.id);
+            let position = match model.shells.get(first) {
+                Some(shell) => assembly.shell_position(first, shell),
+                None => first
+                    .checked_sub(model.shells.len())
+                    .and_then(|index| assembly.solid_position(index, model.solids.get(index)?)),
+            };
+            with_position(Diagnostic::new(kind, message), position)
+        });
+    }
+    assembly.found.append(found);
 }
 
-fn collect_sets(assembly: &mut Assembly, model: &mut Model) {
-    let resolved = resolve_sets(&assembly.sets, model, &mut assembly.found);
+fn collect_sets(assembly: &mut Assembly, around: &Surroundings<'_>) -> Result<Sets, Cancelled> {
+    for (_, set) in &assembly.sets {
+        assembly.raw_titles.add(&set.title);
+    }
+    let resolved = resolve_sets(&assembly.sets, around, &mut assembly.found)?;
     let mut sets = Sets::default();
     for ((kind, id), set) in resolved {
         let into: &mut BTreeMap<u64, Set> = match kind {
@@ -291,34 +372,19 @@ fn collect_sets(assembly: &mut Assembly, model: &mut Model) {
         };
         into.insert(id, set);
     }
-    model.sets = sets;
+    Ok(sets)
 }
 
 /// Thickness at nodes goes to the corners of shells that have none of their own.
-fn spread_node_thickness(assembly: &Assembly, model: &mut Model) {
+fn spread_node_thickness(
+    assembly: &Assembly,
+    model: &mut Model,
+    monitor: &Monitor,
+) -> Result<(), Cancelled> {
     if assembly.node_thickness.is_empty() {
-        return;
+        return Ok(());
     }
-    let mut at_node = vec![0.0; model.nodes.len()];
-    let mut give = |id: u64, thickness: f64| {
-        if let Some(index) = model.nodes.index_of(id) {
-            at_node[index as usize] = thickness;
-        }
-    };
-    for row in &assembly.node_thickness {
-        if row.is_set {
-            let set = model.sets.nodes.get(&row.first);
-            set.into_iter()
-                .flat_map(|set| &set.ids)
-                .for_each(|&id| give(id, row.thickness));
-        } else {
-            let last = row
-                .last
-                .min(row.first.saturating_add(row.step * 100_000_000));
-            let ids = (row.first..=last).step_by(row.step as usize);
-            ids.for_each(|id| give(id, row.thickness));
-        }
-    }
+    let at_node = node_thickness(assembly, model, monitor)?;
     let mut own = std::mem::take(&mut model.shell_extras)
         .into_iter()
         .peekable();
@@ -339,18 +405,72 @@ fn spread_node_thickness(assembly: &Assembly, model: &mut Model) {
             model.shell_extras.push(merged);
         }
     }
+    Ok(())
+}
+
+/// For each node its thickness, 0 for none. The last row that names a node counts, so rows are
+/// taken from the last to the first, and what a range has in common with later ones is passed over.
+fn node_thickness(
+    assembly: &Assembly,
+    model: &Model,
+    monitor: &Monitor,
+) -> Result<Vec<f64>, Cancelled> {
+    let mut at_node: Vec<Option<f64>> = vec![None; model.nodes.len()];
+    let mut sorted: Vec<u64> = Vec::new();
+    let mut covered = Intervals::default();
+    for row in assembly.node_thickness.iter().rev() {
+        monitor.check()?;
+        let mut give = |id: u64| {
+            if let Some(index) = model.nodes.index_of(id) {
+                at_node[index as usize].get_or_insert(row.thickness);
+            }
+        };
+        if row.is_set {
+            let set = model.sets.nodes.get(&row.first);
+            let ids = set.into_iter().flat_map(|set| &set.ids);
+            ids.for_each(|&id| give(id));
+            continue;
+        }
+        if row.last == row.first {
+            give(row.first);
+            continue;
+        }
+        if sorted.is_empty() {
+            sorted = model.nodes.ids().to_vec();
+            sorted.sort_unstable();
+        }
+        let ranges = if row.step == 1 {
+            covered.cover(row.first, row.last)
+        } else {
+            vec![(row.first, row.last)]
+        };
+        for (first, last) in ranges {
+            let from = sorted.partition_point(|&id| id < first);
+            let ids = sorted[from..].iter().take_while(|&&id| id <= last);
+            let ids = ids.filter(|&id| (id - row.first).is_multiple_of(row.step));
+            ids.for_each(|&id| give(id));
+        }
+    }
+    Ok(at_node.into_iter().map(Option::unwrap_or_default).collect())
 }
 
 /// Carries out unit factors and transformations, the innermost include first. `*NODE_TRANSFORM`
 /// waits for all of them unless it asks to be carried out at once.
-fn carry_out_motions(assembly: &mut Assembly, model: &mut Model, results: &mut Results) {
+fn carry_out_motions(
+    assembly: &mut Assembly,
+    model: &mut Model,
+    results: &mut Results,
+    monitor: &Monitor,
+) -> Result<(), Cancelled> {
     let mut motions = std::mem::take(&mut assembly.motions);
     motions.sort_by_key(|motion| matches!(motion, Motion::NodeSet { at_once: None, .. }));
     for motion in motions {
+        monitor.check()?;
         if let Err(finding) = carry_out(assembly, model, results, &motion) {
             assembly.found.push(finding);
         }
     }
+    Ok(())
 }
 
 fn carry_out(
@@ -396,6 +516,18 @@ fn carry_out(
         }
     };
     let positions = model.nodes.positions_mut();
+    let is_place = |index: &usize| {
+        let moved = matrix.transform_point(&positions[*index]);
+        moved.iter().all(|x| x.abs() <= MAX_LENGTH)
+    };
+    if !indices.iter().all(is_place) {
+        let message = match id {
+            0 => format!("the unit factor gives coordinates beyond {MAX_LENGTH:e}"),
+            _ => format!("transformation {id} gives coordinates beyond {MAX_LENGTH:e}"),
+        };
+        let message = message + "; the nodes stay as in the file";
+        return Err(failed(DiagnosticKind::BadTransformation, message));
+    }
     for &index in &indices {
         positions[index] = matrix.transform_point(&positions[index]);
     }

@@ -8,6 +8,7 @@ use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Forming, IdIndex, Model};
 use super::super::moved::turn_tensor;
 use super::forming::RawForming;
+use super::source_file::Place;
 use crate::geometry::{Matrix3, Matrix4};
 
 /// Two lengths that differ by more than this share of themselves are stretched differently. Cards
@@ -94,12 +95,12 @@ impl Results {
         let mut forming = raw.of_shells;
         let (n_own_stress, n_own_strain) = (forming.n_stress(), forming.n_strain());
         let (mut stress_source, mut strain_source) = (Vec::new(), Vec::new());
-        let mut members = |set: u64| {
+        let mut members = |set: u64, place: &Place| {
             let ids = model.sets.shells.get(&set).map(|set| set.ids.as_slice());
             if ids.is_none() {
                 let kind = DiagnosticKind::BadSet;
                 let message = format!("forming results name shell set {set}, which is not defined");
-                found.push_with(kind, || Diagnostic::new(kind, message));
+                found.push_with(kind, || Diagnostic::new(kind, message).at(place.position()));
             }
             ids.unwrap_or_default()
         };
@@ -107,7 +108,7 @@ impl Results {
         if of_sets.n_stress() > 0 {
             let mut known: HashSet<u64> = forming.stresses().map(|s| s.element_id).collect();
             for (index, of_set) in of_sets.stresses().enumerate() {
-                let ids = members(of_set.element_id).iter();
+                let ids = members(of_set.element_id, &raw.stress_places[index]).iter();
                 for &id in ids.filter(|&&id| known.insert(id)) {
                     forming
                         .add_stress(id, of_set.n_plane, of_set.points, of_set.history)
@@ -119,7 +120,7 @@ impl Results {
         if of_sets.n_strain() > 0 {
             let mut known: HashSet<u64> = forming.strains().map(|s| s.element_id).collect();
             for (index, of_set) in of_sets.strains().enumerate() {
-                let ids = members(of_set.element_id).iter();
+                let ids = members(of_set.element_id, &raw.strain_places[index]).iter();
                 for &id in ids.filter(|&&id| known.insert(id)) {
                     forming.add_strain(id, of_set.n_plane, of_set.points);
                     strain_source.push(index);

@@ -1,9 +1,6 @@
 //! `*SET_PART…`, `*SET_SHELL…`, `*SET_NODE…`.
 
-use std::collections::{BTreeMap, BTreeSet};
-
-use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
-use super::super::model::Set;
+use super::super::diagnostic::{DiagnosticKind, Diagnostics};
 use super::block::Block;
 use super::card::{Card, EIGHT_BY_10, FieldError};
 use super::nodes::shifted;
@@ -34,7 +31,7 @@ impl SetKind {
         row.map(|&(kind, _)| kind)
     }
 
-    fn label(self) -> &'static str {
+    pub(crate) fn label(self) -> &'static str {
         match self {
             Self::Part => "part",
             Self::Shell => "shell",
@@ -67,10 +64,13 @@ pub(crate) enum Member {
 pub(crate) struct RawSet {
     pub kind: SetKind,
     pub id: u64,
-    pub title: String,
+    /// The title, byte by byte.
+    pub title: Vec<u8>,
     pub members: Vec<Member>,
     /// Joined with other sets of the same id.
     pub is_collected: bool,
+    /// Byte offset of its first card.
+    pub at: usize,
 }
 
 /// What an include adds to ids on set cards.
@@ -91,14 +91,17 @@ pub(crate) fn read_set(
 ) -> Option<RawSet> {
     let mut cards = block.cards();
     let title = if block.has_option("TITLE") {
-        cards.next()?.line_text().trim().to_owned()
+        cards.next()?.title().to_owned()
     } else {
-        String::new()
+        Vec::new()
     };
     let first = cards.next()?;
     let id = match first.required_id(EIGHT_BY_10, 0) {
         Ok(id) => shifted(id, offsets.set),
-        Err(error) => {
+        Err(mut error) => {
+            if !block.has_option("TITLE") && error.kind == DiagnosticKind::BadField {
+                error.expected = "an id; a line with a title needs _TITLE in the keyword";
+            }
             found.push_with(error.kind, || first.diagnose(&error, "the set's id"));
             return None;
         }
@@ -122,6 +125,7 @@ pub(crate) fn read_set(
         title,
         members,
         is_collected: block.has_option("COLLECT"),
+        at: first.offset(),
     })
 }
 
@@ -261,122 +265,4 @@ fn general_members(
         }
     }
     Ok(())
-}
-
-/// What the members of sets can refer to.
-pub(crate) trait Members {
-    /// Every id of a kind.
-    fn all(&self, kind: SetKind) -> Vec<u64>;
-    /// The ids of a kind that belong to a part.
-    fn of_part(&self, kind: SetKind, part: u64) -> Vec<u64>;
-}
-
-/// Looks up the members of all sets.
-pub(crate) fn resolve_sets(
-    raw: &[RawSet],
-    model: &dyn Members,
-    found: &mut Diagnostics,
-) -> BTreeMap<(SetKind, u64), Set> {
-    let mut by_id: BTreeMap<(SetKind, u64), Vec<&RawSet>> = BTreeMap::new();
-    for set in raw {
-        let same = by_id.entry((set.kind, set.id)).or_default();
-        // The last definition counts, unless sets are collected.
-        if !set.is_collected {
-            same.clear();
-        }
-        same.push(set);
-    }
-    let mut resolver = Resolver {
-        by_id: &by_id,
-        model,
-        found,
-        open: Vec::new(),
-        known: BTreeMap::new(),
-    };
-    let mut sets = BTreeMap::new();
-    for (&key, definitions) in &by_id {
-        let ids = resolver.ids(key);
-        let title = definitions.first().map(|set| set.title.clone());
-        let title = title.unwrap_or_default();
-        sets.insert(key, Set { title, ids });
-    }
-    sets
-}
-
-struct Resolver<'a> {
-    by_id: &'a BTreeMap<(SetKind, u64), Vec<&'a RawSet>>,
-    model: &'a dyn Members,
-    found: &'a mut Diagnostics,
-    open: Vec<(SetKind, u64)>,
-    /// Sets may name each other many times over; each is worked out once.
-    known: BTreeMap<(SetKind, u64), Vec<u64>>,
-}
-
-impl Resolver<'_> {
-    /// The ids of a set, each once, in the order of the deck.
-    fn ids(&mut self, key: (SetKind, u64)) -> Vec<u64> {
-        let (kind, id) = key;
-        if let Some(ids) = self.known.get(&key) {
-            return ids.clone();
-        }
-        let Some(definitions) = self.by_id.get(&key) else {
-            let message = format!("{} set {id} is not defined", kind.label());
-            self.found
-                .push(Diagnostic::new(DiagnosticKind::BadSet, message));
-            return Vec::new();
-        };
-        if self.open.contains(&key) {
-            let message = format!("{} set {id} contains itself", kind.label());
-            self.found
-                .push(Diagnostic::new(DiagnosticKind::BadSet, message));
-            return Vec::new();
-        }
-        self.open.push(key);
-        let mut ids = Vec::new();
-        let members = definitions.iter().flat_map(|set| &set.members);
-        for member in members {
-            self.add(kind, *member, &mut ids);
-        }
-        self.open.pop();
-        let mut seen = BTreeSet::new();
-        ids.retain(|&id| seen.insert(id));
-        self.known.insert(key, ids.clone());
-        ids
-    }
-
-    fn add(&mut self, kind: SetKind, member: Member, ids: &mut Vec<u64>) {
-        match member {
-            Member::Range { first, last, step } => self.add_range(kind, first, last, step, ids),
-            Member::Set(set) => {
-                let more = self.ids((kind, set));
-                ids.extend(more);
-            }
-            Member::All => ids.extend(self.model.all(kind)),
-            Member::OfPart(part) => ids.extend(self.model.of_part(kind, part)),
-            Member::OfPartSet(set) => {
-                for part in self.ids((SetKind::Part, set)) {
-                    ids.extend(self.model.of_part(kind, part));
-                }
-            }
-            Member::Without { first, last } => ids.retain(|id| !(first..=last).contains(id)),
-            Member::WithoutPart(part) => {
-                let out: BTreeSet<u64> = self.model.of_part(kind, part).into_iter().collect();
-                ids.retain(|id| !out.contains(id));
-            }
-        }
-    }
-
-    /// A range may span billions; only ids that exist are listed then.
-    fn add_range(&self, kind: SetKind, first: u64, last: u64, step: u64, ids: &mut Vec<u64>) {
-        const LISTED_AS_IT_IS: u64 = 1024;
-        if last.saturating_sub(first) / step < LISTED_AS_IT_IS {
-            ids.extend((first..=last).step_by(step as usize));
-            return;
-        }
-        let mut existing = self.model.all(kind);
-        existing.retain(|id| (first..=last).contains(id) && (id - first).is_multiple_of(step));
-        existing.sort_unstable();
-        existing.dedup();
-        ids.extend(existing);
-    }
 }

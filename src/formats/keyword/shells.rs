@@ -6,11 +6,14 @@ use std::ops::Range;
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Shell, ShellExtra};
 use super::block::{Block, Cards};
-use super::card::{Card, EIGHT_BY_10, FIVE_BY_16, FieldError, TEN_BY_8, columns};
+use super::card::{Card, EIGHT_BY_10, FIVE_BY_16, FieldError, Misread, TEN_BY_8, columns};
 use super::chunks::{Cut, Irregular};
 use super::mesh::ShellCards;
 use super::nodes::shifted;
 use super::number::parse_digits;
+
+/// Bytes of a shell's card in a compact deck; estimates of how many there are count on no less.
+const MIN_LINE: usize = 16;
 
 /// What an include adds to the ids of its elements and the lengths on their cards.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -136,7 +139,8 @@ pub(crate) fn read_shells(
     let mut cards = block.cards_in(range.clone());
     let line_length = 1 + cards.clone().next_line().map_or(0, |(line, _)| line.len());
     let n_cards = 1 + usize::from(reader.options.thickness) + reader.options.n_passed_over;
-    let n_expected = range.len() / (line_length * n_cards);
+    // A blank first line says nothing about the others.
+    let n_expected = range.len() / (line_length.max(MIN_LINE) * n_cards);
     reader.chunk.shells.reserve(n_expected);
     if reader.options.thickness {
         reader.chunk.extras.reserve(n_expected);
@@ -174,8 +178,11 @@ impl Reader<'_> {
                 match shell_card(&card) {
                     Ok(shell) => Some(shell),
                     Err(error) => {
-                        let describe = || card.diagnose(&error, &shell_name(&card));
-                        self.chunk.diagnostics.push_with(error.kind, describe);
+                        let misread = card.misread(is_whole_shell);
+                        let kind = Misread::kind(misread, &error);
+                        let what = || shell_name(&card);
+                        let describe = || card.diagnose_misread(&error, misread, &what());
+                        self.chunk.diagnostics.push_with(kind, describe);
                         None
                     }
                 }
@@ -289,11 +296,11 @@ impl Reader<'_> {
                 *cards = before;
                 break;
             }
-            sum += card.real(EIGHT_BY_10, 1).ok().flatten().unwrap_or(0.0);
+            sum += card.length_or_zero(EIGHT_BY_10, 1).unwrap_or(0.0);
             // `_LONG` has a ply id in place of the second ply, without a thickness.
             if !card.is_empty_field(EIGHT_BY_10, 4) && is_real_text(card.field(EIGHT_BY_10, 5).text)
             {
-                sum += card.real(EIGHT_BY_10, 5).ok().flatten().unwrap_or(0.0);
+                sum += card.length_or_zero(EIGHT_BY_10, 5).unwrap_or(0.0);
             }
         }
         let has_own = self.options.thickness;
@@ -343,8 +350,8 @@ pub(crate) fn distinct_corners(corners: [u64; 4]) -> Option<[u64; 4]> {
 
 fn shell_name(card: &Card<'_>) -> String {
     match card.id(TEN_BY_8, 0) {
-        Ok(id) => format!("shell {id}"),
-        Err(_) => "the shell".to_owned(),
+        Ok(id) if id != 0 => format!("shell {id}"),
+        _ => "the shell".to_owned(),
     }
 }
 
@@ -356,6 +363,11 @@ fn shell_card(card: &Card<'_>) -> Result<ShellCard, FieldError> {
         *id = card.id(TEN_BY_8, i)?;
     }
     Ok(ShellCard::from_ids(&ids))
+}
+
+/// True if a card is a shell with part and three corners.
+pub(crate) fn is_whole_shell(card: &Card<'_>) -> bool {
+    shell_card(card).is_ok_and(|shell| shell.part != 0 && shell.corners[2] != 0)
 }
 
 impl ShellCard {
@@ -395,7 +407,7 @@ fn fixed_shell(line: &[u8], columns: &[usize; 11]) -> Option<ShellCard> {
 fn thickness_card(card: &Card<'_>) -> Result<([f64; 4], f64), FieldError> {
     let mut thickness = [0.0; 4];
     for (i, value) in thickness.iter_mut().enumerate() {
-        *value = card.real_or_zero(FIVE_BY_16, i)?;
+        *value = card.length_or_zero(FIVE_BY_16, i)?;
     }
     // A fifth field that is not a number costs the angle only.
     let angle = card.real_or_zero(FIVE_BY_16, 4).unwrap_or(0.0);
@@ -426,8 +438,8 @@ pub(crate) fn find_element(
 
 #[cfg(test)]
 mod tests {
-    use super::super::block::SourceFile;
     use super::super::card::Layout;
+    use super::super::source_file::SourceFile;
     use super::*;
     use proptest::prelude::*;
 
@@ -461,7 +473,7 @@ mod tests {
         fn the_fast_way_reads_what_the_general_way_reads(
             line in "([ ]{0,7}[0-9]{1,7}){0,10}[ 0-9.,&\t]{0,50}",
         ) {
-            let file = SourceFile::from_text("t.k", line.clone());
+            let file = SourceFile::new("t.k", line.clone());
             for layout in [Layout::Standard, Layout::I10, Layout::Long] {
                 let card = Card::new(line.as_bytes(), 0, layout, &file, None);
                 if let Some(fast) = fixed_shell(line.as_bytes(), &columns(TEN_BY_8, layout)) {

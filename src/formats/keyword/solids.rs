@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::SolidKind;
 use super::block::{Block, Cards};
-use super::card::{Card, EIGHT_BY_10, FieldError, TEN_BY_8};
+use super::card::{Card, EIGHT_BY_10, FieldError, Misread, TEN_BY_8};
 use super::chunks::{Cut, Irregular};
 use super::mesh::SolidCards;
 use super::nodes::shifted;
@@ -76,8 +76,12 @@ pub(crate) fn read_solids(
         };
         let added = nodes.and_then(|ids| add_solid(&mut chunk, &card, &ids, cards, offsets));
         if let Err(error) = added {
-            let describe = || card.diagnose(&error, &solid_name(&card));
-            chunk.diagnostics.push_with(error.kind, describe);
+            let misread = card.misread(|card| card.required_id(TEN_BY_8, 0).is_ok());
+            // Node cards of their own would have to be read anew too.
+            let misread = misread.filter(|misread| *misread == Misread::Keyword);
+            let kind = Misread::kind(misread, &error);
+            let describe = || card.diagnose_misread(&error, misread, &solid_name(&card));
+            chunk.diagnostics.push_with(kind, describe);
         }
         for _ in 0..cards.n_passed_over {
             lines.next_line();
@@ -185,8 +189,8 @@ fn pass_over_plies(lines: &mut Cards<'_>) {
 
 fn solid_name(card: &Card<'_>) -> String {
     match card.id(TEN_BY_8, 0) {
-        Ok(id) => format!("solid {id}"),
-        Err(_) => "the solid".to_owned(),
+        Ok(id) if id != 0 => format!("solid {id}"),
+        _ => "the solid".to_owned(),
     }
 }
 

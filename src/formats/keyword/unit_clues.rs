@@ -1,8 +1,10 @@
 //! What a deck says about its units: in comments, in its title, in `*CONTROL_UNITS`, and by its
 //! materials.
 
-use super::block::{Block, SourceFile, next_line};
+use super::super::text;
+use super::block::{Block, next_line};
 use super::card::EIGHT_BY_10;
+use super::source_file::SourceFile;
 use crate::units::{self, KnownUnits};
 
 /// Comments further down a file are not about the file.
@@ -27,7 +29,7 @@ impl UnitClues {
         {
             next = after;
             if line.first() == Some(&b'$') {
-                self.read_text(&String::from_utf8_lossy(line));
+                self.read_text(&text::decoded(line));
             }
         }
     }

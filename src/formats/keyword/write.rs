@@ -95,7 +95,7 @@ impl Writer<'_> {
         }
         if !model.title.is_empty() {
             self.line("*TITLE");
-            self.title(&model.title);
+            self.title(model, &model.title);
         }
     }
 
@@ -108,7 +108,7 @@ impl Writer<'_> {
         for part in model.parts.iter().filter(|part| part.is_defined) {
             let section_id = section_of(part, &mut sections);
             self.line("*PART");
-            self.title(&part.title);
+            self.title(model, &part.title);
             self.int(part.id, 10);
             self.int(section_id, 10);
             self.end();
@@ -116,7 +116,16 @@ impl Writer<'_> {
         for (id, thickness) in sections {
             self.line("*SECTION_SHELL");
             self.int(id, 10);
-            self.int(2, 10);
+            let known = model.sections.iter().find(|section| section.id == id);
+            match known.map(|section| section.formulation) {
+                Some(formulation) => {
+                    let width = self.layout.width(10);
+                    self.right(&formulation.elform.to_string(), width);
+                    self.right("", width);
+                    self.int(formulation.n_layers.into(), 10);
+                }
+                None => self.int(2, 10),
+            }
             self.end();
             self.reals(&thickness, 10);
             self.end();
@@ -216,7 +225,7 @@ impl Writer<'_> {
             for (&id, set) in sets {
                 self.monitor.check()?;
                 self.line(keyword);
-                self.title(&set.title);
+                self.title(model, &set.title);
                 self.int(id, 10);
                 self.end();
                 for row in set.ids.chunks(8) {
@@ -301,14 +310,16 @@ impl Writer<'_> {
         self.text.extend_from_slice(text.as_bytes());
     }
 
-    /// A title on its own line; a first character that would begin a keyword or a comment is
+    /// A title on its own line, byte by byte as the deck had it; a first character that would begin a keyword or a comment is
     /// moved from the first column.
-    fn title(&mut self, title: &str) {
-        let line = title.lines().next().unwrap_or_default();
-        if line.starts_with(['*', '$']) {
+    fn title(&mut self, model: &Model, title: &str) {
+        let bytes = model.raw_titles.bytes(title);
+        let end = memchr::memchr2(b'\n', b'\r', bytes).unwrap_or(bytes.len());
+        if matches!(bytes.first(), Some(b'*' | b'$')) {
             self.text.push(b' ');
         }
-        self.line(line);
+        self.text.extend_from_slice(&bytes[..end]);
+        self.end();
     }
 
     fn line(&mut self, text: &str) {

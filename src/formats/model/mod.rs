@@ -1,16 +1,20 @@
 //! What a file holds, whatever its format: nodes, shells, solids, parts, sets, forming results.
 
 mod forming;
+mod formulation;
 mod index;
 mod surface;
+mod titles;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 pub use forming::{Forming, OtherResults, ShellStrain, ShellStress, StrainPoint, StressPoint};
+pub use formulation::{ShellControl, ShellFormulation};
 pub use index::IdIndex;
 pub(crate) use surface::has_area;
 pub use surface::{PartSummary, Selection, SelectionError, Surface};
+pub use titles::RawTitles;
 
 use super::diagnostic::{Diagnostics, Position};
 use super::hash::FileHash;
@@ -163,6 +167,8 @@ pub struct Section {
     pub id: u64,
     /// Thickness at the four corners.
     pub thickness: [f64; 4],
+    /// Element formulation, layers and rule.
+    pub formulation: ShellFormulation,
 }
 
 /// A named list of ids.
@@ -216,6 +222,8 @@ pub struct ReadFile {
 pub struct Model {
     /// The deck's title; empty if it has none.
     pub title: String,
+    /// Titles as the file has them, where they are not shown byte by byte.
+    pub raw_titles: RawTitles,
     /// The units that the deck names or that follow from its materials.
     pub stated_units: Option<KnownUnits>,
     /// Nodes.
@@ -233,6 +241,8 @@ pub struct Model {
     pub parts: Vec<Part>,
     /// Shell sections.
     pub sections: Vec<Section>,
+    /// What holds for the shells of all sections.
+    pub shell_control: ShellControl,
     /// Sets of parts, shells and nodes.
     pub sets: Sets,
     /// Forming results. Tensors are in the global frame: those of a file that was included under a

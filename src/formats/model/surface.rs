@@ -1,7 +1,8 @@
 //! From a model to the triangle mesh that is matched.
 
-use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
+
+use serde::{Deserialize, Serialize};
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::{Model, Nodes, Solid};
@@ -106,7 +107,7 @@ pub struct PartSummary {
 
 impl Model {
     /// The triangle mesh of the chosen elements. Quads are cut along the shorter diagonal (equal
-    /// ones from the first corner); of solids the faces used once are taken, outward. O(elements).
+    /// ones from the first corner), concave ones along the inner one; of solids the faces used once are taken, outward. O(elements).
     pub fn surface(&self, selection: &Selection) -> Result<Surface, SelectionError> {
         let chosen = self.chosen(selection)?;
         let mut builder = Builder::new(&self.nodes);
@@ -131,21 +132,23 @@ impl Model {
             thickness: part.mean_thickness(),
         };
         let mut rows: Vec<PartSummary> = self.parts.iter().map(row).collect();
-        let mut sums = vec![0.0; rows.len()];
+        let mut means = vec![Mean::default(); rows.len()];
         for (index, shell) in self.shells.iter().enumerate() {
             let row = &mut rows[shell.part as usize];
             row.n_shells += 1;
             row.n_triangles += shell.corners().len() - 2;
             let n = shell.corners().len();
             let corners = self.shell_thickness(index as u32).unwrap_or_default();
-            sums[shell.part as usize] += corners[..n].iter().sum::<f64>() / n as f64;
+            for &corner in &corners[..n] {
+                means[shell.part as usize].add(corner, 1.0 / n as f64);
+            }
         }
         for solid in &self.solids {
             rows[solid.part as usize].n_solids += 1;
         }
-        for (row, sum) in rows.iter_mut().zip(sums) {
+        for (row, mean) in rows.iter_mut().zip(means) {
             if row.n_shells > 0 {
-                row.thickness = (sum > 0.0).then_some(sum / row.n_shells as f64);
+                row.thickness = Some(mean.value()).filter(|&mean| mean > 0.0);
             }
         }
         rows
@@ -249,6 +252,28 @@ impl Model {
     }
 }
 
+/// A weighted mean. That of equal values is that value, without the rounding of their sum.
+#[derive(Debug, Clone, Copy, Default)]
+struct Mean {
+    first: Option<f64>,
+    /// Of what the others differ from the first.
+    sum: f64,
+    weights: f64,
+}
+
+impl Mean {
+    fn add(&mut self, value: f64, weight: f64) {
+        let first = *self.first.get_or_insert(value);
+        self.sum += weight * (value - first);
+        self.weights += weight;
+    }
+
+    fn value(&self) -> f64 {
+        self.first
+            .map_or(0.0, |first| first + self.sum / self.weights)
+    }
+}
+
 enum Chosen {
     /// By part index.
     Parts(Vec<bool>),
@@ -330,7 +355,17 @@ impl<'a> Builder<'a> {
             let point = |n: u32| self.nodes.positions()[n as usize];
             let along_ac = (point(c) - point(a)).norm_squared();
             let along_bd = (point(d) - point(b)).norm_squared();
-            if along_ac <= along_bd {
+            // A concave quad has one diagonal inside; on the other its halves look apart.
+            let folds = |[p, q, r, s]: [u32; 4]| {
+                let [p, q, r, s] = [p, q, r, s].map(point);
+                (q - p).cross(&(r - p)).dot(&(r - p).cross(&(s - p))) < 0.0
+            };
+            let is_ac = match (folds([a, b, c, d]), folds([b, c, d, a])) {
+                (false, true) => true,
+                (true, false) => false,
+                _ => along_ac <= along_bd,
+            };
+            if is_ac {
                 self.triangle([a, b, c], element, part);
                 self.triangle([a, c, d], element, part);
             } else {

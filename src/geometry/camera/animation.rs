@@ -1,3 +1,5 @@
+//! Cameras on their way from one view to another.
+
 use super::Camera;
 use crate::geometry::Rotation;
 

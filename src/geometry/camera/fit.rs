@@ -1,3 +1,5 @@
+//! Cameras that show a box whole.
+
 use super::{Camera, Projection};
 use crate::geometry::{Aabb, Point3, Vector3};
 

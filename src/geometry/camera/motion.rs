@@ -1,6 +1,9 @@
+//! Orbit, pan, zoom and roll.
+
+use serde::{Deserialize, Serialize};
+
 use super::{Camera, Projection, ScreenSize};
 use crate::geometry::{Aabb, Point3, Rotation, Vector3};
-use serde::{Deserialize, Serialize};
 
 /// How dragging turns the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

@@ -1,3 +1,5 @@
+//! A round length for the scale bar.
+
 /// A bar of a round length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScaleBar {

@@ -1,3 +1,5 @@
+//! The named views.
+
 use nalgebra::Matrix2;
 
 use super::Camera;

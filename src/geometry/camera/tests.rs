@@ -1,3 +1,5 @@
+//! The camera held against closed forms.
+
 use super::*;
 
 const SCREEN: ScreenSize = ScreenSize {

@@ -1,4 +1,6 @@
-use crate::render::context::{Depth, Layouts, PipelineSpec, shader};
+//! The ground behind the parts.
+
+use crate::render::pipeline::{Depth, Layouts, PipelineSpec, shader};
 
 /// The gradient behind everything.
 #[derive(Debug)]

@@ -1,4 +1,6 @@
-use crate::render::context::{Depth, OVER, PipelineSpec, texture_entry};
+//! Lays the finished picture on the window.
+
+use crate::render::pipeline::{Depth, OVER, PipelineSpec, texture_entry};
 
 /// Lays a finished picture on the window.
 #[derive(Debug)]

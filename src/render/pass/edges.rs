@@ -1,6 +1,8 @@
+//! Element edges, borders and creases.
+
 use super::surface::CORNER_LAYOUT;
-use crate::render::context::{Depth, Layouts, OVER, PipelineSpec, shader};
 use crate::render::mesh::WideEdge;
+use crate::render::pipeline::{Depth, Layouts, OVER, PipelineSpec, shader};
 use crate::render::prepare::PreparedDrawable;
 
 /// Element edges, creases and borders.

@@ -9,8 +9,8 @@ pub(super) mod overlay;
 pub(super) mod points;
 pub(super) mod surface;
 
-use super::context::Layouts;
-use super::prepare::{Prepared, PreparedDrawable};
+use crate::render::pipeline::Layouts;
+use crate::render::prepare::{Prepared, PreparedDrawable};
 
 /// The pipelines of all passes.
 #[derive(Debug)]

@@ -1,4 +1,6 @@
-use crate::render::context::{Depth, Layouts, OVER, PipelineSpec, shader};
+//! The outline of what is selected.
+
+use crate::render::pipeline::{Depth, Layouts, OVER, PipelineSpec, shader};
 
 /// The line around what is selected, drawn over the finished picture.
 #[derive(Debug)]

@@ -1,5 +1,7 @@
-use crate::render::context::{Depth, Layouts, OVER, PipelineSpec, shader};
+//! Nodes.
+
 use crate::render::mesh::Node;
+use crate::render::pipeline::{Depth, Layouts, OVER, PipelineSpec, shader};
 use crate::render::prepare::PreparedDrawable;
 
 /// Nodes as dots.

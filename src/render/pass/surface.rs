@@ -1,7 +1,9 @@
-use crate::render::context::{
+//! Triangles.
+
+use crate::render::mesh::Corner;
+use crate::render::pipeline::{
     Depth, Layouts, MASK_FORMAT, OVER, PICK_FORMAT, PipelineSpec, SAMPLES, SHEET_FORMAT, shader,
 };
-use crate::render::mesh::Corner;
 use crate::render::prepare::PreparedDrawable;
 
 /// Triangles: lit and solid, as glass, as the mask of the selection, as depths of a sheet, as indices

@@ -6,14 +6,14 @@ mod page;
 mod sections;
 mod tables;
 
+use maud::{PreEscaped, html};
+
+use self::page::printable;
+use super::MatchRecord;
 use crate::assess::deviation::Deviation;
 use crate::colormap::ColorScale;
-use crate::registration::MatchOutcome;
-
-use super::text::length;
-use super::{MatchRecord, StartGroup};
-
-pub use page::escaped;
+use crate::registration::{MatchOutcome, StartGroup};
+use crate::text::Lengths;
 
 /// A picture with its words.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,56 +78,31 @@ pub struct Report<'a> {
     pub cards: &'a [CardsInfo],
 }
 
-/// Lengths with their unit, where it is known.
-#[derive(Debug, Clone, Copy)]
-pub struct Lengths {
-    symbol: Option<&'static str>,
-}
-
-impl Lengths {
-    /// Lengths in the unit of a symbol.
-    pub fn new(symbol: Option<&'static str>) -> Self {
-        Self { symbol }
-    }
-
-    /// Three digits and the unit.
-    pub fn of(self, value: f64) -> String {
-        let number = self.bare(value);
-        self.symbol
-            .map_or_else(|| number.clone(), |unit| format!("{number} {unit}"))
-    }
-
-    /// Three digits.
-    pub fn bare(self, value: f64) -> String {
-        length(value).replace('-', "−")
-    }
-
-    /// The name of an axis with the unit.
-    pub fn axis(self, name: &str) -> String {
-        self.symbol
-            .map_or_else(|| name.to_owned(), |unit| format!("{name}, {unit}"))
-    }
-}
-
 impl Report<'_> {
     /// The page.
     pub fn write(&self) -> String {
         let record = self.record;
-        let title = escaped(&format!(
-            "{} on {}: {}",
-            record.files.stamped.name,
-            record.files.crash.name,
-            record.verdict.to_uppercase()
-        ));
-        let (style, script) = (include_str!("style.css"), include_str!("script.js"));
-        let (header, main, footer) = (self.header(), self.main(), self.footer());
-        format!(
-            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <meta name=\"generator\" content=\"{}\">\n<title>{title}</title>\n<style>\n{style}</style>\n\
-             </head>\n<body>\n{header}<main>\n{main}</main>\n{footer}<script>\n{script}</script>\n</body>\n</html>\n",
-            escaped(&record.build)
-        )
+        let names = record.files.as_ref().map(|file| printable(&file.name));
+        let page = html! {
+            (PreEscaped("<!DOCTYPE html>\n"))
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="generator" content=(record.build);
+                    title { (names.stamped) " on " (names.crash) ": " (record.verdict.label()) }
+                    style { (PreEscaped(include_str!("style.css"))) }
+                }
+                body {
+                    (self.header())
+                    main { (self.main()) }
+                    (self.footer())
+                    script { (PreEscaped(include_str!("script.js"))) }
+                }
+            }
+            "\n"
+        };
+        page.into_string()
     }
 
     fn lengths(&self) -> Lengths {

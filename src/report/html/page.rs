@@ -1,101 +1,120 @@
-//! Small pieces of HTML.
+//! Small pieces of HTML. Every text that is laid into a template is escaped by it.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use maud::{Markup, html};
 
-/// Text that came from outside, safe between tags and in quoted attributes.
-pub fn escaped(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => safe += "&amp;",
-            '<' => safe += "&lt;",
-            '>' => safe += "&gt;",
-            '"' => safe += "&quot;",
-            '\'' => safe += "&#39;",
-            // Control characters are not allowed in HTML at all.
-            c if c.is_control() && c != '\n' && c != '\t' => safe.push('\u{fffd}'),
-            c => safe.push(c),
-        }
-    }
-    safe
+/// Text from outside without control characters, which HTML does not allow at all.
+pub fn printable(text: &str) -> String {
+    let is_allowed = |c: char| !c.is_control() || c == '\n' || c == '\t';
+    let letters = text.chars();
+    letters
+        .map(|c| if is_allowed(c) { c } else { '\u{fffd}' })
+        .collect()
 }
 
 /// A PNG inside the page.
-pub fn image(png: &[u8], [width, height]: [usize; 2], alt: &str) -> String {
-    let (data, alt) = (STANDARD.encode(png), escaped(alt));
-    format!(
-        "<img src=\"data:image/png;base64,{data}\" width=\"{width}\" height=\"{height}\" alt=\"{alt}\">"
-    )
+pub fn image(png: &[u8], [width, height]: [usize; 2], alt: &str) -> Markup {
+    let source = format!("data:image/png;base64,{}", STANDARD.encode(png));
+    html! { img src=(source) width=(width) height=(height) alt=(printable(alt)); }
 }
 
 /// A fixed-width text with a button to copy it, which the script adds.
-pub fn block(name: &str, text: &str, wraps: bool) -> String {
-    let class = if wraps { " class=\"wrap\"" } else { "" };
-    let (name, text) = (escaped(name), escaped(text.trim_end()));
-    format!(
-        "<div class=\"block\" data-name=\"{name}\"><pre{class} tabindex=\"0\">{text}</pre></div>\n"
-    )
+pub fn block(name: &str, text: &str, wraps: bool) -> Markup {
+    html! {
+        div.block data-name=(printable(name)) {
+            pre class=[wraps.then_some("wrap")] tabindex="0" { (printable(text.trim_end())) }
+        }
+    }
 }
 
 /// A block that is folded away.
-pub fn folded(title: &str, text: &str) -> String {
-    let summary = escaped(title);
-    let block = block(title, text, false);
-    format!("<details><summary>{summary}</summary>{block}</details>\n")
+pub fn folded(title: &str, text: &str) -> Markup {
+    html! { details { summary { (title) } (block(title, text, false)) } }
 }
 
-/// A heading with an anchor.
-pub fn section(id: &str, title: &str, content: &str) -> String {
-    format!(
-        "<section aria-labelledby=\"{id}\">\n<h2 id=\"{id}\">{title}</h2>\n{content}</section>\n"
-    )
-}
-
-/// Rows of a name and a value; the values are HTML already.
-pub fn fact_table(caption: &str, rows: &[(&str, String)]) -> String {
-    let mut table = format!("<table><caption>{}</caption><tbody>\n", escaped(caption));
-    for (name, value) in rows {
-        table += &format!(
-            "<tr><th scope=\"row\">{}</th><td>{value}</td></tr>\n",
-            escaped(name)
-        );
+/// A part of the page with a heading that links lead to.
+pub fn section(id: &str, title: &str, content: &Markup) -> Markup {
+    html! {
+        section aria-labelledby=(id) { h2 id=(id) { (title) } (content) }
+        "\n"
     }
-    table + "</tbody></table>\n"
 }
 
-/// A table with a head. Columns whose title ends in `#` hold numbers. Cells are HTML already; the first of
-/// each row is its heading.
-pub fn table(caption: &str, columns: &[&str], rows: &[Vec<String>]) -> String {
-    let class = |column: &str| {
-        if column.ends_with('#') {
-            " class=\"n\""
-        } else {
-            ""
+/// A column of a table.
+#[derive(Debug, Clone, Copy)]
+pub struct Column {
+    title: &'static str,
+    class: Option<&'static str>,
+}
+
+impl Column {
+    /// Words, to the left.
+    pub const fn text(title: &'static str) -> Self {
+        Self { title, class: None }
+    }
+
+    /// Numbers, to the right.
+    pub const fn number(title: &'static str) -> Self {
+        let class = Some("n");
+        Self { title, class }
+    }
+
+    /// Small pictures.
+    pub const fn picture(title: &'static str) -> Self {
+        let class = Some("thumb");
+        Self { title, class }
+    }
+}
+
+/// Rows of a name and a value.
+pub fn fact_table(caption: &str, rows: &[(&str, Markup)]) -> Markup {
+    html! {
+        table {
+            caption { (caption) }
+            tbody {
+                @for (name, value) in rows {
+                    tr { th scope="row" { (name) } td { (value) } }
+                }
+            }
         }
-    };
-    let mut text = format!(
-        "<div class=\"scroll\" role=\"region\" aria-label=\"{0}\" tabindex=\"0\"><table><caption>{0}</caption><thead><tr>",
-        escaped(caption)
-    );
-    for column in columns {
-        let (class, title) = (class(column), escaped(column.trim_end_matches('#')));
-        text += &format!("<th scope=\"col\"{class}>{title}</th>");
     }
-    text += "</tr></thead><tbody>\n";
-    for row in rows {
-        text += "<tr>";
-        for (i, (cell, column)) in row.iter().zip(columns).enumerate() {
-            let class = class(column);
-            text += &if i == 0 {
-                format!("<th scope=\"row\"{class}>{cell}</th>")
-            } else {
-                format!("<td{class}>{cell}</td>")
-            };
+}
+
+/// A table with a head; the first cell of each row is its heading.
+pub fn table(caption: &str, columns: &[Column], rows: &[Vec<Markup>]) -> Markup {
+    html! {
+        div.scroll role="region" aria-label=(caption) tabindex="0" {
+            table {
+                caption { (caption) }
+                thead {
+                    tr {
+                        @for column in columns {
+                            th scope="col" class=[column.class] { (column.title) }
+                        }
+                    }
+                }
+                tbody {
+                    @for row in rows {
+                        tr {
+                            @for (i, (cell, column)) in row.iter().zip(columns).enumerate() {
+                                @if i == 0 {
+                                    th scope="row" class=[column.class] { (cell) }
+                                } @else {
+                                    td class=[column.class] { (cell) }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
         }
-        text += "</tr>\n";
     }
-    text + "</tbody></table></div>\n"
+}
+
+/// A text as a cell or a value.
+pub fn cell(text: impl AsRef<str>) -> Markup {
+    html! { (text.as_ref()) }
 }
 
 #[cfg(test)]
@@ -104,9 +123,10 @@ mod tests {
 
     #[test]
     fn nothing_from_a_file_becomes_markup() {
-        let text = escaped("<b a='x' c=\"y\">&\u{1}");
-        assert_eq!(text, "&lt;b a=&#39;x&#39; c=&quot;y&quot;&gt;&amp;\u{fffd}");
-        assert!(!block("<i>", "</pre>", true).contains("<i>"));
-        assert_eq!(block("n", "</pre>", true).matches("</pre>").count(), 1);
+        let text = block("\"<i>", "<b a='x'>&</pre>\u{1}", true).into_string();
+        let expected = "<div class=\"block\" data-name=\"&quot;&lt;i&gt;\">\
+                        <pre class=\"wrap\" tabindex=\"0\">\
+                        &lt;b a='x'&gt;&amp;&lt;/pre&gt;\u{fffd}</pre></div>";
+        assert_eq!(text, expected);
     }
 }

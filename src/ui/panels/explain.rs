@@ -1,9 +1,10 @@
 //! Why a match is weak or failed, and one button for each likely cause.
 
+use egui::{Button, RichText, Ui, vec2};
+
 use crate::app::{AppState, Cause, Command};
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{card, paragraph};
-use egui::{Button, RichText, Ui, vec2};
 
 /// The causes of a weak result, within its card.
 pub fn causes_ui(ui: &mut Ui, causes: Vec<Cause>, commands: &mut Vec<Command>) {

@@ -1,16 +1,18 @@
 //! The two 3D windows with what stands in them while there is nothing to draw.
 
+use egui::{Align, CursorIcon, Layout, Rect, RichText, Sense, Shape, Stroke, Ui, UiBuilder, vec2};
+
 use crate::app::{
     Action, AppState, Command, FileCommand, FreeWindow, PictureWindows, Settings, age_text,
 };
-use crate::jobs::{JobKey, Role};
+use crate::jobs::JobKey;
 use crate::report::picture::Picture;
+use crate::role::Role;
 use crate::ui::overlays::mouse_choice;
 use crate::ui::theme::{Palette, ROW, TALL, UNIT};
 use crate::ui::viewport::Viewports;
 use crate::ui::viewport::free_choice;
 use crate::ui::widgets::{Look, action_button, card, paragraph, role_mark, secondary};
-use egui::{Align, CursorIcon, Layout, Rect, RichText, Sense, Shape, Stroke, Ui, UiBuilder, vec2};
 
 /// Where the windows lay in the last frame, for drops and toasts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -230,7 +232,7 @@ fn loading_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Comm
             secondary(ui, "Reading");
         }
         None => {
-            secondary(ui, "Waiting for the file before it");
+            secondary(ui, "Waiting for the previous file");
         }
     }
     if running.is_some() {
@@ -255,7 +257,7 @@ fn invitation_ui(
         ),
         Role::Stamped => (
             "Drop the stamped part here",
-            "Moves. It is laid on the crash part.",
+            "Moves onto the crash part.",
             Action::OpenStamped,
         ),
     };
@@ -332,11 +334,11 @@ fn mouse_card(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         card(ui, |ui| {
             ui.spacing_mut().item_spacing = vec2(UNIT, 6.0);
             ui.horizontal(|ui| {
-                ui.label("Mouse like");
-                ui.name_inputs("Mouse like", |ui| mouse_choice(ui, &mut settings));
+                ui.label("Mouse controls");
+                ui.name_inputs("Mouse controls", |ui| mouse_choice(ui, &mut settings));
             });
             paragraph(ui, settings.mouse.help());
-            is_done = ui.button("Use this").clicked();
+            is_done = ui.button("OK").clicked();
         });
     });
     if is_done || settings.mouse != state.settings.mouse {

@@ -1,17 +1,19 @@
 //! Section 1: files, their parts, how they are shown.
 
+use egui::{Align, Layout, Sense, TextStyle, Ui, vec2};
+
 use super::part_list::part_list_ui;
 use super::section::{elided, section_ui};
 use super::units;
 use crate::app::{
     Action, AppState, BottomTab, ColorBy, Command, Display, FileCommand, Part, Section, ViewCommand,
 };
-use crate::jobs::{JobKey, Role};
+use crate::jobs::JobKey;
+use crate::role::Role;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, grouped, icon_button, role_mark, secondary, square, tight,
 };
-use egui::{Align, Layout, Sense, TextStyle, Ui, vec2};
 
 /// The section.
 pub fn load_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -169,7 +171,7 @@ fn file_menu_ui(
         .add_enabled(is_free, egui::Button::new("Open another…"))
         .clicked()
     {
-        commands.extend(open.to_commands(state));
+        commands.extend(open.command(state));
     }
     if ui
         .add_enabled(is_free, egui::Button::new("Reload"))
@@ -195,7 +197,7 @@ fn file_menu_ui(
         .add_enabled(is_free, egui::Button::new("Close"))
         .clicked()
     {
-        commands.extend(close.to_commands(state));
+        commands.extend(close.command(state));
     }
 }
 
@@ -213,7 +215,7 @@ fn tools_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let response = icon_button(ui, "⟳", "Reload both files", true);
             if response.clicked() {
-                commands.extend(Action::ReloadAll.to_commands(state));
+                commands.extend(Action::ReloadAll.command(state));
             }
         });
     });

@@ -1,17 +1,19 @@
 //! Moves by hand: numbers, turn-over, snapping, pasted matrices.
 
+use egui::{CollapsingHeader, DragValue, Key, Modifiers, Ui, vec2};
+
 use crate::app::{
     Action, AppState, Axis, AxisFrame, Command, MoveCommand, ViewCommand, turns_deg, with_turns_deg,
 };
 use crate::geometry::Similarity;
-use crate::jobs::Role;
 use crate::report::parse_matrix;
+use crate::role::Role;
+use crate::text::fixed;
 use crate::ui::theme::{ROW, UNIT};
 use crate::ui::widgets::{Look, action_button, caption, chip, form_row, plain_action, set_draft};
-use egui::{CollapsingHeader, DragValue, Ui, vec2};
 
 /// Width of the label column.
-const LABEL: f32 = 56.0;
+const LABEL: f32 = 76.0;
 
 /// The fold "Move by hand".
 pub fn manual_move_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -22,7 +24,7 @@ pub fn manual_move_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
             ui.add_enabled_ui(is_free, |ui| {
                 axes_ui(ui, state, commands);
                 steps_ui(ui, state, commands);
-                turn_over_ui(ui, state, commands);
+                flip_ui(ui, state, commands);
                 position_ui(ui, state, commands);
                 paste_ui(ui, commands);
             });
@@ -49,7 +51,7 @@ fn axes_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 /// A typed move along and a typed turn about each axis.
 fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let frame = state.view.move_axes;
-    for (name, unit, is_turn) in [("Move", "", false), ("Turn", "°", true)] {
+    for (name, unit, is_turn) in [("Move", "", false), ("Rotate", "°", true)] {
         let id = egui::Id::unique(("typed move", name));
         let mut value: f64 =
             ui.data(|data| data.get_temp(id))
@@ -89,20 +91,20 @@ fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-fn turn_over_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    form_row(ui, "Turn over", LABEL, |ui| {
+fn flip_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    form_row(ui, "Flip 180°", LABEL, |ui| {
         for (action, label) in [
-            (Action::TurnOverX, "about X"),
-            (Action::TurnOverY, "about Y"),
-            (Action::TurnOverZ, "about Z"),
+            (Action::FlipX, "about X"),
+            (Action::FlipY, "about Y"),
+            (Action::FlipZ, "about Z"),
         ] {
             let look = (label, Look::Plain, vec2(0.0, ROW));
             action_button(ui, state, action, look, commands);
         }
     });
     ui.horizontal(|ui| {
-        let look = ("Centres together", Look::Plain, vec2(0.0, ROW));
-        action_button(ui, state, Action::BringCentersTogether, look, commands);
+        let look = ("Align centres", Look::Plain, vec2(0.0, ROW));
+        action_button(ui, state, Action::AlignCenters, look, commands);
         plain_action(ui, state, Action::ResetPose, commands);
     });
 }
@@ -122,24 +124,26 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let unit = state.unit_suffix();
     for (name, what, values) in [
         ("Centre", "Centre", at),
-        ("Moved", "Moved since loading,", moved),
+        ("Translation", "Translation since loading,", moved),
     ] {
         if let Some((axis, by, value)) = fields_ui(ui, name, what, values, unit) {
             let mut crash_from_stamped: Similarity = pose;
             crash_from_stamped.translation[axis.index()] += by;
-            let name = format!("{name} {} {value:.3}", axis.letter());
+            let name = format!("{name} {} {}{unit}", axis.letter(), fixed(value, 3));
             commands.push(set_pose(crash_from_stamped, name));
         }
     }
     let Some(turns) = turns_deg(&pose) else {
-        caption(ui, "The pose is mirrored: no turns make it");
+        caption(ui, "The pose is mirrored: no rotation angles");
         return;
     };
-    if let Some((axis, by, value)) = fields_ui(ui, "Turned", "Turned since loading,", turns, "°") {
+    if let Some((axis, by, value)) =
+        fields_ui(ui, "Rotation", "Rotation since loading,", turns, "°")
+    {
         let mut turns = turns;
         turns[axis.index()] += by;
         let crash_from_stamped = with_turns_deg(&pose, turns, &pivot);
-        let name = format!("Turned {} {value:.3}°", axis.letter());
+        let name = format!("Rotation {} {}°", axis.letter(), fixed(value, 3));
         commands.push(set_pose(crash_from_stamped, name));
     }
 }
@@ -166,10 +170,12 @@ fn fields_ui(
         ui.spacing_mut().button_padding.x = 4.0;
         let width = (ui.available_width() - 8.0) / 3.0;
         for axis in Axis::ALL {
+            // What would be shown as −0.000 is nothing.
             let before = values[axis.index()];
+            let before = if before.abs() < 5e-4 { 0.0 } else { before };
             let mut value = before;
             let field = DragValue::new(&mut value)
-                .max_decimals(3)
+                .fixed_decimals(3)
                 .speed(0.5)
                 .update_while_editing(false)
                 .min_size(vec2(width, ROW));
@@ -188,7 +194,12 @@ fn fields_ui(
 fn paste_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     let id = egui::Id::unique("pasted matrix");
     let mut text = crate::ui::widgets::draft(ui, id);
+    let field_id = id.with("field");
+    // In the field Ctrl+Enter takes the matrix; it does not run the match.
+    let is_entered = ui.memory(|memory| memory.has_focus(field_id))
+        && ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Enter));
     let field = egui::TextEdit::multiline(&mut text)
+        .id(field_id)
         .hint_text("Paste a 4×4 here: rows or columns, commas, tabs, brackets, JSON")
         .desired_rows(2)
         .desired_width(f32::INFINITY)
@@ -198,12 +209,13 @@ fn paste_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     let read = (!text.trim().is_empty()).then(|| parse_matrix(&text));
     let understood = match &read {
         None => "moves stamped onto crash".to_owned(),
-        Some(Ok(parsed)) => format!("understood: {}", parsed.layout.label()),
+        Some(Ok(parsed)) => format!("stamped onto crash: {}", parsed.layout.label()),
         Some(Err(error)) => format!("⚠ {error}"),
     };
     ui.horizontal(|ui| {
         let can = matches!(read, Some(Ok(_)));
-        if ui.add_enabled(can, egui::Button::new("Set pose")).clicked() {
+        let set = ui.add_enabled(can, egui::Button::new("Set pose"));
+        if set.on_hover_text("Ctrl+Enter").clicked() || (is_entered && can) {
             commands.push(MoveCommand::Paste(std::mem::take(&mut text)).into());
         }
         ui.add_space(UNIT);

@@ -1,17 +1,21 @@
 //! Section 3: first poses, the match, what came out.
 
+use egui::{Button, ComboBox, ProgressBar, RichText, Ui, vec2};
+
 use super::section::section_ui;
 use super::{manual_move, pairs, recipe, result};
 use crate::app::{
     Action, AppState, Command, MatchCommand, Section, ShownGeometry, ViewCommand, duration_text,
 };
-use crate::jobs::{JobKey, Role};
+use crate::jobs::JobKey;
 use crate::registration::{Method, StartMethod};
+use crate::role::Role;
+use crate::settings::Choice as _;
+use crate::text::whole_percent;
 use crate::ui::theme::{Palette, ROW, TALL, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, form_row, paragraph, secondary, segments, tight, wide_action,
 };
-use egui::{Button, ComboBox, ProgressBar, RichText, Ui, vec2};
 
 /// Width of the label column of this section.
 const LABEL: f32 = 56.0;
@@ -27,7 +31,7 @@ pub fn matching_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands,
         |ui, commands| {
             if state.document.both().is_none() {
-                paragraph(ui, "Not now: load both parts first.");
+                paragraph(ui, "Load both parts first.");
                 if state.document.part(Role::Stamped).is_some() {
                     manual_move::manual_move_ui(ui, state, commands);
                 }
@@ -62,9 +66,9 @@ fn summary(state: &AppState) -> String {
     }
 }
 
-/// "Align surface normal", and stepping through the first poses it made.
+/// "Align surface normals", and stepping through the first poses it made.
 fn align_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let look = ("Align surface normal", Look::Plain, ROW + 4.0);
+    let look = ("Align surface normals", Look::Plain, ROW + 4.0);
     wide_action(ui, state, Action::Align, look, commands);
     let Some(starts) = state.current_starts().filter(|s| !s.poses.is_empty()) else {
         return;
@@ -129,7 +133,7 @@ fn chain_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 .selected_text(start_label(recipe.settings.starts.method))
                 .width(ui.available_width())
                 .show_ui(ui, |ui| {
-                    for method in StartMethod::ALL {
+                    for &method in StartMethod::ALL {
                         let value = &mut recipe.settings.starts.method;
                         let (label, help) = (start_label(method), start_help(method));
                         ui.selectable_value(value, method, label)
@@ -137,13 +141,13 @@ fn chain_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                     }
                 });
         });
-        form_row(ui, "Then", LABEL, |ui| {
+        form_row(ui, "Method", LABEL, |ui| {
             let room = ui.available_width() - ROW - UNIT;
             ComboBox::from_id_salt("method")
                 .selected_text(recipe.settings.method.label())
                 .width(room)
                 .show_ui(ui, |ui| {
-                    for method in Method::ALL {
+                    for &method in Method::ALL {
                         let is_on = recipe.settings.method == method;
                         let response = ui.selectable_label(is_on, method.label());
                         if response.on_hover_text(method.help()).clicked() && !is_on {
@@ -188,24 +192,24 @@ fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 /// One live line under the buttons, and a bar only for what can be counted.
 fn status_ui(ui: &mut Ui, state: &AppState) {
     let Some(job) = state.jobs.running().filter(|job| job.key == JobKey::Match) else {
-        secondary(ui, "waiting for the work before it");
+        secondary(ui, "Waiting for the previous task");
         return;
     };
     let mut text = String::new();
-    let [n_ended, n_starts] = state.race_count();
+    let [n_ended, n_starts] = state.n_ended_starts();
     if n_starts > 0 {
-        let share = n_ended as f32 / n_starts as f32;
-        ui.add(ProgressBar::new(share).desired_height(4.0))
+        let fraction = n_ended as f32 / n_starts as f32;
+        ui.add(ProgressBar::new(fraction).desired_height(4.0))
             .on_hover_text(format!("{n_ended} of {n_starts} starts have ended"))
-            .accessible_name("Share of the starts that have ended");
+            .accessible_name("Starts that have ended");
     }
     if let Some(latest) = job.latest {
         text += &format!(
-            "start {}/{n_starts} · iteration {} · RMS {} · overlap {:.0} % · ",
-            latest.start_idx + 1,
-            latest.iteration + 1,
-            state.length_text(latest.rmse),
-            100.0 * latest.fraction
+            "start {}/{n_starts} · iteration {} · RMS {} · overlap {} · ",
+            latest.start + 1,
+            latest.number + 1,
+            state.length_text(latest.record.rmse),
+            whole_percent(latest.record.fraction)
         );
     } else if let Some(progress) = job.progress {
         text += &format!("{} · ", progress.phase);
@@ -273,7 +277,7 @@ fn over_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 _ => display.is_see_through,
             };
             let look = if is_on { Look::On } else { Look::Plain };
-            let label = (action.info().label, look, vec2(0.0, ROW));
+            let label = (action.row().label, look, vec2(0.0, ROW));
             action_button(ui, state, action, label, commands);
         }
     });

@@ -7,7 +7,6 @@ pub mod load;
 pub mod manual_move;
 pub mod matching;
 pub mod pairs;
-pub mod part_filter;
 pub mod part_list;
 pub mod part_row;
 pub mod recipe;
@@ -17,10 +16,11 @@ pub mod section;
 pub mod top_bar;
 pub mod units;
 
+use egui::{Frame, Margin, Panel, ScrollArea, Sense, Ui, UiBuilder, vec2};
+
 use super::theme::{Palette, UNIT};
 use super::viewport::Viewports;
 use crate::app::{AppState, Command, Settings};
-use egui::{Frame, Margin, Panel, ScrollArea, Sense, Ui, UiBuilder, vec2};
 
 /// Width of the left column at the first start.
 const COLUMN: f32 = 344.0;

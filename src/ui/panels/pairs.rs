@@ -1,13 +1,15 @@
 //! The picked pairs: what each is, how far it is off, and the pose they stand for.
 
+use egui::{Align, Button, Layout, RichText, Ui, vec2};
+
 use crate::app::{Action, AppState, Command, PairCommand, PointPair};
-use crate::jobs::Role;
 use crate::registration::PointPairFit;
+use crate::role::Role;
+use crate::text::sentence;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, card, icon_button, paragraph, role_mark, secondary,
 };
-use egui::{Align, Button, Layout, RichText, Ui, vec2};
 
 /// The card with the pairs, while the tool is on or pairs are there.
 pub fn pairs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -37,12 +39,6 @@ pub fn pairs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             action_button(ui, state, Action::Refine, refine, commands);
         });
     });
-}
-
-fn sentence(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|c| c.to_uppercase().to_string());
-    format!("{}{}.", first.unwrap_or_default(), letters.as_str())
 }
 
 fn head_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {

@@ -1,13 +1,15 @@
 //! The parts of both decks: filter, order by likeness, rows.
 
-use super::part_filter::PartFilter;
+use std::sync::Arc;
+
+use egui::{Align, Layout, ScrollArea, TextStyle, Ui, vec2};
+
 use super::part_row::{Columns, Row, count_text, row_ui};
+use crate::app::part_filter::PartFilter;
 use crate::app::{AppState, ColorBy, Command, LikeWhat, PartCommand, PartRef};
-use crate::jobs::{PerRole, Role};
+use crate::role::{PerRole, Role};
 use crate::ui::theme::ROW;
 use crate::ui::widgets::{caption, chip, draft, grouped, icon_button, set_draft};
-use egui::{Align, Layout, ScrollArea, TextStyle, Ui, vec2};
-use std::sync::Arc;
 
 /// Most rows that are seen at once; the rest scrolls.
 const MAX_ROWS: f32 = 6.0;
@@ -26,7 +28,7 @@ pub fn part_list_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) 
     let filter = filter_ui(ui, state, n_parts, commands);
     let listed = listed(ui, state, &filter);
     if listed.is_empty() {
-        let text = format!("None of {} parts fits the filter", grouped(n_parts));
+        let text = format!("No part matches the filter ({} in all)", grouped(n_parts));
         caption(ui, text);
         return;
     }
@@ -51,10 +53,12 @@ fn filter_ui(ui: &mut Ui, state: &AppState, n_parts: usize, commands: &mut Vec<C
         if can_order {
             order_ui(ui, state, commands);
         }
-        if !text.is_empty() && icon_button(ui, "×", "Clear the filter", true).clicked() {
+        // It stands there always: a button that came with the first letter moved the field away.
+        if icon_button(ui, "×", "Clear the filter", !text.is_empty()).clicked() {
             text.clear();
         }
         let field = egui::TextEdit::singleline(&mut text)
+            .id(id.with("field"))
             .hint_text("2000012, 100-200, pillar, t>1.4")
             .margin(egui::Margin::symmetric(8, 3))
             .desired_width(ui.available_width());

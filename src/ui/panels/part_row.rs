@@ -1,14 +1,16 @@
 //! One row of the part list.
 
-use super::section::elided;
-use crate::app::{AppState, Command, LikeWhat, Part, PartCommand, PartRef, ViewCommand};
-use crate::formats::PartSummary;
-use crate::jobs::Role;
-use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::{focus_ring, grouped, paint_role_mark};
 use egui::{
     Align2, Color32, FontId, Rangef, Rect, Response, Sense, Stroke, TextStyle, Ui, Vec2, pos2, vec2,
 };
+
+use super::section::elided;
+use crate::app::{AppState, Command, LikeWhat, Part, PartCommand, PartRef, ViewCommand};
+use crate::formats::PartSummary;
+use crate::role::Role;
+use crate::text::whole_percent;
+use crate::ui::theme::{Palette, ROW, color};
+use crate::ui::widgets::{focus_ring, grouped, paint_role_mark};
 
 /// Space between two columns.
 const GAP: f32 = 6.0;
@@ -185,7 +187,7 @@ fn hover_text(row: &Row<'_>, state: &AppState) -> String {
         text += &format!(", thickness {}", state.length_text(thickness));
     }
     if let Some(likeness) = row.likeness {
-        text += &format!("\nlikeness {:.0} %", 100.0 * likeness);
+        text += &format!("\nlikeness {}", whole_percent(likeness));
     }
     text + "\nClick selects, double click brings it into view, middle click shows only it"
 }
@@ -322,7 +324,7 @@ fn paint(ui: &Ui, rect: Rect, row: &Row<'_>, columns: &Columns, state: &AppState
 /// Elements, or the likeness while the list is sorted by it.
 pub fn count_text(row: &Row<'_>) -> String {
     match row.likeness {
-        Some(likeness) => format!("{:.0} %", 100.0 * likeness),
+        Some(likeness) => whole_percent(likeness),
         None => grouped(row.summary.n_shells + row.summary.n_solids),
     }
 }
@@ -330,9 +332,9 @@ pub fn count_text(row: &Row<'_>) -> String {
 /// The colour it is drawn in.
 fn part_color(ui: &Ui, row: &Row<'_>, state: &AppState) -> Color32 {
     let given = row.part.colors.get(&row.summary.id).copied();
-    let rgb = given.or_else(|| crate::ui::viewport::part_color(ui, state, row.index));
+    let rgb = given.or_else(|| crate::ui::theme::part_color(ui, state, row.index));
     match rgb {
-        Some([r, g, b]) => Color32::from_rgb(r, g, b),
+        Some(rgb) => color(rgb),
         None => Palette::of(ui).role(row.role),
     }
 }

@@ -1,17 +1,19 @@
 //! Section 2: fewer triangles, at any level, with the full mesh kept.
 
+use egui::{DragValue, Response, Slider, Ui, vec2};
+
 use super::section::section_ui;
 use crate::app::{
     Action, AppState, ColorBy, Command, LevelResult, Part, ReduceCommand, Section, Settings,
     ViewCommand, duration_text,
 };
-use crate::jobs::{JobKey, MeasuredLevel, PerRole, Role};
+use crate::jobs::{JobKey, MeasuredLevel};
+use crate::role::{PerRole, Role};
 use crate::ui::theme::{LABEL, Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, form_row, grouped, icon_button, length, paragraph,
     role_mark, short_count, square, tight,
 };
-use egui::{DragValue, Response, Slider, Ui, vec2};
 
 /// The section.
 pub fn reduce_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -24,7 +26,7 @@ pub fn reduce_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands,
         |ui, commands| {
             if state.document.parts.iter().all(|(_, part)| part.is_none()) {
-                paragraph(ui, "Not now: load a part first.");
+                paragraph(ui, "Load a part first.");
                 return;
             }
             ceiling_ui(ui, state, commands);
@@ -76,17 +78,16 @@ fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         let roles = settings.reduce_roles;
         for (label, name, chosen) in [
-            ("■", "Reduce the crash part", [true, false]),
-            ("▲", "Reduce the stamped part", [false, true]),
-            ("both", "Reduce both parts", [true, true]),
+            ("■", "Reduce the crash part", PerRole::new(true, false)),
+            ("▲", "Reduce the stamped part", PerRole::new(false, true)),
+            ("both", "Reduce both parts", PerRole::both(true)),
         ] {
-            let [crash, stamped] = chosen;
-            let is_on = roles == PerRole { crash, stamped };
+            let is_on = roles == chosen;
             let response = chip(ui, label, is_on);
             response
                 .widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, name));
             if response.on_hover_text(name).clicked() {
-                settings.reduce_roles = PerRole { crash, stamped };
+                settings.reduce_roles = chosen;
             }
         }
     });
@@ -113,16 +114,16 @@ fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         for (sign, action) in [("−", Action::NextLevel), ("+", Action::PreviousLevel)] {
             let enabled = action.enabled(state).is_ok();
-            let name = format!("{}   {}", action.info().label, keys(action));
+            let name = format!("{}   {}", action.row().label, keys(action));
             if icon_button(ui, sign, &name, enabled).clicked() {
-                commands.extend(action.to_commands(state));
+                commands.extend(action.command(state));
             }
         }
     });
 }
 
 fn keys(action: Action) -> String {
-    let shortcut = action.info().shortcut;
+    let shortcut = action.row().shortcut();
     shortcut.map_or_else(String::new, |s| s.to_string())
 }
 
@@ -146,8 +147,7 @@ fn strip_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             if with_result(ui, full, state, None).clicked() {
                 commands.push(ReduceCommand::Full(roles).into());
             }
-            let marks = state.settings.marked_levels.iter().filter(|n| **n < n_full);
-            for &max_triangles in marks {
+            for max_triangles in state.reachable_levels() {
                 let is_on = wanted == Some(max_triangles);
                 let response = chip(ui, &short_count(max_triangles), is_on);
                 let response = with_result(ui, response, state, Some(max_triangles));
@@ -194,11 +194,11 @@ fn with_result(ui: &Ui, chip: Response, state: &AppState, level: Option<usize>) 
     chip.on_hover_text(format!("Match: {}", result_text(state, result)))
 }
 
-/// "rmse 0.439 mm · 741 ms · 0.02 mm from full".
+/// "RMS 0.439 mm · 741 ms · 0.02 mm from full".
 fn result_text(state: &AppState, result: &LevelResult) -> String {
     let mut parts = Vec::new();
     if let Some(rmse) = result.rmse {
-        parts.push(format!("rmse {}", state.length_text(rmse)));
+        parts.push(format!("RMS {}", state.length_text(rmse)));
     }
     parts.push(duration_text(result.took));
     if result.max_triangles.is_some()
@@ -242,7 +242,7 @@ fn marks_menu(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 }
             }
             ui.separator();
-            if ui.button("As at the beginning").clicked() {
+            if ui.button("Reset to defaults").clicked() {
                 settings.marked_levels = Settings::default().marked_levels;
                 ui.close();
             }
@@ -287,11 +287,11 @@ fn achieved_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState) {
     }
 }
 
-/// "got 1,999 of max 2,000".
+/// "1,999 triangles (max 2,000)".
 fn achieved(part: &Part) -> String {
     match &part.level {
         Some(level) => format!(
-            "got {} of max {}",
+            "{} triangles (max {})",
             grouped(level.level.mesh.n_triangles()),
             grouped(level.max_triangles)
         ),
@@ -303,11 +303,11 @@ fn achieved(part: &Part) -> String {
     }
 }
 
-/// "rms 0.061 · max 0.72 · border 0.42 mm · 28 ms".
+/// "RMS 0.061 · max 0.72 · border 0.42 mm · 28 ms".
 fn error_text(role: Role, level: &MeasuredLevel, state: &AppState) -> String {
     let mut text = match level.deviation.get() {
         Some(d) => format!(
-            "rms {} · max {} · border {}",
+            "RMS {} · max {} · border {}",
             length(d.rms),
             length(d.max),
             state.length_text(d.border_max)

@@ -1,33 +1,42 @@
 //! The verdict card and the matrix.
 
+use egui::{Button, Color32, RichText, Ui, vec2};
+
 use super::explain;
-use crate::app::{
-    Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, is_same_pose,
-};
-use crate::assess::Verdict;
-use crate::geometry::Similarity;
+use crate::app::{Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, Section};
+use crate::assess::{Coverage, OneSided, Verdict};
+use crate::registration::group_starts;
 use crate::report::{PoseRecord, number};
+use crate::role::PerRole;
+use crate::text::{fixed, sentence, vector, whole_percent};
 use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
-    Look, action_button, caption, card, chip, figure, length, paragraph, percent, square, tight,
+    Look, action_button, caption, card, chip, figure, length, paragraph, percent, plain_action,
+    square, tight,
 };
-use egui::{Color32, RichText, Ui, vec2};
 
 /// Verdict, figures, alternatives, matrix.
 pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     explain::failure_ui(ui, state, commands);
     let Some(result) = &state.document.result else {
+        // A pose made by hand is worth copying too.
+        if state.has_pose() && Action::CopyMatrix.enabled(state).is_ok() {
+            matrix_ui(ui, state, commands);
+        }
         return;
     };
     ui.add_space(2.0);
-    let is_current = state.document.current_result().is_some();
     let top = ui.cursor().top();
     card(ui, |ui| {
-        verdict_ui(ui, result, is_current);
-        figures_ui(ui, state, result);
-        alternatives_ui(ui, state, result, commands);
-        explain::causes_ui(ui, state.causes(), commands);
+        if state.document.current_result().is_some() {
+            verdict_ui(ui, state, result);
+            figures_ui(ui, state, result);
+            alternatives_ui(ui, state, result, commands);
+            explain::causes_ui(ui, state.causes(), commands);
+        } else {
+            outdated_ui(ui, state, result, commands);
+        }
     });
     // A new result comes into sight by itself.
     let id = egui::Id::unique("stamp of the result in sight");
@@ -38,81 +47,126 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let x = ui.max_rect().x_range();
         ui.scroll_to_rect(egui::Rect::from_x_y_ranges(x, top..=bottom), None);
     }
-    if is_current {
-        matrix_ui(ui, state, commands);
-    }
+    matrix_ui(ui, state, commands);
 }
 
-/// Sign and colour of a verdict.
-fn verdict_look(palette: &Palette, verdict: Verdict) -> (&'static str, Color32) {
+/// A result that the shown pose or parts are no longer those of: quiet, with the ways on.
+fn outdated_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mut Vec<Command>) {
+    let verdict = result.run.assessment.verdict;
+    let reason = state.stale(Section::Match).map_or("", |stale| stale.reason);
+    let color = Palette::of(ui).secondary;
+    let title = format!("Earlier result: {}", verdict.label());
+    ui.label(RichText::new(title).color(color).size(15.0));
+    paragraph(ui, sentence(reason));
+    let coverage = &result.run.assessment.coverage;
+    let spread = format!(
+        "{} · {}",
+        length(coverage.rmse()),
+        state.length_text(coverage.p95())
+    );
+    figure(ui, "RMS · P95 then", &spread);
+    let is_same_pair = result.stamp.parts == state.document.stamp().parts;
+    ui.horizontal(|ui| {
+        let can_go_back = is_same_pair && state.can_move().is_ok();
+        let back = Button::new("Back to the result").min_size(vec2(0.0, ROW));
+        if ui.add_enabled(can_go_back, back).clicked() {
+            commands.push(MatchCommand::ShowAlternative(result.alternative).into());
+        }
+        plain_action(ui, state, Action::Refine, commands);
+    });
+}
+
+fn verdict_color(palette: &Palette, verdict: Verdict) -> Color32 {
     match verdict {
-        Verdict::Good => ("✔", palette.good),
-        Verdict::Check => ("⚠", palette.check),
-        Verdict::Poor => ("✖", palette.poor),
+        Verdict::Good => palette.good,
+        Verdict::Check => palette.check,
+        Verdict::Poor => palette.poor,
     }
 }
 
-fn verdict_ui(ui: &mut Ui, result: &MatchResult, is_current: bool) {
+fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
     let palette = Palette::of(ui);
     let assessment = &result.run.assessment;
-    let (sign, color) = verdict_look(palette, assessment.verdict);
+    let lengths = state.lengths();
+    // Where another pose fits better, an alternative is at best one to check.
+    let verdict = match (result.alternative, assessment.verdict) {
+        (Some(_), Verdict::Good) => Verdict::Check,
+        (_, verdict) => verdict,
+    };
     ui.horizontal(|ui| {
-        let text = format!("{sign} {}", assessment.verdict.label());
+        let mut text = format!("{} {}", verdict.sign(), verdict.label());
+        if let Some(index) = result.alternative {
+            text += &format!(" – pose {} of {}", index + 2, state.n_equal_poses());
+        }
+        let color = verdict_color(palette, verdict);
         let label = ui.label(RichText::new(text).color(color).size(17.0));
         ui.ctx().accesskit_node_builder(label.id, |node| {
             node.set_live(egui::accesskit::Live::Polite);
         });
-        if !is_current {
-            caption(ui, "out of date");
-        } else if let Some(index) = result.alternative {
-            caption(ui, format!("showing alternative {}", index + 1));
-        }
     });
-    for reason in assessment.reasons.iter().take(3) {
-        let mut letters = reason.chars();
-        let first = letters.next().map(|c| c.to_uppercase().to_string());
-        paragraph(
-            ui,
-            format!("{}{}.", first.unwrap_or_default(), letters.as_str()),
+    if let Some(score_ratio) = score_ratio(result) {
+        let text = format!(
+            "An alternative: its error is {} higher than that of the best pose.",
+            whole_percent(score_ratio - 1.0)
         );
+        paragraph(ui, text);
+        return;
     }
+    for reason in assessment.reasons.iter().take(3) {
+        paragraph(ui, sentence(&reason.words(lengths)));
+    }
+    for statement in assessment.statements(lengths) {
+        paragraph(ui, sentence(&statement));
+    }
+}
+
+/// How much worse the shown alternative is than the best pose, 1 = equally good.
+fn score_ratio(result: &MatchResult) -> Option<f64> {
+    let alternatives = &result.run.outcome.alternatives;
+    Some(alternatives.get(result.alternative?)?.score_ratio)
 }
 
 fn figures_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
     ui.add_space(2.0);
-    let coverage = &result.run.assessment.coverage;
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
-        let limit = state.length_text(coverage.limit);
-        let over =
-            |one: &crate::assess::OneSided| format!("{} within {limit}", percent(one.overlap));
-        figure(ui, "stamped → crash", &over(&coverage.source_on_target));
-        figure(ui, "crash → stamped", &over(&coverage.target_on_source));
-        let spread = format!(
-            "{} · {}",
-            length(coverage.rmse()),
-            state.length_text(coverage.p95())
-        );
-        figure(ui, "RMS · p95", &spread);
+        match state.result_coverage() {
+            Some(coverage) => coverage_ui(ui, state, coverage),
+            None => {
+                caption(ui, "Measuring this pose…");
+            }
+        }
+        if result.alternative.is_some() {
+            let best = &result.run.assessment.coverage;
+            let (rms, p95) = (length(best.rmse()), state.length_text(best.p95()));
+            figure(ui, "best pose: RMS · P95", &format!("{rms} · {p95}"));
+        }
         let outcome = &result.run.outcome;
-        let best = &outcome.target_from_source;
-        let corners = state.stamped_corners();
-        let agrees = |pose: &Similarity| corners.is_some_and(|c| is_same_pose(pose, best, &c));
-        let starts = outcome.starts.iter();
-        let n_same = starts.filter(|start| agrees(&start.last)).count();
+        let groups = group_starts(&outcome.starts, &state.stamped_extent());
+        let n_same = groups.first().map_or(0, |group| group.members.len());
         figure(
             ui,
-            "starts that agree",
+            "Converged starts",
             &format!("{n_same} of {}", outcome.starts.len()),
         );
-        let [crash, stamped] = result.run.n_triangles;
+        let PerRole { crash, stamped } = result.run.n_triangles;
         let on = format!(
             "■ {} ▲ {}",
             crate::ui::widgets::grouped(crash),
             crate::ui::widgets::grouped(stamped)
         );
-        figure(ui, "searched on", &on);
+        figure(ui, "Meshes used", &on);
     });
+}
+
+/// Overlap both ways and the spread of the distances, of the full meshes.
+fn coverage_ui(ui: &mut Ui, state: &AppState, coverage: &Coverage) {
+    let limit = state.length_text(coverage.limit);
+    let over = |one: &OneSided| format!("{} within {limit}", percent(one.overlap));
+    figure(ui, "stamped → crash", &over(&coverage.source_on_target));
+    figure(ui, "crash → stamped", &over(&coverage.target_on_source));
+    let (rms, p95) = (length(coverage.rmse()), state.length_text(coverage.p95()));
+    figure(ui, "RMS · P95", &format!("{rms} · {p95}"));
 }
 
 /// Poses that fit nearly as well: one click or one key away.
@@ -122,20 +176,21 @@ fn alternatives_ui(
     result: &MatchResult,
     commands: &mut Vec<Command>,
 ) {
-    if Action::FlipAlternative.enabled(state).is_err() {
+    if Action::NextAlternative.enabled(state).is_err() {
         return;
     }
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
-        let keys = Action::FlipAlternative.info().shortcut;
+        let keys = Action::NextAlternative.row().shortcut();
         let keys = keys.map_or_else(String::new, |s| s.to_string());
-        caption(ui, format!("Nearly as good ({keys})"));
-        if chip(ui, "best", result.alternative.is_none()).clicked() {
+        caption(ui, format!("Alternatives ({keys})"));
+        if chip(ui, "1 best", result.alternative.is_none()).clicked() {
             commands.push(MatchCommand::ShowAlternative(None).into());
         }
         let alternatives = result.run.outcome.alternatives.iter().take(4);
         for (index, alternative) in alternatives.enumerate() {
-            let label = format!("{} (×{:.2})", index + 1, alternative.score_ratio);
+            let worse = whole_percent(alternative.score_ratio - 1.0);
+            let label = format!("{} (+{worse})", index + 2);
             let is_on = result.alternative == Some(index);
             if chip(ui, &label, is_on).clicked() {
                 commands.push(MatchCommand::ShowAlternative(Some(index)).into());
@@ -151,7 +206,13 @@ fn matrix_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let last = state.copy_form();
         let width = ui.available_width() - ROW - UNIT;
-        let look = ("Copy matrix", Look::Plain, vec2(width, ROW + 4.0));
+        let is_by_hand = state.document.current_result().is_none();
+        let label = if is_by_hand {
+            "Copy matrix (pose by hand)"
+        } else {
+            "Copy matrix"
+        };
+        let look = (label, Look::Plain, vec2(width, ROW + 4.0));
         let mut none = Vec::new();
         let response = action_button(ui, state, Action::CopyMatrix, look, &mut none);
         if response.clicked() {
@@ -198,25 +259,24 @@ fn grid_ui(ui: &mut Ui, rows: &[[f64; 4]; 4]) {
 /// What people expect of a translation: how far the part's centre goes, and how much it turns.
 fn moved_ui(ui: &mut Ui, state: &AppState) {
     let pose = state.document.crash_from_stamped();
-    let Some(part) = state.document.part(crate::jobs::Role::Stamped) else {
+    let Some(part) = state.document.part(crate::role::Role::Stamped) else {
         return;
     };
     let center = part.bounds().center();
     let record = PoseRecord::new(pose, part.loaded.sample_node(), &center);
     let [x, y, z] = record.center_move.map(length);
     let turn = record.rotation_axis_angle;
-    let [u, v, w] = turn.axis.map(|x| format!("{:.3}", x + 0.0));
+    let axis = vector(turn.axis, 3);
     paragraph(ui, format!("The centre moves by ({x}, {y}, {z})."));
     paragraph(
         ui,
         format!(
-            "The part turns by {:.3}° about the axis ({u}, {v}, {w}).",
-            turn.angle_deg
+            "The part rotates by {}° about the axis {axis}.",
+            fixed(turn.angle_deg, 3)
         ),
     );
     if let Some(node) = record.sample_node {
-        let words = |[x, y, z]: [f64; 3]| format!("({x:.3}, {y:.3}, {z:.3})");
-        let (from, to) = (words(node.stamped), words(node.crash));
+        let (from, to) = (vector(node.stamped, 3), vector(node.crash, 3));
         paragraph(ui, format!("Sample node {}: {from} → {to}", node.id));
     }
     caption(

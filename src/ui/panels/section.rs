@@ -1,11 +1,12 @@
 //! The frame of the three sections: number, title, summary, fold.
 
-use crate::app::{AppState, Command, Section, ViewCommand};
-use crate::jobs::PerRole;
-use crate::ui::theme::{Palette, TALL, UNIT};
 use egui::{
     Align2, CornerRadius, FontId, Margin, Rect, Sense, Stroke, TextStyle, Ui, UiBuilder, pos2, vec2,
 };
+
+use crate::app::{AppState, Command, Section, ViewCommand};
+use crate::role::PerRole;
+use crate::ui::theme::{Palette, TALL, UNIT};
 
 /// A section: its header is always there, its body while it is unfolded.
 pub fn section_ui(

@@ -1,17 +1,19 @@
 //! Menus, search, unit, bell.
 
+use egui::{Align, Button, Layout, MenuBar, RichText, Sense, Ui, pos2, vec2};
+
 use super::units::window_unit_ui;
 use crate::app::{
-    Action, AppState, Command, CopyForm, Dialog, ExportCommand, ExportKind, Menu, MeshExport,
+    Action, ActionRow, AppState, Command, CopyForm, Dialog, ExportCommand, Menu, MenuGroup,
     ViewCommand,
 };
-use crate::jobs::Role;
-use crate::pipeline::project::EXTENSION;
+use crate::pipeline::outputs::{MeshOutput, Output};
+use crate::pipeline::project::is_project;
 use crate::report::{CardForm, MatrixForm};
-use crate::ui::project_dialogs::kept_menu_ui;
+use crate::role::Role;
+use crate::ui::project_dialogs::recovered_menu_ui;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{caption, focus_ring};
-use egui::{Align, Button, Layout, MenuBar, RichText, Sense, Ui, pos2, vec2};
 
 /// The bar at the top.
 pub fn top_bar_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -32,11 +34,28 @@ pub fn top_bar_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 /// The items of a menu; the table of actions says which.
 fn menu_ui(ui: &mut Ui, state: &AppState, menu: Menu, commands: &mut Vec<Command>) {
-    for action in Action::in_menu(menu) {
-        if action == Action::Escape || begins_group(action) {
+    let mut before: Option<&MenuGroup> = None;
+    for group in menu.groups() {
+        // Submenus stand together; a line sets off every other group.
+        let are_submenus = |before: &MenuGroup| before.submenu.and(group.submenu).is_some();
+        if before.is_some_and(|before| !are_submenus(before)) {
             ui.separator();
         }
-        item_ui(ui, state, action, commands);
+        before = Some(group);
+        let items = |ui: &mut Ui, commands: &mut Vec<Command>| {
+            for row in group.rows {
+                item_ui(ui, state, row, commands);
+            }
+        };
+        match group.submenu {
+            Some(name) => {
+                ui.menu_button(name, |ui| {
+                    ui.set_min_width(248.0);
+                    items(ui, commands);
+                });
+            }
+            None => items(ui, commands),
+        }
     }
     if menu == Menu::Export {
         ui.separator();
@@ -46,58 +65,30 @@ fn menu_ui(ui: &mut Ui, state: &AppState, menu: Menu, commands: &mut Vec<Command
         ui.separator();
         recent_ui(ui, state, commands);
     }
-    if menu == Menu::File && !state.project.kept_works.is_empty() {
-        kept_menu_ui(ui, state, commands);
+    if menu == Menu::File && !state.project.sessions.is_empty() {
+        recovered_menu_ui(ui, state, commands);
     }
 }
 
-/// Where a line in a menu helps the eye.
-fn begins_group(action: Action) -> bool {
-    use Action as A;
-    matches!(
-        action,
-        A::OpenProject
-            | A::ReloadAll
-            | A::Preferences
-            | A::BackToAsLoaded
-            | A::HideSelected
-            | A::MoveTool
-            | A::ToggleDetailed
-            | A::ToggleEdges
-            | A::FitAll
-            | A::ViewFront
-            | A::ToggleProjection
-            | A::ToggleGraphicsOnly
-            | A::Align
-            | A::MatchOrStop
-            | A::FlipAlternative
-            | A::SaveReport
-            | A::PictureOptions
-            | A::About
-    )
-}
-
-fn item_ui(ui: &mut Ui, state: &AppState, action: Action, commands: &mut Vec<Command>) {
-    let info = action.info();
+fn item_ui(ui: &mut Ui, state: &AppState, row: &ActionRow, commands: &mut Vec<Command>) {
+    let action = row.action;
     let enabled = action.enabled(state);
     let label = match (action, state.history.undo_name(), state.history.redo_name()) {
         (Action::Undo, Some(name), _) => format!("Undo “{name}”"),
         (Action::Redo, _, Some(name)) => format!("Redo “{name}”"),
-        _ => info.label.to_owned(),
+        _ => row.label.to_owned(),
     };
     let mut button = Button::new(label);
-    if let Some(shortcut) = info.shortcut {
+    if let Some(shortcut) = row.shortcut() {
         button = button.shortcut_text(shortcut.to_string());
     }
     let response = ui.add_enabled(enabled.is_ok(), button);
     let response = match enabled {
-        Ok(()) => response.on_hover_text(info.tooltip),
-        Err(reason) => {
-            response.on_disabled_hover_text(format!("{}\nNot now: {reason}", info.tooltip))
-        }
+        Ok(()) => response.on_hover_text(row.tooltip),
+        Err(reason) => response.on_disabled_hover_text(format!("{}\n{reason}", row.tooltip)),
     };
     if response.clicked() {
-        commands.extend(action.to_commands(state));
+        commands.extend(action.command(state));
         ui.close();
     }
 }
@@ -107,20 +98,20 @@ fn export_forms_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.menu_button("Copy as", |ui| copy_forms_ui(ui, state, commands));
     let matrices = MatrixForm::ALL
         .iter()
-        .map(|form| (form.label(), ExportKind::Matrix(*form)));
+        .map(|form| (form.label(), Output::Matrix(*form)));
     let can_write = Action::SaveMatrix.enabled(state).is_ok();
-    save_menu(ui, "Write matrix as", can_write, matrices, commands);
+    save_menu(ui, "Save matrix as", can_write, matrices, commands);
     let cards = CardForm::ALL
         .iter()
-        .map(|form| (form.label(), ExportKind::Cards(*form)));
+        .map(|form| (form.label(), Output::Cards(*form)));
     let can_write = Action::SaveCards.enabled(state).is_ok();
-    save_menu(ui, "Write cards", can_write, cards, commands);
-    let meshes = MeshExport::ALL
+    save_menu(ui, "Save cards as", can_write, cards, commands);
+    let meshes = MeshOutput::ALL
         .into_iter()
-        .filter(|mesh| mesh.is_possible(state))
-        .map(|mesh| (mesh.label(), ExportKind::Mesh(mesh)));
+        .filter(|mesh| state.can_write(Output::Mesh(*mesh)))
+        .map(|mesh| (mesh.label(), Output::Mesh(mesh)));
     let can_write = state.document.parts.iter().any(|(_, part)| part.is_some());
-    save_menu(ui, "Write part", can_write, meshes, commands);
+    save_menu(ui, "Save part as", can_write, meshes, commands);
 }
 
 /// What can be put on the clipboard; what needs a match waits for one.
@@ -139,7 +130,7 @@ fn save_menu(
     ui: &mut Ui,
     name: &str,
     is_possible: bool,
-    items: impl Iterator<Item = (&'static str, ExportKind)>,
+    items: impl Iterator<Item = (&'static str, Output)>,
     commands: &mut Vec<Command>,
 ) {
     ui.add_enabled_ui(is_possible, |ui| {
@@ -159,7 +150,7 @@ fn recent_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.menu_button("Recent files", |ui| {
         for path in &state.settings.recent {
             let name = path.file_name().unwrap_or(path.as_os_str());
-            if path.extension().is_some_and(|ending| ending == EXTENSION) {
+            if is_project(path) {
                 let open = ui.button(name.to_string_lossy());
                 if open.on_hover_text(path.display().to_string()).clicked() {
                     let (paths, role) = (vec![path.clone()], None);

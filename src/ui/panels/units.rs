@@ -1,11 +1,12 @@
 //! The units of a file: the menu that sets them, and the question where two files disagree.
 
+use egui::{Label, RichText, Ui};
+
 use crate::app::{AppState, Command, FileCommand};
-use crate::jobs::Role;
+use crate::role::Role;
 use crate::ui::theme::Palette;
 use crate::ui::widgets::{caption, card};
 use crate::units::{LengthUnit, UnitSystem, Units};
-use egui::{Label, RichText, Ui};
 
 /// What is known of a file's units, and every choice.
 pub fn units_menu_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
@@ -66,7 +67,7 @@ pub fn unit_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
         if ui.button(label).clicked() {
             commands.push(command.into());
         }
-        if ui.button("They are really different").clicked() {
+        if ui.button("The sizes do differ").clicked() {
             commands.push(FileCommand::DismissUnitHint.into());
         }
     });

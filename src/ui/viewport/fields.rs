@@ -3,15 +3,15 @@
 
 use std::sync::Arc;
 
-use super::background::{Background, Task};
 use super::meshes::{MeshKey, ShownMesh};
 use crate::app::{AppState, ColorBy};
 use crate::colormap::{ColorMap, ColorScale};
 use crate::geometry::{Point3, TriMesh};
-use crate::jobs::{PerRole, Role};
 use crate::monitor::Monitor;
 use crate::render::FieldLook;
+use crate::role::{PerRole, Role};
 use crate::search::{Bvh, SearchLimits, closest_many};
+use crate::ui::background::{Background, Task};
 
 /// Share of the values on either end that may lie beyond the colours.
 const TAIL: f64 = 0.005;
@@ -254,7 +254,15 @@ impl Order {
 
     fn make(self) -> Field {
         let values = match &self.other {
-            Some(other) => distances(other, self.mesh.mesh().positions()),
+            Some(other) => {
+                let points = self.mesh.mesh().positions();
+                let full = &self.mesh.source.part.surface;
+                if Arc::ptr_eq(other, full.mesh()) {
+                    distances(full.bvh(), points)
+                } else {
+                    distances(&Bvh::build(Arc::clone(other)), points)
+                }
+            }
             None => thickness(&self.mesh),
         };
         Field {
@@ -266,13 +274,12 @@ impl Order {
 }
 
 /// Distances of points from a surface.
-fn distances(target: &Arc<TriMesh>, points: &[Point3]) -> Vec<f32> {
-    let tree = Bvh::build(Arc::clone(target));
+fn distances(tree: &Bvh, points: &[Point3]) -> Vec<f32> {
     let limits = SearchLimits {
         max_distance: f64::INFINITY,
         min_cos: None,
     };
-    let found = closest_many(&tree, points, &[], &[], limits, &Monitor::silent());
+    let found = closest_many(tree, points, &[], &[], limits, &Monitor::silent());
     // A silent monitor is never cancelled.
     let found = found.unwrap_or_default().into_iter();
     let distance = |hit: Option<crate::search::SurfaceHit>| {
@@ -355,6 +362,6 @@ mod tests {
         let positions = corners.map(|[x, y]| Point3::new(x, y, 0.0)).to_vec();
         let mesh = Arc::new(TriMesh::new(positions, vec![[0, 1, 2]]).unwrap());
         let points = [0.5, -0.25].map(|z| Point3::new(1.0, 1.0, z));
-        assert_eq!(distances(&mesh, &points), [0.5, 0.25]);
+        assert_eq!(distances(&Bvh::build(mesh), &points), [0.5, 0.25]);
     }
 }

@@ -6,8 +6,8 @@ use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDes
 use egui::epaint::ViewportInPixels;
 
 use crate::geometry::Camera;
-use crate::jobs::{PerRole, Role};
 use crate::render::{Frame, Renderer, Scene, ViewTarget};
+use crate::role::{PerRole, Role};
 
 /// What lives on the graphics card, kept among egui's own resources.
 pub(super) struct Gpu {

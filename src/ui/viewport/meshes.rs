@@ -2,17 +2,15 @@
 
 use std::sync::Arc;
 
-use super::background::{Background, Task};
 use crate::app::Part;
 use crate::geometry::{Point3, TriMesh};
-use crate::jobs::{MeasuredLevel, Role};
+use crate::jobs::MeasuredLevel;
 use crate::pipeline::load::LoadedPart;
 use crate::render::{MeshInput, RenderMesh};
+use crate::role::Role;
 use crate::search::{Bvh, RayHit};
+use crate::ui::background::{Background, Task};
 
-/// Meshes up to this size are prepared within the frame, which costs a few milliseconds, so that
-/// scrubbing the levels never shows an old one.
-const AT_ONCE: usize = 4_000;
 /// Meshes kept although no window shows them now: the levels one flips between.
 const KEPT: usize = 8;
 
@@ -50,13 +48,13 @@ impl MeshSource {
 
     /// Element of the deck that a triangle is or descends from.
     pub fn element(&self, triangle: usize) -> u32 {
-        let of_surface = self.part.triangle_of[self.full_triangle(triangle)];
-        self.part.surface.triangle_element[of_surface as usize]
+        let triangle = self.full_triangle(triangle) as u32;
+        self.part.ids.element_of(triangle).unwrap_or(u32::MAX)
     }
 
     fn part_index(&self, triangle: usize) -> u32 {
-        let of_surface = self.part.triangle_of[self.full_triangle(triangle)];
-        self.part.surface.triangle_part[of_surface as usize]
+        let triangle = self.full_triangle(triangle) as u32;
+        self.part.ids.part_of(triangle).unwrap_or_default()
     }
 
     fn key(&self) -> MeshKey {
@@ -73,9 +71,8 @@ pub(super) struct ShownMesh {
     pub source: MeshSource,
     pub drawn: Arc<RenderMesh>,
     pub part_of_triangle: Vec<u32>,
-    tree: Bvh,
-    /// Deck numbers of the vertices; empty for levels, whose vertices are not nodes.
-    nodes: Vec<u64>,
+    /// The tree of a level; the part has that of the full mesh.
+    tree_of_level: Option<Bvh>,
 }
 
 impl ShownMesh {
@@ -92,12 +89,19 @@ impl ShownMesh {
             mesh,
             part_of_triangle: Some(&part_of_triangle),
             element_of_triangle: elements.as_deref(),
+            topology: source
+                .level
+                .is_none()
+                .then(|| source.part.surface.topology()),
         };
-        let (drawn, tree) = rayon::join(|| RenderMesh::new(input), || Bvh::build(Arc::clone(mesh)));
+        let is_level = source.level.is_some();
+        let (drawn, tree_of_level) = rayon::join(
+            || RenderMesh::new(input),
+            || is_level.then(|| Bvh::build(Arc::clone(mesh))),
+        );
         Self {
             drawn: Arc::new(drawn),
-            tree,
-            nodes: node_numbers(&source),
+            tree_of_level,
             part_of_triangle,
             source,
         }
@@ -113,7 +117,9 @@ impl ShownMesh {
 
     /// Tree for rays and closest points.
     pub fn tree(&self) -> &Bvh {
-        &self.tree
+        self.tree_of_level
+            .as_ref()
+            .unwrap_or_else(|| self.source.part.surface.bvh())
     }
 
     /// Deck number of a part by its index.
@@ -135,23 +141,11 @@ impl ShownMesh {
             }
         }
         let position = self.mesh().positions()[nearest as usize];
-        (position, self.nodes.get(nearest as usize).copied())
+        // The vertices of a level are not nodes.
+        let is_full = self.source.level.is_none();
+        let node = is_full.then(|| self.source.part.node_id(nearest));
+        (position, node.flatten())
     }
-}
-
-/// For each vertex of a full mesh the number of the first node that became it.
-fn node_numbers(source: &MeshSource) -> Vec<u64> {
-    if source.level.is_some() {
-        return Vec::new();
-    }
-    let part = &source.part;
-    let ids = part.model.nodes.ids();
-    let mut numbers = vec![0; source.mesh().n_vertices()];
-    let vertices = part.vertex_of.iter().zip(&part.surface.vertex_node);
-    for (&vertex, &node) in vertices.rev() {
-        numbers[vertex as usize] = ids[node as usize];
-    }
-    numbers
 }
 
 /// The prepared meshes.
@@ -178,15 +172,8 @@ impl MeshStore {
         sources: &[MeshSource],
         wake: &egui::Context,
     ) -> Vec<Option<Arc<ShownMesh>>> {
-        let (small, large): (Vec<_>, Vec<_>) = sources
-            .iter()
-            .filter(|source| !self.is_known(source.key()))
-            .partition(|source| source.mesh().n_triangles() <= AT_ONCE);
-        let made: Vec<_> = small
-            .into_iter()
-            .map(|source| Arc::new(ShownMesh::new(source.clone())))
-            .collect();
-        let wanted = large.into_iter().map(|source| {
+        let wanted = sources.iter().filter(|source| !self.is_known(source.key()));
+        let wanted = wanted.map(|source| {
             let source = source.clone();
             Task {
                 key: source.key(),
@@ -200,7 +187,6 @@ impl MeshStore {
                 None => self.failed.push(key),
             }
         }
-        self.ready.extend(made);
         let found = sources.iter().map(|source| self.take(source.key()));
         let found = found.collect();
         self.forget();

@@ -1,8 +1,8 @@
 //! Mouse and keys to cameras.
 
-use egui::{Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui, Vec2};
+use egui::{Key, Modifiers, PointerButton, Pos2, Rect, Ui, Vec2};
 
-use super::stage::Picture;
+use super::frame::FrameContext;
 use crate::app::MouseScheme;
 use crate::geometry::camera::{OrbitStyle, ScreenSize};
 use crate::geometry::{Camera, Point3};
@@ -65,32 +65,17 @@ fn is_bare(scheme: MouseScheme, button: PointerButton, held: Modifiers) -> bool 
     held.command && !held.shift && is_free
 }
 
-/// A window as the mouse meets it.
-pub(super) struct View<'a> {
-    pub rect: Rect,
-    pub camera: Camera,
-    pub picture: &'a Picture,
-    /// Picked by the user.
-    pub pivot: Option<Point3>,
-    pub style: OrbitStyle,
-    pub scheme: MouseScheme,
-}
-
-impl View<'_> {
-    pub fn screen(&self) -> ScreenSize {
-        screen_of(self.rect)
-    }
-
-    pub fn pixel(&self, pos: Pos2) -> [f64; 2] {
-        pixel_of(self.rect, pos)
-    }
-
+impl FrameContext<'_> {
     /// The point under the cursor, or the one at the depth of the scene's middle.
     fn anchor(&self, pos: Pos2) -> Point3 {
         let pixel = self.pixel(pos);
-        let hit = self.picture.hit(&self.camera, pixel, self.screen());
+        let hit = self.picture.hit(&self.view.camera, pixel, self.screen());
         hit.map_or_else(
-            || self.camera.unproject(pixel, self.screen(), &self.middle()),
+            || {
+                self.view
+                    .camera
+                    .unproject(pixel, self.screen(), &self.middle())
+            },
             |hit| hit.point,
         )
     }
@@ -100,17 +85,17 @@ impl View<'_> {
     fn pivot_at(&self, pos: Pos2) -> Point3 {
         let hit = || {
             self.picture
-                .hit(&self.camera, self.pixel(pos), self.screen())
+                .hit(&self.view.camera, self.pixel(pos), self.screen())
         };
         let under_cursor = || hit().map(|hit| hit.point);
-        self.pivot
+        self.pivot()
             .or_else(under_cursor)
             .unwrap_or_else(|| self.middle())
     }
 
     fn middle(&self) -> Point3 {
         if self.picture.bounds.is_empty() {
-            self.camera.target
+            self.view.camera.target
         } else {
             self.picture.bounds.center()
         }
@@ -166,23 +151,22 @@ impl Navigator {
     pub fn update(
         &mut self,
         ui: &Ui,
-        response: &Response,
-        view: &View<'_>,
+        frame: &FrameContext<'_>,
         is_left_taken: bool,
     ) -> Option<Camera> {
-        let mut camera = view.camera;
-        self.begin_drag(ui, response, view, is_left_taken);
-        self.go_on_dragging(ui, response, view, &mut camera);
+        let mut camera = frame.view.camera;
+        self.begin_drag(ui, frame, is_left_taken);
+        self.go_on_dragging(ui, frame, &mut camera);
         if self.drag.is_none() {
-            turn_wheel(ui, response, view, &mut camera);
+            turn_wheel(ui, frame, &mut camera);
         }
-        if response.has_focus() {
-            press_keys(ui, view, &mut camera);
+        if frame.response.has_focus() {
+            press_keys(ui, frame, &mut camera);
         }
-        (camera != view.camera).then_some(camera)
+        (camera != frame.view.camera).then_some(camera)
     }
 
-    fn begin_drag(&mut self, ui: &Ui, response: &Response, view: &View<'_>, is_left_taken: bool) {
+    fn begin_drag(&mut self, ui: &Ui, frame: &FrameContext<'_>, is_left_taken: bool) {
         use PointerButton::{Middle, Primary, Secondary};
         if self.drag.is_some() {
             return;
@@ -190,51 +174,46 @@ impl Navigator {
         let started = [Primary, Middle, Secondary]
             .into_iter()
             .filter(|button| !(is_left_taken && *button == Primary))
-            .find(|&button| response.drag_started_by(button));
+            .find(|&button| frame.response.drag_started_by(button));
         let Some(button) = started else {
             return;
         };
         let (origin, held) = ui.input(|i| (i.pointer.press_origin(), i.modifiers));
-        let (Some(pos), Some(kind)) = (origin, drag_kind(view.scheme, button, held)) else {
+        let (Some(pos), Some(kind)) = (origin, drag_kind(frame.state.settings.mouse, button, held))
+        else {
             return;
         };
-        let center_distance = (pos - view.rect.center()).length();
-        let is_outside = center_distance > ROLL_RADIUS * view.rect.height();
-        let is_free = view.style == OrbitStyle::Free;
+        let center_distance = (pos - frame.rect().center()).length();
+        let is_outside = center_distance > ROLL_RADIUS * frame.rect().height();
+        let is_free = frame.state.view.orbit_style == OrbitStyle::Free;
         let kind = match kind {
             DragKind::Rotate if is_free && is_outside => DragKind::Roll,
             kind => kind,
         };
         let anchor = match kind {
-            DragKind::Rotate => view.pivot_at(pos),
-            DragKind::Roll => view.pivot.unwrap_or(view.camera.target),
-            DragKind::Pan | DragKind::Zoom => view.anchor(pos),
+            DragKind::Rotate => frame.pivot_at(pos),
+            DragKind::Roll => frame.pivot().unwrap_or(frame.view.camera.target),
+            DragKind::Pan | DragKind::Zoom => frame.anchor(pos),
         };
         ui.ctx().request_repaint();
         self.drag = Some(CameraDrag {
             kind,
             anchor,
-            is_bare: is_bare(view.scheme, button, held),
+            is_bare: is_bare(frame.state.settings.mouse, button, held),
             button,
             last: pos,
         });
     }
 
-    fn go_on_dragging(
-        &mut self,
-        ui: &Ui,
-        response: &Response,
-        view: &View<'_>,
-        camera: &mut Camera,
-    ) {
+    fn go_on_dragging(&mut self, ui: &Ui, frame: &FrameContext<'_>, camera: &mut Camera) {
         let Some(drag) = &mut self.drag else {
             return;
         };
         if let Some(pos) = ui.input(|i| place_of_drag(i, drag.button)) {
-            drag.apply(pos, view, camera);
+            drag.apply(pos, frame, camera);
             drag.last = pos;
         }
-        if !response.dragged_by(drag.button) {
+        if !frame.response.dragged_by(drag.button) {
             self.drag = None;
             ui.ctx().request_repaint();
         }
@@ -258,29 +237,34 @@ fn place_of_drag(input: &egui::InputState, button: PointerButton) -> Option<Pos2
 
 impl CameraDrag {
     /// Moves the camera by the way from the last place to `pos`.
-    fn apply(&self, pos: Pos2, view: &View<'_>, camera: &mut Camera) {
+    fn apply(&self, pos: Pos2, frame: &FrameContext<'_>, camera: &mut Camera) {
         let way = pos - self.last;
         if way == Vec2::ZERO {
             return;
         }
-        let per_point = TURN_PER_HEIGHT / f64::from(view.rect.height().max(1.0));
+        let per_point = TURN_PER_HEIGHT / f64::from(frame.rect().height().max(1.0));
         match self.kind {
             DragKind::Rotate => {
                 let (right, up) = (f64::from(way.x), -f64::from(way.y));
-                camera.orbit(view.style, &self.anchor, right * per_point, up * per_point);
+                camera.orbit(
+                    frame.state.view.orbit_style,
+                    &self.anchor,
+                    right * per_point,
+                    up * per_point,
+                );
             }
             DragKind::Roll => {
-                let center = view.rect.center();
+                let center = frame.rect().center();
                 let turn = angle_between(self.last - center, pos - center);
                 camera.roll(&self.anchor, turn);
             }
             DragKind::Pan => {
-                let (from, to) = (view.pixel(self.last), view.pixel(pos));
-                camera.pan(from, to, view.screen(), &self.anchor);
+                let (from, to) = (frame.pixel(self.last), frame.pixel(pos));
+                camera.pan(from, to, frame.screen(), &self.anchor);
             }
             DragKind::Zoom => {
                 let factor = (f64::from(way.y) * ZOOM_PER_DRAG_POINT).exp();
-                camera.zoom(factor, &self.anchor, &view.picture.bounds);
+                camera.zoom(factor, &self.anchor, &frame.picture.bounds);
             }
         }
     }
@@ -294,18 +278,18 @@ pub(super) fn angle_between(from: Vec2, to: Vec2) -> f64 {
     -cross.atan2(dot)
 }
 
-fn turn_wheel(ui: &Ui, response: &Response, view: &View<'_>, camera: &mut Camera) {
-    let Some(pos) = response.hover_pos() else {
+fn turn_wheel(ui: &Ui, frame: &FrameContext<'_>, camera: &mut Camera) {
+    let Some(pos) = frame.response.hover_pos() else {
         return;
     };
     let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
     let factor = (-f64::from(scroll) * ZOOM_PER_WHEEL_POINT).exp() / f64::from(pinch);
     if factor != 1.0 {
-        camera.zoom(factor, &view.anchor(pos), &view.picture.bounds);
+        camera.zoom(factor, &frame.anchor(pos), &frame.picture.bounds);
     }
 }
 
-fn press_keys(ui: &Ui, view: &View<'_>, camera: &mut Camera) {
+fn press_keys(ui: &Ui, frame: &FrameContext<'_>, camera: &mut Camera) {
     let (arrows, zoom, is_pan) = ui.input(|i| {
         let pressed = |key| i32::from(i.key_pressed(key));
         let right = pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
@@ -318,19 +302,19 @@ fn press_keys(ui: &Ui, view: &View<'_>, camera: &mut Camera) {
     let [right, up] = arrows;
     if (right, up) != (0, 0) {
         if is_pan {
-            let way = Vec2::new(right as f32, -up as f32) * PAN_PER_KEY * view.rect.height();
-            let from = view.rect.center();
-            let (from, to) = (view.pixel(from), view.pixel(from + way));
-            camera.pan(from, to, view.screen(), &view.camera.target);
+            let way = Vec2::new(right as f32, -up as f32) * PAN_PER_KEY * frame.rect().height();
+            let from = frame.rect().center();
+            let (from, to) = (frame.pixel(from), frame.pixel(from + way));
+            camera.pan(from, to, frame.screen(), &frame.view.camera.target);
         } else {
-            let pivot = view.pivot.unwrap_or_else(|| view.middle());
+            let pivot = frame.pivot().unwrap_or_else(|| frame.middle());
             let turn = [right, up].map(|n| f64::from(n) * TURN_PER_KEY);
-            camera.orbit(view.style, &pivot, turn[0], turn[1]);
+            camera.orbit(frame.state.view.orbit_style, &pivot, turn[0], turn[1]);
         }
     }
     if zoom != 0 {
         let factor = ZOOM_PER_KEY.powi(-zoom);
-        camera.zoom(factor, &view.camera.target, &view.picture.bounds);
+        camera.zoom(factor, &frame.view.camera.target, &frame.picture.bounds);
     }
 }
 

@@ -1,12 +1,13 @@
 //! Picking pairs of points: what the pointer snaps to, and the click that takes it.
 
-use egui::{Pos2, Rect, Response};
+use egui::{Pos2, Rect};
 
+use super::frame::FrameContext;
 use super::navigation::{pixel_of, pos_of, screen_of};
-use super::stage::{Hit, Picture};
-use crate::app::{AppState, Command, PairCommand, PickKind, PickedPoint};
+use super::picture::Hit;
+use crate::app::{Command, PairCommand, PickKind, PickedPoint};
 use crate::geometry::{Camera, Point3};
-use crate::jobs::Role;
+use crate::role::Role;
 
 /// Nodes and corners catch the pointer within so many points.
 const REACH: f32 = 10.0;
@@ -23,22 +24,18 @@ pub(super) struct Pick {
     pub at: Pos2,
 }
 
-/// A window as picking meets it.
-pub(super) struct Picker<'a> {
-    pub response: &'a Response,
-    pub state: &'a AppState,
-    pub camera: &'a Camera,
-    pub picture: &'a Picture,
-    pub window: Role,
-    /// The camera or another tool has the pointer.
-    pub is_busy: bool,
+/// What lies under the pointer; a click takes it.
+pub(super) fn update(frame: &FrameContext<'_>, commands: &mut Vec<Command>) -> Option<Pick> {
+    PointPicker(frame).update(commands)
 }
 
-impl Picker<'_> {
-    /// What lies under the pointer; a click takes it.
-    pub fn update(&self, commands: &mut Vec<Command>) -> Option<Pick> {
+/// Picking in one frame.
+struct PointPicker<'a>(&'a FrameContext<'a>);
+
+impl PointPicker<'_> {
+    fn update(&self, commands: &mut Vec<Command>) -> Option<Pick> {
         let pick = self.pick()?;
-        if self.response.clicked() {
+        if self.0.response.clicked() {
             let (role, point) = (pick.role, pick.picked);
             commands.push(PairCommand::Pick { role, point }.into());
         }
@@ -48,31 +45,32 @@ impl Picker<'_> {
     /// The part that is asked for in this window: the one of the next click where both are, else the
     /// window's own.
     fn role(&self) -> Option<Role> {
-        let (_, asked) = self.state.next_pick()?;
-        let role = if self.state.view.is_moved_over {
+        let (_, asked) = self.0.state.next_pick()?;
+        let role = if self.0.state.view.is_moved_over {
             asked
         } else {
-            self.window
+            self.0.view.window
         };
-        let is_here = self.window == Role::Crash || !self.state.view.is_moved_over;
+        let is_here = self.0.view.window == Role::Crash || !self.0.state.view.is_moved_over;
         is_here.then_some(role)
     }
 
     fn pick(&self) -> Option<Pick> {
-        if self.is_busy || self.state.is_preview() || self.state.locking_job().is_some() {
+        if self.0.state.is_preview() || self.0.state.locking_job().is_some() {
             return None;
         }
         let role = self.role()?;
-        let pos = self.response.hover_pos()?;
-        let rect = self.response.rect;
+        let pos = self.0.response.hover_pos()?;
+        let rect = self.0.rect();
         let pixel = pixel_of(rect, pos);
         let hit = self
+            .0
             .picture
-            .hit_of(Some(role), self.camera, pixel, screen_of(rect));
-        let place = self.picture.place_of(role)?;
+            .hit_of(Some(role), &self.0.view.camera, pixel, screen_of(rect));
+        let place = self.0.picture.place_of(role)?;
         let (at, point, kind) = self
             .landmark(role, pos, hit.as_ref())
-            .or_else(|| snapped(rect, self.camera, pos, hit.as_ref()?))?;
+            .or_else(|| snapped(rect, &self.0.view.camera, pos, hit.as_ref()?))?;
         let picked = PickedPoint {
             point: place.to_part(&point),
             kind,
@@ -87,10 +85,10 @@ impl Picker<'_> {
         pos: Pos2,
         hit: Option<&Hit>,
     ) -> Option<(Pos2, Point3, PickKind)> {
-        let place = self.picture.place_of(role)?;
-        let landmarks = &self.state.document.part(role)?.facts.landmarks;
-        let rect = self.response.rect;
-        let size = |point: &Point3| self.camera.pixel_size(screen_of(rect), point);
+        let place = self.0.picture.place_of(role)?;
+        let landmarks = &self.0.state.document.part(role)?.facts.landmarks;
+        let rect = self.0.rect();
+        let size = |point: &Point3| self.0.view.camera.pixel_size(screen_of(rect), point);
         let holes = landmarks.holes.iter().map(|hole| {
             let center = place.to_window(&hole.center);
             let radius = (hole.radius / size(&center)) as f32;
@@ -104,7 +102,7 @@ impl Picker<'_> {
         let within = holes
             .chain(corners)
             .filter_map(|(point, reach, depth, kind)| {
-                let at = pos_of(rect, self.camera, &point)?;
+                let at = pos_of(rect, &self.0.view.camera, &point)?;
                 let off = at.distance(pos) / reach;
                 let slack = depth + f64::from(2.0 * reach) * size(&point);
                 let is_seen = hit.is_none_or(|hit| !self.is_behind(&point, &hit.point, slack));
@@ -116,10 +114,10 @@ impl Picker<'_> {
 
     /// True if a point lies farther from the viewer than another by more than `slack`.
     fn is_behind(&self, point: &Point3, other: &Point3, slack: f64) -> bool {
-        let ray = self.camera.ray(
-            pixel_of(self.response.rect, self.response.rect.center()),
-            screen_of(self.response.rect),
-            &self.picture.bounds,
+        let ray = self.0.view.camera.ray(
+            pixel_of(self.0.rect(), self.0.rect().center()),
+            screen_of(self.0.rect()),
+            &self.0.picture.bounds,
         );
         (point - other).dot(&ray.direction.normalize()) > slack
     }

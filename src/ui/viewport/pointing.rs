@@ -1,11 +1,10 @@
 //! What lies under the pointer: hovering, selecting, the menu of the right button.
 
-use egui::{Response, Ui};
+use egui::Ui;
 
-use super::cast::Stage;
-use super::navigation::{pixel_of, screen_of};
-use super::stage::{Hit, Picture};
-use crate::app::{AppState, ColorBy, Command, InspectCommand, PartCommand, PartRef, ViewCommand};
+use super::frame::FrameContext;
+use super::picture::Hit;
+use crate::app::{ColorBy, Command, InspectCommand, PartCommand, PartRef, ViewCommand};
 
 /// What a window remembers about the pointer.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -16,51 +15,54 @@ pub(super) struct Pointing {
     menu: Option<Hit>,
 }
 
-/// A window as the pointer meets it.
-pub(super) struct Target<'a> {
-    pub ui: &'a Ui,
-    pub response: &'a Response,
-    pub state: &'a AppState,
-    pub stage: &'a Stage,
-    pub picture: &'a Picture,
-    /// The camera or a tool has the pointer.
-    pub is_busy: bool,
-}
-
 impl Pointing {
-    /// What lies under the pointer, after telling the state about it.
-    pub fn update(&mut self, target: &Target<'_>, commands: &mut Vec<Command>) -> Option<Hit> {
-        let response = target.response;
-        let hit = target.hit();
+    /// What lies under the pointer, after telling the state about it. `is_busy`: the camera or a tool
+    /// has the pointer.
+    pub fn update(
+        &mut self,
+        ui: &Ui,
+        frame: &FrameContext<'_>,
+        is_busy: bool,
+        commands: &mut Vec<Command>,
+    ) -> Option<Hit> {
+        let hit = if is_busy { None } else { hit(frame) };
         let part = hit.as_ref().and_then(|hit| hit.part);
-        if !target.is_busy && self.hovered != part {
+        if !is_busy && self.hovered != part {
             self.hovered = part;
             commands.push(PartCommand::Hover(part).into());
         }
-        if target.state.view.move_tool.is_none() {
-            if target.state.view.pair_tool.is_none() {
-                self.click(target, hit.as_ref(), commands);
+        if frame.state.view.move_tool.is_none() {
+            if frame.state.view.pair_tool.is_none() {
+                self.click(ui, frame, hit.as_ref(), commands);
             }
-            if response.secondary_clicked() {
+            if frame.response.secondary_clicked() {
                 self.menu.clone_from(&hit);
             }
-            response.context_menu(|ui| self.menu(ui, target, commands));
+            frame
+                .response
+                .context_menu(|ui| self.menu(ui, frame, commands));
         }
-        self.pick_pivot(target, hit.as_ref(), commands);
+        self.pick_pivot(ui, frame, hit.as_ref(), commands);
         hit
     }
 
-    fn click(&self, target: &Target<'_>, hit: Option<&Hit>, commands: &mut Vec<Command>) {
+    fn click(
+        &self,
+        ui: &Ui,
+        frame: &FrameContext<'_>,
+        hit: Option<&Hit>,
+        commands: &mut Vec<Command>,
+    ) {
         let part = hit.and_then(|hit| hit.part);
-        let is_toggling = target.ui.input(|i| i.modifiers.command);
-        if target.response.double_clicked() {
+        let is_toggling = ui.input(|i| i.modifiers.command);
+        if frame.response.double_clicked() {
             commands.push(PartCommand::Select(part).into());
-            commands.push(ViewCommand::Focus(target.state.camera_of(target.stage.window)).into());
-        } else if target.response.clicked()
-            && let Some(hit) = hit.filter(|hit| target.pins(hit))
+            commands.push(ViewCommand::Focus(frame.camera_role()).into());
+        } else if frame.response.clicked()
+            && let Some(hit) = hit.filter(|hit| pins(ui, frame, hit))
         {
             commands.push(InspectCommand::Pin(hit.role, hit.in_part).into());
-        } else if target.response.clicked() {
+        } else if frame.response.clicked() {
             // Beside the parts, Ctrl keeps what was selected.
             match part {
                 Some(part) if is_toggling => {
@@ -73,20 +75,26 @@ impl Pointing {
     }
 
     /// P takes the point under the pointer; with a pivot picked, the action of that key forgets it.
-    fn pick_pivot(&self, target: &Target<'_>, hit: Option<&Hit>, commands: &mut Vec<Command>) {
-        let role = target.state.camera_of(target.stage.window);
-        if target.state.view.pivot.get(role).is_some() {
+    fn pick_pivot(
+        &self,
+        ui: &Ui,
+        frame: &FrameContext<'_>,
+        hit: Option<&Hit>,
+        commands: &mut Vec<Command>,
+    ) {
+        let role = frame.camera_role();
+        if frame.state.view.pivot.get(role).is_some() {
             return;
         }
-        let is_typing = target.ui.ctx().egui_wants_keyboard_input() && !target.response.has_focus();
+        let is_typing = ui.ctx().egui_wants_keyboard_input() && !frame.response.has_focus();
         let pressed = |i: &egui::InputState| i.key_pressed(egui::Key::P) && i.modifiers.is_none();
-        if let Some(hit) = hit.filter(|_| !is_typing && target.ui.input(pressed)) {
+        if let Some(hit) = hit.filter(|_| !is_typing && ui.input(pressed)) {
             commands.push(ViewCommand::SetPivot(role, Some(hit.point)).into());
         }
     }
 
-    fn menu(&self, ui: &mut Ui, target: &Target<'_>, commands: &mut Vec<Command>) {
-        let role = target.state.camera_of(target.stage.window);
+    fn menu(&self, ui: &mut Ui, frame: &FrameContext<'_>, commands: &mut Vec<Command>) {
+        let role = frame.camera_role();
         if let Some(part) = self.menu.as_ref().and_then(|hit| hit.part) {
             ui.weak(format!("Part {}", part.id));
             entry(ui, "Hide", commands, PartCommand::SetVisible(part, false));
@@ -110,7 +118,7 @@ impl Pointing {
             let pivot = ViewCommand::SetPivot(role, Some(hit.point));
             entry(ui, "Rotate about this point", commands, pivot);
         }
-        if target.state.view.pivot.get(role).is_some() {
+        if frame.state.view.pivot.get(role).is_some() {
             let pivot = ViewCommand::SetPivot(role, None);
             entry(ui, "Rotate about what is under the cursor", commands, pivot);
         }
@@ -123,20 +131,17 @@ fn entry(ui: &mut Ui, text: &str, commands: &mut Vec<Command>, command: impl Int
     }
 }
 
-impl Target<'_> {
-    /// A click on a part that shows its deviation pins the value there.
-    fn pins(&self, hit: &Hit) -> bool {
-        let display = &self.state.view.display;
-        let is_toggling = self.ui.input(|i| i.modifiers.command);
-        let is_colored = *display.coloring.on.get(hit.role);
-        let shown = self.state.color_by(self.stage.window);
-        shown == ColorBy::Deviation && is_colored && !is_toggling
-    }
+/// A click on a part that shows its deviation pins the value there.
+fn pins(ui: &Ui, frame: &FrameContext<'_>, hit: &Hit) -> bool {
+    let display = &frame.state.view.display;
+    let is_toggling = ui.input(|i| i.modifiers.command);
+    let is_colored = *display.coloring.on.get(hit.role);
+    let shown = frame.state.color_by(frame.view.window);
+    shown == ColorBy::Deviation && is_colored && !is_toggling
+}
 
-    fn hit(&self) -> Option<Hit> {
-        let pos = self.response.hover_pos().filter(|_| !self.is_busy)?;
-        let rect = self.response.rect;
-        self.picture
-            .hit(&self.stage.camera, pixel_of(rect, pos), screen_of(rect))
-    }
+fn hit(frame: &FrameContext<'_>) -> Option<Hit> {
+    let pixel = frame.pixel(frame.response.hover_pos()?);
+    let camera = &frame.view.camera;
+    frame.picture.hit(camera, pixel, frame.screen())
 }

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::background::{Background, Task};
-use super::look::Look;
 use super::meshes::{MeshKey, ShownMesh};
 use crate::app::AppState;
 use crate::geometry::{Plane, Point3, SectionLine, Similarity, Vector3, section};
-use crate::jobs::{PerRole, Role};
 use crate::render::{DepthMode, Fill, Overlay, Polyline};
+use crate::role::{PerRole, Role};
+use crate::ui::background::{Background, Task};
+use crate::ui::theme::Look;
 
 /// What a cut was made of.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,15 +9,15 @@ use super::Viewports;
 use super::gpu::Gpu;
 use crate::app::{AppState, FreeWindow, PictureChoice, PictureSize, PictureWindows};
 use crate::geometry::Camera;
-use crate::jobs::Role;
 use crate::render::{Background, Frame, Scene};
 use crate::report::picture::Picture;
+use crate::role::Role;
 
 /// Pixels between the two windows.
 const GAP: u32 = 8;
 
 /// What a window drew last.
-pub(super) struct Shot {
+pub(super) struct LastFrame {
     pub scene: Arc<Scene>,
     pub camera: Camera,
     pub size: [u32; 2],
@@ -58,15 +58,15 @@ impl Viewports {
         choice: &PictureChoice,
         n_windows: u32,
     ) -> Option<RgbaImage> {
-        let shot = self.windows.get(role).shot.as_ref()?;
-        let size = size_of(shot.size, choice.size, n_windows);
-        let mut scene = (*shot.scene).clone();
-        scene.pixels_per_point *= size[1] as f32 / shot.size[1].max(1) as f32;
+        let last_frame = self.windows.get(role).last_frame.as_ref()?;
+        let size = size_of(last_frame.size, choice.size, n_windows);
+        let mut scene = (*last_frame.scene).clone();
+        scene.pixels_per_point *= size[1] as f32 / last_frame.size[1].max(1) as f32;
         if choice.is_transparent {
             scene.background = Background::Transparent;
         }
-        let mut camera = shot.camera;
-        camera.height *= widened(shot.size, size);
+        let mut camera = last_frame.camera;
+        camera.height *= widened(last_frame.size, size);
         let frame = Frame {
             scene: &scene,
             camera: &camera,

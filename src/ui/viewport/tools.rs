@@ -1,13 +1,14 @@
 //! Moving the stamped part with the pointer: the gizmo, and moves begun by keys.
 
-use egui::{Key, PointerButton, Pos2, Response, Ui};
+use egui::{Key, PointerButton, Pos2, Ui};
 
-use super::cast::Stage;
+use super::frame::FrameContext;
 use super::navigation::{angle_between, pixel_of, pos_of, screen_of};
+use crate::app::gizmo::{Gizmo, GizmoDelta, GizmoView, PointerInput};
 use crate::app::{AppState, Command, GestureId, ModalInput, MoveCommand, MoveFrame, MoveTool};
 use crate::geometry::Point3;
-use crate::jobs::Role;
-use crate::ui::gizmo::{Gizmo, GizmoDelta, GizmoView, PointerInput, paint};
+use crate::role::Role;
+use crate::ui::gizmo::paint;
 
 /// The tools of one window.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -27,32 +28,23 @@ struct ModalPointer {
     angle: f64,
 }
 
-/// A window as the tools meet it.
-pub(super) struct Bench<'a> {
-    pub ui: &'a Ui,
-    pub response: &'a Response,
-    pub state: &'a AppState,
-    pub stage: &'a Stage,
+/// True if the stamped part is in this window and at rest.
+fn has_stamped(frame: &FrameContext<'_>) -> bool {
+    let window = if frame.state.view.is_moved_over {
+        Role::Crash
+    } else {
+        Role::Stamped
+    };
+    window == frame.view.window && frame.state.document.part(Role::Stamped).is_some()
 }
 
-impl Bench<'_> {
-    /// True if the stamped part is in this window and at rest.
-    fn has_stamped(&self) -> bool {
-        let window = if self.state.view.is_moved_over {
-            Role::Crash
-        } else {
-            Role::Stamped
-        };
-        window == self.stage.window && self.state.document.part(Role::Stamped).is_some()
-    }
-
-    /// Pivot and axes now, with the camera of this frame.
-    fn frame(&self) -> Option<MoveFrame> {
-        let pivot = self.state.document.stamped_center()?;
-        let view = self.stage.camera.world_from_view.to_rotation_matrix();
-        let pose = self.state.document.crash_from_stamped();
-        Some(MoveFrame::new(pivot, pose, view.into_inner()))
-    }
+/// Pivot and axes now, with the camera of this frame.
+fn move_frame(frame: &FrameContext<'_>) -> Option<MoveFrame> {
+    let pivot = frame.state.document.stamped_center()?;
+    let view = frame.view.camera.world_from_view.to_rotation_matrix();
+    let pose = frame.state.document.crash_from_stamped();
+    let moves = MoveFrame::new(pivot, pose, view.into_inner());
+    Some(moves.with_unit(frame.state.unit_suffix()))
 }
 
 impl Tools {
@@ -67,28 +59,28 @@ impl Tools {
     }
 
     /// Takes a frame of the pointer.
-    pub fn update(&mut self, bench: &Bench<'_>, commands: &mut Vec<Command>) {
-        let tool = bench.state.view.move_tool.as_ref();
-        match tool.filter(|_| bench.has_stamped()) {
-            Some(tool) => self.update_modal(bench, tool, commands),
+    pub fn update(&mut self, ui: &Ui, frame: &FrameContext<'_>, commands: &mut Vec<Command>) {
+        let tool = frame.state.view.move_tool.as_ref();
+        match tool.filter(|_| has_stamped(frame)) {
+            Some(tool) => self.update_modal(ui, frame, tool, commands),
             None => self.modal = None,
         }
-        let is_wanted = bench.state.view.has_gizmo && tool.is_none() && bench.has_stamped();
-        let can_move = bench.state.can_move().is_ok() && !bench.state.is_preview();
+        let is_wanted = frame.state.view.has_gizmo && tool.is_none() && has_stamped(frame);
+        let can_move = frame.state.can_move().is_ok() && !frame.state.is_preview();
         self.has_gizmo = is_wanted && (can_move || self.gizmo.is_dragging());
         if self.has_gizmo {
-            self.update_gizmo(bench, commands);
+            self.update_gizmo(ui, frame, commands);
         }
     }
 
-    fn update_gizmo(&mut self, bench: &Bench<'_>, commands: &mut Vec<Command>) {
-        let Some(frame) = bench.frame() else {
+    fn update_gizmo(&mut self, ui: &Ui, frame: &FrameContext<'_>, commands: &mut Vec<Command>) {
+        let Some(axes) = move_frame(frame) else {
             return;
         };
-        let view = gizmo_view(bench, &frame);
-        let rect = bench.response.rect;
-        let is_over = bench.response.contains_pointer() || self.gizmo.is_dragging();
-        let pointer = bench.ui.input(|i| PointerInput {
+        let view = gizmo_view(frame, &axes);
+        let rect = frame.rect();
+        let is_over = frame.response.contains_pointer() || self.gizmo.is_dragging();
+        let pointer = ui.input(|i| PointerInput {
             position: i
                 .pointer
                 .latest_pos()
@@ -118,18 +110,12 @@ impl Tools {
     }
 
     /// Draws the gizmo and says what its active handle does.
-    pub fn paint(&self, bench: &Bench<'_>) {
-        if let Some(frame) = bench.frame().filter(|_| self.has_gizmo) {
-            let painter = bench.ui.painter_at(bench.response.rect);
-            let view = gizmo_view(bench, &frame);
-            let is_dark = bench.ui.visuals().dark_mode;
-            paint(
-                &painter,
-                bench.response.rect.min,
-                &view,
-                &self.gizmo,
-                is_dark,
-            );
+    pub fn paint(&self, ui: &Ui, frame: &FrameContext<'_>) {
+        if let Some(axes) = move_frame(frame).filter(|_| self.has_gizmo) {
+            let painter = ui.painter_at(frame.rect());
+            let view = gizmo_view(frame, &axes);
+            let is_dark = ui.visuals().dark_mode;
+            paint(&painter, frame.rect().min, &view, &self.gizmo, is_dark);
         }
     }
 
@@ -139,9 +125,15 @@ impl Tools {
         Some(handle.label(state.view.move_axes))
     }
 
-    fn update_modal(&mut self, bench: &Bench<'_>, tool: &MoveTool, commands: &mut Vec<Command>) {
-        let rect = bench.response.rect;
-        let pos = bench.ui.input(|i| i.pointer.latest_pos());
+    fn update_modal(
+        &mut self,
+        ui: &Ui,
+        frame: &FrameContext<'_>,
+        tool: &MoveTool,
+        commands: &mut Vec<Command>,
+    ) {
+        let rect = frame.rect();
+        let pos = ui.input(|i| i.pointer.latest_pos());
         let Some(pos) = pos.filter(|pos| rect.contains(*pos) || self.modal.is_some()) else {
             return;
         };
@@ -154,15 +146,15 @@ impl Tools {
         let known = self.modal.filter(|known| known.gesture == tool.gesture);
         let pointer = self.modal.insert(known.unwrap_or(fresh));
         if pointer.last != pos {
-            pointer.go_to(pos, bench, &tool.frame.pivot);
+            pointer.go_to(pos, frame, &tool.frame.pivot);
             let pixel = |pos| pixel_of(rect, pos);
-            let (camera, screen) = (&bench.stage.camera, screen_of(rect));
+            let (camera, screen) = (&frame.view.camera, screen_of(rect));
             let at = |pos| camera.unproject(pixel(pos), screen, &tool.frame.pivot);
             let offset = at(pointer.last) - at(pointer.begin);
             let angle = pointer.angle;
             commands.push(MoveCommand::Input(ModalInput::Pointer { offset, angle }).into());
         }
-        let response = bench.response;
+        let response = frame.response;
         if response.clicked() {
             commands.push(MoveCommand::Input(ModalInput::Accept).into());
         } else if response.secondary_clicked() {
@@ -173,19 +165,19 @@ impl Tools {
 
 impl ModalPointer {
     /// Adds up the angle swept about the pivot, so that several turns count.
-    fn go_to(&mut self, pos: Pos2, bench: &Bench<'_>, pivot: &Point3) {
-        if let Some(center) = pos_of(bench.response.rect, &bench.stage.camera, pivot) {
+    fn go_to(&mut self, pos: Pos2, frame: &FrameContext<'_>, pivot: &Point3) {
+        if let Some(center) = pos_of(frame.rect(), &frame.view.camera, pivot) {
             self.angle += angle_between(self.last - center, pos - center);
         }
         self.last = pos;
     }
 }
 
-fn gizmo_view<'a>(bench: &'a Bench<'_>, frame: &'a MoveFrame) -> GizmoView<'a> {
+fn gizmo_view<'a>(frame: &'a FrameContext<'_>, axes: &'a MoveFrame) -> GizmoView<'a> {
     GizmoView {
-        camera: &bench.stage.camera,
-        screen: screen_of(bench.response.rect),
-        frame,
-        axes: bench.state.view.move_axes,
+        camera: &frame.view.camera,
+        screen: frame.screen(),
+        frame: axes,
+        axes: frame.state.view.move_axes,
     }
 }

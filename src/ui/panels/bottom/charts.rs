@@ -1,9 +1,11 @@
 //! Charts with logarithmic axes.
 
-use crate::ui::theme::Palette;
+use std::ops::RangeInclusive;
+
 use egui::{Ui, Vec2};
 use egui_plot::{GridMark, Plot};
-use std::ops::RangeInclusive;
+
+use crate::ui::theme::Palette;
 
 /// A chart of logarithms that shows and does not move: no zoom, no drag, quiet grid, and the numbers
 /// themselves along the axes.

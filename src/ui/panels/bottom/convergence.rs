@@ -1,20 +1,32 @@
 //! Residual and overlap over the iterations of every start, live. Pointing at the curve of the chosen
 //! start shows the pose of that iteration, a click or the arrow keys keep it.
 
-use crate::app::{AppState, Attempt, Command, Preview, Step, ViewCommand};
-use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::{caption, icon_button, length, nothing_yet, percent};
 use egui::{Button, ComboBox, Key, Modifiers, Ui, vec2};
 use egui_plot::{GridMark, Line, Plot, PlotPoints, VLine};
 
+use crate::app::{AppState, Command, Preview, ViewCommand};
+use crate::registration::{IterationRecord, StartRecord};
+use crate::report::start_name;
+use crate::text::whole_percent;
+use crate::ui::theme::{Palette, ROW};
+use crate::ui::widgets::{caption, icon_button, length, nothing_yet, percent};
+
 /// The curves of one frame.
 struct Curves<'a> {
-    attempts: &'a [Attempt<'a>],
-    leader: &'a Attempt<'a>,
+    starts: &'a [StartRecord],
+    /// Number of the start that stands out.
+    leader: usize,
     /// The iteration that is shown.
     shown: Option<usize>,
     has_others: bool,
     unit: &'static str,
+}
+
+impl Curves<'_> {
+    /// Those of the start that stands out.
+    fn iterations(&self) -> &[IterationRecord] {
+        &self.starts[self.leader].iterations
+    }
 }
 
 /// What the pointer did on a chart.
@@ -27,23 +39,25 @@ struct Pointed {
 
 /// Two charts with one axis of iterations; the chosen start stands out.
 pub fn convergence_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let attempts = state.attempts();
-    let leader = state.leading_start();
-    let leader = attempts.iter().find(|a| Some(a.index) == leader);
-    let Some(leader) = leader.or(attempts.first()) else {
+    let starts = state.match_starts();
+    let leader = state
+        .leading_start()
+        .unwrap_or(0)
+        .min(starts.len().saturating_sub(1));
+    if starts.is_empty() {
         nothing_yet(
             ui,
             "No iterations yet",
             "The curves of every start grow here while a match runs",
         );
         return;
-    };
+    }
     let shown = match state.preview() {
-        Some(Preview::Step { start, iteration }) if start == leader.index => Some(iteration),
+        Some(Preview::Step { start, iteration }) if start == leader => Some(iteration),
         _ => None,
     };
     let mut curves = Curves {
-        attempts: &attempts,
+        starts,
         leader,
         shown,
         has_others: has_others(ui),
@@ -74,8 +88,8 @@ fn scrub(
     pointed: &Pointed,
     commands: &mut Vec<Command>,
 ) {
-    let start = curves.leader.index;
-    let n_steps = curves.leader.n_steps();
+    let start = curves.leader;
+    let n_steps = curves.iterations().len();
     let over = pointed.over.filter(|at| *at < n_steps);
     let over = over.map(|iteration| Preview::Step { start, iteration });
     if pointed.is_inside {
@@ -98,7 +112,7 @@ fn scrub(
 
 /// One iteration on or back from the shown one.
 fn step(state: &AppState, curves: &Curves<'_>, way: i32, commands: &mut Vec<Command>) {
-    let n_steps = curves.leader.n_steps();
+    let n_steps = curves.iterations().len();
     let Some(last) = n_steps.checked_sub(1) else {
         return;
     };
@@ -107,7 +121,7 @@ fn step(state: &AppState, curves: &Curves<'_>, way: i32, commands: &mut Vec<Comm
         Some(at) => at.saturating_sub(1),
         None => last,
     };
-    let start = curves.leader.index;
+    let start = curves.leader;
     if state.view.hovered_preview.is_some() {
         commands.push(ViewCommand::HoverPreview(None).into());
     }
@@ -127,14 +141,15 @@ fn head_ui(ui: &mut Ui, state: &AppState, curves: &mut Curves<'_>, commands: &mu
     ui.horizontal(|ui| {
         let leader = curves.leader;
         ComboBox::from_id_salt("start of the curve")
-            .selected_text(start_text(leader))
+            .selected_text(start_text(leader, &curves.starts[leader]))
             .width(230.0)
             .truncate()
             .show_ui(ui, |ui| {
-                for attempt in curves.attempts {
-                    let is_on = attempt.index == leader.index;
-                    if ui.selectable_label(is_on, start_text(attempt)).clicked() {
-                        commands.push(ViewCommand::ChooseStart(Some(attempt.index)).into());
+                for (number, start) in curves.starts.iter().enumerate() {
+                    let is_on = number == leader;
+                    let text = start_text(number, start);
+                    if ui.selectable_label(is_on, text).clicked() {
+                        commands.push(ViewCommand::ChooseStart(Some(number)).into());
                     }
                 }
             })
@@ -145,7 +160,7 @@ fn head_ui(ui: &mut Ui, state: &AppState, curves: &mut Curves<'_>, commands: &mu
             ui.data_mut(|data| data.insert_temp(others_id(), has_others));
             curves.has_others = has_others;
         }
-        let is_free = state.locking_job().is_none() && leader.n_steps() > 0;
+        let is_free = state.locking_job().is_none() && !curves.iterations().is_empty();
         for (sign, name, way) in [("◀", "Iteration before", -1), ("▶", "Next iteration", 1)] {
             if icon_button(ui, sign, name, is_free).clicked() {
                 step(state, curves, way, commands);
@@ -162,58 +177,57 @@ fn head_ui(ui: &mut Ui, state: &AppState, curves: &mut Curves<'_>, commands: &mu
 }
 
 fn figures_ui(ui: &mut Ui, curves: &Curves<'_>) {
-    let n_steps = curves.leader.n_steps();
-    let words = |step: Step| {
+    let iterations = curves.iterations();
+    let n_steps = iterations.len();
+    let words = |step: &IterationRecord| {
         format!(
             "RMS {}{} · overlap {}",
             length(step.rmse),
             curves.unit,
-            percent(step.overlap)
+            percent(step.fraction)
         )
     };
     let text = match curves.shown {
-        Some(at) => curves.leader.step(at).map(|step| {
+        Some(at) => iterations.get(at).map(|step| {
             format!(
                 "preview of iteration {} of {n_steps} · {}",
                 at + 1,
                 words(step)
             )
         }),
-        None => curves
-            .leader
-            .last_step()
+        None => iterations
+            .last()
             .map(|step| format!("{n_steps} iterations · {}", words(step))),
     };
     caption(ui, text.unwrap_or_else(|| "no iteration yet".to_owned()));
 }
 
-fn start_text(attempt: &Attempt<'_>) -> String {
-    format!("{} · {}", attempt.index + 1, attempt.name)
+fn start_text(number: usize, start: &StartRecord) -> String {
+    format!("{} · {}", number + 1, start_name(start))
 }
 
 struct Chart {
     name: &'static str,
-    /// Place of the value in [`Attempt::curve`].
-    value: usize,
+    value: fn(&IterationRecord) -> f64,
     is_length: bool,
 }
 
 const RMS: Chart = Chart {
     name: "RMS",
-    value: 0,
+    value: |iteration| iteration.rmse,
     is_length: true,
 };
 const OVERLAP: Chart = Chart {
     name: "overlap",
-    value: 1,
+    value: |iteration| iteration.fraction,
     is_length: false,
 };
 
 impl Chart {
-    fn points(&self, attempt: &Attempt<'_>) -> PlotPoints<'static> {
-        let curve = attempt.curve().into_iter().enumerate();
-        let points = curve.map(|(n, values)| {
-            let value = values[self.value];
+    fn points(&self, start: &StartRecord) -> PlotPoints<'static> {
+        let curve = start.iterations.iter().enumerate();
+        let points = curve.map(|(n, iteration)| {
+            let value = (self.value)(iteration);
             let shown = if self.is_length {
                 value.max(1e-9).log10()
             } else {
@@ -230,7 +244,7 @@ impl Chart {
         let is_length = self.is_length;
         let format = move |mark: GridMark, _: &std::ops::RangeInclusive<f64>| {
             if !is_length {
-                return format!("{:.0} %", 100.0 * mark.value);
+                return whole_percent(mark.value);
             }
             let is_decade = mark.value.fract().abs() < 1e-6;
             if is_decade {
@@ -260,14 +274,15 @@ impl Chart {
             .show(ui, |plot| {
                 let quiet = palette.secondary.gamma_multiply(0.4);
                 let leader = curves.leader;
-                let others = curves.attempts.iter().filter(|_| curves.has_others);
-                for attempt in others.filter(|other| other.index != leader.index) {
-                    let name = format!("start {}", attempt.index + 1);
-                    let line = Line::new(name, self.points(attempt));
+                let others = curves.starts.iter().enumerate();
+                let others = others.filter(|(number, _)| curves.has_others && *number != leader);
+                for (number, start) in others {
+                    let name = format!("start {}", number + 1);
+                    let line = Line::new(name, self.points(start));
                     plot.line(line.color(quiet).width(1.0).allow_hover(false));
                 }
-                let name = format!("start {}", leader.index + 1);
-                let line = Line::new(name, self.points(leader));
+                let name = format!("start {}", leader + 1);
+                let line = Line::new(name, self.points(&curves.starts[leader]));
                 plot.line(line.color(palette.accent_text).width(2.0));
                 if let Some(at) = curves.shown {
                     let line = VLine::new("shown", at as f64);

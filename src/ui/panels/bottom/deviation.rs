@@ -1,19 +1,21 @@
 //! How far the parts lie apart: numbers of both directions, the worst places, pinned labels.
 
+use std::fmt::Write as _;
+
+use egui::{Align, Button, Layout, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
+use egui_extras::{Column, TableBuilder};
+
 use crate::app::{
     Action, AppState, Command, ExportCommand, Freshness, GestureId, InspectCommand, ViewCommand,
 };
 use crate::assess::deviation::OverlapClass;
-use crate::jobs::Role;
 use crate::pipeline::inspect::Comparison;
+use crate::role::Role;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, icon_button, length, nothing_yet, percent, role_mark,
     signed,
 };
-use egui::{Align, Button, Layout, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
-use egui_extras::{Column, TableBuilder};
-use std::fmt::Write as _;
 
 /// Height of a row.
 const LINE: f32 = 20.0;
@@ -130,23 +132,23 @@ fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])>
     let row = |name: &str, of: &dyn Fn(&crate::assess::deviation::DeviationStats) -> String| {
         (name.to_owned(), both.map(|way| of(&way.stats)))
     };
-    let inside = format!("inside ±{}", state.length_text(tolerance));
+    let inside = format!("within ±{}", state.length_text(tolerance));
     let mut rows = vec![
         row(&inside, &|s| percent(s.share_inside(tolerance))),
         row("mean", &|s| signed(s.mean)),
-        row("rms", &|s| length(s.rms)),
+        row("RMS", &|s| length(s.rms)),
         row("standard deviation", &|s| length(s.std)),
-        row("95 % within", &|s| length(s.p95)),
-        row("smallest", &|s| signed(s.min)),
-        row("largest", &|s| signed(s.max)),
+        row("P95", &|s| length(s.p95)),
+        row("Min", &|s| signed(s.min)),
+        row("Max", &|s| signed(s.max)),
     ];
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
         let name = match class {
             OverlapClass::Matched => {
                 format!("matched, within {}", state.length_text(deviation.limit))
             }
-            OverlapClass::OffByMore => "off by more".to_owned(),
-            OverlapClass::OnlyHere => "only here".to_owned(),
+            OverlapClass::OffByMore => "beyond the limit".to_owned(),
+            OverlapClass::OnlyHere => "on this part only".to_owned(),
         };
         rows.push(row(&name, &|s| percent(s.class_shares[index])));
     }
@@ -207,7 +209,7 @@ fn right(ui: &mut Ui, text: RichText) {
 /// The worst places of both directions; a click flies there, the pin keeps them in the picture.
 fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &mut Vec<Command>) {
     let spots = comparison.worst_spots();
-    caption(ui, "Worst places: click to go there");
+    caption(ui, "Largest deviations (click to zoom)");
     if spots.is_empty() {
         caption(ui, "none: the parts lie on each other or nowhere near");
         return;
@@ -226,11 +228,7 @@ fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &m
         .body(|body| {
             body.rows(LINE, spots.len(), |mut row| {
                 let found = &spots[row.index()];
-                let role = if found.is_stamped {
-                    Role::Stamped
-                } else {
-                    Role::Crash
-                };
+                let role = found.role;
                 let place = found.spot.position;
                 let value = format!("{}{}", signed(found.spot.value), state.unit_suffix());
                 let node = match found.node {
@@ -355,12 +353,15 @@ fn csv(state: &AppState, comparison: &Comparison) -> String {
     line("tolerance", [tolerance; 2]);
     line("share inside", both.map(|s| s.share_inside(tolerance)));
     line("mean", both.map(|s| s.mean));
-    line("rms", both.map(|s| s.rms));
+    line("RMS", both.map(|s| s.rms));
     line("standard deviation", both.map(|s| s.std));
     line("p95", both.map(|s| s.p95));
-    line("smallest", both.map(|s| s.min));
-    line("largest", both.map(|s| s.max));
-    for (index, name) in ["matched", "off by more", "only here"].iter().enumerate() {
+    line("Min", both.map(|s| s.min));
+    line("Max", both.map(|s| s.max));
+    for (index, name) in ["matched", "beyond the limit", "on this part only"]
+        .iter()
+        .enumerate()
+    {
         line(name, both.map(|s| s.class_shares[index]));
     }
     text += "\nplace,part,node,value,x,y,z\n";
@@ -372,13 +373,8 @@ fn csv(state: &AppState, comparison: &Comparison) -> String {
             let _ = writeln!(text, "{what},{},{node},{value},{x},{y},{z}", role.word());
         };
     for found in comparison.worst_spots() {
-        let role = if found.is_stamped {
-            Role::Stamped
-        } else {
-            Role::Crash
-        };
         let at = found.spot.position.coords.into();
-        place("worst", role, found.node, Some(found.spot.value), at);
+        place("worst", found.role, found.node, Some(found.spot.value), at);
     }
     for (role, label) in state.document.shown_labels() {
         let name = if label.name.is_empty() {

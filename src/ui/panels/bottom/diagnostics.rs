@@ -1,11 +1,12 @@
 //! What the reader found in the files.
 
+use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
+
 use crate::app::{AppState, Command, ExportCommand};
 use crate::formats::{Diagnostic, Diagnostics, Severity};
-use crate::jobs::Role;
+use crate::role::Role;
 use crate::ui::theme::Palette;
 use crate::ui::widgets::{caption, grouped, nothing_yet, role_mark};
-use egui::{CollapsingHeader, RichText, ScrollArea, Ui};
 
 /// Findings of a kind that are shown without being asked for.
 const FEW: u64 = 3;
@@ -21,7 +22,7 @@ pub fn diagnostics_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
         .sum();
     if total == 0 {
         let title = match loaded().next() {
-            Some(_) => "Nothing was found amiss in the files",
+            Some(_) => "No problems found",
             None => "No file yet",
         };
         let hint = "Findings of the reader stand here with file and line";
@@ -52,7 +53,7 @@ pub fn diagnostics_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
         });
 }
 
-/// The gravest kinds first.
+/// The most severe kinds first.
 fn kinds_ui(ui: &mut Ui, role: Role, diagnostics: &Diagnostics) {
     let mut kinds: Vec<_> = diagnostics.counts().filter(|(_, n)| *n > 0).collect();
     kinds.sort_by_key(|(kind, _)| std::cmp::Reverse(kind.severity()));

@@ -1,12 +1,13 @@
 //! Undo steps with small pictures of poses; a click goes there.
 
+use egui::{Rect, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
+
 use super::thumbnails::Thumbnails;
 use crate::app::{
     Action, AppState, Command, Document, HistoryCommand, HistoryRow, StepKind, clock_text,
 };
 use crate::ui::theme::Palette;
 use crate::ui::widgets::plain_action;
-use egui::{Rect, ScrollArea, Sense, Ui, UiBuilder, pos2, vec2};
 
 /// Height of a row, with room for a picture.
 const HEIGHT: f32 = 34.0;
@@ -18,7 +19,7 @@ pub fn history_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         plain_action(ui, state, Action::Undo, commands);
         plain_action(ui, state, Action::Redo, commands);
-        plain_action(ui, state, Action::BackToAsLoaded, commands);
+        plain_action(ui, state, Action::ResetAll, commands);
     });
     let thumbnails = Thumbnails::of(ui.ctx());
     let mut thumbnails = thumbnails.lock();

@@ -1,14 +1,16 @@
 //! What was done, when, and how long it took.
 
-use crate::app::{
-    Action, AppState, Command, ExportCommand, ExportKind, LogRow, NoticeLevel, clock_text,
-    duration_text,
-};
-use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::{level_color, nothing_yet, paint_role_mark, plain_action};
+use std::collections::BTreeSet;
+
 use egui::{Align, Layout, Rect, RichText, Sense, TextStyle, Ui, Vec2};
 use egui_extras::{Column, TableBuilder, TableRow};
-use std::collections::BTreeSet;
+
+use crate::app::{
+    Action, AppState, Command, ExportCommand, LogRow, NoticeLevel, clock_text, duration_text,
+};
+use crate::pipeline::outputs::Output;
+use crate::ui::theme::{Palette, ROW};
+use crate::ui::widgets::{level_color, nothing_yet, paint_role_mark, plain_action};
 
 /// Height of a row of one line.
 const LINE: f32 = 20.0;
@@ -28,8 +30,8 @@ pub fn log_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if rows.is_empty() {
         nothing_yet(
             ui,
-            "Nothing was done yet",
-            "Every step is written here with the time it took",
+            "No steps yet",
+            "Each step is logged here with its duration",
         );
         return;
     }
@@ -136,7 +138,7 @@ fn sums_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let size = egui::vec2(ui.available_width(), ROW);
     ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
         if ui.button("Save log…").clicked() {
-            commands.push(ExportCommand::AskSave(ExportKind::Log).into());
+            commands.push(ExportCommand::AskSave(Output::Log).into());
         }
         plain_action(ui, state, Action::CopyLog, commands);
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {

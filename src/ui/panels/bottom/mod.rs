@@ -11,11 +11,12 @@ mod sweep;
 mod thumbnails;
 mod timings;
 
+use egui::scroll_area::ScrollBarVisibility;
+use egui::{Align, Button, Frame, Layout, Margin, RichText, ScrollArea, Stroke, Ui, vec2};
+
 use crate::app::{AppState, BottomTab, Command, ViewCommand};
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::caption;
-use egui::scroll_area::ScrollBarVisibility;
-use egui::{Align, Button, Frame, Layout, Margin, RichText, ScrollArea, Stroke, Ui, vec2};
 
 /// Tabs and content.
 pub fn bottom_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {

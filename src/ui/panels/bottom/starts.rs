@@ -1,28 +1,28 @@
 //! The starts of a match, the best first, while it runs and after it: what became of each, and a small
 //! picture. Pointing at a row shows its pose in the window, a click takes it.
 
-use super::thumbnails::Thumbnails;
-use crate::app::{
-    AppState, Attempt, AttemptGroup, Command, MatchCommand, Preview, ViewCommand, duration_text,
-    group_attempts,
-};
-use crate::geometry::Point3;
-use crate::monitor::Fate;
-use crate::report::fate_words;
-use crate::ui::theme::Palette;
-use crate::ui::widgets::{caption, length, nothing_yet, percent, tight};
 use egui::{Align, Button, Color32, Label, Layout, RichText, Sense, Ui};
 use egui_extras::{Column, TableBuilder, TableRow};
+
+use super::thumbnails::Thumbnails;
+use crate::app::{AppState, Command, MatchCommand, Preview, ViewCommand, duration_text};
+use crate::geometry::Similarity;
+use crate::registration::{StartGroup, StartOutcome, StartRecord, group_starts};
+use crate::report::{outcome_words, start_name};
+use crate::ui::theme::Palette;
+use crate::ui::widgets::{caption, length, nothing_yet, percent, tight};
 
 /// Height of a row with its picture.
 const HEIGHT: f32 = 44.0;
 /// Width of a picture.
 const PICTURE: f32 = 64.0;
 
-/// One line of the table: an attempt, and the group if it leads one.
+/// One line of the table: a start, and the group if it leads one.
 struct Line<'a> {
-    attempt: &'a Attempt<'a>,
-    group: Option<&'a AttemptGroup>,
+    number: usize,
+    start: &'a StartRecord,
+    group: Option<&'a StartGroup>,
+    /// Farthest that a corner of the part's box lies from where the first group has it.
     distance: Option<f64>,
 }
 
@@ -37,23 +37,22 @@ struct Table<'a> {
 
 /// The table.
 pub fn starts_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let attempts = state.attempts();
-    if attempts.is_empty() {
+    let starts = state.match_starts();
+    if starts.is_empty() {
         nothing_yet(
             ui,
             "No starts yet",
-            "A match tries many first poses; each has a row here with its picture and what became of it",
+            "A match tries many first poses; each has a row here with its picture and its outcome",
         );
         return;
     }
-    let corners = state.stamped_corners().unwrap_or([Point3::origin(); 8]);
-    let groups = group_attempts(&attempts, &corners);
+    let groups = group_starts(starts, &state.stamped_extent());
     let open = open_groups(ui);
     let table = Table {
         state,
-        n_starts: attempts.len(),
+        n_starts: starts.len(),
         n_best: groups.first().map_or(0, |group| group.members.len()),
-        lines: lines(&attempts, &groups, &open),
+        lines: lines(state, &groups, &open),
         open,
     };
     head_ui(ui, &table);
@@ -64,22 +63,24 @@ pub fn starts_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-fn lines<'a>(
-    attempts: &'a [Attempt<'a>],
-    groups: &'a [AttemptGroup],
-    open: &[usize],
-) -> Vec<Line<'a>> {
+fn lines<'a>(state: &'a AppState, groups: &'a [StartGroup], open: &[usize]) -> Vec<Line<'a>> {
+    let starts = state.match_starts();
+    let corners = state.stamped_corners();
+    let first = groups.first().map(|group| starts[group.best()].last);
+    let distance = |pose: &Similarity| Some(pose.max_displacement(&first?, &corners?));
     let mut lines = Vec::new();
     for group in groups {
-        for (place, &member) in group.members.iter().enumerate() {
-            let leader = &attempts[group.members[0]];
-            if place > 0 && !open.contains(&leader.index) {
+        for (place, &number) in group.members.iter().enumerate() {
+            let is_best = place == 0;
+            if !is_best && !open.contains(&group.best()) {
                 break;
             }
+            let start = &starts[number];
             lines.push(Line {
-                attempt: &attempts[member],
-                group: (place == 0).then_some(group),
-                distance: group.distance.filter(|_| place == 0),
+                number,
+                start,
+                group: is_best.then_some(group),
+                distance: distance(&start.last).filter(|_| is_best),
             });
         }
     }
@@ -114,13 +115,13 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
     let titles = [
         String::new(),
         "start".to_owned(),
-        "what became of it".to_owned(),
+        "Outcome".to_owned(),
         "overlap".to_owned(),
         format!("RMS{unit}"),
         format!("p95{unit}"),
         "steps".to_owned(),
         "time".to_owned(),
-        format!("from row 1{unit}"),
+        format!("Distance to best{unit}"),
     ];
     let mut hovered = None;
     let thumbnails = Thumbnails::of(ui.ctx());
@@ -150,13 +151,13 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
             body.rows(HEIGHT, table.lines.len(), |mut row| {
                 let line = &table.lines[row.index()];
                 row_ui(&mut row, table, line, &mut thumbnails, commands);
-                let index = line.attempt.index;
+                let index = line.number;
                 let response = row.response();
                 if response.hovered() {
                     hovered = Some(Preview::Start(index));
                 }
                 if response.clicked() && table.state.can_move().is_ok() {
-                    commands.push(MatchCommand::UseAttempt(index).into());
+                    commands.push(MatchCommand::UseMatchStart(index).into());
                 }
             });
         });
@@ -171,9 +172,9 @@ fn row_ui(
     thumbnails: &mut Thumbnails,
     commands: &mut Vec<Command>,
 ) {
-    let attempt = line.attempt;
+    let start = line.start;
     row.col(|ui| {
-        let pose = attempt.last_pose().filter(|_| attempt.fate.is_some());
+        let pose = start.outcome.map(|_| start.last);
         thumbnails.show(ui, table.state, pose, egui::vec2(PICTURE, HEIGHT - 4.0));
     });
     row.col(|ui| {
@@ -184,13 +185,15 @@ fn row_ui(
             name_ui(ui, table, line, commands);
         });
     });
-    let [sign, words] = fate_text(attempt, table.state);
-    let is_best = attempt.fate == Some(Fate::Won);
+    let [sign, words] = outcome_text(start, table.state);
+    let is_best = start.outcome == Some(StartOutcome::Won);
     row.col(|ui| {
         let palette = Palette::of(ui);
-        let color = match attempt.fate {
-            Some(Fate::Won) => palette.good,
-            Some(Fate::Dropped { .. } | Fate::MergedInto { .. }) => palette.secondary,
+        let color = match start.outcome {
+            Some(StartOutcome::Won) => palette.good,
+            Some(StartOutcome::Dropped { .. } | StartOutcome::MergedInto { .. }) => {
+                palette.secondary
+            }
             _ => palette.text,
         };
         cell(ui, format!("{sign} {words}"), color);
@@ -206,16 +209,16 @@ fn row_ui(
 
 /// Number and origin, and the others that ended here.
 fn name_ui(ui: &mut Ui, table: &Table<'_>, line: &Line<'_>, commands: &mut Vec<Command>) {
-    let index = line.attempt.index;
+    let index = line.number;
     let indent = if line.group.is_some() { "" } else { "   " };
-    let text = format!("{indent}{} · {}", index + 1, line.attempt.name);
+    let text = format!("{indent}{} · {}", index + 1, start_name(line.start));
     let can = table.state.can_move().is_ok();
     let button = Button::new(text).frame(false).truncate();
     let response = tight(ui, |ui| ui.add_enabled(can, button));
     let name = format!("Use the pose of start {}", index + 1);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, can, &name));
     if response.clicked() {
-        commands.push(MatchCommand::UseAttempt(index).into());
+        commands.push(MatchCommand::UseMatchStart(index).into());
     }
     let Some(group) = line.group.filter(|group| group.members.len() > 1) else {
         return;
@@ -242,17 +245,17 @@ fn cell(ui: &mut Ui, text: String, color: Color32) {
 }
 
 /// Sign and words of what became of a start.
-fn fate_text(attempt: &Attempt<'_>, state: &AppState) -> [String; 2] {
-    let (sign, words) = match attempt.fate {
-        Some(fate) => {
-            let sign = match fate {
-                Fate::Won => "✔",
-                Fate::RunnerUp => "●",
-                Fate::MergedInto { .. } => "↪",
-                Fate::Dropped { .. } => "▼",
-                Fate::Failed => "✖",
+fn outcome_text(start: &StartRecord, state: &AppState) -> [String; 2] {
+    let (sign, words) = match start.outcome {
+        Some(outcome) => {
+            let sign = match outcome {
+                StartOutcome::Won => "✔",
+                StartOutcome::RunnerUp => "●",
+                StartOutcome::MergedInto { .. } => "↪",
+                StartOutcome::Dropped { .. } => "▼",
+                StartOutcome::Failed => "✖",
             };
-            (sign, fate_words(fate))
+            (sign, outcome_words(outcome))
         }
         None if state.locking_job().is_some() => ("▶", "running".to_owned()),
         None => ("■", "not ended".to_owned()),
@@ -262,15 +265,20 @@ fn fate_text(attempt: &Attempt<'_>, state: &AppState) -> [String; 2] {
 
 fn figures(line: &Line<'_>) -> [String; 6] {
     let dash = || "–".to_owned();
-    let attempt = line.attempt;
-    let last = attempt.last_step();
+    let start = line.start;
+    let has_ended = start.outcome.is_some();
+    let last = start.iterations.last();
     let number = |value: Option<f64>| value.map_or_else(dash, length);
     [
-        last.map_or_else(dash, |step| percent(step.overlap)),
+        last.map_or_else(dash, |step| percent(step.fraction)),
         number(last.map(|step| step.rmse)),
-        number(attempt.p95),
-        attempt.n_steps().to_string(),
-        attempt.took.map_or_else(dash, duration_text),
+        number(Some(start.p95).filter(|p95| p95.is_finite())),
+        start.iterations.len().to_string(),
+        if has_ended {
+            duration_text(start.took)
+        } else {
+            dash()
+        },
         number(line.distance),
     ]
 }

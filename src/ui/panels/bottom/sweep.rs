@@ -1,14 +1,15 @@
 //! The paper's tables, measured here, with the paper's own figures beside them.
 
+use egui::{Align, Button, Color32, Layout, ScrollArea, Sense, Ui, vec2};
+use egui_extras::{Column, TableBuilder};
+use egui_plot::{HoverPosition, Line, LineStyle, PlotBounds, PlotPoints, Points};
+
 use super::charts::{decade_text, log_chart, range};
 use crate::app::{AppState, Command, ExportCommand, MatchCommand, MoveCommand};
 use crate::jobs::JobKey;
 use crate::pipeline::sweep::{MatchingRow, PAPER_MATCHING, PAPER_REDUCTION, Sweep, SweepSettings};
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{caption, grouped, length, nothing_yet};
-use egui::{Align, Button, Color32, Layout, ScrollArea, Sense, Ui, vec2};
-use egui_extras::{Column, TableBuilder};
-use egui_plot::{HoverPosition, Line, LineStyle, PlotBounds, PlotPoints, Points};
 
 /// Buttons, tables, charts.
 pub fn sweep_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -54,7 +55,7 @@ fn head_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 commands.push(MatchCommand::Sweep(Box::new(settings(state))).into());
             }
             if let Err(reason) = can {
-                response.on_disabled_hover_text(format!("Not now: {reason}"));
+                response.on_disabled_hover_text(reason.to_string());
             }
         }
         if let Some(sweep) = state.shown_sweep() {
@@ -79,7 +80,7 @@ fn head_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 fn settings(state: &AppState) -> SweepSettings {
     let mut settings = state.document.recipe.settings.clone();
     // The same starts at every level, so that the times compare.
-    settings.starts.widen = false;
+    settings.starts.extra_starts = false;
     SweepSettings {
         settings,
         ..SweepSettings::default()
@@ -98,7 +99,7 @@ fn tables_ui(ui: &mut Ui, sweep: &Sweep, state: &AppState, commands: &mut Vec<Co
         ]
     });
     let title = format!("Reduction of {} triangles", grouped(sweep.n_triangles));
-    let (rms, max) = (format!("rms{unit}"), format!("max{unit}"));
+    let (rms, max) = (format!("RMS{unit}"), format!("max{unit}"));
     let titles = ["triangles", "ms", "paper ms", &rms, &max];
     table_ui(ui, &title, &titles, &reduction.collect::<Vec<_>>(), None);
     let matching = sweep.matching.iter().map(|row| {
@@ -115,7 +116,7 @@ fn tables_ui(ui: &mut Ui, sweep: &Sweep, state: &AppState, commands: &mut Vec<Co
         return;
     }
     ui.add_space(8.0);
-    let node = format!("node rms{unit}");
+    let node = format!("node RMS{unit}");
     let titles = ["triangles", "ms", "paper ms", &node, "finished"];
     let help = "Click to put the stamped part at the pose of this level";
     let clicked = table_ui(ui, "Match", &titles, &matching, Some(help));
@@ -233,7 +234,7 @@ fn charts_ui(
     let palette = Palette::of(ui);
     let matched = || sweep.matching.iter();
     let reduced = || sweep.reduction.iter();
-    let n = |row: &MatchingRow| row.triangles[1] as f64;
+    let n = |row: &MatchingRow| row.triangles.stamped as f64;
     let (ours, theirs) = (palette.accent_text, palette.good);
     let times = [
         Curve::new("match", ours, matched().map(|row| [n(row), row.time_ms])),
@@ -247,12 +248,12 @@ fn charts_ui(
     ];
     let errors = [
         Curve::new(
-            "node rms",
+            "node RMS",
             ours,
             matched().map(|row| [n(row), row.node_rms]),
         ),
         Curve::new(
-            "reduction rms",
+            "reduction RMS",
             theirs,
             reduced().map(|row| [row.triangles as f64, row.rms]),
         ),

@@ -1,18 +1,20 @@
 //! Small pictures of poses, drawn without the graphics card by a thread of their own.
 
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+
+use egui::{Color32, ColorImage, Context, Rect, Sense, TextureHandle, TextureOptions, Ui, Vec2};
+
 use crate::app::{AppState, Part};
 use crate::geometry::{Camera, Similarity, TriMesh};
-use crate::jobs::{PerRole, Role};
 use crate::monitor::Monitor;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::reduce::Levels;
 use crate::report::picture::{Paint, Picture, PictureMesh, picture};
+use crate::role::{PerRole, Role};
 use crate::simplify::SimplifySettings;
+use crate::ui::background::{Background, Task};
 use crate::ui::theme::Palette;
-use crate::ui::viewport::background::{Background, Task};
-use egui::{Color32, ColorImage, Context, Rect, Sense, TextureHandle, TextureOptions, Ui, Vec2};
-use std::hash::{DefaultHasher, Hash as _, Hasher as _};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// Pixels of a picture.
 const SIZE: [usize; 2] = [144, 90];

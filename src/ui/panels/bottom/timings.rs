@@ -1,9 +1,10 @@
 //! Times of the steps as bars.
 
+use egui::{Align2, Rect, ScrollArea, Sense, TextStyle, Ui, pos2, vec2};
+
 use crate::app::{AppState, LogRow, duration_text};
 use crate::ui::theme::Palette;
 use crate::ui::widgets::nothing_yet;
-use egui::{Align2, Rect, ScrollArea, Sense, TextStyle, Ui, pos2, vec2};
 
 /// One bar for each step that took time, in order; lengths share one scale.
 pub fn timings_ui(ui: &mut Ui, state: &AppState) {
@@ -39,7 +40,7 @@ fn bar_ui(ui: &mut Ui, row: &LogRow, share: f32) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
     let font = TextStyle::Body.resolve(ui.style());
     let middle = rect.center().y;
-    let role = row.role.map_or("", crate::jobs::Role::mark);
+    let role = row.role.map_or("", crate::role::Role::mark);
     let name = format!("{role} {}", row.step);
     let color = row
         .role

@@ -5,7 +5,7 @@ use egui::{Button, Pos2, Rect, RichText, Shape, Stroke, Ui, vec2};
 use super::Overlay;
 use crate::app::{Command, MoveCommand};
 use crate::geometry::Point3;
-use crate::jobs::Role;
+use crate::role::Role;
 use crate::ui::viewport::navigation::pos_of;
 
 /// Parts are far apart when their centres are further from each other than this share of their
@@ -17,45 +17,45 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     let Some([from, to]) = centers(over) else {
         return;
     };
-    let camera = &over.stage.camera;
-    let ends = [&from, &to].map(|point| pos_of(over.rect, camera, point));
+    let camera = &over.frame.view.camera;
+    let ends = [&from, &to].map(|point| pos_of(over.frame.rect(), camera, point));
     let [Some(from), Some(to)] = ends else {
         return;
     };
     let painter = over.painter(ui);
-    let lines = [(4.0, over.look.plate), (1.5, over.look.text)];
+    let lines = [(4.0, over.frame.look.plate), (1.5, over.frame.look.text)];
     for (width, color) in lines {
         let stroke = Stroke::new(width, color);
         painter.extend(Shape::dashed_line(&[from, to], stroke, 3.0, 5.0));
     }
     for (at, role) in [(from, Role::Stamped), (to, Role::Crash)] {
-        painter.circle_filled(at, 5.5, over.look.plate);
-        painter.circle_filled(at, 4.0, over.look.role(role));
+        painter.circle_filled(at, 5.5, over.frame.look.plate);
+        painter.circle_filled(at, 4.0, over.frame.look.role(role));
     }
-    if over.state.can_move().is_ok() && !over.state.is_preview() {
+    if over.frame.state.can_move().is_ok() && !over.frame.state.is_preview() {
         suggest(ui, over, from + (to - from) * 0.5, commands);
     }
 }
 
 /// Centres of the stamped and the crash part, if they are far apart.
 fn centers(over: &Overlay<'_>) -> Option<[Point3; 2]> {
-    if over.role() != Role::Crash || over.stage.over < 1.0 {
+    if over.role() != Role::Crash || over.frame.view.over < 1.0 {
         return None;
     }
-    let (crash, stamped) = over.state.document.both()?;
+    let (crash, stamped) = over.frame.state.document.both()?;
     let (to, own) = (crash.bounds(), stamped.bounds());
-    let from = over.stage.pose.apply(&own.center());
-    let size = 0.5 * (to.diagonal() + own.diagonal() * over.stage.pose.scale);
+    let from = over.frame.view.pose.apply(&own.center());
+    let size = 0.5 * (to.diagonal() + own.diagonal() * over.frame.view.pose.scale);
     ((from - to.center()).norm() > FAR * size).then(|| [from, to.center()])
 }
 
 fn suggest(ui: &mut Ui, over: &Overlay<'_>, middle: Pos2, commands: &mut Vec<Command>) {
     let size = vec2(168.0, 28.0);
-    let room = over.rect.shrink2(vec2(90.0, 70.0));
+    let room = over.frame.rect().shrink2(vec2(90.0, 70.0));
     let center = room.clamp(middle + vec2(0.0, 24.0));
-    let text = RichText::new("Bring centres together").size(12.5);
+    let text = RichText::new("Align centres").size(12.5);
     let area = Rect::from_center_size(center, size);
     if ui.put(area, Button::new(text)).clicked() {
-        commands.push(MoveCommand::BringCentersTogether.into());
+        commands.push(MoveCommand::AlignCenters.into());
     }
 }

@@ -7,12 +7,18 @@ use super::Overlay;
 /// Three dots that take turns, slow enough to leave the processor to the work.
 pub(super) fn preparing(ui: &Ui, over: &Overlay<'_>) {
     let painter = over.painter(ui);
-    let center = over.rect.center();
-    let text = "Preparing the picture";
+    let center = over.frame.rect().center();
+    let text = "Building the 3D view…";
     let font = FontId::proportional(14.0);
-    painter.text(center, Align2::CENTER_CENTER, text, font, over.look.weak);
+    painter.text(
+        center,
+        Align2::CENTER_CENTER,
+        text,
+        font,
+        over.frame.look.weak,
+    );
     let now = ui.input(|i| i.time);
-    let color = over.look.role(over.role());
+    let color = over.frame.look.role(over.role());
     for dot in 0..3_u8 {
         let phase = (now * 1.4 - f64::from(dot) * 0.18).rem_euclid(1.0) as f32;
         let strength = 0.25 + 0.75 * (1.0 - phase).powi(2);

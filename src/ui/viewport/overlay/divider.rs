@@ -7,7 +7,7 @@ use egui::{
 
 use super::Overlay;
 use crate::app::{Command, ViewCommand};
-use crate::ui::viewport::cast::{Divider, divider};
+use crate::ui::viewport::visible_parts::{Divider, divider};
 
 /// How far beside the line it can be grabbed.
 const SLOP: f32 = 6.0;
@@ -16,11 +16,11 @@ const ENDS: std::ops::RangeInclusive<f32> = 0.02..=0.98;
 
 /// Draws the line with what lies on either side of it, and drags it.
 pub(super) fn show(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
-    let Some(divider) = divider(over.state, over.stage) else {
+    let Some(divider) = divider(over.frame.state, over.frame.view) else {
         return;
     };
-    let x = over.rect.left() + divider.share() * over.rect.width();
-    let line = Rect::from_x_y_ranges(x..=x, over.rect.y_range());
+    let x = over.frame.rect().left() + divider.share() * over.frame.rect().width();
+    let line = Rect::from_x_y_ranges(x..=x, over.frame.rect().y_range());
     let id = ui.make_persistent_id(("divider", over.role().word()));
     let response = ui.interact(line.expand2(vec2(SLOP, 0.0)), id, Sense::drag());
     response.widget_info(|| WidgetInfo::labeled(WidgetRole::Slider, true, label(divider)));
@@ -29,9 +29,9 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
         .interact_pointer_pos()
         .filter(|_| response.dragged())
     {
-        let share = (pos.x - over.rect.left()) / over.rect.width();
+        let share = (pos.x - over.frame.rect().left()) / over.frame.rect().width();
         let share = share.clamp(*ENDS.start(), *ENDS.end());
-        let mut display = over.state.view.display.clone();
+        let mut display = over.frame.state.view.display.clone();
         match divider {
             Divider::Wipe(_) => display.wipe = Some(share),
             Divider::Split(_) => display.split = Some(share),
@@ -57,15 +57,20 @@ fn label(divider: Divider) -> &'static str {
 fn paint(ui: &Ui, over: &Overlay<'_>, line: Rect, width: f32) {
     let painter = over.painter(ui);
     let ends = [line.center_top(), line.center_bottom()];
-    painter.line_segment(ends, Stroke::new(width + 2.5, over.look.plate));
-    painter.line_segment(ends, Stroke::new(width, over.look.tool));
+    painter.line_segment(ends, Stroke::new(width + 2.5, over.frame.look.plate));
+    painter.line_segment(ends, Stroke::new(width, over.frame.look.tool));
     let grip = line.center();
-    painter.circle(grip, 9.0, over.look.plate, Stroke::new(1.5, over.look.tool));
+    painter.circle(
+        grip,
+        9.0,
+        over.frame.look.plate,
+        Stroke::new(1.5, over.frame.look.tool),
+    );
     for side in [-1.0, 1.0] {
         let tip = grip + vec2(side * 5.5, 0.0);
         let back = Vec2::new(-side * 3.0, 0.0);
         for leg in [-3.0, 3.0] {
-            let stroke = Stroke::new(1.5, over.look.tool);
+            let stroke = Stroke::new(1.5, over.frame.look.tool);
             painter.line_segment([tip, tip + back + vec2(0.0, leg)], stroke);
         }
     }
@@ -78,17 +83,17 @@ fn sides(ui: &Ui, over: &Overlay<'_>, divider: Divider, x: f32) {
         Divider::Split(_) => ["reduced", "full"],
     };
     let painter = over.painter(ui);
-    let y = over.rect.bottom() - 52.0;
+    let y = over.frame.rect().bottom() - 52.0;
     let places = [(-8.0, Align2::RIGHT_CENTER), (8.0, Align2::LEFT_CENTER)];
     for (name, (shift, align)) in names.into_iter().zip(places) {
         let font = FontId::proportional(11.5);
-        let galley = painter.layout_no_wrap(name.to_owned(), font, over.look.text);
+        let galley = painter.layout_no_wrap(name.to_owned(), font, over.frame.look.text);
         let area = align.anchor_size(Pos2::new(x + shift, y), galley.size());
         painter.rect_filled(
             area.expand2(vec2(6.0, 3.0)),
             CornerRadius::same(5),
-            over.look.plate,
+            over.frame.look.plate,
         );
-        painter.galley(area.min, galley, over.look.text);
+        painter.galley(area.min, galley, over.frame.look.text);
     }
 }

@@ -4,7 +4,7 @@ use egui::{CornerRadius, FontId, Rect, Shape, Ui, UiBuilder, vec2};
 
 use super::{MARGIN, Overlay};
 use crate::app::{AppState, Command, FreeWindow, ViewCommand};
-use crate::jobs::Role;
+use crate::role::Role;
 use crate::ui::widgets::segments;
 
 /// Size of the choice.
@@ -23,25 +23,29 @@ pub fn free_choice(ui: &mut Ui, state: &AppState, width: f32, commands: &mut Vec
 
 /// The choice in the upper left corner, and below it what is shown.
 pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
-    let is_here = over.role() == Role::Stamped && over.stage.over >= 1.0;
-    let Some(free) = over.state.free_window().filter(|_| is_here) else {
+    let is_here = over.role() == Role::Stamped && over.frame.view.over >= 1.0;
+    let Some(free) = over.frame.state.free_window().filter(|_| is_here) else {
         return;
     };
     let painter = over.painter(ui);
-    let width = WIDTH.min(over.rect.width() - 2.0 * MARGIN - 8.0);
-    let corner = over.rect.min + vec2(MARGIN + 4.0, MARGIN + 2.0);
+    let width = WIDTH.min(over.frame.rect().width() - 2.0 * MARGIN - 8.0);
+    let corner = over.frame.rect().min + vec2(MARGIN + 4.0, MARGIN + 2.0);
     let area = Rect::from_min_size(corner, vec2(width, HEIGHT));
-    let ground = Shape::rect_filled(area.expand(4.0), CornerRadius::same(6), over.look.plate);
+    let ground = Shape::rect_filled(
+        area.expand(4.0),
+        CornerRadius::same(6),
+        over.frame.look.plate,
+    );
     painter.add(ground);
     ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {
-        free_choice(ui, over.state, width, commands);
+        free_choice(ui, over.frame.state, width, commands);
     });
     let corner = area.left_bottom() + vec2(-4.0, 8.0);
     let font = FontId::proportional(11.5);
-    let text = painter.layout_no_wrap(says(free).to_owned(), font, over.look.weak);
+    let text = painter.layout_no_wrap(says(free).to_owned(), font, over.frame.look.weak);
     let plate = Rect::from_min_size(corner, text.size() + vec2(16.0, 8.0));
-    painter.rect_filled(plate, CornerRadius::same(6), over.look.plate);
-    painter.galley(corner + vec2(8.0, 4.0), text, over.look.weak);
+    painter.rect_filled(plate, CornerRadius::same(6), over.frame.look.plate);
+    painter.galley(corner + vec2(8.0, 4.0), text, over.frame.look.weak);
 }
 
 fn says(free: FreeWindow) -> &'static str {

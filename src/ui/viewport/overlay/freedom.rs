@@ -6,7 +6,7 @@ use egui::{Align2, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, 
 use super::Overlay;
 use crate::assess::{FreeMotion, FreeMotionKind};
 use crate::geometry::{Point3, Vector3};
-use crate::jobs::Role;
+use crate::role::Role;
 use crate::ui::viewport::navigation::pos_of;
 
 /// Half the length of an arrow and the radius of a ring, as shares of the part's size.
@@ -19,19 +19,19 @@ const HEAD: f32 = 11.0;
 
 /// The free motion of the present result, in the window with both parts.
 pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
-    if over.role() != Role::Crash || over.stage.over < 1.0 || over.state.is_preview() {
+    if over.role() != Role::Crash || over.frame.view.over < 1.0 || over.frame.state.is_preview() {
         return;
     }
-    let Some(result) = over.state.document.current_result() else {
+    let Some(result) = over.frame.state.document.current_result() else {
         return;
     };
     let Some(motion) = &result.run.assessment.freedom.motion else {
         return;
     };
-    let Some(part) = over.state.document.part(Role::Stamped) else {
+    let Some(part) = over.frame.state.document.part(Role::Stamped) else {
         return;
     };
-    let size = part.bounds().diagonal() * over.stage.pose.scale;
+    let size = part.bounds().diagonal() * over.frame.view.pose.scale;
     let painter = over.painter(ui);
     let [across, up] = frame(&motion.direction);
     let arrow = |direction: &Vector3| draw_arrow(&painter, over, motion, direction, REACH * size);
@@ -64,12 +64,12 @@ fn frame(direction: &Vector3) -> [Vector3; 2] {
 }
 
 fn seen(over: &Overlay<'_>, point: &Point3) -> Option<Pos2> {
-    pos_of(over.rect, &over.stage.camera, point)
+    pos_of(over.frame.rect(), &over.frame.view.camera, point)
 }
 
 /// A line that is seen on any ground.
 fn line(painter: &Painter, over: &Overlay<'_>, points: &[Pos2]) {
-    for (width, color) in [(5.0, over.look.plate), (2.5, over.look.tool)] {
+    for (width, color) in [(5.0, over.frame.look.plate), (2.5, over.frame.look.tool)] {
         painter.line(points.to_vec(), Stroke::new(width, color));
     }
 }
@@ -131,26 +131,26 @@ fn label(painter: &Painter, over: &Overlay<'_>, motion: &FreeMotion, size: f64) 
     let mut letters = words.chars();
     let first = letters.next().map(|c| c.to_uppercase().to_string());
     let text = format!("{}{}", first.unwrap_or_default(), letters.as_str());
-    let room = over.rect.width() - 40.0;
+    let room = over.frame.rect().width() - 40.0;
     let galley = painter.layout(
         text,
         FontId::proportional(12.5),
-        over.look.text,
+        over.frame.look.text,
         room.min(340.0),
     );
-    let pixel = over.stage.camera.pixel_size(
-        crate::ui::viewport::navigation::screen_of(over.rect),
+    let pixel = over.frame.view.camera.pixel_size(
+        crate::ui::viewport::navigation::screen_of(over.frame.rect()),
         &motion.point,
     );
     let below = (RADIUS * size / pixel) as f32 + 22.0;
     let plate =
         Align2::CENTER_TOP.anchor_size(at + vec2(0.0, below), galley.size() + vec2(16.0, 8.0));
-    let inside = over.rect.shrink(12.0);
+    let inside = over.frame.rect().shrink(12.0);
     let shift = vec2(
         (inside.left() - plate.left()).max(0.0) + (inside.right() - plate.right()).min(0.0),
         (inside.top() - plate.top()).max(0.0) + (inside.bottom() - 60.0 - plate.bottom()).min(0.0),
     );
     let plate: Rect = plate.translate(shift);
-    painter.rect_filled(plate, CornerRadius::same(5), over.look.plate);
-    painter.galley(plate.min + vec2(8.0, 4.0), galley, over.look.text);
+    painter.rect_filled(plate, CornerRadius::same(5), over.frame.look.plate);
+    painter.galley(plate.min + vec2(8.0, 4.0), galley, over.frame.look.text);
 }

@@ -10,20 +10,22 @@ use egui::{
 use super::{MARGIN, Overlay, grouped};
 use crate::app::{AppState, Command, Preview, ShownGeometry, ViewCommand, short_number};
 use crate::geometry::camera::StandardView;
-use crate::jobs::Role;
-use crate::registration::StartKind;
+use crate::report::start_kind_words;
+use crate::role::Role;
+use crate::text::whole_percent;
 
 /// Role mark, name and facts of each part in the window, then what is shown instead of the real pose.
 pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
     let painter = over.painter(ui);
-    frame(over, &painter, over.look.role(over.role()));
-    let small =
-        |text: String| painter.layout_no_wrap(text, FontId::proportional(11.5), over.look.weak);
+    frame(over, &painter, over.frame.look.role(over.role()));
+    let small = |text: String| {
+        painter.layout_no_wrap(text, FontId::proportional(11.5), over.frame.look.weak)
+    };
     let notes: Vec<_> = notes(over).into_iter().map(small).collect();
     if is_free(over) {
         return;
     }
-    let is_both = over.role() == Role::Crash && over.state.view.is_moved_over;
+    let is_both = over.role() == Role::Crash && over.frame.state.view.is_moved_over;
     let roles = if is_both {
         &Role::ALL[..]
     } else {
@@ -41,9 +43,9 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
         .chain(notes.iter().map(|note| note.size().x))
         .fold(0.0, f32::max);
     let height = 40.0 * blocks.len() as f32 + 17.0 * notes.len() as f32 + 3.0;
-    let top = over.rect.min + Vec2::splat(MARGIN);
+    let top = over.frame.rect().min + Vec2::splat(MARGIN);
     let plate = Rect::from_min_size(top, vec2(widest + 36.0, height));
-    painter.rect_filled(plate, CornerRadius::same(6), over.look.plate);
+    painter.rect_filled(plate, CornerRadius::same(6), over.frame.look.plate);
     let mut at = top + vec2(25.0, 5.0);
     for (role, [name, what], facts) in blocks {
         mark(
@@ -51,16 +53,16 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
             role,
             at + vec2(-12.0, 8.0),
             5.0,
-            over.look.role(role),
+            over.frame.look.role(role),
         );
         let second = at + vec2(name.size().x + 7.0, 0.0);
-        painter.galley(at, name, over.look.text);
-        painter.galley(second, what, over.look.weak);
-        painter.galley(at + vec2(0.0, 18.0), facts, over.look.weak);
+        painter.galley(at, name, over.frame.look.text);
+        painter.galley(second, what, over.frame.look.weak);
+        painter.galley(at + vec2(0.0, 18.0), facts, over.frame.look.weak);
         at.y += 40.0;
     }
     for note in notes {
-        painter.galley(at - vec2(0.0, 2.0), note, over.look.text);
+        painter.galley(at - vec2(0.0, 2.0), note, over.frame.look.text);
         at.y += 17.0;
     }
 }
@@ -68,8 +70,8 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
 /// True in the right window once its part has left it: it has the left one's camera, and a header of
 /// its own.
 fn is_free(over: &Overlay<'_>) -> bool {
-    let is_gone = over.role() == Role::Stamped && over.stage.over >= 1.0;
-    is_gone && over.state.view.is_moved_over
+    let is_gone = over.role() == Role::Stamped && over.frame.view.over >= 1.0;
+    is_gone && over.frame.state.view.is_moved_over
 }
 
 /// Name of a part and what becomes of it.
@@ -81,17 +83,20 @@ fn title(painter: &Painter, over: &Overlay<'_>, role: Role) -> [Arc<Galley>; 2] 
     let galley = |text: &str, color| {
         painter.layout_no_wrap(text.to_owned(), FontId::proportional(13.5), color)
     };
-    [galley(name, over.look.text), galley(what, over.look.weak)]
+    [
+        galley(name, over.frame.look.text),
+        galley(what, over.frame.look.weak),
+    ]
 }
 
 /// A line in the role's colour marks the window that keys act on, a frame the keyboard's focus.
 fn frame(over: &Overlay<'_>, painter: &Painter, color: Color32) {
-    let is_target = over.state.view.focus == over.role();
+    let is_target = over.frame.state.view.focus == over.role();
     let strength = if is_target { 1.0 } else { 0.28 };
-    let line = Rect::from_min_size(over.rect.min, vec2(over.rect.width(), 2.0));
+    let line = Rect::from_min_size(over.frame.rect().min, vec2(over.frame.rect().width(), 2.0));
     painter.rect_filled(line, 0.0, color.gamma_multiply(strength));
-    if over.is_focused {
-        let inner = over.rect.shrink(1.0);
+    if over.frame.response.has_focus() {
+        let inner = over.frame.rect().shrink(1.0);
         let stroke = Stroke::new(1.0, color.gamma_multiply(0.7));
         painter.rect_stroke(inner, 0.0, stroke, egui::StrokeKind::Inside);
     }
@@ -115,7 +120,7 @@ fn mark(painter: &Painter, role: Role, center: Pos2, radius: f32, color: Color32
 
 /// How much of a part is shown.
 fn facts(over: &Overlay<'_>, role: Role) -> String {
-    let state = over.state;
+    let state = over.frame.state;
     let Some(part) = state.document.part(role) else {
         return "nothing loaded".to_owned();
     };
@@ -142,7 +147,7 @@ fn facts(over: &Overlay<'_>, role: Role) -> String {
 
 /// What the user should know about the picture, in the window with the stamped part.
 fn notes(over: &Overlay<'_>) -> Vec<String> {
-    let state = over.state;
+    let state = over.frame.state;
     let is_left = over.role() == Role::Crash;
     let mut notes: Vec<String> = over.hint.clone().into_iter().collect();
     if is_left == state.view.is_moved_over
@@ -152,7 +157,7 @@ fn notes(over: &Overlay<'_>) -> Vec<String> {
     }
     if is_left {
         notes.extend(preview(over));
-        notes.extend(overlap(over.state));
+        notes.extend(overlap(over.frame.state));
     }
     notes.extend(stripes(over));
     let separation = state.view.display.separation;
@@ -168,10 +173,10 @@ fn notes(over: &Overlay<'_>) -> Vec<String> {
 
 /// What the stripes in the picture say, where both sheets are drawn.
 fn stripes(over: &Overlay<'_>) -> Option<String> {
-    let scene = &over.picture.scene;
+    let scene = &over.frame.picture.scene;
     scene.coinciding()?;
     let distance = scene.coincidence?;
-    let unit = over.state.unit_suffix();
+    let unit = over.frame.state.unit_suffix();
     Some(format!(
         "striped: both within {}{unit}",
         short_number(distance)
@@ -182,31 +187,31 @@ fn stripes(over: &Overlay<'_>) -> Option<String> {
 fn overlap(state: &AppState) -> Option<String> {
     let known = state.current_overlap().filter(|_| !state.is_preview())?;
     let mut text = format!(
-        "overlap {:.0} % within {}",
-        100.0 * known.overlap,
+        "overlap {} within {}",
+        whole_percent(known.overlap),
         state.length_text(known.limit)
     );
     // Less than half a percent is no change to speak of.
     if let Some(change) = known.change.filter(|change| change.abs() >= 0.005) {
         let sign = if change > 0.0 { "▲ +" } else { "▼ −" };
-        text += &format!("  {sign}{:.0} %", 100.0 * change.abs());
+        text += &format!("  {sign}{}", whole_percent(change.abs()));
     }
     Some(text)
 }
 
 /// What is shown instead of the real pose.
 fn preview(over: &Overlay<'_>) -> Option<String> {
-    let state = over.state;
+    let state = over.frame.state;
     if state.live_pose.is_some() {
         let running = state.jobs.running().and_then(|job| job.latest.as_ref());
-        let text = running.map(|report| format!("matching · iteration {}", report.iteration));
+        let text = running.map(|latest| format!("matching · iteration {}", latest.number + 1));
         return Some(text.unwrap_or_else(|| "matching".to_owned()));
     }
     if let Some(start) = state.shown_start() {
         let starts = state.current_starts()?;
         let index = starts.shown? + 1;
-        let kind = start_text(start.kind);
-        return Some(format!("start {index} of {}{kind}", starts.poses.len()));
+        let kind = start_kind_words(start.kind);
+        return Some(format!("start {index} of {} · {kind}", starts.poses.len()));
     }
     preview_text(state)
 }
@@ -218,23 +223,13 @@ fn preview_text(state: &AppState) -> Option<String> {
     Some(match preview {
         Preview::Start(_) => format!("preview: where start {number} ended"),
         Preview::Step { start, iteration } => {
-            let n_steps = state.attempt(start)?.n_steps();
+            let n_steps = state.match_start(start)?.iterations.len();
             format!(
                 "preview: start {number}, iteration {} of {n_steps}",
                 iteration + 1
             )
         }
     })
-}
-
-/// How a start came to be, in a few words.
-fn start_text(kind: StartKind) -> String {
-    match kind {
-        StartKind::SurfaceNormal { angle_deg } => format!(" · normals, turned {angle_deg:.0}°"),
-        StartKind::Patch { angle_deg, .. } => format!(" · patch, turned {angle_deg:.0}°"),
-        StartKind::PrincipalFrame { .. } => " · principal axes".to_owned(),
-        _ => String::new(),
-    }
 }
 
 /// Buttons of the camera, top right.
@@ -258,11 +253,11 @@ pub(super) fn buttons(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comman
     ];
     let size = vec2(212.0, 24.0);
     let corner = Pos2::new(
-        over.rect.right() - MARGIN - size.x,
-        over.rect.top() + MARGIN,
+        over.frame.rect().right() - MARGIN - size.x,
+        over.frame.rect().top() + MARGIN,
     );
     let area = Rect::from_min_size(corner, size);
-    if area.left() < over.rect.left() + 150.0 {
+    if area.left() < over.frame.rect().left() + 150.0 {
         return;
     }
     let plate = ui.painter().add(Shape::Noop);
@@ -273,12 +268,12 @@ pub(super) fn buttons(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comman
         ui.spacing_mut().item_spacing.x = 1.0;
         ui.spacing_mut().button_padding = vec2(7.0, 2.0);
         for (label, tooltip, command) in entries.into_iter().rev() {
-            let is_on = label == "Link" && over.state.view.are_linked;
+            let is_on = label == "Link" && over.frame.state.view.are_linked;
             let text = RichText::new(label).size(11.5);
             let text = if is_on {
-                text.color(over.look.text).strong()
+                text.color(over.frame.look.text).strong()
             } else {
-                text.color(over.look.weak)
+                text.color(over.frame.look.weak)
             };
             let button = Button::new(text)
                 .frame_when_inactive(is_on)
@@ -292,6 +287,6 @@ pub(super) fn buttons(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comman
         }
     });
     let used = row.response.rect.expand(2.0);
-    let ground = Shape::rect_filled(used, CornerRadius::same(6), over.look.plate);
+    let ground = Shape::rect_filled(used, CornerRadius::same(6), over.frame.look.plate);
     ui.painter().set(plate, ground);
 }

@@ -9,7 +9,8 @@ use egui::{
 
 use super::{MARGIN, Overlay, legend};
 use crate::app::{BottomTab, Command, InspectCommand, Label, ViewCommand};
-use crate::jobs::Role;
+use crate::role::Role;
+use crate::ui::theme::color;
 use crate::ui::viewport::navigation::{pixel_of, pos_of, screen_of};
 use crate::ui::widgets::signed;
 
@@ -57,7 +58,7 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
         let texts = texts(over, placed);
         let size = plate_size(ui, over, &texts);
         let before = last.get(&placed.label.id).copied();
-        let (choice, plate) = place(over.rect, placed.anchor, size, before, &taken);
+        let (choice, plate) = place(over.frame.rect(), placed.anchor, size, before, &taken);
         now.insert(placed.label.id, choice);
         taken.push(plate);
         one(ui, over, (placed, &texts, plate), commands);
@@ -66,18 +67,21 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
 }
 
 fn placed<'a>(over: &Overlay<'a>) -> Vec<Placed<'a>> {
-    let camera = &over.stage.camera;
+    let camera = &over.frame.view.camera;
     let depth = |p: &crate::geometry::Point3| p.coords.dot(&camera.forward());
-    let slack = HIDING * over.picture.bounds.diagonal();
-    let labels = over.state.document.shown_labels();
+    let slack = HIDING * over.frame.picture.bounds.diagonal();
+    let labels = over.frame.state.document.shown_labels();
     let placed = labels.filter_map(|(role, label)| {
-        let at = over.picture.world_of(role, &label.position)?;
-        let anchor = pos_of(over.rect, camera, &at)?;
-        if !over.rect.contains(anchor) {
+        let at = over.frame.picture.world_of(role, &label.position)?;
+        let anchor = pos_of(over.frame.rect(), camera, &at)?;
+        if !over.frame.rect().contains(anchor) {
             return None;
         }
-        let pixel = pixel_of(over.rect, anchor);
-        let hit = over.picture.hit(camera, pixel, screen_of(over.rect));
+        let pixel = pixel_of(over.frame.rect(), anchor);
+        let hit = over
+            .frame
+            .picture
+            .hit(camera, pixel, screen_of(over.frame.rect()));
         let is_hidden = hit.is_some_and(|hit| depth(&hit.point) < depth(&at) - slack);
         Some(Placed {
             role,
@@ -91,7 +95,7 @@ fn placed<'a>(over: &Overlay<'a>) -> Vec<Placed<'a>> {
 
 /// What plates must not cover: names, buttons, legend, axes.
 fn taken(ui: &Ui, over: &Overlay<'_>) -> Vec<Rect> {
-    let rect = over.rect;
+    let rect = over.frame.rect();
     let mut taken = vec![
         Rect::from_min_size(rect.min, vec2(190.0, 56.0)),
         Rect::from_min_max(
@@ -110,9 +114,9 @@ fn taken(ui: &Ui, over: &Overlay<'_>) -> Vec<Rect> {
 /// Value, and below it the name or the node.
 fn texts(over: &Overlay<'_>, placed: &Placed<'_>) -> [String; 2] {
     let label = placed.label;
-    let value = match over.state.label_value(label) {
-        Some(value) => format!("{}{}", signed(value), over.state.unit_suffix()),
-        None if over.state.comparison().is_none() => "–".to_owned(),
+    let value = match over.frame.state.label_value(label) {
+        Some(value) => format!("{}{}", signed(value), over.frame.state.unit_suffix()),
+        None if over.frame.state.comparison().is_none() => "–".to_owned(),
         None => "no counterpart".to_owned(),
     };
     let node = label.node.map(|node| format!("node {node}"));
@@ -131,7 +135,7 @@ fn fonts() -> [FontId; 2] {
 fn plate_size(ui: &Ui, over: &Overlay<'_>, texts: &[String; 2]) -> Vec2 {
     let [value, below] = fonts();
     let painter = ui.painter();
-    let color = over.look.text;
+    let color = over.frame.look.text;
     let first = painter
         .layout_no_wrap(texts[0].clone(), value, color)
         .size();
@@ -190,8 +194,8 @@ fn one(
     let fade = |color: Color32| color.gamma_multiply(strength);
     let painter = over.painter(ui);
     let end = plate.clamp(placed.anchor);
-    let line = Stroke::new(1.2, fade(over.look.text));
-    let halo = Stroke::new(3.0, fade(over.look.plate));
+    let line = Stroke::new(1.2, fade(over.frame.look.text));
+    let halo = Stroke::new(3.0, fade(over.frame.look.plate));
     painter.line_segment([placed.anchor, end], halo);
     if placed.is_hidden {
         painter.extend(Shape::dashed_line(&[placed.anchor, end], line, 4.0, 3.0));
@@ -203,11 +207,11 @@ fn one(
         placed.anchor,
         4.0,
         fill,
-        Stroke::new(1.5, fade(over.look.text)),
+        Stroke::new(1.5, fade(over.frame.look.text)),
     );
-    let solid = over.look.plate.to_opaque();
+    let solid = over.frame.look.plate.to_opaque();
     let ground = if is_hovered { solid } else { fade(solid) };
-    let edge = fade(over.look.role(placed.role));
+    let edge = fade(over.frame.look.role(placed.role));
     painter.rect(
         plate,
         CornerRadius::same(5),
@@ -222,14 +226,14 @@ fn one(
         egui::Align2::LEFT_TOP,
         &texts[0],
         value,
-        fade(over.look.text),
+        fade(over.frame.look.text),
     );
     painter.text(
         pos2(at.x, drawn.bottom()),
         egui::Align2::LEFT_TOP,
         &texts[1],
         below,
-        fade(over.look.weak),
+        fade(over.frame.look.weak),
     );
     if is_hovered {
         let cross = Rect::from_center_size(plate.right_top(), Vec2::splat(15.0));
@@ -251,17 +255,17 @@ fn remove(
     let response = ui.interact(cross, id, Sense::click());
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, "Remove label"));
     let painter = over.painter(ui);
-    let ground = over.look.plate.to_opaque();
+    let ground = over.frame.look.plate.to_opaque();
     painter.circle(
         cross.center(),
         7.0,
         ground,
-        Stroke::new(1.0, over.look.weak),
+        Stroke::new(1.0, over.frame.look.weak),
     );
     let color = if response.hovered() {
-        over.look.text
+        over.frame.look.text
     } else {
-        over.look.weak
+        over.frame.look.weak
     };
     for way in [vec2(3.0, 3.0), vec2(3.0, -3.0)] {
         let ends = [cross.center() - way, cross.center() + way];
@@ -274,13 +278,10 @@ fn remove(
 
 /// The colour of the value on the scale, or that of the part.
 fn color_of(over: &Overlay<'_>, placed: &Placed<'_>) -> Color32 {
-    let value = over.state.label_value(placed.label);
+    let value = over.frame.state.label_value(placed.label);
     match (value, &over.scale) {
-        (Some(value), Some((kind, scale))) if kind.is_signed() => {
-            let [r, g, b] = scale.color(value);
-            Color32::from_rgb(r, g, b)
-        }
-        _ => over.look.role(placed.role),
+        (Some(value), Some((kind, scale))) if kind.is_signed() => color(scale.color(value)),
+        _ => over.frame.look.role(placed.role),
     }
 }
 

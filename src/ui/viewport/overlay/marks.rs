@@ -1,6 +1,6 @@
 //! Axes, scale bar, readout, pivot.
 
-use egui::{Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
+use egui::{Align2, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 
 use super::{MARGIN, Overlay};
 use crate::assess::deviation::OverlapClass;
@@ -8,7 +8,7 @@ use crate::geometry::Point3;
 use crate::geometry::camera::scale_bar;
 use crate::ui::viewport::fields::FieldKind;
 use crate::ui::viewport::navigation::{DragKind, pos_of, screen_of};
-use crate::ui::viewport::stage::Hit;
+use crate::ui::viewport::picture::Hit;
 use crate::ui::widgets::signed;
 
 /// Length of an axis of the triad.
@@ -19,12 +19,12 @@ const MAX_BAR: f64 = 150.0;
 /// Axes, scale bar, readout.
 pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
     let painter = over.painter(ui);
-    let display = &over.state.view.display;
+    let display = &over.frame.state.view.display;
     if display.has_axes {
         triad(&painter, over);
     }
-    let mut taken = over.rect.left() + MARGIN;
-    if display.has_scale_bar && !over.picture.is_empty() {
+    let mut taken = over.frame.rect().left() + MARGIN;
+    if display.has_scale_bar && !over.frame.picture.is_empty() {
         taken = bar(&painter, over);
     }
     readout(&painter, over, taken);
@@ -32,25 +32,13 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
 
 /// Axes with their letters, those that point away fainter and drawn first.
 fn triad(painter: &Painter, over: &Overlay<'_>) {
-    let corner = over.rect.left_bottom();
+    let corner = over.frame.rect().left_bottom();
     let center = corner + vec2(MARGIN + 34.0, -MARGIN - 34.0);
-    let colors = if over.look.is_dark {
-        [
-            Color32::from_rgb(0xF2, 0x6D, 0x6D),
-            Color32::from_rgb(0x7C, 0xD6, 0x7C),
-            Color32::from_rgb(0x7D, 0xB4, 0xFF),
-        ]
-    } else {
-        [
-            Color32::from_rgb(0xC6, 0x28, 0x28),
-            Color32::from_rgb(0x1E, 0x7B, 0x34),
-            Color32::from_rgb(0x1D, 0x4E, 0xC4),
-        ]
-    };
-    let axes = over.stage.camera.axes_in_view();
+    let colors = over.frame.look.axes;
+    let axes = over.frame.view.camera.axes_in_view();
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| axes[a].z.total_cmp(&axes[b].z));
-    painter.circle_filled(center, 36.0, over.look.plate.gamma_multiply(0.55));
+    painter.circle_filled(center, 36.0, over.frame.look.plate.gamma_multiply(0.55));
     for axis in order {
         let direction = vec2(axes[axis].x as f32, -axes[axis].y as f32);
         let is_behind = axes[axis].z < -0.05;
@@ -77,34 +65,34 @@ fn triad(painter: &Painter, over: &Overlay<'_>) {
             colors[axis],
         );
     }
-    painter.circle_filled(center, 2.0, over.look.weak);
+    painter.circle_filled(center, 2.0, over.frame.look.weak);
 }
 
 /// The scale bar; returns where it ends.
 fn bar(painter: &Painter, over: &Overlay<'_>) -> f32 {
-    let camera = &over.stage.camera;
-    let size = camera.pixel_size(screen_of(over.rect), &camera.target);
-    let max_bar = MAX_BAR.min(f64::from(over.rect.width()) * 0.25);
+    let camera = &over.frame.view.camera;
+    let size = camera.pixel_size(screen_of(over.frame.rect()), &camera.target);
+    let max_bar = MAX_BAR.min(f64::from(over.frame.rect().width()) * 0.25);
     let Some(bar) = scale_bar(size, max_bar) else {
-        return over.rect.left() + MARGIN;
+        return over.frame.rect().left() + MARGIN;
     };
-    let left = over.rect.left_bottom() + vec2(MARGIN + 84.0, -MARGIN - 8.0);
+    let left = over.frame.rect().left_bottom() + vec2(MARGIN + 84.0, -MARGIN - 8.0);
     let right = left + vec2(bar.pixels as f32, 0.0);
-    let text = length_text(bar.length) + over.state.unit_suffix();
-    let galley = painter.layout_no_wrap(text, FontId::proportional(11.5), over.look.text);
+    let text = length_text(bar.length) + over.frame.state.unit_suffix();
+    let galley = painter.layout_no_wrap(text, FontId::proportional(11.5), over.frame.look.text);
     let ground = Rect::from_min_max(left + vec2(-8.0, -21.0), right + vec2(8.0, 8.0));
     painter.rect_filled(
         ground,
         CornerRadius::same(5),
-        over.look.plate.gamma_multiply(0.7),
+        over.frame.look.plate.gamma_multiply(0.7),
     );
-    let stroke = Stroke::new(1.5, over.look.text);
+    let stroke = Stroke::new(1.5, over.frame.look.text);
     painter.line_segment([left, right], stroke);
     for end in [left, right] {
         painter.line_segment([end - vec2(0.0, 4.0), end + vec2(0.0, 4.0)], stroke);
     }
     let middle = left + (right - left) * 0.5 - vec2(galley.size().x * 0.5, 18.0);
-    painter.galley(middle, galley, over.look.text);
+    painter.galley(middle, galley, over.frame.look.text);
     ground.right()
 }
 
@@ -131,7 +119,7 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32) {
     };
     let parts = hit
         .part
-        .map(|part| (part, over.state.document.part(part.role)));
+        .map(|part| (part, over.frame.state.document.part(part.role)));
     if let Some((part, Some(of))) = parts
         && of.facts.used.len() > 1
     {
@@ -143,20 +131,20 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32) {
     if let Some(value) = value_text(over, hit) {
         text = format!("{value}   {text}");
     }
-    let galley = painter.layout_no_wrap(text, FontId::monospace(11.0), over.look.text);
+    let galley = painter.layout_no_wrap(text, FontId::monospace(11.0), over.frame.look.text);
     let size = galley.size() + vec2(14.0, 8.0);
-    let mut corner = over.rect.right_bottom() - Vec2::splat(MARGIN) - size;
+    let mut corner = over.frame.rect().right_bottom() - Vec2::splat(MARGIN) - size;
     if corner.x < taken + 6.0 {
         corner.y -= 30.0;
     }
     let ground = Rect::from_min_size(corner, size);
-    painter.rect_filled(ground, CornerRadius::same(5), over.look.plate);
-    painter.galley(corner + vec2(7.0, 4.0), galley, over.look.text);
+    painter.rect_filled(ground, CornerRadius::same(5), over.frame.look.plate);
+    painter.galley(corner + vec2(7.0, 4.0), galley, over.frame.look.text);
 }
 
 /// What the colour under the cursor says.
 fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
-    let state = over.state;
+    let state = over.frame.state;
     let is_colored = |role| *state.view.display.coloring.on.get(role);
     match (over.kind?, hit.value) {
         (FieldKind::Deviation, Some(value)) => {
@@ -179,9 +167,14 @@ fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
 /// A ring about the point a rotation turns about, and a cross at the picked pivot.
 pub(super) fn pivot(ui: &Ui, over: &Overlay<'_>) {
     let painter = over.painter(ui);
-    let camera = &over.stage.camera;
-    if let Some(pivot) = over.state.view.pivot.get(over.state.camera_of(over.role()))
-        && let Some(at) = pos_of(over.rect, camera, pivot)
+    let camera = &over.frame.view.camera;
+    if let Some(pivot) = over
+        .frame
+        .state
+        .view
+        .pivot
+        .get(over.frame.state.camera_of(over.role()))
+        && let Some(at) = pos_of(over.frame.rect(), camera, pivot)
     {
         for way in [vec2(6.0, 0.0), vec2(0.0, 6.0)] {
             ringed_line(&painter, over, [at - way, at + way]);
@@ -190,7 +183,7 @@ pub(super) fn pivot(ui: &Ui, over: &Overlay<'_>) {
     let turning =
         |drag: &&super::CameraDrag| matches!(drag.kind, DragKind::Rotate | DragKind::Roll);
     if let Some(drag) = over.drag.filter(turning)
-        && let Some(at) = pos_of(over.rect, camera, &drag.anchor)
+        && let Some(at) = pos_of(over.frame.rect(), camera, &drag.anchor)
     {
         ring(&painter, over, at, 7.0);
     }
@@ -201,20 +194,20 @@ pub(super) fn node(ui: &Ui, over: &Overlay<'_>) {
     let Some(hit) = over.hit.filter(|hit| hit.node_id.is_some()) else {
         return;
     };
-    if let Some(at) = pos_of(over.rect, &over.stage.camera, &hit.node) {
+    if let Some(at) = pos_of(over.frame.rect(), &over.frame.view.camera, &hit.node) {
         ring(&over.painter(ui), over, at, 3.5);
     }
 }
 
 /// A ring that is seen on any ground.
 fn ring(painter: &Painter, over: &Overlay<'_>, at: Pos2, radius: f32) {
-    painter.circle_stroke(at, radius, Stroke::new(3.0, over.look.plate));
-    painter.circle_stroke(at, radius, Stroke::new(1.5, over.look.tool));
+    painter.circle_stroke(at, radius, Stroke::new(3.0, over.frame.look.plate));
+    painter.circle_stroke(at, radius, Stroke::new(1.5, over.frame.look.tool));
 }
 
 fn ringed_line(painter: &Painter, over: &Overlay<'_>, ends: [Pos2; 2]) {
-    painter.line_segment(ends, Stroke::new(4.0, over.look.plate));
-    painter.line_segment(ends, Stroke::new(1.5, over.look.tool));
+    painter.line_segment(ends, Stroke::new(4.0, over.frame.look.plate));
+    painter.line_segment(ends, Stroke::new(1.5, over.frame.look.tool));
 }
 
 #[cfg(test)]

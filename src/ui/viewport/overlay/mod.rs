@@ -15,31 +15,28 @@ mod section;
 
 pub use free::free_choice;
 
-pub(super) use crate::report::grouped;
+pub(super) use crate::text::grouped;
+use std::sync::Arc;
+
 use egui::{Align2, FontId, Painter, Rect, Ui};
 
-use super::cast::Stage;
 use super::fields::FieldKind;
-use super::look::Look;
+use super::frame::FrameContext;
 use super::navigation::CameraDrag;
 use super::picking::Pick;
+use super::picture::Hit;
 use super::sections::Cut;
-use super::stage::{Hit, Picture};
-use crate::app::{AppState, Command};
+use crate::app::Command;
 use crate::colormap::ColorScale;
-use crate::jobs::{PerRole, Role};
-use std::sync::Arc;
+use crate::role::{PerRole, Role};
+use crate::ui::theme::{Look, color};
 
 /// Air between the edge of the window and what lies over it.
 const MARGIN: f32 = 10.0;
 
 /// A window and what is over it in one frame.
 pub(super) struct Overlay<'a> {
-    pub rect: Rect,
-    pub look: &'a Look,
-    pub state: &'a AppState,
-    pub stage: &'a Stage,
-    pub picture: &'a Picture,
+    pub frame: &'a FrameContext<'a>,
     pub drag: Option<&'a CameraDrag>,
     pub hit: Option<&'a Hit>,
     /// Colours of the shown field and what they say.
@@ -52,19 +49,17 @@ pub(super) struct Overlay<'a> {
     pub hint: Option<String>,
     /// What a click would pick for a pair of points.
     pub pick: Option<Pick>,
-    pub is_focused: bool,
-    pub is_hovered: bool,
     /// The part is there but not yet its mesh.
     pub is_preparing: bool,
 }
 
 impl Overlay<'_> {
     fn role(&self) -> Role {
-        self.stage.window
+        self.frame.view.window
     }
 
     fn painter(&self, ui: &Ui) -> Painter {
-        ui.painter_at(self.rect)
+        ui.painter_at(self.frame.rect())
     }
 }
 
@@ -94,11 +89,11 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
 /// A text in the place of the picture.
 pub(super) fn placeholder(ui: &Ui, rect: Rect, look: &Look) {
     let painter = ui.painter_at(rect);
-    let [r, g, b] = match look.background {
+    let ground = match look.background {
         crate::render::Background::Gradient { bottom, .. } => bottom,
         crate::render::Background::Transparent => [0; 3],
     };
-    painter.rect_filled(rect, 0.0, egui::Color32::from_rgb(r, g, b));
+    painter.rect_filled(rect, 0.0, color(ground));
     painter.text(
         rect.center(),
         Align2::CENTER_CENTER,

@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, Ui, vec2};
 
 use super::Overlay;
-use crate::jobs::Role;
+use crate::role::Role;
 use crate::ui::viewport::navigation::pos_of;
 use crate::ui::widgets::paint_role_mark;
 
@@ -12,25 +12,25 @@ const LEADER: egui::Vec2 = vec2(16.0, -20.0);
 
 /// The marks of the parts in this window.
 pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
-    let pairs = over.state.pairs();
-    if pairs.is_empty() || over.stage.over > 0.0 && over.stage.over < 1.0 {
+    let pairs = over.frame.state.pairs();
+    if pairs.is_empty() || over.frame.view.over > 0.0 && over.frame.view.over < 1.0 {
         return;
     }
     let painter = over.painter(ui);
-    let worst = over.state.pair_fit().ok().and_then(|fit| fit.worst());
+    let worst = over.frame.state.pair_fit().ok().and_then(|fit| fit.worst());
     for (index, pair) in pairs.iter().enumerate() {
         let place = |role: Role| {
             let picked = (*pair.get(role))?;
-            let place = over.picture.place_of(role)?;
+            let place = over.frame.picture.place_of(role)?;
             pos_of(
-                over.rect,
-                &over.stage.camera,
+                over.frame.rect(),
+                &over.frame.view.camera,
                 &place.to_window(&picked.point),
             )
         };
         let [crash, stamped] = Role::ALL.map(place);
         if let (Some(from), Some(to)) = (stamped, crash) {
-            let stroke = Stroke::new(1.5, over.look.tool);
+            let stroke = Stroke::new(1.5, over.frame.look.tool);
             painter.extend(Shape::dashed_line(&[from, to], stroke, 4.0, 4.0));
         }
         for (role, at) in [(Role::Crash, crash), (Role::Stamped, stamped)] {
@@ -44,20 +44,20 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
 
 /// What a click would pick, at the pointer, or the part that is asked for.
 pub(super) fn next(ui: &Ui, over: &Overlay<'_>) {
-    let Some((pair, asked)) = over.state.next_pick() else {
+    let Some((pair, asked)) = over.frame.state.next_pick() else {
         return;
     };
     let Some(pos) = ui.input(|i| i.pointer.hover_pos()) else {
         return;
     };
-    if !over.is_hovered || over.drag.is_some() {
+    if !over.frame.response.contains_pointer() || over.drag.is_some() {
         return;
     }
     let painter = over.painter(ui);
     let role = over.pick.map_or(asked, |pick| pick.role);
     let text = match over.pick {
         Some(pick) => format!("{} {}", pair + 1, pick.picked.kind.words()),
-        None if over.state.view.is_moved_over || over.role() == asked => {
+        None if over.frame.state.view.is_moved_over || over.role() == asked => {
             format!("{} on the {} part", pair + 1, asked.word())
         }
         None => return,
@@ -70,13 +70,13 @@ pub(super) fn next(ui: &Ui, over: &Overlay<'_>) {
         role,
         at + vec2(16.0, 16.0),
         &text,
-        over.look.text,
+        over.frame.look.text,
     );
 }
 
 /// A cross with a gap in its middle, so that the place itself stays seen.
 fn crosshair(painter: &Painter, over: &Overlay<'_>, at: Pos2) {
-    for (width, color) in [(4.0, over.look.plate), (1.5, over.look.tool)] {
+    for (width, color) in [(4.0, over.frame.look.plate), (1.5, over.frame.look.tool)] {
         let stroke = Stroke::new(width, color);
         for way in [
             vec2(1.0, 0.0),
@@ -98,15 +98,15 @@ fn mark(
     is_worst: bool,
 ) {
     // At the right edge the number stands on the other side.
-    let has_room = at.x + 90.0 < over.rect.right();
+    let has_room = at.x + 90.0 < over.frame.rect().right();
     let leader = if has_room {
         LEADER
     } else {
         vec2(-LEADER.x - 46.0, LEADER.y)
     };
     let end = at + leader;
-    let color = over.look.role(role);
-    for (width, color) in [(4.0, over.look.plate), (1.5, color)] {
+    let color = over.frame.look.role(role);
+    for (width, color) in [(4.0, over.frame.look.plate), (1.5, color)] {
         painter.line_segment([at, end], Stroke::new(width, color));
         painter.circle_stroke(at, 4.5, Stroke::new(width, color));
     }
@@ -121,7 +121,7 @@ fn mark(
         role,
         end - vec2(0.0, 9.0),
         &text,
-        over.look.text,
+        over.frame.look.text,
     );
 }
 
@@ -138,10 +138,10 @@ fn plate(
     let galley = painter.layout_no_wrap(text.to_owned(), font, color);
     let size = vec2(galley.size().x + 28.0, 20.0);
     let ground = Rect::from_center_size(left + vec2(size.x / 2.0, 0.0), size);
-    let over_edge = (ground.right() - over.rect.right() + 4.0).max(0.0);
+    let over_edge = (ground.right() - over.frame.rect().right() + 4.0).max(0.0);
     let ground = ground.translate(vec2(-over_edge, 0.0));
-    painter.rect_filled(ground, CornerRadius::same(5), over.look.plate);
-    let edge = Stroke::new(1.0, over.look.role(role));
+    painter.rect_filled(ground, CornerRadius::same(5), over.frame.look.plate);
+    let edge = Stroke::new(1.0, over.frame.look.role(role));
     painter.rect_stroke(
         ground,
         CornerRadius::same(5),
@@ -149,7 +149,7 @@ fn plate(
         egui::StrokeKind::Inside,
     );
     let sign = Rect::from_center_size(ground.left_center() + vec2(11.0, 0.0), vec2(10.0, 10.0));
-    paint_role_mark(painter, sign, role, over.look.role(role));
+    paint_role_mark(painter, sign, role, over.frame.look.role(role));
     let text_at =
         Align2::LEFT_CENTER.anchor_size(ground.left_center() + vec2(20.0, 0.0), galley.size());
     painter.galley(text_at.min, galley, color);

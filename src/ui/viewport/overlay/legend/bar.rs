@@ -1,11 +1,12 @@
 //! The bar of colours with its ticks.
 
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
+use egui::{Align2, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
 use super::menu;
 use super::tick_text;
 use crate::app::Command;
 use crate::colormap::{ColorScale, Pattern};
+use crate::ui::theme::{color, ink};
 use crate::ui::viewport::overlay::Overlay;
 
 /// Width of the bar.
@@ -36,23 +37,23 @@ pub(super) fn plain(
 /// The colours, low values at the foot, with their patterns.
 pub(super) fn paint(painter: &Painter, scale: &ColorScale, bar: Rect, over: &Overlay<'_>) {
     let n = bar.height().round().max(1.0) as usize;
-    for (i, [r, g, b]) in scale.table(n).into_iter().enumerate() {
+    for (i, rgb) in scale.table(n).into_iter().enumerate() {
         let bottom = bar.bottom() - i as f32;
         let row = Rect::from_min_max(pos2(bar.left(), bottom - 1.0), pos2(bar.right(), bottom));
-        painter.rect_filled(row, 0.0, Color32::from_rgb(r, g, b));
+        painter.rect_filled(row, 0.0, color(rgb));
     }
     patterns(painter, bar, |y| {
         let share = f64::from((bar.bottom() - y) / bar.height());
         scale.pattern(scale.value_at(share))
     });
-    let stroke = Stroke::new(1.0, over.look.plate_line);
+    let stroke = Stroke::new(1.0, over.frame.look.plate_line);
     painter.rect_stroke(bar, 0.0, stroke, egui::StrokeKind::Outside);
 }
 
 /// Draws lines and dots over a rectangle as the shader draws them over parts.
 pub(super) fn patterns(painter: &Painter, rect: Rect, pattern_at: impl Fn(f32) -> Pattern) {
     const STEP: f32 = 6.0;
-    let ink = Color32::from_black_alpha(170);
+    let ink = ink(170);
     let n_rows = (rect.height() / STEP) as usize;
     for row in 0..n_rows {
         let y = rect.top() + STEP * (row as f32 + 0.5);
@@ -92,14 +93,14 @@ pub(super) fn ticks(
         let at = Pos2::new(bar.right(), y_of(scale, bar, *tick));
         painter.line_segment(
             [at + vec2(1.0, 0.0), at + vec2(5.0, 0.0)],
-            Stroke::new(1.0, over.look.weak),
+            Stroke::new(1.0, over.frame.look.weak),
         );
         painter.text(
             at + vec2(8.0, 0.0),
             Align2::LEFT_CENTER,
             tick_text(*tick, &ticks),
             FontId::proportional(11.0),
-            over.look.text,
+            over.frame.look.text,
         );
     }
 }

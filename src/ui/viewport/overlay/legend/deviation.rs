@@ -10,7 +10,9 @@ use super::{Room, WIDTH, bar, menu, overlap};
 use crate::app::{Coloring, Command, Freshness, InspectCommand};
 use crate::assess::deviation::DeviationStats;
 use crate::colormap::ColorScale;
-use crate::jobs::Role;
+use crate::role::Role;
+use crate::text::capital;
+use crate::ui::theme::{Palette, color};
 use crate::ui::viewport::overlay::Overlay;
 use crate::ui::widgets::{length, paint_role_mark, percent, signed};
 
@@ -27,24 +29,24 @@ pub(super) fn show(
     room: Room,
     commands: &mut Vec<Command>,
 ) {
-    let Some((role, stats)) = over.state.deviation_stats() else {
+    let Some((role, stats)) = over.frame.state.deviation_stats() else {
         return;
     };
     title(ui, over, role, commands);
     freshness(ui, over, commands);
-    if over.state.freshness() != Freshness::Current {
+    if over.frame.state.freshness() != Freshness::Current {
         ui.set_opacity(0.45);
     }
-    let before = over.state.view.display.coloring;
+    let before = over.frame.state.view.display.coloring;
     let mut coloring = before;
     if room.is_full {
-        side_words(ui, over, "in front of the crash side", true);
+        side_words(ui, over, "+ on the crash normal side", true);
     }
     limit_field(ui, over, scale, Limit::Upper, &mut coloring);
     bars(ui, over, (scale, stats), room.bar, &mut coloring);
     limit_field(ui, over, scale, Limit::Lower, &mut coloring);
     if room.is_full {
-        side_words(ui, over, "behind it", false);
+        side_words(ui, over, "− opposite", false);
     }
     ui.add_space(2.0);
     tolerance(ui, over, scale, stats, &mut coloring);
@@ -59,8 +61,8 @@ pub(super) fn show(
 /// Only the bar with its numbers.
 pub(super) fn slim(ui: &mut Ui, over: &Overlay<'_>, scale: &ColorScale) {
     super::fold(ui, over);
-    if over.state.freshness() != Freshness::Current {
-        let color = crate::ui::theme::Palette::of(ui).check;
+    if over.frame.state.freshness() != Freshness::Current {
+        let color = Palette::of(ui).check;
         ui.label(RichText::new("out of\ndate").size(11.0).color(color));
         ui.set_opacity(0.45);
     }
@@ -72,22 +74,30 @@ pub(super) fn slim(ui: &mut Ui, over: &Overlay<'_>, scale: &ColorScale) {
 
 /// Before the first measurement has ended.
 pub(super) fn waiting(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
-    ui.label(RichText::new("Deviation").size(12.5).color(over.look.text));
+    ui.label(
+        RichText::new("Deviation")
+            .size(12.5)
+            .color(over.frame.look.text),
+    );
     freshness(ui, over, commands);
 }
 
 /// From which part to which, and the menu.
 fn title(ui: &mut Ui, over: &Overlay<'_>, role: Role, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        ui.label(RichText::new("Deviation").size(12.5).color(over.look.text));
+        ui.label(
+            RichText::new("Deviation")
+                .size(12.5)
+                .color(over.frame.look.text),
+        );
         let (rect, response) = ui.allocate_exact_size(vec2(40.0, 14.0), Sense::click());
         let at =
             |x: f32| Rect::from_center_size(pos2(rect.left() + x, rect.center().y), vec2(9.0, 9.0));
         let other = role.other();
-        paint_role_mark(ui.painter(), at(6.0), role, over.look.role(role));
-        paint_role_mark(ui.painter(), at(34.0), other, over.look.role(other));
+        paint_role_mark(ui.painter(), at(6.0), role, over.frame.look.role(role));
+        paint_role_mark(ui.painter(), at(34.0), other, over.frame.look.role(other));
         let tip = pos2(rect.left() + 25.0, rect.center().y);
-        let stroke = Stroke::new(1.2, over.look.weak);
+        let stroke = Stroke::new(1.2, over.frame.look.weak);
         ui.painter()
             .line_segment([tip - vec2(10.0, 0.0), tip], stroke);
         for leg in [vec2(-3.5, 3.0), vec2(-3.5, -3.0)] {
@@ -95,18 +105,18 @@ fn title(ui: &mut Ui, over: &Overlay<'_>, role: Role, commands: &mut Vec<Command
         }
         let words = format!(
             "{} to {}, show it on the {} part",
-            capital(role),
+            capital(role.word()),
             other.word(),
             other.word()
         );
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &words));
         if response.hovered() {
-            let line = Stroke::new(1.0, over.look.weak);
+            let line = Stroke::new(1.0, over.frame.look.weak);
             ui.painter()
                 .hline(rect.x_range(), rect.bottom() + 1.0, line);
         }
         if response.clicked() {
-            let mut coloring = over.state.view.display.coloring;
+            let mut coloring = over.frame.state.view.display.coloring;
             *coloring.on.get_mut(role) = false;
             *coloring.on.get_mut(other) = true;
             menu::set(over, coloring, commands);
@@ -124,34 +134,27 @@ fn title(ui: &mut Ui, over: &Overlay<'_>, role: Role, commands: &mut Vec<Command
     });
 }
 
-fn capital(role: Role) -> &'static str {
-    match role {
-        Role::Crash => "Crash",
-        Role::Stamped => "Stamped",
-    }
-}
-
 /// Says when the numbers are not those of what is shown.
 pub(super) fn freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
-    let text = match over.state.freshness() {
+    let text = match over.frame.state.freshness() {
         Freshness::Current => return,
-        Freshness::Missing if over.state.locking_job().is_some() => "measured after the run",
+        Freshness::Missing if over.frame.state.locking_job().is_some() => "measured after the run",
         Freshness::Missing => "not measured yet",
         Freshness::Updating => "out of date · measuring",
         Freshness::OutOfDate => "out of date",
     };
-    let palette = crate::ui::theme::Palette::of(ui);
+    let palette = Palette::of(ui);
     ui.horizontal(|ui| {
         ui.label(RichText::new(text).size(11.5).color(palette.check));
         let is_open = matches!(
-            over.state.freshness(),
+            over.frame.state.freshness(),
             Freshness::Missing | Freshness::OutOfDate
         );
-        let is_asked = is_open && over.state.locking_job().is_none();
+        let is_asked = is_open && over.frame.state.locking_job().is_none();
         if is_asked {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let button = Button::new(RichText::new("Update").size(11.5)).small();
-                let can = over.state.can_match().is_ok();
+                let can = over.frame.state.can_match().is_ok();
                 if ui.add_enabled(can, button).clicked() {
                     commands.push(InspectCommand::Update.into());
                 }
@@ -163,6 +166,7 @@ pub(super) fn freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comm
 /// Which side the sign means.
 fn side_words(ui: &mut Ui, over: &Overlay<'_>, words: &str, is_front: bool) {
     let is_signed = over
+        .frame
         .state
         .comparison()
         .is_some_and(|comparison| comparison.deviation.is_signed);
@@ -172,7 +176,7 @@ fn side_words(ui: &mut Ui, over: &Overlay<'_>, words: &str, is_front: bool) {
         (false, true) => "without sign: the crash part\nhas no clear sides".to_owned(),
         (false, false) => return,
     };
-    ui.label(RichText::new(text).size(11.0).color(over.look.weak));
+    ui.label(RichText::new(text).size(11.0).color(over.frame.look.weak));
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -290,11 +294,10 @@ fn histogram(ui: &Ui, over: &Overlay<'_>, scale: &ColorScale, stats: &DeviationS
             pos2(room.right(), bottom),
         );
         let middle = scale.value_at((i as f64 + 0.5) / n_bins as f64);
-        let [r, g, b] = scale.color(middle);
         ui.painter()
-            .rect_filled(row, 0.0, egui::Color32::from_rgb(r, g, b));
+            .rect_filled(row, 0.0, color(scale.color(middle)));
     }
-    let foot = Stroke::new(1.0, over.look.plate_line);
+    let foot = Stroke::new(1.0, over.frame.look.plate_line);
     ui.painter().vline(room.right() + 1.0, room.y_range(), foot);
     let beyond = [
         (counted.above, room.top() + 6.0, "above"),
@@ -307,7 +310,7 @@ fn histogram(ui: &Ui, over: &Overlay<'_>, scale: &ColorScale, stats: &DeviationS
                 egui::Align2::LEFT_CENTER,
                 format!("{} {word}", percent(share)),
                 egui::FontId::proportional(9.5),
-                over.look.weak,
+                over.frame.look.weak,
             );
         }
     }
@@ -335,9 +338,9 @@ fn drag_end(
     });
     let is_held = response.hovered() || response.dragged();
     let color = if is_held {
-        over.look.tool
+        over.frame.look.tool
     } else {
-        over.look.weak
+        over.frame.look.weak
     };
     let reach = if is_held { 3.0 } else { 2.0 };
     let line = bar.left() - reach..=bar.right() + reach;
@@ -389,9 +392,9 @@ fn drag_tolerance(
     });
     let is_held = response.hovered() || response.dragged();
     let color = if is_held {
-        over.look.tool
+        over.frame.look.tool
     } else {
-        over.look.weak
+        over.frame.look.weak
     };
     let stroke = Stroke::new(if is_held { 1.5 } else { 1.0 }, color);
     let dashes = [pos2(from, y), pos2(bar.left(), y)];
@@ -401,7 +404,7 @@ fn drag_tolerance(
     let corners = vec![tip, tip + vec2(-6.0, -4.0), tip + vec2(-6.0, 4.0)];
     ui.painter().add(egui::Shape::convex_polygon(
         corners,
-        over.look.text,
+        over.frame.look.text,
         Stroke::NONE,
     ));
     if let Some(pos) = response
@@ -425,8 +428,8 @@ fn tolerance(
 ) {
     ui.horizontal(|ui| {
         let inside = percent(stats.share_inside(scale.tolerance));
-        ui.label(RichText::new(inside).size(15.0).color(over.look.text));
-        ui.label(RichText::new("inside ±").size(12.0));
+        ui.label(RichText::new(inside).size(15.0).color(over.frame.look.text));
+        ui.label(RichText::new("within ±").size(12.0));
         ui.spacing_mut().item_spacing.x = 2.0;
         let mut value = scale.tolerance;
         let field = DragValue::new(&mut value)
@@ -441,23 +444,23 @@ fn tolerance(
         if response.changed() {
             coloring.tolerance = Some(value);
         }
-        ui.label(RichText::new(over.state.unit_suffix()).size(12.0));
+        ui.label(RichText::new(over.frame.state.unit_suffix()).size(12.0));
     });
 }
 
 /// Mean and spread, what is alone, and a constant offset in words.
 fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
-    let small = |text: String| RichText::new(text).size(11.0).color(over.look.weak);
-    let unit = over.state.unit_suffix();
+    let small = |text: String| RichText::new(text).size(11.0).color(over.frame.look.weak);
+    let unit = over.frame.state.unit_suffix();
     let mean = format!(
-        "mean {}{unit} · rms {}{unit}",
+        "mean {}{unit} · RMS {}{unit}",
         signed(stats.mean),
         length(stats.rms)
     );
     ui.label(small(mean));
     let (least, most) = (signed(stats.min), signed(stats.max));
     ui.label(small(format!("from {least} to {most}{unit}")));
-    ui.label(small(format!("95 % within {}{unit}", length(stats.p95))));
+    ui.label(small(format!("P95 {}{unit}", length(stats.p95))));
     let alone = stats.class_shares[2];
     if alone > 5e-4 {
         ui.horizontal(|ui| {
@@ -468,7 +471,7 @@ fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
         });
     }
     if let Some(offset) = &stats.offset {
-        let words = offset.words(|value| over.state.length_text(value));
+        let words = offset.words(|value| over.frame.state.length_text(value));
         let text = RichText::new(format!("constant offset: {words}")).size(11.5);
         ui.add(egui::Label::new(text).wrap());
     }

@@ -5,7 +5,7 @@ use egui::{Button, PopupCloseBehavior, RichText, Ui};
 
 use crate::app::{Coloring, Command, ViewCommand};
 use crate::colormap::ColorMap;
-use crate::jobs::Role;
+use crate::role::Role;
 use crate::ui::viewport::overlay::Overlay;
 
 /// Plain colours to choose from.
@@ -15,7 +15,7 @@ const BANDS: [u8; 4] = [5, 7, 9, 11];
 pub(super) fn maps(ui: &mut Ui, over: &Overlay<'_>, is_signed: bool, commands: &mut Vec<Command>) {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let button = Button::new(RichText::new("Map").size(11.5)).small();
-    let before = over.state.view.display.coloring;
+    let before = over.frame.state.view.display.coloring;
     let mut coloring = before;
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
         ui.visuals_mut().override_text_color = None;
@@ -77,7 +77,7 @@ fn choices(ui: &mut Ui, coloring: &mut Coloring, is_signed: bool) {
 
 /// Takes new choices over.
 pub(super) fn set(over: &Overlay<'_>, coloring: Coloring, commands: &mut Vec<Command>) {
-    let mut display = over.state.view.display.clone();
+    let mut display = over.frame.state.view.display.clone();
     display.coloring = coloring;
     commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
 }

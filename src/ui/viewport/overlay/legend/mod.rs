@@ -24,13 +24,14 @@ const FULL_HEIGHT: f32 = 440.0;
 pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
     let Some((kind, scale)) = over.scale else {
         // The first measurement is under way.
-        if over.kind.is_some_and(is_measured) && over.picture.has_colored() {
+        if over.kind.is_some_and(is_measured) && over.frame.picture.has_colored() {
             plate(ui, over, |ui| deviation::waiting(ui, over, commands));
         }
         return;
     };
-    let is_low = over.rect.height() < LEAST_HEIGHT || over.rect.width() < 2.0 * WIDTH;
-    if is_low || !over.picture.has_colored() {
+    let is_low =
+        over.frame.rect().height() < LEAST_HEIGHT || over.frame.rect().width() < 2.0 * WIDTH;
+    if is_low || !over.frame.picture.has_colored() {
         return;
     }
     if kind == FieldKind::Deviation && is_folded(ui, over) {
@@ -40,11 +41,11 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
         return;
     }
     let room = Room {
-        is_full: over.rect.height() >= FULL_HEIGHT,
-        bar: if over.rect.height() >= FULL_HEIGHT {
+        is_full: over.frame.rect().height() >= FULL_HEIGHT,
+        bar: if over.frame.rect().height() >= FULL_HEIGHT {
             176.0
         } else {
-            (over.rect.height() - 170.0).clamp(70.0, 150.0)
+            (over.frame.rect().height() - 170.0).clamp(70.0, 150.0)
         },
     };
     plate(ui, over, |ui| match kind {
@@ -62,7 +63,7 @@ fn is_measured(kind: FieldKind) -> bool {
 
 /// True if the user folded the legend of a window, or the section takes the room for it.
 fn is_folded(ui: &Ui, over: &Overlay<'_>) -> bool {
-    let is_tight = over.state.view.section.is_on && over.rect.width() < 640.0;
+    let is_tight = over.frame.state.view.section.is_on && over.frame.rect().width() < 640.0;
     ui.data(|data| data.get_temp(fold_id(ui, over)))
         .unwrap_or(is_tight)
 }
@@ -110,21 +111,27 @@ fn plate(ui: &mut Ui, over: &Overlay<'_>, add: impl FnOnce(&mut Ui)) {
     }
     let is_slim = over.kind == Some(FieldKind::Deviation) && is_folded(ui, over);
     let outer = if is_slim { SLIM } else { WIDTH } + 20.0;
-    let corner = Pos2::new(over.rect.right() - MARGIN - outer, over.rect.top() + 44.0);
+    let corner = Pos2::new(
+        over.frame.rect().right() - MARGIN - outer,
+        over.frame.rect().top() + 44.0,
+    );
     let room = Rect::from_min_max(
         corner,
-        Pos2::new(over.rect.right() - MARGIN, over.rect.bottom() - MARGIN),
+        Pos2::new(
+            over.frame.rect().right() - MARGIN,
+            over.frame.rect().bottom() - MARGIN,
+        ),
     );
     let ground = ui.painter().add(Shape::Noop);
     let builder = UiBuilder::new()
         .max_rect(room)
         .layout(Layout::top_down(Align::Min));
     let shown = ui.scope_builder(builder, |ui| {
-        ui.set_clip_rect(over.rect);
+        ui.set_clip_rect(over.frame.rect());
         ui.spacing_mut().item_spacing = vec2(5.0, 3.0);
         ui.spacing_mut().button_padding = vec2(4.0, 1.0);
         ui.spacing_mut().interact_size = vec2(36.0, 18.0);
-        ui.visuals_mut().override_text_color = Some(over.look.text);
+        ui.visuals_mut().override_text_color = Some(over.frame.look.text);
         Frame::new()
             .inner_margin(Margin::symmetric(10, 8))
             .show(ui, |ui| {
@@ -133,7 +140,7 @@ fn plate(ui: &mut Ui, over: &Overlay<'_>, add: impl FnOnce(&mut Ui)) {
             });
     });
     let used = shown.response.rect;
-    let shape = Shape::rect_filled(used, CornerRadius::same(6), over.look.plate);
+    let shape = Shape::rect_filled(used, CornerRadius::same(6), over.frame.look.plate);
     ui.painter().set(ground, shape);
     ui.data_mut(|data| data.insert_temp(id, used));
 }

@@ -1,23 +1,28 @@
 //! What the classes of the overlap picture are called and how much area each has.
 
-use egui::{Color32, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
+use egui::{Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
 use super::{bar, deviation};
 use crate::app::Command;
 use crate::assess::deviation::OverlapClass;
 use crate::colormap::{ColorMap, Pattern, UNMATCHED};
-use crate::jobs::Role;
+use crate::role::Role;
+use crate::ui::theme::{color, ink};
 use crate::ui::viewport::overlay::Overlay;
 use crate::ui::widgets::percent;
 
 /// Swatch, words and shares of each class.
 pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
-    let Some(comparison) = over.state.comparison() else {
+    let Some(comparison) = over.frame.state.comparison() else {
         return;
     };
-    let roles = over.picture.roles();
+    let roles = over.frame.picture.roles();
     ui.horizontal(|ui| {
-        ui.label(RichText::new("Overlap").size(12.5).color(over.look.text));
+        ui.label(
+            RichText::new("Overlap")
+                .size(12.5)
+                .color(over.frame.look.text),
+        );
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             for role in roles.iter().rev() {
                 let (rect, _) = ui.allocate_exact_size(vec2(46.0, 12.0), Sense::hover());
@@ -25,19 +30,19 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
                     pos2(rect.right() - 5.0, rect.center().y),
                     vec2(9.0, 9.0),
                 );
-                let color = over.look.role(*role);
+                let color = over.frame.look.role(*role);
                 crate::ui::widgets::paint_role_mark(ui.painter(), mark, *role, color);
             }
         });
     });
     deviation::freshness(ui, over, commands);
     ui.add_space(3.0);
-    let limit = over.state.length_text(comparison.deviation.limit);
+    let limit = over.frame.state.length_text(comparison.deviation.limit);
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
         let words = match class {
             OverlapClass::Matched => "matched".to_owned(),
-            OverlapClass::OffByMore => "off by more".to_owned(),
-            OverlapClass::OnlyHere => "only here".to_owned(),
+            OverlapClass::OffByMore => "beyond the limit".to_owned(),
+            OverlapClass::OnlyHere => "on this part only".to_owned(),
         };
         row(ui, over, class, &words, index, &roles);
     }
@@ -46,7 +51,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
             "shares of each part's area\nmatched within {limit}"
         ))
         .size(11.0)
-        .color(over.look.weak),
+        .color(over.frame.look.weak),
     );
 }
 
@@ -64,7 +69,7 @@ fn row(
         ui.label(RichText::new(words).size(12.0));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             for role in roles.iter().rev() {
-                let way = over.state.deviation_of(*role);
+                let way = over.frame.state.deviation_of(*role);
                 let share = way.map_or(0.0, |way| way.stats.class_shares[index]);
                 let (rect, _) = ui.allocate_exact_size(vec2(46.0, 14.0), Sense::hover());
                 ui.painter().text(
@@ -72,13 +77,13 @@ fn row(
                     egui::Align2::RIGHT_CENTER,
                     percent(share),
                     egui::FontId::proportional(11.5),
-                    over.look.text,
+                    over.frame.look.text,
                 );
             }
         });
     });
     let shares = roles.iter().filter_map(|role| {
-        let way = over.state.deviation_of(*role)?;
+        let way = over.frame.state.deviation_of(*role)?;
         let share = percent(way.stats.class_shares[index]);
         Some(format!("{share} of the {} part", role.word()))
     });
@@ -91,18 +96,17 @@ fn row(
 /// Colour and pattern as on the parts.
 fn swatch(ui: &Ui, rect: Rect, class: OverlapClass, over: &Overlay<'_>) {
     let painter = ui.painter().with_clip_rect(rect);
-    let rgb = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
     match class {
         OverlapClass::Matched => {
-            painter.rect_filled(rect, 2.0, rgb(ColorMap::Classes.sample(0.0)));
+            painter.rect_filled(rect, 2.0, color(ColorMap::Classes.sample(0.0)));
         }
         OverlapClass::OffByMore => {
-            painter.rect_filled(rect, 2.0, rgb(ColorMap::Classes.sample(1.0)));
+            painter.rect_filled(rect, 2.0, color(ColorMap::Classes.sample(1.0)));
             bar::patterns(&painter, rect, |_| Pattern::Dots);
         }
         OverlapClass::OnlyHere => hatched(ui, rect),
     }
-    let stroke = Stroke::new(1.0, over.look.plate_line);
+    let stroke = Stroke::new(1.0, over.frame.look.plate_line);
     ui.painter()
         .rect_stroke(rect, 2.0, stroke, egui::StrokeKind::Outside);
 }
@@ -110,14 +114,13 @@ fn swatch(ui: &Ui, rect: Rect, class: OverlapClass, over: &Overlay<'_>) {
 /// The grey hatch of places without a value.
 pub(super) fn hatched(ui: &Ui, rect: Rect) {
     let painter = ui.painter().with_clip_rect(rect);
-    let [r, g, b] = UNMATCHED;
-    painter.rect_filled(rect, 2.0, Color32::from_rgb(r, g, b));
-    let ink = Stroke::new(1.5, Color32::from_black_alpha(150));
+    painter.rect_filled(rect, 2.0, color(UNMATCHED));
+    let stroke = Stroke::new(1.5, ink(150));
     let mut x = rect.left() - rect.height();
     while x < rect.right() {
         painter.line_segment(
             [pos2(x, rect.bottom()), pos2(x + rect.height(), rect.top())],
-            ink,
+            stroke,
         );
         x += 5.0 * std::f32::consts::SQRT_2;
     }

@@ -1,6 +1,8 @@
 //! The outlines of both parts in the section plane, laid flat: axes of equal scale, distances between
 //! clicked points, and the gap between the sheets at the cursor.
 
+use std::sync::Arc;
+
 use egui::{
     Align, Button, Color32, CornerRadius, CursorIcon, Frame, Layout, Margin, Pos2, Rect, RichText,
     Sense, Shape, Stroke, Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
@@ -10,10 +12,9 @@ use egui_plot::{Line, LineStyle, Plot, PlotPoint, PlotPoints, PlotUi, Points};
 use super::super::{MARGIN, Overlay};
 use crate::app::{Action, Command, SectionView, ViewCommand};
 use crate::geometry::{Gap, Plane, Point3, gap_at, nearest_on_lines};
-use crate::jobs::{PerRole, Role};
+use crate::role::{PerRole, Role};
 use crate::ui::viewport::sections::Cut;
 use crate::ui::widgets::{paint_role_mark, signed};
-use std::sync::Arc;
 
 /// Size before the user drags it, and the smallest.
 const SIZE: Vec2 = vec2(320.0, 230.0);
@@ -36,15 +37,15 @@ pub(in crate::ui::viewport::overlay) fn show(
     cuts: &Cuts,
     commands: &mut Vec<Command>,
 ) {
-    let Some(plane) = over.state.view.section.shown() else {
+    let Some(plane) = over.frame.state.view.section.shown() else {
         return;
     };
-    let home = if over.state.document.part(Role::Crash).is_some() {
+    let home = if over.frame.state.document.part(Role::Crash).is_some() {
         Role::Crash
     } else {
         Role::Stamped
     };
-    let room = over.rect.shrink(MARGIN);
+    let room = over.frame.rect().shrink(MARGIN);
     if over.role() != home || room.width() < LEAST.x || room.height() < LEAST.y + 2.0 * BELOW {
         return;
     }
@@ -55,20 +56,20 @@ pub(in crate::ui::viewport::overlay) fn show(
     let corner = pos2(room.left(), room.bottom() - BELOW - size.y);
     let area = Rect::from_min_size(corner, size);
     ui.interact(area, id.with("ground"), Sense::click_and_drag());
-    let ground = over.look.plate.to_opaque().gamma_multiply(0.98);
+    let ground = over.frame.look.plate.to_opaque().gamma_multiply(0.98);
     ui.painter().rect(
         area,
         CornerRadius::same(6),
         ground,
-        Stroke::new(1.0, over.look.plate_line),
+        Stroke::new(1.0, over.frame.look.plate_line),
         egui::StrokeKind::Inside,
     );
     let builder = UiBuilder::new()
         .max_rect(area)
         .layout(Layout::top_down(Align::Min));
     ui.scope_builder(builder, |ui| {
-        ui.set_clip_rect(over.rect.intersect(area));
-        ui.visuals_mut().override_text_color = Some(over.look.text);
+        ui.set_clip_rect(over.frame.rect().intersect(area));
+        ui.visuals_mut().override_text_color = Some(over.frame.look.text);
         ui.spacing_mut().item_spacing = vec2(4.0, 2.0);
         Frame::new()
             .inner_margin(Margin::symmetric(8, 6))
@@ -92,7 +93,7 @@ fn resize(ui: &Ui, over: &Overlay<'_>, area: Rect, id: egui::Id) {
     }
     if response.hovered() || response.dragged() {
         let corner = area.right_top();
-        let line = Stroke::new(2.0, over.look.tool);
+        let line = Stroke::new(2.0, over.frame.look.tool);
         let ends = [
             [corner - vec2(14.0, 0.0), corner],
             [corner, corner + vec2(0.0, 14.0)],
@@ -124,13 +125,17 @@ fn content(
 
 /// Title, role marks, and the buttons of the plane.
 fn head(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
-    let state = over.state;
+    let state = over.frame.state;
     ui.horizontal(|ui| {
-        ui.label(RichText::new("Section").size(12.5).color(over.look.text));
+        ui.label(
+            RichText::new("Section")
+                .size(12.5)
+                .color(over.frame.look.text),
+        );
         for role in Role::ALL {
             let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
             let mark = Rect::from_center_size(rect.center(), Vec2::splat(9.0));
-            paint_role_mark(ui.painter(), mark, role, over.look.role(role));
+            paint_role_mark(ui.painter(), mark, role, over.frame.look.role(role));
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
@@ -144,7 +149,7 @@ fn head(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
                 ("X", Action::SectionX, false),
             ];
             for (sign, action, is_on) in buttons {
-                let info = action.info();
+                let info = action.row();
                 let button = Button::new(RichText::new(sign).size(11.5))
                     .small()
                     .selected(is_on)
@@ -152,7 +157,7 @@ fn head(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
                 let response = ui.add(button).on_hover_text(info.tooltip);
                 let name = format!("{} (section)", info.label);
                 if response.accessible_name(name).clicked() {
-                    commands.extend(action.to_commands(state));
+                    commands.extend(action.command(state));
                 }
             }
             flip(ui, over, commands);
@@ -169,11 +174,11 @@ fn flip(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
         .add(button)
         .on_hover_text("Look at the plane from behind");
     if response.accessible_name("Flip the section plane").clicked()
-        && let Some(plane) = over.state.view.section.plane
+        && let Some(plane) = over.frame.state.view.section.plane
     {
         let section = SectionView {
             plane: Some(Plane::new(plane.point, &-plane.normal)),
-            ..over.state.view.section
+            ..over.frame.state.view.section
         };
         commands.push(ViewCommand::SetSection(section).into());
     }
@@ -207,7 +212,7 @@ fn plot(
         is_empty: outlines.is_empty(),
         ..Seen::default()
     };
-    let grid = over.look.weak.gamma_multiply(0.35);
+    let grid = over.frame.look.weak.gamma_multiply(0.35);
     ui.visuals_mut().extreme_bg_color = Color32::TRANSPARENT;
     let shown = Plot::new(("section", over.role().word(), view))
         .width(size.x)
@@ -225,7 +230,7 @@ fn plot(
         .show(ui, |plot| {
             for (role, points) in outlines {
                 let line = Line::new(role.word(), PlotPoints::from(points))
-                    .color(over.look.role(role))
+                    .color(over.frame.look.role(role))
                     .width(2.0)
                     .allow_hover(false);
                 plot.line(line);
@@ -272,12 +277,12 @@ fn measured(plot: &mut PlotUi<'_>, over: &Overlay<'_>, picked: &[[f64; 2]]) {
     }
     let points = || PlotPoints::from(picked.to_vec());
     let line = Line::new("measured", points())
-        .color(over.look.tool)
+        .color(over.frame.look.tool)
         .width(1.2)
         .style(LineStyle::dashed_dense());
     plot.line(line.allow_hover(false));
     let ends = Points::new("ends", points())
-        .color(over.look.tool)
+        .color(over.frame.look.tool)
         .radius(3.5)
         .allow_hover(false);
     plot.points(ends);
@@ -318,7 +323,7 @@ fn look(
     if let Some(gap) = &seen.gap {
         let ends = vec![plane.flat(&gap.from), plane.flat(&gap.to)];
         let line = Line::new("gap", PlotPoints::from(ends))
-            .color(over.look.text)
+            .color(over.frame.look.text)
             .width(1.5)
             .allow_hover(false);
         plot.line(line);
@@ -331,9 +336,9 @@ fn distance(a: &Point3, b: &Point3) -> f64 {
 
 fn dot(plot: &mut PlotUi<'_>, over: &Overlay<'_>, at: [f64; 2]) {
     let center: Pos2 = plot.screen_from_plot(PlotPoint::new(at[0], at[1]));
-    if over.rect.contains(center) {
+    if over.frame.rect().contains(center) {
         let point = Points::new("snap", PlotPoints::from(vec![at]))
-            .color(over.look.tool)
+            .color(over.frame.look.tool)
             .radius(3.0)
             .filled(false)
             .allow_hover(false);
@@ -343,7 +348,7 @@ fn dot(plot: &mut PlotUi<'_>, over: &Overlay<'_>, at: [f64; 2]) {
 
 /// What was measured, the gap at the pointer, or what one can do.
 fn foot(ui: &mut Ui, over: &Overlay<'_>, seen: &Seen, picked: &[[f64; 2]]) {
-    let state = over.state;
+    let state = over.frame.state;
     let (text, is_fact) = if let [a, b] = picked {
         let [du, dv] = [b[0] - a[0], b[1] - a[1]];
         let whole = state.length_text(du.hypot(dv));
@@ -361,9 +366,9 @@ fn foot(ui: &mut Ui, over: &Overlay<'_>, seen: &Seen, picked: &[[f64; 2]]) {
         ("click two points to measure".to_owned(), false)
     };
     let color = if is_fact {
-        over.look.text
+        over.frame.look.text
     } else {
-        over.look.weak
+        over.frame.look.weak
     };
     ui.add(egui::Label::new(RichText::new(text).size(11.5).color(color)).truncate());
 }

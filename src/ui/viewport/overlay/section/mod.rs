@@ -19,13 +19,13 @@ const TURN: f64 = 0.006;
 
 /// The handle in the middle of the plane: left drag moves it along its normal, right drag turns it.
 pub(super) fn handle(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
-    let Some((plane, center)) = over.state.view.section.shown().zip(middle(over)) else {
+    let Some((plane, center)) = over.frame.state.view.section.shown().zip(middle(over)) else {
         return;
     };
-    let Some(at) = pos_of(over.rect, &over.stage.camera, &center) else {
+    let Some(at) = pos_of(over.frame.rect(), &over.frame.view.camera, &center) else {
         return;
     };
-    if !over.rect.contains(at) {
+    if !over.frame.rect().contains(at) {
         return;
     }
     let id = ui.make_persistent_id(("section handle", over.role().word()));
@@ -57,28 +57,32 @@ pub(super) fn handle(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
 
 /// The middle of the plane's frame.
 fn middle(over: &Overlay<'_>) -> Option<Point3> {
-    let corners = over.picture.section_frame.as_ref()?;
+    let corners = over.frame.picture.section_frame.as_ref()?;
     Some(nalgebra::center(&corners[0], &corners[2]))
 }
 
 /// Points on the screen per length along the normal.
 fn along_normal(over: &Overlay<'_>, plane: &Plane, center: &Point3, at: Pos2) -> Vec2 {
-    let camera = &over.stage.camera;
-    let pixel = camera.pixel_size(screen_of(over.rect), center);
+    let camera = &over.frame.view.camera;
+    let pixel = camera.pixel_size(screen_of(over.frame.rect()), center);
     let tip = center + plane.normal * (100.0 * pixel);
-    let tip = pos_of(over.rect, camera, &tip).unwrap_or(at);
+    let tip = pos_of(over.frame.rect(), camera, &tip).unwrap_or(at);
     (tip - at) / (100.0 * pixel) as f32
 }
 
 /// The plane moved along its normal as far as the pointer went along it on the screen; where the
 /// normal points at the viewer, up moves it away.
 fn pushed(over: &Overlay<'_>, plane: &Plane, center: &Point3, (way, delta): (Vec2, Vec2)) -> Plane {
-    let pixel = over.stage.camera.pixel_size(screen_of(over.rect), center);
+    let pixel = over
+        .frame
+        .view
+        .camera
+        .pixel_size(screen_of(over.frame.rect()), center);
     let is_seen = f64::from(way.length()) * pixel > 0.15;
     let length = if is_seen {
         f64::from(delta.dot(way) / way.length_sq())
     } else {
-        let towards = -over.stage.camera.forward().dot(&plane.normal).signum();
+        let towards = -over.frame.view.camera.forward().dot(&plane.normal).signum();
         f64::from(delta.y) * pixel * towards
     };
     Plane {
@@ -89,7 +93,7 @@ fn pushed(over: &Overlay<'_>, plane: &Plane, center: &Point3, (way, delta): (Vec
 
 /// The plane turned about the axes of the screen through its middle.
 fn tilted(over: &Overlay<'_>, plane: &Plane, center: &Point3, delta: Vec2) -> Plane {
-    let camera = &over.stage.camera;
+    let camera = &over.frame.view.camera;
     let turn =
         camera.up() * (f64::from(delta.x) * TURN) + camera.right() * (f64::from(delta.y) * TURN);
     let normal = nalgebra::Rotation3::new(turn) * plane.normal;
@@ -100,7 +104,7 @@ fn tilted(over: &Overlay<'_>, plane: &Plane, center: &Point3, delta: Vec2) -> Pl
 fn set(over: &Overlay<'_>, plane: Plane, commands: &mut Vec<Command>) {
     let section = SectionView {
         plane: Some(plane),
-        ..over.state.view.section
+        ..over.frame.state.view.section
     };
     commands.push(ViewCommand::SetSection(section).into());
 }
@@ -108,19 +112,19 @@ fn set(over: &Overlay<'_>, plane: Plane, commands: &mut Vec<Command>) {
 /// A disc with an arrow along the normal.
 fn paint(ui: &Ui, over: &Overlay<'_>, at: Pos2, way: Vec2, is_held: bool) {
     let painter = over.painter(ui);
-    let color = over.look.tool;
+    let color = over.frame.look.tool;
     let width = if is_held { 2.5 } else { 1.8 };
     if way.length() > 0.0 {
         let direction = way.normalized();
         let pixel = {
-            let camera = &over.stage.camera;
-            camera.pixel_size(screen_of(over.rect), &camera.target)
+            let camera = &over.frame.view.camera;
+            camera.pixel_size(screen_of(over.frame.rect()), &camera.target)
         };
         // Foreshortened as the normal is.
         let length = ARROW * (f64::from(way.length()) * pixel).min(1.0) as f32;
         if length > HANDLE {
             let tip = at + direction * (length + HANDLE);
-            painter.line_segment([at, tip], Stroke::new(width + 2.5, over.look.plate));
+            painter.line_segment([at, tip], Stroke::new(width + 2.5, over.frame.look.plate));
             painter.line_segment([at, tip], Stroke::new(width, color));
             let side = direction.rot90();
             for leg in [side, -side] {
@@ -132,7 +136,7 @@ fn paint(ui: &Ui, over: &Overlay<'_>, at: Pos2, way: Vec2, is_held: bool) {
     painter.circle(
         at,
         HANDLE,
-        over.look.plate.to_opaque(),
+        over.frame.look.plate.to_opaque(),
         Stroke::new(width, color),
     );
     // Two strokes through the disc: the plane seen from its edge.

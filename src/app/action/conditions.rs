@@ -1,0 +1,59 @@
+//! Conditions that several actions share.
+
+use super::Reason;
+use crate::app::AppState;
+use crate::role::Role;
+
+/// `Ok` if the condition holds, else the reason.
+pub(super) fn require(is_met: bool, otherwise: &'static str) -> Result<(), Reason> {
+    if is_met {
+        Ok(())
+    } else {
+        Err(Reason(otherwise))
+    }
+}
+
+#[expect(
+    clippy::unnecessary_wraps,
+    reason = "conditions of all rows have one type"
+)]
+pub(super) fn always(_: &AppState) -> Result<(), Reason> {
+    Ok(())
+}
+
+/// A part is loaded and no job holds the inputs.
+pub(super) fn any_part_unlocked(state: &AppState) -> Result<(), Reason> {
+    state.has_any_part()?;
+    state.is_unlocked()
+}
+
+/// The part is loaded and no job holds the inputs.
+pub(super) fn part_unlocked(state: &AppState, role: Role) -> Result<(), Reason> {
+    state.has_part(role)?;
+    state.is_unlocked()
+}
+
+pub(super) fn has_stamped(state: &AppState) -> Result<(), Reason> {
+    state.has_part(Role::Stamped)
+}
+
+pub(super) fn has_selection(state: &AppState) -> Result<(), Reason> {
+    require(!state.view.selected.is_empty(), "Select a part first.")
+}
+
+pub(super) fn is_reduced(state: &AppState) -> Result<(), Reason> {
+    let is_reduced = |role| state.document.part(role).is_some_and(|p| p.level.is_some());
+    let any = Role::ALL.into_iter().any(is_reduced);
+    require(any, "No part is reduced.")
+}
+
+pub(super) fn has_result(state: &AppState) -> Result<(), Reason> {
+    let has_result = state.document.current_result().is_some();
+    require(has_result, "Run a match first.")
+}
+
+pub(super) fn has_starts(state: &AppState) -> Result<(), Reason> {
+    let n_starts = state.current_starts().map_or(0, |s| s.poses.len());
+    require(n_starts > 0, "Align the surface normals first.")?;
+    state.is_unlocked()
+}

@@ -1,0 +1,136 @@
+//! The menu *Export*: what leaves the program.
+
+use super::conditions::{always, has_result, has_stamped};
+use super::row::keys::{ctrl_shift, function};
+use super::row::some;
+use super::{Action, ActionRow, Key, Keys, MenuGroup, Shortcut, toggled_dialog};
+use crate::app::{AppState, Command, CopyForm, Dialog, ExportCommand};
+use crate::pipeline::outputs::{MeshOutput, Output};
+use crate::report::{CardForm, MatrixForm};
+
+pub(super) const GROUPS: &[MenuGroup] = &[
+    MenuGroup::plain(COPY),
+    MenuGroup::plain(SAVE),
+    MenuGroup::plain(IMAGE),
+];
+
+const COPY: &[ActionRow] = &[
+    ActionRow {
+        action: Action::CopyMatrix,
+        label: "Copy matrix",
+        tooltip: "Copy the pose (stamped → crash) in the form used last",
+        keys: Keys::press(&[ctrl_shift('C')]),
+        enabled: has_stamped,
+        command: |state| some(ExportCommand::Copy(state.copy_form())),
+    },
+    ActionRow {
+        action: Action::CopyCommandLine,
+        label: "Copy as command line",
+        tooltip: "Copy the command that gives this pose again without the window, bit for bit",
+        keys: Keys::NONE,
+        enabled: AppState::can_copy_command_line,
+        command: |_| some(ExportCommand::CopyCommandLine),
+    },
+    ActionRow {
+        action: Action::CopyLog,
+        label: "Copy log",
+        tooltip: "Copy the rows of the log as text",
+        keys: Keys::NONE,
+        enabled: always,
+        command: |_| some(ExportCommand::CopyLog),
+    },
+];
+
+const SAVE: &[ActionRow] = &[
+    ActionRow {
+        action: Action::SaveReport,
+        label: "Save report…",
+        tooltip: "Write pictures, verdict, tables and settings as one HTML page",
+        keys: Keys::NONE,
+        enabled: has_result,
+        command: |_| save(Output::Report),
+    },
+    ActionRow {
+        action: Action::SaveRecord,
+        label: "Save record…",
+        tooltip: "Write the whole match as JSON: matrix, verdict, settings, times",
+        keys: Keys::NONE,
+        enabled: has_result,
+        command: |_| save(Output::Record),
+    },
+    ActionRow {
+        action: Action::SaveDeviations,
+        label: "Save node deviations…",
+        tooltip: "Write the distance of every node from the other part, as CSV",
+        keys: Keys::NONE,
+        enabled: AppState::has_both_parts,
+        command: |_| save(Output::Deviations),
+    },
+    ActionRow {
+        action: Action::SaveMatrix,
+        label: "Save matrix…",
+        tooltip: "Write the pose as text",
+        keys: Keys::NONE,
+        enabled: has_stamped,
+        command: |state| save(Output::Matrix(last_matrix(state))),
+    },
+    ActionRow {
+        action: Action::SaveCards,
+        label: "Save LS-DYNA cards…",
+        tooltip: "Write the cards that map the stamped part, and check them by reading them back",
+        keys: Keys::NONE,
+        enabled: has_result,
+        command: |_| save(Output::Cards(CardForm::ALL[0])),
+    },
+    ActionRow {
+        action: Action::SaveMoved,
+        label: "Save moved part…",
+        tooltip: "Write the stamped part at its pose on the crash part",
+        keys: Keys::NONE,
+        enabled: has_stamped,
+        command: |_| save(Output::Mesh(MeshOutput::Moved)),
+    },
+];
+
+const IMAGE: &[ActionRow] = &[
+    ActionRow {
+        action: Action::PictureOptions,
+        label: "Save image…",
+        tooltip: "Choose size, background and windows of an image, then write it",
+        keys: Keys::press(&[Shortcut::shift(Key::Function(12))]),
+        enabled: AppState::has_any_part,
+        command: |state| some(toggled_dialog(state, Dialog::Picture)),
+    },
+    ActionRow {
+        action: Action::TakePicture,
+        label: "Save image again",
+        tooltip: "Write an image of the 3D windows with the settings used last",
+        keys: Keys::press(&[function(12)]),
+        enabled: AppState::has_any_part,
+        command: |_| take_picture(false),
+    },
+    ActionRow {
+        action: Action::TakePictureTransparent,
+        label: "Save image without background",
+        tooltip: "Write an image of the 3D windows with a transparent background",
+        keys: Keys::press(&[Shortcut::ctrl(Key::Function(12))]),
+        enabled: AppState::has_any_part,
+        command: |_| take_picture(true),
+    },
+];
+
+fn save(kind: Output) -> Option<Command> {
+    some(ExportCommand::AskSave(kind))
+}
+
+fn take_picture(is_transparent: bool) -> Option<Command> {
+    some(ExportCommand::TakePicture { is_transparent })
+}
+
+/// The form of the matrix that was copied last.
+fn last_matrix(state: &AppState) -> MatrixForm {
+    match state.copy_form() {
+        CopyForm::Matrix(form) => form,
+        CopyForm::Cards(_) => MatrixForm::Rows,
+    }
+}

@@ -1,0 +1,185 @@
+//! The menu *Match*: reduction, first poses, the match and its result.
+
+use super::conditions::{has_starts, is_reduced, require};
+use super::row::keys::{function, key, shift};
+use super::row::some;
+use super::{Action, ActionRow, Key, Keys, MenuGroup, Reason, Shortcut};
+use crate::app::{AppState, MatchCommand, PairCommand, ReduceCommand, facts};
+use crate::jobs::JobKey;
+use crate::role::{PerRole, Role};
+
+pub(super) const GROUPS: &[MenuGroup] = &[
+    MenuGroup::plain(REDUCE),
+    MenuGroup::plain(STARTS),
+    MenuGroup::plain(MATCH),
+    MenuGroup::plain(RESULT),
+];
+
+const REDUCE: &[ActionRow] = &[
+    ActionRow {
+        action: Action::Reduce,
+        label: "Reduce",
+        tooltip: "Reduce the ticked parts to the maximum number of triangles",
+        keys: Keys::NONE,
+        enabled: AppState::can_reduce,
+        command: |state| {
+            some(ReduceCommand::To {
+                roles: state.settings.reduce_roles,
+                max_triangles: state.settings.max_triangles,
+            })
+        },
+    },
+    ActionRow {
+        action: Action::ReduceToFull,
+        label: "Full mesh",
+        tooltip: "Go back to the full meshes",
+        keys: Keys::NONE,
+        enabled: is_reduced,
+        command: |_| {
+            some(ReduceCommand::Full(PerRole {
+                crash: true,
+                stamped: true,
+            }))
+        },
+    },
+    ActionRow {
+        action: Action::NextLevel,
+        label: "Coarser level",
+        tooltip: "Next marked level with fewer triangles",
+        keys: Keys::repeat(&[Shortcut::plain(Key::PageUp)]),
+        enabled: |state| level_step(state, 1, "There is no coarser marked level."),
+        command: |_| some(ReduceCommand::Step(1)),
+    },
+    ActionRow {
+        action: Action::PreviousLevel,
+        label: "Finer level",
+        tooltip: "Next marked level with more triangles",
+        keys: Keys::repeat(&[Shortcut::plain(Key::PageDown)]),
+        enabled: |state| level_step(state, -1, "This is the full mesh."),
+        command: |_| some(ReduceCommand::Step(-1)),
+    },
+];
+
+const STARTS: &[ActionRow] = &[
+    ActionRow {
+        action: Action::Align,
+        label: "Align surface normals",
+        tooltip: "Make first poses by aligning the mean surface normals",
+        keys: Keys::press(&[key('A')]),
+        enabled: AppState::can_match,
+        command: |_| some(MatchCommand::Align),
+    },
+    ActionRow {
+        action: Action::NextStart,
+        label: "Next start",
+        tooltip: "Show the next first pose",
+        keys: Keys::repeat(&[Shortcut::alt(Key::PageDown)]),
+        enabled: has_starts,
+        command: |_| some(MatchCommand::StepStart(1)),
+    },
+    ActionRow {
+        action: Action::PreviousStart,
+        label: "Previous start",
+        tooltip: "Show the previous first pose",
+        keys: Keys::repeat(&[Shortcut::alt(Key::PageUp)]),
+        enabled: has_starts,
+        command: |_| some(MatchCommand::StepStart(-1)),
+    },
+    ActionRow {
+        action: Action::UseStart,
+        label: "Use this start",
+        tooltip: "Move the stamped part to the first pose that is shown",
+        keys: Keys::press(&[Shortcut::alt(Key::Enter)]),
+        enabled: |state| {
+            has_starts(state)?;
+            require(state.shown_start().is_some(), "Show a start first.")
+        },
+        command: |state| some(MatchCommand::UseStart(state.current_starts()?.shown?)),
+    },
+    ActionRow {
+        action: Action::FitPairs,
+        label: "Fit the pairs",
+        tooltip: "Align the picked points; with more than three pairs by least squares",
+        keys: Keys::NONE,
+        enabled: AppState::can_fit_pairs,
+        command: |_| some(PairCommand::Fit),
+    },
+];
+
+const MATCH: &[ActionRow] = &[
+    ActionRow {
+        action: Action::MatchOrStop,
+        label: "Match",
+        tooltip: "Find the pose; while it runs, stop and keep the best pose so far",
+        keys: Keys::press(&[Shortcut::ctrl(Key::Enter), function(5)]),
+        enabled: |state| {
+            if state.jobs.is_active(JobKey::Match) {
+                return Ok(());
+            }
+            state.can_match()?;
+            state.has_start_pose()
+        },
+        command: |state| {
+            some(if state.jobs.is_active(JobKey::Match) {
+                MatchCommand::Stop
+            } else {
+                MatchCommand::Run
+            })
+        },
+    },
+    ActionRow {
+        action: Action::Refine,
+        label: "Refine",
+        tooltip: "Run the match from the present pose of the stamped part",
+        keys: Keys::press(&[Shortcut::ctrl_shift(Key::Enter)]),
+        enabled: AppState::can_match,
+        command: |_| some(MatchCommand::Refine),
+    },
+    ActionRow {
+        action: Action::CancelRun,
+        label: "Cancel the run",
+        tooltip: "End the run and keep the old pose",
+        keys: Keys::NONE,
+        enabled: |state| require(state.locking_job().is_some(), "Nothing is running."),
+        command: |_| some(MatchCommand::Cancel),
+    },
+];
+
+const RESULT: &[ActionRow] = &[
+    ActionRow {
+        action: Action::NextAlternative,
+        label: "Next alternative",
+        tooltip: "Show the next pose that fits nearly as well, after the last the best again",
+        keys: Keys::press(&[key('V')]),
+        enabled: has_alternative,
+        command: |_| some(MatchCommand::NextAlternative),
+    },
+    ActionRow {
+        action: Action::Measure,
+        label: "Measure",
+        tooltip: "Measure distances and overlap at the present pose",
+        keys: Keys::press(&[shift('M')]),
+        enabled: AppState::can_match,
+        command: |_| some(MatchCommand::Measure),
+    },
+];
+
+fn level_step(state: &AppState, direction: i32, at_end: &'static str) -> Result<(), Reason> {
+    state.can_reduce()?;
+    let roles = state.settings.reduce_roles;
+    let is_ticked = Role::ALL
+        .into_iter()
+        .any(|role| *roles.get(role) && state.document.part(role).is_some());
+    require(is_ticked, "Tick a loaded part to reduce.")?;
+    require(state.next_level(direction).is_some(), at_end)
+}
+
+fn has_alternative(state: &AppState) -> Result<(), Reason> {
+    let result = state.document.result.as_ref();
+    let run = result.ok_or(Reason("Run a match first."))?;
+    let n_alternatives = facts::n_alternatives(&run.run);
+    require(n_alternatives > 0, "No other pose fits nearly as well.")?;
+    let is_same_pair = run.stamp.parts == state.document.stamp().parts;
+    require(is_same_pair, "A part was exchanged after the match.")?;
+    state.is_unlocked()
+}

@@ -1,0 +1,430 @@
+//! The menu *View*: display, inspection, section, camera, size of the window's text.
+
+use super::conditions::{always, is_reduced, require};
+use super::row::keys::{ctrl_digit, digit, function, key, shift};
+use super::row::some;
+use super::{Action, ActionRow, Key, Keys, MenuGroup, Reason, Shortcut};
+use crate::app::{
+    AppState, ColorBy, Command, Display, InspectCommand, SectionView, Settings, ShownGeometry,
+    ViewCommand,
+};
+use crate::geometry::Vector3;
+use crate::geometry::camera::{OrbitStyle, StandardView};
+
+pub(super) const GROUPS: &[MenuGroup] = &[
+    MenuGroup::plain(COMPARE),
+    MenuGroup::submenu("Display", DISPLAY),
+    MenuGroup::submenu("Inspect", INSPECT),
+    MenuGroup::submenu("Section", SECTION),
+    MenuGroup::submenu("Camera", CAMERA),
+    MenuGroup::plain(WINDOW),
+];
+
+const COMPARE: &[ActionRow] = &[
+    ActionRow {
+        action: Action::ToggleMoveOver,
+        label: "Move over",
+        tooltip: "Show the stamped part in the left window, or back in its own",
+        keys: Keys::press(&[key('M')]),
+        enabled: AppState::has_both_parts,
+        command: |_| some(ViewCommand::ToggleMoveOver),
+    },
+    ActionRow {
+        action: Action::Blink,
+        label: "Blink",
+        tooltip: "Hold to see the full mesh, or the other part when moved over",
+        keys: Keys::hold(&[key('B')]),
+        enabled: always,
+        command: |_| some(ViewCommand::SetBlinking(true)),
+    },
+    ActionRow {
+        action: Action::ToggleSeeThrough,
+        label: "See-through",
+        tooltip: "Make the crash part transparent",
+        keys: Keys::press(&[key('X')]),
+        enabled: always,
+        command: |state| shown_with(state, |display| display.is_see_through ^= true),
+    },
+    ActionRow {
+        action: Action::FitAll,
+        label: "Fit all",
+        tooltip: "Bring everything visible into view",
+        keys: Keys::press(&[Shortcut::plain(Key::Home)]),
+        enabled: AppState::has_any_part,
+        command: |state| some(ViewCommand::FitAll(state.view.focus)),
+    },
+];
+
+const DISPLAY: &[ActionRow] = &[
+    ActionRow {
+        action: Action::ToggleDetailed,
+        label: "Detailed geometry",
+        tooltip: "Show the full meshes instead of the reduced ones",
+        keys: Keys::press(&[shift('D')]),
+        enabled: is_reduced,
+        command: |state| {
+            some(ViewCommand::SetShown(match state.view.shown {
+                ShownGeometry::Reduced => ShownGeometry::Detailed,
+                ShownGeometry::Detailed => ShownGeometry::Reduced,
+            }))
+        },
+    },
+    ActionRow {
+        action: Action::ToggleSplit,
+        label: "Reduced | full",
+        tooltip: "Split each window: reduced mesh left, full mesh right of a line",
+        keys: Keys::press(&[shift('W')]),
+        enabled: is_reduced,
+        command: |state| shown_with(state, |display| toggle_line(&mut display.split)),
+    },
+    ActionRow {
+        action: Action::ToggleWipe,
+        label: "Wipe",
+        tooltip: "A line with the stamped part on one side only; before moving over: reduced | full",
+        keys: Keys::press(&[key('W')]),
+        enabled: always,
+        // Before the part is moved over, the same key wipes between reduced and full.
+        command: |state| {
+            let is_split = !state.view.is_moved_over && is_reduced(state).is_ok();
+            shown_with(state, |display| {
+                toggle_line(if is_split {
+                    &mut display.split
+                } else {
+                    &mut display.wipe
+                });
+            })
+        },
+    },
+    ActionRow {
+        action: Action::ToggleEdges,
+        label: "Mesh edges",
+        tooltip: "Draw the edges of the mesh",
+        keys: Keys::press(&[key('E')]),
+        enabled: always,
+        command: |state| shown_with(state, |display| display.has_edges ^= true),
+    },
+    ActionRow {
+        action: Action::ToggleFeatureEdges,
+        label: "Feature edges",
+        tooltip: "Draw sharp edges and borders",
+        keys: Keys::press(&[shift('E')]),
+        enabled: always,
+        command: |state| shown_with(state, |display| display.has_feature_edges ^= true),
+    },
+    ActionRow {
+        action: Action::TogglePoints,
+        label: "Nodes",
+        tooltip: "Draw the nodes as points",
+        keys: Keys::NONE,
+        enabled: always,
+        command: |state| shown_with(state, |display| display.has_points ^= true),
+    },
+];
+
+const INSPECT: &[ActionRow] = &[
+    ActionRow {
+        action: Action::ToggleDeviation,
+        label: "Deviation map",
+        tooltip: "Colour the parts by the signed distance between them",
+        keys: Keys::press(&[key('D')]),
+        enabled: AppState::has_both_parts,
+        command: |state| shown_with(state, |display| toggle_color(display, ColorBy::Deviation)),
+    },
+    ActionRow {
+        action: Action::ToggleOverlap,
+        label: "Overlap map",
+        tooltip: "Show where the parts match, where they deviate, and what only one of them has",
+        keys: Keys::press(&[key('O')]),
+        enabled: AppState::has_both_parts,
+        command: |state| shown_with(state, |display| toggle_color(display, ColorBy::Overlap)),
+    },
+    ActionRow {
+        action: Action::UpdateDeviation,
+        label: "Update the deviation",
+        tooltip: "Measure the deviation again at the shown pose and levels",
+        keys: Keys::NONE,
+        enabled: AppState::has_both_parts,
+        command: |_| some(InspectCommand::Update),
+    },
+];
+
+const SECTION: &[ActionRow] = &[
+    ActionRow {
+        action: Action::ToggleSection,
+        label: "Section",
+        tooltip: "Cut both parts with a plane and show their outlines",
+        keys: Keys::press(&[key('S')]),
+        enabled: AppState::has_any_part,
+        command: |state| some(ViewCommand::SetSection(state.section_toggled())),
+    },
+    ActionRow {
+        action: Action::ToggleSectionClip,
+        label: "Cut away one half",
+        tooltip: "Hide what lies in front of the section plane",
+        keys: Keys::press(&[shift('S')]),
+        enabled: AppState::has_any_part,
+        command: |state| {
+            some(ViewCommand::SetSection(SectionView {
+                is_clipped: !state.view.section.is_clipped,
+                ..state.section_across(&section_normal(state))
+            }))
+        },
+    },
+    ActionRow {
+        action: Action::SectionX,
+        label: "Section across X",
+        tooltip: "Section plane normal to x",
+        keys: Keys::NONE,
+        enabled: AppState::has_any_part,
+        command: |state| section_across(state, &Vector3::x()),
+    },
+    ActionRow {
+        action: Action::SectionY,
+        label: "Section across Y",
+        tooltip: "Section plane normal to y",
+        keys: Keys::NONE,
+        enabled: AppState::has_any_part,
+        command: |state| section_across(state, &Vector3::y()),
+    },
+    ActionRow {
+        action: Action::SectionZ,
+        label: "Section across Z",
+        tooltip: "Section plane normal to z",
+        keys: Keys::NONE,
+        enabled: AppState::has_any_part,
+        command: |state| section_across(state, &Vector3::z()),
+    },
+    ActionRow {
+        action: Action::SectionView,
+        label: "Section across the view",
+        tooltip: "Section plane facing the viewer",
+        keys: Keys::NONE,
+        enabled: AppState::has_any_part,
+        command: |state| {
+            let camera = state.view.cameras.get(state.view.focus);
+            section_across(state, &-camera.forward())
+        },
+    },
+    ActionRow {
+        action: Action::SectionForward,
+        label: "Section forward",
+        tooltip: "Move the section plane by a tenth of an element along its normal",
+        keys: Keys::press(&[Shortcut::shift(Key::PageUp)]),
+        enabled: has_section,
+        command: |state| section_moved(state, 1.0),
+    },
+    ActionRow {
+        action: Action::SectionBack,
+        label: "Section back",
+        tooltip: "Move the section plane back by a tenth of an element",
+        keys: Keys::press(&[Shortcut::shift(Key::PageDown)]),
+        enabled: has_section,
+        command: |state| section_moved(state, -1.0),
+    },
+];
+
+const CAMERA: &[ActionRow] = &[
+    ActionRow {
+        action: Action::FocusSelection,
+        label: "Fit selection",
+        tooltip: "Bring the selected parts into view, or everything",
+        keys: Keys::press(&[key('F')]),
+        enabled: AppState::has_any_part,
+        command: |state| some(ViewCommand::Focus(state.view.focus)),
+    },
+    ActionRow {
+        action: Action::PreviousView,
+        label: "Previous view",
+        tooltip: "Back to the camera before the last jump",
+        keys: Keys::press(&[digit(0)]),
+        enabled: always,
+        command: |state| some(ViewCommand::PreviousCamera(state.view.focus)),
+    },
+    ActionRow {
+        action: Action::ViewFront,
+        label: "Front",
+        tooltip: "Look along +y",
+        keys: Keys::press(&[digit(1)]),
+        enabled: always,
+        command: |state| look(state, StandardView::Front),
+    },
+    ActionRow {
+        action: Action::ViewBack,
+        label: "Back",
+        tooltip: "Look along −y",
+        keys: Keys::press(&[ctrl_digit(1)]),
+        enabled: always,
+        command: |state| look(state, StandardView::Back),
+    },
+    ActionRow {
+        action: Action::ViewRight,
+        label: "Right",
+        tooltip: "Look along −x",
+        keys: Keys::press(&[digit(3)]),
+        enabled: always,
+        command: |state| look(state, StandardView::Right),
+    },
+    ActionRow {
+        action: Action::ViewLeft,
+        label: "Left",
+        tooltip: "Look along +x",
+        keys: Keys::press(&[ctrl_digit(3)]),
+        enabled: always,
+        command: |state| look(state, StandardView::Left),
+    },
+    ActionRow {
+        action: Action::ViewTop,
+        label: "Top",
+        tooltip: "Look along −z",
+        keys: Keys::press(&[digit(7)]),
+        enabled: always,
+        command: |state| look(state, StandardView::Top),
+    },
+    ActionRow {
+        action: Action::ViewBottom,
+        label: "Bottom",
+        tooltip: "Look along +z",
+        keys: Keys::press(&[ctrl_digit(7)]),
+        enabled: always,
+        command: |state| look(state, StandardView::Bottom),
+    },
+    ActionRow {
+        action: Action::ViewIsometric,
+        label: "Isometric",
+        tooltip: "Look from (+x, −y, +z)",
+        keys: Keys::press(&[digit(9)]),
+        enabled: always,
+        command: |state| look(state, StandardView::Isometric),
+    },
+    ActionRow {
+        action: Action::ToggleProjection,
+        label: "Perspective",
+        tooltip: "Perspective or parallel projection",
+        keys: Keys::press(&[digit(5)]),
+        enabled: always,
+        command: |state| some(ViewCommand::ToggleProjection(state.view.focus)),
+    },
+    ActionRow {
+        action: Action::ToggleLink,
+        label: "Link views",
+        tooltip: "Rotate and zoom both windows together",
+        keys: Keys::press(&[key('L')]),
+        enabled: always,
+        command: |_| some(ViewCommand::ToggleLink),
+    },
+    ActionRow {
+        action: Action::ToggleOrbitStyle,
+        label: "Free orbit",
+        tooltip: "Rotate freely instead of about the vertical axis",
+        keys: Keys::press(&[key('T')]),
+        enabled: always,
+        command: |state| {
+            some(ViewCommand::SetOrbitStyle(match state.view.orbit_style {
+                OrbitStyle::Turntable => OrbitStyle::Free,
+                OrbitStyle::Free => OrbitStyle::Turntable,
+            }))
+        },
+    },
+    ActionRow {
+        action: Action::ClearPivot,
+        label: "Clear pivot",
+        tooltip: "Rotate about the point under the pointer again",
+        keys: Keys::press(&[key('P')]),
+        enabled: |state| {
+            let pivot = state.view.pivot.get(state.view.focus);
+            require(pivot.is_some(), "No pivot was picked.")
+        },
+        command: |state| some(ViewCommand::SetPivot(state.view.focus, None)),
+    },
+];
+
+const WINDOW: &[ActionRow] = &[
+    ActionRow {
+        action: Action::ToggleGraphicsOnly,
+        label: "Graphics only",
+        tooltip: "Hide everything but the 3D windows",
+        keys: Keys::press(&[function(11)]),
+        enabled: always,
+        command: |_| some(ViewCommand::ToggleGraphicsOnly),
+    },
+    ActionRow {
+        action: Action::ScaleUp,
+        label: "Increase UI scale",
+        tooltip: "Make text and controls larger",
+        keys: Keys::repeat(&[Shortcut::ctrl(Key::Plus)]),
+        enabled: always,
+        command: |state| scaled(state, state.settings.ui_scale + 0.125),
+    },
+    ActionRow {
+        action: Action::ScaleDown,
+        label: "Decrease UI scale",
+        tooltip: "Make text and controls smaller",
+        keys: Keys::repeat(&[Shortcut::ctrl(Key::Minus)]),
+        enabled: always,
+        command: |state| scaled(state, state.settings.ui_scale - 0.125),
+    },
+    ActionRow {
+        action: Action::ScaleReset,
+        label: "Reset UI scale",
+        tooltip: "UI scale back to 100 %",
+        keys: Keys::press(&[ctrl_digit(0)]),
+        enabled: always,
+        command: |state| scaled(state, 1.0),
+    },
+];
+
+fn has_section(state: &AppState) -> Result<(), Reason> {
+    state.has_any_part()?;
+    require(state.view.section.is_on, "Show the section first.")
+}
+
+/// The picture with one choice changed.
+fn shown_with(state: &AppState, change: impl FnOnce(&mut Display)) -> Option<Command> {
+    let mut display = state.view.display.clone();
+    change(&mut display);
+    some(ViewCommand::SetDisplay(Box::new(display)))
+}
+
+fn toggle_color(display: &mut Display, by: ColorBy) {
+    display.color_by = if display.color_by == by {
+        ColorBy::Role
+    } else {
+        by
+    };
+}
+
+/// A line that was not there begins in the middle.
+fn toggle_line(line: &mut Option<f32>) {
+    *line = match line {
+        None => Some(0.5),
+        Some(_) => None,
+    };
+}
+
+/// What the section plane is normal to now, or would be.
+fn section_normal(state: &AppState) -> Vector3 {
+    let plane = state.view.section.plane;
+    plane
+        .unwrap_or_else(|| state.default_section_plane())
+        .normal
+}
+
+fn section_across(state: &AppState, normal: &Vector3) -> Option<Command> {
+    some(ViewCommand::SetSection(state.section_across(normal)))
+}
+
+fn section_moved(state: &AppState, n_steps: f64) -> Option<Command> {
+    let section = state.section_moved(n_steps * state.section_step())?;
+    some(ViewCommand::SetSection(section))
+}
+
+fn look(state: &AppState, view: StandardView) -> Option<Command> {
+    some(ViewCommand::Standard(state.view.focus, view))
+}
+
+fn scaled(state: &AppState, ui_scale: f32) -> Option<Command> {
+    Some(Command::Settings(Box::new(Settings {
+        ui_scale,
+        ..state.settings.clone()
+    })))
+}

@@ -1,0 +1,247 @@
+//! Where two parts meet under a pose: what the uncertainty of the pose and the statement about the
+//! shape are computed from.
+
+use nalgebra::{SMatrix, SVector, SymmetricEigen};
+
+use crate::geometry::{Point3, Rotation, Similarity, Vector3};
+use crate::registration::Surface;
+use crate::search::ClosestPoint;
+
+/// Nodes of the smaller part that are looked at; more change no figure by a percent.
+const MAX_NODES: usize = 8000;
+/// Surfaces that turn away from each other by more than this do not lie on each other: cosine of 50°.
+const MIN_FACING: f64 = 0.64;
+/// Motions that meet less than this share of the resistance of the stiffest are left alone.
+const RANK: f64 = 1e-7;
+
+/// A place of the smaller part beside the other part, in the target's frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Contact {
+    /// Where.
+    pub(super) point: Point3,
+    /// Unit normal on the target's side.
+    pub(super) normal: Vector3,
+    /// How far the source lies in front of the target along the normal.
+    pub(super) gap: f64,
+    /// Area it stands for.
+    pub(super) weight: f64,
+    /// How much of the gap the facets of the other part may explain.
+    pub(super) facet: f64,
+}
+
+/// All places where the parts meet.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Contacts {
+    pub(super) list: Vec<Contact>,
+    /// Share of the smaller part's area that meets the other part.
+    pub(super) share: f64,
+    /// Middle of the places, and their mean distance from it.
+    pub(super) center: Point3,
+    pub(super) radius: f64,
+}
+
+/// A small motion of the source: a turn about a centre that is the same for all of one set, and a
+/// shift.
+pub(super) type Six = SVector<f64, 6>;
+
+impl Contacts {
+    /// Finds the places within `reach` of the other part. O(nodes · log triangles).
+    pub(super) fn find(
+        source: &Surface,
+        target: &Surface,
+        pose: &Similarity,
+        reach: f64,
+    ) -> Option<Self> {
+        let area_of_source = source.measures().area * pose.scale * pose.scale;
+        let of_source = area_of_source <= 1.02 * target.measures().area;
+        let back = pose.inverse();
+        let (data, model) = if of_source {
+            (source, target)
+        } else {
+            (target, source)
+        };
+        let (model_from_data, unit) = if of_source {
+            (*pose, 1.0)
+        } else {
+            (back, pose.scale)
+        };
+        let positions = data.mesh().positions();
+        let stride = positions.len().div_ceil(MAX_NODES).max(1);
+        let mut list = Vec::with_capacity(positions.len() / stride + 1);
+        let (mut met, mut total) = (0.0, 0.0);
+        for vertex in (0..positions.len()).step_by(stride) {
+            let weight = data.vertex_areas()[vertex];
+            if weight <= 0.0 {
+                continue;
+            }
+            total += weight;
+            let moved = model_from_data.apply(&positions[vertex]);
+            let own = model_from_data.rotate(&data.vertex_normals()[vertex]);
+            let Some(hit) = model.bvh().closest(&moved, reach / unit, None, None) else {
+                continue;
+            };
+            let other = model.normal_at(&hit);
+            let facing = own.dot(&other);
+            let beside = (moved - hit.point) - other * (moved - hit.point).dot(&other);
+            let is_off_the_rim =
+                model.is_on_border(&hit) && beside.norm() > 0.5 * (moved - hit.point).norm();
+            if facing.abs() < MIN_FACING || is_off_the_rim {
+                continue;
+            }
+            let height = (moved - model.curved_point(&hit)).dot(&other);
+            let facet = facet_error(model, hit.triangle as usize, &own) * unit;
+            met += weight;
+            list.push(if of_source {
+                Contact {
+                    point: moved,
+                    normal: other,
+                    gap: height,
+                    weight,
+                    facet,
+                }
+            } else {
+                // Measured from the source; turned to the target's side.
+                let side = facing.signum();
+                Contact {
+                    point: positions[vertex],
+                    normal: pose.rotate(&other) * side,
+                    gap: -height * side * unit,
+                    weight,
+                    facet,
+                }
+            });
+        }
+        let sum: f64 = list.iter().map(|c| c.weight).sum();
+        let origin = list.first()?.point;
+        let mean: Vector3 = list.iter().map(|c| (c.point - origin) * c.weight).sum();
+        let center = origin + mean / sum;
+        let arm = |c: &Contact| (c.point - center).norm() * c.weight;
+        let radius = list.iter().map(arm).sum::<f64>() / sum;
+        (radius > 0.0).then_some(Self {
+            list,
+            share: met / total,
+            center,
+            radius,
+        })
+    }
+
+    /// How a small motion moves a place along a direction, turns in lengths at `radius`.
+    pub(super) fn row(&self, point: &Point3, n: &Vector3) -> Six {
+        let lever = ((point - self.center) / self.radius).cross(n);
+        Six::from([lever.x, lever.y, lever.z, n.x, n.y, n.z])
+    }
+
+    /// The motion that undoes a small one of the source, given as in [`Contacts::row`].
+    pub(super) fn undo(&self, motion: &Six) -> Similarity {
+        let turn = Vector3::new(motion[0], motion[1], motion[2]) / -self.radius;
+        let shift = Vector3::new(motion[3], motion[4], motion[5]);
+        let rotation = *Rotation::new(turn).to_rotation_matrix().matrix();
+        Similarity {
+            rotation,
+            translation: self.center.coords - shift - rotation * self.center.coords,
+            scale: 1.0,
+        }
+    }
+
+    /// The places cut by repeated halving at the median into `1 << levels` patches; for each place
+    /// its patch. Fewer patches where there are few places.
+    pub(super) fn patches(&self, levels: u32) -> Vec<usize> {
+        let mut patch = vec![0; self.list.len()];
+        let mut all: Vec<usize> = (0..self.list.len()).collect();
+        self.halve(&mut all, levels, 0, &mut patch);
+        patch
+    }
+
+    fn halve(&self, places: &mut [usize], levels: u32, number: usize, patch: &mut [usize]) {
+        if levels == 0 || places.len() < 2 {
+            for &place in places.iter() {
+                patch[place] = number;
+            }
+            return;
+        }
+        let at = |place: usize| &self.list[place].point;
+        let extent = |axis: usize| {
+            let values = places.iter().map(|&i| at(i)[axis]);
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
+                (l.min(x), h.max(x))
+            });
+            high - low
+        };
+        let extents = [extent(0), extent(1), extent(2)];
+        let longest = (0..3).max_by(|&a, &b| extents[a].total_cmp(&extents[b]));
+        let axis = longest.unwrap_or(0);
+        places.sort_unstable_by(|&a, &b| at(a)[axis].total_cmp(&at(b)[axis]).then(a.cmp(&b)));
+        let (low, high) = places.split_at_mut(places.len() / 2);
+        self.halve(low, levels - 1, 2 * number, patch);
+        self.halve(high, levels - 1, 2 * number + 1, patch);
+    }
+}
+
+/// A weight for each value: its area, less the farther the value lies from nothing (Tukey's biweight
+/// about the median distance). `floor` is a distance that means nothing.
+pub(super) fn robust_weights(values: &[f64], areas: &[f64], floor: f64) -> Vec<f64> {
+    let sizes = values.iter().map(|v| v.abs()).zip(areas.iter().copied());
+    let median = quantile(&mut sizes.collect::<Vec<_>>(), 0.5);
+    let cut = 4.7 * (1.48 * median).max(floor).max(f64::MIN_POSITIVE);
+    let weight = |(value, area): (&f64, &f64)| {
+        let ratio = value / cut;
+        if ratio.abs() < 1.0 {
+            area * (1.0 - ratio * ratio).powi(2)
+        } else {
+            0.0
+        }
+    };
+    values.iter().zip(areas).map(weight).collect()
+}
+
+/// How far a facet may lie off the smooth surface it stands for, whose normal here is `normal`: the
+/// sagitta of an arc over its longest edge that turns by twice the angle between both normals.
+fn facet_error(model: &Surface, triangle: usize, normal: &Vector3) -> f64 {
+    let [a, b, c] = model.mesh().corners(triangle);
+    let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
+    let cos = model.mesh().normal(triangle).dot(normal).abs().min(1.0);
+    longest * cos.acos() / 4.0
+}
+
+/// Weighted quantile; sorts. 0 without weight.
+pub(super) fn quantile(values: &mut [(f64, f64)], share: f64) -> f64 {
+    values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let total: f64 = values.iter().map(|(_, weight)| weight).sum();
+    let mut below = 0.0;
+    let found = values.iter().find(|(_, weight)| {
+        below += weight;
+        below >= share * total
+    });
+    found.map_or(0.0, |(value, _)| *value)
+}
+
+/// Least squares over `N` unknowns; directions that the rows do not fix stay zero.
+pub(super) fn solve<const N: usize>(
+    matrix: &SMatrix<f64, N, N>,
+    right: &SVector<f64, N>,
+) -> SVector<f64, N> {
+    let mut solution = SVector::<f64, N>::zeros();
+    if !matrix.iter().chain(right.iter()).all(|x| x.is_finite()) {
+        return solution;
+    }
+    // The decomposition of a fixed size has bounds that a const parameter cannot meet.
+    let eigen = SymmetricEigen::new(nalgebra::DMatrix::from_iterator(
+        N,
+        N,
+        matrix.iter().copied(),
+    ));
+    let stiffest = eigen.eigenvalues.max();
+    for (value, vector) in eigen
+        .eigenvalues
+        .iter()
+        .zip(eigen.eigenvectors.column_iter())
+    {
+        if *value > RANK * stiffest {
+            let along: f64 = vector.iter().zip(right.iter()).map(|(a, b)| a * b).sum();
+            for (x, v) in solution.iter_mut().zip(vector.iter()) {
+                *x += v * along / value;
+            }
+        }
+    }
+    solution
+}

@@ -1,0 +1,131 @@
+//! Why a verdict is what it is: each reason with its numbers and its weight.
+
+use serde::{Deserialize, Serialize};
+
+use super::{FreeMotion, PartDirection, ShapeReason, Twin, Verdict};
+use crate::geometry::serial::any_float;
+use crate::registration::{Termination, UnitGuess};
+
+/// One reason for a verdict. Lengths are in target length units, scores relative to the result's.
+///
+/// Stored by name with its numbers; [`Reason::words`] puts it into words.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Reason {
+    /// The mirrored source fits clearly better.
+    OppositeHand {
+        /// Score of the opposite hand over the result's.
+        #[serde(with = "any_float")]
+        score_ratio: f64,
+    },
+    /// The source is nearly its own mirror image, and mirrored it fits a little better.
+    NearMirrorImage {
+        /// Score of the opposite hand over the result's.
+        #[serde(with = "any_float")]
+        score_ratio: f64,
+    },
+    /// The sizes differ by a factor between length units.
+    DifferentUnits {
+        /// Target size over source size.
+        #[serde(with = "any_float")]
+        size_ratio: f64,
+        /// The factor, and between which units it lies.
+        unit: UnitGuess,
+    },
+    /// The final pairs would fit better at another scale.
+    PairScale {
+        /// The scale that fits them best.
+        #[serde(with = "any_float")]
+        scale: f64,
+    },
+    /// Each part extends beyond the other.
+    BothOverhang {
+        /// Covered fraction of the source's area.
+        #[serde(with = "any_float")]
+        source: f64,
+        /// Covered fraction of the target's area.
+        #[serde(with = "any_float")]
+        target: f64,
+    },
+    /// The surfaces slide on each other.
+    Sliding {
+        /// How they do.
+        motion: FreeMotion,
+    },
+    /// The pose may be off by more than the tolerance.
+    Uncertain {
+        /// Largest uncertainty of a node.
+        #[serde(with = "any_float")]
+        by: f64,
+        /// The tolerance.
+        limit: f64,
+        /// In which direction most.
+        along: PartDirection,
+    },
+    /// The shapes differ.
+    Shape {
+        /// How.
+        difference: ShapeReason,
+    },
+    /// A distinct pose fits nearly as well.
+    NearAlternative {
+        /// Its score over the result's.
+        #[serde(with = "any_float")]
+        score_ratio: f64,
+        /// How it differs from the result, if that was measured.
+        twin: Option<Twin>,
+    },
+    /// A distinct pose fits as well.
+    EqualAlternative {
+        /// Its score over the result's.
+        #[serde(with = "any_float")]
+        score_ratio: f64,
+        /// How it differs from the result, if that was measured.
+        twin: Option<Twin>,
+        /// Equivalent poses, the result included.
+        n_equivalent: usize,
+    },
+    /// The user stopped the match before it converged.
+    Stopped,
+    /// The iteration ended without a fit.
+    EndedEarly {
+        /// Why.
+        termination: Termination,
+    },
+    /// Nothing speaks against the pose.
+    InOrder {
+        /// Covered fraction of the part that is covered better.
+        #[serde(with = "any_float")]
+        overlap: f64,
+        /// Distance that 95 % of the overlap stays below.
+        #[serde(with = "any_float")]
+        p95: f64,
+    },
+    /// A sentence of a project from a version that stored words instead of reasons.
+    #[serde(untagged)]
+    Sentence(String),
+}
+
+impl Reason {
+    /// The verdict that this reason alone would give.
+    pub fn severity(&self) -> Verdict {
+        match self {
+            Self::InOrder { .. } => Verdict::Good,
+            Self::Shape { difference } if difference.is_of_another_part() => Verdict::Poor,
+            Self::Shape { .. } => Verdict::Check,
+            Self::NearMirrorImage { .. }
+            | Self::PairScale { .. }
+            | Self::Uncertain { .. }
+            | Self::BothOverhang { .. }
+            | Self::Sliding { .. }
+            | Self::NearAlternative { .. }
+            | Self::EqualAlternative { .. }
+            | Self::Stopped => Verdict::Check,
+            // Such a sentence stands beside the verdict it belonged to, which is stored too.
+            Self::Sentence(_) => Verdict::Check,
+            Self::OppositeHand { .. } | Self::DifferentUnits { .. } | Self::EndedEarly { .. } => {
+                Verdict::Poor
+            }
+        }
+    }
+}

@@ -1,0 +1,443 @@
+//! Borders and holes of two parts under a pose: do they lie where they belong? A part that is three
+//! percent longer than its counterpart fits its surface well and misses its rims.
+
+use std::collections::HashMap;
+
+use super::contact::robust_weights;
+use crate::geometry::{Point3, Similarity, Vector3};
+use crate::registration::Surface;
+use crate::search::{ClosestPoint, PointTree};
+
+/// Rims are cut into straight edges; so much of their mean edge length is no deviation.
+const RIM_FACETS: f64 = 0.06;
+/// So many times the median step aside is none either.
+const RAGGED: f64 = 2.5;
+
+/// Places along the rims of the smaller part that are compared.
+const N_PLACES: usize = 600;
+/// Rims that run in directions farther apart than this are not the same: cosine of 37°.
+const PARALLEL: f64 = 0.8;
+/// The sheet lies around a hole: its rim faces its middle with at least this mean cosine.
+const INWARD: f64 = 0.3;
+/// Holes whose radii differ by more than this factor are not the same hole.
+const SAME_RADIUS: f64 = 1.6;
+/// A place is paired if nothing nearer than this share of its distance is beside its counterpart.
+const MUTUAL: f64 = 0.7;
+/// Points of the other part's rims in the tree.
+const N_DENSE: f64 = 40_000.0;
+
+/// A place on a rim of one part beside a rim of the other, in the target's frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct RimPair {
+    pub(super) point: Point3,
+    /// Unit direction out of the target's sheet, within it.
+    pub(super) across: Vector3,
+    /// How far the source's rim lies outside the target's.
+    pub(super) gap: f64,
+    /// Area that it stands for: length times an edge.
+    pub(super) weight: f64,
+}
+
+/// A hole in the target's frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct RimHole {
+    pub(super) center: Point3,
+    pub(super) radius: f64,
+    /// Of the sheet around it.
+    pub(super) normal: Vector3,
+}
+
+/// A hole that both parts have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct HolePair {
+    /// The target's.
+    pub(super) hole: RimHole,
+    /// From its middle to that of the source's.
+    pub(super) off: Vector3,
+    /// Difference of the radii.
+    pub(super) wider: f64,
+}
+
+/// How the rims of both parts lie.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Rims {
+    pairs: Vec<RimPair>,
+    /// Holes of both.
+    pub(super) holes: Vec<HolePair>,
+    /// Holes of the source where the target is solid, and the other way round.
+    pub(super) missing: [Vec<RimHole>; 2],
+    /// Mean edge length of the coarser mesh.
+    pub(super) edge: f64,
+    /// How far the rims of the more ragged part step aside from one node to the next, as where elements
+    /// were left out instead of cut.
+    ragged: f64,
+    /// Length of all rims of the smaller part.
+    length: f64,
+}
+
+/// One rim in its part's own frame.
+struct Rim {
+    points: Vec<Point3>,
+    normals: Vec<Vector3>,
+    length: f64,
+    is_hole: bool,
+}
+
+impl Rims {
+    /// Compares the rims that lie within `near` of each other. O(border edges + near triangles).
+    pub(super) fn find(source: &Surface, target: &Surface, pose: &Similarity, near: f64) -> Self {
+        let [of_source, of_target] = [source, target].map(rims_of);
+        let area = source.measures().area * pose.scale * pose.scale;
+        let from_source = area <= 1.02 * target.measures().area;
+        let still = Similarity::identity();
+        let edge = source.measures().mean_edge_length * pose.scale;
+        let edge = edge.max(target.measures().mean_edge_length);
+        let smaller = if from_source { &of_source } else { &of_target };
+        let unit = if from_source { pose.scale } else { 1.0 };
+        let length = unit * smaller.iter().map(|rim| rim.length).sum::<f64>();
+        let pairs = if from_source {
+            pair(&of_source, pose, &of_target, &still, near)
+        } else {
+            let mut pairs = pair(&of_target, &still, &of_source, pose, near);
+            for pair in &mut pairs {
+                pair.gap = -pair.gap;
+            }
+            pairs
+        };
+        let pairs = pairs.into_iter().map(|pair| RimPair {
+            weight: pair.weight * edge,
+            ..pair
+        });
+        let mut found = Self {
+            pairs: pairs.collect(),
+            edge,
+            ragged: ragged(&of_source, pose.scale).max(ragged(&of_target, 1.0)),
+            length,
+            ..Self::default()
+        };
+        found.compare_holes([source, target], [&of_source, &of_target], pose, near);
+        found
+    }
+
+    pub(super) fn pairs(&self) -> &[RimPair] {
+        &self.pairs
+    }
+
+    /// Distance between rims that says nothing about the parts.
+    pub(super) fn unremarkable(&self) -> f64 {
+        RIM_FACETS * self.edge + RAGGED * self.ragged
+    }
+
+    /// Share of the smaller part's rims that lie beside rims of the other.
+    pub(super) fn share(&self) -> f64 {
+        let paired = self.pairs.iter().map(|p| p.weight).sum::<f64>() / self.edge;
+        if self.length > 0.0 {
+            paired / self.length
+        } else {
+            0.0
+        }
+    }
+
+    /// The pairs' weights, less for those that lie far apart beside the others.
+    pub(super) fn weights(&self, noise: f64) -> Vec<f64> {
+        let gaps: Vec<f64> = self.pairs.iter().map(|p| p.gap).collect();
+        // Ragged rims know a place only as well as their steps are small, and all to one side.
+        let known = (RIM_FACETS * self.edge / self.unremarkable()).powi(2);
+        let areas: Vec<f64> = self.pairs.iter().map(|p| known * p.weight).collect();
+        robust_weights(&gaps, &areas, noise.max(self.unremarkable()))
+    }
+
+    fn compare_holes(
+        &mut self,
+        surfaces: [&Surface; 2],
+        rims: [&[Rim]; 2],
+        pose: &Similarity,
+        near: f64,
+    ) {
+        let still = Similarity::identity();
+        let [of_source, of_target] = [(rims[0], pose), (rims[1], &still)].map(|(rims, pose)| {
+            let holes = rims.iter().filter(|rim| rim.is_hole);
+            holes.map(|rim| hole(rim, pose)).collect::<Vec<_>>()
+        });
+        let mut is_used = vec![false; of_target.len()];
+        let mut alone = Vec::new();
+        for hole in of_source {
+            let candidates = of_target.iter().enumerate().filter(|(i, _)| !is_used[*i]);
+            let off = |other: &RimHole| (other.center - hole.center).norm();
+            let same_size = |other: &RimHole| {
+                let ratio = other.radius / hole.radius;
+                ratio < SAME_RADIUS && ratio * SAME_RADIUS > 1.0
+            };
+            let nearest = candidates
+                .filter(|(_, other)| same_size(other) && off(other) < near.max(hole.radius))
+                .min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
+            match nearest {
+                Some((i, other)) => {
+                    is_used[i] = true;
+                    self.holes.push(HolePair {
+                        hole: *other,
+                        off: hole.center - other.center,
+                        wider: (hole.radius - other.radius).abs(),
+                    });
+                }
+                None => alone.push(hole),
+            }
+        }
+        let back = pose.inverse();
+        let left = of_target.iter().zip(&is_used).filter(|(_, used)| !**used);
+        let left: Vec<RimHole> = left.map(|(hole, _)| *hole).collect();
+        self.missing = [
+            solid_at(alone, surfaces[1], &still, 1.0, near),
+            solid_at(left, surfaces[0], &back, pose.scale, near),
+        ];
+    }
+}
+
+/// Those of the holes at whose middle the other part has no hole.
+fn solid_at(
+    holes: Vec<RimHole>,
+    other: &Surface,
+    other_from_target: &Similarity,
+    unit: f64,
+    near: f64,
+) -> Vec<RimHole> {
+    let is_solid = |hole: &RimHole| {
+        let at = other_from_target.apply(&hole.center);
+        // Over a curved sheet the middle of a hole floats a little.
+        let reach = (0.5 * hole.radius + near) / unit;
+        let hit = other.bvh().closest(&at, reach, None, None);
+        hit.is_some_and(|hit| {
+            let away = (at - hit.point).norm();
+            let facing = other_from_target
+                .rotate(&hole.normal)
+                .dot(&other.normal_at(&hit));
+            !other.is_on_border(&hit) && facing.abs() > PARALLEL && away < reach
+        })
+    };
+    holes.into_iter().filter(is_solid).collect()
+}
+
+fn hole(rim: &Rim, target_from_rim: &Similarity) -> RimHole {
+    let n = rim.points.len();
+    let mut sum = Vector3::zeros();
+    for (i, p) in rim.points.iter().enumerate() {
+        let next = &rim.points[(i + 1) % n];
+        sum += nalgebra::center(p, next).coords * (next - p).norm();
+    }
+    let normal: Vector3 = rim.normals.iter().sum();
+    RimHole {
+        center: target_from_rim.apply(&Point3::from(sum / rim.length)),
+        radius: rim.length / std::f64::consts::TAU * target_from_rim.scale,
+        normal: target_from_rim.rotate(&normal.try_normalize(0.0).unwrap_or_default()),
+    }
+}
+
+/// Places along the rims of `data` beside those of `model`.
+fn pair(
+    data: &[Rim],
+    target_from_data: &Similarity,
+    model: &[Rim],
+    target_from_model: &Similarity,
+    near: f64,
+) -> Vec<RimPair> {
+    let length = |rims: &[Rim]| rims.iter().map(|rim| rim.length).sum::<f64>();
+    let (own, other) = (length(data), length(model));
+    if own <= 0.0 || other <= 0.0 {
+        return Vec::new();
+    }
+    let unit = target_from_model.scale;
+    let spacing = (0.1 * near / unit).max(other / N_DENSE);
+    let dense: Vec<Place> = along(model, spacing)
+        .into_iter()
+        .map(|place| place.moved(target_from_model))
+        .collect();
+    let tree = PointTree::build(dense.iter().map(|place| place.point).collect::<Vec<_>>());
+    let step = own / N_PLACES as f64;
+    let own_points = along(data, spacing.min(step).max(own / N_DENSE));
+    let own_points = own_points.iter().map(|p| target_from_data.apply(&p.point));
+    let own_tree = PointTree::build(own_points.collect::<Vec<_>>());
+    let mut pairs = Vec::new();
+    for place in along(data, step) {
+        let place = place.moved(target_from_data);
+        let Some(found) = tree.nearest(&place.point, near, None) else {
+            continue;
+        };
+        let beside = &dense[found.index as usize];
+        let away = found.distance_sq.sqrt();
+        // A cut beside a border is not that border, which has a counterpart of its own.
+        let has_nearer = own_tree.nearest(&beside.point, MUTUAL * away - spacing, None);
+        if beside.tangent.dot(&place.tangent).abs() < PARALLEL || has_nearer.is_some() {
+            continue;
+        }
+        let across = beside.tangent.cross(&beside.normal);
+        let gap = (place.point - beside.point).dot(&across);
+        pairs.push(RimPair {
+            point: beside.point,
+            across,
+            gap,
+            weight: step * target_from_data.scale,
+        });
+    }
+    pairs
+}
+
+/// A place along a rim.
+struct Place {
+    point: Point3,
+    tangent: Vector3,
+    normal: Vector3,
+}
+
+impl Place {
+    fn moved(self, pose: &Similarity) -> Self {
+        // A mirror turns the sense in which a rim is walked along.
+        let sense = if pose.is_mirrored() { -1.0 } else { 1.0 };
+        Self {
+            point: pose.apply(&self.point),
+            tangent: pose.rotate(&self.tangent) * sense,
+            normal: pose.rotate(&self.normal),
+        }
+    }
+}
+
+fn along(rims: &[Rim], spacing: f64) -> Vec<Place> {
+    let mut places = Vec::new();
+    let mut until_next = 0.5 * spacing;
+    for rim in rims {
+        let n = rim.points.len();
+        for i in 0..n {
+            let (a, b) = (rim.points[i], rim.points[(i + 1) % n]);
+            let length = (b - a).norm();
+            let mut at = until_next;
+            while at < length {
+                let t = at / length;
+                places.push(Place {
+                    point: a + (b - a) * t,
+                    tangent: (b - a) / length,
+                    normal: rim.normals[i],
+                });
+                at += spacing;
+            }
+            until_next = at - length;
+        }
+    }
+    places
+}
+
+/// The border edges chained to rims. An open chain, which ends where two sheets touch, is walked like a
+/// closed one without its closing edge being long.
+fn rims_of(surface: &Surface) -> Vec<Rim> {
+    let edges = surface.border_edges();
+    let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
+    for &[from, to] in edges.iter().rev() {
+        next.entry(from).or_default().push(to);
+    }
+    let positions = surface.mesh().positions();
+    let mut rims = Vec::new();
+    for &[start, _] in &edges {
+        let mut vertices = Vec::new();
+        let mut at = start;
+        while let Some(to) = next.get_mut(&at).and_then(Vec::pop) {
+            vertices.push(at);
+            at = to;
+        }
+        if vertices.len() < 3 || at != start {
+            continue;
+        }
+        let points: Vec<Point3> = vertices.iter().map(|&v| positions[v as usize]).collect();
+        let after = points.iter().cycle().skip(1);
+        let length = points.iter().zip(after).map(|(a, b)| (b - a).norm()).sum();
+        let normals = vertices
+            .iter()
+            .map(|&v| surface.vertex_normals()[v as usize]);
+        rims.push(Rim {
+            normals: normals.collect(),
+            points,
+            length,
+            is_hole: false,
+        });
+    }
+    for rim in &mut rims {
+        rim.is_hole = is_hole(rim);
+    }
+    rims
+}
+
+/// Median distance of a rim's node from the middle between its neighbours; next to nothing along straight
+/// and smoothly curved rims, whatever folds and corners they have.
+fn ragged(rims: &[Rim], unit: f64) -> f64 {
+    let mut steps = Vec::new();
+    for rim in rims {
+        let count = rim.points.len();
+        for (i, p) in rim.points.iter().enumerate() {
+            let [before, after] = [(i + count - 1) % count, (i + 1) % count];
+            let middle = nalgebra::center(&rim.points[before], &rim.points[after]);
+            steps.push(unit * (p - middle).norm());
+        }
+    }
+    steps.sort_unstable_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Whether the sheet lies around the rim, so that the way out of it points to the middle.
+fn is_hole(rim: &Rim) -> bool {
+    let center = hole(rim, &Similarity::identity()).center;
+    let n = rim.points.len();
+    let (mut inward, mut whole) = (0.0, 0.0);
+    for (i, p) in rim.points.iter().enumerate() {
+        let side = rim.points[(i + 1) % n] - p;
+        let outwards = side.cross(&rim.normals[i]);
+        let arm = p - center;
+        inward -= arm.dot(&outwards);
+        whole += arm.norm() * outwards.norm();
+    }
+    inward > INWARD * whole
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::TriMesh;
+
+    /// A sheet of `n` by 20 cells of one millimetre without the cells in rows and columns 4 to 7.
+    fn sheet(n: usize, hole_at: usize) -> Surface {
+        let points = (0..=20 * (n + 1) + n).map(|i| {
+            let (x, y) = (i % (n + 1), i / (n + 1));
+            Point3::new(x as f64, y as f64, 0.0)
+        });
+        let cells = (0..n * 20).map(|i| (i % n, i / n));
+        let is_hole =
+            |(x, y): &(usize, usize)| (hole_at..hole_at + 4).contains(x) && (4..8).contains(y);
+        let triangles = cells.filter(|cell| !is_hole(cell)).flat_map(|(x, y)| {
+            let a = (y * (n + 1) + x) as u32;
+            let up = a + n as u32 + 1;
+            [[a, a + 1, up + 1], [a, up + 1, up]]
+        });
+        let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
+        Surface::new(&mesh, "source").unwrap()
+    }
+
+    #[test]
+    fn a_longer_part_misses_its_rims_and_a_shifted_hole_is_found() {
+        let still = Similarity::identity();
+        let (plain, longer, moved) = (sheet(30, 5), sheet(32, 5), sheet(30, 6));
+        let least = |rims: &Rims| rims.pairs.iter().map(|p| p.gap).fold(0.0, f64::min);
+        let same = Rims::find(&plain, &plain, &still, 3.0);
+        assert!(same.pairs.len() > 500 && same.pairs.iter().all(|p| p.gap == 0.0));
+        assert_eq!(same.holes.len(), 1);
+        let other = Rims::find(&plain, &longer, &still, 3.0);
+        assert!((least(&other) + 2.0).abs() < 1e-9);
+        let hole = Rims::find(&plain, &moved, &still, 3.0);
+        assert_eq!(hole.holes.len(), 1);
+        assert!((hole.holes[0].off + Vector3::x()).norm() < 1e-9);
+    }
+
+    #[test]
+    fn holes_on_different_sides_are_missing_both_ways() {
+        let still = Similarity::identity();
+        let (left, right) = (sheet(30, 3), sheet(30, 22));
+        let rims = Rims::find(&left, &right, &still, 3.0);
+        assert!(rims.holes.is_empty());
+        assert_eq!(rims.missing.each_ref().map(Vec::len), [1, 1]);
+    }
+}

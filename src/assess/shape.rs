@@ -1,0 +1,669 @@
+//! Are both parts the same shape? What a smooth bend and twist explain is springback; what remains, and
+//! rims that do not lie where they belong, are differences of the part.
+
+use nalgebra::{SMatrix, SVector};
+use serde::{Deserialize, Serialize};
+
+use super::contact::{Contacts, Six, quantile, robust_weights, solve};
+use super::rims::Rims;
+use crate::geometry::serial::{any_float, xyz};
+use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
+use crate::registration::Surface;
+
+/// Unknowns of the fit: a rigid motion, an offset, and the bends.
+const N_BENDS: usize = 7;
+const N: usize = 7 + N_BENDS;
+/// Times that places far off the fit are given less weight.
+const ROUNDS: usize = 4;
+/// Share of an offset that nothing else can imitate; with less it is not told apart.
+pub(super) const LEAST_OWN: f64 = 0.02;
+/// Smooth displacement that is accepted as springback: a share of the diagonal, at most so many
+/// millimetres.
+const SPRINGBACK_SHARE: f64 = 0.005;
+const SPRINGBACK_MOST: f64 = 5.0;
+/// Remainder that is accepted at least, in millimetres.
+const REMAINDER_LEAST: f64 = 1.0;
+/// Where fewer of the smaller part's rims lie beside rims of the other, the parts are trimmed differently
+/// and rims say nothing about the shape.
+const LEAST_PAIRED: f64 = 0.4;
+/// Parts that meet over less than this share of the smaller one are different parts.
+const LEAST_MET: f64 = 0.5;
+/// Parts that meet over less than this share, and differ where they meet, are different parts too: a
+/// trimmed part keeps its shape.
+const MOSTLY_MET: f64 = 0.75;
+/// A remainder of so many tolerances is that of a different part.
+const DIFFERENT: f64 = 6.0;
+/// Distances up to so many times the faceting, or this share of the tolerance, are unremarkable at most of
+/// the area.
+const FACETING: f64 = 3.0;
+const UNREMARKABLE: f64 = 0.1;
+const SAME_SHARE: f64 = 0.8;
+/// Patches that are searched for the place of the largest difference: 2 to this power.
+const PLACE_LEVELS: u32 = 5;
+
+/// How large differences may be before the shape is another. Target length units.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ShapeTolerance {
+    /// What may remain besides springback and offset, at 95 % of the area; rims and holes likewise.
+    pub remainder: f64,
+    /// How far a smooth bend and twist may reach.
+    pub springback: f64,
+}
+
+impl ShapeTolerance {
+    /// The tolerance for a target of this diagonal. `set` is what the user asked for; `millimetre` is
+    /// the length of one in target units.
+    pub fn new(set: Option<f64>, thickness: Option<f64>, diagonal: f64, millimetre: f64) -> Self {
+        let usual = (REMAINDER_LEAST * millimetre).max(thickness.unwrap_or(0.0));
+        let remainder = set.unwrap_or(usual);
+        let smooth = (SPRINGBACK_SHARE * diagonal).min(SPRINGBACK_MOST * millimetre);
+        Self {
+            remainder,
+            springback: smooth.max(remainder),
+        }
+    }
+
+    /// The tolerance with both limits at least `allowance`.
+    #[must_use]
+    pub fn at_least(self, allowance: f64) -> Self {
+        Self {
+            remainder: self.remainder.max(allowance),
+            springback: self.springback.max(allowance),
+        }
+    }
+}
+
+/// The statement about the shape in one word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ShapeKind {
+    /// The parts differ by no more than their facets.
+    Same,
+    /// The same part, bent or offset within the tolerance.
+    Deformed,
+    /// A part of the same kind whose surface, rims or holes differ by more than the tolerance.
+    OtherVersion,
+    /// Two parts that do not belong together.
+    Different,
+}
+
+/// How rims and holes lie. Lengths in target units.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct RimFit {
+    /// Distance across the rim that 90 % of the rims beside each other do not exceed, without what
+    /// springback and an error of the pose explain; `None` where too few rims lie beside each other.
+    pub offset: Option<f64>,
+    /// Holes that both parts have.
+    pub n_holes: usize,
+    /// Largest distance of a hole from its counterpart, likewise, with the difference of the radii.
+    #[serde(with = "any_float")]
+    pub worst_hole: f64,
+    /// Holes of the source where the target is solid.
+    pub only_source: usize,
+    /// Holes of the target where the source is solid.
+    pub only_target: usize,
+}
+
+/// What speaks against one shape. Lengths in target units, places in the target's frame.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", tag = "what")]
+pub enum ShapeReason {
+    /// The parts meet over this share of the smaller one only.
+    HardlyMet {
+        /// The share.
+        share: f64,
+    },
+    /// Bend and twist reach farther than springback may.
+    Bent {
+        /// At 95 % of the area.
+        by: f64,
+        /// What is accepted.
+        limit: f64,
+    },
+    /// The surfaces differ by more than the tolerance.
+    Surface {
+        /// At 95 % of the area.
+        by: f64,
+        /// What is accepted.
+        limit: f64,
+        /// Where most.
+        #[serde(with = "xyz")]
+        at: Point3,
+    },
+    /// The rims do not lie on each other.
+    Rims {
+        /// At 90 % of the rims beside each other.
+        by: f64,
+        /// What is accepted.
+        limit: f64,
+        /// Where most.
+        #[serde(with = "xyz")]
+        at: Point3,
+    },
+    /// A hole lies elsewhere or has another size.
+    Hole {
+        /// By how much.
+        by: f64,
+        /// What is accepted.
+        limit: f64,
+        /// Where.
+        #[serde(with = "xyz")]
+        at: Point3,
+    },
+    /// Each part has holes where the other is solid.
+    Holes {
+        /// In the source only.
+        only_source: usize,
+        /// In the target only.
+        only_target: usize,
+        /// Where one of them lies.
+        #[serde(with = "xyz")]
+        at: Point3,
+    },
+}
+
+impl ShapeReason {
+    /// Whether parts that differ so are two different parts.
+    pub(super) fn is_of_another_part(&self) -> bool {
+        match self {
+            Self::HardlyMet { .. } => true,
+            Self::Surface { by, limit, .. } => *by > DIFFERENT * limit,
+            _ => false,
+        }
+    }
+}
+
+/// What can be said about the shapes, independent of how fine the meshes are.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShapeStatement {
+    /// In one word.
+    pub kind: ShapeKind,
+    /// What was accepted.
+    pub tolerance: ShapeTolerance,
+    /// Share of the smaller part's area that meets the other part.
+    #[serde(with = "any_float")]
+    pub met: f64,
+    /// How far bend and twist displace the sheet along its normal, at 95 % of the area.
+    #[serde(with = "any_float")]
+    pub springback: f64,
+    /// What neither they nor an offset explain, at 95 % of the area.
+    #[serde(with = "any_float")]
+    pub remainder: f64,
+    /// A constant distance between the sheets, as between skin and mid-surface, positive where the
+    /// source lies in front of the target; `None` where it is nothing beside the facets, or not
+    /// separable.
+    pub offset: Option<f64>,
+    /// False where normals vary too little to tell an offset from a shift of the part.
+    pub is_offset_separable: bool,
+    /// Rims and holes.
+    pub rims: RimFit,
+    /// What speaks against one shape, the most severe first; empty within the tolerance.
+    pub reasons: Vec<ShapeReason>,
+}
+
+/// What the statement is made from.
+#[derive(Clone, Copy)]
+pub(super) struct ShapeEvidence<'a> {
+    pub(super) source: &'a Surface,
+    pub(super) pose: &'a Similarity,
+    pub(super) contacts: &'a Contacts,
+    pub(super) rims: &'a Rims,
+    /// Faceting of both meshes.
+    pub(super) noise: f64,
+}
+
+impl ShapeStatement {
+    /// Compares the shapes at a pose.
+    pub(super) fn of(evidence: &ShapeEvidence<'_>, tolerance: ShapeTolerance) -> Self {
+        let fit = Fit::of(evidence);
+        let contacts = evidence.contacts;
+        let areas = contacts.list.iter().map(|c| c.weight);
+        let at = |share: f64, values: &[f64]| {
+            let sizes = values.iter().map(|v| v.abs());
+            quantile(&mut sizes.zip(areas.clone()).collect::<Vec<_>>(), share)
+        };
+        let mut statement = Self {
+            kind: ShapeKind::Same,
+            tolerance,
+            met: contacts.share,
+            springback: at(0.95, &fit.smooth),
+            remainder: at(0.95, &fit.left),
+            offset: Some(fit.offset).filter(|o| o.abs() > FACETING * evidence.noise),
+            is_offset_separable: fit.is_separable,
+            rims: rim_fit(evidence.rims, &fit),
+            reasons: Vec::new(),
+        };
+        statement.reasons = statement.find_reasons(evidence, &fit);
+        statement.kind = statement.judge(evidence.noise, at(SAME_SHARE, &fit.left));
+        statement
+    }
+
+    /// The statement about parts that do not meet at all.
+    pub(super) fn nothing_met(tolerance: ShapeTolerance) -> Self {
+        Self {
+            kind: ShapeKind::Different,
+            tolerance,
+            met: 0.0,
+            springback: 0.0,
+            remainder: f64::INFINITY,
+            offset: None,
+            is_offset_separable: false,
+            rims: RimFit::default(),
+            reasons: vec![ShapeReason::HardlyMet { share: 0.0 }],
+        }
+    }
+
+    fn find_reasons(&self, evidence: &ShapeEvidence<'_>, fit: &Fit) -> Vec<ShapeReason> {
+        let mut reasons = Vec::new();
+        let differs = self.remainder > self.tolerance.remainder;
+        if self.met < LEAST_MET || differs && self.met < MOSTLY_MET {
+            reasons.push(ShapeReason::HardlyMet { share: self.met });
+        }
+        let limit = self.tolerance.remainder;
+        if self.remainder > limit {
+            let at = worst_place(evidence.contacts, &fit.left);
+            reasons.push(ShapeReason::Surface {
+                by: self.remainder,
+                limit,
+                at,
+            });
+        }
+        reasons.extend(self.rim_reasons(evidence, fit));
+        if self.springback > self.tolerance.springback {
+            reasons.push(ShapeReason::Bent {
+                by: self.springback,
+                limit: self.tolerance.springback,
+            });
+        }
+        reasons
+    }
+
+    fn rim_reasons(&self, evidence: &ShapeEvidence<'_>, fit: &Fit) -> Vec<ShapeReason> {
+        let rims = evidence.rims;
+        let limit = self.tolerance.remainder + rims.unremarkable();
+        let mut reasons = Vec::new();
+        let holes = rims.holes.iter().zip(&fit.holes);
+        let worst = holes.max_by(|a, b| a.1.total_cmp(b.1));
+        if let Some((pair, &by)) = worst.filter(|(_, by)| **by > limit) {
+            let at = pair.hole.center;
+            reasons.push(ShapeReason::Hole { by, limit, at });
+        }
+        if let ([of_source, ..], [of_target, ..]) =
+            (rims.missing[0].as_slice(), rims.missing[1].as_slice())
+        {
+            let larger = if of_source.radius > of_target.radius {
+                of_source
+            } else {
+                of_target
+            };
+            reasons.push(ShapeReason::Holes {
+                only_source: rims.missing[0].len(),
+                only_target: rims.missing[1].len(),
+                at: larger.center,
+            });
+        }
+        let Some(by) = self.rims.offset.filter(|by| *by > limit) else {
+            return reasons;
+        };
+        let pairs = rims.pairs().iter().zip(&fit.rims);
+        let within = pairs.filter(|(_, left)| left.abs() <= by);
+        if let Some((pair, _)) = within.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) {
+            let at = pair.point;
+            reasons.push(ShapeReason::Rims { by, limit, at });
+        }
+        reasons
+    }
+
+    /// `mostly` is the remainder at most of the area.
+    fn judge(&self, noise: f64, mostly: f64) -> ShapeKind {
+        if self.reasons.iter().any(ShapeReason::is_of_another_part) {
+            return ShapeKind::Different;
+        }
+        if !self.reasons.is_empty() {
+            let only_bent = self
+                .reasons
+                .iter()
+                .all(|r| matches!(r, ShapeReason::Bent { .. }));
+            return if only_bent {
+                ShapeKind::Deformed
+            } else {
+                ShapeKind::OtherVersion
+            };
+        }
+        let facets = (FACETING * noise).max(UNREMARKABLE * self.tolerance.remainder);
+        if self.springback.max(mostly) <= facets && self.offset.is_none() {
+            ShapeKind::Same
+        } else {
+            ShapeKind::Deformed
+        }
+    }
+}
+
+fn rim_fit(rims: &Rims, fit: &Fit) -> RimFit {
+    let sizes = fit.rims.iter().map(|left| left.abs());
+    let mut sizes: Vec<(f64, f64)> = sizes.zip(rims.pairs().iter().map(|p| p.weight)).collect();
+    RimFit {
+        offset: (rims.share() >= LEAST_PAIRED).then(|| quantile(&mut sizes, 0.9)),
+        n_holes: fit.holes.len(),
+        worst_hole: fit.holes.iter().copied().fold(0.0, f64::max),
+        only_source: rims.missing[0].len(),
+        only_target: rims.missing[1].len(),
+    }
+}
+
+/// Middle of the patch whose values are largest.
+fn worst_place(contacts: &Contacts, values: &[f64]) -> Point3 {
+    let patch_of = contacts.patches(PLACE_LEVELS);
+    let n = patch_of.iter().max().map_or(0, |last| last + 1);
+    let mut sums = vec![(0.0, Vector3::zeros(), 0.0); n];
+    for ((contact, value), patch) in contacts.list.iter().zip(values).zip(patch_of) {
+        let (square, place, weight) = &mut sums[patch];
+        *square += contact.weight * value * value;
+        *place += (contact.point - contacts.center) * contact.weight;
+        *weight += contact.weight;
+    }
+    let mean = |(square, _, weight): &&(f64, Vector3, f64)| square / weight.max(1e-300);
+    let worst = sums.iter().max_by(|a, b| mean(a).total_cmp(&mean(b)));
+    worst.map_or(contacts.center, |(_, place, weight)| {
+        contacts.center + place / weight.max(1e-300)
+    })
+}
+
+/// The gaps taken apart.
+pub(super) struct Fit {
+    /// Of each place, what rigid motion and bends explain.
+    smooth: Vec<f64>,
+    /// What nothing explains, not even the facets.
+    left: Vec<f64>,
+    /// The same for each pair of rims and of holes.
+    pub(super) rims: Vec<f64>,
+    holes: Vec<f64>,
+    /// How far the source lies from where it belongs, bends counted as part of its shape; turns in
+    /// lengths at the contacts' radius.
+    pub(super) rigid: Six,
+    offset: f64,
+    is_separable: bool,
+}
+
+/// One row of the fit.
+type Row = SVector<f64, N>;
+
+impl Fit {
+    /// Robust least squares over a rigid motion, an offset and the bends of a plate that keep lengths
+    /// (second and third order). Rims take part, so that a slide of the pose along the part is no
+    /// difference of the shape. O(places).
+    pub(super) fn of(evidence: &ShapeEvidence<'_>) -> Self {
+        let (contacts, rims) = (evidence.contacts, evidence.rims);
+        let bends = Bends::of(evidence);
+        let row = |point: &Point3, direction: &Vector3, offset: f64| {
+            let mut row = Row::zeros();
+            let six = contacts.row(point, direction);
+            row.fixed_rows_mut::<6>(0).copy_from(&six);
+            row[6] = offset;
+            row.fixed_rows_mut::<N_BENDS>(7)
+                .copy_from(&bends.row(point, direction));
+            row
+        };
+        let places = contacts.list.iter();
+        let places: Vec<Row> = places.map(|c| row(&c.point, &c.normal, 1.0)).collect();
+        let beside = rims.pairs().iter();
+        let beside: Vec<Row> = beside.map(|p| row(&p.point, &p.across, 0.0)).collect();
+        let areas: Vec<f64> = contacts.list.iter().map(|c| c.weight).collect();
+        let mut left: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();
+        let mut found = Row::zeros();
+        let mut is_separable = false;
+        let rim_weights = rims.weights(evidence.noise);
+        for _ in 0..ROUNDS {
+            let weights = robust_weights(&left, &areas, evidence.noise);
+            let mut equations = Equations::default();
+            for ((row, contact), weight) in places.iter().zip(&contacts.list).zip(weights) {
+                equations.add(row, contact.gap, weight);
+            }
+            for ((row, pair), weight) in beside.iter().zip(rims.pairs()).zip(&rim_weights) {
+                equations.add(row, pair.gap, *weight);
+            }
+            is_separable = own_share(&equations.matrix) > LEAST_OWN;
+            if !is_separable {
+                // The shift of the rigid motion takes it.
+                equations.leave_out(6);
+            }
+            found = solve(&equations.matrix, &equations.right);
+            for ((left, row), contact) in left.iter_mut().zip(&places).zip(&contacts.list) {
+                *left = contact.gap - row.dot(&found);
+            }
+        }
+        let smooth = places.iter().map(|row| row.dot(&found) - found[6]);
+        for (left, contact) in left.iter_mut().zip(&contacts.list) {
+            *left = left.signum() * (left.abs() - contact.facet).max(0.0);
+        }
+        let beside = beside.iter().zip(rims.pairs());
+        let holes = rims.holes.iter().map(|pair| {
+            let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+            let explained = axes.map(|axis| row(&pair.hole.center, &axis, 0.0).dot(&found));
+            let left = pair.off - Vector3::from(explained);
+            // Across its sheet the middle of a hole says what the surface says.
+            let within = left - pair.hole.normal * left.dot(&pair.hole.normal);
+            within.norm() + pair.wider
+        });
+        Self {
+            smooth: smooth.collect(),
+            rims: beside.map(|(row, p)| p.gap - row.dot(&found)).collect(),
+            holes: holes.collect(),
+            rigid: found.fixed_rows::<6>(0) + bends.rigid_part(&found, contacts),
+            left,
+            offset: found[6],
+            is_separable,
+        }
+    }
+}
+
+/// Normal equations of the fit.
+struct Equations {
+    matrix: SMatrix<f64, N, N>,
+    right: Row,
+}
+
+impl Default for Equations {
+    fn default() -> Self {
+        Self {
+            matrix: SMatrix::zeros(),
+            right: Row::zeros(),
+        }
+    }
+}
+
+impl Equations {
+    fn add(&mut self, row: &Row, gap: f64, weight: f64) {
+        self.matrix.ger(weight, row, row, 1.0);
+        self.right += row * (weight * gap);
+    }
+
+    fn leave_out(&mut self, unknown: usize) {
+        self.matrix.row_mut(unknown).fill(0.0);
+        self.matrix.column_mut(unknown).fill(0.0);
+        self.right[unknown] = 0.0;
+    }
+}
+
+/// Share of the offset's column that lies outside the span of all others.
+fn own_share(matrix: &SMatrix<f64, N, N>) -> f64 {
+    let whole = matrix[(6, 6)];
+    if whole <= 0.0 {
+        return 0.0;
+    }
+    let mut others = *matrix;
+    let mut mixed: SVector<f64, N> = matrix.column(6).into();
+    others.row_mut(6).fill(0.0);
+    others.column_mut(6).fill(0.0);
+    mixed[6] = 0.0;
+    (whole - mixed.dot(&solve(&others, &mixed))) / whole
+}
+
+/// Deflections w(x, y) out of the part's plane of second and third order, with the displacements in the
+/// plane that keep lengths (Kirchhoff's plate): what springback does.
+struct Bends {
+    center: Point3,
+    axes: Matrix3,
+    half: [f64; 2],
+}
+
+impl Bends {
+    fn of(evidence: &ShapeEvidence<'_>) -> Self {
+        let axes = evidence.pose.rotation * evidence.source.measures().principal_axes;
+        let center = evidence.contacts.center;
+        let mut half = [f64::MIN_POSITIVE; 2];
+        for contact in &evidence.contacts.list {
+            let arm = contact.point - center;
+            for (k, half) in half.iter_mut().enumerate() {
+                *half = half.max(axes.column(k).dot(&arm).abs());
+            }
+        }
+        Self { center, axes, half }
+    }
+
+    /// The rigid motion in what the bends of a solution do, in least squares over the area.
+    fn rigid_part(&self, found: &Row, contacts: &Contacts) -> Six {
+        let sizes = found.fixed_rows::<N_BENDS>(7);
+        let (mut inertia, mut moment) = (Matrix3::zeros(), Vector3::zeros());
+        let (mut sum, mut total) = (Vector3::zeros(), 0.0);
+        for contact in &contacts.list {
+            let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+            let moved = axes.map(|axis| self.row(&contact.point, &axis).dot(&sizes));
+            let moved = Vector3::from(moved);
+            let arm = (contact.point - contacts.center) / contacts.radius;
+            let weight = contact.weight;
+            inertia += (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * weight;
+            moment += arm.cross(&moved) * weight;
+            sum += moved * weight;
+            total += weight;
+        }
+        let turn = inertia
+            .try_inverse()
+            .map_or(Vector3::zeros(), |i| i * moment);
+        let shift = sum / total;
+        Six::from([turn.x, turn.y, turn.z, shift.x, shift.y, shift.z])
+    }
+
+    /// How much each of the bends, of size 1 at the rim, moves a place along a direction.
+    fn row(&self, point: &Point3, direction: &Vector3) -> SVector<f64, N_BENDS> {
+        let arm = self.axes.transpose() * (point - self.center);
+        let normal = self.axes.transpose() * direction;
+        let (x, y) = (arm.x / self.half[0], arm.y / self.half[1]);
+        // Value, slope along x, slope along y.
+        let bends = [
+            [x * x, 2.0 * x, 0.0],
+            [x * y, y, x],
+            [y * y, 0.0, 2.0 * y],
+            [x * x * x, 3.0 * x * x, 0.0],
+            [x * x * y, 2.0 * x * y, x * x],
+            [x * y * y, y * y, 2.0 * x * y],
+            [y * y * y, 0.0, 3.0 * y * y],
+        ];
+        let moved = bends.map(|[value, along_x, along_y]| {
+            let in_plane = -arm.z * along_x / self.half[0] * normal.x
+                - arm.z * along_y / self.half[1] * normal.y;
+            value * normal.z + in_plane
+        });
+        SVector::from(moved)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::AssessSettings;
+    use super::super::statements;
+    use super::*;
+    use crate::geometry::TriMesh;
+
+    /// A hat section of 400 by 120 mm whose nodes are moved by `displace`.
+    fn hat(n: usize, displace: impl Fn(Point3) -> Point3) -> Surface {
+        let across = [-60.0, -40.0, -30.0, -10.0, 10.0, 30.0, 40.0, 60.0];
+        let height = [0.0, 0.0, 40.0, 40.0, 40.0, 40.0, 0.0, 0.0];
+        let m = across.len();
+        let mut points = Vec::new();
+        for i in 0..=n {
+            for (y, z) in across.iter().zip(height) {
+                let x = 400.0 * i as f64 / n as f64 - 200.0;
+                points.push(displace(Point3::new(x, *y, z)));
+            }
+        }
+        let cells = (0..n).flat_map(|i| (0..m - 1).map(move |j| (i * m + j) as u32));
+        let m = m as u32;
+        let triangles = cells.flat_map(|a| [[a, a + m, a + m + 1], [a, a + m + 1, a + 1]]);
+        let mesh = TriMesh::new(points, triangles.collect()).unwrap();
+        Surface::new(&mesh, "source").unwrap()
+    }
+
+    fn statement(source: &Surface, target: &Surface) -> ShapeStatement {
+        let settings = AssessSettings {
+            thickness: Some(1.5),
+            ..AssessSettings::default()
+        };
+        statements(source, target, &Similarity::identity(), 0.01, &settings).1
+    }
+
+    /// Deflection `w` along z of up to `most`, with the shift along x that keeps lengths.
+    fn bent(most: f64) -> impl Fn(Point3) -> Point3 {
+        move |p| {
+            let x = p.x / 200.0;
+            let slope = 2.0 * most * x / 200.0;
+            Point3::new(p.x - (p.z - 20.0) * slope, p.y, p.z + most * (x * x - 0.3))
+        }
+    }
+
+    #[test]
+    fn bending_is_springback_and_nothing_else() {
+        let (plain, sprung) = (hat(40, |p| p), hat(37, bent(1.5)));
+        let same = statement(&hat(37, |p| p), &plain);
+        assert_eq!(same.kind, ShapeKind::Same, "{same:?}");
+        let shape = statement(&sprung, &plain);
+        assert_eq!(shape.kind, ShapeKind::Deformed, "{shape:?}");
+        assert!(shape.remainder < 0.1, "{shape:?}");
+        assert!(
+            shape.springback > 0.5 && shape.springback < 1.6,
+            "{shape:?}"
+        );
+        let much = statement(&hat(37, bent(6.0)), &plain);
+        assert!(
+            matches!(much.reasons[..], [ShapeReason::Bent { .. }]),
+            "{much:?}"
+        );
+    }
+
+    #[test]
+    fn a_longer_part_and_a_higher_part_are_other_versions() {
+        let plain = hat(40, |p| p);
+        let longer = hat(40, |p| Point3::new(1.02 * p.x, p.y, p.z));
+        let shape = statement(&longer, &plain);
+        assert_eq!(shape.kind, ShapeKind::OtherVersion, "{shape:?}");
+        assert!(
+            matches!(shape.reasons[0], ShapeReason::Rims { .. }),
+            "{shape:?}"
+        );
+        let higher = hat(40, |p| Point3::new(p.x, p.y, 1.12 * p.z));
+        let shape = statement(&higher, &plain);
+        assert!(
+            matches!(shape.reasons[0], ShapeReason::Surface { .. }),
+            "{shape:?}"
+        );
+    }
+
+    #[test]
+    fn an_offset_of_a_section_with_walls_is_told_apart() {
+        // Every face moves by 0.7 along its normal, so the folds move along their bisectors.
+        let bisector = (17_f64.sqrt() - 1.0) / 4.0;
+        let skin = hat(37, |p| {
+            let is_fold = (29.0..41.0).contains(&p.y.abs());
+            let aside = if is_fold {
+                0.7 * bisector * p.y.signum()
+            } else {
+                0.0
+            };
+            Point3::new(p.x, p.y + aside, p.z + 0.7)
+        });
+        let shape = statement(&skin, &hat(40, |p| p));
+        let offset = shape.offset.unwrap();
+        assert!(shape.is_offset_separable);
+        assert!((offset - 0.7).abs() < 0.1, "{shape:?}");
+    }
+}

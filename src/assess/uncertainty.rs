@@ -1,0 +1,333 @@
+//! How far the pose may be off, in lengths: what it would do if a part of the evidence were missing.
+
+use nalgebra::{SMatrix, SVector, SymmetricEigen};
+use serde::{Deserialize, Serialize};
+
+use super::contact::{Contact, Contacts, Six, robust_weights, solve};
+use super::rims::Rims;
+use super::shape::LEAST_OWN;
+use crate::geometry::serial::{any_float, xyz};
+use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
+use crate::registration::Surface;
+
+/// Halvings of the part: 2⁴ patches are left out one after the other.
+const LEVELS: u32 = 4;
+
+/// Residuals that count as independent of each other in all.
+const INDEPENDENT: f64 = 64.0;
+
+/// A turn about the centre and a shift, in the target's frame.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct SmallMotion {
+    #[serde(with = "xyz")]
+    turn: Vector3,
+    #[serde(with = "xyz")]
+    shift: Vector3,
+}
+
+/// Which way of the part its largest uncertainty points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PartDirection {
+    /// Along the longest direction of the part.
+    Along,
+    /// Across it, within the sheet.
+    Across,
+    /// Through the sheet.
+    Through,
+    /// Obliquely.
+    Oblique,
+}
+
+/// The uncertainty of a pose: a delete-group jackknife over 16 patches of the smaller part (Shao and
+/// Tu 1995). Each patch in turn is left out, the pose that fits the others is found, and the spread of
+/// these poses is the uncertainty. Springback, which is alike over a whole patch, counts in full, while
+/// the covariance of millions of single points would call it nothing. It says nothing about a wholly
+/// different pose that fits as well; rivals do.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PoseUncertainty {
+    /// Largest uncertainty of any source node, in target length units.
+    #[serde(with = "any_float")]
+    pub largest: f64,
+    /// Unit direction in which that node may be off, in the target's frame; its sign means nothing.
+    #[serde(with = "xyz")]
+    pub direction: Vector3,
+    /// The same in terms of the part.
+    pub along: PartDirection,
+    /// Where that node lies, in the target's frame.
+    #[serde(with = "xyz")]
+    pub place: Point3,
+    #[serde(with = "xyz")]
+    center: Point3,
+    motions: Vec<SmallMotion>,
+}
+
+impl PoseUncertainty {
+    /// Measures the uncertainty of a pose. `noise` is a distance that means nothing. `None` where the
+    /// parts do not meet.
+    pub(super) fn of(
+        source: &Surface,
+        pose: &Similarity,
+        contacts: &Contacts,
+        rims: &Rims,
+        noise: f64,
+    ) -> Option<Self> {
+        let motions: Vec<SmallMotion> = replicates(contacts, rims, noise)
+            .iter()
+            .map(|six| SmallMotion {
+                turn: Vector3::new(six[0], six[1], six[2]) / contacts.radius,
+                shift: Vector3::new(six[3], six[4], six[5]),
+            })
+            .collect();
+        let mut found = Self {
+            largest: 0.0,
+            direction: Vector3::x(),
+            along: PartDirection::Oblique,
+            place: contacts.center,
+            center: contacts.center,
+            motions,
+        };
+        let nodes = source.mesh().positions().iter().zip(source.vertex_areas());
+        let used = nodes.filter(|(_, area)| **area > 0.0);
+        let places = used.map(|(p, _)| pose.apply(p));
+        let (largest, place) = places
+            .map(|p| (found.at(&p), p))
+            .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        // Beyond the size of the part a linear step means nothing more.
+        found.largest = largest.min(source.measures().diagonal * pose.scale);
+        found.place = place;
+        found.direction = found.direction_at(&place);
+        found.along = along(source, pose, &found.direction);
+        Some(found)
+    }
+
+    /// The uncertainty at a place of the target's frame, in target length units.
+    pub fn at(&self, place: &Point3) -> f64 {
+        let arm = place - self.center;
+        let off = |m: &SmallMotion| (m.shift + m.turn.cross(&arm)).norm_squared();
+        self.motions.iter().map(off).sum::<f64>().sqrt()
+    }
+
+    /// The uncertainty of every point of a part under the pose that moves it into the target's frame.
+    /// O(points).
+    pub fn field(&self, points: &[Point3], target_from_points: &Similarity) -> Vec<f64> {
+        let at = |p: &Point3| self.at(&target_from_points.apply(p));
+        points.iter().map(at).collect()
+    }
+
+    /// In which direction a place may be off most.
+    fn direction_at(&self, place: &Point3) -> Vector3 {
+        let arm = place - self.center;
+        let mut spread = Matrix3::zeros();
+        for motion in &self.motions {
+            let off = motion.shift + motion.turn.cross(&arm);
+            spread += off * off.transpose();
+        }
+        let eigen = SymmetricEigen::new(spread);
+        let direction: Vector3 = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into();
+        // The sign of a direction is arbitrary; the largest component is made positive.
+        direction * direction[direction.iamax()].signum()
+    }
+}
+
+fn along(source: &Surface, pose: &Similarity, direction: &Vector3) -> PartDirection {
+    const ALIKE: f64 = 0.8;
+    let axes = source.measures().principal_axes;
+    let names = [
+        PartDirection::Along,
+        PartDirection::Across,
+        PartDirection::Through,
+    ];
+    let found = (0..3).find(|&k| {
+        let axis: Vector3 = axes.column(k).into();
+        pose.rotate(&axis).dot(direction).abs() > ALIKE
+    });
+    found.map_or(PartDirection::Oblique, |k| names[k])
+}
+
+/// Normal equations of the whole and of every patch.
+struct Evidence {
+    matrix: SMatrix<f64, 6, 6>,
+    right: Six,
+}
+
+impl Evidence {
+    fn none() -> Self {
+        Self {
+            matrix: SMatrix::zeros(),
+            right: Six::zeros(),
+        }
+    }
+
+    fn add(&mut self, row: &Six, gap: f64, weight: f64) {
+        self.matrix += row * row.transpose() * weight;
+        self.right -= row * (gap * weight);
+    }
+}
+
+/// Motions whose squares sum to the square of the uncertainty: those of the jackknife, and the steps by
+/// which borders or an offset of the sheets would move the pose.
+fn replicates(contacts: &Contacts, rims: &Rims, noise: f64) -> Vec<Six> {
+    let gaps: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();
+    let areas: Vec<f64> = contacts.list.iter().map(|c| c.weight).collect();
+    let weights = robust_weights(&gaps, &areas, noise);
+    let patch_of = contacts.patches(LEVELS);
+    let n_patches = patch_of.iter().max().map_or(0, |last| last + 1);
+    let mut parts: Vec<Evidence> = (0..n_patches).map(|_| Evidence::none()).collect();
+    for ((contact, &weight), &patch) in contacts.list.iter().zip(&weights).zip(&patch_of) {
+        parts[patch].add(
+            &contacts.row(&contact.point, &contact.normal),
+            contact.gap,
+            weight,
+        );
+    }
+    for (pair, weight) in rims.pairs().iter().zip(rims.weights(noise)) {
+        // A border belongs to the patch of the place nearest to it, which is near in every sense.
+        let nearest = contacts.list.iter().enumerate().min_by(|a, b| {
+            let off = |c: &Contact| (c.point - pair.point).norm_squared();
+            off(a.1).total_cmp(&off(b.1))
+        });
+        let Some((place, _)) = nearest else { break };
+        let row = contacts.row(&pair.point, &pair.across);
+        parts[patch_of[place]].add(&row, pair.gap, weight);
+    }
+    let mut all = Evidence::none();
+    for part in &parts {
+        all.matrix += part.matrix;
+        all.right += part.right;
+    }
+    let whole = solve(&all.matrix, &all.right);
+    let n = parts.len() as f64;
+    let mut motions: Vec<Six> = parts
+        .iter()
+        .map(|part| {
+            let without = solve(&(all.matrix - part.matrix), &(all.right - part.right));
+            (without - whole) * ((n - 1.0) / n).sqrt()
+        })
+        .collect();
+    motions.push(whole);
+    motions.extend(offset_step(&all, &weights, contacts, noise).map(|with| with - whole));
+    motions.extend(weak_motions(&all, &weights, &gaps, contacts, noise));
+    motions
+}
+
+/// The step of the pose with an offset of the sheets as a seventh unknown: in a part with walls on all
+/// sides an offset moves the best pose by several times itself. `None` where there is no offset, or where
+/// it cannot be told from a shift.
+fn offset_step(all: &Evidence, weights: &[f64], contacts: &Contacts, noise: f64) -> Option<Six> {
+    let mut matrix = SMatrix::<f64, 7, 7>::zeros();
+    let mut right = SVector::<f64, 7>::zeros();
+    let mut mixed = Six::zeros();
+    for (contact, &weight) in contacts.list.iter().zip(weights) {
+        mixed += contacts.row(&contact.point, &contact.normal) * weight;
+        right[6] -= weight * contact.gap;
+        matrix[(6, 6)] += weight;
+    }
+    let own = matrix[(6, 6)] - mixed.dot(&solve(&all.matrix, &mixed));
+    if own <= LEAST_OWN * matrix[(6, 6)] {
+        return None;
+    }
+    matrix.fixed_view_mut::<6, 6>(0, 0).copy_from(&all.matrix);
+    matrix.fixed_view_mut::<6, 1>(0, 6).copy_from(&mixed);
+    matrix
+        .fixed_view_mut::<1, 6>(6, 0)
+        .copy_from(&mixed.transpose());
+    right.fixed_rows_mut::<6>(0).copy_from(&all.right);
+    let found = solve(&matrix, &right);
+    (found[6].abs() > 3.0 * noise).then(|| found.fixed_rows::<6>(0).into())
+}
+
+/// What noise alone leaves open: the residuals counted as so many independent ones. It is small beside
+/// the jackknife except for motions that hardly anything resists, such as the turn of a cup, which a
+/// missing patch does not show.
+fn weak_motions(
+    all: &Evidence,
+    weights: &[f64],
+    gaps: &[f64],
+    contacts: &Contacts,
+    noise: f64,
+) -> Vec<Six> {
+    let total: f64 = weights.iter().sum();
+    let squares = gaps
+        .iter()
+        .zip(weights)
+        .map(|(gap, weight)| gap * gap * weight);
+    let variance = (squares.sum::<f64>() / total.max(f64::MIN_POSITIVE)).max(noise * noise);
+    let eigen = SymmetricEigen::new(all.matrix);
+    let most = contacts.radius * contacts.radius;
+    (0..6)
+        .map(|k| {
+            let stiffness = eigen.eigenvalues[k].max(0.0) / total.max(f64::MIN_POSITIVE);
+            let open = variance / (INDEPENDENT * stiffness).max(f64::MIN_POSITIVE);
+            eigen.eigenvectors.column(k) * open.min(most).sqrt()
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{AssessSettings, statements};
+    use super::*;
+    use crate::geometry::TriMesh;
+
+    /// A gutter along x with walls that rise by `slope` towards its ends, so that it holds along x.
+    fn gutter(slope: f64, noise: f64) -> Surface {
+        let n = 60_u32;
+        let m = 24_u32;
+        let mut points = Vec::new();
+        let mut state = 7_u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
+        };
+        for i in 0..=n {
+            for j in 0..=m {
+                let x = 5.0 * f64::from(i) - 150.0;
+                let turn = std::f64::consts::PI * f64::from(j) / f64::from(m);
+                let radius = 40.0 + slope * x * x / 150.0 + noise * random();
+                points.push(Point3::new(x, -radius * turn.cos(), -radius * turn.sin()));
+            }
+        }
+        let cells = (0..n).flat_map(|i| (0..m).map(move |j| i * (m + 1) + j));
+        let up = m + 1;
+        let triangles = cells.flat_map(|a| [[a, a + up, a + up + 1], [a, a + up + 1, a + 1]]);
+        let mesh = TriMesh::new(points, triangles.collect()).unwrap();
+        Surface::new(&mesh, "source").unwrap()
+    }
+
+    fn uncertainty(source: &Surface, target: &Surface, pose: &Similarity) -> PoseUncertainty {
+        let settings = AssessSettings::default();
+        let found = statements(source, target, pose, 0.01, &settings).0;
+        found.unwrap()
+    }
+
+    #[test]
+    fn a_part_that_hardly_holds_along_itself_is_uncertain_along_itself() {
+        let still = Similarity::identity();
+        let (firm, rough) = (gutter(0.3, 0.0), gutter(0.3, 0.2));
+        let sure = uncertainty(&firm, &firm, &still);
+        let less = uncertainty(&rough, &firm, &still);
+        assert!(
+            sure.largest < 0.1 && less.largest > 2.0 * sure.largest,
+            "{sure:?} {less:?}"
+        );
+        let slid = uncertainty(&gutter(0.02, 0.2), &gutter(0.02, 0.0), &still);
+        assert!(slid.largest > less.largest, "{slid:?}");
+        assert_eq!(slid.along, PartDirection::Along, "{slid:?}");
+        assert!(slid.direction.x.abs() > 0.8);
+    }
+
+    #[test]
+    fn a_pose_that_is_off_is_stated_as_such() {
+        let part = gutter(0.3, 0.0);
+        let mut off = Similarity::identity();
+        off.translation.z = 0.8;
+        let stated = uncertainty(&part, &part, &off);
+        assert!(stated.largest > 0.6 && stated.largest < 1.5, "{stated:?}");
+        let field = stated.field(part.mesh().positions(), &off);
+        let largest = field.iter().copied().fold(0.0, f64::max);
+        assert!((largest - stated.largest).abs() < 1e-9);
+    }
+}

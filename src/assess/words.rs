@@ -1,0 +1,291 @@
+//! The assessment in words: the only place where verdicts, reasons, free motions and rival poses become
+//! English.
+
+use std::f64::consts::PI;
+
+use super::{
+    FreeMotion, FreeMotionKind, PartDirection, PoseKind, PoseStatement, Reason, ShapeKind,
+    ShapeReason, ShapeStatement, Twin, TwinAxis, Verdict,
+};
+use crate::geometry::{Point3, Vector3};
+use crate::text::{Lengths, counted, fixed, percent, vector};
+
+/// Rotations smaller than this are not mentioned.
+const NO_ROTATION: f64 = 3.0 * PI / 180.0;
+/// A direction is that of an axis if it lies within about a degree of it.
+const ALONG_AXIS: f64 = 0.9998;
+
+impl Verdict {
+    /// The word for people: `GOOD`, `CHECK` or `POOR`.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Good => "GOOD",
+            Self::Check => "CHECK",
+            Self::Poor => "POOR",
+        }
+    }
+
+    /// The sign that stands beside the word, so that colour is never the only one.
+    pub fn sign(self) -> &'static str {
+        match self {
+            Self::Good => "✔",
+            Self::Check => "⚠",
+            Self::Poor => "✖",
+        }
+    }
+
+    /// What to do with the pose, as a sentence.
+    pub fn advice(self) -> &'static str {
+        match self {
+            Self::Good => "The pose can be used.",
+            Self::Check => "The pose is probably right; check the reasons.",
+            Self::Poor => "Do not use this pose.",
+        }
+    }
+}
+
+impl Reason {
+    /// The reason in words, without a capital and a full stop.
+    pub fn words(&self, lengths: Lengths) -> String {
+        match self {
+            Self::OppositeHand { score_ratio } => format!(
+                "the opposite hand fits better (score ratio {score_ratio:.2}): match it mirrored, \
+                 or choose the other part"
+            ),
+            Self::NearMirrorImage { score_ratio } => format!(
+                "the part is nearly its own mirror image, and the opposite hand fits slightly \
+                 better (score ratio {score_ratio:.2})"
+            ),
+            Self::DifferentUnits { size_ratio, unit } => format!(
+                "the crash part is {size_ratio:.4} times as large as the stamped part: are the \
+                 files in different units ({})? The factor {:.6} was not applied",
+                unit.words, unit.factor
+            ),
+            Self::PairScale { scale } => {
+                format!("the paired points fit best at a scale of {scale:.4}")
+            }
+            Self::BothOverhang { source, target } => format!(
+                "neither part contains the other: {} overlap",
+                both_overlaps(*source, *target)
+            ),
+            Self::Sliding { motion } => motion.words(),
+            Self::Uncertain { by, limit, along } => format!(
+                "the pose may be off by {}, mostly {}, more than {}",
+                lengths.of(*by),
+                along.words(),
+                lengths.of(*limit)
+            ),
+            Self::Shape { difference } => difference.words(lengths),
+            Self::NearAlternative { score_ratio, twin } => format!(
+                "{} the part fits nearly as well (score ratio {score_ratio:.2}): check which pose \
+                 is meant",
+                another_pose(*twin, lengths)
+            ),
+            Self::EqualAlternative {
+                score_ratio,
+                twin,
+                n_equivalent,
+            } => format!(
+                "ambiguous: {} the part fits equally well (score ratio {score_ratio:.3}); {} in all",
+                another_pose(*twin, lengths),
+                counted(*n_equivalent, "equivalent pose")
+            ),
+            Self::Stopped => "the match was stopped before it converged".to_owned(),
+            Self::EndedEarly { termination } => {
+                format!("the match ended early: {}", termination.label())
+            }
+            Self::InOrder { overlap, p95 } => format!(
+                "{} of the smaller part overlaps, 95 % of it within {}, and no other pose fits \
+                 nearly as well",
+                percent(*overlap),
+                lengths.of(*p95)
+            ),
+            Self::Sentence(text) => text.clone(),
+        }
+    }
+}
+
+impl ShapeReason {
+    /// The difference in words, without a capital and a full stop.
+    pub fn words(&self, lengths: Lengths) -> String {
+        let place = |at: &Point3| vector((*at).into(), 1);
+        let [by, limit] = match self {
+            Self::Bent { by, limit }
+            | Self::Surface { by, limit, .. }
+            | Self::Rims { by, limit, .. }
+            | Self::Hole { by, limit, .. } => [*by, *limit].map(|x| lengths.of(x)),
+            Self::HardlyMet { .. } | Self::Holes { .. } => [String::new(), String::new()],
+        };
+        match self {
+            Self::HardlyMet { share } => {
+                format!(
+                    "the parts meet over {} of the smaller one only",
+                    percent(*share)
+                )
+            }
+            Self::Bent { .. } => {
+                format!("the parts are bent against each other by {by}, more than {limit}")
+            }
+            Self::Surface { at, .. } => format!(
+                "the surfaces differ by {by}, more than {limit}, most at {}",
+                place(at)
+            ),
+            Self::Rims { at, .. } => format!(
+                "the borders lie {by} apart, more than {limit}, most at {}",
+                place(at)
+            ),
+            Self::Hole { at, .. } => {
+                format!("a hole is off by {by}, more than {limit}, at {}", place(at))
+            }
+            Self::Holes {
+                only_source,
+                only_target,
+                at,
+            } => format!(
+                "holes differ: {only_source} in the stamped part only, {only_target} in the crash \
+                 part only, one of them at {}",
+                place(at)
+            ),
+        }
+    }
+}
+
+impl ShapeKind {
+    /// The words for people.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Same => "same surface",
+            Self::Deformed => "same part, deformed",
+            Self::OtherVersion => "another version of the part",
+            Self::Different => "a different part",
+        }
+    }
+}
+
+impl ShapeStatement {
+    /// "same part, deformed: bend and twist 0.63 mm, remainder 0.13 mm (tolerance 5.00 mm and 1.00 mm)".
+    pub fn words(&self, lengths: Lengths) -> String {
+        let label = self.kind.label();
+        if !self.remainder.is_finite() {
+            return label.to_owned();
+        }
+        let offset = self.offset.map_or_else(String::new, |offset| {
+            format!(", offset of the sheets {}", lengths.of(offset))
+        });
+        format!(
+            "{label}: bend and twist {}, remainder {}{offset} (tolerance {} and {})",
+            lengths.of(self.springback),
+            lengths.of(self.remainder),
+            lengths.of(self.tolerance.springback),
+            lengths.of(self.tolerance.remainder)
+        )
+    }
+}
+
+impl PartDirection {
+    /// "along the part".
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Along => "along the part",
+            Self::Across => "across the part",
+            Self::Through => "at right angles to the sheet",
+            Self::Oblique => "obliquely to the part",
+        }
+    }
+}
+
+impl PoseKind {
+    /// The word for people.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Certain => "certain",
+            Self::Uncertain => "uncertain",
+            Self::Ambiguous => "ambiguous",
+            Self::NotFound => "not found",
+        }
+    }
+}
+
+impl PoseStatement {
+    /// "certain: ± 0.03 mm, mostly along the part (tolerance 5.00 mm)".
+    pub fn words(&self, lengths: Lengths) -> String {
+        let label = self.kind.label();
+        let Some(stated) = &self.uncertainty else {
+            return label.to_owned();
+        };
+        format!(
+            "{label}: ± {}, mostly {} (tolerance {})",
+            lengths.of(stated.largest),
+            stated.along.words(),
+            lengths.of(self.tolerance)
+        )
+    }
+}
+
+fn both_overlaps(source: f64, target: f64) -> String {
+    format!(
+        "{} of the stamped part and {} of the crash part",
+        percent(source),
+        percent(target)
+    )
+}
+
+fn another_pose(twin: Option<Twin>, lengths: Lengths) -> String {
+    let words = twin.map(|twin| twin.words(lengths));
+    words.unwrap_or_else(|| "in another pose".to_owned()) + ","
+}
+
+impl Twin {
+    /// "rotated by 180° about its long axis".
+    pub fn words(&self, lengths: Lengths) -> String {
+        if self.angle < NO_ROTATION {
+            return format!("shifted by {}", lengths.of(self.shift));
+        }
+        let axis = match self.axis {
+            TwinAxis::Long => " about its long axis",
+            TwinAxis::Cross => " about its short axis",
+            TwinAxis::Through => " in its own plane",
+            TwinAxis::Other => "",
+        };
+        format!("rotated by {}°{axis}", fixed(self.angle.to_degrees(), 0))
+    }
+}
+
+impl FreeMotion {
+    /// The motion in words, with its axis.
+    pub fn words(&self) -> String {
+        let axis = axis_words(&self.direction);
+        match self.kind {
+            FreeMotionKind::Flat => {
+                format!("the parts are flat: they can slide in the plane normal to {axis}")
+            }
+            FreeMotionKind::Cylindrical => {
+                format!(
+                    "the parts are cylindrical: they can slide along {axis} and rotate about it"
+                )
+            }
+            FreeMotionKind::Extruded => {
+                format!("the parts are extruded: they can slide along {axis}")
+            }
+            FreeMotionKind::Revolved => {
+                format!("the parts are surfaces of revolution: they can rotate about {axis}")
+            }
+            FreeMotionKind::Spherical => {
+                "the parts are spherical: they can rotate about their centre".to_owned()
+            }
+            FreeMotionKind::Other => {
+                format!("the parts can move on each other, mainly about {axis}")
+            }
+        }
+    }
+}
+
+/// `the x axis` where a direction is one within a degree, else its components.
+fn axis_words(direction: &Vector3) -> String {
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        if direction[axis].abs() > ALONG_AXIS {
+            return format!("the {name} axis");
+        }
+    }
+    format!("the direction {}", vector((*direction).into(), 3))
+}

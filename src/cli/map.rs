@@ -1,0 +1,530 @@
+//! `shapematch map`: forming results onto the crash part.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use clap::builder::BoolishValueParser;
+use clap::{ArgAction, Args, ValueEnum};
+
+use super::recipe::pose;
+use super::{
+    UsageError, check_outputs, json_target, print, progress, takes_stdout, write_json, write_output,
+};
+use crate::assess::Verdict;
+use crate::formats::ReadOptions;
+use crate::geometry::Similarity;
+use crate::mapping::{MapMethod, MapOptions, NormalSense, Overlap, Quantities, RuleKind};
+use crate::monitor::Monitor;
+use crate::pipeline::load::{LoadSettings, LoadedPart, load, parse_selection};
+use crate::pipeline::map::{
+    MapFiles, MapOutput, MapRecipe, MapRecord, PlacedPart, WriteKind, element_table, elements_path,
+    map_parts, map_record, write_mapping,
+};
+use crate::pipeline::match_parts::{MatchRecipe, match_parts};
+use crate::pipeline::outputs::{Content, Target};
+use crate::role::PerRole;
+use crate::text::{grouped, length, millis};
+
+/// Exit status where a gate such as `--require` is not met; the files are written all the same.
+const EXIT_GATE: u8 = 1;
+
+/// `shapematch map`.
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct MapArgs {
+    /// The crash part or the whole crash model.
+    pub crash: PathBuf,
+    /// The stamped parts with their forming results, for example a dynain; several may lie on one crash
+    /// part.
+    pub stamped: Vec<PathBuf>,
+
+    #[command(flatten)]
+    choice: MapChoice,
+    #[command(flatten)]
+    values: MapValues,
+    #[command(flatten)]
+    output: MapOutputArgs,
+}
+
+/// Which elements, and where they lie.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "What is mapped")]
+struct MapChoice {
+    /// Part of the crash model: an id, several ids (2001,2002), a title (also title:NAME), or set:ID,
+    /// shell-set:ID, node-set:ID.
+    #[arg(long, value_name = "PART")]
+    crash_part: Option<String>,
+    /// Part of the stamped files, written as for --crash-part.
+    #[arg(long, value_name = "PART")]
+    stamped_part: Option<String>,
+    /// Factor on the stamped coordinates and thicknesses, for files in another length unit.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    stamped_length_factor: f64,
+    /// Factor on the stamped stresses, for files in another unit of stress.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    stress_factor: f64,
+    /// A further folder for included files; may be given several times.
+    #[arg(long, value_name = "FOLDER")]
+    include_folder: Vec<PathBuf>,
+    /// Pose of a stamped part (crash from stamped): a text file, or the numbers themselves, 16 by rows.
+    /// Give one for each stamped file. Without it the parts are matched first.
+    #[arg(long, value_name = "FILE|NUMBERS", allow_hyphen_values = true)]
+    pose: Vec<String>,
+    /// The parts already lie on each other.
+    #[arg(long, conflicts_with = "pose")]
+    identity: bool,
+}
+
+/// Quantities and how they pass over.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Values")]
+struct MapValues {
+    /// Quantities, separated by commas: thickness, plastic, strain, stress; or usual (thickness,
+    /// plastic), or full.
+    #[arg(long, value_name = "LIST", default_value = "usual", value_parser = quantities)]
+    quantities: Quantities,
+    /// Layers of the crash elements; from the section if not given.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    layers: Option<u16>,
+    /// Rule through their thickness; from the deck if not given.
+    #[arg(long, value_enum)]
+    rule: Option<RuleName>,
+    /// Points in the plane of each layer; from the element formulation if not given.
+    #[arg(long, value_name = "1|4", value_parser = clap::value_parser!(u8).range(1..=4))]
+    n_plane: Option<u8>,
+    /// How values pass over: area (mean over points of the element) or nearest (element by element, as
+    /// the solver does).
+    #[arg(long, value_enum, default_value = "area")]
+    method: MethodName,
+    /// Largest distance of a partner, in the crash model's unit; the element size if not given.
+    #[arg(long, value_name = "LENGTH")]
+    max_distance: Option<f64>,
+    /// Largest angle between the normals, degrees.
+    #[arg(long, value_name = "DEG", default_value_t = 60.0)]
+    max_angle: f64,
+    /// Whether normals must point to the same side.
+    #[arg(long, value_enum, default_value = "auto")]
+    signed: SenseName,
+    /// Where stamped parts overlap, take the nearest, the first or the thicker one.
+    #[arg(long, value_enum, default_value = "nearest")]
+    overlap: OverlapName,
+    /// Keep membrane force and moment of the stresses where the layers differ.
+    #[arg(long, value_name = "YES|NO", default_value = "yes", action = ArgAction::Set, value_parser = BoolishValueParser::new())]
+    layer_balance: bool,
+    /// Rings of unmapped elements to be filled with the means of mapped neighbours.
+    #[arg(long, value_name = "RINGS", default_value_t = 0)]
+    fill: usize,
+    /// Factor on the mapped thickness.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    thickness_scale: f64,
+}
+
+/// What is written.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Output")]
+struct MapOutputArgs {
+    /// The mapped state as a deck.
+    #[arg(long, short, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// include: states, and the elements with their thickness in a second file; part: all elements of
+    /// the part and the states in one file; deck: a copy of the crash file with thickness and states
+    /// put in.
+    #[arg(long, value_enum, default_value = "include")]
+    write: KindName,
+    /// 16 columns a number instead of 10.
+    #[arg(long, value_name = "YES|NO", default_value = "yes", action = ArgAction::Set, value_parser = BoolishValueParser::new())]
+    large: bool,
+    /// Smallest share of the area that must be mapped, percent; below it the exit status is 1.
+    #[arg(long, value_name = "PERCENT")]
+    require: Option<f64>,
+    /// Status, distances and values of every crash element as CSV.
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// The result as JSON, to a file or to standard output with "-".
+    #[arg(long, value_name = "FILE|-")]
+    json: Option<PathBuf>,
+}
+
+const HELP: &str = "\
+Examples:
+  shapematch map crash.k stamped.dynain --out mapped.k
+  shapematch map car.k stamped.dynain --crash-part 2000012 --out mapped.k --quantities full
+  shapematch map crash.k left.dynain right.dynain --write deck --out crash_mapped.k
+  shapematch map crash.k stamped.dynain --identity --csv elements.csv --require 95
+
+Exit status: 0 mapped, 1 failed or less mapped than --require asks for, 2 wrong usage, 3 mapped with a
+pose that the match calls poor.";
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum RuleName {
+    Gauss,
+    Lobatto,
+    Equal,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MethodName {
+    Area,
+    Nearest,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum SenseName {
+    Auto,
+    Yes,
+    No,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum OverlapName {
+    Nearest,
+    First,
+    Thicker,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum KindName {
+    Include,
+    Part,
+    Deck,
+}
+
+impl KindName {
+    fn kind(self) -> WriteKind {
+        match self {
+            Self::Include => WriteKind::Include,
+            Self::Part => WriteKind::Part,
+            Self::Deck => WriteKind::Deck,
+        }
+    }
+}
+
+/// `thickness,plastic` and the two presets.
+fn quantities(text: &str) -> Result<Quantities, String> {
+    match text {
+        "usual" => return Ok(Quantities::USUAL),
+        "full" => return Ok(Quantities::FULL),
+        _ => {}
+    }
+    let mut chosen = Quantities {
+        thickness: false,
+        plastic_strain: false,
+        strain: false,
+        stress: false,
+        history: false,
+    };
+    for word in text.split(',') {
+        match word.trim() {
+            "thickness" => chosen.thickness = true,
+            "plastic" => chosen.plastic_strain = true,
+            "strain" => chosen.strain = true,
+            "stress" => chosen.stress = true,
+            other => {
+                return Err(format!(
+                    "{other:?} is none of thickness, plastic, strain, stress, usual, full"
+                ));
+            }
+        }
+    }
+    Ok(chosen)
+}
+
+impl MapValues {
+    fn recipe(&self, stress_factor: f64) -> MapRecipe {
+        MapRecipe {
+            options: MapOptions {
+                quantities: self.quantities,
+                method: match self.method {
+                    MethodName::Area => MapMethod::Area,
+                    MethodName::Nearest => MapMethod::Nearest,
+                },
+                max_distance: self.max_distance,
+                max_angle_deg: self.max_angle,
+                normal_sense: match self.signed {
+                    SenseName::Auto => NormalSense::Auto,
+                    SenseName::Yes => NormalSense::Signed,
+                    SenseName::No => NormalSense::Either,
+                },
+                keep_force_and_moment: self.layer_balance,
+                overlap: match self.overlap {
+                    OverlapName::Nearest => Overlap::Nearest,
+                    OverlapName::First => Overlap::First,
+                    OverlapName::Thicker => Overlap::Thicker,
+                },
+                fill_rings: self.fill,
+                thickness_scale: self.thickness_scale,
+            },
+            n_layers: self.layers.map(usize::from),
+            rule: self.rule.map(|rule| match rule {
+                RuleName::Gauss => RuleKind::Gauss,
+                RuleName::Lobatto => RuleKind::Lobatto,
+                RuleName::Equal => RuleKind::Equal,
+            }),
+            n_plane: self.n_plane,
+            stress_factor,
+        }
+    }
+}
+
+/// Reads, matches where no pose is given, maps, writes, and prints the summary.
+pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
+    check_usage(args)?;
+    let monitor = progress::monitor(quiet);
+    let mut inputs = vec![args.crash.clone()];
+    inputs.extend(args.stamped.iter().cloned());
+    check_outputs(targets(&args.output), &inputs)?;
+    let (crash, stamped) = load_all(args, &monitor)?;
+    inputs.extend(crash.files());
+    inputs.extend(stamped.iter().flat_map(LoadedPart::files));
+    check_outputs(targets(&args.output), &inputs)?;
+    let (poses, is_poor) = poses(args, &crash, &stamped, &monitor)?;
+    let placed: Vec<PlacedPart<'_>> = stamped
+        .iter()
+        .zip(poses)
+        .map(|(part, crash_from_stamped)| PlacedPart {
+            part,
+            crash_from_stamped,
+        })
+        .collect();
+    let recipe = args.values.recipe(args.choice.stress_factor);
+    let run = map_parts(&crash, &placed, &recipe, &monitor)?;
+    let output = args.output.out.as_ref().map(|path| MapOutput {
+        kind: args.output.write.kind(),
+        path: path.clone(),
+        is_large: args.output.large,
+    });
+    let comments = comments(&crash, &placed);
+    let write = |output: &MapOutput| write_mapping(&run, &crash, output, &comments, &monitor);
+    let files = output.as_ref().map(write).transpose()?;
+    let record = map_record(&run, &crash, &placed, files.as_ref());
+    drop(monitor);
+    let mut is_complete = true;
+    let mut note = |path: &Path, written: anyhow::Result<()>| {
+        if let Err(error) = written {
+            log::error!("{} is not written: {error:#}", path.display());
+            is_complete = false;
+        }
+    };
+    for (path, bytes) in files.iter().flat_map(|files| &files.files) {
+        note(path, write_output(path, bytes));
+    }
+    if let Some(path) = &args.output.csv {
+        note(
+            path,
+            write_output(path, element_table(&run, &crash, &placed).as_bytes()),
+        );
+    }
+    if let Some(path) = &args.output.json {
+        note(path, write_json(path, &record));
+    }
+    if !takes_stdout(args.output.json.as_deref()) {
+        print(&summary(&record, files.as_ref()))?;
+    }
+    for warning in &record.warnings {
+        log::warn!("{warning}");
+    }
+    let share = 100.0 * record.mapped_area;
+    if let Some(required) = args.output.require.filter(|&required| share < required) {
+        log::error!("{share:.1} % of the area is mapped, {required} % are required");
+        return Ok(ExitCode::from(EXIT_GATE));
+    }
+    if !is_complete {
+        return Ok(ExitCode::FAILURE);
+    }
+    Ok(if is_poor {
+        ExitCode::from(super::EXIT_POOR)
+    } else {
+        ExitCode::SUCCESS
+    })
+}
+
+/// Refuses options that do not go together.
+fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
+    let refuse = |text: String| Err(UsageError(text).into());
+    let (n_poses, n_files) = (args.choice.pose.len(), args.stamped.len());
+    if n_files == 0 {
+        return refuse("name the stamped part too: shapematch map CRASH STAMPED".to_owned());
+    }
+    if n_poses > 0 && n_poses != n_files {
+        return refuse(format!(
+            "{n_poses} poses for {n_files} stamped files; give one for each"
+        ));
+    }
+    if args.values.n_plane.is_some_and(|n| n != 1 && n != 4) {
+        return refuse("--n-plane is 1 or 4".to_owned());
+    }
+    Ok(())
+}
+
+/// Everything that will be written, for the check before the work.
+fn targets(output: &MapOutputArgs) -> Vec<Target> {
+    let target = |name: &str, path: &Path, content| Target {
+        name: name.to_owned(),
+        path: path.to_path_buf(),
+        content,
+    };
+    let mut targets: Vec<Target> = json_target(output.json.as_deref()).into_iter().collect();
+    if let Some(path) = &output.out {
+        targets.push(target("--out", path, Content::Deck));
+        if output.write == KindName::Include {
+            targets.push(target(
+                "--out (elements)",
+                &elements_path(path),
+                Content::Deck,
+            ));
+        }
+    }
+    if let Some(path) = &output.csv {
+        targets.push(target("--csv", path, Content::Text));
+    }
+    targets
+}
+
+fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Vec<LoadedPart>)> {
+    let choice = &args.choice;
+    let settings = |part: Option<&str>, length_factor: f64| LoadSettings {
+        selection: part.map(parse_selection).unwrap_or_default(),
+        length_factor,
+        units: None,
+        read: ReadOptions {
+            include_folders: choice.include_folder.clone(),
+            ..ReadOptions::default()
+        },
+    };
+    let crash = load(
+        &args.crash,
+        &settings(choice.crash_part.as_deref(), 1.0),
+        monitor,
+    )?;
+    let of_stamped = settings(choice.stamped_part.as_deref(), choice.stamped_length_factor);
+    let stamped = args
+        .stamped
+        .iter()
+        .map(|path| load(path, &of_stamped, monitor));
+    Ok((crash, stamped.collect::<Result<_, _>>()?))
+}
+
+/// The pose of each stamped part, and whether a match calls one of them poor.
+fn poses(
+    args: &MapArgs,
+    crash: &LoadedPart,
+    stamped: &[LoadedPart],
+    monitor: &Monitor,
+) -> anyhow::Result<(Vec<Similarity>, bool)> {
+    if args.choice.identity {
+        return Ok((vec![Similarity::identity(); stamped.len()], false));
+    }
+    if !args.choice.pose.is_empty() {
+        let poses: anyhow::Result<Vec<Similarity>> =
+            args.choice.pose.iter().map(|text| pose(text)).collect();
+        return Ok((poses?, false));
+    }
+    let mut poses = Vec::new();
+    let mut is_poor = false;
+    for part in stamped {
+        let parts = PerRole::new(crash, part);
+        let start = Similarity::identity();
+        let run = match_parts(parts, None, &MatchRecipe::default(), &start, monitor)
+            .with_context(|| format!("cannot match {}", part.path.display()))?;
+        if run.assessment.verdict == Verdict::Poor {
+            is_poor = true;
+            log::warn!(
+                "the pose of {} is poor; look at it before the mapping is used",
+                part.path.display()
+            );
+        }
+        poses.push(run.crash_from_stamped);
+    }
+    Ok((poses, is_poor))
+}
+
+fn comments(crash: &LoadedPart, placed: &[PlacedPart<'_>]) -> Vec<String> {
+    let mut lines = vec![format!("forming results mapped onto {}", crash.file_name())];
+    for placed in placed {
+        lines.push(format!(
+            "from {}, crash = c R stamped + t with rows:",
+            placed.part.file_name()
+        ));
+        for row in placed.crash_from_stamped.to_rows() {
+            lines.push(format!("  {} {} {} {}", row[0], row[1], row[2], row[3]));
+        }
+    }
+    lines
+}
+
+fn summary(record: &MapRecord, files: Option<&MapFiles>) -> String {
+    let mut text = String::new();
+    let mut line = |head: &str, rest: String| text.push_str(&format!("{head:<9}{rest}\n"));
+    line(
+        "Mapped",
+        format!(
+            "{:.1} % of the area of {} elements in {}",
+            100.0 * record.mapped_area,
+            grouped(record.n_elements),
+            millis(record.map_ms)
+        ),
+    );
+    for row in &record.statuses {
+        line(
+            "",
+            format!("{:>9} {}", grouped(row.n_elements), row.status.label()),
+        );
+    }
+    let pairs = [
+        ("Thickness", &record.thickness),
+        ("Plastic", &record.plastic_strain),
+    ];
+    for (head, pair) in pairs {
+        if let Some(pair) = pair {
+            let (a, b) = (&pair.stamped, &pair.crash);
+            line(
+                head,
+                format!(
+                    " mean {} (stamped {}), {} to {}",
+                    length(b.mean),
+                    length(a.mean),
+                    length(b.min),
+                    length(b.max)
+                ),
+            );
+        }
+    }
+    if let Some(back) = &record.map_back {
+        let percent = |value: f64, range: f64| {
+            if range > 0.0 {
+                format!("{:.1} %", 100.0 * value / range)
+            } else {
+                "0 %".to_owned()
+            }
+        };
+        line(
+            "Map back",
+            format!(
+                "95 % within {} of the thickness range, {} of the plastic strain's",
+                percent(back.thickness_p95, back.thickness_range),
+                percent(back.plastic_p95, back.plastic_range)
+            ),
+        );
+    }
+    if let Some(files) = files {
+        for (path, bytes) in &files.files {
+            let megabytes = bytes.len() as f64 / 1e6;
+            line("Wrote", format!("{} ({megabytes:.1} MB)", path.display()));
+        }
+        line(
+            "",
+            format!(
+                "{} thicknesses, {} stress and {} strain cards, read back within {:.1e}",
+                grouped(files.n_thickness),
+                grouped(files.n_stress),
+                grouped(files.n_strain),
+                files.read_back_error
+            ),
+        );
+        if let Some(replaced) = &files.replaces {
+            line("", format!("takes the place of {}", replaced.display()));
+        }
+    }
+    text
+}

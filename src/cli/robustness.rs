@@ -1,0 +1,88 @@
+//! `shapematch bench --robustness`: how often the match is right and the verdict honest.
+
+use std::fmt::Write as _;
+use std::process::ExitCode;
+
+use anyhow::bail;
+
+use super::args::BenchArgs;
+use super::{print, progress, takes_stdout, write_json, write_output};
+use crate::pipeline::robustness::{RobustnessSettings, robustness};
+use crate::pipeline::robustness_page::page;
+use crate::pipeline::robustness_table::{COLUMNS, RobustnessTable, notes};
+use crate::samples::SamplePart;
+use crate::samples::scenario::Scenario;
+
+/// Runs the pairs and prints the table.
+pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
+    let settings = settings(args)?;
+    let monitor = progress::monitor(quiet);
+    let runs = robustness(&settings, &monitor, |_| {})?;
+    drop(monitor);
+    let table = RobustnessTable::new(settings.seed, &runs);
+    if !takes_stdout(args.json.as_deref()) {
+        print(&describe(&table))?;
+    }
+    if let Some(path) = &args.json {
+        write_json(path, &table)?;
+    }
+    if let Some(path) = &args.html {
+        write_output(path, page(&table, &runs).as_bytes())?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn settings(args: &BenchArgs) -> anyhow::Result<RobustnessSettings> {
+    let mut settings = RobustnessSettings {
+        seed: args.seed,
+        n_runs: args.runs,
+        ..RobustnessSettings::default()
+    };
+    let Some(only) = &args.only else {
+        return Ok(settings);
+    };
+    // Each word narrows either the parts or the scenarios.
+    let words: Vec<&str> = only.split(',').map(str::trim).collect();
+    let parts: Vec<SamplePart> = words
+        .iter()
+        .filter_map(|w| SamplePart::from_name(w))
+        .collect();
+    let named = |scenario: &Scenario| words.iter().any(|word| scenario.name().starts_with(word));
+    let scenarios: Vec<Scenario> = Scenario::ALL.into_iter().filter(named).collect();
+    if parts.is_empty() && scenarios.is_empty() {
+        let names = Scenario::ALL.map(Scenario::name).join(", ");
+        bail!("no part and no scenario begins like {only:?}; the scenarios are: {names}");
+    }
+    if !parts.is_empty() {
+        settings.parts = parts;
+    }
+    if !scenarios.is_empty() {
+        settings.scenarios = scenarios;
+    }
+    Ok(settings)
+}
+
+fn describe(table: &RobustnessTable) -> String {
+    let mut lines: Vec<Vec<String>> = vec![COLUMNS.map(str::to_owned).to_vec()];
+    lines.extend(table.rows.iter().map(|row| row.cells()));
+    lines.push(table.total.cells());
+    let width = |col: usize| {
+        let widths = lines.iter().map(|line| line[col].chars().count());
+        widths.max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..COLUMNS.len()).map(width).collect();
+    let mut text = String::new();
+    for line in &lines {
+        for (col, (cell, width)) in line.iter().zip(&widths).enumerate() {
+            // Writing to a string cannot fail.
+            let _ = if col == 0 {
+                write!(text, "{cell:<width$}")
+            } else {
+                write!(text, "  {cell:>width$}")
+            };
+        }
+        text.push('\n');
+    }
+    let _ = writeln!(text, "\n{}", notes());
+    text
+}

@@ -1,0 +1,238 @@
+//! Unit tests of forming results.
+
+use super::super::super::model::OtherResults;
+use super::super::block::Blocks;
+use super::super::card::Layout;
+use super::super::source_file::SourceFile;
+use super::*;
+
+fn read(text: &str) -> (Forming, Diagnostics) {
+    let file = Arc::new(SourceFile::new("dynain", text));
+    let (mut forming, mut diagnostics) = (RawForming::default(), Diagnostics::default());
+    for block in Blocks::new(&file, Layout::Standard) {
+        read_block(&file, &block, AS_IT_IS, &mut forming, &mut diagnostics);
+    }
+    (forming.of_shells, diagnostics)
+}
+
+const AS_IT_IS: ResultUnits = ResultUnits {
+    element: 0,
+    set: 0,
+    stress: 1.0,
+};
+
+fn clean(text: &str) -> Forming {
+    let (forming, diagnostics) = read(text);
+    assert!(diagnostics.is_empty(), "{diagnostics:?}");
+    forming
+}
+
+fn row(width: usize, values: &[f64]) -> String {
+    let fields = values.iter().map(|v| format!("{v:>width$}"));
+    fields.collect::<String>() + "\n"
+}
+
+fn ints(width: usize, values: &[i64]) -> String {
+    let fields = values.iter().map(|v| format!("{v:>width$}"));
+    fields.collect::<String>() + "\n"
+}
+
+const POINT: [f64; 8] = [-0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.25];
+const HISTORY: [f64; 9] = [10., 11., 12., 13., 14., 15., 16., 17., 18.];
+
+#[track_caller]
+fn check(forming: &Forming, n_elements: usize, n_points: usize, n_history: usize) {
+    assert_eq!(forming.n_stress(), n_elements);
+    for (i, shell) in forming.stresses().enumerate() {
+        assert_eq!(shell.element_id, 100 + i as u64);
+        assert_eq!(shell.points.len(), n_points);
+        for point in shell.points {
+            assert_eq!(point.t, -0.5);
+            assert_eq!(point.stress, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+            assert_eq!(point.plastic_strain, 0.25);
+        }
+        assert_eq!(shell.n_history, n_history);
+        for history in shell.history.chunks(n_history.max(1)) {
+            assert_eq!(history, &HISTORY[..n_history]);
+        }
+    }
+}
+
+/// Two elements, one point in the plane and two through the thickness, nine history
+/// variables and six tensor values, in any width.
+fn stress_deck(keyword: &str, narrow: usize, wide: usize, large: bool) -> String {
+    let mut deck = format!("*INITIAL_STRESS_SHELL{keyword}\n$ comment\n");
+    for id in [100, 101] {
+        deck += &ints(narrow, &[id, 1, 2, 9, 6, large.into(), 1, 2]);
+        for _ in 0..2 {
+            let (width, per_line) = if large { (wide, 5) } else { (narrow, 8) };
+            for line in POINT.chunks(per_line) {
+                deck += &row(width, line);
+            }
+            for line in HISTORY.chunks(per_line) {
+                deck += &row(width, line);
+            }
+            for line in HISTORY[..6].chunks(per_line.min(6)) {
+                deck += &row(width, line);
+            }
+            deck += "$ between points\n";
+        }
+        deck += &row(if large { wide } else { narrow }, &[300.0, 301.0]);
+    }
+    deck
+}
+
+#[test]
+fn stresses_in_every_width() {
+    check(&clean(&stress_deck("", 10, 16, false)), 2, 2, 9);
+    check(&clean(&stress_deck("", 10, 16, true)), 2, 2, 9);
+    check(&clean(&stress_deck(" %", 10, 16, true)), 2, 2, 9);
+    check(&clean(&stress_deck("+", 20, 20, false)), 2, 2, 9);
+    check(&clean(&stress_deck("+", 20, 20, true)), 2, 2, 9);
+}
+
+#[test]
+fn the_header_of_openradioss() {
+    let mut deck = String::from("*INITIAL_STRESS_SHELL\n");
+    for id in [100, 101] {
+        deck += &format!("{id:>8}{:>8}{:>8}{:16}{:>8}\n", 1, 3, "", 1);
+        for _ in 0..3 {
+            deck += &row(16, &POINT[..5]);
+            deck += &row(16, &POINT[5..]);
+        }
+    }
+    check(&clean(&deck), 2, 3, 0);
+    // One real tensor value a point is read as such.
+    let mut deck = String::from("*INITIAL_STRESS_SHELL\n");
+    deck += &ints(10, &[100, 1, 1, 0, 1]);
+    deck += &(row(10, &POINT) + &row(10, &[7.0]));
+    check(&clean(&deck), 1, 1, 0);
+}
+
+#[test]
+fn plastic_strain_on_a_line_of_its_own() {
+    let mut deck = String::from("*INITIAL_STRESS_SHELL\n");
+    for id in [100, 101] {
+        deck += &ints(10, &[id, 1, 1]);
+        deck += &(row(10, &POINT[..7]) + &row(10, &POINT[7..]));
+    }
+    check(&clean(&deck), 2, 1, 0);
+}
+
+#[test]
+fn free_format_and_missing_fields() {
+    let deck = "*INITIAL_STRESS_SHELL\n100,1,1\n-.5,1.,2.,3.,4.,5.,6.,.25\n101,1,1\n-.5,1.\n";
+    let forming = clean(deck);
+    assert_eq!(forming.stress(0).points[0].plastic_strain, 0.25);
+    assert_eq!(
+        forming.stress(1).points[0].stress,
+        [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    );
+}
+
+#[test]
+fn strains_small_large_and_without_counts() {
+    let values = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, -1.0];
+    let mut deck = String::from("*INITIAL_STRAIN_SHELL\n");
+    deck += &(ints(10, &[100]) + &row(10, &values) + &row(10, &values));
+    deck += &ints(10, &[101, 1, 3, 1]);
+    for _ in 0..3 {
+        deck += &(row(16, &values[..5]) + &row(16, &values[5..]));
+    }
+    // OpenRadioss: 4I8.
+    deck += &ints(8, &[102, 1, 1, 1]);
+    deck += &(row(16, &values[..5]) + &row(16, &values[5..]));
+    let forming = clean(&deck);
+    let n_points: Vec<_> = forming.strains().map(|s| s.points.len()).collect();
+    assert_eq!(n_points, [2, 3, 1]);
+    for shell in forming.strains() {
+        for point in shell.points {
+            assert_eq!(point.strain, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+            assert_eq!(point.t, -1.0);
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_used_is_said() {
+    let (forming, diagnostics) = read("*INITIAL_STRESS_BEAM\n1\n*INITIAL_STRESS_SOLID_SET\n2\n");
+    assert!(forming.is_empty());
+    assert_eq!(diagnostics.count(DiagnosticKind::Unsupported), 2);
+    let (_, diagnostics) = read("*INITIAL_STRESS_SHELL\n1,99999,99999\n");
+    assert_eq!(diagnostics.count(DiagnosticKind::BadForming), 1);
+    let (forming, diagnostics) =
+        read("*INITIAL_STRESS_SHELL\n1,1,1\n0,x\n2,1,1\n0,1,1,1,1,1,1,0\n");
+    assert_eq!((forming.n_stress(), diagnostics.total()), (1, 1));
+    let (_, diagnostics) = read("*INITIAL_STRAIN_SHELL\n1,1,1,0,,,,1\n0,1,1,1,1,1,1\n");
+    assert_eq!(diagnostics.count(DiagnosticKind::Unsupported), 1);
+}
+
+#[test]
+fn ids_are_shifted_either_way_and_stresses_scaled() {
+    let deck = "*INITIAL_STRESS_SHELL\n100,1,1\n-.5,1.,2.,3.,4.,5.,6.,.25\n\
+        *INITIAL_STRESS_SHELL_SET\n9,1,1\n-.5,1.,2.,3.,4.,5.,6.,.25\n";
+    let file = Arc::new(SourceFile::new("dynain", deck));
+    let (mut forming, mut diagnostics) = (RawForming::default(), Diagnostics::default());
+    let units = ResultUnits {
+        element: -40,
+        set: 1,
+        stress: 10.0,
+    };
+    for block in Blocks::new(&file, Layout::Standard) {
+        read_block(&file, &block, units, &mut forming, &mut diagnostics);
+    }
+    let of_set = forming.of_sets.stress(0);
+    let of_shell = forming.of_shells.stress(0);
+    assert_eq!((of_shell.element_id, of_set.element_id), (60, 10));
+    assert_eq!(of_shell.points, of_set.points);
+    assert_eq!(
+        of_set.points[0].stress,
+        [10.0, 20.0, 30.0, 40.0, 50.0, 60.0]
+    );
+    assert_eq!(of_set.points[0].plastic_strain, 0.25);
+}
+
+#[test]
+fn results_of_solids_and_thick_shells_are_counted() {
+    let values: Vec<f64> = (1..=30).map(f64::from).collect();
+    let mut deck = String::from("*INITIAL_STRESS_SOLID\n");
+    for id in [1, 2] {
+        // Two points with four history variables run on over three lines each.
+        deck += &ints(10, &[id, 2, 4, 1, 1, 0, 1, 6]);
+        for _ in 0..2 {
+            deck += &(row(16, &values[..5]) + &row(16, &values[5..10]) + &row(16, &[11.0]));
+        }
+        deck += &(row(16, &values[..5]) + &row(16, &[6.0]));
+    }
+    deck += &(ints(10, &[3, 1]) + &row(10, &values[..7]));
+    deck += "*INITIAL_STRAIN_SOLID\n";
+    deck += &(ints(10, &[1]) + &row(10, &values[..6]));
+    deck += &(ints(10, &[2]) + &row(10, &values[..6]));
+    deck += "*INITIAL_STRESS_TSHELL\n";
+    deck += &ints(10, &[1, 1, 2, 3, 1]);
+    for _ in 0..2 {
+        deck += &(row(16, &values[..5]) + &row(16, &values[..3]) + &row(16, &values[..3]));
+    }
+    deck += &(ints(10, &[2, 1, 1]) + &row(10, &POINT));
+    deck += "*INITIAL_STRAIN_TSHELL\n";
+    deck += &(ints(10, &[7]) + &row(10, &values[..6]) + &row(10, &values[..6]));
+    let forming = clean(&deck);
+    assert!(forming.is_empty());
+    let expected = OtherResults {
+        solid_stress: 3,
+        solid_strain: 2,
+        thick_shell_stress: 2,
+        thick_shell_strain: 1,
+    };
+    assert_eq!(forming.others, expected);
+}
+
+#[test]
+fn a_deck_cut_anywhere_is_no_panic() {
+    let deck = stress_deck("", 10, 16, true) + "*INITIAL_STRAIN_SHELL\n 1,1,1\n1,2,3,4,5,6,7\n";
+    let whole = clean(&deck).n_stress();
+    for end in 0..deck.len() {
+        let (forming, _) = read(&deck[..end]);
+        assert!(forming.n_stress() <= whole);
+    }
+}

@@ -1,0 +1,91 @@
+//! What a deck says of its shell elements: formulation, layers, integration rule.
+
+use super::Model;
+
+/// Layers of a section whose card names none.
+const LAYERS_BY_DEFAULT: u32 = 2;
+
+/// The first card of `*SECTION_SHELL` beyond the id.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ShellFormulation {
+    /// Element formulation `ELFORM`; 0 where the card leaves it to `*CONTROL_SHELL`.
+    pub elform: i64,
+    /// Layers through the thickness, `NIP`; 2 where the card names none.
+    pub n_layers: u32,
+    /// A rule of the user's (`QR/IRID` below 0), whose places the deck holds elsewhere.
+    pub has_own_rule: bool,
+}
+
+impl Default for ShellFormulation {
+    fn default() -> Self {
+        Self {
+            elform: 0,
+            n_layers: LAYERS_BY_DEFAULT,
+            has_own_rule: false,
+        }
+    }
+}
+
+impl ShellFormulation {
+    /// From the fields `ELFORM`, `NIP` and `QR/IRID`.
+    pub(crate) fn new(elform: i64, nip: f64, quadrature: f64) -> Self {
+        let is_count = nip >= 1.0 && nip <= f64::from(u16::MAX);
+        Self {
+            elform,
+            n_layers: if is_count {
+                nip as u32
+            } else {
+                LAYERS_BY_DEFAULT
+            },
+            has_own_rule: quadrature < 0.0,
+        }
+    }
+
+    /// Integration points in the plane of a quad: four for the fully integrated formulations, else one.
+    pub fn n_plane(self) -> u8 {
+        match self.elform {
+            6 | 7 | 16 | -16 | 18 | 20 | 21 => 4,
+            _ => 1,
+        }
+    }
+}
+
+/// What `*CONTROL_SHELL` says of initial states.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ShellControl {
+    /// Formulation of sections that name none (`THEORY`); 0 for the solver's default.
+    pub elform: i64,
+    /// Gauss–Lobatto layers (`INTGRD` 1) instead of Gauss layers.
+    pub is_lobatto: bool,
+    /// Part set whose initial stresses are read in element axes (`LISPSID`); 0 for none.
+    pub element_axes_set: u64,
+}
+
+impl Model {
+    /// The formulation of a part's shells; `None` if its section is not in the deck. O(sections).
+    pub fn shell_formulation(&self, part: u32) -> Option<ShellFormulation> {
+        let id = self.parts.get(part as usize)?.section_id;
+        let section = self.sections.iter().find(|section| section.id == id)?;
+        let mut formulation = section.formulation;
+        if formulation.elform == 0 {
+            formulation.elform = self.shell_control.elform;
+        }
+        Some(formulation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blank_and_absurd_counts_are_the_default() {
+        assert_eq!(ShellFormulation::new(16, 5.0, 0.0).n_layers, 5);
+        assert_eq!(ShellFormulation::new(16, 0.0, 0.0).n_layers, 2);
+        assert_eq!(ShellFormulation::new(2, -3.0, 0.0).n_layers, 2);
+        assert_eq!(ShellFormulation::new(2, 1e9, -7.0).n_layers, 2);
+        assert!(ShellFormulation::new(2, 3.0, -7.0).has_own_rule);
+        assert_eq!(ShellFormulation::new(16, 5.0, 0.0).n_plane(), 4);
+        assert_eq!(ShellFormulation::new(2, 5.0, 0.0).n_plane(), 1);
+    }
+}

@@ -1,0 +1,303 @@
+//! Normals at vertices and at the corners of triangles, and the corners around each vertex.
+
+use rayon::prelude::*;
+
+use super::chunks::{CHUNK, for_chunks, map_chunks};
+use super::{Point3, TriMesh, Vector3};
+use crate::monitor::{Cancelled, Monitor};
+
+/// Corners around a vertex beyond which it has no common normal: a spike of that many triangles is
+/// no sheet, and comparing each with each would take for ever.
+const MAX_FAN: usize = 1024;
+
+/// Unit normal of each triangle; zero without area. O(triangles).
+pub fn face_normals(mesh: &TriMesh, monitor: &Monitor) -> Result<Vec<Vector3>, Cancelled> {
+    map_chunks(mesh.n_triangles(), Vector3::zeros(), monitor, |t| {
+        mesh.normal(t)
+    })
+}
+
+/// For each vertex the corners of triangles that lie there. Corner `3 · t + i` is corner `i` of
+/// triangle `t`.
+#[derive(Debug, Clone)]
+pub struct VertexFans {
+    start: Vec<u32>,
+    corners: Vec<u32>,
+}
+
+impl VertexFans {
+    /// Sorts the corners by vertex. O(vertices + triangles).
+    pub fn of(mesh: &TriMesh, monitor: &Monitor) -> Result<Self, Cancelled> {
+        // Where the fan of each vertex ends; filling it from behind turns that into its start.
+        let mut start = vec![0_u32; mesh.n_vertices() + 1];
+        for_chunks(mesh.n_triangles(), monitor, |range| {
+            for &vertex in mesh.triangles()[range].iter().flatten() {
+                start[vertex as usize] += 1;
+            }
+        })?;
+        let mut total = 0;
+        for count in &mut start {
+            total += *count;
+            *count = total;
+        }
+        let mut corners = vec![0; total as usize];
+        let n = mesh.n_triangles();
+        for_chunks(n, monitor, |range| {
+            for t in range.map(|i| n - 1 - i) {
+                for i in (0..3).rev() {
+                    let place = &mut start[mesh.triangles()[t][i] as usize];
+                    *place -= 1;
+                    corners[*place as usize] = (3 * t + i) as u32;
+                }
+            }
+        })?;
+        Ok(Self { start, corners })
+    }
+
+    /// The corners at a vertex in ascending order.
+    pub fn around(&self, vertex: usize) -> &[u32] {
+        &self.corners[self.start[vertex] as usize..self.start[vertex + 1] as usize]
+    }
+
+    fn n_vertices(&self) -> usize {
+        self.start.len() - 1
+    }
+}
+
+/// Unit normals at the corners of triangles, each stored once for all corners of a vertex that
+/// share it.
+#[derive(Debug, Clone)]
+pub struct CornerNormals {
+    normals: Vec<Vector3>,
+    /// Place in `normals` of each corner.
+    of_corner: Vec<[u32; 3]>,
+}
+
+impl CornerNormals {
+    /// The normals at the three corners of a triangle.
+    #[inline]
+    pub fn of_triangle(&self, triangle: usize) -> [Vector3; 3] {
+        self.of_corner[triangle].map(|place| self.normals[place as usize])
+    }
+}
+
+/// Normal at each corner of each triangle: the mean of the triangles around the vertex that turn by
+/// at most `max_angle` (radians) against this one, weighted by their angle at the vertex (Thürmer
+/// and Wüthrich 1998). Flat areas do not depend on how they are cut, and sharp edges stay sharp.
+///
+/// `faces` are the [`face_normals`]. O(triangles) for fans of a bounded size.
+pub fn corner_normals(
+    mesh: &TriMesh,
+    faces: &[Vector3],
+    fans: &VertexFans,
+    max_angle: f64,
+    monitor: &Monitor,
+) -> Result<CornerNormals, Cancelled> {
+    let min_cos = max_angle.cos();
+    let n_chunks = fans.n_vertices().div_ceil(CHUNK);
+    let chunks: Vec<FanNormals> = (0..n_chunks)
+        .into_par_iter()
+        .map(|chunk| {
+            monitor.check()?;
+            let mut found = FanNormals::default();
+            for vertex in chunk * CHUNK..fans.n_vertices().min((chunk + 1) * CHUNK) {
+                found.add(mesh, faces, fans.around(vertex), min_cos);
+            }
+            Ok(found)
+        })
+        .collect::<Result<_, Cancelled>>()?;
+    let mut normals = Vec::with_capacity(chunks.iter().map(|chunk| chunk.normals.len()).sum());
+    let mut of_corner = vec![[0; 3]; mesh.n_triangles()];
+    let mut corners = fans.corners.iter();
+    for chunk in chunks {
+        monitor.check()?;
+        let before = normals.len() as u32;
+        for (place, &corner) in chunk.of_corner.iter().zip(&mut corners) {
+            of_corner[corner as usize / 3][corner as usize % 3] = before + place;
+        }
+        normals.extend(chunk.normals);
+    }
+    Ok(CornerNormals { normals, of_corner })
+}
+
+/// Normals of consecutive fans.
+#[derive(Default)]
+struct FanNormals {
+    normals: Vec<Vector3>,
+    /// For each corner, fan by fan, its place in `normals`.
+    of_corner: Vec<u32>,
+}
+
+impl FanNormals {
+    fn add(&mut self, mesh: &TriMesh, faces: &[Vector3], fan: &[u32], min_cos: f64) {
+        let first = self.normals.len();
+        let face = |corner: u32| faces[corner as usize / 3];
+        let weighted = |corner: u32| face(corner) * corner_angle(mesh, corner);
+        let all_agree = fan.len() <= MAX_FAN
+            && fan.iter().enumerate().all(|(i, &a)| {
+                let own = face(a);
+                fan[i..].iter().all(|&b| face(b).dot(&own) >= min_cos)
+            });
+        if all_agree {
+            // The common case: one smooth sheet.
+            let sum = fan
+                .iter()
+                .fold(Vector3::zeros(), |sum, &c| sum + weighted(c));
+            if let Some(normal) = sum.try_normalize(0.0) {
+                self.normals.push(normal);
+                let place = first as u32;
+                self.of_corner.extend(fan.iter().map(|_| place));
+                return;
+            }
+        }
+        for &corner in fan {
+            let own = face(corner);
+            let agreeing = fan
+                .iter()
+                .filter(|&&other| face(other).dot(&own) >= min_cos);
+            let normal = if fan.len() <= MAX_FAN {
+                let sum = agreeing.fold(Vector3::zeros(), |sum, &c| sum + weighted(c));
+                sum.try_normalize(0.0).unwrap_or(own)
+            } else {
+                own
+            };
+            let known = self.normals[first..].iter().position(|&n| n == normal);
+            let place = known.unwrap_or_else(|| {
+                self.normals.push(normal);
+                self.normals.len() - 1 - first
+            });
+            self.of_corner.push((first + place) as u32);
+        }
+    }
+}
+
+/// Unit normal at each vertex, triangles weighted by their angle at the vertex; zero where a vertex
+/// has no triangle with area. The same as [`TriMesh::vertex_normals`], on all threads.
+pub fn vertex_normals(
+    mesh: &TriMesh,
+    faces: &[Vector3],
+    fans: &VertexFans,
+    monitor: &Monitor,
+) -> Result<Vec<Vector3>, Cancelled> {
+    map_chunks(mesh.n_vertices(), Vector3::zeros(), monitor, |vertex| {
+        let weighted = |&corner: &u32| {
+            let [u, v] = corner_sides(mesh, corner);
+            faces[corner as usize / 3] * u.angle(&v)
+        };
+        let sum: Vector3 = fans.around(vertex).iter().map(weighted).sum();
+        sum.try_normalize(0.0).unwrap_or_default()
+    })
+}
+
+/// Both sides of a triangle that start at a corner.
+fn corner_sides(mesh: &TriMesh, corner: u32) -> [Vector3; 2] {
+    let (triangle, i) = (corner as usize / 3, corner as usize % 3);
+    let points: [Point3; 3] = mesh.corners(triangle);
+    [
+        points[(i + 1) % 3] - points[i],
+        points[(i + 2) % 3] - points[i],
+    ]
+}
+
+/// Inner angle of a triangle at a corner; zero where a side has no length.
+fn corner_angle(mesh: &TriMesh, corner: u32) -> f64 {
+    let [u, v] = corner_sides(mesh, corner);
+    u.cross(&v).norm().atan2(u.dot(&v))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A strip of squares that bends by `angles` from one to the next.
+    fn strip(angles: &[f64]) -> TriMesh {
+        let mut positions = Vec::new();
+        let (mut x, mut z, mut turned) = (0.0, 0.0, 0.0_f64);
+        for i in 0..=angles.len() + 1 {
+            positions.extend([Point3::new(x, 0.0, z), Point3::new(x, 1.0, z)]);
+            x += turned.cos();
+            z += turned.sin();
+            turned += angles.get(i).copied().unwrap_or_default();
+        }
+        let squares = 0..=angles.len() as u32;
+        let triangles = squares.flat_map(|i| {
+            let a = 2 * i;
+            [[a, a + 2, a + 3], [a, a + 3, a + 1]]
+        });
+        TriMesh::new(positions, triangles.collect()).unwrap()
+    }
+
+    fn normals(mesh: &TriMesh, max_angle: f64) -> Vec<[Vector3; 3]> {
+        let monitor = Monitor::silent();
+        let faces = face_normals(mesh, &monitor).unwrap();
+        let fans = VertexFans::of(mesh, &monitor).unwrap();
+        let found = corner_normals(mesh, &faces, &fans, max_angle, &monitor).unwrap();
+        (0..mesh.n_triangles())
+            .map(|t| found.of_triangle(t))
+            .collect()
+    }
+
+    /// The definition, corner by corner.
+    fn plainly(mesh: &TriMesh, max_angle: f64) -> Vec<[Vector3; 3]> {
+        let corner = |t: usize, i: usize| {
+            let own = mesh.normal(t);
+            let vertex = mesh.triangles()[t][i];
+            let mut sum = Vector3::zeros();
+            for (other, corners) in mesh.triangles().iter().enumerate() {
+                for (j, &v) in corners.iter().enumerate() {
+                    if v == vertex && mesh.normal(other).dot(&own) >= max_angle.cos() {
+                        sum += mesh.normal(other) * corner_angle(mesh, (3 * other + j) as u32);
+                    }
+                }
+            }
+            sum.try_normalize(0.0).unwrap_or(own)
+        };
+        let triangles = 0..mesh.n_triangles();
+        triangles.map(|t| [0, 1, 2].map(|i| corner(t, i))).collect()
+    }
+
+    #[test]
+    fn corners_have_the_normals_of_the_definition_to_the_last_bit() {
+        let mesh = strip(&[0.1, 0.9, 0.3, -0.5, 0.7, -1.4]);
+        for max_angle in [0.0, 0.4, 0.7, 3.2] {
+            assert_eq!(normals(&mesh, max_angle), plainly(&mesh, max_angle));
+        }
+        assert_eq!(normals(&strip(&[0.0, 0.0]), 0.5), [[Vector3::z(); 3]; 6]);
+    }
+
+    #[test]
+    fn sharp_edges_stay_sharp_and_bends_are_smooth() {
+        let normal = |i: usize, angle| normals(&strip(&[angle]), 0.6)[i];
+        // The last square's first corner lies on the bend.
+        assert!((normal(2, 1.0)[0] - strip(&[1.0]).normal(2)).norm() < 1e-12);
+        assert!((normal(2, 0.5)[0] - strip(&[0.5]).normal(2)).norm() > 0.1);
+    }
+
+    #[test]
+    fn vertices_have_the_normals_of_the_plain_loop_to_the_last_bit() {
+        let mesh = strip(&[0.1, 0.9, 0.3, -0.5]);
+        let monitor = Monitor::silent();
+        let faces = face_normals(&mesh, &monitor).unwrap();
+        let fans = VertexFans::of(&mesh, &monitor).unwrap();
+        let found = vertex_normals(&mesh, &faces, &fans, &monitor).unwrap();
+        assert_eq!(found, mesh.vertex_normals());
+    }
+
+    #[test]
+    fn a_spike_of_very_many_triangles_ends_soon() {
+        let n = 100_000;
+        let ring = (0..n).map(|i| {
+            let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / f64::from(n)).sin_cos();
+            Point3::new(cos, sin, 0.0)
+        });
+        let positions = std::iter::once(Point3::origin()).chain(ring).collect();
+        let triangles = (0..n).map(|i| [0, 1 + i, 1 + (i + 1) % n]).collect();
+        let found = normals(&TriMesh::new(positions, triangles).unwrap(), 0.6);
+        assert!(
+            found
+                .iter()
+                .flatten()
+                .all(|n| (n - Vector3::z()).norm() < 1e-6)
+        );
+    }
+}

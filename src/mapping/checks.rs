@@ -1,0 +1,243 @@
+//! Is the mapping right? Means, percentiles and histograms of both sides, and the way back.
+
+use super::field::Layered;
+use super::options::{MapOptions, Quantities};
+use super::source::SourcePart;
+use super::target::{Mapped, TargetPart};
+use super::{MappingError, PlacedSource, map};
+use crate::geometry::Similarity;
+use crate::monitor::Monitor;
+
+/// Area-weighted distribution of a quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Distribution {
+    /// Area-weighted mean.
+    pub mean: f64,
+    /// Smallest value.
+    pub min: f64,
+    /// 5, 50, 95 and 99 % of the area lie at or below these values.
+    pub percentiles: [f64; 4],
+    /// Largest value.
+    pub max: f64,
+    /// Area that has the quantity.
+    pub area: f64,
+}
+
+/// The percentiles of [`Distribution::percentiles`].
+const PERCENTILES: [f64; 4] = [0.05, 0.5, 0.95, 0.99];
+/// Bins of a histogram.
+const N_BINS: usize = 50;
+
+/// The distribution of values with the area each stands for; values that are not finite are left
+/// out. `None` if there are none. O(n log n).
+pub fn distribution(values: impl Iterator<Item = (f64, f64)>) -> Option<Distribution> {
+    let mut sorted: Vec<(f64, f64)> = values
+        .filter(|(value, area)| value.is_finite() && *area > 0.0)
+        .collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let area: f64 = sorted.iter().map(|(_, area)| area).sum();
+    let mean = sorted.iter().map(|(value, area)| value * area).sum::<f64>() / area;
+    let (min, max) = (sorted.first()?.0, sorted.last()?.0);
+    let mut percentiles = [max; 4];
+    let mut below = 0.0;
+    let mut next = 0;
+    for (value, own) in &sorted {
+        below += own;
+        while next < PERCENTILES.len() && below >= PERCENTILES[next] * area {
+            percentiles[next] = *value;
+            next += 1;
+        }
+    }
+    Some(Distribution {
+        mean,
+        min,
+        percentiles,
+        max,
+        area,
+    })
+}
+
+/// Shares of the area in equal bins over a range.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Histogram {
+    /// Lower end of the first bin.
+    pub min: f64,
+    /// Upper end of the last bin.
+    pub max: f64,
+    /// Share of the area in each bin; they sum to 1.
+    pub shares: Vec<f64>,
+}
+
+impl Histogram {
+    /// Fifty bins over a range; values outside it count in the first or last bin.
+    pub fn new(values: impl Iterator<Item = (f64, f64)>, min: f64, max: f64) -> Self {
+        let mut shares = vec![0.0; N_BINS];
+        let width = (max - min).max(f64::MIN_POSITIVE);
+        for (value, area) in values.filter(|(value, _)| value.is_finite()) {
+            let bin = ((value - min) / width * N_BINS as f64).floor();
+            shares[bin.clamp(0.0, N_BINS as f64 - 1.0) as usize] += area;
+        }
+        let all: f64 = shares.iter().sum();
+        if all > 0.0 {
+            shares.iter_mut().for_each(|share| *share /= all);
+        }
+        Self { min, max, shares }
+    }
+}
+
+/// Half the sum of the differences of two histograms over the same range: 0 for equal, 1 for
+/// disjoint ones.
+pub fn histogram_distance(a: &Histogram, b: &Histogram) -> f64 {
+    let pairs = a.shares.iter().zip(&b.shares);
+    0.5 * pairs.map(|(a, b)| (a - b).abs()).sum::<f64>()
+}
+
+/// What comes back when the mapped values are mapped onto the source again. Two mappings lie
+/// between the values compared, so the error of one is about half.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapBack {
+    /// Root mean square difference of the thickness, area-weighted.
+    pub thickness_rms: f64,
+    /// 95 % of the area differ by less.
+    pub thickness_p95: f64,
+    /// The source's 95th less its 5th percentile, to compare with.
+    pub thickness_range: f64,
+    /// The same for the plastic strain, mean over the layers.
+    pub plastic_rms: f64,
+    /// 95 % of the area differ by less.
+    pub plastic_p95: f64,
+    /// The source's 95th less its 5th percentile.
+    pub plastic_range: f64,
+    /// Share of the source's area that the way back reached.
+    pub coverage: f64,
+    /// For each source element whether the way back reached it.
+    pub is_covered: Vec<bool>,
+}
+
+/// Maps `mapped` back onto `source` and compares thickness and plastic strain.
+pub fn map_back(
+    source: &PlacedSource<'_>,
+    target: &TargetPart,
+    mapped: &Mapped,
+    options: &MapOptions,
+    monitor: &Monitor,
+) -> Result<MapBack, MappingError> {
+    let n = target.mesh.len();
+    let mut states = Layered::new(n);
+    if let Some(layers) = &mapped.states {
+        for element in 0..n {
+            let rule = &target.rules[target.rule_of[element] as usize];
+            let values = layers.of(element);
+            let planes = values.len() / rule.len().max(1);
+            let places = rule
+                .places()
+                .iter()
+                .flat_map(|&t| std::iter::repeat_n(t, planes));
+            states.set(element, places.zip(values.iter().copied()));
+        }
+    }
+    let as_source = SourcePart {
+        mesh: target.mesh.clone(),
+        thickness: mapped
+            .thickness
+            .iter()
+            .map(|&t| [t / options.thickness_scale; 4])
+            .collect(),
+        states,
+        strains: Layered::new(n),
+    };
+    let rules = target.rules.clone();
+    let moved = source.part.mesh.moved(&source.target_from_source);
+    let as_target = TargetPart {
+        rule_of: vec![0; moved.len()],
+        n_plane: vec![1; moved.len()],
+        nominal_thickness: vec![f64::NAN; moved.len()],
+        rules: rules.into_iter().take(1).collect(),
+        mesh: moved,
+    };
+    let options = MapOptions {
+        quantities: Quantities::USUAL,
+        fill_rings: 0,
+        thickness_scale: 1.0,
+        ..options.clone()
+    };
+    let placed = PlacedSource {
+        part: &as_source,
+        target_from_source: Similarity::identity(),
+    };
+    let back = map(&[placed], &as_target, &options, monitor)?;
+    Ok(compare_back(source.part, &as_target, &back))
+}
+
+fn compare_back(source: &SourcePart, as_target: &TargetPart, back: &Mapped) -> MapBack {
+    let areas = as_target.mesh.areas();
+    let mut thickness = (Vec::new(), Vec::new());
+    let mut plastic = (Vec::new(), Vec::new());
+    for (element, &area) in areas.iter().enumerate() {
+        let own = source.mean_thickness(element);
+        let returned = back.thickness.get(element).copied().unwrap_or(f64::NAN);
+        if own.is_finite() && returned.is_finite() {
+            thickness.0.push((own, area));
+            thickness.1.push(((returned - own).abs(), area));
+        }
+        let own = source.mean_plastic_strain(element);
+        let returned = back.mean_plastic_strain(as_target, element);
+        if own.is_finite() && returned.is_finite() {
+            plastic.0.push((own, area));
+            plastic.1.push(((returned - own).abs(), area));
+        }
+    }
+    let [thickness, plastic] = [thickness, plastic].map(|(own, differences)| {
+        let range =
+            distribution(own.into_iter()).map_or(0.0, |d| d.percentiles[2] - d.percentiles[0]);
+        let squares = differences
+            .iter()
+            .map(|(d, area)| d * d * area)
+            .sum::<f64>();
+        let area: f64 = differences.iter().map(|(_, area)| area).sum();
+        let p95 = distribution(differences.into_iter()).map_or(0.0, |d| d.percentiles[2]);
+        let rms = if area > 0.0 {
+            (squares / area).sqrt()
+        } else {
+            0.0
+        };
+        (rms, p95, range)
+    });
+    MapBack {
+        thickness_rms: thickness.0,
+        thickness_p95: thickness.1,
+        thickness_range: thickness.2,
+        plastic_rms: plastic.0,
+        plastic_p95: plastic.1,
+        plastic_range: plastic.2,
+        coverage: back.mapped_area(&as_target.mesh),
+        is_covered: back
+            .elements
+            .iter()
+            .map(|report| report.status.has_values())
+            .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percentiles_are_by_area() {
+        let values = [(1.0, 94.0), (5.0, 4.5), (9.0, 1.5), (f64::NAN, 50.0)];
+        let found = distribution(values.into_iter()).unwrap();
+        assert_eq!((found.min, found.max, found.area), (1.0, 9.0, 100.0));
+        assert_eq!(found.percentiles, [1.0, 1.0, 5.0, 9.0]);
+        assert!((found.mean - (94.0 + 22.5 + 13.5) / 100.0).abs() < 1e-12);
+        assert_eq!(distribution(std::iter::empty()), None);
+    }
+
+    #[test]
+    fn histograms_differ_by_the_share_that_moved() {
+        let a = Histogram::new([(0.1, 1.0), (0.9, 3.0)].into_iter(), 0.0, 1.0);
+        let b = Histogram::new([(0.1, 2.0), (0.9, 2.0)].into_iter(), 0.0, 1.0);
+        assert_eq!(histogram_distance(&a, &a), 0.0);
+        assert_eq!(histogram_distance(&a, &b), 0.25);
+    }
+}

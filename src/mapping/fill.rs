@@ -1,0 +1,88 @@
+//! Unmapped elements beside mapped ones: thickness and plastic strain from their neighbours.
+
+use super::options::{MapOptions, Status};
+use super::target::{Mapped, MappedLayers, TargetPart};
+
+/// Fills as many rings as the options ask for. A filled element gets the area-weighted means of its
+/// mapped neighbours of the same part and the same number of layers, zero stress, no strain, and the
+/// status [`Status::Filled`].
+pub(super) fn fill(mapped: &mut Mapped, target: &TargetPart, options: &MapOptions) {
+    if options.fill_rings == 0 {
+        return;
+    }
+    let neighbours = target.mesh.neighbours();
+    let mut states: Option<Vec<Vec<[f64; 7]>>> = mapped.states.as_ref().map(|states| {
+        let all = 0..target.mesh.len();
+        all.map(|element| states.of(element).to_vec()).collect()
+    });
+    for _ in 0..options.fill_rings {
+        let has_values: Vec<bool> = mapped
+            .elements
+            .iter()
+            .map(|report| report.status.has_values())
+            .collect();
+        let mut filled = Vec::new();
+        for element in (0..target.mesh.len()).filter(|&element| !has_values[element]) {
+            let around = neighbours
+                .of(element)
+                .iter()
+                .map(|&n| n as usize)
+                .filter(|&n| {
+                    has_values[n]
+                        && target.mesh.parts()[n] == target.mesh.parts()[element]
+                        && target.rule_of[n] == target.rule_of[element]
+                        && target.planes(n) == target.planes(element)
+                });
+            let around: Vec<usize> = around.collect();
+            if !around.is_empty() {
+                filled.push((element, around));
+            }
+        }
+        for (element, around) in filled {
+            let area = |n: &usize| target.mesh.areas()[*n];
+            if !mapped.thickness.is_empty() {
+                let known: Vec<usize> = around
+                    .iter()
+                    .copied()
+                    .filter(|&n| mapped.thickness[n].is_finite())
+                    .collect();
+                let sum: f64 = known.iter().map(|n| area(n) * mapped.thickness[*n]).sum();
+                mapped.thickness[element] = sum / known.iter().map(area).sum::<f64>();
+            }
+            if let Some(states) = &mut states {
+                states[element] = mean_plastic_strain(states, &around, target);
+            }
+            mapped.elements[element].status = Status::Filled;
+        }
+    }
+    if let Some(states) = states {
+        let n_values = states.iter().map(Vec::len).sum();
+        let mut all = MappedLayers::with_capacity(states.len(), n_values);
+        states.iter().for_each(|values| all.push(values));
+        mapped.states = Some(all);
+    }
+}
+
+/// Zero stress and the area mean of the plastic strain, point by point.
+fn mean_plastic_strain(
+    states: &[Vec<[f64; 7]>],
+    around: &[usize],
+    target: &TargetPart,
+) -> Vec<[f64; 7]> {
+    let n_points = around.iter().map(|&n| states[n].len()).max().unwrap_or(0);
+    let usable: Vec<usize> = around
+        .iter()
+        .copied()
+        .filter(|&n| states[n].len() == n_points)
+        .collect();
+    let all: f64 = usable.iter().map(|&n| target.mesh.areas()[n]).sum();
+    let mean = |point: usize| -> f64 {
+        let terms = usable
+            .iter()
+            .map(|&n| target.mesh.areas()[n] * states[n][point][6]);
+        terms.sum::<f64>() / all
+    };
+    (0..n_points)
+        .map(|point| [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, mean(point)])
+        .collect()
+}

@@ -1,0 +1,282 @@
+//! The points of a target element and the source elements that they take their values from.
+
+use super::blend::LEAST_COVERAGE;
+use super::element::Context;
+use super::options::{Overlap, Status};
+use super::points::{ElementPoint, MAX_ORDER};
+use super::source::{PreparedSource, SourcePoint};
+use crate::geometry::{Point3, Vector3};
+
+/// A point beyond the border of the source by more than this share of the element's size is
+/// outside the sheet.
+const BORDER_REACH: f64 = 0.25;
+
+/// Points of one target element that take their values from one source element.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Group {
+    pub source: u32,
+    pub element: u32,
+    pub is_flipped: bool,
+    /// `None` where the group counts for the whole element.
+    pub quadrant: Option<u8>,
+    pub area: f64,
+    /// Area-weighted sum of the partners' places relative to the source element's centroid.
+    pub offset: [f64; 2],
+    pub uneven_thickness: f64,
+}
+
+/// What the points of an element found together.
+#[derive(Default)]
+pub(super) struct Found {
+    pub groups: Vec<Group>,
+    pub covered: f64,
+    pub area: f64,
+    /// Area of the points without partner, by reason.
+    pub far: f64,
+    pub angle: f64,
+    pub outside: f64,
+    /// A second source has a partner too.
+    pub in_conflict: bool,
+}
+
+/// The partner of the element's centre with its source.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Centre {
+    pub source: u32,
+    pub point: SourcePoint,
+}
+
+impl Context<'_> {
+    /// All of the element from one source element.
+    pub(super) fn one_group(&self, element: usize, centre: &Centre) -> Found {
+        let source = &self.sources[centre.source as usize];
+        let group = Group {
+            source: centre.source,
+            element: centre.point.element,
+            is_flipped: centre.point.is_flipped,
+            quadrant: None,
+            area: 1.0,
+            offset: [0.0; 2],
+            uneven_thickness: f64::NAN,
+        };
+        debug_assert!((group.element as usize) < source.mesh.len());
+        let area = self.target.mesh.areas()[element];
+        Found {
+            groups: vec![group],
+            covered: area,
+            area,
+            ..Found::default()
+        }
+    }
+
+    /// Asks every point of the element for its partner.
+    pub(super) fn gather(
+        &self,
+        element: usize,
+        reach: f64,
+        centre: Option<&Centre>,
+        hints: &mut [Option<u32>],
+    ) -> Found {
+        let mut found = Found::default();
+        let mesh = &self.target.mesh;
+        let corners = mesh.corner_points(element);
+        let order = self.order(element, centre);
+        if mesh.is_triangle(element) {
+            for point in self.points.triangle(&corners, order) {
+                self.ask(element, reach, &point, hints, &mut found);
+            }
+        } else {
+            for point in self.points.quad(&corners, order) {
+                self.ask(element, reach, &point, hints, &mut found);
+            }
+        }
+        found
+    }
+
+    /// Points along an edge: more where the target element covers many source elements.
+    fn order(&self, element: usize, centre: Option<&Centre>) -> usize {
+        let ratio = centre.map_or(1.0, |centre| {
+            let source = &self.sources[centre.source as usize].mesh;
+            self.target.mesh.size(element) / source.size(centre.point.element as usize)
+        });
+        let order = match ratio {
+            r if r < 0.5 => 2,
+            r if r <= 3.0 => 3,
+            r if r <= 6.0 => 4,
+            r => (r.ceil() as usize).min(MAX_ORDER),
+        };
+        if self.target.planes(element) == 4 {
+            order.next_multiple_of(2)
+        } else {
+            order
+        }
+    }
+
+    fn ask(
+        &self,
+        element: usize,
+        reach: f64,
+        point: &ElementPoint,
+        hints: &mut [Option<u32>],
+        found: &mut Found,
+    ) {
+        found.area += point.area;
+        let mut best: Option<Centre> = None;
+        let mut n_inside = 0;
+        let mut is_beyond_border = false;
+        let mut is_far = false;
+        for (source, prepared) in self.sources.iter().enumerate() {
+            let filter = self.filter(element, source);
+            let nearest = prepared.closest(&point.position, &filter, 2.0 * reach, hints[source]);
+            let Some((triangle, partner)) = nearest else {
+                continue;
+            };
+            hints[source] = Some(triangle);
+            if self.is_outside(element, &point.position, &partner) {
+                is_beyond_border = true;
+            } else if partner.distance_sq > reach * reach {
+                is_far = true;
+            } else {
+                // Beside a weld line the rim of the neighbour lies within reach too.
+                n_inside += usize::from(!partner.is_on_border);
+                let source = source as u32;
+                let candidate = Centre {
+                    source,
+                    point: partner,
+                };
+                if best.is_none_or(|best| self.is_preferred(&candidate, &best)) {
+                    best = Some(candidate);
+                }
+            }
+        }
+        found.in_conflict |= n_inside > 1;
+        if let Some(partner) = best {
+            found.covered += point.area;
+            self.add_to_group(&partner, point, &mut found.groups);
+        } else if is_beyond_border {
+            found.outside += point.area;
+        } else if self.any_sheet_within(&point.position, reach) {
+            found.angle += point.area;
+        } else if is_far {
+            found.far += point.area;
+        } else {
+            found.outside += point.area;
+        }
+    }
+
+    fn any_sheet_within(&self, query: &Point3, reach: f64) -> bool {
+        let mut sources = self.sources.iter();
+        sources.any(|source| source.distance(query, reach).is_some())
+    }
+
+    pub(super) fn is_valid(&self, element: usize, partner: &SourcePoint, reach: f64) -> bool {
+        let centre = self.target.mesh.centroids()[element];
+        partner.distance_sq <= reach * reach && !self.is_outside(element, &centre, partner)
+    }
+
+    /// True if the partner is the rim of a sheet that ends before the point.
+    fn is_outside(&self, element: usize, query: &Point3, partner: &SourcePoint) -> bool {
+        if !partner.is_on_border {
+            return false;
+        }
+        let normal = self.target.mesh.normals()[element];
+        let apart = partner.point - query;
+        let across = apart - normal * apart.dot(&normal);
+        across.norm() > BORDER_REACH * self.target.mesh.size(element)
+    }
+
+    /// True if of two valid partners in different sources the first is taken.
+    fn is_preferred(&self, candidate: &Centre, best: &Centre) -> bool {
+        match self.options.overlap {
+            Overlap::First => false,
+            Overlap::Nearest => candidate.point.distance_sq < best.point.distance_sq,
+            Overlap::Thicker => {
+                let thickness = |of: &Centre| {
+                    let corners = &self.sources[of.source as usize].corner_thickness;
+                    let corners = corners.get(of.point.element as usize);
+                    corners.map_or(0.0, |corners| corners.iter().sum::<f64>())
+                };
+                thickness(candidate) > thickness(best)
+            }
+        }
+    }
+
+    fn add_to_group(&self, partner: &Centre, point: &ElementPoint, groups: &mut Vec<Group>) {
+        let source = &self.sources[partner.source as usize];
+        let at = &partner.point;
+        let centroid = source.mesh.centroids()[at.element as usize];
+        let offset = source
+            .stencils
+            .in_plane(at.element as usize, &(at.point - centroid));
+        let quadrant = Some(point.quadrant);
+        let is_same = |group: &&mut Group| {
+            group.source == partner.source
+                && group.element == at.element
+                && group.is_flipped == at.is_flipped
+                && group.quadrant == quadrant
+        };
+        let thickness = at.uneven_thickness * point.area;
+        if let Some(group) = groups.iter_mut().find(is_same) {
+            group.area += point.area;
+            group.offset[0] += offset[0] * point.area;
+            group.offset[1] += offset[1] * point.area;
+            group.uneven_thickness += thickness;
+        } else {
+            groups.push(Group {
+                source: partner.source,
+                element: at.element,
+                is_flipped: at.is_flipped,
+                quadrant,
+                area: point.area,
+                offset: offset.map(|x| x * point.area),
+                uneven_thickness: thickness,
+            });
+        }
+    }
+
+    /// Unit normal of a source element on the side that corresponds to the target's normal.
+    pub(super) fn side_normal(&self, point: &SourcePoint, source: u32) -> Vector3 {
+        let normal = self.sources[source as usize].mesh.normals()[point.element as usize];
+        if point.is_flipped { -normal } else { normal }
+    }
+}
+
+impl Found {
+    /// The sheet of one gauge that owns most of the covered area; of equal ones the first.
+    pub(super) fn owner(&self, sources: &[PreparedSource]) -> Option<(u32, u32)> {
+        let mut areas: Vec<((u32, u32), f64)> = Vec::new();
+        for group in &self.groups {
+            let gauge = gauge_of(sources, group);
+            match areas.iter_mut().find(|(other, _)| *other == gauge) {
+                Some((_, area)) => *area += group.area,
+                None => areas.push((gauge, group.area)),
+            }
+        }
+        areas.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        areas.first().map(|(gauge, _)| *gauge)
+    }
+
+    pub(super) fn status(&self, coverage: f64) -> Status {
+        if self.area <= 0.0 {
+            return Status::Outside;
+        }
+        if coverage >= 1.0 - 1e-9 {
+            return Status::Mapped;
+        }
+        if coverage >= LEAST_COVERAGE {
+            return Status::Partly;
+        }
+        let reasons = [
+            (self.far, Status::Far),
+            (self.angle, Status::Angle),
+            (self.outside, Status::Outside),
+        ];
+        let worst = reasons.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        worst.map_or(Status::Outside, |(_, status)| status)
+    }
+}
+
+pub(super) fn gauge_of(sources: &[PreparedSource], group: &Group) -> (u32, u32) {
+    let source = &sources[group.source as usize];
+    (group.source, source.gauge[group.element as usize])
+}

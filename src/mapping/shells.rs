@@ -1,0 +1,365 @@
+//! Shell elements as the mapping needs them: corners, normals, sizes, neighbours, and the same
+//! sheet as triangles.
+
+use crate::geometry::{MeshError, Point3, Similarity, Topology, TriMesh, Vector3, Welded, weld};
+use crate::monitor::Monitor;
+
+/// Shells of one sheet, three or four corners each; a triangle repeats its third corner.
+#[derive(Debug, Clone)]
+pub struct ShellMesh {
+    positions: Vec<Point3>,
+    corners: Vec<[u32; 4]>,
+    parts: Vec<u32>,
+    centroids: Vec<Point3>,
+    normals: Vec<Vector3>,
+    areas: Vec<f64>,
+}
+
+impl ShellMesh {
+    /// Takes nodes and elements; `parts` gives each element a number of the caller's. The normal of
+    /// an element is (x₃ − x₁) × (x₄ − x₂), its centroid the mean of its corners, which is where a
+    /// one-point element holds its value. An error if a corner names no node or a node is not finite.
+    pub fn new(
+        positions: Vec<Point3>,
+        corners: Vec<[u32; 4]>,
+        parts: Vec<u32>,
+    ) -> Result<Self, MeshError> {
+        assert_eq!(corners.len(), parts.len(), "one part for each element");
+        let halves = corners.iter().map(|&[a, b, c, _]| [a, b, c]);
+        let other_halves = corners.iter().map(|&[a, _, c, d]| [a, c, d]);
+        // The triangle mesh checks indices and coordinates.
+        let checked = TriMesh::new(positions, halves.chain(other_halves).collect())?;
+        let (positions, _) = checked.into_parts();
+        let mut mesh = Self {
+            positions,
+            corners,
+            parts,
+            centroids: Vec::new(),
+            normals: Vec::new(),
+            areas: Vec::new(),
+        };
+        let measures = (0..mesh.len()).map(|element| mesh.measure(element));
+        let (centroids, (normals, areas)) = measures.unzip();
+        (mesh.centroids, mesh.normals, mesh.areas) = (centroids, normals, areas);
+        Ok(mesh)
+    }
+
+    fn measure(&self, element: usize) -> (Point3, (Vector3, f64)) {
+        let x = self.corner_points(element);
+        let n = if self.is_triangle(element) { 3 } else { 4 };
+        let mean = x[..n].iter().map(|p| p.coords).sum::<Vector3>() / n as f64;
+        // Half the cross product of the diagonals is the area of a quad and, with x₄ = x₃, of a
+        // triangle.
+        let area = (x[2] - x[0]).cross(&(x[3] - x[1])) * 0.5;
+        let normal = area.try_normalize(0.0).unwrap_or_default();
+        (Point3::from(mean), (normal, area.norm()))
+    }
+
+    /// The mesh moved by `target_from_source`. The normals are the moved ones, also under a mirror,
+    /// so that the top side of the sheet stays its top side.
+    pub fn moved(&self, target_from_source: &Similarity) -> Self {
+        let points = self.positions.iter();
+        let area_factor = target_from_source.scale * target_from_source.scale;
+        let normals = self.normals.iter();
+        Self {
+            positions: points.map(|p| target_from_source.apply(p)).collect(),
+            corners: self.corners.clone(),
+            parts: self.parts.clone(),
+            centroids: self
+                .centroids
+                .iter()
+                .map(|p| target_from_source.apply(p))
+                .collect(),
+            normals: normals.map(|n| target_from_source.rotate(n)).collect(),
+            areas: self.areas.iter().map(|area| area * area_factor).collect(),
+        }
+    }
+
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// True if there are no elements.
+    pub fn is_empty(&self) -> bool {
+        self.corners.is_empty()
+    }
+
+    /// Nodes.
+    pub fn positions(&self) -> &[Point3] {
+        &self.positions
+    }
+
+    /// Node indices of the corners of each element.
+    pub fn corners(&self) -> &[[u32; 4]] {
+        &self.corners
+    }
+
+    /// The caller's part number of each element.
+    pub fn parts(&self) -> &[u32] {
+        &self.parts
+    }
+
+    /// Means of the corners.
+    pub fn centroids(&self) -> &[Point3] {
+        &self.centroids
+    }
+
+    /// Unit normals; zero for an element without area.
+    pub fn normals(&self) -> &[Vector3] {
+        &self.normals
+    }
+
+    /// Areas.
+    pub fn areas(&self) -> &[f64] {
+        &self.areas
+    }
+
+    /// True for an element of three corners.
+    pub fn is_triangle(&self, element: usize) -> bool {
+        let [_, _, c, d] = self.corners[element];
+        c == d
+    }
+
+    /// Positions of the corners; the fourth of a triangle is its third.
+    pub fn corner_points(&self, element: usize) -> [Point3; 4] {
+        self.corners[element].map(|node| self.positions[node as usize])
+    }
+
+    /// Edge length of a square of the element's area (of two such triangles for a triangle).
+    pub fn size(&self, element: usize) -> f64 {
+        let cells = if self.is_triangle(element) { 2.0 } else { 1.0 };
+        (self.areas[element] * cells).sqrt()
+    }
+
+    /// Sum of the areas.
+    pub fn area(&self) -> f64 {
+        self.areas.iter().sum()
+    }
+
+    /// The sheet as triangles, quads cut along the shorter diagonal, with the element of each and
+    /// normals on the side of the element's. Elements without area are left out.
+    pub fn triangles(&self) -> (TriMesh, Vec<u32>) {
+        let mut triangles = Vec::with_capacity(2 * self.len());
+        let mut elements = Vec::with_capacity(2 * self.len());
+        for (element, &[a, b, c, d]) in self.corners.iter().enumerate() {
+            if self.normals[element] == Vector3::zeros() {
+                continue;
+            }
+            let x = self.corner_points(element);
+            let mut push = |mut triangle: [u32; 3]| {
+                let [p, q, r] = triangle.map(|node| self.positions[node as usize]);
+                let normal = (q - p).cross(&(r - p));
+                if normal == Vector3::zeros() {
+                    return;
+                }
+                if normal.dot(&self.normals[element]) < 0.0 {
+                    triangle.swap(1, 2);
+                }
+                triangles.push(triangle);
+                elements.push(element as u32);
+            };
+            if c == d {
+                push([a, b, c]);
+            } else if (x[2] - x[0]).norm_squared() <= (x[3] - x[1]).norm_squared() {
+                push([a, b, c]);
+                push([a, c, d]);
+            } else {
+                push([a, b, d]);
+                push([b, c, d]);
+            }
+        }
+        let mesh = TriMesh::new(self.positions.clone(), triangles);
+        (
+            mesh.expect("corners and nodes were checked when the shells were taken"),
+            elements,
+        )
+    }
+
+    /// For each node, the first node at the same position: meshes whose parts do not share nodes
+    /// then have no border between them.
+    pub fn merged_nodes(&self) -> Vec<u32> {
+        let all = self.corners.iter();
+        let halves = all
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect();
+        let mesh = TriMesh::new(self.positions.clone(), halves);
+        merged(mesh.expect("corners and nodes were checked")).vertex_of
+    }
+
+    /// The elements that share at least one merged node with each element, without itself.
+    pub fn neighbours(&self) -> Neighbours {
+        let merged = self.merged_nodes();
+        let n_merged = merged.iter().filter(|&&v| v != u32::MAX).max();
+        let n_merged = n_merged.map_or(0, |&v| v as usize + 1);
+        let around_node = Lists::group(n_merged, || {
+            self.corners
+                .iter()
+                .enumerate()
+                .flat_map(|(element, corners)| {
+                    let distinct = if corners[2] == corners[3] { 3 } else { 4 };
+                    let nodes = corners[..distinct]
+                        .iter()
+                        .map(|&node| merged[node as usize]);
+                    nodes.map(move |node| (node as usize, element as u32))
+                })
+        });
+        let mut start = vec![0_u32];
+        let mut items = Vec::with_capacity(8 * self.len());
+        let mut found = Vec::new();
+        for (element, corners) in self.corners.iter().enumerate() {
+            found.clear();
+            for &node in corners {
+                let around = around_node.of(merged[node as usize] as usize);
+                found.extend(around.iter().filter(|&&other| other as usize != element));
+            }
+            found.sort_unstable();
+            found.dedup();
+            items.extend_from_slice(&found);
+            start.push(items.len() as u32);
+        }
+        Neighbours(Lists { start, items })
+    }
+
+    /// For each triangle of [`ShellMesh::triangles`], which of its edges (bit i: corner i to
+    /// i + 1) lie on the border of the sheet, and in bits 3 to 5 which of its corners do.
+    pub fn border_bits(&self, triangles: &TriMesh) -> Vec<u8> {
+        let welded = merged(triangles.clone());
+        let topology = Topology::of(&welded.mesh);
+        let mut is_border_node = vec![false; welded.mesh.n_vertices()];
+        let mut borders: Vec<[u32; 2]> = Vec::new();
+        for edge in topology.border_edges() {
+            let ends = topology.edges[edge];
+            borders.push(ends);
+            for end in ends {
+                is_border_node[end as usize] = true;
+            }
+        }
+        // Edges are listed in rising order.
+        let bits = |corners: &[u32; 3]| {
+            let at = corners.map(|v| welded.vertex_of[v as usize]);
+            let mut bits = 0;
+            for i in 0..3 {
+                let (u, v) = (at[i], at[(i + 1) % 3]);
+                if borders.binary_search(&[u.min(v), u.max(v)]).is_ok() {
+                    bits |= 1 << i;
+                }
+                if is_border_node
+                    .get(at[i] as usize)
+                    .is_some_and(|&border| border)
+                {
+                    bits |= 8 << i;
+                }
+            }
+            bits
+        };
+        triangles.triangles().iter().map(bits).collect()
+    }
+}
+
+/// The mesh with nodes at equal positions merged.
+fn merged(mesh: TriMesh) -> Welded {
+    weld(mesh, &Monitor::silent()).expect("a silent monitor is never cancelled")
+}
+
+/// The elements around each element.
+#[derive(Debug, Clone)]
+pub struct Neighbours(Lists);
+
+impl Neighbours {
+    /// Elements that share a node with `element`, in rising order.
+    pub fn of(&self, element: usize) -> &[u32] {
+        self.0.of(element)
+    }
+}
+
+/// Lists of different lengths stored one after another.
+#[derive(Debug, Clone, Default)]
+struct Lists {
+    start: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl Lists {
+    /// Groups (list, item) pairs by list, items in the order they come.
+    fn group<I: Iterator<Item = (usize, u32)>>(n_lists: usize, pairs: impl Fn() -> I) -> Self {
+        let mut start = vec![0_u32; n_lists + 1];
+        for (list, _) in pairs() {
+            start[list + 1] += 1;
+        }
+        for list in 0..n_lists {
+            start[list + 1] += start[list];
+        }
+        let mut next = start.clone();
+        let mut items = vec![0; start[n_lists] as usize];
+        for (list, item) in pairs() {
+            items[next[list] as usize] = item;
+            next[list] += 1;
+        }
+        Self { start, items }
+    }
+
+    fn of(&self, list: usize) -> &[u32] {
+        &self.items[self.start[list] as usize..self.start[list + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two squares side by side that do not share nodes, and a triangle on the right.
+    fn strip() -> ShellMesh {
+        let at = |x: f64, y: f64| Point3::new(x, y, 1.0);
+        let positions = vec![
+            at(0.0, 0.0),
+            at(1.0, 0.0),
+            at(1.0, 1.0),
+            at(0.0, 1.0),
+            at(1.0, 0.0),
+            at(2.0, 0.0),
+            at(2.0, 1.0),
+            at(1.0, 1.0),
+            at(3.0, 0.0),
+        ];
+        let corners = vec![[0, 1, 2, 3], [4, 5, 6, 7], [5, 8, 6, 6]];
+        ShellMesh::new(positions, corners, vec![0; 3]).unwrap()
+    }
+
+    #[test]
+    fn measures_of_quads_and_triangles() {
+        let mesh = strip();
+        assert_eq!(mesh.areas(), [1.0, 1.0, 0.5]);
+        assert_eq!(mesh.centroids()[0], Point3::new(0.5, 0.5, 1.0));
+        assert_eq!(mesh.normals(), [Vector3::z(); 3]);
+        assert_eq!(mesh.size(2), 1.0);
+        let (triangles, elements) = mesh.triangles();
+        assert_eq!(elements, [0, 0, 1, 1, 2]);
+        assert_eq!(triangles.area(), 2.5);
+    }
+
+    #[test]
+    fn neighbours_and_borders_look_through_doubled_nodes() {
+        let mesh = strip();
+        let neighbours = mesh.neighbours();
+        assert_eq!(neighbours.of(0), [1]);
+        assert_eq!(neighbours.of(1), [0, 2]);
+        let (triangles, elements) = mesh.triangles();
+        let bits = mesh.border_bits(&triangles);
+        // The left square has three free edges, the middle one two, the triangle two.
+        let count = |element: u32| -> u32 {
+            let own = bits.iter().zip(&elements).filter(|(_, e)| **e == element);
+            own.map(|(bits, _)| (bits & 7).count_ones()).sum()
+        };
+        assert_eq!([count(0), count(1), count(2)], [3, 2, 2]);
+        assert!(bits.iter().all(|bits| bits & 56 == 56));
+    }
+
+    #[test]
+    fn a_mirror_keeps_the_top_side() {
+        let mesh = strip().moved(&Similarity::mirror_x());
+        assert_eq!(mesh.normals()[0], Vector3::z());
+        let (triangles, _) = mesh.triangles();
+        assert_eq!(triangles.mean_normal(), Vector3::z());
+    }
+}

@@ -1,0 +1,180 @@
+//! The crash part as the mapping sees it, and what it gets.
+
+use super::options::Status;
+use super::rule::LayerRule;
+use super::shells::ShellMesh;
+
+/// A crash part: its shells and the layers its elements want.
+#[derive(Debug, Clone)]
+pub struct TargetPart {
+    /// The shells, in the frame the pose leads to.
+    pub mesh: ShellMesh,
+    /// The different rules through the thickness.
+    pub rules: Vec<LayerRule>,
+    /// For each element its rule.
+    pub rule_of: Vec<u16>,
+    /// For each element its points in the plane: 1 or 4. Triangles always have 1.
+    pub n_plane: Vec<u8>,
+    /// For each element the thickness of its section; NaN where there is none.
+    pub nominal_thickness: Vec<f64>,
+}
+
+impl TargetPart {
+    /// A part whose elements all have one rule and one point in the plane.
+    pub fn uniform(mesh: ShellMesh, rule: LayerRule, nominal_thickness: f64) -> Self {
+        let n = mesh.len();
+        Self {
+            mesh,
+            rules: vec![rule],
+            rule_of: vec![0; n],
+            n_plane: vec![1; n],
+            nominal_thickness: vec![nominal_thickness; n],
+        }
+    }
+
+    /// Points in the plane of an element's layers.
+    pub(super) fn planes(&self, element: usize) -> usize {
+        if self.n_plane[element] == 4 && !self.mesh.is_triangle(element) {
+            4
+        } else {
+            1
+        }
+    }
+}
+
+/// The source element nearest to the centre of a target element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Partner {
+    /// Which of the stamped parts.
+    pub source: u32,
+    /// Its element.
+    pub element: u32,
+    /// The normals point to opposite sides, so layers are taken from the other end.
+    pub is_flipped: bool,
+    /// Both elements are the same, so values were copied and not averaged.
+    pub is_copy: bool,
+}
+
+/// How one target element found its values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ElementReport {
+    /// What became of it.
+    pub status: Status,
+    /// Signed distance of the partner from the element's centre along the element's normal.
+    pub normal_distance: f64,
+    /// Distance of the partner across the normal.
+    pub tangential_distance: f64,
+    /// Angle between both normals, degrees; NaN without partner.
+    pub angle_deg: f64,
+    /// Share of the element's area that has partners, 0 to 1.
+    pub coverage: f64,
+    /// Ranking from 0 (doubtful) to 1: coverage, distance, angle and a second sheet near by.
+    pub confidence: f64,
+    /// Where the values come from.
+    pub partner: Option<Partner>,
+}
+
+/// Layer values of the target elements that have any, `N` numbers at each point.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MappedLayers<const N: usize> {
+    /// For each element where its values begin; one entry more than elements.
+    starts: Vec<u32>,
+    values: Vec<[f64; N]>,
+}
+
+impl<const N: usize> MappedLayers<N> {
+    pub(super) fn with_capacity(n_elements: usize, n_values: usize) -> Self {
+        let mut starts = Vec::with_capacity(n_elements + 1);
+        starts.push(0);
+        Self {
+            starts,
+            values: Vec::with_capacity(n_values),
+        }
+    }
+
+    /// Adds the values of the next element; none if it has none.
+    pub(super) fn push(&mut self, values: &[[f64; N]]) {
+        self.values.extend_from_slice(values);
+        self.starts.push(self.values.len() as u32);
+    }
+
+    /// Values of an element, layer by layer in rising T and inside a layer point by point around the
+    /// element; empty if it has none.
+    pub fn of(&self, element: usize) -> &[[f64; N]] {
+        let range = self.starts[element] as usize..self.starts[element + 1] as usize;
+        &self.values[range]
+    }
+
+    /// Number of elements that have values.
+    pub fn n_present(&self) -> usize {
+        self.starts
+            .windows(2)
+            .filter(|pair| pair[0] < pair[1])
+            .count()
+    }
+}
+
+/// What a mapping gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mapped {
+    /// One for each target element.
+    pub elements: Vec<ElementReport>,
+    /// Thickness of each target element; NaN where it keeps its section's. Empty if not asked for.
+    pub thickness: Vec<f64>,
+    /// Stress (six) and effective plastic strain at each layer, if asked for. Zero stress where only
+    /// plastic strain was.
+    pub states: Option<MappedLayers<7>>,
+    /// Strain at both surfaces, or at each layer where the source has more than the surfaces.
+    pub strains: Option<MappedLayers<6>>,
+    /// True if the strains are those of the two surfaces.
+    pub strains_are_at_surfaces: bool,
+    /// For each source, which sense of its normals was taken: `Some(false)` the same side,
+    /// `Some(true)` the opposite side, `None` either.
+    pub senses: Vec<Option<bool>>,
+    /// Median signed distance between the sheets along the target's normals: a constant offset such
+    /// as half a thickness, or 0 without partners.
+    pub median_offset: f64,
+    /// Elements whose sheet distance without the offset exceeds half the largest distance.
+    pub n_distant: usize,
+}
+
+impl Mapped {
+    /// Number of elements with each status, in the order of [`Status::ALL`].
+    pub fn counts(&self) -> [usize; Status::ALL.len()] {
+        let mut counts = [0; Status::ALL.len()];
+        for element in &self.elements {
+            counts[element.status as usize] += 1;
+        }
+        counts
+    }
+
+    /// Effective plastic strain of an element, weighted over its layers; NaN if it has none.
+    pub fn mean_plastic_strain(&self, target: &TargetPart, element: usize) -> f64 {
+        let values = self
+            .states
+            .as_ref()
+            .map_or(&[][..], |states| states.of(element));
+        if values.is_empty() {
+            return f64::NAN;
+        }
+        let rule = &target.rules[target.rule_of[element] as usize];
+        let n_plane = values.len() / rule.len();
+        let weighted = rule.weights().iter().zip(values.chunks_exact(n_plane));
+        let sum: f64 = weighted
+            .map(|(weight, layer)| weight * layer.iter().map(|value| value[6]).sum::<f64>())
+            .sum();
+        sum / (2.0 * n_plane as f64)
+    }
+
+    /// Share of the target's area that has values.
+    pub fn mapped_area(&self, target: &ShellMesh) -> f64 {
+        let (mut mapped, mut all) = (0.0, 0.0);
+        for (report, area) in self.elements.iter().zip(target.areas()) {
+            all += area;
+            if report.status.has_values() {
+                mapped += area;
+            }
+        }
+        if all > 0.0 { mapped / all } else { 0.0 }
+    }
+}

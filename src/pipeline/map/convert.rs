@@ -1,0 +1,146 @@
+//! From loaded decks to what the mapping takes.
+
+use std::collections::HashMap;
+
+use crate::formats::Model;
+use crate::geometry::{MeshError, Point3};
+use crate::mapping::{LayerRule, Layered, RuleKind, ShellMesh, SourcePart, TargetPart};
+use crate::pipeline::load::LoadedPart;
+
+/// The shells of a loaded part as a mapping mesh, with their indices in the model.
+pub(super) struct PartShells {
+    pub mesh: ShellMesh,
+    /// For each element its index in [`Model::shells`].
+    pub shells: Vec<u32>,
+}
+
+/// The chosen shells in the crash model's length unit, in the order of the deck. Solids and thick
+/// shells have no thickness to be mapped and are left out.
+pub(super) fn part_shells(part: &LoadedPart) -> Result<PartShells, MeshError> {
+    let model = &part.model;
+    let n_shells = model.shells.len() as u32;
+    let triangles = 0..part.mesh.n_triangles() as u32;
+    let mut shells: Vec<u32> = triangles.filter_map(|t| part.ids.element_of(t)).collect();
+    shells.retain(|&element| element < n_shells);
+    shells.sort_unstable();
+    shells.dedup();
+    let factor = part.settings.length_factor;
+    // Only the nodes in use, so that a part of a whole car stays small.
+    let mut place = HashMap::new();
+    let mut positions: Vec<Point3> = Vec::new();
+    let corners = shells.iter().map(|&shell| {
+        model.shells[shell as usize].nodes.map(|node| {
+            *place.entry(node).or_insert_with(|| {
+                positions.push(model.nodes.positions()[node as usize] * factor);
+                (positions.len() - 1) as u32
+            })
+        })
+    });
+    let corners: Vec<[u32; 4]> = corners.collect();
+    let parts = shells
+        .iter()
+        .map(|&shell| model.shells[shell as usize].part)
+        .collect();
+    Ok(PartShells {
+        mesh: ShellMesh::new(positions, corners, parts)?,
+        shells,
+    })
+}
+
+/// The forming results of a stamped part. Thickness comes in the crash model's length unit, stress is
+/// multiplied by `stress_factor`.
+pub(super) fn source_part(
+    part: &LoadedPart,
+    shells: &PartShells,
+    stress_factor: f64,
+) -> SourcePart {
+    let model = &part.model;
+    let factor = part.settings.length_factor;
+    let thickness = shells.shells.iter().map(|&shell| {
+        let corners = model.shell_thickness(shell).unwrap_or([f64::NAN; 4]);
+        corners.map(|t| t * factor)
+    });
+    let index = element_index(model, &shells.shells);
+    let mut states = Layered::new(shells.shells.len());
+    for stress in model.forming.stresses() {
+        if let Some(&element) = index.get(&stress.element_id) {
+            let points = stress.points.iter().map(|point| {
+                let [xx, yy, zz, xy, yz, zx] = point.stress.map(|s| s * stress_factor);
+                (point.t, [xx, yy, zz, xy, yz, zx, point.plastic_strain])
+            });
+            states.set(element, points);
+        }
+    }
+    let mut strains = Layered::new(shells.shells.len());
+    for strain in model.forming.strains() {
+        if let Some(&element) = index.get(&strain.element_id) {
+            strains.set(
+                element,
+                strain.points.iter().map(|point| (point.t, point.strain)),
+            );
+        }
+    }
+    SourcePart {
+        thickness: thickness.collect(),
+        states,
+        strains,
+        mesh: shells.mesh.clone(),
+    }
+}
+
+/// Where each element id stands in the list.
+pub(super) fn element_index(model: &Model, shells: &[u32]) -> HashMap<u64, usize> {
+    let ids = shells.iter().map(|&shell| model.shells[shell as usize].id);
+    ids.zip(0..).collect()
+}
+
+/// What the layers of the crash elements are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TargetLayers {
+    /// Number of layers.
+    pub n_layers: usize,
+    /// Their rule.
+    pub rule: RuleKind,
+    /// Points in the plane: 1 or 4.
+    pub n_plane: u8,
+}
+
+/// The crash part with the layers of each of its elements.
+pub(super) fn target_part(
+    part: &LoadedPart,
+    shells: &PartShells,
+    layers_of_part: impl Fn(u32) -> TargetLayers,
+) -> TargetPart {
+    let model = &part.model;
+    let factor = part.settings.length_factor;
+    let mut kinds: Vec<TargetLayers> = Vec::new();
+    let mut rule_of = Vec::with_capacity(shells.shells.len());
+    let mut n_plane = Vec::with_capacity(shells.shells.len());
+    for &of_part in shells.mesh.parts() {
+        let layers = layers_of_part(of_part);
+        let same =
+            |kind: &TargetLayers| (kind.n_layers, kind.rule) == (layers.n_layers, layers.rule);
+        let rule = kinds.iter().position(same).unwrap_or_else(|| {
+            kinds.push(layers);
+            kinds.len() - 1
+        });
+        rule_of.push(rule as u16);
+        n_plane.push(layers.n_plane);
+    }
+    let nominal = shells.shells.iter().map(|&shell| {
+        let corners = model.shell_thickness(shell);
+        corners.map_or(f64::NAN, |corners| {
+            corners.iter().sum::<f64>() / 4.0 * factor
+        })
+    });
+    let rules = kinds
+        .iter()
+        .map(|kind| LayerRule::new(kind.rule, kind.n_layers));
+    TargetPart {
+        rules: rules.collect(),
+        rule_of,
+        n_plane,
+        nominal_thickness: nominal.collect(),
+        mesh: shells.mesh.clone(),
+    }
+}

@@ -1,0 +1,244 @@
+//! Carries the forming results of stamped files onto a crash part: convert, map, check, write.
+
+mod convert;
+mod output;
+mod record;
+
+use std::time::Instant;
+
+pub use convert::TargetLayers;
+pub use output::{MapFiles, MapOutput, WriteKind, elements_path, write_mapping};
+pub use record::{MapRecord, element_table, map_record};
+
+use super::load::LoadedPart;
+use super::{PipelineError, millis_since};
+use crate::geometry::Similarity;
+use crate::mapping::{
+    self, Distribution, MapBack, MapOptions, Mapped, PlacedSource, RuleKind, SourcePart,
+    TargetPart, distribution,
+};
+use crate::monitor::Monitor;
+use convert::{PartShells, part_shells, source_part, target_part};
+
+/// What a mapping depends on besides the decks and the poses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapRecipe {
+    /// Quantities, method, limits.
+    pub options: MapOptions,
+    /// Layers of the crash elements; `None` takes them from the deck.
+    pub n_layers: Option<usize>,
+    /// Rule through their thickness; `None` takes it from the deck.
+    pub rule: Option<RuleKind>,
+    /// Points in the plane of each layer, 1 or 4; `None` takes them from the element formulation.
+    pub n_plane: Option<u8>,
+    /// Factor on the stresses of the stamped files, where their unit is another one.
+    pub stress_factor: f64,
+}
+
+impl Default for MapRecipe {
+    fn default() -> Self {
+        Self {
+            options: MapOptions::default(),
+            n_layers: None,
+            rule: None,
+            n_plane: None,
+            stress_factor: 1.0,
+        }
+    }
+}
+
+/// A stamped part with its pose on the crash part.
+#[derive(Debug, Clone, Copy)]
+pub struct PlacedPart<'a> {
+    /// The stamped part.
+    pub part: &'a LoadedPart,
+    /// `crash = c · R · stamped + t`.
+    pub crash_from_stamped: Similarity,
+}
+
+/// Means, percentiles and the way back: is the mapping right?
+#[derive(Debug, Clone, Default)]
+pub struct MapChecks {
+    /// Thickness of the covered stamped elements and of the mapped crash elements.
+    pub thickness: Option<(Distribution, Distribution)>,
+    /// The same for the plastic strain, mean over the layers.
+    pub plastic_strain: Option<(Distribution, Distribution)>,
+    /// What comes back when the values are mapped onto the first stamped part again.
+    pub map_back: Option<MapBack>,
+}
+
+/// The result of a mapping.
+#[derive(Debug, Clone)]
+pub struct MapRun {
+    /// What it was asked with.
+    pub recipe: MapRecipe,
+    /// Poses of the stamped parts, in their order.
+    pub poses: Vec<Similarity>,
+    /// The crash part as it was mapped onto.
+    pub target: TargetPart,
+    /// For each element of `target` its index in the crash model's shells.
+    pub shells: Vec<u32>,
+    /// The stamped parts as they were mapped from.
+    pub sources: Vec<SourcePart>,
+    /// For each stamped part the indices of its elements in its model's shells.
+    pub source_shells: Vec<Vec<u32>>,
+    /// Values and status of each element.
+    pub mapped: Mapped,
+    /// The checks.
+    pub checks: MapChecks,
+    /// Milliseconds for converting and mapping, without the checks.
+    pub map_ms: f64,
+    /// Milliseconds for the checks.
+    pub check_ms: f64,
+}
+
+/// Maps the stamped parts onto `crash` and checks the result.
+pub fn map_parts(
+    crash: &LoadedPart,
+    stamped: &[PlacedPart<'_>],
+    recipe: &MapRecipe,
+    monitor: &Monitor,
+) -> Result<MapRun, PipelineError> {
+    let start = Instant::now();
+    let crash_shells = part_shells(crash).map_err(mesh_error)?;
+    let layers = Layers { crash, recipe };
+    let parts = crash_shells.mesh.parts();
+    for &part in parts {
+        layers.of(part)?;
+    }
+    let target = target_part(crash, &crash_shells, |part| {
+        layers.of(part).unwrap_or(FALLBACK_LAYERS)
+    });
+    let shells: Result<Vec<PartShells>, _> = stamped
+        .iter()
+        .map(|placed| part_shells(placed.part))
+        .collect();
+    let shells = shells.map_err(mesh_error)?;
+    let pairs = stamped.iter().zip(&shells);
+    let sources: Vec<SourcePart> = pairs
+        .map(|(placed, shells)| source_part(placed.part, shells, recipe.stress_factor))
+        .collect();
+    let placed: Vec<PlacedSource<'_>> = sources
+        .iter()
+        .zip(stamped)
+        .map(|(part, placed)| PlacedSource {
+            part,
+            target_from_source: placed.crash_from_stamped,
+        })
+        .collect();
+    let mapped = mapping::map(&placed, &target, &recipe.options, monitor)?;
+    let map_ms = millis_since(start);
+    let start = Instant::now();
+    let checks = check(&placed, &target, &mapped, &recipe.options, monitor)?;
+    Ok(MapRun {
+        recipe: recipe.clone(),
+        poses: stamped
+            .iter()
+            .map(|placed| placed.crash_from_stamped)
+            .collect(),
+        target,
+        shells: crash_shells.shells,
+        source_shells: shells.into_iter().map(|shells| shells.shells).collect(),
+        sources,
+        mapped,
+        checks,
+        map_ms,
+        check_ms: millis_since(start),
+    })
+}
+
+/// Layers of elements whose part was already found to have some.
+const FALLBACK_LAYERS: TargetLayers = TargetLayers {
+    n_layers: 2,
+    rule: RuleKind::Gauss,
+    n_plane: 1,
+};
+
+fn mesh_error(error: crate::geometry::MeshError) -> PipelineError {
+    PipelineError::Mapping(mapping::MappingError::from(error))
+}
+
+/// Where the layers of the crash elements are known from.
+struct Layers<'a> {
+    crash: &'a LoadedPart,
+    recipe: &'a MapRecipe,
+}
+
+impl Layers<'_> {
+    /// The layers of a part: as asked for, else as its section says; an error if neither does and
+    /// layer values are wanted.
+    fn of(&self, part: u32) -> Result<TargetLayers, PipelineError> {
+        let model = &self.crash.model;
+        let section = model.shell_formulation(part);
+        let wanted = self.recipe.options.quantities;
+        let needs_layers = wanted.plastic_strain || wanted.stress || wanted.strain;
+        let id = model.parts[part as usize].id;
+        let n_layers = match (self.recipe.n_layers, section) {
+            (Some(n), _) => n,
+            (None, Some(section)) if !section.has_own_rule => section.n_layers as usize,
+            (None, _) if !needs_layers => 1,
+            (None, Some(_)) => return Err(PipelineError::OwnLayerRule { part: id }),
+            (None, None) => return Err(PipelineError::UnknownLayers { part: id }),
+        };
+        let of_deck = if model.shell_control.is_lobatto {
+            RuleKind::Lobatto
+        } else {
+            RuleKind::Gauss
+        };
+        Ok(TargetLayers {
+            n_layers,
+            rule: self.recipe.rule.unwrap_or(of_deck),
+            n_plane: self
+                .recipe
+                .n_plane
+                .unwrap_or_else(|| section.map_or(1, |section| section.n_plane())),
+        })
+    }
+}
+
+fn check(
+    placed: &[PlacedSource<'_>],
+    target: &TargetPart,
+    mapped: &Mapped,
+    options: &MapOptions,
+    monitor: &Monitor,
+) -> Result<MapChecks, PipelineError> {
+    let mut checks = MapChecks::default();
+    let Some(first) = placed.first() else {
+        return Ok(checks);
+    };
+    let back = match mapping::map_back(first, target, mapped, options, monitor) {
+        Ok(back) => back,
+        Err(mapping::MappingError::Cancelled(cancelled)) => return Err(cancelled.into()),
+        // Nothing was mapped, which the counts say.
+        Err(_) => return Ok(checks),
+    };
+    if placed.len() == 1 {
+        let covered = |element: &usize| back.is_covered[*element];
+        let source = first.part;
+        let thickness = (0..source.mesh.len())
+            .filter(covered)
+            .map(|element| (source.mean_thickness(element), source.mesh.areas()[element]));
+        let plastic = (0..source.mesh.len()).filter(covered).map(|element| {
+            (
+                source.mean_plastic_strain(element),
+                source.mesh.areas()[element],
+            )
+        });
+        let on_target = |value: &dyn Fn(usize) -> f64| {
+            let all = 0..target.mesh.len();
+            distribution(all.map(|element| (value(element), target.mesh.areas()[element])))
+        };
+        let mapped_thickness = |element: usize| {
+            mapped
+                .thickness
+                .get(element)
+                .map_or(f64::NAN, |t| t / options.thickness_scale)
+        };
+        let mapped_plastic = |element: usize| mapped.mean_plastic_strain(target, element);
+        checks.thickness = distribution(thickness).zip(on_target(&mapped_thickness));
+        checks.plastic_strain = distribution(plastic).zip(on_target(&mapped_plastic));
+    }
+    checks.map_back = Some(back);
+    Ok(checks)
+}

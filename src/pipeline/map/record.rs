@@ -1,0 +1,370 @@
+//! The mapping in figures: JSON record, element table, and what to warn about.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::{MapFiles, MapRun, PlacedPart};
+use crate::mapping::{Distribution, Histogram, Status, histogram_distance};
+use crate::pipeline::load::LoadedPart;
+use crate::report::{DIRECTION, build_id};
+
+/// Below this share of the area a mapping is to be looked at.
+const USUAL_COVERAGE: f64 = 0.95;
+/// Mapped thickness over section thickness outside this range is no thinning.
+const USUAL_THINNING: (f64, f64) = (0.75, 1.1);
+
+/// A mapping as it is kept and exchanged.
+#[derive(Debug, Clone, Serialize)]
+pub struct MapRecord {
+    /// Which program made it.
+    pub build: String,
+    /// Version of this layout.
+    pub schema: u32,
+    /// What the matrices mean.
+    pub direction: String,
+    /// The crash deck.
+    pub crash: String,
+    /// The stamped decks with their poses (crash from stamped, rows).
+    pub stamped: Vec<StampedRecord>,
+    /// Elements of the crash part.
+    pub n_elements: usize,
+    /// Elements and area by status.
+    pub statuses: Vec<StatusRecord>,
+    /// Share of the area that carries values.
+    pub mapped_area: f64,
+    /// Median signed distance between the sheets along the crash part's normals.
+    pub median_offset: f64,
+    /// Thickness before and after.
+    pub thickness: Option<PairRecord>,
+    /// Effective plastic strain before and after.
+    pub plastic_strain: Option<PairRecord>,
+    /// The way there and back.
+    pub map_back: Option<MapBackRecord>,
+    /// Largest relative difference when the written files are read back.
+    pub read_back_error: Option<f64>,
+    /// What to look at.
+    pub warnings: Vec<String>,
+    /// Milliseconds for the mapping without files and checks.
+    pub map_ms: f64,
+    /// Milliseconds for the checks.
+    pub check_ms: f64,
+}
+
+/// One stamped deck.
+#[derive(Debug, Clone, Serialize)]
+pub struct StampedRecord {
+    /// Its file.
+    pub file: String,
+    /// Its pose, rows of the 4×4 matrix.
+    pub crash_from_stamped: [[f64; 4]; 4],
+}
+
+/// Elements with one status.
+#[derive(Debug, Clone, Serialize)]
+pub struct StatusRecord {
+    /// Which.
+    pub status: Status,
+    /// How many elements.
+    pub n_elements: usize,
+    /// Their share of the area.
+    pub area_share: f64,
+}
+
+/// A quantity on both sides.
+#[derive(Debug, Clone, Serialize)]
+pub struct PairRecord {
+    /// On the covered stamped elements.
+    pub stamped: DistributionRecord,
+    /// On the mapped crash elements.
+    pub crash: DistributionRecord,
+    /// Half the sum of the differences of both histograms, 0 to 1.
+    pub histogram_distance: f64,
+}
+
+/// An area-weighted distribution.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct DistributionRecord {
+    /// Mean.
+    pub mean: f64,
+    /// Smallest value.
+    pub min: f64,
+    /// 5 % of the area lie at or below.
+    pub p5: f64,
+    /// Half of the area lies at or below.
+    pub p50: f64,
+    /// 95 % of the area lie at or below.
+    pub p95: f64,
+    /// 99 % of the area lie at or below.
+    pub p99: f64,
+    /// Largest value.
+    pub max: f64,
+}
+
+impl From<Distribution> for DistributionRecord {
+    fn from(of: Distribution) -> Self {
+        let [p5, p50, p95, p99] = of.percentiles;
+        Self {
+            mean: of.mean,
+            min: of.min,
+            p5,
+            p50,
+            p95,
+            p99,
+            max: of.max,
+        }
+    }
+}
+
+/// Differences after mapping there and back; the error of one way is about half.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct MapBackRecord {
+    /// Root mean square difference of the thickness.
+    pub thickness_rms: f64,
+    /// 95 % of the area differ by less.
+    pub thickness_p95: f64,
+    /// Range of the thickness, 5th to 95th percentile.
+    pub thickness_range: f64,
+    /// Root mean square difference of the plastic strain.
+    pub plastic_rms: f64,
+    /// 95 % of the area differ by less.
+    pub plastic_p95: f64,
+    /// Range of the plastic strain, 5th to 95th percentile.
+    pub plastic_range: f64,
+}
+
+/// Puts a run into figures. `files` are what was made of it, if anything.
+pub fn map_record(
+    run: &MapRun,
+    crash: &LoadedPart,
+    stamped: &[PlacedPart<'_>],
+    files: Option<&MapFiles>,
+) -> MapRecord {
+    let areas = run.target.mesh.areas();
+    let all: f64 = areas.iter().sum();
+    let counts = run.mapped.counts();
+    let statuses = Status::ALL.iter().zip(counts).filter(|(_, n)| *n > 0);
+    let statuses = statuses.map(|(&status, n_elements)| {
+        let own = run.mapped.elements.iter().zip(areas);
+        let area: f64 = own
+            .filter(|(e, _)| e.status == status)
+            .map(|(_, area)| area)
+            .sum();
+        StatusRecord {
+            status,
+            n_elements,
+            area_share: area / all,
+        }
+    });
+    let checks = &run.checks;
+    MapRecord {
+        build: build_id(),
+        schema: 1,
+        direction: DIRECTION.to_owned(),
+        crash: crash.path.display().to_string(),
+        stamped: stamped
+            .iter()
+            .map(|placed| StampedRecord {
+                file: placed.part.path.display().to_string(),
+                crash_from_stamped: placed.crash_from_stamped.to_rows(),
+            })
+            .collect(),
+        n_elements: run.shells.len(),
+        statuses: statuses.collect(),
+        mapped_area: run.mapped.mapped_area(&run.target.mesh),
+        median_offset: run.mapped.median_offset,
+        thickness: checks
+            .thickness
+            .map(|pair| pair_record(pair, &thickness_values(run))),
+        plastic_strain: checks
+            .plastic_strain
+            .map(|pair| pair_record(pair, &plastic_values(run))),
+        map_back: checks.map_back.as_ref().map(|back| MapBackRecord {
+            thickness_rms: back.thickness_rms,
+            thickness_p95: back.thickness_p95,
+            thickness_range: back.thickness_range,
+            plastic_rms: back.plastic_rms,
+            plastic_p95: back.plastic_p95,
+            plastic_range: back.plastic_range,
+        }),
+        read_back_error: files.map(|files| files.read_back_error),
+        warnings: warnings(run, files),
+        map_ms: run.map_ms,
+        check_ms: run.check_ms,
+    }
+}
+
+/// Values with areas, on the covered stamped elements and on the crash elements.
+type BothSides = [Vec<(f64, f64)>; 2];
+
+fn both_sides(
+    run: &MapRun,
+    on_source: impl Fn(usize) -> f64,
+    on_target: impl Fn(usize) -> f64,
+) -> BothSides {
+    let covered = run
+        .checks
+        .map_back
+        .as_ref()
+        .map(|back| &back.is_covered[..])
+        .unwrap_or_default();
+    let of_source = run
+        .sources
+        .first()
+        .map(|source| source.mesh.areas())
+        .unwrap_or_default();
+    let source = covered.iter().zip(of_source).enumerate();
+    let source = source.filter(|(_, (covered, _))| **covered);
+    let target = run.target.mesh.areas().iter().enumerate();
+    [
+        source
+            .map(|(element, (_, area))| (on_source(element), *area))
+            .collect(),
+        target
+            .map(|(element, area)| (on_target(element), *area))
+            .collect(),
+    ]
+}
+
+fn thickness_values(run: &MapRun) -> BothSides {
+    let scale = run.recipe.options.thickness_scale;
+    both_sides(
+        run,
+        |element| run.sources[0].mean_thickness(element),
+        |element| {
+            run.mapped
+                .thickness
+                .get(element)
+                .map_or(f64::NAN, |t| t / scale)
+        },
+    )
+}
+
+fn plastic_values(run: &MapRun) -> BothSides {
+    both_sides(
+        run,
+        |element| run.sources[0].mean_plastic_strain(element),
+        |element| run.mapped.mean_plastic_strain(&run.target, element),
+    )
+}
+
+fn pair_record((stamped, crash): (Distribution, Distribution), values: &BothSides) -> PairRecord {
+    let (min, max) = (stamped.min.min(crash.min), stamped.max.max(crash.max));
+    let [a, b] = values
+        .each_ref()
+        .map(|side| Histogram::new(side.iter().copied(), min, max));
+    PairRecord {
+        stamped: stamped.into(),
+        crash: crash.into(),
+        histogram_distance: histogram_distance(&a, &b),
+    }
+}
+
+fn warnings(run: &MapRun, files: Option<&MapFiles>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let mapped = &run.mapped;
+    let area = mapped.mapped_area(&run.target.mesh);
+    if area < USUAL_COVERAGE {
+        warnings.push(format!(
+            "only {:.1} % of the crash part's area carries values; the element table says why",
+            100.0 * area
+        ));
+    }
+    let count = |status: Status| mapped.counts()[status as usize];
+    for (status, what) in [
+        (
+            Status::TwoLayers,
+            "lie near two sheets that their normals do not tell apart",
+        ),
+        (Status::Conflict, "lie on two stamped parts"),
+    ] {
+        if count(status) > 0 {
+            warnings.push(format!("{} elements {what}", count(status)));
+        }
+    }
+    if mapped.senses.contains(&None) {
+        warnings.push(
+            "normals of the two parts agree on no side; sheets that lie close are told apart by \
+             distance alone"
+                .to_owned(),
+        );
+    }
+    if mapped.n_distant > 0 {
+        warnings.push(format!(
+            "{} elements lie farther from the stamped part than half the largest distance",
+            mapped.n_distant
+        ));
+    }
+    if let Some((thickness, _)) = &run.checks.thickness {
+        let nominal = &run.target.nominal_thickness;
+        let known: Vec<f64> = nominal
+            .iter()
+            .copied()
+            .filter(|t| t.is_finite() && *t > 0.0)
+            .collect();
+        let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
+        let ratio = thickness.mean / mean;
+        if mean > 0.0 && !(USUAL_THINNING.0..=USUAL_THINNING.1).contains(&ratio) {
+            warnings.push(format!(
+                "the mapped thickness is {ratio:.2} times that of the section; another gauge or another unit?"
+            ));
+        }
+    }
+    if let Some(files) = files.filter(|files| files.n_composite > 0) {
+        warnings.push(format!(
+            "{} elements have plies of their own and keep them: their thickness was not written",
+            files.n_composite
+        ));
+    }
+    warnings
+}
+
+/// One row for each crash element: id, part, status, distances, angle, coverage, confidence, source,
+/// thickness and mean plastic strain.
+pub fn element_table(run: &MapRun, crash: &LoadedPart, stamped: &[PlacedPart<'_>]) -> String {
+    let mut table = String::from(
+        "element,part,status,normal_distance,tangential_distance,angle_deg,coverage,confidence,\
+         source,source_element,thickness,plastic_strain\n",
+    );
+    let number = |value: f64| {
+        if value.is_finite() {
+            format!("{value}")
+        } else {
+            String::new()
+        }
+    };
+    for (element, (report, &shell)) in run.mapped.elements.iter().zip(&run.shells).enumerate() {
+        let shell = &crash.model.shells[shell as usize];
+        let partner = report.partner.map(|partner| {
+            let shells = &run.source_shells[partner.source as usize];
+            let own = shells[partner.element as usize] as usize;
+            let id = stamped[partner.source as usize].part.model.shells[own].id;
+            (partner.source + 1, id)
+        });
+        let (source, source_element) = partner.map_or_else(Default::default, |(source, id)| {
+            (source.to_string(), id.to_string())
+        });
+        let thickness = run
+            .mapped
+            .thickness
+            .get(element)
+            .copied()
+            .unwrap_or(f64::NAN);
+        let plastic = run.mapped.mean_plastic_strain(&run.target, element);
+        let _ = writeln!(
+            table,
+            "{},{},{},{},{},{},{},{},{source},{source_element},{},{}",
+            shell.id,
+            crash.model.parts[shell.part as usize].id,
+            report.status.name(),
+            number(report.normal_distance),
+            number(report.tangential_distance),
+            number(report.angle_deg),
+            number(report.coverage),
+            number(report.confidence),
+            number(thickness),
+            number(plastic),
+        );
+    }
+    table
+}

@@ -1,0 +1,86 @@
+//! Decks and meshes as bytes: a part with its own ids, or a bare surface.
+
+use std::path::Path;
+
+use crate::formats::keyword::write::{WriteOptions, write};
+use crate::formats::moved::moved;
+use crate::formats::{Format, Model, obj, ply, stl};
+use crate::geometry::{Similarity, TriMesh};
+use crate::monitor::Monitor;
+use crate::pipeline::PipelineError;
+use crate::pipeline::load::LoadedPart;
+use crate::pipeline::units::PairUnits;
+use crate::report::build_id;
+
+/// A mesh in a format.
+pub fn mesh_bytes(
+    format: Format,
+    mesh: &TriMesh,
+    title: &str,
+    monitor: &Monitor,
+) -> Result<Vec<u8>, PipelineError> {
+    Ok(match format {
+        Format::Keyword => write(
+            &Model::from_mesh(mesh, title),
+            &WriteOptions::default(),
+            monitor,
+        )?,
+        Format::Stl => stl::write_binary(mesh),
+        Format::Obj => obj::write(mesh, title),
+        Format::Ply => ply::write(mesh, title),
+    })
+}
+
+/// A part, moved, with its own ids. Its unit factor is applied as well, so the bytes are in the
+/// crash model's unit. Mesh formats without ids get the matched surface only.
+pub fn part_bytes(
+    format: Format,
+    part: &LoadedPart,
+    world_from_part: &Similarity,
+    comments: &[String],
+    monitor: &Monitor,
+) -> Result<Vec<u8>, PipelineError> {
+    if format != Format::Keyword {
+        let mesh = part.mesh.transformed(world_from_part);
+        return mesh_bytes(format, &mesh, &comments.join(", "), monitor);
+    }
+    let unit = Similarity::from_scale(part.settings.length_factor);
+    let model = moved(&part.model, &world_from_part.after(&unit));
+    let options = WriteOptions {
+        comments: comments.to_vec(),
+        ..WriteOptions::default()
+    };
+    Ok(write(&model, &options, monitor)?)
+}
+
+/// What the head of a written deck says: where it comes from, units, build.
+pub fn head_lines(part: &LoadedPart, units: &PairUnits) -> Vec<String> {
+    let factor = part.settings.length_factor;
+    let mut lines = vec![format!("made from {}", part.file_name())];
+    lines.push(match units.lengths {
+        Some(unit) => format!("lengths in {unit}"),
+        None => "unit of lengths unknown".to_owned(),
+    });
+    if factor != 1.0 {
+        lines.push(format!(
+            "lengths and thicknesses were multiplied by {factor}; stresses keep their unit"
+        ));
+    }
+    lines.push(build_id());
+    lines
+}
+
+/// The format that the extension names; unlike in reading, no extension is no format.
+pub fn format_of(path: &Path) -> Result<Format, PipelineError> {
+    let extension = path
+        .extension()
+        .map(|extension| extension.to_string_lossy().to_lowercase());
+    let is_named = |format: &&Format| {
+        let packed = "gz";
+        extension
+            .as_deref()
+            .is_some_and(|e| e != packed && format.extensions().contains(&e))
+    };
+    let found = Format::ALL.iter().find(is_named).copied();
+    found.ok_or_else(|| PipelineError::UnknownExtension(path.to_path_buf()))
+}

@@ -1,0 +1,120 @@
+//! The report of a match: measures, draws and collects what [`crate::report::html`] lays out.
+
+use super::cards::cards;
+use super::record::match_record;
+use super::report_figures::FigureRenderer;
+use crate::assess::deviation::{Deviation, DeviationSettings, compare};
+use crate::colormap::{ColorMap, ColorScale};
+use crate::monitor::Monitor;
+use crate::pipeline::PipelineError;
+use crate::pipeline::load::LoadedPart;
+use crate::pipeline::match_parts::MatchRun;
+use crate::registration::{Extent, StartGroup, group_starts};
+use crate::report::CardForm;
+use crate::report::html::{CardsInfo, Figures, Report};
+use crate::role::PerRole;
+use crate::text::Lengths;
+
+/// Groups of starts that get a picture.
+const N_PICTURED_GROUPS: usize = 8;
+
+/// Writes the report of a run as one HTML file. Draws about twenty small pictures, so its time grows
+/// with the triangles of both meshes.
+pub fn report(
+    run: &MatchRun,
+    parts: PerRole<&LoadedPart>,
+    monitor: &Monitor,
+) -> Result<String, PipelineError> {
+    let PerRole { crash, stamped } = parts;
+    let record = match_record(run, parts);
+    monitor.progress("measure", 0, None);
+    let (target, source) = (&crash.surface, &stamped.surface);
+    let pose = &run.crash_from_stamped;
+    let settings = DeviationSettings {
+        limit: Some(run.assessment.coverage.limit),
+        thickness: crash.mean_thickness().or_else(|| stamped.mean_thickness()),
+        ..DeviationSettings::default()
+    };
+    let deviation = compare(source, target, pose, &settings, monitor)?;
+    let scale = color_scale(&deviation, run.assessment.noise);
+    let measures = source.measures();
+    let groups = group_starts(&run.outcome.starts, &Extent::from(&stamped.mesh.aabb()));
+    let distances: Vec<(f64, f64)> = groups
+        .iter()
+        .map(|group| {
+            let last = &run.outcome.starts[group.best()].last;
+            let apart = (last.apply(&measures.centroid) - pose.apply(&measures.centroid)).norm();
+            (apart, last.angle_to(pose).to_degrees())
+        })
+        .collect();
+    let lengths = Lengths::new(record.units.length);
+    let renderer = FigureRenderer::new(parts, *pose, &deviation, scale, lengths);
+    let figures = draw(&renderer, run, &groups, monitor)?;
+    let cards = cards_of(run, parts);
+    let report = Report {
+        record: &record,
+        outcome: &run.outcome,
+        groups: &groups,
+        group_distances: &distances,
+        deviation: &deviation,
+        scale,
+        figures: &figures,
+        cards: &cards,
+    };
+    Ok(report.write())
+}
+
+/// Colours from − to + the limit that holds nearly all distances, the faceting neutral.
+fn color_scale(deviation: &Deviation, noise: f64) -> ColorScale {
+    let [a, b] = [&deviation.source_on_target, &deviation.target_on_source];
+    let limit = a.stats.round_limit().max(b.stats.round_limit());
+    if deviation.is_signed {
+        let band = if noise < 0.5 * limit { noise } else { 0.0 };
+        ColorScale::symmetric(limit, band)
+    } else {
+        ColorScale::new(ColorMap::Viridis, 0.0, limit)
+    }
+}
+
+fn draw(
+    renderer: &FigureRenderer<'_>,
+    run: &MatchRun,
+    groups: &[StartGroup],
+    monitor: &Monitor,
+) -> Result<Figures, PipelineError> {
+    let mut figures = Figures::default();
+    monitor.progress("draw", 0, None);
+    figures.parts = renderer.parts();
+    monitor.check()?;
+    figures.overlays = renderer.overlays();
+    monitor.check()?;
+    figures.maps = renderer.maps();
+    monitor.check()?;
+    figures.spots = renderer.spots();
+    for group in groups.iter().take(N_PICTURED_GROUPS) {
+        monitor.check()?;
+        let pose = &run.outcome.starts[group.best()].last;
+        figures
+            .starts
+            .push(renderer.start(pose, figures.starts.len() + 1));
+    }
+    Ok(figures)
+}
+
+/// The cards that map the stamped part, and those that place it.
+fn cards_of(run: &MatchRun, parts: PerRole<&LoadedPart>) -> Vec<CardsInfo> {
+    let forms = [CardForm::StampedPart, CardForm::IncludeTransform];
+    forms
+        .into_iter()
+        .map(|form| CardsInfo {
+            name: form.label(),
+            text: match cards(form, run, parts) {
+                Ok(cards) => {
+                    let error = cards.largest_node_error(parts.stamped.mesh.positions());
+                    Ok((cards.text, error))
+                }
+                Err(error) => Err(error.to_string()),
+            },
+        })
+        .collect()
+}

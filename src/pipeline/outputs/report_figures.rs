@@ -1,0 +1,287 @@
+//! The pictures of the report, drawn without a graphics card.
+
+use crate::assess::deviation::Deviation;
+use crate::colormap::{ColorScale, Rgb, UNMATCHED};
+use crate::geometry::{Camera, Matrix3, Point3, Rotation, Similarity, Vector3};
+use crate::palette::ROLES_ON_DARK;
+use crate::pipeline::load::LoadedPart;
+use crate::registration::Surface;
+use crate::report::html::Figure;
+use crate::report::picture::{Paint, Picture, PictureMesh, picture};
+use crate::role::{PerRole, Role};
+use crate::text::{Lengths, minus};
+
+/// Colours of the two parts.
+const COLORS: PerRole<Rgb> = ROLES_ON_DARK;
+/// Pixels of pictures, of those of single places, and of thumbnails.
+const SIZE: [usize; 2] = [720, 480];
+const SPOT_SIZE: [usize; 2] = [432, 312];
+const THUMB_SIZE: [usize; 2] = [240, 160];
+/// Places that are drawn from near.
+const N_SPOTS: usize = 3;
+
+/// Draws the two parts of a match.
+pub(super) struct FigureRenderer<'a> {
+    parts: PerRole<&'a LoadedPart>,
+    pose: Similarity,
+    deviation: &'a Deviation,
+    /// The colour of each vertex by its deviation.
+    colors: PerRole<Vec<Rgb>>,
+    lengths: Lengths,
+    front: Rotation,
+    back: Rotation,
+}
+
+/// From which side a sheet is seen.
+#[derive(Clone, Copy)]
+enum From {
+    Front,
+    Back,
+}
+
+impl<'a> FigureRenderer<'a> {
+    pub(super) fn new(
+        parts: PerRole<&'a LoadedPart>,
+        pose: Similarity,
+        deviation: &'a Deviation,
+        scale: ColorScale,
+        lengths: Lengths,
+    ) -> Self {
+        let fields = PerRole {
+            crash: &deviation.target_on_source.field,
+            stamped: &deviation.source_on_target.field,
+        };
+        let colors = fields.map(|field| {
+            let color = |v| {
+                field
+                    .compared(v)
+                    .map_or(UNMATCHED, |value| scale.color(value))
+            };
+            (0..field.signed.len()).map(color).collect()
+        });
+        let view = |from| view_of(&parts.crash.surface, from);
+        Self {
+            parts,
+            pose,
+            deviation,
+            colors,
+            lengths,
+            front: view(From::Front),
+            back: view(From::Back),
+        }
+    }
+
+    /// Each part in its own frame, as its file has it.
+    pub(super) fn parts(&self) -> Vec<Figure> {
+        let still = Similarity::identity();
+        let stamped_view = view_of(&self.parts.stamped.surface, From::Front);
+        let sides = [
+            (Role::Stamped, stamped_view, "▲ Stamped part before."),
+            (Role::Crash, self.front, "■ Crash part."),
+        ];
+        let figure = |(role, view, title): (Role, Rotation, &str)| {
+            let part = self.parts.get(role);
+            let camera = fitted(view, part.mesh.positions(), &still, SIZE);
+            let mesh = PictureMesh {
+                mesh: &part.mesh,
+                world_from_mesh: &still,
+                paint: Paint::Plain(*COLORS.get(role)),
+            };
+            let n = crate::text::grouped(part.mesh.n_triangles());
+            let drawn = picture(SIZE, &camera, None, &[mesh]);
+            self.figure(
+                &drawn,
+                title.to_owned(),
+                format!("As {} has it, {n} triangles.", part.file_name()),
+                format!("The {} part alone, seen at an angle", role.word()),
+            )
+        };
+        sides.into_iter().map(figure).collect()
+    }
+
+    /// Both parts at the pose, from both sides.
+    pub(super) fn overlays(&self) -> Vec<Figure> {
+        let views = [(self.front, "from the front"), (self.back, "from behind")];
+        let figure = |(view, words): (Rotation, &str)| {
+            let drawn = self.both(view, &self.pose, SIZE);
+            let drawn = drawn.stamped.chequered(&drawn.crash, SIZE[1] / 12);
+            self.figure(
+                &drawn,
+                "▲ on ■ after the match,".to_owned(),
+                format!("{words}; both parts in turn, square by square."),
+                format!("Both parts in the matched pose, seen {words}"),
+            )
+        };
+        views.into_iter().map(figure).collect()
+    }
+
+    /// Crash and stamped part under one camera.
+    fn both(&self, view: Rotation, pose: &Similarity, size: [usize; 2]) -> PerRole<Picture> {
+        let still = Similarity::identity();
+        let mut camera = fitted(view, self.parts.crash.mesh.positions(), &still, size);
+        let moved = fitted(view, self.parts.stamped.mesh.positions(), pose, size);
+        let is_near = (camera.target - moved.target).norm() < 0.5 * camera.height;
+        camera.height = if is_near {
+            camera.height.max(moved.height) * 1.04
+        } else {
+            camera.height * 1.3
+        };
+        PerRole::from_fn(|role| {
+            let mesh = PictureMesh {
+                mesh: &self.parts.get(role).mesh,
+                world_from_mesh: match role {
+                    Role::Crash => &still,
+                    Role::Stamped => pose,
+                },
+                paint: Paint::Plain(*COLORS.get(role)),
+            };
+            picture(size, &camera, None, &[mesh])
+        })
+    }
+
+    /// Both parts in the colours of their deviation.
+    pub(super) fn maps(&self) -> Vec<Figure> {
+        let on_crash = PictureMesh {
+            mesh: &self.parts.crash.mesh,
+            world_from_mesh: &Similarity::identity(),
+            paint: Paint::PerVertex(&self.colors.crash),
+        };
+        let sides = [
+            (
+                self.map_mesh(),
+                "▲ Stamped part,",
+                "distance to the crash part.",
+            ),
+            (on_crash, "■ Crash part,", "distance to the stamped part."),
+        ];
+        let figure = |(mesh, title, caption): (PictureMesh<'_>, &str, &str)| {
+            let camera = fitted(
+                self.front,
+                mesh.mesh.positions(),
+                mesh.world_from_mesh,
+                SIZE,
+            );
+            let drawn = picture(SIZE, &camera, None, &[mesh]);
+            let alt = format!("Map of the distances. {title} {caption}");
+            self.figure(&drawn, title.to_owned(), caption.to_owned(), alt)
+        };
+        sides.into_iter().map(figure).collect()
+    }
+
+    fn map_mesh(&self) -> PictureMesh<'_> {
+        PictureMesh {
+            mesh: &self.parts.stamped.mesh,
+            world_from_mesh: &self.pose,
+            paint: Paint::PerVertex(&self.colors.stamped),
+        }
+    }
+
+    /// The largest deviations from near.
+    pub(super) fn spots(&self) -> Vec<Figure> {
+        let normals = self.parts.stamped.mesh.vertex_normals();
+        let [edge, _] = self.deviation.mean_edge_lengths;
+        let size = self.parts.stamped.mesh.aabb().diagonal() * self.pose.scale;
+        let spots = self.deviation.source_on_target.spots.iter().take(N_SPOTS);
+        let figure = |(i, spot): (usize, &crate::assess::deviation::Spot)| {
+            let vertex = spot.vertex as usize;
+            let normal = self.pose.rotate(&normals[vertex]);
+            let toward = self.front * Vector3::z();
+            let normal = if normal.dot(&toward) < 0.0 {
+                -normal
+            } else {
+                normal
+            };
+            let camera = Camera {
+                target: self.pose.apply(&spot.position),
+                world_from_view: looking(&(normal + 0.6 * toward), &(self.front * Vector3::y())),
+                height: (14.0 * edge).max(0.12 * size),
+                ..Camera::default()
+            };
+            let number = i + 1;
+            let value = minus(&self.lengths.of(spot.value));
+            let node = self.parts.stamped.node_id(spot.vertex);
+            let node = node.map_or_else(String::new, |id| format!(" at node {id}"));
+            Figure {
+                is_marked: true,
+                ..self.figure(
+                    &picture(SPOT_SIZE, &camera, None, &[self.map_mesh()]),
+                    format!("{number}: {value}"),
+                    format!("{node}."),
+                    format!("Place {number} of the largest deviations from near, {value}"),
+                )
+            }
+        };
+        spots.enumerate().map(figure).collect()
+    }
+
+    /// Where a start ended.
+    pub(super) fn start(&self, pose: &Similarity, number: usize) -> Figure {
+        let drawn = self.both(self.front, pose, THUMB_SIZE);
+        let drawn = drawn.stamped.mixed(&drawn.crash);
+        let alt = format!("Both parts as pose {number} has them");
+        self.figure(&drawn, String::new(), String::new(), alt)
+    }
+
+    fn figure(&self, drawn: &Picture, title: String, caption: String, alt: String) -> Figure {
+        Figure {
+            png: drawn.to_png(),
+            size: [drawn.width, drawn.height],
+            alt,
+            title,
+            caption,
+            is_marked: false,
+        }
+    }
+}
+
+/// Fits a view to points under a motion.
+fn fitted(
+    view: Rotation,
+    points: &[Point3],
+    pose: &Similarity,
+    [width, height]: [usize; 2],
+) -> Camera {
+    let moved: Vec<Point3> = points.iter().map(|point| pose.apply(point)).collect();
+    let mut camera = Camera {
+        world_from_view: view,
+        ..Camera::default()
+    };
+    camera.fit_to_points(&moved, width as f64 / height as f64);
+    camera
+}
+
+/// A view on the broad side of a sheet, from a little below and aside; upright where the part is.
+fn view_of(surface: &Surface, from: From) -> Rotation {
+    let measures = surface.measures();
+    let axes = measures.principal_axes;
+    let (mut long, mut mid) = (Vector3::from(axes.column(0)), Vector3::from(axes.column(1)));
+    let mut broad = Vector3::from(axes.column(2));
+    if measures.mean_normal.dot(&broad) < 0.0 {
+        broad = -broad;
+    }
+    if matches!(from, From::Back) {
+        broad = -broad;
+    }
+    // What is up in the car is up in the picture.
+    if mid.z < -0.1 || (mid.z.abs() <= 0.1 && mid.y < 0.0) {
+        mid = -mid;
+    }
+    if long.cross(&mid).dot(&broad) < 0.0 {
+        long = -long;
+    }
+    looking(&(0.8 * broad - 0.5 * mid + 0.32 * long), &mid)
+}
+
+/// The view from `back` with `up` upwards.
+fn looking(back: &Vector3, up: &Vector3) -> Rotation {
+    let back = back.try_normalize(1e-12).unwrap_or_else(Vector3::z);
+    let right = up.cross(&back).try_normalize(1e-9);
+    let right = right.unwrap_or_else(|| {
+        Vector3::y()
+            .cross(&back)
+            .try_normalize(1e-9)
+            .unwrap_or_else(Vector3::x)
+    });
+    let matrix = Matrix3::from_columns(&[right, back.cross(&right), back]);
+    Rotation::from_rotation_matrix(&nalgebra::Rotation3::from_matrix_unchecked(matrix))
+}

@@ -1,0 +1,465 @@
+//! A project: everything about a piece of work but the geometry, as a text file.
+//!
+//! A project names its files by relative paths and by their content, and holds what was chosen and
+//! found: parts, units, levels, pose, every setting of the match, its result. Numbers come back to
+//! the last bit. How the window looked is kept for the window, which alone understands it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use super::text;
+use crate::formats::{Disk, FileHash, FileSource as _, ReadOptions, Selection};
+use crate::geometry::Similarity;
+use crate::monitor::Monitor;
+use crate::pipeline::PipelineError;
+use crate::pipeline::load::{LoadSettings, LoadedPart};
+use crate::pipeline::match_parts::{MatchRecipe, MatchRun};
+use crate::pipeline::sweep::Sweep;
+use crate::pipeline::write_file::{write_file, write_file_in_new_folder};
+use crate::report::build_id;
+use crate::role::{PerRole, Role};
+use crate::text::grouped;
+use crate::units::Units;
+
+/// The file extension of projects.
+pub const EXTENSION: &str = "shapematch";
+/// What the field `schema` begins with.
+const SCHEMA: &str = "shapematch.project/";
+/// The version of the format that this program writes, and the newest it reads.
+const VERSION: u32 = 1;
+
+/// A larger file is no project.
+const MAX_BYTES: u64 = 1 << 28;
+
+/// One side of a project.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PartEntry {
+    /// The file; `None` for the example that comes with the program. Absolute in memory, relative
+    /// to the project in the file.
+    pub file: Option<PathBuf>,
+    /// Its content when the project was saved.
+    pub hash: Option<FileHash>,
+    /// Triangles of the full mesh, for the reader of the file.
+    pub triangles: usize,
+    /// Which elements are matched.
+    pub selection: Selection,
+    /// Factor on its coordinates.
+    pub length_factor: f64,
+    /// Its units, if the user set them.
+    pub units: Option<Units>,
+    /// Further folders for included files.
+    pub include_folders: Vec<PathBuf>,
+    /// The ceiling it was reduced to; `None` for the full mesh.
+    pub max_triangles: Option<usize>,
+    /// Ids of hidden parts of the deck.
+    pub hidden: BTreeSet<u64>,
+    /// Colours that were given to parts of the deck, sRGB.
+    pub colors: BTreeMap<u64, [u8; 3]>,
+}
+
+impl Default for PartEntry {
+    fn default() -> Self {
+        Self {
+            file: None,
+            hash: None,
+            triangles: 0,
+            selection: Selection::All,
+            length_factor: 1.0,
+            units: None,
+            include_folders: Vec::new(),
+            max_triangles: None,
+            hidden: BTreeSet::new(),
+            colors: BTreeMap::new(),
+        }
+    }
+}
+
+impl PartEntry {
+    /// The entry of a part that was read from `file`, or is a side of the example.
+    pub fn of(part: &LoadedPart, file: Option<PathBuf>) -> Self {
+        let settings = &part.settings;
+        Self {
+            file,
+            hash: part.hash(),
+            triangles: part.mesh.n_triangles(),
+            selection: settings.selection.clone(),
+            length_factor: settings.length_factor,
+            units: settings.units,
+            include_folders: settings.read.include_folders.clone(),
+            ..Self::default()
+        }
+    }
+
+    /// How to load it again.
+    pub fn load_settings(&self) -> LoadSettings {
+        LoadSettings {
+            selection: self.selection.clone(),
+            length_factor: self.length_factor,
+            units: self.units,
+            read: ReadOptions {
+                include_folders: self.include_folders.clone(),
+                ..ReadOptions::default()
+            },
+        }
+    }
+
+    /// Where the file is: at its path, else beside the project under its name. `None` if it is at
+    /// neither place or the entry is the example.
+    pub fn locate(&self, project: &Path) -> Option<PathBuf> {
+        let file = self.file.as_ref()?;
+        let beside = file.file_name().map(|name| folder_of(project).join(name));
+        Disk.find(file).or_else(|| Disk.find(&beside?))
+    }
+
+    /// True if a loaded file is not the one the project was saved with.
+    pub fn has_changed(&self, part: &LoadedPart) -> bool {
+        self.hash.is_some() && self.hash != part.hash()
+    }
+}
+
+/// A match and whether it still stood for parts and pose when the project was saved.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct ResultEntry {
+    /// True if nothing was changed after the match.
+    pub is_current: bool,
+    /// The alternative that was shown instead of the best pose.
+    #[serde(default)]
+    pub alternative: Option<usize>,
+    /// The match.
+    pub run: MatchRun,
+}
+
+/// A project in memory.
+#[derive(Debug, Clone, Default)]
+pub struct Project {
+    /// The program that wrote it.
+    pub program: String,
+    /// When, in seconds since 1970 (UTC); 0 if unknown.
+    pub saved_at: u64,
+    /// The two parts.
+    pub parts: PerRole<Option<PartEntry>>,
+    /// `crash = c · R · stamped + t`.
+    pub pose: Similarity,
+    /// Every setting of the match.
+    pub recipe: MatchRecipe,
+    /// The last match.
+    pub result: Option<ResultEntry>,
+    /// The tables of the last sweep.
+    pub sweep: Option<Sweep>,
+    /// How the window looked; only the window understands it.
+    pub window: Option<Value>,
+    /// What a later program added at the top level; written again as it was.
+    pub others: Map<String, Value>,
+}
+
+/// The fields in the order of the file, what a person looks for first.
+#[derive(Serialize)]
+struct Written<'a> {
+    schema: String,
+    program: String,
+    saved_at: u64,
+    crash: Option<PartEntry>,
+    stamped: Option<PartEntry>,
+    pose: &'a Similarity,
+    recipe: &'a MatchRecipe,
+    window: &'a Option<Value>,
+    #[serde(flatten)]
+    others: &'a Map<String, Value>,
+    result: &'a Option<ResultEntry>,
+    sweep: &'a Option<Sweep>,
+}
+
+/// Why a project cannot be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum ProjectError {
+    /// It cannot be read from disk.
+    #[error("cannot read the project ({reason}): {path:?}")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+    /// It is no JSON text.
+    #[error("{path:?} is no project: line {line} {reason}")]
+    NoText {
+        /// The file.
+        path: PathBuf,
+        /// Where reading ended.
+        line: usize,
+        /// What was wrong there.
+        reason: String,
+    },
+    /// It is some other JSON text.
+    #[error("{0:?} is no project of shapematch; its field \"schema\" would say so")]
+    NoProject(PathBuf),
+    /// A later program wrote it.
+    #[error(
+        "{path:?} is a project of version {version}, written by {program}; this is {}, which reads \
+         up to version {VERSION}. Open it with the program that wrote it",
+        build_id()
+    )]
+    Newer {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        version: String,
+        /// The program that wrote it, as it calls itself.
+        program: String,
+    },
+    /// A field that everything else depends on is not understood.
+    #[error("the field {field:?} of the project {path:?} is not understood: {reason}")]
+    Field {
+        /// The file.
+        path: PathBuf,
+        /// Its name.
+        field: &'static str,
+        /// What is wrong.
+        reason: String,
+    },
+}
+
+impl Project {
+    /// Reads a project; the second value tells, a sentence each, what was not understood and left
+    /// out.
+    pub fn read(path: &Path) -> Result<(Self, Vec<String>), ProjectError> {
+        let bytes = Disk.open(path, MAX_BYTES, &Monitor::silent());
+        let bytes = bytes.map_err(|error| ProjectError::Read {
+            path: path.to_path_buf(),
+            reason: error.to_string(),
+        })?;
+        Self::parse(&String::from_utf8_lossy(&bytes), path)
+    }
+
+    /// Understands the text of a project that lies at `path`.
+    pub fn parse(text: &str, path: &Path) -> Result<(Self, Vec<String>), ProjectError> {
+        let at = || path.to_path_buf();
+        let root: Value = serde_json::from_str(text).map_err(|error| ProjectError::NoText {
+            path: at(),
+            line: error.line(),
+            reason: error.to_string(),
+        })?;
+        let Value::Object(mut fields) = root else {
+            return Err(ProjectError::NoProject(at()));
+        };
+        let program = string(fields.remove("program"));
+        let schema = string(fields.remove("schema"));
+        let Some(version) = schema.strip_prefix(SCHEMA) else {
+            return Err(ProjectError::NoProject(at()));
+        };
+        if version
+            .parse::<u32>()
+            .is_ok_and(|version| version > VERSION)
+        {
+            let version = version.to_owned();
+            return Err(ProjectError::Newer {
+                path: at(),
+                version,
+                program,
+            });
+        }
+        let mut reader = Reader {
+            fields,
+            notes: Vec::new(),
+        };
+        let refuse = |field| {
+            move |reason| ProjectError::Field {
+                path: path.to_path_buf(),
+                field,
+                reason,
+            }
+        };
+        let mut project = Self {
+            program,
+            parts: PerRole {
+                crash: reader.take("crash").map_err(refuse("crash"))?,
+                stamped: reader.take("stamped").map_err(refuse("stamped"))?,
+            },
+            pose: reader
+                .take("pose")
+                .map_err(refuse("pose"))?
+                .unwrap_or_default(),
+            saved_at: reader.take_or_tell("saved_at").unwrap_or_default(),
+            recipe: reader.take_or_tell("recipe").unwrap_or_default(),
+            result: reader.take_or_tell("result"),
+            sweep: reader.take_or_tell("sweep"),
+            window: reader
+                .fields
+                .remove("window")
+                .filter(|value| !value.is_null()),
+            others: Map::new(),
+        };
+        project.others = reader.fields;
+        let mut notes = reader.notes;
+        for name in project.others.keys() {
+            notes.push(format!(
+                "the field {name:?} is not known; it is kept as it is"
+            ));
+        }
+        for role in Role::ALL {
+            if let Some(entry) = project.parts.get_mut(role) {
+                entry.make_absolute(folder_of(path));
+            }
+        }
+        Ok((project, notes))
+    }
+
+    /// The text of a project that is to lie at `path`, with paths relative to its folder.
+    pub fn to_text(&self, path: &Path) -> String {
+        let PerRole { crash, stamped } = self.parts.as_ref().map(|entry| {
+            let mut entry = entry.clone()?;
+            entry.make_relative(folder_of(path));
+            Some(entry)
+        });
+        text::pretty(&Written {
+            schema: format!("{SCHEMA}{VERSION}"),
+            program: build_id(),
+            saved_at: self.saved_at,
+            crash,
+            stamped,
+            pose: &self.pose,
+            recipe: &self.recipe,
+            window: &self.window,
+            others: &self.others,
+            result: &self.result,
+            sweep: &self.sweep,
+        })
+    }
+
+    /// Writes the project.
+    pub fn write(&self, path: &Path) -> Result<(), PipelineError> {
+        write_file(path, self.to_text(path).as_bytes())
+    }
+
+    /// [`Project::write`] into a folder that is made if need be.
+    pub fn write_in_new_folder(&self, path: &Path) -> Result<(), PipelineError> {
+        write_file_in_new_folder(path, self.to_text(path).as_bytes())
+    }
+
+    /// The files of the project and what was done with them, in one line.
+    pub fn title(&self) -> String {
+        let PerRole { crash, stamped } = self.parts.as_ref().map(Option::as_ref);
+        let name = |entry: &PartEntry| match &entry.file {
+            Some(file) => file
+                .file_name()
+                .map(|name| name.to_string_lossy().into_owned()),
+            None => Some("the example".to_owned()),
+        };
+        let names: Vec<String> = [stamped, crash]
+            .into_iter()
+            .flatten()
+            .filter_map(name)
+            .collect();
+        let mut title = match &names[..] {
+            [a, b] if a == b => format!("{a} pair"),
+            names => names.join(" on "),
+        };
+        if let Some(n) = crash.or(stamped).and_then(|entry| entry.max_triangles) {
+            title += &format!(" · reduced to {}", grouped(n));
+        }
+        if let Some(result) = self.result.as_ref().filter(|result| result.is_current) {
+            title += " · ";
+            title += result.run.assessment.verdict.label();
+        }
+        title
+    }
+}
+
+/// True if a path is that of a project.
+pub fn is_project(path: &Path) -> bool {
+    let extension = path.extension().map(|e| e.to_string_lossy());
+    extension.is_some_and(|extension| extension.eq_ignore_ascii_case(EXTENSION))
+}
+
+impl PartEntry {
+    fn paths(&mut self) -> impl Iterator<Item = &mut PathBuf> {
+        self.file.iter_mut().chain(&mut self.include_folders)
+    }
+
+    fn make_absolute(&mut self, folder: &Path) {
+        for path in self.paths() {
+            *path = crate::formats::source::tidy(&folder.join(&*path));
+        }
+    }
+
+    fn make_relative(&mut self, folder: &Path) {
+        for path in self.paths() {
+            *path = relative(path, folder);
+        }
+    }
+}
+
+/// The folder a project lies in, absolute where the system tells it.
+fn folder_of(project: &Path) -> &Path {
+    project.parent().unwrap_or(Path::new(""))
+}
+
+/// The path of a file as seen from a folder, with `/` between its pieces; as it is where there is
+/// no way from one to the other.
+fn relative(path: &Path, folder: &Path) -> PathBuf {
+    let seen = pathdiff::diff_paths(path, folder).filter(|seen| seen.is_relative());
+    let Some(seen) = seen else {
+        return path.to_path_buf();
+    };
+    let pieces: Vec<_> = seen.iter().map(|piece| piece.to_string_lossy()).collect();
+    PathBuf::from(pieces.join("/"))
+}
+
+fn string(value: Option<Value>) -> String {
+    match value {
+        Some(Value::String(text)) => text,
+        _ => String::new(),
+    }
+}
+
+/// Takes the fields of a project one by one.
+struct Reader {
+    fields: Map<String, Value>,
+    notes: Vec<String>,
+}
+
+impl Reader {
+    /// A field; `None` if it is absent. What it holds beyond what is known is noted.
+    fn take<T: DeserializeOwned + Serialize>(&mut self, name: &str) -> Result<Option<T>, String> {
+        let Some(value) = self.fields.remove(name).filter(|value| !value.is_null()) else {
+            return Ok(None);
+        };
+        let read: T = serde_json::from_value(value.clone()).map_err(|error| error.to_string())?;
+        if let Ok(known) = serde_json::to_value(&read) {
+            text::tell_unknown(&value, &known, name, &mut self.notes);
+        }
+        Ok(Some(read))
+    }
+
+    /// A field that the rest can do without.
+    fn take_or_tell<T: DeserializeOwned + Serialize>(&mut self, name: &str) -> Option<T> {
+        self.take(name).unwrap_or_else(|reason| {
+            let note = format!("the field {name:?} is not understood and left out: {reason}");
+            self.notes.push(note);
+            None
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_seen_from_the_project() {
+        let seen = |path: &str, folder: &str| {
+            let seen = relative(Path::new(path), Path::new(folder));
+            seen.to_string_lossy().into_owned()
+        };
+        assert_eq!(seen("/a/b/c.k", "/a/b"), "c.k");
+        assert_eq!(seen("/a/b/c.k", "/a/d/e"), "../../b/c.k");
+        assert_eq!(seen("/c.k", "/a"), "../c.k");
+        assert_eq!(seen("c.k", "/a"), "c.k");
+        assert_eq!(seen("data/c.k", "data"), "c.k");
+    }
+}

@@ -1,0 +1,8 @@
+//! Projects: everything about a piece of work but the geometry, as a text file.
+
+mod file;
+mod open;
+mod text;
+
+pub use file::{EXTENSION, PartEntry, Project, ProjectError, ResultEntry, is_project};
+pub use open::{FoundPart, FoundProject, Located, ProjectRequest, open_project};

@@ -1,0 +1,125 @@
+//! A project with its files, wherever they are now.
+
+use std::path::{Path, PathBuf};
+
+use super::{PartEntry, Project};
+use crate::monitor::Monitor;
+use crate::pipeline::PipelineError;
+use crate::pipeline::load::{LoadedPart, PartSource};
+use crate::role::{PerRole, Role};
+
+/// Where a part of a project is looked for.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Located {
+    /// Where the project says, or beside it.
+    #[default]
+    AsStored,
+    /// Where the user says.
+    At(PathBuf),
+    /// Nowhere: the project is opened without it.
+    Without,
+}
+
+/// A project to be opened.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ProjectRequest {
+    /// The project.
+    pub path: PathBuf,
+    /// Where its files are.
+    pub located: PerRole<Located>,
+    /// True for an autosaved session: it has no file of its own.
+    pub is_autosave: bool,
+}
+
+/// A project with its parts, or with the names of those that are missing.
+#[derive(Debug, Clone)]
+pub struct FoundProject {
+    /// What was asked for.
+    pub request: ProjectRequest,
+    /// The project.
+    pub project: Project,
+    /// What was not understood, a sentence each.
+    pub notes: Vec<String>,
+    /// Its parts at full resolution.
+    pub parts: PerRole<Option<FoundPart>>,
+    /// Files that are neither where the project says nor beside it; nothing was loaded then.
+    pub missing: PerRole<Option<PathBuf>>,
+}
+
+/// A part of a project.
+#[derive(Debug, Clone)]
+pub struct FoundPart {
+    /// Where it came from.
+    pub source: PartSource,
+    /// The part.
+    pub part: LoadedPart,
+    /// True if the file is not the one the project was saved with.
+    pub is_changed: bool,
+}
+
+/// Reads a project and both of its parts, at the same time.
+pub fn open_project(
+    request: ProjectRequest,
+    monitor: &Monitor,
+) -> Result<FoundProject, PipelineError> {
+    let (project, notes) = Project::read(&request.path).map_err(Box::new)?;
+    let sources = PerRole::from_fn(|role| match project.parts.get(role) {
+        Some(entry) => source(entry, request.located.get(role), &request.path),
+        None => Ok(None),
+    });
+    let missing = sources
+        .as_ref()
+        .map(|source| source.as_ref().err().cloned());
+    let parts = if missing.iter().any(|(_, missing)| missing.is_some()) {
+        PerRole::default()
+    } else {
+        let load = |role| {
+            let source = sources.get(role).clone().ok().flatten();
+            let entry = project.parts.get(role).as_ref();
+            entry
+                .zip(source)
+                .map(|(entry, source)| load_part(role, entry, source, monitor))
+                .transpose()
+        };
+        let (crash, stamped) = rayon::join(|| load(Role::Crash), || load(Role::Stamped));
+        PerRole::new(crash?, stamped?)
+    };
+    Ok(FoundProject {
+        request,
+        project,
+        notes,
+        parts,
+        missing,
+    })
+}
+
+/// Where a part is to be read; the path that was looked for in vain is an error.
+fn source(
+    entry: &PartEntry,
+    located: &Located,
+    project: &Path,
+) -> Result<Option<PartSource>, PathBuf> {
+    match (located, &entry.file) {
+        (Located::Without, _) => Ok(None),
+        (Located::At(path), _) => Ok(Some(PartSource::File(path.clone()))),
+        (Located::AsStored, None) => Ok(Some(PartSource::Example)),
+        (Located::AsStored, Some(file)) => match entry.locate(project) {
+            Some(path) => Ok(Some(PartSource::File(path))),
+            None => Err(file.clone()),
+        },
+    }
+}
+
+fn load_part(
+    role: Role,
+    entry: &PartEntry,
+    source: PartSource,
+    monitor: &Monitor,
+) -> Result<FoundPart, PipelineError> {
+    let part = source.load(role, &entry.load_settings(), monitor)?;
+    Ok(FoundPart {
+        is_changed: entry.has_changed(&part),
+        source,
+        part,
+    })
+}

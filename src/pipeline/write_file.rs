@@ -1,0 +1,214 @@
+//! The one way in which files are written: whole or not at all.
+
+use std::fs::{self, File, Metadata};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use super::PipelineError;
+
+/// Links that are followed before a path counts as a loop.
+const MAX_LINKS: usize = 40;
+
+/// Writes a file so that its name stands for the old content or for all of the new one, whatever
+/// happens meanwhile: the bytes go to a new file beside it, are flushed to the disk, and take its
+/// place in one step. Permissions of the old file are kept, links are followed. Devices and pipes
+/// are written directly.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), PipelineError> {
+    write_with(path, |file| file.write_all(bytes)).map_err(failed(path))
+}
+
+/// [`write_file`] for a file that must not be there yet; `false` if it is, which changes nothing.
+pub fn write_new_file(path: &Path, bytes: &[u8]) -> Result<bool, PipelineError> {
+    let write = || {
+        if path.symlink_metadata().is_ok() {
+            return Ok(false);
+        }
+        let beside = new_beside(path, None, |file| file.write_all(bytes))?;
+        match beside.persist_noclobber(path) {
+            Ok(_) => Ok(true),
+            Err(error) if error.error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
+            Err(error) => Err(error.error),
+        }
+    };
+    write().map_err(failed(path))
+}
+
+/// [`write_file`] into a folder that is made if need be.
+pub fn write_file_in_new_folder(path: &Path, bytes: &[u8]) -> Result<(), PipelineError> {
+    fs::create_dir_all(folder_of(path)).map_err(failed(path))?;
+    write_file(path, bytes)
+}
+
+fn failed(path: &Path) -> impl Fn(io::Error) -> PipelineError {
+    |error| PipelineError::Write {
+        path: path.to_path_buf(),
+        reason: error.to_string(),
+    }
+}
+
+fn write_with(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
+    let path = followed(path)?;
+    let old = match fs::metadata(&path) {
+        Ok(old) if old.is_dir() => return Err(io::Error::other("it is a folder")),
+        Ok(old) if !old.is_file() => {
+            return write(&mut File::options().write(true).open(&path)?);
+        }
+        Ok(old) => Some(old),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        Err(error) => return Err(error),
+    };
+    let beside = new_beside(&path, old.as_ref(), write)?;
+    beside.persist(&path).map_err(|error| error.error)?;
+    sync_folder(folder_of(&path));
+    Ok(())
+}
+
+/// A complete file in the folder of `path`, flushed to the disk; it goes when it is dropped.
+fn new_beside(
+    path: &Path,
+    old: Option<&Metadata>,
+    write: impl FnOnce(&mut File) -> io::Result<()>,
+) -> io::Result<NamedTempFile> {
+    let mut beside = new_file_in(folder_of(path))?;
+    write(beside.as_file_mut())?;
+    if let Some(old) = old {
+        keep_owner(beside.as_file(), old);
+        beside.as_file().set_permissions(old.permissions())?;
+    }
+    beside.as_file().sync_all()?;
+    Ok(beside)
+}
+
+/// A new file in a folder, with the permissions that the user's other new files have.
+pub(super) fn new_file_in(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".shapematch-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+        builder.tempfile_in(folder)
+    }
+    #[cfg(not(unix))]
+    builder.tempfile_in(folder)
+}
+
+/// Gives the new file the owner of the old one, where the system lets us.
+#[cfg(unix)]
+fn keep_owner(file: &File, old: &Metadata) {
+    use std::os::unix::fs::{MetadataExt as _, fchown};
+    // Only an administrator may; a file of one's own is as good.
+    let _ = fchown(file, Some(old.uid()), Some(old.gid()));
+}
+
+#[cfg(not(unix))]
+fn keep_owner(_file: &File, _old: &Metadata) {}
+
+/// Makes the new name last through a loss of power, where folders can be flushed.
+fn sync_folder(folder: &Path) {
+    if cfg!(unix)
+        && let Ok(folder) = File::open(folder)
+    {
+        // The file is whole in either case.
+        let _ = folder.sync_all();
+    }
+}
+
+/// The path that a path leads to through links; its last piece need not exist.
+pub(super) fn followed(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_path_buf();
+    for _ in 0..MAX_LINKS {
+        match fs::read_link(&path) {
+            Ok(to) => path = folder_of(&path).join(to),
+            // No link, or nothing there.
+            Err(_) => return Ok(path),
+        }
+    }
+    Err(io::Error::other("its links lead in a circle"))
+}
+
+/// The folder a file lies in.
+pub(super) fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        let mut names: Vec<String> = entries
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn the_old_file_survives_a_write_that_fails() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.k");
+        write_file(&path, b"old").unwrap();
+        let full_disk = |file: &mut File| {
+            file.write_all(b"half of the n")?;
+            Err(io::Error::from(io::ErrorKind::StorageFull))
+        };
+        assert!(write_with(&path, full_disk).is_err());
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        let fresh = folder.path().join("b.k");
+        assert!(write_with(&fresh, full_disk).is_err());
+        assert_eq!(names(folder.path()), ["a.k"], "nothing is left behind");
+    }
+
+    #[test]
+    fn a_file_that_is_there_is_replaced_or_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.k");
+        assert!(write_new_file(&path, b"first").unwrap());
+        assert!(!write_new_file(&path, b"second").unwrap());
+        assert_eq!(fs::read(&path).unwrap(), b"first");
+        write_file(&path, b"third").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"third");
+        assert!(write_file(folder.path(), b"x").is_err());
+        assert_eq!(names(folder.path()), ["a.k"]);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn permissions_are_kept_and_links_followed() {
+        use std::os::unix::fs::{PermissionsExt as _, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
+        fs::write(at("plain"), b"").unwrap();
+        write_file(&at("new"), b"new").unwrap();
+        assert_eq!(mode(&at("new")), mode(&at("plain")), "as any new file");
+        fs::set_permissions(at("new"), fs::Permissions::from_mode(0o640)).unwrap();
+        symlink("new", at("link")).unwrap();
+        write_file(&at("link"), b"newer").unwrap();
+        assert_eq!(fs::read_link(at("link")).unwrap(), Path::new("new"));
+        assert_eq!(fs::read(at("new")).unwrap(), b"newer");
+        assert_eq!(mode(&at("new")), 0o640);
+        symlink("later", at("dangling")).unwrap();
+        write_file(&at("dangling"), b"x").unwrap();
+        assert_eq!(fs::read(at("later")).unwrap(), b"x");
+        symlink("b", at("a")).unwrap();
+        symlink("a", at("b")).unwrap();
+        assert!(write_file(&at("a"), b"x").is_err());
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn devices_are_written_directly() {
+        write_file(Path::new("/dev/null"), b"x").unwrap();
+        let full = write_file(Path::new("/dev/full"), b"x").unwrap_err();
+        assert!(full.to_string().contains("/dev/full"), "{full}");
+        assert!(!fs::metadata("/dev/null").unwrap().is_file());
+    }
+}

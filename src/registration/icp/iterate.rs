@@ -1,0 +1,264 @@
+//! One ICP run: correspondences, rejection, selection, a step of the metric, until the rules end it.
+
+use std::time::{Duration, Instant};
+
+use super::correspondence::{Correspondence, Sample, correspond};
+use super::metric::{StepRules, step};
+use super::select::{Selected, select};
+use super::stages::StageRules;
+use super::termination::Termination;
+use crate::geometry::{Aabb, Matrix3, Point3, Rotation, Similarity};
+use crate::monitor::Cancelled;
+use crate::registration::observer::MatchMonitor;
+use crate::registration::result::{IterationRecord, Side};
+use crate::registration::surface::Surface;
+
+/// The smallest damping of a step, relative to the stiffness.
+const MIN_DAMPING: f64 = 1e-9;
+/// Damping is never raised above this.
+const MAX_DAMPING: f64 = 1.0;
+
+/// The points that are moved, as one stage sees them.
+#[derive(Debug, Clone)]
+pub(crate) struct Data {
+    pub(crate) samples: Vec<Sample>,
+    /// Corners of the box around the samples; a motion is measured by how far it moves them.
+    pub(crate) corners: [Point3; 8],
+}
+
+impl Data {
+    pub(crate) fn new(samples: Vec<Sample>) -> Self {
+        let aabb = Aabb::of_points(samples.iter().map(|sample| &sample.point));
+        Self {
+            samples,
+            corners: aabb.corners(),
+        }
+    }
+
+    /// The same points with all normals reversed.
+    pub(crate) fn flipped(&self) -> Self {
+        let mut flipped = self.clone();
+        for sample in &mut flipped.samples {
+            sample.normal = -sample.normal;
+        }
+        flipped
+    }
+}
+
+/// One run from one start, to be continued at will.
+#[derive(Debug, Clone)]
+pub(crate) struct Run {
+    /// Its number over the whole match, for iteration reports.
+    pub(crate) start_idx: usize,
+    pub(crate) model_from_data: Similarity,
+    pub(crate) records: Vec<IterationRecord>,
+    /// Objective of the last iteration; infinite before the first.
+    pub(crate) score: f64,
+    pub(crate) fraction: f64,
+    pub(crate) rmse: f64,
+    pub(crate) termination: Option<Termination>,
+    /// Time the iterations took.
+    pub(crate) took: Duration,
+    stage_iterations: usize,
+    damping: f64,
+    pairs: Vec<Correspondence>,
+    kept: Vec<u32>,
+}
+
+impl Run {
+    pub(crate) fn new(start_idx: usize, model_from_data: Similarity) -> Self {
+        Self {
+            start_idx,
+            model_from_data,
+            records: Vec::new(),
+            score: f64::INFINITY,
+            fraction: 0.0,
+            rmse: f64::INFINITY,
+            termination: None,
+            took: Duration::ZERO,
+            stage_iterations: 0,
+            damping: MIN_DAMPING,
+            pairs: Vec::new(),
+            kept: Vec::new(),
+        }
+    }
+
+    /// Forgets what was measured in an earlier stage; pose and history stay.
+    pub(crate) fn enter_stage(&mut self) {
+        self.score = f64::INFINITY;
+        self.termination = None;
+        self.stage_iterations = 0;
+        self.damping = MIN_DAMPING;
+        self.pairs.clear();
+        self.kept.clear();
+    }
+
+    /// How far the kept pairs lie apart. Infinite before the first iteration.
+    pub(crate) fn spread(&self) -> Spread {
+        let total: f64 = self.kept_pairs().map(|pair| pair.weight).sum();
+        let mut weight = 0.0;
+        let mut p95 = None;
+        let mut max = f64::INFINITY;
+        for pair in self.kept_pairs() {
+            weight += pair.weight;
+            max = pair.distance_sq.sqrt();
+            if p95.is_none() && weight >= 0.95 * total {
+                p95 = Some(max);
+            }
+        }
+        Spread {
+            p95: p95.unwrap_or(max),
+            max,
+        }
+    }
+
+    /// The kept pairs of the last iteration, closest first, under the pose before its step.
+    pub(crate) fn kept_pairs(&self) -> impl Iterator<Item = &Correspondence> + Clone {
+        self.kept.iter().map(|&i| &self.pairs[i as usize])
+    }
+}
+
+/// Distances of the kept pairs of a run.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spread {
+    /// Distance below which 95 % of them lie, by weight.
+    pub(crate) p95: f64,
+    /// The largest.
+    pub(crate) max: f64,
+}
+
+/// Where poses of a run lie in the caller's frames.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Frames {
+    /// True if the data is the target mesh, so that poses are inverted for the outside.
+    pub(crate) data_is_target: bool,
+    /// What was done to the source before the match: a mirror, else the identity.
+    pub(crate) mirror: Similarity,
+}
+
+impl Frames {
+    /// Which mesh supplies the points.
+    pub(crate) fn data_side(&self) -> Side {
+        if self.data_is_target {
+            Side::Target
+        } else {
+            Side::Source
+        }
+    }
+
+    /// The pose as the outside sees it.
+    pub(crate) fn target_from_source(&self, model_from_data: &Similarity) -> Similarity {
+        if self.data_is_target {
+            // The model is then the source, mirrored or not.
+            model_from_data.inverse().after(&self.mirror)
+        } else {
+            model_from_data.after(&self.mirror)
+        }
+    }
+}
+
+/// What a run is advanced on: the data, model and rules of one stage.
+#[derive(Clone, Copy)]
+pub(crate) struct StageInput<'a> {
+    pub(crate) data: &'a Data,
+    pub(crate) model: &'a Surface,
+    pub(crate) rules: &'a StageRules,
+    pub(crate) frames: &'a Frames,
+}
+
+/// Continues `run` for at most `n_iterations`, until the rules of its stage end it. A stop request
+/// ends it with the pose it has.
+pub(crate) fn advance(
+    run: &mut Run,
+    input: &StageInput<'_>,
+    n_iterations: usize,
+    monitor: &MatchMonitor<'_>,
+) -> Result<(), Cancelled> {
+    let begin = Instant::now();
+    for _ in 0..n_iterations {
+        if run.termination.is_some() {
+            break;
+        }
+        monitor.check()?;
+        if monitor.stop_requested() && run.score.is_finite() {
+            run.termination = Some(Termination::Stopped);
+            break;
+        }
+        iterate(run, input, monitor);
+    }
+    run.took += begin.elapsed();
+    Ok(())
+}
+
+/// One iteration: pair and reject, select, record, solve, move, converged?
+fn iterate(run: &mut Run, input: &StageInput<'_>, monitor: &MatchMonitor<'_>) {
+    let StageInput {
+        data, model, rules, ..
+    } = *input;
+    let pose = run.model_from_data;
+    // The pairs of the last iteration are hints: most points stay with their triangle.
+    run.pairs = correspond(&data.samples, model, &pose, &rules.matching, &run.pairs);
+    let Some(selected) = select(&run.pairs, &rules.selection) else {
+        run.termination = Some(Termination::NoPairs);
+        return;
+    };
+    record(run, &selected, input, monitor);
+    let step_rules = StepRules {
+        damping: run.damping,
+        ..rules.step
+    };
+    let increment = step(&run.pairs, &selected.kept, &step_rules);
+    run.kept = selected.kept;
+    let Some(increment) = increment else {
+        run.termination = Some(Termination::Degenerate);
+        return;
+    };
+    run.model_from_data = orthonormal(&increment.after(&pose));
+    let motion = run.model_from_data.max_displacement(&pose, &data.corners);
+    if motion <= rules.motion_tolerance {
+        run.termination = Some(Termination::Converged);
+    } else if run.stage_iterations >= rules.max_iterations {
+        run.termination = Some(Termination::MaxIterations);
+    }
+}
+
+/// Notes what the present pose is worth, and reports it. The score before decides how far the next
+/// step is damped.
+fn record(run: &mut Run, selected: &Selected, input: &StageInput<'_>, monitor: &MatchMonitor<'_>) {
+    adapt_damping(run, selected);
+    run.score = selected.objective;
+    run.fraction = selected.fraction;
+    run.rmse = selected.mse.sqrt();
+    let record = IterationRecord {
+        stage: input.rules.stage,
+        target_from_source: input.frames.target_from_source(&run.model_from_data),
+        objective: run.score,
+        rmse: run.rmse,
+        fraction: run.fraction,
+    };
+    monitor.iteration(run.start_idx, run.records.len(), &record);
+    run.records.push(record);
+    run.stage_iterations += 1;
+}
+
+/// Levenberg–Marquardt: a step that made things worse was too bold.
+fn adapt_damping(run: &mut Run, selected: &Selected) {
+    run.damping = if selected.objective > run.score * (1.0 + 1e-6) {
+        (run.damping.max(1e-4) * 10.0).min(MAX_DAMPING)
+    } else {
+        (run.damping / 10.0).max(MIN_DAMPING)
+    };
+}
+
+/// The same motion with its rotation made orthonormal again, so that rounding does not pile up.
+pub(crate) fn orthonormal(motion: &Similarity) -> Similarity {
+    let sign = motion.rotation.determinant().signum();
+    let proper: Matrix3 = motion.rotation * sign;
+    let unchecked = nalgebra::Rotation3::from_matrix_unchecked(proper);
+    let rotation = Rotation::from_rotation_matrix(&unchecked);
+    let rotation = Rotation::new_normalize(rotation.into_inner());
+    Similarity {
+        rotation: *rotation.to_rotation_matrix().matrix() * sign,
+        ..*motion
+    }
+}

@@ -1,0 +1,57 @@
+//! What is minimised over the kept pairs, and the step that does it.
+
+mod point_to_plane;
+mod symmetric;
+
+use serde::{Deserialize, Serialize};
+
+use super::correspondence::Correspondence;
+use crate::geometry::Similarity;
+use crate::registration::closed_form::{Motion, fit_pairs};
+
+/// The residual of a pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Metric {
+    /// |p − q|², solved in closed form (Besl and McKay 1992, Umeyama 1991).
+    PointToPoint,
+    /// ((p − q)·n)² with the model's normal (Chen and Medioni 1992).
+    PointToPlane,
+    /// ((p − q)·(nₚ + n_q))² with both normals (Rusinkiewicz 2019).
+    #[default]
+    Symmetric,
+}
+
+/// Limits of one step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StepRules {
+    pub(crate) metric: Metric,
+    pub(crate) motion: Motion,
+    /// Levenberg–Marquardt damping relative to the diagonal.
+    pub(crate) damping: f64,
+    /// Longest translation of one step.
+    pub(crate) max_translation: f64,
+}
+
+/// Largest rotation of one step.
+const MAX_ROTATION_DEG: f64 = 30.0;
+
+/// The motion to put before the current pose, `None` where the pairs fix nothing.
+pub(crate) fn step(
+    pairs: &[Correspondence],
+    kept: &[u32],
+    rules: &StepRules,
+) -> Option<Similarity> {
+    match rules.metric {
+        Metric::PointToPoint => {
+            let pairs = kept.iter().map(|&i| {
+                let pair = &pairs[i as usize];
+                (&pair.moved, &pair.matched, pair.weight)
+            });
+            let fit = fit_pairs(pairs, rules.motion).ok()?;
+            Some(fit.target_from_source)
+        }
+        Metric::PointToPlane => point_to_plane::step(pairs, kept, rules),
+        Metric::Symmetric => symmetric::step(pairs, kept, rules),
+    }
+}

@@ -1,0 +1,117 @@
+//! The normal equations of a linearised step and their damped solution.
+
+use nalgebra::{SMatrix, SVector, SymmetricEigen};
+
+use crate::geometry::{Point3, Vector3};
+
+/// Directions stiffer than this share of the stiffest are solved for, the others are left alone:
+/// there the surface slides on itself.
+const RANK_TOLERANCE: f64 = 1e-9;
+
+/// Sum of weighted rows aᵀx ≈ r with three rotations, three translations and one scale.
+///
+/// Lengths are divided by `length`, so that rotations and translations compare.
+pub(super) struct NormalEquations {
+    length: f64,
+    matrix: SMatrix<f64, 7, 7>,
+    rhs: SVector<f64, 7>,
+}
+
+/// Solution in the caller's lengths.
+pub(super) struct Solution {
+    pub(super) rotation: Vector3,
+    pub(super) translation: Vector3,
+    /// Relative change of scale.
+    pub(super) scale: f64,
+}
+
+impl NormalEquations {
+    pub(super) fn new(length: f64) -> Self {
+        Self {
+            length,
+            matrix: SMatrix::zeros(),
+            rhs: SVector::zeros(),
+        }
+    }
+
+    /// Adds weight · (rotation·ω + translation·τ + scale·s − residual)².
+    pub(super) fn add(
+        &mut self,
+        weight: f64,
+        rotation: &Vector3,
+        translation: &Vector3,
+        scale: f64,
+        residual: f64,
+    ) {
+        let inverse = 1.0 / self.length;
+        let row = [
+            rotation.x * inverse,
+            rotation.y * inverse,
+            rotation.z * inverse,
+            translation.x,
+            translation.y,
+            translation.z,
+            scale * inverse,
+        ];
+        let residual = residual * inverse;
+        for i in 0..7 {
+            let weighted = row[i] * weight;
+            for (j, value) in row.iter().enumerate().skip(i) {
+                self.matrix[(j, i)] += weighted * value;
+            }
+            self.rhs[i] += weighted * residual;
+        }
+    }
+
+    /// The damped least-squares solution over the directions that the rows fix; the scale stays
+    /// untouched unless `with_scale`. `None` if nothing is fixed.
+    pub(super) fn solve(&self, damping: f64, with_scale: bool) -> Option<Solution> {
+        let mut matrix = self.matrix;
+        matrix.fill_upper_triangle_with_lower_triangle();
+        let mut rhs = self.rhs;
+        if !with_scale {
+            matrix.row_mut(6).fill(0.0);
+            matrix.column_mut(6).fill(0.0);
+            rhs[6] = 0.0;
+        }
+        if !matrix.iter().chain(rhs.iter()).all(|x| x.is_finite()) {
+            return None;
+        }
+        let eigen = SymmetricEigen::new(matrix);
+        let largest = eigen.eigenvalues.max();
+        if largest <= 0.0 {
+            return None;
+        }
+        let mut solution = SVector::<f64, 7>::zeros();
+        for k in 0..7 {
+            let stiffness = eigen.eigenvalues[k];
+            if stiffness > RANK_TOLERANCE * largest {
+                let direction = eigen.eigenvectors.column(k);
+                solution += direction * (direction.dot(&rhs) / (stiffness * (1.0 + damping)));
+            }
+        }
+        let translation = Vector3::new(solution[3], solution[4], solution[5]) * self.length;
+        Some(Solution {
+            rotation: Vector3::new(solution[0], solution[1], solution[2]),
+            translation,
+            scale: solution[6],
+        })
+    }
+}
+
+/// Weighted centroid and mean distance to it of some points, in index order.
+pub(super) fn center_and_radius<'a>(
+    points: impl Iterator<Item = (&'a Point3, f64)> + Clone,
+) -> Option<(Point3, f64)> {
+    let (mut sum, mut total) = (Vector3::zeros(), 0.0);
+    for (point, weight) in points.clone() {
+        sum += point.coords * weight;
+        total += weight;
+    }
+    if total <= 0.0 {
+        return None;
+    }
+    let center = Point3::from(sum / total);
+    let mean = points.map(|(p, w)| (p - center).norm() * w).sum::<f64>() / total;
+    (mean > 0.0 && mean.is_finite()).then_some((center, mean))
+}

@@ -1,0 +1,35 @@
+//! Why an iteration ended.
+
+use serde::{Deserialize, Serialize};
+
+/// Why an iteration ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Termination {
+    /// The last step moved no corner of the part's box by more than the tolerance.
+    Converged,
+    /// The iteration cap was reached first.
+    MaxIterations,
+    /// The user asked to stop; the pose is the best so far.
+    Stopped,
+    /// The kept pairs fix no motion (too few of them, or all on one line).
+    Degenerate,
+    /// No point found a partner.
+    NoPairs,
+    /// A closed-form fit, which does not iterate.
+    ClosedForm,
+}
+
+impl Termination {
+    /// The reason in words.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::MaxIterations => "reached the iteration limit",
+            Self::Stopped => "stopped on request",
+            Self::Degenerate => "the pairs fix no motion",
+            Self::NoPairs => "no point found a partner",
+            Self::ClosedForm => "closed form",
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! A start on its way, and the choice of data and model it runs in.
+
+use super::starts::Start;
+use crate::geometry::Similarity;
+use crate::registration::agreement::same_pose;
+use crate::registration::icp::{Data, Frames, Run};
+use crate::registration::observer::MatchMonitor;
+use crate::registration::result::{Side, StartOutcome, StartRecord};
+use crate::registration::surface::Surface;
+
+/// The surfaces of one stage in their roles.
+#[derive(Clone, Copy)]
+pub(crate) struct Pairing<'a> {
+    /// Supplies the points and moves.
+    pub(crate) data: &'a Surface,
+    /// Supplies the triangles and stays.
+    pub(crate) model: &'a Surface,
+}
+
+impl Pairing<'_> {
+    pub(crate) fn swapped(self) -> Self {
+        Self {
+            data: self.model,
+            model: self.data,
+        }
+    }
+}
+
+/// One choice of hand and of data and model.
+pub(crate) struct DataChoice<'a> {
+    /// The meshes of the coarse stage.
+    pub(crate) coarse: Pairing<'a>,
+    /// The meshes of the stages that follow.
+    pub(crate) fine: Pairing<'a>,
+    pub(crate) frames: Frames,
+    pub(crate) mirrored: bool,
+}
+
+impl DataChoice<'_> {
+    pub(crate) fn data_side(&self) -> Side {
+        self.frames.data_side()
+    }
+
+    /// The motion of the data that a start (a motion of the possibly mirrored source) stands for.
+    fn model_from_data(&self, start: &Start) -> Similarity {
+        if self.frames.data_is_target {
+            start.target_from_source.inverse()
+        } else {
+            start.target_from_source
+        }
+    }
+
+    /// True for poses of the data that a further refinement would bring together.
+    pub(super) fn is_same(&self, a: &Similarity, b: &Similarity) -> bool {
+        same_pose(a, b, &self.fine.data.measures().into())
+    }
+}
+
+/// A start on its way.
+pub(crate) struct Candidate {
+    pub(crate) start: Start,
+    pub(crate) first: Similarity,
+    pub(crate) run: Run,
+    /// Set once it is out.
+    pub(crate) outcome: Option<StartOutcome>,
+}
+
+impl Candidate {
+    pub(crate) fn new(choice: &DataChoice<'_>, start: Start, start_idx: usize) -> Self {
+        let pose = choice.model_from_data(&start);
+        Self {
+            start,
+            first: choice.frames.target_from_source(&pose),
+            run: Run::new(start_idx, pose),
+            outcome: None,
+        }
+    }
+
+    pub(crate) fn is_alive(&self) -> bool {
+        self.outcome.is_none()
+    }
+
+    /// Reports that it begins, or how it ended.
+    pub(crate) fn report(&self, choice: &DataChoice<'_>, monitor: &MatchMonitor<'_>) {
+        monitor.start(self.run.start_idx, || self.record(choice));
+    }
+
+    /// Takes it out of the search and reports why.
+    pub(crate) fn end(
+        &mut self,
+        outcome: StartOutcome,
+        choice: &DataChoice<'_>,
+        monitor: &MatchMonitor<'_>,
+    ) {
+        self.outcome = Some(outcome);
+        self.report(choice, monitor);
+    }
+
+    /// The record so far, without iterations.
+    fn record(&self, choice: &DataChoice<'_>) -> StartRecord {
+        StartRecord {
+            kind: self.start.kind,
+            flipped: self.start.flipped,
+            mirrored: choice.mirrored,
+            data_side: choice.data_side(),
+            first: self.first,
+            last: choice.frames.target_from_source(&self.run.model_from_data),
+            score: self.run.score,
+            p95: self.run.spread().p95,
+            took: self.run.took,
+            termination: self.run.termination,
+            outcome: self.outcome,
+            iterations: Vec::new(),
+        }
+    }
+
+    /// The whole record of a search that has ended: who is still alive is a runner-up.
+    pub(crate) fn into_record(self, choice: &DataChoice<'_>) -> StartRecord {
+        let record = self.record(choice);
+        StartRecord {
+            outcome: Some(self.outcome.unwrap_or(StartOutcome::RunnerUp)),
+            iterations: self.run.records,
+            ..record
+        }
+    }
+}
+
+/// Data of a stage with both directions of the normals.
+pub(crate) struct BothSigns([Data; 2]);
+
+impl BothSigns {
+    pub(crate) fn new(data: Data) -> Self {
+        let flipped = data.flipped();
+        Self([data, flipped])
+    }
+
+    pub(crate) fn get(&self, flipped: bool) -> &Data {
+        &self.0[usize::from(flipped)]
+    }
+}

@@ -1,0 +1,408 @@
+//! The search for one hand of the source, from first poses to ranked candidates.
+
+use std::borrow::Cow;
+use std::time::{Duration, Instant};
+
+use super::candidate::{Candidate, DataChoice, Pairing};
+use super::rounds::{ranking, refine, run_coarse, run_every_start};
+use super::score::{PoseScorer, TwoSided};
+use super::sizes::{
+    incompatible_settings, last_stage_swaps, natural_data_side, sizes_incompatible,
+};
+use super::starts::{Start, extra_starts, patch_starts, starts};
+use super::variations::{mirror_images, twins};
+use crate::geometry::Similarity;
+use crate::monitor::Cancelled;
+use crate::registration::RegistrationError;
+use crate::registration::icp::{
+    Data, Frames, Run, Selection, Stage, StageInput, advance, edge_length, natural_floor,
+    stage_rules,
+};
+use crate::registration::input::MatchInput;
+use crate::registration::observer::MatchMonitor;
+use crate::registration::result::{Side, StartOutcome};
+use crate::registration::settings::{DataSide, MatchSettings, Search};
+use crate::registration::subsample::all_nodes;
+use crate::registration::surface::Surface;
+
+/// Distinct poses that are refined and compared.
+const N_DISTINCT: usize = 4;
+/// A pose is acceptable if its kept pairs lie within this many floors …
+const ACCEPTABLE_RMSE: f64 = 2.5;
+/// … and make up this fraction of the data.
+const ACCEPTABLE_FRACTION: f64 = 0.7;
+/// Where less of what could be covered is kept, the opposite hand is tried too.
+const CONFIDENT_FRACTION: f64 = 0.85;
+/// Mirror images that score so much worse than the winner after the coarse stage are not refined: a
+/// part that is nearly its own mirror image comes within a factor of a few.
+const CLEARLY_WORSE: f64 = 8.0;
+/// Deviation of a reduced mesh from the sheet, as a fraction of its mean edge length. The car floor
+/// measures 0.01 from 10,000 down to 500 triangles.
+const REDUCED_ERROR: f64 = 0.02;
+/// Below this kept fraction the data overhangs, and the other mesh's points are tried as well.
+const OVERHANG: f64 = 0.9;
+/// The smaller part is aligned with patches of the larger below this ratio of areas.
+const PATCH_RATIO: f64 = 0.75;
+
+/// The search for one hand of the source: its choices of data and model with their candidates.
+pub(crate) struct MultiStart<'a> {
+    input: MatchInput<'a>,
+    settings: Cow<'a, MatchSettings>,
+    mirror: Option<Similarity>,
+    pub(crate) choices: Vec<(DataChoice<'a>, Vec<Candidate>)>,
+    scorer: PoseScorer<'a>,
+    pub(crate) timings: SearchTimings,
+}
+
+/// How long the phases of one search took.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct SearchTimings {
+    pub(crate) align: Duration,
+    pub(crate) coarse: Duration,
+    pub(crate) refine: Duration,
+}
+
+/// Numbers the starts of a match from 0, whichever search they belong to.
+#[derive(Debug, Default)]
+pub(crate) struct StartNumbers(usize);
+
+impl StartNumbers {
+    fn next(&mut self) -> usize {
+        self.0 += 1;
+        self.0 - 1
+    }
+}
+
+/// A pose that reached the last comparison.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RankedCandidate {
+    /// Index of its choice of data and model.
+    pub(crate) choice: usize,
+    /// Its index there.
+    pub(crate) candidate: usize,
+    pub(crate) target_from_source: Similarity,
+    pub(crate) scores: TwoSided,
+}
+
+/// The winner after its last stage.
+pub(crate) struct Refined {
+    pub(crate) target_from_source: Similarity,
+    pub(crate) run: Run,
+    pub(crate) data_side: Side,
+    pub(crate) flipped: bool,
+    pub(crate) floor: f64,
+}
+
+impl<'a> MultiStart<'a> {
+    /// `input` holds the source already mirrored where `mirror` says so.
+    pub(crate) fn new(
+        input: MatchInput<'a>,
+        settings: &'a MatchSettings,
+        mirror: Option<Similarity>,
+    ) -> Self {
+        let (source, target) = (input.source, input.target);
+        let (reach, settings) = if sizes_incompatible(source, target) {
+            let diagonal = |surface: &Surface| surface.measures().diagonal;
+            let reach = diagonal(source).min(diagonal(target));
+            (reach, Cow::Owned(incompatible_settings(settings)))
+        } else {
+            (f64::INFINITY, Cow::Borrowed(settings))
+        };
+        Self {
+            scorer: PoseScorer::new(source, target, settings.allowance, reach),
+            input,
+            settings,
+            mirror,
+            choices: Vec::new(),
+            timings: SearchTimings::default(),
+        }
+    }
+
+    /// Runs the starts, and the other choice of data where the data overhangs.
+    pub(crate) fn run(
+        &mut self,
+        numbers: &mut StartNumbers,
+        monitor: &MatchMonitor<'_>,
+    ) -> Result<(), RegistrationError> {
+        let begin = Instant::now();
+        let first = starts(self.input.source, self.input.target, &self.settings.starts)?;
+        self.timings.align += begin.elapsed();
+        let side = self.data_side();
+        self.add_choice(side);
+        self.run_starts(0, &first, numbers, monitor)?;
+        let swaps = self.settings.data_side == DataSide::Auto
+            && self.settings.search == Search::CoarseToFine
+            && !self.sizes_incompatible()
+            && self.best_fraction(0) < OVERHANG;
+        if swaps {
+            self.add_choice(side.other());
+            self.run_starts(1, &first, numbers, monitor)?;
+        }
+        Ok(())
+    }
+
+    /// Runs extra starts, for when no pose is acceptable.
+    pub(crate) fn run_extra_starts(
+        &mut self,
+        numbers: &mut StartNumbers,
+        monitor: &MatchMonitor<'_>,
+    ) -> Result<(), RegistrationError> {
+        let applies = self.settings.starts.extra_starts
+            && !self.sizes_incompatible()
+            && self.settings.search == Search::CoarseToFine
+            && self.settings.selection != Selection::All;
+        if applies && !monitor.stop_requested() {
+            let begin = Instant::now();
+            let (source, target) = (self.input.source, self.input.target);
+            let mut extra = extra_starts(source, target);
+            let (a, b) = (source.measures().area, target.measures().area);
+            if a.min(b) < PATCH_RATIO * a.max(b) {
+                extra.extend(patch_starts(source, target, &self.settings.starts)?);
+            }
+            self.timings.align += begin.elapsed();
+            self.run_starts(0, &extra, numbers, monitor)?;
+        }
+        Ok(())
+    }
+
+    /// True if no pose can be worth much because the sizes are too different.
+    pub(crate) fn sizes_incompatible(&self) -> bool {
+        sizes_incompatible(self.input.source, self.input.target)
+    }
+
+    fn data_side(&self) -> Side {
+        match self.settings.data_side {
+            DataSide::Source => Side::Source,
+            DataSide::Target => Side::Target,
+            DataSide::Auto => natural_data_side(self.input.source, self.input.target),
+        }
+    }
+
+    fn add_choice(&mut self, side: Side) {
+        let in_roles = |source, target| match side {
+            Side::Source => Pairing {
+                data: source,
+                model: target,
+            },
+            Side::Target => Pairing {
+                data: target,
+                model: source,
+            },
+        };
+        let full = in_roles(self.input.source, self.input.target);
+        let coarse = self.input.reduced.map_or(full, |(s, t)| in_roles(s, t));
+        let choice = DataChoice {
+            coarse,
+            fine: if self.settings.refine_on_full {
+                full
+            } else {
+                coarse
+            },
+            frames: Frames {
+                data_is_target: side == Side::Target,
+                mirror: self.mirror.unwrap_or_default(),
+            },
+            mirrored: self.mirror.is_some(),
+        };
+        self.choices.push((choice, Vec::new()));
+    }
+
+    /// Runs `starts` with one choice of data, from the coarse stage to the refinement.
+    fn run_starts(
+        &mut self,
+        choice_idx: usize,
+        starts: &[Start],
+        numbers: &mut StartNumbers,
+        monitor: &MatchMonitor<'_>,
+    ) -> Result<(), Cancelled> {
+        let begin = Instant::now();
+        let settings = &*self.settings;
+        let (choice, done) = &mut self.choices[choice_idx];
+        let mut enter = |starts: &[Start]| -> Vec<Candidate> {
+            let new = starts.iter().map(|start| {
+                let candidate = Candidate::new(choice, *start, numbers.next());
+                candidate.report(choice, monitor);
+                candidate
+            });
+            new.collect()
+        };
+        let mut candidates = enter(starts);
+        if settings.search == Search::EveryStart {
+            run_every_start(choice, &mut candidates, settings, monitor)?;
+            self.timings.coarse += begin.elapsed();
+            done.extend(candidates);
+            return Ok(());
+        }
+        run_coarse(choice, &mut candidates, settings, monitor)?;
+        // A part that is nearly symmetric has a twin pose close by which no other start need reach.
+        if let Some(&best) = ranking(&candidates).first() {
+            let mut late = enter(&twins(choice, &candidates[best]));
+            run_coarse(choice, &mut late, settings, monitor)?;
+            candidates.extend(late);
+        }
+        self.timings.coarse += begin.elapsed();
+        let begin = Instant::now();
+        refine(choice, &mut candidates, N_DISTINCT, settings, monitor)?;
+        self.timings.refine += begin.elapsed();
+        done.extend(candidates);
+        Ok(())
+    }
+
+    fn best_fraction(&self, choice_idx: usize) -> f64 {
+        let (_, candidates) = &self.choices[choice_idx];
+        ranking(candidates)
+            .first()
+            .map_or(0.0, |&i| candidates[i].run.fraction)
+    }
+
+    /// True if the best pose leaves so little to explain that the opposite hand need not be tried.
+    pub(crate) fn is_confident(&self) -> bool {
+        let floor = natural_floor(self.input.source, self.input.target) + self.settings.allowance;
+        self.choices.iter().any(|(choice, candidates)| {
+            let Pairing { data, model } = choice.fine;
+            let bound = (model.measures().area / data.measures().area).min(1.0);
+            ranking(candidates).first().is_some_and(|&i| {
+                let run = &candidates[i].run;
+                run.rmse <= floor && run.fraction >= CONFIDENT_FRACTION * bound
+            })
+        })
+    }
+
+    /// True if a pose has a fair part of the data within a few floors of the model.
+    pub(crate) fn is_acceptable(&self) -> bool {
+        let limit = ACCEPTABLE_RMSE * self.expected_error() + self.settings.allowance;
+        self.choices.iter().any(|(_, candidates)| {
+            ranking(candidates).first().is_some_and(|&i| {
+                let run = &candidates[i].run;
+                run.rmse <= limit && run.fraction >= ACCEPTABLE_FRACTION
+            })
+        })
+    }
+
+    /// How far the searched meshes lie apart when perfectly placed. Two reductions of one sheet
+    /// put their vertices at different places, so they differ by more than their own facets say.
+    fn expected_error(&self) -> f64 {
+        match self.input.reduced {
+            None => natural_floor(self.input.source, self.input.target),
+            Some((source, target)) => {
+                natural_floor(source, target).max(REDUCED_ERROR * edge_length(source, target))
+            }
+        }
+    }
+
+    /// Score of the best mirror image of `winner` over its own score: a part that is nearly its own
+    /// mirror image fits well with the wrong hand, and only the comparison tells. `None` if no
+    /// mirror image found a pose.
+    pub(crate) fn mirror_ratio(
+        &self,
+        winner: &RankedCandidate,
+        monitor: &MatchMonitor<'_>,
+    ) -> Result<Option<f64>, Cancelled> {
+        let (choice, candidates) = &self.choices[winner.choice];
+        let images = mirror_images(choice, &candidates[winner.candidate]);
+        let candidate = |start: &Start| Candidate::new(choice, *start, 0);
+        let mut images: Vec<Candidate> = images.iter().map(candidate).collect();
+        run_coarse(choice, &mut images, &self.settings, monitor)?;
+        let best_ratio = |images: &[Candidate]| {
+            let best = *ranking(images).first()?;
+            let (_, scores) = self.score(choice, &images[best]);
+            Some(scores.score() / winner.scores.score())
+        };
+        let coarse = best_ratio(&images);
+        if coarse.is_none_or(|ratio| ratio > CLEARLY_WORSE) {
+            return Ok(coarse);
+        }
+        refine(choice, &mut images, 1, &self.settings, monitor)?;
+        Ok(best_ratio(&images))
+    }
+
+    /// The pose of a candidate and its scores.
+    fn score(&self, choice: &DataChoice<'_>, candidate: &Candidate) -> (Similarity, TwoSided) {
+        let pose = choice
+            .frames
+            .target_from_source(&candidate.run.model_from_data);
+        // The scorer holds the source as it was searched with, mirrored or not.
+        let searched = pose.after(&choice.frames.mirror.inverse());
+        let scores = self.scorer.score(&searched, candidate.start.flipped);
+        (pose, scores)
+    }
+
+    /// All that are alive, best first by the two-sided score, without those that met.
+    pub(crate) fn ranked_candidates(&self) -> Vec<RankedCandidate> {
+        let mut found = Vec::new();
+        for (choice_idx, (choice, candidates)) in self.choices.iter().enumerate() {
+            for candidate_idx in ranking(candidates) {
+                let (pose, scores) = self.score(choice, &candidates[candidate_idx]);
+                found.push(RankedCandidate {
+                    choice: choice_idx,
+                    candidate: candidate_idx,
+                    target_from_source: pose,
+                    scores,
+                });
+            }
+        }
+        found.sort_by(|a, b| a.scores.score().total_cmp(&b.scores.score()));
+        found
+    }
+
+    /// Runs the winner on all points of the full meshes, if the settings ask for it.
+    pub(crate) fn refine_winner(
+        &mut self,
+        winner: &RankedCandidate,
+        monitor: &MatchMonitor<'_>,
+    ) -> Result<Refined, Cancelled> {
+        let (choice, candidates) = &mut self.choices[winner.choice];
+        let candidate = &mut candidates[winner.candidate];
+        candidate.end(StartOutcome::Won, choice, monitor);
+        let flipped = candidate.start.flipped;
+        let Pairing { data, model } = choice.fine;
+        if !self.settings.refine_on_full {
+            let rules = stage_rules(Stage::Refine, &self.settings, data, model);
+            return Ok(Refined {
+                target_from_source: winner.target_from_source,
+                run: candidate.run.clone(),
+                data_side: choice.data_side(),
+                flipped,
+                floor: rules.selection.floor,
+            });
+        }
+        let swaps = self.settings.data_side == DataSide::Auto && last_stage_swaps(choice.fine);
+        let (pairing, mut frames) = (choice.fine, choice.frames);
+        let pairing = if swaps {
+            frames.data_is_target = !frames.data_is_target;
+            pairing.swapped()
+        } else {
+            pairing
+        };
+        let rules = stage_rules(Stage::Full, &self.settings, pairing.data, pairing.model);
+        let mut points = Data::new(all_nodes(pairing.data, true));
+        if flipped {
+            points = points.flipped();
+        }
+        let run = &mut candidate.run;
+        run.enter_stage();
+        if swaps {
+            run.model_from_data = run.model_from_data.inverse();
+        }
+        monitor.phase(rules.stage.name());
+        let input = StageInput {
+            data: &points,
+            model: pairing.model,
+            rules: &rules,
+            frames: &frames,
+        };
+        advance(run, &input, rules.max_iterations, monitor)?;
+        let refined = Refined {
+            target_from_source: frames.target_from_source(&run.model_from_data),
+            run: run.clone(),
+            data_side: frames.data_side(),
+            flipped,
+            floor: rules.selection.floor,
+        };
+        // The record of the start keeps the roles it was run in.
+        if swaps {
+            run.model_from_data = run.model_from_data.inverse();
+        }
+        Ok(refined)
+    }
+}

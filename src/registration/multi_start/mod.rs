@@ -1,0 +1,18 @@
+//! The search from many first poses.
+//!
+//! Each ICP run ends in a local minimum, so many [`starts`] run on few points in [`rounds`] that
+//! keep the better ones; the best distinct ones are refined, compared from both sides
+//! ([`score`]), and the winner is refined on the full meshes ([`driver`], [`outcome`]).
+
+mod candidate;
+mod driver;
+mod holes;
+mod outcome;
+mod rounds;
+mod score;
+mod sizes;
+pub mod starts;
+mod variations;
+
+pub(super) use driver::{MultiStart, StartNumbers};
+pub(super) use outcome::decide;

@@ -1,0 +1,171 @@
+//! The last comparison over all searches, and the outcome it gives.
+
+use std::time::Instant;
+
+use super::driver::{MultiStart, RankedCandidate, Refined, StartNumbers};
+use super::score::TwoSided;
+use crate::geometry::Similarity;
+use crate::registration::RegistrationError;
+use crate::registration::agreement::same_pose;
+use crate::registration::closed_form::{Motion, PairFit, fit_pairs};
+use crate::registration::icp::{Run, Spread, Termination};
+use crate::registration::input::{MatchInput, Mirrored};
+use crate::registration::observer::MatchMonitor;
+use crate::registration::result::{
+    Alternative, MatchOutcome, MatchTimings, MirrorCheck, Side, StartRecord,
+};
+use crate::registration::scale_check::ScaleCheck;
+use crate::registration::settings::{Hand, MatchSettings};
+
+/// Alternatives that are worse than this are not worth showing.
+const WORTH_SHOWING: f64 = 5.0;
+
+/// Compares what the searches found, refines the best pose and collects the outcome.
+pub(crate) fn decide(
+    input: &MatchInput<'_>,
+    settings: &MatchSettings,
+    mut searches: Vec<MultiStart<'_>>,
+    monitor: &MatchMonitor<'_>,
+) -> Result<MatchOutcome, RegistrationError> {
+    let ranked = rank(&searches);
+    let &(best, winner) = ranked.first().ok_or(RegistrationError::NoPairs)?;
+    let is_confident = searches[best].is_confident();
+    let begin = Instant::now();
+    let refined = searches[best].refine_winner(&winner, monitor)?;
+    let full = begin.elapsed();
+    let hand_is_known = settings.hand == Hand::Either || searches[best].sizes_incompatible();
+    let mirror_ratio = if hand_is_known || monitor.stop_requested() {
+        None
+    } else if is_confident || settings.hand == Hand::Mirrored {
+        let unobserved = monitor.monitor.without_observer();
+        searches[best].mirror_ratio(&winner, &MatchMonitor::from(&unobserved))?
+    } else {
+        opposite_hand(input, settings, &winner.scores, monitor)?
+    };
+    let Refined {
+        target_from_source,
+        run,
+        data_side,
+        flipped,
+        floor,
+    } = refined;
+    let alternatives = alternatives(input, &ranked, &target_from_source, &searches);
+    let pairs = fit_kept(&run);
+    let Spread { p95, max } = run.spread();
+    let (starts, mut timings) = collect_records(searches);
+    timings.full = full;
+    let pair_scale = pairs.map_or(1.0, |fit| match data_side {
+        Side::Source => fit.scale,
+        Side::Target => 1.0 / fit.scale,
+    });
+    let pair_scale = pair_scale * target_from_source.scale;
+    Ok(MatchOutcome {
+        target_from_source,
+        termination: run.termination.unwrap_or(Termination::MaxIterations),
+        rmse: run.rmse,
+        p95,
+        max,
+        fraction: run.fraction,
+        data_side,
+        normals_opposed: flipped,
+        objective: run.score,
+        floor,
+        alternatives,
+        winner: run.start_idx,
+        starts,
+        scale_check: ScaleCheck::new(input.source, input.target, pair_scale),
+        mirror_check: MirrorCheck {
+            mirrored_rmse: pairs.map_or(run.rmse, |fit| fit.mirrored_rmse),
+            score_ratio: mirror_ratio,
+        },
+        timings,
+    })
+}
+
+/// The candidates of all searches, best first, each with the index of its search.
+fn rank(searches: &[MultiStart<'_>]) -> Vec<(usize, RankedCandidate)> {
+    let mut ranked: Vec<(usize, RankedCandidate)> = searches
+        .iter()
+        .enumerate()
+        .flat_map(|(i, search)| search.ranked_candidates().into_iter().map(move |c| (i, c)))
+        .collect();
+    ranked.sort_by(|a, b| a.1.scores.score().total_cmp(&b.1.scores.score()));
+    ranked
+}
+
+/// Poses other than the result, each once.
+fn alternatives(
+    input: &MatchInput<'_>,
+    ranked: &[(usize, RankedCandidate)],
+    result: &Similarity,
+    searches: &[MultiStart<'_>],
+) -> Vec<Alternative> {
+    let part = input.source.measures().into();
+    let is_same = |a: &Similarity, b: &Similarity| same_pose(a, b, &part);
+    let mut found: Vec<Alternative> = Vec::new();
+    let best = ranked[0].1.scores;
+    for (search, ranked) in ranked {
+        let pose = ranked.target_from_source;
+        let score_ratio = best.ratio_of(&ranked.scores);
+        let known =
+            is_same(&pose, result) || found.iter().any(|a| is_same(&a.target_from_source, &pose));
+        if known || score_ratio > WORTH_SHOWING {
+            continue;
+        }
+        let (_, candidates) = &searches[*search].choices[ranked.choice];
+        found.push(Alternative {
+            target_from_source: pose,
+            score_ratio,
+            start: candidates[ranked.candidate].run.start_idx,
+        });
+    }
+    found.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
+    found
+}
+
+/// Score of the mirrored source relative to `best`; `None` if it found no pose.
+fn opposite_hand(
+    input: &MatchInput<'_>,
+    settings: &MatchSettings,
+    best: &TwoSided,
+    monitor: &MatchMonitor<'_>,
+) -> Result<Option<f64>, RegistrationError> {
+    let mirrored = Mirrored::of(input, monitor.monitor)?;
+    // Starts of the mirrored part are no starts of this match, so nobody hears of them.
+    let unobserved = monitor.monitor.without_observer();
+    let mirror = Some(Similarity::mirror_x());
+    let mut search = MultiStart::new(mirrored.input(input), settings, mirror);
+    let mut numbers = StartNumbers::default();
+    search.run(&mut numbers, &MatchMonitor::from(&unobserved))?;
+    let found = search.ranked_candidates();
+    Ok(found.first().map(|c| c.scores.score() / best.score()))
+}
+
+/// The records of all starts in order of their numbers, and the summed times.
+fn collect_records(searches: Vec<MultiStart<'_>>) -> (Vec<StartRecord>, MatchTimings) {
+    let mut timings = MatchTimings::default();
+    let mut starts = Vec::new();
+    for search in searches {
+        timings.align += search.timings.align;
+        timings.coarse += search.timings.coarse;
+        timings.refine += search.timings.refine;
+        for (choice, candidates) in search.choices {
+            let records = candidates
+                .into_iter()
+                .map(|candidate| (candidate.run.start_idx, candidate.into_record(&choice)));
+            starts.extend(records);
+        }
+    }
+    starts.sort_by_key(|(idx, _)| *idx);
+    let starts = starts.into_iter().map(|(_, record)| record).collect();
+    (starts, timings)
+}
+
+/// The closed-form fit of the kept pairs with free scale, a check on units and hand.
+fn fit_kept(run: &Run) -> Option<PairFit> {
+    let pairs = run
+        .kept_pairs()
+        .map(|pair| (&pair.moved, &pair.matched, pair.weight));
+    // The rigid fit gives the mirrored rmse in comparable form and tells the best scale as well.
+    fit_pairs(pairs, Motion::Rigid).ok()
+}

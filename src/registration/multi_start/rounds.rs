@@ -1,0 +1,260 @@
+//! The rounds of the search: all starts on few points, the best distinct ones on more.
+
+use rayon::prelude::*;
+
+use super::candidate::{BothSigns, Candidate, DataChoice, Pairing};
+use crate::monitor::Cancelled;
+use crate::registration::icp::{
+    Data, Run, Stage, StageInput, StageRules, Termination, advance, stage_rules,
+};
+use crate::registration::observer::MatchMonitor;
+use crate::registration::result::StartOutcome;
+use crate::registration::settings::MatchSettings;
+use crate::registration::subsample::{all_nodes, subsample};
+use crate::registration::surface::Surface;
+
+/// Some iterations of the coarse stage at whose end only the better candidates go on.
+struct Round {
+    n_iterations: usize,
+    /// Fraction of the coarse stage's points in use: far from the pose a few say as much as many,
+    /// and queries from far away are the expensive ones.
+    points: f64,
+    /// Fraction of the candidates that goes on.
+    keep: f64,
+    /// At least so many go on.
+    least: usize,
+}
+
+/// The coarse stage of the usual starts, and of those that a preselection has left.
+const ROUNDS: [Round; 3] = [
+    Round {
+        n_iterations: 5,
+        points: 0.5,
+        keep: 0.5,
+        least: 10,
+    },
+    Round {
+        n_iterations: 5,
+        points: 1.0,
+        keep: 0.5,
+        least: 6,
+    },
+    Round {
+        n_iterations: 10,
+        points: 1.0,
+        keep: 0.5,
+        least: 4,
+    },
+];
+/// From this many starts on a preselection comes first, so that a wide search costs about as much
+/// as a narrow one.
+const MANY_STARTS: usize = 40;
+/// The round that comes first with many starts.
+const PRESELECTION: Round = Round {
+    n_iterations: 4,
+    points: 0.3,
+    keep: 0.25,
+    least: 24,
+};
+/// A candidate whose score is this many times the best one's is dropped at the end of a round.
+const CLEARLY_BEHIND: f64 = 8.0;
+/// Iterations of the refinement after which candidates that are clearly behind are dropped.
+const PRUNE_AFTER: usize = 10;
+
+/// What all candidates of a round are advanced on.
+#[derive(Clone, Copy)]
+struct RoundInput<'a> {
+    points: &'a BothSigns,
+    model: &'a Surface,
+    rules: &'a StageRules,
+}
+
+/// How many candidates go on, and after how many iterations in all.
+#[derive(Clone, Copy)]
+struct Cut {
+    keep: usize,
+    after: usize,
+}
+
+/// Runs all candidates on few points, dropping and merging after each round.
+pub(crate) fn run_coarse(
+    choice: &DataChoice<'_>,
+    candidates: &mut [Candidate],
+    settings: &MatchSettings,
+    monitor: &MatchMonitor<'_>,
+) -> Result<(), Cancelled> {
+    let Pairing { data, model } = choice.coarse;
+    let rules = stage_rules(Stage::Coarse, settings, data, model);
+    let preselection = (candidates.len() >= MANY_STARTS).then_some(PRESELECTION);
+    let mut in_use: Option<(f64, BothSigns)> = None;
+    let mut done = 0;
+    for round in preselection.iter().chain(&ROUNDS) {
+        monitor.phase(rules.stage.name());
+        done += round.n_iterations;
+        let unchanged = in_use
+            .take()
+            .filter(|(fraction, _)| *fraction == round.points);
+        let (_, points) = in_use.insert(unchanged.unwrap_or_else(|| {
+            // Scores and pairs of other points do not carry over.
+            for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
+                candidate.run.enter_stage();
+            }
+            let n_points = (round.points * settings.n_coarse_points as f64).ceil() as usize;
+            let points = BothSigns::new(Data::new(subsample(data, n_points)));
+            (round.points, points)
+        }));
+        let input = RoundInput {
+            points,
+            model,
+            rules: &rules,
+        };
+        advance_all(choice, candidates, input, round.n_iterations, monitor)?;
+        let n_alive = candidates.iter().filter(|c| c.is_alive()).count();
+        let keep = ((n_alive as f64 * round.keep).ceil() as usize).max(round.least);
+        merge(choice, candidates, monitor);
+        prune(choice, candidates, Cut { keep, after: done }, monitor);
+    }
+    Ok(())
+}
+
+/// Runs the best `n_distinct` candidates on more points of the fine meshes; the rest is dropped.
+pub(crate) fn refine(
+    choice: &DataChoice<'_>,
+    candidates: &mut [Candidate],
+    n_distinct: usize,
+    settings: &MatchSettings,
+    monitor: &MatchMonitor<'_>,
+) -> Result<(), Cancelled> {
+    let Pairing { data, model } = choice.fine;
+    let n_coarse = candidates.iter().map(|c| c.run.records.len()).max();
+    let n_coarse = n_coarse.unwrap_or(0);
+    let cut = |after| Cut {
+        keep: n_distinct,
+        after,
+    };
+    prune(choice, candidates, cut(n_coarse), monitor);
+    let points = BothSigns::new(Data::new(subsample(data, settings.n_refine_points)));
+    let rules = stage_rules(Stage::Refine, settings, data, model);
+    monitor.phase(rules.stage.name());
+    for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
+        candidate.run.enter_stage();
+    }
+    let input = RoundInput {
+        points: &points,
+        model,
+        rules: &rules,
+    };
+    let first = PRUNE_AFTER.min(rules.max_iterations);
+    for n_iterations in [first, rules.max_iterations - first] {
+        advance_all(choice, candidates, input, n_iterations, monitor)?;
+        merge(choice, candidates, monitor);
+        prune(choice, candidates, cut(n_coarse + n_iterations), monitor);
+    }
+    Ok(())
+}
+
+/// Runs every candidate on all points of the coarse meshes to its end, first with a wide basin.
+pub(crate) fn run_every_start(
+    choice: &DataChoice<'_>,
+    candidates: &mut [Candidate],
+    settings: &MatchSettings,
+    monitor: &MatchMonitor<'_>,
+) -> Result<(), Cancelled> {
+    let Pairing { data, model } = choice.coarse;
+    let points = BothSigns::new(Data::new(all_nodes(data, true)));
+    for stage in [Stage::WideBasin, Stage::Converge] {
+        let rules = stage_rules(stage, settings, data, model);
+        monitor.phase(rules.stage.name());
+        for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
+            candidate.run.enter_stage();
+        }
+        let input = RoundInput {
+            points: &points,
+            model,
+            rules: &rules,
+        };
+        advance_all(choice, candidates, input, rules.max_iterations, monitor)?;
+    }
+    merge(choice, candidates, monitor);
+    Ok(())
+}
+
+/// Continues all that are alive, in parallel; none knows of the others.
+fn advance_all(
+    choice: &DataChoice<'_>,
+    candidates: &mut [Candidate],
+    input: RoundInput<'_>,
+    n_iterations: usize,
+    monitor: &MatchMonitor<'_>,
+) -> Result<(), Cancelled> {
+    candidates
+        .par_iter_mut()
+        .filter(|candidate| candidate.is_alive())
+        .try_for_each(|candidate| {
+            let stage_input = StageInput {
+                data: input.points.get(candidate.start.flipped),
+                model: input.model,
+                rules: input.rules,
+                frames: &choice.frames,
+            };
+            advance(&mut candidate.run, &stage_input, n_iterations, monitor)
+        })?;
+    for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
+        if has_failed(&candidate.run) {
+            candidate.end(StartOutcome::Failed, choice, monitor);
+        }
+    }
+    Ok(())
+}
+
+fn has_failed(run: &Run) -> bool {
+    let no_pairs = run.termination == Some(Termination::NoPairs);
+    no_pairs || !run.score.is_finite()
+}
+
+/// Indices of those alive, best score first; equal scores in order of the starts.
+pub(crate) fn ranking(candidates: &[Candidate]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..candidates.len())
+        .filter(|&i| candidates[i].is_alive())
+        .collect();
+    order.sort_by(|&a, &b| {
+        let (x, y) = (&candidates[a].run.score, &candidates[b].run.score);
+        x.total_cmp(y).then(a.cmp(&b))
+    });
+    order
+}
+
+/// Lets the best go on that are not clearly behind.
+fn prune(
+    choice: &DataChoice<'_>,
+    candidates: &mut [Candidate],
+    cut: Cut,
+    monitor: &MatchMonitor<'_>,
+) {
+    let order = ranking(candidates);
+    let Some(&first) = order.first() else {
+        return;
+    };
+    let limit = CLEARLY_BEHIND * candidates[first].run.score;
+    let dropped = StartOutcome::Dropped { after: cut.after };
+    for (rank, i) in order.into_iter().enumerate() {
+        if rank >= cut.keep || (rank > 0 && candidates[i].run.score > limit) {
+            candidates[i].end(dropped, choice, monitor);
+        }
+    }
+}
+
+/// Of those that met in one pose only the best goes on.
+fn merge(choice: &DataChoice<'_>, candidates: &mut [Candidate], monitor: &MatchMonitor<'_>) {
+    let order = ranking(candidates);
+    for (rank, &i) in order.iter().enumerate() {
+        let better = order[..rank].iter().copied().find(|&j| {
+            let (a, b) = (&candidates[j], &candidates[i]);
+            a.is_alive() && choice.is_same(&a.run.model_from_data, &b.run.model_from_data)
+        });
+        if let Some(better) = better {
+            let start = candidates[better].run.start_idx;
+            candidates[i].end(StartOutcome::MergedInto { start }, choice, monitor);
+        }
+    }
+}

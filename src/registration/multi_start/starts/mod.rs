@@ -1,0 +1,216 @@
+//! First poses. Each is a motion of the source (already mirrored, if so asked) to the target.
+
+mod covering;
+mod frames;
+mod patches;
+mod surface_normals;
+
+use serde::{Deserialize, Serialize};
+
+pub use covering::super_fibonacci;
+pub use surface_normals::align_surface_normals;
+
+use crate::geometry::{Point3, Pose, Rotation, Similarity};
+use crate::registration::surface::Surface;
+use crate::registration::{RegistrationError, limits};
+
+/// Where first poses come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StartMethod {
+    /// Centroids and mean normals aligned, then rotated in steps about the normal.
+    #[default]
+    SurfaceNormals,
+    /// Both parts as they lie.
+    CurrentPose,
+    /// The poses of [`StartSettings::poses`].
+    GivenPoses,
+    /// All of these, principal frames, and a covering of all rotations.
+    All,
+}
+
+/// Which first poses are tried.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct StartSettings {
+    /// Where they come from.
+    pub method: StartMethod,
+    /// Largest angle between neighbouring rotations about the mean normal, 1° to 60°; 40° gives
+    /// nine rotations.
+    pub angle_segment_deg: f64,
+    /// Try both directions of the mean normal, for parts whose elements are oriented oppositely.
+    pub both_signs: bool,
+    /// Poses `target_from_source` for [`StartMethod::GivenPoses`].
+    pub poses: Vec<Similarity>,
+    /// Add principal frames and a covering of all rotations where a mean normal is weaker than
+    /// 0.2, and where no start gives an acceptable fit.
+    #[serde(alias = "widen")]
+    pub extra_starts: bool,
+}
+
+impl Default for StartSettings {
+    fn default() -> Self {
+        Self {
+            method: StartMethod::default(),
+            angle_segment_deg: 40.0,
+            both_signs: true,
+            poses: Vec::new(),
+            extra_starts: true,
+        }
+    }
+}
+
+impl StartSettings {
+    /// How many rotations the angle segment stands for, or why it is refused.
+    pub fn n_rotations(&self) -> Result<usize, RegistrationError> {
+        let degrees = self.angle_segment_deg;
+        if !limits::ANGLE_SEGMENT_DEG.contains(&degrees) {
+            return Err(RegistrationError::AngleSegment { degrees });
+        }
+        Ok((360.0 / degrees - 1e-9).ceil() as usize)
+    }
+}
+
+/// How a start came to be.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StartKind {
+    /// Mean normals aligned, then rotated by `angle_deg`.
+    SurfaceNormal {
+        /// Rotation about the mean normal, in degrees.
+        angle_deg: f64,
+    },
+    /// As `SurfaceNormal`, with one patch of the larger part.
+    Patch {
+        /// Number of the patch.
+        patch: usize,
+        /// Rotation about the patch's mean normal, in degrees.
+        angle_deg: f64,
+    },
+    /// Principal axes aligned, one of four choices of signs.
+    PrincipalFrame {
+        /// Number of the choice.
+        signs: usize,
+    },
+    /// One rotation of a covering of all rotations, centroids aligned.
+    Covering {
+        /// Number of the rotation.
+        index: usize,
+    },
+    /// One rotation of the wide search's covering, at one place of the larger part.
+    Wide {
+        /// Number of the rotation.
+        rotation: usize,
+        /// Number of the place; at the first the centroids lie on each other.
+        place: usize,
+    },
+    /// Where the parts lay.
+    // "swapped" named a start that no version made; a file with that word still opens.
+    #[serde(alias = "swapped")]
+    CurrentPose,
+    /// A pose passed in.
+    Given {
+        /// Number in the list.
+        index: usize,
+    },
+    /// A good pose rotated by 180° about one of the part's principal axes, to find twins.
+    Twin {
+        /// Number of the axis.
+        axis: usize,
+    },
+}
+
+/// A first pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start {
+    /// How it came to be.
+    pub kind: StartKind,
+    /// True if the source's normals count reversed.
+    pub flipped: bool,
+    /// The pose.
+    pub target_from_source: Similarity,
+}
+
+/// Mean normals shorter than this say little about a direction.
+const WEAK_NORMAL: f64 = 0.2;
+
+/// Number of rotations in the covering: 60 lie within 45° of every rotation.
+const N_COVERING: usize = 60;
+
+/// The starts that `settings` ask for.
+pub(crate) fn starts(
+    source: &Surface,
+    target: &Surface,
+    settings: &StartSettings,
+) -> Result<Vec<Start>, RegistrationError> {
+    let n_rotations = settings.n_rotations()?;
+    let mut found = Vec::new();
+    let all = settings.method == StartMethod::All;
+    if all || settings.method == StartMethod::CurrentPose {
+        let here = [(StartKind::CurrentPose, Similarity::identity())];
+        found.extend(with_signs(here, settings.both_signs));
+    }
+    if all || settings.method == StartMethod::GivenPoses {
+        let given = settings.poses.iter().enumerate();
+        let given = given.map(|(index, pose)| (StartKind::Given { index }, *pose));
+        found.extend(with_signs(given, settings.both_signs));
+    }
+    if all || settings.method == StartMethod::SurfaceNormals {
+        found.extend(surface_normals::starts(
+            source,
+            target,
+            n_rotations,
+            settings.both_signs,
+        ));
+        let weakest = [source, target]
+            .map(|surface| surface.measures().mean_normal.norm())
+            .into_iter()
+            .fold(1.0, f64::min);
+        if all || (settings.extra_starts && weakest < WEAK_NORMAL) {
+            found.extend(extra_starts(source, target));
+        }
+    }
+    if found.is_empty() {
+        return Err(RegistrationError::NoStarts);
+    }
+    Ok(found)
+}
+
+/// Principal frames and a covering of all rotations, both signs.
+pub(crate) fn extra_starts(source: &Surface, target: &Surface) -> Vec<Start> {
+    let mut found = with_signs(frames::poses(source, target), true);
+    found.extend(with_signs(
+        covering::poses(source, target, N_COVERING),
+        true,
+    ));
+    found
+}
+
+/// The smaller part on every patch of the larger, for parts that cover each other in part only.
+pub(crate) fn patch_starts(
+    source: &Surface,
+    target: &Surface,
+    settings: &StartSettings,
+) -> Result<Vec<Start>, RegistrationError> {
+    Ok(patches::starts(source, target, settings.n_rotations()?))
+}
+
+fn with_signs(poses: impl IntoIterator<Item = (StartKind, Similarity)>, both: bool) -> Vec<Start> {
+    let signs = if both { &[false, true][..] } else { &[false] };
+    poses
+        .into_iter()
+        .flat_map(|(kind, target_from_source)| {
+            signs.iter().map(move |&flipped| Start {
+                kind,
+                flipped,
+                target_from_source,
+            })
+        })
+        .collect()
+}
+
+/// The motion that rotates by `rotation` and moves `from` to `to`.
+fn rotation_about(rotation: Rotation, from: &Point3, to: &Point3) -> Similarity {
+    let translation = to.coords - rotation * from.coords;
+    Pose::from_parts(translation.into(), rotation).into()
+}

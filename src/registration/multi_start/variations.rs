@@ -1,0 +1,72 @@
+//! Poses near a found one in which parts that are nearly symmetric fit too.
+
+use std::f64::consts::PI;
+
+use nalgebra::Unit;
+
+use super::candidate::{Candidate, DataChoice};
+use super::starts::{Start, StartKind};
+use crate::geometry::{Matrix3, Rotation, Similarity, Vector3};
+
+/// The pose of `candidate` mirrored in each principal plane of the data: where a part that is
+/// nearly its own mirror image lies if it is of the opposite hand.
+pub(crate) fn mirror_images(choice: &DataChoice<'_>, candidate: &Candidate) -> Vec<Start> {
+    let measures = choice.fine.data.measures();
+    (0..3)
+        .map(|axis| {
+            let normal: Vector3 = measures.principal_axes.column(axis).into();
+            let rotation = Matrix3::identity() - normal * normal.transpose() * 2.0;
+            let mirror = Similarity {
+                rotation,
+                translation: measures.centroid.coords - rotation * measures.centroid.coords,
+                scale: 1.0,
+            };
+            variation(choice, candidate, &mirror, axis)
+        })
+        .collect()
+}
+
+/// The pose of `candidate` rotated by 180° about each principal axis of the data: where parts that
+/// are nearly symmetric have their twins.
+pub(crate) fn twins(choice: &DataChoice<'_>, candidate: &Candidate) -> Vec<Start> {
+    let measures = choice.fine.data.measures();
+    (0..3)
+        .map(|axis| {
+            let direction = Unit::new_normalize(measures.principal_axes.column(axis).into());
+            let rotation = Rotation::from_axis_angle(&direction, PI);
+            let shift = measures.centroid.coords - rotation * measures.centroid.coords;
+            let half_turn = Similarity {
+                rotation: *rotation.to_rotation_matrix().matrix(),
+                translation: shift,
+                scale: 1.0,
+            };
+            variation(choice, candidate, &half_turn, axis)
+        })
+        .collect()
+}
+
+/// The pose of `candidate` after the data was moved by `motion`.
+fn variation(
+    choice: &DataChoice<'_>,
+    candidate: &Candidate,
+    motion: &Similarity,
+    axis: usize,
+) -> Start {
+    let pose = candidate.run.model_from_data.after(motion);
+    Start {
+        kind: StartKind::Twin { axis },
+        // A sheet that is flipped shows its other side.
+        flipped: candidate.start.flipped != flips(motion, choice),
+        target_from_source: if choice.frames.data_is_target {
+            pose.inverse()
+        } else {
+            pose
+        },
+    }
+}
+
+/// True if `motion` reverses the mean normal of the data.
+fn flips(motion: &Similarity, choice: &DataChoice<'_>) -> bool {
+    let normal = choice.fine.data.measures().mean_normal;
+    motion.rotate(&normal).dot(&normal) < 0.0
+}

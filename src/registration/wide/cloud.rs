@@ -1,0 +1,187 @@
+//! Samples of both parts: evenly spread points, and the data's in blocks that are moved together.
+
+use super::LANES;
+use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
+use crate::registration::icp::orthonormal;
+use crate::registration::subsample::morton_order;
+use crate::registration::surface::Surface;
+use crate::search::FeatureGrid;
+
+/// `n` points with the normals of their triangles, each for the same area: the mesh is walked in
+/// its order, and a point is set wherever the running area passes the next n-th part of the whole.
+/// Where in its triangle it lies follows a sequence that fills the triangle evenly (Roberts 2018).
+pub(super) fn area_samples(surface: &Surface, n: usize) -> Vec<(Point3, Vector3)> {
+    let mesh = surface.mesh();
+    let share = mesh.area() / n as f64;
+    let mut samples = Vec::with_capacity(n);
+    let mut running = 0.0;
+    for triangle in 0..mesh.n_triangles() {
+        running += mesh.triangle_area(triangle);
+        let due = ((running / share + 0.5) as usize).min(n);
+        if due <= samples.len() {
+            continue;
+        }
+        let [a, b, c] = mesh.corners(triangle);
+        let normal = mesh.normal(triangle);
+        while samples.len() < due {
+            let i = samples.len() as f64;
+            let (mut u, mut v) = (
+                (i * 0.754_877_666_246_693).fract(),
+                (i * 0.569_840_290_998_053).fract(),
+            );
+            if u + v > 1.0 {
+                (u, v) = (1.0 - u, 1.0 - v);
+            }
+            samples.push((a + (b - a) * u + (c - a) * v, normal));
+        }
+    }
+    samples
+}
+
+/// Samples of the data about their centroid, in grid units, in blocks of [`LANES`]. Every prefix is
+/// spread evenly over the surface.
+pub(super) struct Cloud {
+    pub(super) blocks: Vec<Block>,
+    /// Where the centroid of the samples lies, in the data's frame.
+    pub(super) center: Point3,
+    /// Grid units per unit of length.
+    pub(super) scale: f64,
+    /// Diagonal of the samples' box, in grid units.
+    pub(super) diagonal: f32,
+    /// True if the samples were mirrored in their centroid's plane x = 0.
+    pub(super) is_mirrored: bool,
+}
+
+/// Points and normals of [`LANES`] samples, coordinate by coordinate.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Block {
+    pub(super) point: [[f32; LANES]; 3],
+    pub(super) normal: [[f32; LANES]; 3],
+}
+
+impl Cloud {
+    /// About `n` samples of `surface` at the scale of a grid.
+    pub(super) fn new(surface: &Surface, n: usize, scale: f64) -> Self {
+        let n = n.next_multiple_of(LANES);
+        let samples = area_samples(surface, n);
+        let points: Vec<Point3> = samples.iter().map(|(point, _)| *point).collect();
+        let sum: Vector3 = points.iter().map(|point| point.coords).sum();
+        let center = Point3::from(sum / points.len().max(1) as f64);
+        let order = morton_order(&points);
+        let mut blocks = vec![Block::default(); samples.len() / LANES];
+        for (place, rank) in bit_reversed(blocks.len() * LANES).into_iter().enumerate() {
+            let (point, normal) = &samples[order[rank] as usize];
+            let local = (point - center) * scale;
+            let block = &mut blocks[place / LANES];
+            for k in 0..3 {
+                block.point[k][place % LANES] = local[k] as f32;
+                block.normal[k][place % LANES] = normal[k] as f32;
+            }
+        }
+        Self {
+            blocks,
+            center,
+            scale,
+            diagonal: (surface.measures().diagonal * scale) as f32,
+            is_mirrored: false,
+        }
+    }
+
+    /// The same samples mirrored: the part of the opposite hand.
+    pub(super) fn mirrored(&self) -> Self {
+        let mut blocks = self.blocks.clone();
+        for block in &mut blocks {
+            block.point[0] = block.point[0].map(|x| -x);
+            block.normal[0] = block.normal[0].map(|x| -x);
+        }
+        Self {
+            blocks,
+            is_mirrored: !self.is_mirrored,
+            ..*self
+        }
+    }
+
+    /// From the data's frame to that of the cloud.
+    fn local_from_data(&self) -> Similarity {
+        let shift = Similarity {
+            translation: -self.center.coords,
+            ..Similarity::identity()
+        };
+        if self.is_mirrored {
+            Similarity::mirror_x().after(&shift)
+        } else {
+            shift
+        }
+    }
+
+    /// The motion of the data that a motion of the cloud stands for.
+    pub(super) fn model_from_data(&self, motion: &Motion32, grid: &FeatureGrid) -> Similarity {
+        let model_from_local = Similarity {
+            rotation: Matrix3::from_fn(|i, j| f64::from(motion.rotation[i][j])),
+            translation: grid.origin().coords
+                + Vector3::from(motion.translation.map(f64::from)) / self.scale,
+            scale: 1.0,
+        };
+        orthonormal(&model_from_local).after(&self.local_from_data())
+    }
+}
+
+/// A rotation about the centroid of a cloud and where the centroid goes, in grid units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Motion32 {
+    /// Rows of the rotation.
+    pub(super) rotation: [[f32; 3]; 3],
+    pub(super) translation: [f32; 3],
+}
+
+impl Motion32 {
+    /// True if both differ by less than an angle (given as its cosine) and a way of the centroid.
+    pub(super) fn is_near(&self, other: &Self, min_cos: f32, max_shift: f32) -> bool {
+        let shift_sq: f32 = (0..3)
+            .map(|k| (self.translation[k] - other.translation[k]).powi(2))
+            .sum();
+        if shift_sq > max_shift * max_shift {
+            return false;
+        }
+        let trace: f32 = (0..3)
+            .flat_map(|i| (0..3).map(move |j| (i, j)))
+            .map(|(i, j)| self.rotation[i][j] * other.rotation[i][j])
+            .sum();
+        0.5 * (trace - 1.0) > min_cos
+    }
+}
+
+/// The numbers 0 … n − 1 in an order whose every prefix is spread evenly (van der Corput).
+fn bit_reversed(n: usize) -> Vec<usize> {
+    let bits = n.next_power_of_two().trailing_zeros();
+    (0..n.next_power_of_two())
+        .map(|i| {
+            if bits == 0 {
+                0
+            } else {
+                i.reverse_bits() >> (usize::BITS - bits)
+            }
+        })
+        .filter(|&i| i < n)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reversed_bits_are_a_permutation_with_even_prefixes() {
+        let order = bit_reversed(1200);
+        let mut sorted = order.clone();
+        sorted.sort_unstable();
+        assert!(sorted.into_iter().eq(0..1200));
+        for third in 0..3 {
+            let within = |i: &&usize| **i / 400 == third;
+            let n = order[..64].iter().filter(within).count();
+            assert!((20..=23).contains(&n), "{n} of 64 in one third");
+        }
+        assert_eq!(bit_reversed(1), [0]);
+        assert!(bit_reversed(0).len() <= 1);
+    }
+}

@@ -1,0 +1,181 @@
+//! The wide search: thousands of first poses, all over the rotations and, where the sizes differ,
+//! all over the larger part, run on a [`FeatureGrid`] instead of the exact tree.
+//!
+//! A question to the grid costs the same however far away it is asked, so parts that do not fit
+//! cost no more than parts that do. Each pose makes robust point-to-plane steps on few points with
+//! a wide reach; after each round the better and distinct ones go on with more points and a
+//! narrower reach. What survives lies within about a cell of where it belongs and is ranked on the
+//! exact meshes by the caller.
+
+mod cloud;
+mod rounds;
+mod seeds;
+mod step;
+
+use super::starts::StartKind;
+use super::surface::Surface;
+use crate::geometry::Similarity;
+use crate::monitor::{Cancelled, Monitor};
+use crate::search::{FeatureGrid, GridSettings};
+use cloud::{Cloud, area_samples};
+use rounds::{Ground, Round};
+use seeds::SeedCounts;
+
+/// Points that are worked on side by side.
+const LANES: usize = 8;
+/// Samples of the larger part in its grid.
+const N_GRID_SAMPLES: usize = 30_000;
+/// Samples of the smaller part.
+const N_DATA_SAMPLES: usize = 1200;
+/// Parts whose areas differ by more than this share are aligned at many places.
+const SAME_AREA: f64 = 0.1;
+
+/// A pose that survived the wide search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WideFind {
+    /// The first pose it came from.
+    pub kind: StartKind,
+    /// True if the data's normals count reversed.
+    pub flipped: bool,
+    /// Where it lies: the data on the model. Mirrors if the opposite hand was searched.
+    pub model_from_data: Similarity,
+    /// Mean of Tukey's loss over the data at the last reach: 0 where all of it lies on the model, 1
+    /// where nothing does.
+    pub loss: f64,
+}
+
+/// The larger part of a pair made ready to search on, with the smaller one's samples.
+pub struct WideSearch<'a> {
+    data: &'a Surface,
+    model: &'a Surface,
+    grid: FeatureGrid,
+    cloud: Cloud,
+}
+
+/// Starts of parts that may cover each other: 400 rotations lie within 27° of every rotation.
+const WHOLE: SeedCounts = SeedCounts {
+    rotations: 400,
+    places: 1,
+    patches: 0,
+    turns: 0,
+};
+/// Starts of a piece on a whole.
+const PIECE: SeedCounts = SeedCounts {
+    rotations: 300,
+    places: 8,
+    patches: 100,
+    turns: 24,
+};
+/// Starts of parts of one size that do not cover each other.
+const OVERHANGING: SeedCounts = SeedCounts {
+    rotations: 150,
+    places: 8,
+    patches: 50,
+    turns: 24,
+};
+/// Above this loss the parts do not cover each other. Noise of 1 mm on the sample parts stays below
+/// it, a strip of 15 % that misses lies above.
+const CONTAINED_LOSS: f32 = 0.1;
+
+const ROUNDS: [Round; 5] = [
+    Round {
+        cut: 1.0,
+        n_points: 64,
+        n_steps: 4,
+        keep: 0.25,
+        least: 100,
+        most: 3000,
+    },
+    Round {
+        cut: 0.53,
+        n_points: 120,
+        n_steps: 6,
+        keep: 0.2,
+        least: 40,
+        most: 600,
+    },
+    Round {
+        cut: 0.27,
+        n_points: 304,
+        n_steps: 8,
+        keep: 0.25,
+        least: 16,
+        most: 120,
+    },
+    Round {
+        cut: 0.13,
+        n_points: 1200,
+        n_steps: 12,
+        keep: 0.4,
+        least: 12,
+        most: 40,
+    },
+    Round {
+        cut: 0.067,
+        n_points: 1200,
+        n_steps: 10,
+        keep: 1.0,
+        least: 8,
+        most: 12,
+    },
+];
+
+/// Reach of the first round, as a share of the data's diagonal.
+const REACH: f32 = 0.15;
+
+impl<'a> WideSearch<'a> {
+    /// Makes the grid of `model`, which should be the larger part, and samples `data`. About 10 ms.
+    /// `None` if the model has no extent.
+    pub fn new(data: &'a Surface, model: &'a Surface) -> Option<Self> {
+        let samples = area_samples(model, N_GRID_SAMPLES);
+        let grid = FeatureGrid::build(&samples, &GridSettings::default())?;
+        let cloud = Cloud::new(data, N_DATA_SAMPLES, grid.scale());
+        Some(Self {
+            data,
+            model,
+            grid,
+            cloud,
+        })
+    }
+
+    /// The distinct poses that survive, best first; those of the opposite hand if `mirrored`. After
+    /// a stop request what has been reached. The same for any number of threads.
+    pub fn run(&self, mirrored: bool, monitor: &Monitor) -> Result<Vec<WideFind>, Cancelled> {
+        let turned;
+        let cloud = if mirrored {
+            turned = self.cloud.mirrored();
+            &turned
+        } else {
+            &self.cloud
+        };
+        let counts = self.counts();
+        let mut seeds = seeds::seeds(cloud, (self.data, self.model), &self.grid, counts);
+        let ground = Ground {
+            cloud,
+            grid: &self.grid,
+            reach: REACH * cloud.diagonal.min(1.0),
+        };
+        let mut found = rounds::run(ground, &seeds, &ROUNDS, monitor)?;
+        // Parts of one size whose centroids do not belong on each other overhang each other.
+        if counts.patches == 0 && found.first().is_none_or(|best| best.loss > CONTAINED_LOSS) {
+            seeds = seeds::seeds(cloud, (self.data, self.model), &self.grid, OVERHANGING);
+            found = rounds::run(ground, &seeds, &ROUNDS, monitor)?;
+        }
+        let find = |candidate: rounds::Candidate| WideFind {
+            kind: seeds[candidate.seed as usize].kind,
+            flipped: candidate.flipped,
+            model_from_data: cloud.model_from_data(&candidate.motion, &self.grid),
+            loss: f64::from(candidate.loss),
+        };
+        Ok(found.into_iter().map(find).collect())
+    }
+
+    fn counts(&self) -> SeedCounts {
+        let (data, model) = (self.data.measures().area, self.model.measures().area);
+        if data > (1.0 - SAME_AREA) * model {
+            WHOLE
+        } else {
+            PIECE
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! The starts of a match in words, and as entries of its record.
+
+use serde::{Serialize, Serializer};
+
+use super::pose::rows;
+use super::record::role_of;
+use crate::registration::{StartKind, StartOutcome, StartRecord, Termination};
+
+/// How a start came to be: "surface normal 40°, stamped nodes, normals flipped".
+pub fn start_name(start: &StartRecord) -> String {
+    let mut name = format!(
+        "{}, {} nodes",
+        start_kind_words(start.kind),
+        role_of(start.data_side).word()
+    );
+    if start.flipped {
+        name += ", normals flipped";
+    }
+    if start.mirrored {
+        name += ", mirrored";
+    }
+    name
+}
+
+/// The kind of a start in words: "surface normal 40°".
+pub fn start_kind_words(kind: StartKind) -> String {
+    match kind {
+        StartKind::SurfaceNormal { angle_deg } => format!("surface normal {angle_deg:.0}°"),
+        StartKind::Patch { patch, angle_deg } => format!("patch {} {angle_deg:.0}°", patch + 1),
+        StartKind::PrincipalFrame { signs } => format!("principal axes {}", signs + 1),
+        StartKind::Covering { index } => format!("rotation {}", index + 1),
+        StartKind::Wide { rotation, place } => {
+            let (rotation, place) = (rotation + 1, place + 1);
+            format!("wide search, rotation {rotation} at place {place}")
+        }
+        StartKind::CurrentPose => "current pose".to_owned(),
+        StartKind::Given { index } => format!("given pose {}", index + 1),
+        StartKind::Twin { axis } => format!("rotated 180° about axis {}", axis + 1),
+    }
+}
+
+/// What became of a start, in words.
+pub fn outcome_words(outcome: StartOutcome) -> String {
+    match outcome {
+        StartOutcome::Won => "best".into(),
+        StartOutcome::RunnerUp => "close second".into(),
+        StartOutcome::MergedInto { start } => format!("merged into start {}", start + 1),
+        StartOutcome::Dropped { after } => format!("dropped after {after} iterations"),
+        StartOutcome::Failed => "no fit".into(),
+    }
+}
+
+/// A start in the record: its figures without its iterations.
+#[derive(Serialize)]
+struct StartEntry {
+    /// How it came to be.
+    kind: StartKind,
+    /// True if the stamped normals counted reversed.
+    flipped: bool,
+    /// True if the stamped part was mirrored.
+    mirrored: bool,
+    /// The part whose nodes were paired with the other one.
+    data_side: &'static str,
+    /// Iterations made.
+    iterations: usize,
+    /// Objective in the end; comparable between starts that went equally far.
+    score: f64,
+    /// What became of it; starts are numbered from 0 as they stand in the list.
+    outcome: Option<StartOutcome>,
+    /// Why its last stage ended.
+    termination: Option<Termination>,
+    /// First pose, 4×4 as rows, crash from stamped.
+    first: [[f64; 4]; 4],
+    /// Last pose, 4×4 as rows, crash from stamped.
+    last: [[f64; 4]; 4],
+}
+
+/// Writes starts as a record holds them.
+pub(super) fn entries<S: Serializer>(
+    starts: &[StartRecord],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(starts.iter().map(|start| StartEntry {
+        kind: start.kind,
+        flipped: start.flipped,
+        mirrored: start.mirrored,
+        data_side: role_of(start.data_side).word(),
+        iterations: start.iterations.len(),
+        score: start.score,
+        outcome: start.outcome,
+        termination: start.termination,
+        first: rows(&start.first),
+        last: rows(&start.last),
+    }))
+}

@@ -1,0 +1,169 @@
+//! What a row of the table of settings says.
+
+use std::ops::RangeInclusive;
+
+use super::{ChoiceWords, MatchRecipe, Value};
+use crate::registration::Floor;
+use crate::text::{Lengths, counted, grouped, trimmed, yes_no};
+
+/// One setting of a match.
+#[derive(Debug)]
+pub struct Setting {
+    /// The field of [`MatchRecipe`] as it is stored, for example `settings.starts.method`.
+    pub field: &'static str,
+    /// Option of the command line, without hyphens.
+    pub option: &'static str,
+    /// Earlier options, still understood.
+    pub former: &'static [&'static str],
+    /// Key in the parameters of a record.
+    pub key: &'static str,
+    /// Label in the window and in reports.
+    pub label: &'static str,
+    /// One line of help, without a full stop.
+    pub help: &'static str,
+    /// Heading it stands under.
+    pub group: Group,
+    /// Which values it takes.
+    pub domain: Domain,
+    /// How it is read and changed.
+    pub access: Access,
+}
+
+/// A heading of the settings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Group {
+    /// What is computed, and from where.
+    Method,
+    /// The poses the match starts from.
+    Starts,
+    /// Pairs, and what is minimised over them.
+    Correspondences,
+    /// Points, meshes and iterations.
+    Search,
+}
+
+impl Group {
+    /// Every group, in the order of help and form.
+    pub const ALL: [Self; 4] = [
+        Self::Method,
+        Self::Starts,
+        Self::Correspondences,
+        Self::Search,
+    ];
+
+    /// The heading.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Method => "Method",
+            Self::Starts => "Start poses",
+            Self::Correspondences => "Correspondences",
+            Self::Search => "Search",
+        }
+    }
+}
+
+/// Which values a setting takes.
+#[derive(Debug)]
+pub enum Domain {
+    /// One of a few, with their words.
+    Choice(fn() -> Vec<ChoiceWords>),
+    /// On or off.
+    Switch,
+    /// A whole number.
+    Count(RangeInclusive<usize>),
+    /// A maximum, or none.
+    Limit(RangeInclusive<usize>),
+    /// A number.
+    Number {
+        /// Its unit.
+        unit: Unit,
+        /// The range outside of which a match refuses it.
+        range: RangeInclusive<f64>,
+        /// By how much a drag of one point changes it.
+        step: f64,
+    },
+    /// A length, `auto` or `none`.
+    Floor,
+    /// A list of poses.
+    Poses,
+}
+
+/// The unit of a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unit {
+    /// None.
+    One,
+    /// The length unit of the crash part.
+    Length,
+    /// Degrees.
+    Degrees,
+    /// Mean edge lengths.
+    EdgeLengths,
+}
+
+impl Unit {
+    /// What follows a number.
+    pub fn suffix(self, lengths: Lengths) -> &'static str {
+        match self {
+            Self::One => "",
+            Self::Length => lengths.suffix(),
+            Self::Degrees => "°",
+            Self::EdgeLengths => " edge lengths",
+        }
+    }
+}
+
+/// How a setting is read from and written to a recipe.
+#[derive(Debug)]
+pub struct Access {
+    /// Its value; `None` where other settings leave no place for it.
+    pub get: fn(&MatchRecipe) -> Option<Value>,
+    /// Changes it; false where there is no place for it, or the value is of another kind.
+    pub set: fn(&mut MatchRecipe, &Value) -> bool,
+    /// Why it has no effect beside the other settings, if so.
+    pub unused: fn(&MatchRecipe) -> Option<&'static str>,
+}
+
+impl Setting {
+    /// Its value; `None` where other settings leave no place for it.
+    pub fn get(&self, recipe: &MatchRecipe) -> Option<Value> {
+        (self.access.get)(recipe)
+    }
+
+    /// Changes it; false where there is no place for it, or the value is of another kind.
+    pub fn set(&self, recipe: &mut MatchRecipe, value: &Value) -> bool {
+        (self.access.set)(recipe, value)
+    }
+
+    /// Why it has no effect beside the other settings, if so.
+    pub fn unused(&self, recipe: &MatchRecipe) -> Option<&'static str> {
+        (self.access.unused)(recipe)
+    }
+
+    /// A value for people, with its unit.
+    pub fn shown(&self, value: &Value, lengths: Lengths) -> String {
+        match value {
+            Value::Choice(name) => self.label_of(name).to_owned(),
+            Value::Switch(value) => yes_no(*value).to_owned(),
+            Value::Count(n) | Value::Limit(Some(n)) => grouped(*n),
+            Value::Limit(None) => "full meshes".to_owned(),
+            Value::Number(value) => match &self.domain {
+                Domain::Number { unit, .. } => trimmed(*value, 9) + unit.suffix(lengths),
+                _ => trimmed(*value, 9),
+            },
+            Value::Floor(Floor::Auto) => "estimated".to_owned(),
+            Value::Floor(Floor::None) => "none".to_owned(),
+            Value::Floor(Floor::Length(value)) => lengths.of(*value),
+            Value::Poses(poses) => counted(poses.len(), "pose"),
+        }
+    }
+
+    fn label_of(&self, name: &str) -> &'static str {
+        let words = match self.domain {
+            Domain::Choice(words) => words(),
+            _ => Vec::new(),
+        };
+        let found = words.into_iter().find(|words| words.name == name);
+        found.map_or("", |words| words.label)
+    }
+}

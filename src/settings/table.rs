@@ -1,0 +1,335 @@
+//! The settings of a match, one row each. To add one, add its row; everything else walks them.
+
+use std::ops::RangeInclusive;
+
+use super::value::Field as _;
+use super::{Access, Choice as _, Domain, Group, MatchRecipe, Setting, Unit};
+use crate::registration::{
+    DataSide, Hand, Method, Metric, Motion, PairWith, Search, Selection, StartMethod, limits,
+};
+
+/// Access to a field of the recipe, and why it may have no effect.
+macro_rules! at {
+    ($($field:ident).+) => {
+        at!($($field).+, |_| None)
+    };
+    ($($field:ident).+, $unused:expr) => {
+        Access {
+            get: |recipe| Some(recipe.$($field).+.value()),
+            set: |recipe, value| recipe.$($field).+.put(value),
+            unused: $unused,
+        }
+    };
+}
+
+/// Access to a parameter of one kind of pair selection.
+macro_rules! of_selection {
+    ($kind:ident, $field:ident) => {
+        Access {
+            get: |recipe| match &recipe.settings.selection {
+                Selection::$kind { $field, .. } => Some($field.value()),
+                _ => None,
+            },
+            set: |recipe, value| match &mut recipe.settings.selection {
+                Selection::$kind { $field, .. } => $field.put(value),
+                _ => false,
+            },
+            unused: |_| None,
+        }
+    };
+}
+
+/// Every setting, in the order of help, form, record and report. A setting that decides which others
+/// there are comes before those.
+pub static SETTINGS: [Setting; 25] = [
+    Setting {
+        field: "settings.method",
+        option: "method",
+        former: &[],
+        key: "method",
+        label: "Method",
+        help: "Registration method; the options below change single choices of it",
+        group: Group::Method,
+        domain: Domain::Choice(Method::all_words),
+        access: at!(settings.method),
+    },
+    Setting {
+        field: "settings.starts.method",
+        option: "start",
+        former: &[],
+        key: "start_method",
+        label: "Start",
+        help: "Where the match starts from; the default is current if one --start-pose is given",
+        group: Group::Method,
+        domain: Domain::Choice(StartMethod::all_words),
+        access: at!(settings.starts.method),
+    },
+    Setting {
+        field: "settings.starts.angle_segment_deg",
+        option: "angle-segment",
+        former: &[],
+        key: "angle_segment_deg",
+        label: "Rotation step",
+        help: "Angle between neighbouring rotations about the mean normal; 40° gives nine, as in the paper",
+        group: Group::Starts,
+        domain: number(Unit::Degrees, limits::ANGLE_SEGMENT_DEG, 0.5),
+        access: at!(settings.starts.angle_segment_deg, not_rotated),
+    },
+    Setting {
+        field: "settings.starts.both_signs",
+        option: "both-directions",
+        former: &[],
+        key: "both_directions",
+        label: "Both normal directions",
+        help: "Try both directions of the mean normal",
+        group: Group::Starts,
+        domain: Domain::Switch,
+        access: at!(settings.starts.both_signs),
+    },
+    Setting {
+        field: "settings.starts.extra_starts",
+        option: "extra-starts",
+        former: &["widen"],
+        key: "widen",
+        label: "Extra starts",
+        help: "Add more starts if none gives an acceptable fit",
+        group: Group::Starts,
+        domain: Domain::Switch,
+        access: at!(settings.starts.extra_starts),
+    },
+    Setting {
+        field: "settings.starts.poses",
+        option: "start-pose",
+        former: &["initial-pose"],
+        key: "start_poses",
+        label: "Given poses",
+        help: "A start pose (crash from stamped): a text file, or its numbers, 16 by rows. Several poses are all tried",
+        group: Group::Starts,
+        domain: Domain::Poses,
+        access: at!(settings.starts.poses),
+    },
+    Setting {
+        field: "settings.data_side",
+        option: "data",
+        former: &["points-of"],
+        key: "points_of",
+        label: "Data points",
+        help: "The part whose nodes are paired with the other part's surface",
+        group: Group::Correspondences,
+        domain: Domain::Choice(DataSide::all_words),
+        access: at!(settings.data_side),
+    },
+    Setting {
+        field: "settings.pair_with",
+        option: "correspondence",
+        former: &["pairs"],
+        key: "pairs",
+        label: "Correspondence",
+        help: "What a data point is paired with",
+        group: Group::Correspondences,
+        domain: Domain::Choice(PairWith::all_words),
+        access: at!(settings.pair_with),
+    },
+    Setting {
+        field: "settings.selection",
+        option: "pair-selection",
+        former: &["keep"],
+        key: "selection",
+        label: "Pair selection",
+        help: "Which pairs are kept",
+        group: Group::Correspondences,
+        domain: Domain::Choice(Selection::all_words),
+        access: at!(settings.selection),
+    },
+    Setting {
+        field: "settings.selection.lambda",
+        option: "lambda",
+        former: &[],
+        key: "lambda",
+        label: "λ",
+        help: "Exponent λ of Fractional ICP; a larger one keeps more pairs",
+        group: Group::Correspondences,
+        domain: number(Unit::One, limits::LAMBDA, 0.01),
+        access: of_selection!(Fractional, lambda),
+    },
+    Setting {
+        field: "settings.selection.floor",
+        option: "floor",
+        former: &[],
+        key: "floor_setting",
+        label: "Floor σ₀",
+        help: "Floor σ₀ of Fractional ICP: a length, none, or auto (estimated from the meshes)",
+        group: Group::Correspondences,
+        domain: Domain::Floor,
+        access: of_selection!(Fractional, floor),
+    },
+    Setting {
+        field: "settings.selection.overlap",
+        option: "overlap",
+        former: &[],
+        key: "trimmed_overlap",
+        label: "Overlap",
+        help: "Fraction of the pairs that Trimmed ICP keeps; estimated if not given",
+        group: Group::Correspondences,
+        domain: number(Unit::One, limits::OVERLAP, 0.01),
+        access: of_selection!(Trimmed, overlap),
+    },
+    Setting {
+        field: "settings.metric",
+        option: "residual",
+        former: &[],
+        key: "residual",
+        label: "Residual",
+        help: "The residual that is minimised",
+        group: Group::Correspondences,
+        domain: Domain::Choice(Metric::all_words),
+        access: at!(settings.metric),
+    },
+    Setting {
+        field: "settings.motion",
+        option: "motion",
+        former: &[],
+        key: "motion",
+        label: "Motion",
+        help: "What may change: the pose, or also the scale",
+        group: Group::Correspondences,
+        domain: Domain::Choice(Motion::all_words),
+        access: at!(settings.motion),
+    },
+    Setting {
+        field: "settings.hand",
+        option: "hand",
+        former: &[],
+        key: "hand",
+        label: "Hand",
+        help: "Try the part as is, mirrored, or both",
+        group: Group::Correspondences,
+        domain: Domain::Choice(Hand::all_words),
+        access: at!(settings.hand),
+    },
+    Setting {
+        field: "settings.max_normal_angle_deg",
+        option: "normal-angle",
+        former: &[],
+        key: "max_normal_angle_deg",
+        label: "Normal angle",
+        help: "Maximum angle between the normals of a pair; 180° accepts all pairs",
+        group: Group::Correspondences,
+        domain: number(Unit::Degrees, limits::NORMAL_ANGLE_DEG, 0.5),
+        access: at!(settings.max_normal_angle_deg),
+    },
+    Setting {
+        field: "settings.allowance",
+        option: "allowance",
+        former: &[],
+        key: "allowance",
+        label: "Allowance",
+        help: "Expected deviation besides faceting, such as springback",
+        group: Group::Correspondences,
+        domain: number(Unit::Length, limits::LENGTH, 0.01),
+        access: at!(settings.allowance),
+    },
+    Setting {
+        field: "settings.shape_tolerance",
+        option: "shape-tolerance",
+        former: &[],
+        key: "shape_tolerance",
+        label: "Shape tolerance",
+        help: "How far the shapes may differ besides springback; 0 takes the larger of 1 mm and the thickness",
+        group: Group::Correspondences,
+        domain: number(Unit::Length, limits::LENGTH, 0.05),
+        access: at!(settings.shape_tolerance),
+    },
+    Setting {
+        field: "settings.search",
+        option: "search",
+        former: &[],
+        key: "search",
+        label: "Search",
+        help: "How the starts are searched",
+        group: Group::Search,
+        domain: Domain::Choice(Search::all_words),
+        access: at!(settings.search),
+    },
+    Setting {
+        field: "settings.n_coarse_points",
+        option: "coarse-points",
+        former: &["race-points"],
+        key: "race_points",
+        label: "Coarse points",
+        help: "Data points of the first stage",
+        group: Group::Search,
+        domain: Domain::Count(limits::COUNT),
+        access: at!(settings.n_coarse_points),
+    },
+    Setting {
+        field: "settings.n_refine_points",
+        option: "refine-points",
+        former: &[],
+        key: "refine_points",
+        label: "Refine points",
+        help: "Data points of the second stage",
+        group: Group::Search,
+        domain: Domain::Count(limits::COUNT),
+        access: at!(settings.n_refine_points),
+    },
+    Setting {
+        field: "settings.max_iterations",
+        option: "iterations",
+        former: &[],
+        key: "max_iterations",
+        label: "Max. iterations",
+        help: "Maximum iterations per run",
+        group: Group::Search,
+        domain: Domain::Count(limits::COUNT),
+        access: at!(settings.max_iterations),
+    },
+    Setting {
+        field: "settings.motion_tolerance",
+        option: "tolerance",
+        former: &[],
+        key: "motion_tolerance",
+        label: "Tolerance",
+        help: "Converged when no bounding-box corner moves by more than this fraction of an edge length",
+        group: Group::Search,
+        domain: number(Unit::EdgeLengths, limits::MOTION_TOLERANCE, 1e-4),
+        access: at!(settings.motion_tolerance),
+    },
+    Setting {
+        field: "max_triangles",
+        option: "triangles",
+        former: &[],
+        key: "search_triangles",
+        label: "Search triangles",
+        help: "Run the starts on meshes reduced to this many triangles, as in the paper",
+        group: Group::Search,
+        domain: Domain::Limit(1..=usize::MAX),
+        access: at!(max_triangles),
+    },
+    Setting {
+        field: "settings.refine_on_full",
+        option: "refine-on-full",
+        former: &["finish"],
+        key: "finish_on_full",
+        label: "Refine on full meshes",
+        help: "Refine the best pose on the full meshes",
+        group: Group::Search,
+        domain: Domain::Switch,
+        access: at!(settings.refine_on_full),
+    },
+];
+
+/// The setting of an option; `None` if there is none of that name.
+pub fn setting(option: &str) -> Option<&'static Setting> {
+    SETTINGS.iter().find(|setting| setting.option == option)
+}
+
+const fn number(unit: Unit, range: RangeInclusive<f64>, step: f64) -> Domain {
+    Domain::Number { unit, range, step }
+}
+
+fn not_rotated(recipe: &MatchRecipe) -> Option<&'static str> {
+    let method = recipe.settings.starts.method;
+    let is_rotated = matches!(method, StartMethod::SurfaceNormals | StartMethod::All);
+    (!is_rotated).then_some("Applies only to starts from surface normals")
+}

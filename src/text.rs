@@ -1,0 +1,206 @@
+//! Small pieces of text for people: counts, percentages, lengths, sentences.
+//!
+//! Every surface (window, report, command line, log) writes its numbers with these, so that one number
+//! reads the same everywhere. No text shows a negative zero.
+
+use crate::units::LengthUnit;
+
+/// A count with commas between the thousands: 34808 → `34,808`.
+pub fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A count with its noun: `1 triangle`, `12,345 triangles`. The noun takes an s in the plural.
+pub fn counted(n: usize, noun: &str) -> String {
+    let plural = if n == 1 { "" } else { "s" };
+    format!("{} {noun}{plural}", grouped(n))
+}
+
+/// A fraction in percent with one decimal: `87.0 %`.
+pub fn percent(fraction: f64) -> String {
+    format!("{} %", fixed(100.0 * fraction, 1))
+}
+
+/// A fraction in whole percent, for what changes while it is read: `87 %`.
+pub fn whole_percent(fraction: f64) -> String {
+    format!("{} %", fixed(100.0 * fraction, 0))
+}
+
+/// A number with so many decimals; what rounds to zero has no sign.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.chars().all(|c| c == '0' || c == '.') => digits.to_owned(),
+        _ => text,
+    }
+}
+
+/// A number with at most so many decimals and no zeros at its end: 0.5, 12, -3.25.
+pub fn trimmed(value: f64, most_decimals: usize) -> String {
+    let text = fixed(value, most_decimals);
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// Coordinates or components in parentheses, with so many decimals each: `(1.0, 0.0, -2.5)`.
+pub fn vector(components: [f64; 3], decimals: usize) -> String {
+    format!("({})", components.map(|x| fixed(x, decimals)).join(", "))
+}
+
+/// A length with three significant digits: 0.0412, 1.35, 128.
+pub fn length(value: f64) -> String {
+    // What rounding leaves of nothing is nothing.
+    let value = if value.abs() < 5e-8 { 0.0 } else { value };
+    let magnitude = value.abs();
+    let decimals = if magnitude >= 100.0 || value == 0.0 {
+        0
+    } else if magnitude >= 10.0 {
+        1
+    } else if magnitude >= 1.0 {
+        2
+    } else if magnitude >= 0.1 {
+        3
+    } else if magnitude >= 1e-3 {
+        4
+    } else {
+        // A thickness or a distance in metres.
+        7
+    };
+    fixed(value, decimals)
+}
+
+/// A length with its sign, as window and report write it: +0.412, −1.35, 0.
+pub fn signed(value: f64) -> String {
+    let text = length(value);
+    if value > 0.0 && text != "0" {
+        format!("+{text}")
+    } else {
+        minus(&text)
+    }
+}
+
+/// The text with minus signs in place of hyphens.
+pub fn minus(text: &str) -> String {
+    text.replace('-', "−")
+}
+
+/// Milliseconds: one decimal below 10, none above.
+pub fn millis(ms: f64) -> String {
+    let decimals = usize::from(ms < 10.0);
+    format!("{} ms", fixed(ms, decimals))
+}
+
+/// `yes` or `no`.
+pub fn yes_no(value: bool) -> &'static str {
+    if value { "yes" } else { "no" }
+}
+
+/// The text with its first letter in upper case.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
+
+/// The text as a sentence: its first letter in upper case, and a full stop unless it ends in a mark.
+pub fn sentence(text: &str) -> String {
+    let end = if text.ends_with(['.', '?', '!']) {
+        ""
+    } else {
+        "."
+    };
+    capital(text) + end
+}
+
+/// Lengths with their unit, where it is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Lengths {
+    /// The unit; `None` where nothing is known of it.
+    pub unit: Option<LengthUnit>,
+}
+
+impl Lengths {
+    /// Lengths in `unit`.
+    pub fn new(unit: Option<LengthUnit>) -> Self {
+        Self { unit }
+    }
+
+    /// Three significant digits and the unit: `0.381 mm`.
+    pub fn of(self, value: f64) -> String {
+        length(value) + self.suffix()
+    }
+
+    /// What follows a number: `" mm"`, or nothing.
+    pub fn suffix(self) -> &'static str {
+        self.unit.map_or("", LengthUnit::suffix)
+    }
+
+    /// The title of an axis or of a table with the unit: `signed distance, mm`.
+    pub fn axis(self, name: &str) -> String {
+        self.unit
+            .map_or_else(|| name.to_owned(), |unit| format!("{name}, {unit}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_have_three_digits() {
+        let read = [0.041_23, 1.349, -128.4, 0.0, 0.000_381].map(length);
+        assert_eq!(read, ["0.0412", "1.35", "-128", "0", "0.0003810"]);
+        let lengths = Lengths::new(Some(LengthUnit::Millimeter));
+        assert_eq!(lengths.of(0.3806), "0.381 mm");
+        assert_eq!(lengths.axis("distance"), "distance, mm");
+        assert_eq!(Lengths::default().of(0.3806), "0.381");
+    }
+
+    #[test]
+    fn signs_are_written_and_zero_has_none() {
+        let read = [0.5, -0.5, 0.0, 1e-14, -1e-14].map(signed);
+        assert_eq!(read, ["+0.500", "−0.500", "0", "0", "0"]);
+        let read = [-0.0, -0.000_4, -0.5, 0.4].map(|x| fixed(x, 0));
+        assert_eq!(read, ["0", "0", "0", "0"]);
+        assert_eq!(vector([-0.0004, -1.0, 2.0], 2), "(0.00, -1.00, 2.00)");
+        assert_eq!(length(-0.0), "0");
+        let read = [-0.000_01, 0.5, 120.0, -3.25].map(|x| trimmed(x, 4));
+        assert_eq!(read, ["0", "0.5", "120", "-3.25"]);
+        assert_eq!(percent(-1e-9), "0.0 %");
+    }
+
+    #[test]
+    fn counts_are_grouped_and_take_their_noun() {
+        let read = [0, 999, 1000, 34_808, 1_234_567].map(grouped);
+        assert_eq!(read, ["0", "999", "1,000", "34,808", "1,234,567"]);
+        assert_eq!(counted(1, "part"), "1 part");
+        assert_eq!(counted(0, "part"), "0 parts");
+        assert_eq!(counted(41_208, "triangle"), "41,208 triangles");
+    }
+
+    #[test]
+    fn fractions_and_times_are_short() {
+        assert_eq!(percent(0.8704), "87.0 %");
+        assert_eq!(whole_percent(0.8704), "87 %");
+        assert_eq!(millis(3.12), "3.1 ms");
+        assert_eq!(millis(118.6), "119 ms");
+    }
+
+    #[test]
+    fn sentences_begin_and_end_as_sentences() {
+        assert_eq!(sentence("the shapes differ"), "The shapes differ.");
+        assert_eq!(sentence("are they the same?"), "Are they the same?");
+        assert_eq!(capital(""), "");
+    }
+}

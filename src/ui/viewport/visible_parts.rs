@@ -1,0 +1,248 @@
+//! Which parts a window shows, where, and how they look: from the state, without a mesh in sight.
+
+use super::frame::ViewFrame;
+use crate::app::{AppState, ColorBy, FreeWindow, Part, PartRef, ShownGeometry};
+use crate::geometry::{Similarity, Vector3};
+use crate::render::{PartLook, Style, WipeSide};
+use crate::role::Role;
+use crate::ui::theme::Look;
+
+/// Opacity of the crash part when one sees through it.
+const SEE_THROUGH: f32 = 0.3;
+/// Opacity of the stamped part while something else than its real pose is shown.
+const PREVIEW: f32 = 0.62;
+
+/// One part in one window.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct PartInstance {
+    pub role: Role,
+    pub world_from_part: Similarity,
+    /// Shift for display only.
+    pub offset: Vector3,
+    pub opacity: f32,
+    pub is_detailed: bool,
+    pub wipe: WipeSide,
+}
+
+/// What a line across the window separates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Divider {
+    /// Crash left, stamped right.
+    Wipe(f32),
+    /// Reduced left, full right.
+    Split(f32),
+}
+
+impl Divider {
+    /// Place of the line as a share of the width.
+    pub fn share(self) -> f32 {
+        match self {
+            Self::Wipe(share) | Self::Split(share) => share,
+        }
+    }
+}
+
+/// The line across a window, if it has one: the wipe where both parts are, else the split.
+pub(super) fn divider(state: &AppState, view: &ViewFrame) -> Option<Divider> {
+    let display = &state.view.display;
+    let is_shared = view.window == Role::Crash && state.view.is_moved_over;
+    let wipe = display.wipe.filter(|_| is_shared).map(Divider::Wipe);
+    let is_beside = free_window(state, view).is_some();
+    let split = display
+        .split
+        .filter(|_| has_level(state, view.window) && !is_beside);
+    wipe.or(split.map(Divider::Split))
+}
+
+fn has_level(state: &AppState, window: Role) -> bool {
+    let reduced = |role| state.document.part(role).is_some_and(|p| p.level.is_some());
+    reduced(window) || (state.view.is_moved_over && reduced(Role::Stamped))
+}
+
+/// The parts of a window, crash first.
+pub(super) fn visible_parts(state: &AppState, view: &ViewFrame) -> Vec<PartInstance> {
+    if let Some(free) = free_window(state, view) {
+        return beside(state, view, free);
+    }
+    let mut parts = Vec::new();
+    if view.window == Role::Crash && state.document.part(Role::Crash).is_some() {
+        parts.push(crash(state));
+    }
+    if state.document.part(Role::Stamped).is_some() {
+        parts.extend(stamped(state, view));
+    }
+    match divider(state, view) {
+        Some(Divider::Wipe(_)) => {
+            for instance in &mut parts {
+                instance.wipe = match instance.role {
+                    Role::Crash => WipeSide::Left,
+                    Role::Stamped => WipeSide::Right,
+                };
+            }
+            parts
+        }
+        Some(Divider::Split(_)) => parts.iter().flat_map(both_sides).collect(),
+        None => parts,
+    }
+}
+
+/// What the right window is used for, once its part has left it.
+pub(super) fn free_window(state: &AppState, view: &ViewFrame) -> Option<FreeWindow> {
+    let is_free = view.window == Role::Stamped && view.over >= 1.0;
+    state.free_window().filter(|_| is_free)
+}
+
+/// The parts beside the shared window.
+fn beside(state: &AppState, view: &ViewFrame, free: FreeWindow) -> Vec<PartInstance> {
+    let instance = |role, world_from_part| PartInstance {
+        role,
+        world_from_part,
+        offset: Vector3::zeros(),
+        opacity: 1.0,
+        is_detailed: free == FreeWindow::FullMesh || is_detailed(state),
+        wipe: WipeSide::Both,
+    };
+    let pose = match free {
+        FreeWindow::SecondPose => state.second_pose().unwrap_or(view.pose),
+        _ => view.pose,
+    };
+    let both = [(Role::Crash, Similarity::identity()), (Role::Stamped, pose)];
+    let parts = both.map(|(role, pose)| instance(role, pose)).into_iter();
+    let colored = &state.view.display.coloring.on;
+    let is_shown = |instance: &PartInstance| match free {
+        FreeWindow::Nothing => false,
+        FreeWindow::Deviation => *colored.get(instance.role),
+        FreeWindow::Section | FreeWindow::FullMesh | FreeWindow::SecondPose => true,
+    };
+    parts.filter(is_shown).collect()
+}
+
+/// A part as reduced on the left of the line and as full mesh on its right.
+fn both_sides(instance: &PartInstance) -> [PartInstance; 2] {
+    let side = |is_detailed, wipe| PartInstance {
+        is_detailed,
+        wipe,
+        ..instance.clone()
+    };
+    [side(false, WipeSide::Left), side(true, WipeSide::Right)]
+}
+
+fn crash(state: &AppState) -> PartInstance {
+    let mut opacity = state.view.display.opacity.crash;
+    if state.view.display.is_see_through {
+        opacity = opacity.min(SEE_THROUGH);
+    }
+    PartInstance {
+        role: Role::Crash,
+        world_from_part: Similarity::identity(),
+        offset: Vector3::zeros(),
+        opacity,
+        is_detailed: is_detailed(state),
+        wipe: WipeSide::Both,
+    }
+}
+
+fn stamped(state: &AppState, view: &ViewFrame) -> Option<PartInstance> {
+    let is_left = view.window == Role::Crash;
+    let is_over = state.view.is_moved_over;
+    let is_previewed_left = is_left && !is_over && view.over <= 0.0 && state.is_preview();
+    let is_here = if is_left {
+        view.over > 0.0
+    } else {
+        view.over < 1.0
+    };
+    let is_blinked_away = is_left && is_over && state.view.is_blinking;
+    if is_blinked_away || !(is_here || is_previewed_left) {
+        return None;
+    }
+    let mut opacity = state.view.display.opacity.stamped;
+    let mut offset = Vector3::zeros();
+    if is_left {
+        if state.is_preview() {
+            opacity = opacity.min(PREVIEW);
+        }
+        offset += separation(state, view);
+    }
+    if !is_previewed_left {
+        offset += flight_offset(view);
+    }
+    // Its own window shows the part where it really is, also while the other tries out poses.
+    let is_real = !is_left && state.is_preview();
+    let world_from_part = if is_real {
+        *state.document.crash_from_stamped()
+    } else {
+        view.pose
+    };
+    Some(PartInstance {
+        role: Role::Stamped,
+        world_from_part,
+        offset,
+        opacity,
+        is_detailed: is_detailed(state),
+        wipe: WipeSide::Both,
+    })
+}
+
+fn is_detailed(state: &AppState) -> bool {
+    let is_blinking = state.view.is_blinking && !state.view.is_moved_over;
+    is_blinking || state.view.shown == ShownGeometry::Detailed
+}
+
+/// The part leaves one window through the edge between them and enters the other there.
+fn flight_offset(view: &ViewFrame) -> Vector3 {
+    let width = view.camera.height * view.aspect;
+    let share = match view.window {
+        Role::Crash => 1.0 - view.over,
+        Role::Stamped => -view.over,
+    };
+    view.camera.right() * (width * share)
+}
+
+/// The shift that lets one look between the sheets: along the mean normal, or towards the viewer
+/// for parts without one.
+fn separation(state: &AppState, view: &ViewFrame) -> Vector3 {
+    let distance = state.view.display.separation;
+    let Some(part) = state.document.part(Role::Stamped) else {
+        return Vector3::zeros();
+    };
+    let normal = view.pose.rotate(&part.facts.mean_normal);
+    let direction = normal.try_normalize(0.05).unwrap_or(-view.camera.forward());
+    direction * distance
+}
+
+/// Looks of the parts of a deck, by their index.
+pub(super) fn part_looks(state: &AppState, part: &Part, role: Role, look: &Look) -> Vec<PartLook> {
+    let is_by_part = state.view.display.color_by == ColorBy::Part;
+    // Where there is nothing to choose between, lighting everything up would only flicker.
+    let has_choice = part.facts.used.len() > 1;
+    let model_parts = part.loaded.model.parts.iter().enumerate();
+    let looks = model_parts.map(|(index, model_part)| {
+        let id = model_part.id;
+        let given = part.colors.get(&id).copied();
+        PartLook {
+            color: given.or_else(|| is_by_part.then(|| look.part(index))),
+            visible: part.is_visible(id),
+            selected: state.view.selected.contains(&PartRef { role, id }),
+            hovered: has_choice && state.view.hovered == Some(PartRef { role, id }),
+        }
+    });
+    looks.collect()
+}
+
+/// What is drawn of a mesh.
+pub(super) fn style(state: &AppState, view: &ViewFrame) -> Style {
+    let display = &state.view.display;
+    if view.is_bare {
+        return Style {
+            surface: false,
+            ..Style::default()
+        };
+    }
+    Style {
+        element_edges: display.has_edges,
+        feature_edges: display.has_feature_edges,
+        borders: display.has_feature_edges,
+        points: display.has_points,
+        ..Style::default()
+    }
+}

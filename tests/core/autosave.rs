@@ -1,0 +1,140 @@
+//! Sessions that are saved as one goes, and offered again after a crash.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use shapematch::pipeline::autosave::{Autosave, AutosaveEvent, RecoveredSession};
+use shapematch::pipeline::preferences::PreferencesFile;
+use shapematch::pipeline::project::{PartEntry, Project};
+use shapematch::role::PerRole;
+
+const LONG: Duration = Duration::from_secs(60);
+
+fn project(name: &str) -> Box<Project> {
+    let entry = PartEntry {
+        file: Some(PathBuf::from(name)),
+        ..PartEntry::default()
+    };
+    Box::new(Project {
+        parts: PerRole::new(Some(entry), None),
+        ..Project::default()
+    })
+}
+
+fn run(folder: &Path, name: &str) -> Autosave<u8> {
+    Autosave::start_named(folder.to_owned(), name, || {}).unwrap()
+}
+
+fn sessions(of: &Autosave<u8>) -> Vec<RecoveredSession> {
+    match of.wait_for_event(LONG) {
+        Some(AutosaveEvent::Sessions(sessions)) => sessions,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn listed(of: &Autosave<u8>) -> Vec<RecoveredSession> {
+    of.list();
+    sessions(of)
+}
+
+/// What a killed program leaves behind: its file without a lock that is held.
+fn leave_lost(folder: &Path, name: &str, part: &str) {
+    std::fs::create_dir_all(folder).unwrap();
+    let path = folder.join(format!("{name}.run.shapematch"));
+    let mut project = project(part);
+    project.saved_at = 1;
+    project.write(&path).unwrap();
+    std::fs::write(path.with_extension("lock"), "").unwrap();
+}
+
+#[test]
+fn a_session_that_did_not_end_is_offered_until_it_is_dismissed() {
+    let folder = tempfile::tempdir().unwrap();
+    let deep = folder.path().join("deep");
+    leave_lost(&deep, "000000000001-1", "/a/lost.k");
+    let next = run(&deep, "000000000002-1");
+    let found = listed(&next);
+    assert_eq!(found.len(), 1);
+    assert!(found[0].is_lost && found[0].saved_at == 1);
+    assert_eq!(found[0].title, "lost.k");
+    next.dismiss_recovery();
+    let found = sessions(&next);
+    assert_eq!(found, listed(&next));
+    assert_eq!((found.len(), found[0].is_lost), (1, false));
+
+    next.autosave(project("/a/ended.k"));
+    drop(next);
+    let found = listed(&run(&deep, "000000000003-1"));
+    assert_eq!(found.iter().filter(|session| session.is_lost).count(), 0);
+    assert_eq!(found[0].title, "ended.k");
+}
+
+#[test]
+fn a_session_whose_program_still_runs_is_not_offered_and_looked_at_again() {
+    let folder = tempfile::tempdir().unwrap();
+    leave_lost(folder.path(), "000000000001-1", "/a/lost.k");
+    let lock = folder.path().join("000000000001-1.run.lock");
+    let held = std::fs::File::open(lock).unwrap();
+    held.try_lock().unwrap();
+    let next = run(folder.path(), "000000000002-1");
+    assert_eq!(listed(&next), []);
+    drop(held);
+    assert!(sessions(&next)[0].is_lost, "without being asked again");
+}
+
+#[test]
+fn only_the_last_five_sessions_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    for n in 0..9 {
+        let of = run(folder.path(), &format!("{n:012}-1"));
+        of.autosave(project(&format!("/{n}.k")));
+    }
+    let found = listed(&run(folder.path(), "last"));
+    let titles: Vec<&str> = found.iter().map(|session| &*session.title).collect();
+    assert_eq!(titles, ["8.k", "7.k", "6.k", "5.k", "4.k"]);
+}
+
+#[test]
+fn of_many_autosaves_the_last_counts() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = run(folder.path(), "000000000001-1");
+    for n in 0..20 {
+        of.autosave(project(&format!("/{n}.k")));
+    }
+    drop(of);
+    let found = listed(&run(folder.path(), "000000000002-1"));
+    assert_eq!(found.len(), 1);
+    assert_eq!((found[0].title.as_str(), found[0].is_lost), ("19.k", false));
+}
+
+#[test]
+fn a_project_is_never_saved_over_one_of_its_parts() {
+    let folder = tempfile::tempdir().unwrap();
+    let deck = folder.path().join("deck.shapematch");
+    std::fs::write(&deck, "*KEYWORD\n*END\n").unwrap();
+    let of = run(&folder.path().join("kept"), "000000000001-1");
+    of.save(deck.clone(), project(deck.to_str().unwrap()), 7);
+    let event = of.wait_for_event(LONG);
+    assert!(
+        matches!(&event, Some(AutosaveEvent::SaveFailed(reason)) if reason.contains("overwrite")),
+        "{event:?}"
+    );
+    assert_eq!(std::fs::read(&deck).unwrap(), b"*KEYWORD\n*END\n");
+    let beside = folder.path().join("beside.shapematch");
+    of.save(beside.clone(), project(deck.to_str().unwrap()), 7);
+    let event = of.wait_for_event(LONG);
+    assert!(matches!(event, Some(AutosaveEvent::Saved(path, 7)) if path == beside));
+}
+
+#[test]
+fn preferences_come_back_and_rubbish_is_as_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("deep/settings.json");
+    let file = PreferencesFile::at(&path);
+    assert!(file.read::<Vec<u8>>().is_empty());
+    file.write(&vec![1, 2]).unwrap();
+    assert_eq!(file.read::<Vec<u8>>(), [1, 2]);
+    std::fs::write(&path, "{ not json").unwrap();
+    assert!(file.read::<Vec<u8>>().is_empty());
+    PreferencesFile::none().write(&0).unwrap();
+}

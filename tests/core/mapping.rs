@@ -1,0 +1,756 @@
+//! Mapping against closed forms: constants, linear fields, tensors, order of convergence, borders,
+//! weld lines, hems, and the way there and back.
+
+use shapematch::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
+use shapematch::mapping::tensor::{Tensor, principal, rotated, von_mises};
+use shapematch::mapping::*;
+use shapematch::monitor::Monitor;
+
+/// Where a point (u, v) of the flat blank lies.
+type Shape = fn(f64, f64) -> Point3;
+
+fn flat(u: f64, v: f64) -> Point3 {
+    Point3::new(u, v, 0.0)
+}
+
+/// A cylinder of radius 20 about the x axis.
+fn cylinder(u: f64, v: f64) -> Point3 {
+    let angle = v / 20.0;
+    Point3::new(u, 20.0 * angle.sin(), 20.0 * angle.cos())
+}
+
+/// Quads of about `size` over a blank of `length` × `width`, turned by `turn` in the blank and with
+/// inner nodes moved by a fifth of their size.
+struct Blank {
+    length: f64,
+    width: f64,
+    size: f64,
+    jitter: f64,
+}
+
+impl Blank {
+    fn new(size: f64) -> Self {
+        Self {
+            length: 100.0,
+            width: 60.0,
+            size,
+            jitter: 0.2,
+        }
+    }
+
+    fn mesh(&self, shape: Shape) -> ShellMesh {
+        let nu = (self.length / self.size).round() as u32;
+        let nv = (self.width / self.size).round() as u32;
+        let mut positions = Vec::new();
+        for i in 0..=nu {
+            for j in 0..=nv {
+                let hash = |k: f64| {
+                    let x = (f64::from(i) * 12.9898 + f64::from(j) * 78.233 + k).sin() * 43758.5453;
+                    x - x.floor() - 0.5
+                };
+                let is_inner = i > 0 && j > 0 && i < nu && j < nv;
+                let wobble = if is_inner {
+                    2.0 * self.jitter * self.size
+                } else {
+                    0.0
+                };
+                let u = self.length * f64::from(i) / f64::from(nu) + wobble * hash(0.1);
+                let v = self.width * f64::from(j) / f64::from(nv) + wobble * hash(7.7);
+                positions.push(shape(u, v));
+            }
+        }
+        let node = |i: u32, j: u32| i * (nv + 1) + j;
+        let mut corners = Vec::new();
+        for i in 0..nu {
+            for j in 0..nv {
+                corners.push([
+                    node(i, j),
+                    node(i + 1, j),
+                    node(i + 1, j + 1),
+                    node(i, j + 1),
+                ]);
+            }
+        }
+        let parts = vec![0; corners.len()];
+        ShellMesh::new(positions, corners, parts).unwrap()
+    }
+}
+
+/// The mesh with every element reversed.
+fn flipped(mesh: &ShellMesh) -> ShellMesh {
+    let corners = mesh
+        .corners()
+        .iter()
+        .map(|&[a, b, c, d]| [a, d, c, b])
+        .collect();
+    ShellMesh::new(mesh.positions().to_vec(), corners, mesh.parts().to_vec()).unwrap()
+}
+
+/// A mesh whose elements are all cut into triangles.
+fn cut(mesh: &ShellMesh) -> ShellMesh {
+    let halves = mesh
+        .corners()
+        .iter()
+        .flat_map(|&[a, b, c, d]| [[a, b, c, c], [a, c, d, d]]);
+    let corners: Vec<[u32; 4]> = halves.collect();
+    let parts = vec![0; corners.len()];
+    ShellMesh::new(mesh.positions().to_vec(), corners, parts).unwrap()
+}
+
+/// Forming results given by functions of the centroid.
+fn source(
+    mesh: ShellMesh,
+    n_layers: usize,
+    state: impl Fn(usize, f64, &ShellMesh) -> [f64; 7],
+) -> SourcePart {
+    let rule = LayerRule::new(RuleKind::Gauss, n_layers);
+    let mut states = Layered::new(mesh.len());
+    let mut strains = Layered::new(mesh.len());
+    for element in 0..mesh.len() {
+        let places = rule.places().iter();
+        states.set(element, places.map(|&t| (t, state(element, t, &mesh))));
+        let surfaces = [-1.0, 1.0].into_iter();
+        strains.set(
+            element,
+            surfaces.map(|t| {
+                (
+                    t,
+                    std::array::from_fn(|i| 1e-3 * state(element, t, &mesh)[i]),
+                )
+            }),
+        );
+    }
+    SourcePart {
+        thickness: vec![[1.0; 4]; mesh.len()],
+        states,
+        strains,
+        mesh,
+    }
+}
+
+fn full() -> MapOptions {
+    MapOptions {
+        quantities: Quantities::FULL,
+        ..MapOptions::default()
+    }
+}
+
+fn map_one(
+    part: &SourcePart,
+    pose: Similarity,
+    target: &TargetPart,
+    options: &MapOptions,
+) -> Mapped {
+    let placed = PlacedSource {
+        part,
+        target_from_source: pose,
+    };
+    map(&[placed], target, options, &Monitor::silent()).unwrap()
+}
+
+fn target(mesh: ShellMesh, n_layers: usize) -> TargetPart {
+    TargetPart::uniform(mesh, LayerRule::new(RuleKind::Gauss, n_layers), 1.0)
+}
+
+fn some_pose() -> Similarity {
+    let rotation = Rotation::from_euler_angles(0.7, -1.2, 2.1);
+    Similarity {
+        rotation: *rotation.to_rotation_matrix().matrix(),
+        translation: Vector3::new(850.0, -40.0, 1200.0),
+        scale: 1.0,
+    }
+}
+
+const STRESS: Tensor = [120.0, -35.0, 0.0, 22.0, 0.0, 0.0];
+
+/// A stress in the plane of the blank, and a plastic strain.
+fn uniform(_: usize, _: f64, _: &ShellMesh) -> [f64; 7] {
+    [STRESS[0], STRESS[1], 0.0, STRESS[3], 0.0, 0.0, 0.05]
+}
+
+fn assert_tensor(found: &[f64], expected: &Tensor, tolerance: f64) {
+    for (a, b) in found.iter().zip(expected) {
+        assert!((a - b).abs() <= tolerance, "{found:?} against {expected:?}");
+    }
+}
+
+#[test]
+fn constants_and_uniform_tensors_come_through_any_motion_mirror_and_flip() {
+    let fine = Blank::new(2.5).mesh(flat);
+    let coarse = Blank::new(5.0).mesh(flat);
+    let part = source(fine, 5, uniform);
+    let mirror = Similarity::mirror_x();
+    for pose in [
+        Similarity::identity(),
+        some_pose(),
+        some_pose().after(&mirror),
+    ] {
+        let moved = coarse.moved(&pose);
+        // As a deck would hold it: normals follow from the corners.
+        let moved = ShellMesh::new(
+            moved.positions().to_vec(),
+            moved.corners().to_vec(),
+            moved.parts().to_vec(),
+        )
+        .unwrap();
+        for mesh in [moved.clone(), flipped(&moved), cut(&moved)] {
+            for n_plane in [1, 4] {
+                let mut onto = target(mesh.clone(), 5);
+                onto.n_plane.fill(n_plane);
+                let mapped = map_one(&part, pose, &onto, &full());
+                assert_eq!(mapped.counts()[0], mesh.len(), "all are mapped");
+                let expected = rotated(&STRESS, &pose.rotation);
+                for element in 0..mesh.len() {
+                    assert!((mapped.thickness[element] - 1.0).abs() < 1e-12);
+                    let states = mapped.states.as_ref().unwrap().of(element);
+                    assert_eq!(states.len(), 5 * onto_planes(&onto, element));
+                    for state in states {
+                        assert_tensor(&state[..6], &expected, 1e-12 * 120.0);
+                        assert!((state[6] - 0.05).abs() < 1e-12);
+                    }
+                    let strains = mapped.strains.as_ref().unwrap().of(element);
+                    assert_eq!(strains.len(), 2);
+                    assert_tensor(&strains[0], &expected.map(|x| 1e-3 * x), 1e-12);
+                }
+            }
+        }
+    }
+}
+
+fn onto_planes(target: &TargetPart, element: usize) -> usize {
+    if target.mesh.is_triangle(element) {
+        1
+    } else {
+        target.n_plane[element] as usize
+    }
+}
+
+/// Area centroid of a plane quad, where the area mean of a linear field is taken.
+fn area_centroid(mesh: &ShellMesh, element: usize) -> Point3 {
+    let [a, b, c, d] = mesh.corner_points(element);
+    let half = |p: Point3, q: Point3, r: Point3| {
+        let area = (q - p).cross(&(r - p)).norm() / 2.0;
+        ((p.coords + q.coords + r.coords) / 3.0 * area, area)
+    };
+    let (m1, a1) = half(a, b, c);
+    let (m2, a2) = half(a, c, d);
+    Point3::from((m1 + m2) / (a1 + a2))
+}
+
+#[test]
+fn a_linear_field_on_a_plane_is_exact() {
+    let linear = |p: &Point3| 0.2 + 0.004 * p.x + 0.003 * p.y;
+    for (from, to) in [(2.5, 5.0), (5.0, 5.0), (5.0, 2.5)] {
+        let mesh = Blank::new(from).mesh(flat);
+        let part = source(mesh, 3, |e, _, mesh| {
+            let v = linear(&mesh.centroids()[e]);
+            [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, v]
+        });
+        // A target well inside, so that every point has a full stencil around its source element.
+        let inner = Blank {
+            length: 60.0,
+            width: 30.0,
+            size: to,
+            jitter: 0.2,
+        };
+        let onto = target(inner.mesh(|u, v| Point3::new(u + 20.3, v + 15.1, 0.0)), 3);
+        let no_limit = map_one(&part, Similarity::identity(), &onto, &full());
+        for element in 0..onto.mesh.len() {
+            let expected = linear(&area_centroid(&onto.mesh, element));
+            let found = no_limit.states.as_ref().unwrap().of(element)[1][6];
+            assert!(
+                (found - expected).abs() < 1e-12,
+                "{from} → {to}: {found} against {expected}"
+            );
+        }
+    }
+}
+
+fn sine(p: &Point3) -> f64 {
+    0.3 + 0.2
+        * (std::f64::consts::TAU * p.x / 40.0).sin()
+        * (std::f64::consts::TAU * p.y / 40.0).cos()
+}
+
+/// Mean of a function over a plane quad by many points.
+fn exact_mean(mesh: &ShellMesh, element: usize, f: impl Fn(&Point3) -> f64) -> f64 {
+    let [a, b, c, d] = mesh.corner_points(element);
+    let n = 12;
+    let (mut sum, mut area) = (0.0, 0.0);
+    for i in 0..n {
+        for j in 0..n {
+            let at = |u: f64, v: f64| {
+                Point3::from(
+                    a.coords * (1.0 - u) * (1.0 - v)
+                        + b.coords * u * (1.0 - v)
+                        + c.coords * u * v
+                        + d.coords * (1.0 - u) * v,
+                )
+            };
+            let (u, v, h) = (
+                f64::from(i) / f64::from(n),
+                f64::from(j) / f64::from(n),
+                1.0 / f64::from(n),
+            );
+            let cell = (at(u + h, v) - at(u, v))
+                .cross(&(at(u, v + h) - at(u, v)))
+                .norm();
+            sum += cell * f(&at(u + h / 2.0, v + h / 2.0));
+            area += cell;
+        }
+    }
+    sum / area
+}
+
+fn sine_error(size: f64, method: MapMethod) -> f64 {
+    let mesh = Blank::new(size).mesh(flat);
+    let part = source(mesh, 2, |e, _, mesh| {
+        let mean = exact_mean(mesh, e, sine);
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, mean]
+    });
+    let inner = Blank {
+        length: 64.0,
+        width: 32.0,
+        size: 1.6 * size,
+        jitter: 0.2,
+    };
+    let onto = target(inner.mesh(|u, v| Point3::new(u + 17.3, v + 13.1, 0.0)), 2);
+    let options = MapOptions { method, ..full() };
+    let mapped = map_one(&part, Similarity::identity(), &onto, &options);
+    let (mut sum, mut area) = (0.0, 0.0);
+    for element in 0..onto.mesh.len() {
+        let found = mapped.states.as_ref().unwrap().of(element)[0][6];
+        let error = found - exact_mean(&onto.mesh, element, sine);
+        sum += error * error * onto.mesh.areas()[element];
+        area += onto.mesh.areas()[element];
+    }
+    (sum / area).sqrt()
+}
+
+#[test]
+fn a_smooth_field_converges_with_second_order_and_nearest_does_not() {
+    let order = |method| {
+        let errors = [5.0, 2.5, 1.25].map(|size| sine_error(size, method));
+        (errors[0] / errors[2]).log2() / 2.0
+    };
+    let area = order(MapMethod::Area);
+    assert!(area >= 1.8, "order {area}");
+    let nearest = order(MapMethod::Nearest);
+    assert!(nearest < 1.4, "order {nearest}");
+    let (ours, theirs) = (
+        sine_error(2.5, MapMethod::Area),
+        sine_error(2.5, MapMethod::Nearest),
+    );
+    assert!(5.0 * ours < theirs, "{ours:e} against {theirs:e}");
+}
+
+#[test]
+fn the_same_mesh_moved_keeps_every_bit() {
+    let mesh = Blank::new(5.0).mesh(cylinder);
+    let part = source(mesh.clone(), 5, |e, t, _| {
+        let x = (e as f64 * 0.37).sin() + t;
+        [
+            100.0 * x,
+            20.0 * x * x,
+            -3.0 * x,
+            5.0 + x,
+            x,
+            2.0,
+            0.01 * (x + 2.0),
+        ]
+    });
+    for pose in [Similarity::identity(), some_pose()] {
+        let mapped = map_one(&part, pose, &target(mesh.moved(&pose), 5), &full());
+        for element in 0..mesh.len() {
+            assert_eq!(mapped.elements[element].status, Status::Mapped);
+            let partner = mapped.elements[element].partner.unwrap();
+            assert!(partner.is_copy && partner.element as usize == element);
+            let (_, own) = part.states.of(element).unwrap();
+            for (state, own) in mapped.states.as_ref().unwrap().of(element).iter().zip(own) {
+                assert_eq!(state[6], own[6]);
+                let own: Tensor = std::array::from_fn(|i| own[i]);
+                assert_tensor(&state[..6], &rotated(&own, &pose.rotation), 1e-12 * 300.0);
+                let found: Tensor = std::array::from_fn(|i| state[i]);
+                assert!((von_mises(&found) - von_mises(&own)).abs() < 1e-12 * 300.0);
+                assert!((principal(&found)[0] - principal(&own)[0]).abs() < 1e-12 * 300.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_flipped_target_takes_the_layers_from_the_other_side() {
+    let mesh = Blank::new(5.0).mesh(flat);
+    let part = source(mesh.clone(), 5, |_, t, _| {
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5 + 0.4 * t]
+    });
+    let onto = target(flipped(&mesh), 5);
+    let mapped = map_one(&part, Similarity::identity(), &onto, &full());
+    assert_eq!(mapped.senses, [Some(true)]);
+    let straight = map_one(&part, Similarity::identity(), &target(mesh, 5), &full());
+    for element in 0..onto.mesh.len() {
+        let reversed: Vec<_> = mapped
+            .states
+            .as_ref()
+            .unwrap()
+            .of(element)
+            .iter()
+            .rev()
+            .collect();
+        let plain: Vec<_> = straight
+            .states
+            .as_ref()
+            .unwrap()
+            .of(element)
+            .iter()
+            .collect();
+        assert_eq!(reversed, plain);
+    }
+}
+
+#[test]
+fn hoop_stress_on_a_radius_stays_in_the_sheet() {
+    let hoop = |e: usize, _: f64, mesh: &ShellMesh| {
+        let n = mesh.normals()[e];
+        let along = Vector3::x().cross(&n).normalize();
+        let s = 100.0;
+        let a = along;
+        [
+            s * a.x * a.x,
+            s * a.y * a.y,
+            s * a.z * a.z,
+            s * a.x * a.y,
+            s * a.y * a.z,
+            s * a.z * a.x,
+            0.0,
+        ]
+    };
+    let blank = |size| Blank {
+        length: 40.0,
+        width: 25.0,
+        size,
+        jitter: 0.0,
+    };
+    let part = source(blank(2.5).mesh(cylinder), 2, hoop);
+    let coarse = blank(5.0).mesh(|u, v| cylinder(0.8 * u + 4.0, 0.8 * v + 2.5));
+    let mapped = map_one(
+        &part,
+        Similarity::identity(),
+        &target(coarse.clone(), 2),
+        &full(),
+    );
+    for element in 0..coarse.len() {
+        let n = coarse.normals()[element];
+        for state in mapped.states.as_ref().unwrap().of(element) {
+            let stress: Tensor = std::array::from_fn(|i| state[i]);
+            let m = Matrix3::new(
+                stress[0], stress[3], stress[5], stress[3], stress[1], stress[4], stress[5],
+                stress[4], stress[2],
+            );
+            let traction = m * n;
+            assert!(
+                traction.norm() < 1e-10,
+                "normal and shear traction {traction}"
+            );
+            assert!((von_mises(&stress) - 100.0).abs() < 0.5);
+        }
+    }
+}
+
+#[test]
+fn a_blank_of_two_gauges_has_no_gauge_between() {
+    let mesh = Blank::new(2.5).mesh(flat);
+    let mut part = source(mesh.clone(), 2, uniform);
+    for (thickness, centre) in part.thickness.iter_mut().zip(mesh.centroids()) {
+        *thickness = if centre.x < 47.0 { [0.8; 4] } else { [1.6; 4] };
+    }
+    let onto = target(Blank::new(5.0).mesh(flat), 2);
+    let mapped = map_one(&part, Similarity::identity(), &onto, &full());
+    for thickness in &mapped.thickness {
+        let is_gauge = |gauge: f64| (thickness - gauge).abs() < 1e-12;
+        assert!(is_gauge(0.8) || is_gauge(1.6), "{thickness}");
+    }
+}
+
+#[test]
+fn a_hem_does_not_leak() {
+    // Skin at z = 0 facing up; the folded flange 1.5 above it faces down.
+    let skin = Blank::new(5.0).mesh(flat);
+    let flange = flipped(&Blank::new(5.0).mesh(|u, v| Point3::new(u, v, 1.5)));
+    let n = skin.positions().len() as u32;
+    let mut positions = skin.positions().to_vec();
+    positions.extend_from_slice(flange.positions());
+    let mut corners = skin.corners().to_vec();
+    corners.extend(flange.corners().iter().map(|c| c.map(|v| v + n)));
+    let both = ShellMesh::new(positions, corners, vec![0; 2 * skin.len()]).unwrap();
+    let n_skin = skin.len();
+    let part = source(both, 2, |e, _, _| {
+        [
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            if e < n_skin { 0.1 } else { 0.9 },
+        ]
+    });
+    // The crash skin is 0.8 too high, so that the flange is the nearer sheet.
+    let onto = target(Blank::new(7.0).mesh(|u, v| Point3::new(u, v, 0.8)), 2);
+    let signed = MapOptions {
+        normal_sense: NormalSense::Signed,
+        ..full()
+    };
+    let mapped = map_one(&part, Similarity::identity(), &onto, &signed);
+    assert_eq!(mapped.counts()[Status::Mapped as usize], onto.mesh.len());
+    for element in 0..onto.mesh.len() {
+        let value = mapped.states.as_ref().unwrap().of(element)[0][6];
+        assert!((value - 0.1).abs() < 1e-12, "{value}");
+    }
+    let either = MapOptions {
+        normal_sense: NormalSense::Either,
+        ..full()
+    };
+    let mapped = map_one(&part, Similarity::identity(), &onto, &either);
+    let flagged = mapped.counts()[Status::TwoLayers as usize];
+    assert_eq!(flagged, onto.mesh.len(), "every doubtful element is marked");
+}
+
+#[test]
+fn elements_without_counterpart_say_why() {
+    let part = source(Blank::new(5.0).mesh(flat), 2, uniform);
+    let wide = Blank {
+        length: 160.0,
+        width: 60.0,
+        size: 5.0,
+        jitter: 0.0,
+    };
+    let onto = target(wide.mesh(flat), 2);
+    let mapped = map_one(&part, Similarity::identity(), &onto, &full());
+    let counts = mapped.counts();
+    assert_eq!(counts.iter().sum::<usize>(), onto.mesh.len());
+    assert_eq!(counts[Status::Outside as usize], 12 * 12, "beyond x = 100");
+    assert_eq!(counts[Status::Mapped as usize], 20 * 12);
+    for (report, thickness) in mapped.elements.iter().zip(&mapped.thickness) {
+        assert_eq!(report.status.has_values(), thickness.is_finite());
+    }
+    let high = target(Blank::new(5.0).mesh(|u, v| Point3::new(u, v, 8.0)), 2);
+    let mapped = map_one(&part, Similarity::identity(), &high, &full());
+    assert_eq!(mapped.counts()[Status::Far as usize], high.mesh.len());
+    let upright = target(
+        Blank::new(5.0).mesh(|u, v| Point3::new(u, 30.0, v - 30.0)),
+        2,
+    );
+    let mapped = map_one(&part, Similarity::identity(), &upright, &full());
+    assert!(mapped.counts()[Status::Angle as usize] > 0);
+    assert_eq!(mapped.counts()[Status::Mapped as usize], 0);
+}
+
+#[test]
+fn unmapped_rings_are_filled_and_marked() {
+    let part = source(Blank::new(5.0).mesh(flat), 2, uniform);
+    let wide = Blank {
+        length: 120.0,
+        width: 60.0,
+        size: 5.0,
+        jitter: 0.0,
+    };
+    let onto = target(wide.mesh(flat), 2);
+    let options = MapOptions {
+        fill_rings: 2,
+        ..full()
+    };
+    let mapped = map_one(&part, Similarity::identity(), &onto, &options);
+    assert_eq!(mapped.counts()[Status::Filled as usize], 2 * 12);
+    for element in 0..onto.mesh.len() {
+        if mapped.elements[element].status == Status::Filled {
+            assert!((mapped.thickness[element] - 1.0).abs() < 1e-12);
+            for state in mapped.states.as_ref().unwrap().of(element) {
+                assert_eq!(state[..6], [0.0; 6]);
+                assert!((state[6] - 0.05).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+#[test]
+fn elements_without_results_say_so_and_spoil_no_neighbour() {
+    let mesh = Blank::new(5.0).mesh(flat);
+    let mut part = source(mesh.clone(), 2, uniform);
+    let full_states = part.states.clone();
+    part.states = Layered::new(mesh.len());
+    for (element, centre) in mesh.centroids().iter().enumerate() {
+        if centre.x > 50.0 {
+            part.thickness[element] = [f64::NAN; 4];
+        } else {
+            let (rule, values) = full_states.of(element).unwrap();
+            part.states.set(
+                element,
+                rule.places().iter().copied().zip(values.iter().copied()),
+            );
+        }
+    }
+    part.strains = Layered::new(mesh.len());
+    let mapped = map_one(
+        &part,
+        Similarity::identity(),
+        &target(Blank::new(4.0).mesh(flat), 2),
+        &full(),
+    );
+    let counts = mapped.counts();
+    assert!(counts[Status::NoData as usize] > 100);
+    for (element, report) in mapped.elements.iter().enumerate() {
+        if report.status.has_values() {
+            assert!((mapped.thickness[element] - 1.0).abs() < 1e-12);
+        } else {
+            assert!(mapped.thickness[element].is_nan());
+            assert!(mapped.states.as_ref().unwrap().of(element).is_empty());
+        }
+    }
+}
+
+#[test]
+fn two_stamped_parts_share_one_crash_part() {
+    let left = Blank {
+        length: 50.0,
+        width: 60.0,
+        size: 5.0,
+        jitter: 0.0,
+    };
+    let mut a = source(left.mesh(flat), 2, uniform);
+    a.thickness.fill([0.7; 4]);
+    let mut b = source(left.mesh(|u, v| Point3::new(u + 50.0, v, 0.0)), 2, uniform);
+    b.thickness.fill([1.5; 4]);
+    let onto = target(
+        Blank {
+            jitter: 0.0,
+            ..Blank::new(4.0)
+        }
+        .mesh(flat),
+        2,
+    );
+    let place = |part| PlacedSource {
+        part,
+        target_from_source: Similarity::identity(),
+    };
+    let mapped = map(&[place(&a), place(&b)], &onto, &full(), &Monitor::silent()).unwrap();
+    assert_eq!(mapped.counts()[Status::Mapped as usize], onto.mesh.len());
+    for (thickness, centre) in mapped.thickness.iter().zip(onto.mesh.centroids()) {
+        let is_gauge = |gauge: f64| (thickness - gauge).abs() < 1e-12;
+        // The row of elements that the weld line cuts in halves takes one gauge or the other.
+        assert!(is_gauge(0.7) || is_gauge(1.5), "{thickness} at {centre}");
+        if (centre.x - 50.0).abs() > 2.0 {
+            assert!(is_gauge(if centre.x < 50.0 { 0.7 } else { 1.5 }));
+        }
+    }
+    // The same sheet twice is a conflict, and the choice decides.
+    let mut c = a.clone();
+    c.thickness.fill([2.0; 4]);
+    let options = MapOptions {
+        overlap: Overlap::Thicker,
+        ..full()
+    };
+    let mapped = map(&[place(&a), place(&c)], &onto, &options, &Monitor::silent()).unwrap();
+    assert!(mapped.counts()[Status::Conflict as usize] > 100);
+    assert!(
+        mapped
+            .thickness
+            .iter()
+            .filter(|t| t.is_finite())
+            .all(|t| (t - 2.0).abs() < 1e-12)
+    );
+}
+
+#[test]
+fn mapping_back_returns_what_was_there() {
+    let part = source(Blank::new(2.5).mesh(flat), 3, |e, _, mesh| {
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, sine(&mesh.centroids()[e])]
+    });
+    let onto = target(Blank::new(3.1).mesh(flat), 3);
+    let placed = PlacedSource {
+        part: &part,
+        target_from_source: Similarity::identity(),
+    };
+    let monitor = Monitor::silent();
+    let mapped = map(&[placed], &onto, &full(), &monitor).unwrap();
+    let back = map_back(&placed, &onto, &mapped, &full(), &monitor).unwrap();
+    assert!(back.coverage > 0.99);
+    assert!(back.thickness_rms < 1e-12);
+    assert!(back.plastic_rms < 0.03 * back.plastic_range, "{back:?}");
+}
+
+#[test]
+fn the_result_does_not_depend_on_threads_and_mirrors_undo_each_other() {
+    let mesh = Blank::new(2.5).mesh(cylinder);
+    let part = source(mesh, 5, |e, t, _| {
+        let x = (e as f64 * 0.11).sin() + t;
+        [10.0 * x, 5.0 * x, 3.0, x, 2.0, 1.0, 0.2 + 0.05 * x]
+    });
+    let onto = target(Blank::new(4.1).mesh(cylinder), 3);
+    let run = |n_threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(n_threads)
+            .build()
+            .unwrap();
+        pool.install(|| map_one(&part, Similarity::identity(), &onto, &full()))
+    };
+    let one = run(1);
+    assert_eq!(format!("{:?}", one.states), format!("{:?}", run(3).states));
+    assert_eq!(
+        format!("{:?}", one.thickness),
+        format!("{:?}", run(8).thickness)
+    );
+    // Mapping onto the mirrored part and undoing the mirror of the tensors.
+    let mirror = Similarity::mirror_x();
+    let mirrored = map_one(&part, mirror, &target(onto.mesh.moved(&mirror), 3), &full());
+    for element in 0..onto.mesh.len() {
+        let plain = one.states.as_ref().unwrap().of(element);
+        let turned = mirrored.states.as_ref().unwrap().of(element);
+        assert_eq!(plain.len(), turned.len());
+        for (a, b) in plain.iter().zip(turned) {
+            let back = rotated(&std::array::from_fn(|i| b[i]), &mirror.rotation);
+            assert_tensor(&a[..6], &back, 1e-9);
+            assert!((a[6] - b[6]).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn wrong_choices_and_missing_results_are_named() {
+    let part = source(Blank::new(20.0).mesh(flat), 2, uniform);
+    let onto = target(Blank::new(20.0).mesh(flat), 2);
+    let place = PlacedSource {
+        part: &part,
+        target_from_source: Similarity::identity(),
+    };
+    let fails =
+        |options: MapOptions| map(&[place], &onto, &options, &Monitor::silent()).unwrap_err();
+    let bad = fails(MapOptions {
+        max_distance: Some(-1.0),
+        ..full()
+    });
+    assert_eq!(
+        bad.to_string(),
+        "the largest distance is -1, but must be above 0"
+    );
+    let bare = SourcePart {
+        thickness: Vec::new(),
+        states: Layered::new(part.mesh.len()),
+        strains: Layered::new(part.mesh.len()),
+        mesh: part.mesh.clone(),
+    };
+    let place = PlacedSource {
+        part: &bare,
+        target_from_source: Similarity::identity(),
+    };
+    let none = map(&[place], &onto, &full(), &Monitor::silent()).unwrap_err();
+    assert_eq!(none, MappingError::NoResults);
+    let cancelled = Monitor::silent();
+    cancelled.request_cancel();
+    let place = PlacedSource {
+        part: &part,
+        target_from_source: Similarity::identity(),
+    };
+    let ended = map(&[place], &onto, &full(), &cancelled).unwrap_err();
+    assert!(matches!(ended, MappingError::Cancelled(_)));
+}

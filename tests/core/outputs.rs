@@ -1,0 +1,227 @@
+//! Files the command line writes: nothing that is read is overwritten, nothing is left half written,
+//! and what cannot be written is said before the work.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn shapematch(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_shapematch"))
+        .current_dir(folder)
+        .args(args)
+        .output()
+        .unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// The bracket, whose crash deck includes its mesh.
+fn pair() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let sample = ["sample", ".", "--part", "bracket"];
+    assert!(shapematch(folder.path(), &sample).status.success());
+    let at = |name: &str| folder.path().join(name);
+    fs::rename(at("crash.k"), at("mesh.k")).unwrap();
+    fs::write(at("crash.k"), "*KEYWORD\n*INCLUDE\nmesh.k\n*END\n").unwrap();
+    folder
+}
+
+fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let entries = fs::read_dir(folder).unwrap().flatten();
+    let mut files: Vec<(String, Vec<u8>)> = entries
+        .map(|entry| {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            (name, fs::read(entry.path()).unwrap_or_default())
+        })
+        .collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn nothing_that_is_read_is_overwritten() {
+    let folder = pair();
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("stamped.dynain", folder.path().join("link.k")).unwrap();
+    fs::hard_link(folder.path().join("crash.k"), folder.path().join("twin.k")).unwrap();
+    let before = contents(folder.path());
+    let cases: &[&[&str]] = &[
+        &["reduce", "mesh.k", "-n", "20", "--out", "mesh.k"],
+        &["reduce", "mesh.k", "-n", "20", "--out", "./mesh.k"],
+        &["reduce", "crash.k", "-n", "20", "--out", "mesh.k"],
+        &["match", "crash.k", "stamped.dynain", "--moved", "twin.k"],
+        &[
+            "match",
+            "crash.k",
+            "stamped.dynain",
+            "--moved",
+            "stamped.dynain",
+        ],
+        &["match", "crash.k", "stamped.dynain", "--cards", "crash.k"],
+        &["match", "crash.k", "stamped.dynain", "--cards", "mesh.k"],
+        &["match", "crash.k", "stamped.dynain", "--json", "mesh.k"],
+        #[cfg(unix)]
+        &["match", "crash.k", "stamped.dynain", "--report", "link.k"],
+        &["info", "crash.k", "--json", "mesh.k"],
+        &[
+            "bench",
+            "crash.k",
+            "stamped.dynain",
+            "--json",
+            "stamped.dynain",
+        ],
+    ];
+    for args in cases {
+        let output = shapematch(folder.path(), args);
+        let told = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {told}");
+        assert!(told.contains("would overwrite"), "{args:?}: {told}");
+        assert!(output.stdout.is_empty(), "{args:?} began to work");
+        assert_eq!(contents(folder.path()), before, "{args:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_written_is_refused_before_the_work() {
+    let folder = pair();
+    let before = contents(folder.path());
+    let cases: &[(&[&str], &str)] = &[
+        (&["--json", "r.json", "--matrix", "./r.json"], "same file"),
+        (&["--json", "-", "--matrix", "-"], "standard output"),
+        (&["--moved", "a.xyz"], "ends in .k"),
+        (&["--moved", "$a.k"], "begins with $"),
+        (&["--report", "nowhere/r.html"], "folder does not exist"),
+        (&["--report", "."], "is a folder"),
+    ];
+    for (options, words) in cases {
+        let args = [&["match", "crash.k", "stamped.dynain"], *options].concat();
+        let output = shapematch(folder.path(), &args);
+        let told = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{options:?}: {told}");
+        assert!(told.contains(words) && told.contains(options[0]), "{told}");
+        assert!(output.stdout.is_empty(), "{options:?} began to work");
+    }
+    assert_eq!(contents(folder.path()), before);
+}
+
+#[test]
+#[cfg(unix)]
+fn a_name_that_no_deck_can_include_is_refused_before_the_match() {
+    let folder = pair();
+    for name in ["$a.k", "*a.k", "a\nb.k", "a +", " a.k"] {
+        fs::copy(
+            folder.path().join("stamped.dynain"),
+            folder.path().join(name),
+        )
+        .unwrap();
+        let args = ["match", "crash.k", name, "--cards", "c.k"];
+        let output = shapematch(folder.path(), &args);
+        assert_eq!(output.status.code(), Some(2), "{name:?}: {}", said(&output));
+        assert!(output.stdout.is_empty());
+        assert!(!folder.path().join("c.k").exists());
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn on_a_full_disk_the_old_file_survives_and_the_others_are_written() {
+    let folder = pair();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("moved.k"), "the old file").unwrap();
+    // No file may grow beyond 8 × 512 bytes: more than the matrix, less than the deck.
+    let script = "trap '' XFSZ; ulimit -f 8; exec \"$0\" \"$@\"";
+    let output = Command::new("sh")
+        .current_dir(folder.path())
+        .args(["-c", script, env!("CARGO_BIN_EXE_shapematch")])
+        .args(["match", "crash.k", "stamped.dynain"])
+        .args(["--moved", "moved.k", "--matrix", "m.txt", "--cards", "c.k"])
+        .output()
+        .unwrap();
+    let told = said(&output);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(told.contains("--moved is not written"), "{told}");
+    assert_eq!(fs::read_to_string(at("moved.k")).unwrap(), "the old file");
+    assert!(fs::read_to_string(at("m.txt")).unwrap().ends_with('\n'));
+    assert!(at("c.k").exists());
+    let left = contents(folder.path());
+    assert!(
+        left.iter().all(|(name, _)| !name.starts_with('.')),
+        "{left:?}"
+    );
+
+    let full = ["match", "crash.k", "stamped.dynain", "--json", "/dev/full"];
+    let output = shapematch(folder.path(), &full);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(said(&output).contains("/dev/full"), "{}", said(&output));
+}
+
+#[test]
+fn other_files_are_replaced() {
+    let folder = pair();
+    let old = folder.path().join("small.stl");
+    fs::write(&old, "old").unwrap();
+    let args = ["reduce", "crash.k", "-n", "20", "--out", "small.stl"];
+    assert!(shapematch(folder.path(), &args).status.success());
+    assert!(fs::metadata(&old).unwrap().len() > 84);
+}
+
+#[test]
+fn settings_that_cannot_be_are_wrong_usage() {
+    let folder = pair();
+    let cases: &[(&[&str], &str)] = &[
+        (&["--stamped-length-factor", "1e308"], "1e308"),
+        (&["--lambda", "-1"], "-1"),
+        (&["--angle-segment", "90"], "60°"),
+        (
+            &["--start-pose", "2 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"],
+            "rotation",
+        ),
+        (&["--threads", "100000"], "100000"),
+    ];
+    for (options, words) in cases {
+        let args = [&["match", "crash.k", "stamped.dynain"], *options].concat();
+        let output = shapematch(folder.path(), &args);
+        let told = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{options:?}: {told}");
+        assert!(told.contains(words), "{options:?}: {told}");
+        assert!(output.stdout.is_empty(), "{options:?} began to work");
+    }
+    let none = ["reduce", "crash.k", "-n", "0", "--out", "a.stl"];
+    assert_eq!(shapematch(folder.path(), &none).status.code(), Some(2));
+}
+
+#[test]
+fn a_part_that_is_not_there_is_answered_with_those_that_are_near() {
+    let folder = pair();
+    for wrong in ["5", "seat brackets"] {
+        let args = ["match", "crash.k", "stamped.dynain", "--crash-part", wrong];
+        let told = said(&shapematch(folder.path(), &args));
+        assert!(told.contains("there is no part"), "{told}");
+        assert!(told.contains("2000040 \"SEAT BRACKET\""), "{told}");
+    }
+}
+
+#[test]
+fn escape_sequences_of_a_title_do_not_reach_the_terminal() {
+    let folder = pair();
+    let deck = folder.path().join("mesh.k");
+    let text = fs::read_to_string(&deck).unwrap();
+    let at = text.find("*PART\n").unwrap() + 6;
+    let (head, tail) = text.split_at(at);
+    let tail = tail.trim_start_matches('$');
+    fs::write(&deck, format!("{head}\u{1b}[31mred\n{}", after_title(tail))).unwrap();
+    let output = shapematch(folder.path(), &["info", "mesh.k"]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains("[31mred"), "{text}");
+    assert!(!text.contains('\u{1b}'), "{text}");
+}
+
+/// What follows the title of a part: comments and the title are left out.
+fn after_title(text: &str) -> String {
+    let mut lines = text.lines().skip_while(|line| line.starts_with('$'));
+    lines.next();
+    let rest: Vec<&str> = lines.collect();
+    rest.join("\n")
+}

@@ -1,0 +1,49 @@
+//! A small fixed slice of the robustness table: always the same pairs, so that a change for the worse
+//! is seen at once.
+
+use shapematch::assess::Verdict;
+use shapematch::monitor::Monitor;
+use shapematch::pipeline::robustness::{Ending, RobustnessSettings, robustness};
+use shapematch::pipeline::robustness_page::page;
+use shapematch::pipeline::robustness_table::RobustnessTable;
+use shapematch::samples::SamplePart;
+use shapematch::samples::scenario::Scenario;
+
+#[test]
+fn a_slice_of_the_table_is_right_and_honest() {
+    let settings = RobustnessSettings {
+        parts: vec![SamplePart::Bracket, SamplePart::Crossmember],
+        scenarios: vec![
+            Scenario::SameSurface,
+            Scenario::Cut(0.6),
+            Scenario::Springback(1.0),
+            Scenario::OtherHand,
+            Scenario::OtherVersion(0.1),
+        ],
+        ..RobustnessSettings::default()
+    };
+    let mut n_told = 0;
+    let runs = robustness(&settings, &Monitor::silent(), |_| n_told += 1).unwrap();
+    assert_eq!([runs.len(), n_told], [10, 10]);
+    for run in &runs {
+        let expected = if run.scenario.is_same_part() {
+            Ending::Right
+        } else {
+            Ending::NoTruth
+        };
+        assert_eq!(run.ending, expected, "{run:?}");
+        assert_ne!(run.is_covered(), Some(false), "{run:?}");
+        if run.ending == Ending::NoTruth {
+            assert_ne!(run.verdict, Verdict::Good, "{run:?}");
+        } else {
+            assert_ne!(run.verdict, Verdict::Poor, "{run:?}");
+        }
+    }
+    let table = RobustnessTable::new(settings.seed, &runs);
+    assert_eq!(table.rows.len(), 5);
+    assert_eq!(table.total.runs, 10);
+    assert_eq!(table.total.right.iter().sum::<usize>(), 6);
+    let page = page(&table, &runs);
+    assert_eq!(page.matches("<tr>").count(), 7);
+    assert!(page.contains("springback 1 mm"));
+}

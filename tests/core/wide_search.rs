@@ -1,0 +1,97 @@
+//! The wide search against known poses: the right one comes out first, wherever the part lay.
+
+use shapematch::geometry::{Similarity, TriMesh};
+use shapematch::monitor::{Cancelled, Monitor};
+use shapematch::registration::{Surface, WideFind, WideSearch};
+
+use super::drawn_pan::{everywhere, pan, panel, placement, worst_node};
+
+fn search(data: &TriMesh, model: &TriMesh, mirrored: bool) -> Vec<WideFind> {
+    let surface = |mesh: &TriMesh| Surface::new(mesh, "source").unwrap();
+    let (data, model) = (surface(data), surface(model));
+    let search = WideSearch::new(&data, &model).unwrap();
+    search.run(mirrored, &Monitor::silent()).unwrap()
+}
+
+/// Searches `data`, moved away by a placement of its own for each seed, and expects it back.
+fn check(data: &TriMesh, model: &TriMesh, seeds: std::ops::Range<u64>) -> Vec<WideFind> {
+    let mut found = Vec::new();
+    for seed in seeds {
+        let truth = placement(seed);
+        let moved = data.transformed(&truth.inverse());
+        found = search(&moved, model, false);
+        let error = worst_node(&moved, &truth, &found[0].model_from_data);
+        let limit = 0.03 * data.aabb().diagonal();
+        assert!(error < limit, "seed {seed}: {error:.2} mm of {limit:.2}");
+        assert!(found.windows(2).all(|pair| pair[0].loss <= pair[1].loss));
+    }
+    found
+}
+
+#[test]
+fn a_whole_part_is_found_from_any_placement() {
+    check(
+        &pan(6.0, 0.0, everywhere),
+        &pan(9.0, 0.35, everywhere),
+        0..6,
+    );
+}
+
+#[test]
+fn reversed_elements_are_told() {
+    let part = panel(6.0, 0.0, everywhere);
+    let found = check(&part.clone().flipped(), &part, 0..1);
+    assert!(found[0].flipped);
+}
+
+#[test]
+fn a_fifth_of_a_part_is_found_on_the_whole() {
+    let piece = panel(4.0, 0.0, |x, y| x + 0.2 * y < -60.0);
+    let whole = panel(5.0, 0.35, everywhere);
+    assert!(piece.area() < 0.22 * whole.area());
+    check(&piece, &whole, 0..3);
+}
+
+#[test]
+fn parts_that_overhang_each_other_are_found() {
+    let left = panel(5.0, 0.0, |x, _| x < 60.0);
+    let right = panel(6.0, 0.35, |x, _| x > -70.0);
+    check(&left, &right, 0..3);
+}
+
+#[test]
+fn the_opposite_hand_is_found_as_a_mirroring_pose() {
+    let part = panel(6.0, 0.0, everywhere);
+    let truth = placement(3).after(&Similarity::mirror_x());
+    let moved = part.transformed(&truth.inverse());
+    let found = search(&moved, &part, true);
+    let pose = found[0].model_from_data;
+    assert!(pose.is_mirrored());
+    let error = worst_node(&moved, &truth, &pose);
+    assert!(error < 0.03 * part.aabb().diagonal(), "{error:.2} mm");
+    // Its own hand does not lie nearly as well.
+    assert!(search(&moved, &part, false)[0].loss > 3.0 * found[0].loss);
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let (data, model) = (panel(6.0, 0.0, |x, _| x < 0.0), panel(9.0, 0.3, everywhere));
+    let run = |n_threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
+        let search = || search(&data, &model, false);
+        pool.build().unwrap().install(search)
+    };
+    assert_eq!(run(1), run(3));
+}
+
+#[test]
+fn a_cancel_ends_it_and_a_stop_keeps_what_was_reached() {
+    let part = Surface::new(&panel(9.0, 0.0, everywhere), "source").unwrap();
+    let search = WideSearch::new(&part, &part).unwrap();
+    let stopped = Monitor::silent();
+    stopped.request_stop();
+    assert!(!search.run(false, &stopped).unwrap().is_empty());
+    let cancelled = Monitor::silent();
+    cancelled.request_cancel();
+    assert_eq!(search.run(false, &cancelled), Err(Cancelled));
+}
