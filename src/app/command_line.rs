@@ -48,7 +48,7 @@ impl AppState {
                     ..stamped.loaded.command_side()
                 },
             },
-            include_folders: &crash.loaded.settings.read.include_folders,
+            read: &crash.loaded.settings.read,
             settings: &recipe.settings,
             max_triangles: if is_reduced {
                 ceilings

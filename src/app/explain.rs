@@ -1,7 +1,7 @@
 //! Why a match is weak: the likely causes with what speaks for them, and one thing to do about each.
 
 use super::{Action, AppState, Command, FileCommand, MatchCommand};
-use crate::assess::{Assessment, Clarity, Reason, ShapeReason, Verdict};
+use crate::assess::{Assessment, Clarity, Reason, ShapeReason, Verdict, error_beside};
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::registration::{Hand, StartMethod};
 use crate::role::Role;
@@ -59,19 +59,19 @@ impl AppState {
             return Vec::new();
         }
         let units = self.unit_remedy().map(|remedy| Cause {
-            title: "Different units?".to_owned(),
+            title: "Different units".to_owned(),
             evidence: "The sizes of the two files differ by a factor between units.".to_owned(),
             remedy: Some(remedy),
         });
         let starts = Cause {
-            title: "Too few start poses?".to_owned(),
+            title: "Too few start poses".to_owned(),
             evidence: "From no start pose did the parts come into contact.".to_owned(),
             remedy: self.retry("Try all starts", |recipe| {
                 recipe.settings.starts.method = StartMethod::All;
             }),
         };
         let by_hand = Cause {
-            title: "Parts too far apart?".to_owned(),
+            title: "Parts too far apart".to_owned(),
             evidence: "Three point pairs give a start pose.".to_owned(),
             remedy: self.do_action(Action::PairTool, "Pick point pairs"),
         };
@@ -123,7 +123,7 @@ impl AppState {
         let check = &assessment.scale_check;
         check.unit.as_ref()?;
         Some(Cause {
-            title: "Different units?".to_owned(),
+            title: "Different units".to_owned(),
             evidence: format!(
                 "The crash part is {} times as large as the stamped part.",
                 fixed(check.size_ratio, 4)
@@ -136,11 +136,8 @@ impl AppState {
         let ratio = assessment.mirror_check.score_ratio?;
         let hand = self.document.recipe.settings.hand;
         (ratio < OTHER_HAND).then(|| Cause {
-            title: "The opposite-hand part?".to_owned(),
-            evidence: format!(
-                "Mirrored, the part fits better: its score is {} of this one's (lower is better).",
-                whole_percent(ratio)
-            ),
+            title: "Opposite-hand part".to_owned(),
+            evidence: format!("Mirrored, the part fits better: {}.", error_beside(ratio)),
             remedy: self.retry("Match the opposite hand", |recipe| {
                 recipe.settings.hand = match hand {
                     Hand::Mirrored => Hand::Same,
@@ -157,11 +154,11 @@ impl AppState {
         }
         let how = ambiguity.twin.map(|twin| twin.words(self.lengths()));
         Some(Cause {
-            title: "A second pose that fits?".to_owned(),
+            title: "Ambiguous pose".to_owned(),
             evidence: format!(
-                "{}, the part fits almost as well (score ratio {:.2}): check holes and beads.",
+                "{}, the part fits almost as well ({}): check holes and beads.",
                 capital(how.as_deref().unwrap_or("in another pose")),
-                ambiguity.ratio.unwrap_or(1.0)
+                error_beside(ambiguity.ratio.unwrap_or(1.0))
             ),
             remedy: self.do_action(Action::NextAlternative, "Show the other pose"),
         })
@@ -170,7 +167,7 @@ impl AppState {
     fn freedom_cause(&self, assessment: &Assessment) -> Option<Cause> {
         let motion = assessment.freedom.motion?;
         Some(Cause {
-            title: "A shape that slides on itself?".to_owned(),
+            title: "Sliding possible".to_owned(),
             evidence: sentence(&motion.words()),
             remedy: self.do_action(Action::PairTool, "Pick point pairs"),
         })
@@ -180,7 +177,7 @@ impl AppState {
         let coverage = &assessment.coverage;
         let overlap = coverage.better_overlap();
         (overlap < LITTLE_OVERLAP).then(|| Cause {
-            title: "The wrong place?".to_owned(),
+            title: "Wrong location".to_owned(),
             evidence: format!(
                 "Only {} of the better covered part lies within {} of the other.",
                 whole_percent(overlap),
@@ -203,7 +200,7 @@ impl AppState {
         });
         let by = differ?;
         Some(Cause {
-            title: "Springback, or another forming state?".to_owned(),
+            title: "Springback or another forming state".to_owned(),
             evidence: format!(
                 "At 95 % of the area the surfaces differ by up to {}, more than the tolerance.",
                 self.length_text(by)

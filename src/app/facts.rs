@@ -39,7 +39,7 @@ pub(super) fn load_line(part: &LoadedPart, facts: &PartFacts) -> String {
 
 /// "12 diagnostics in bp.dynain; the most severe: bp.dynain:48: …", if the reader had any, and how loud it is.
 pub(super) fn diagnostics_line(part: &LoadedPart) -> Option<(NoticeLevel, String)> {
-    let n = part.report.n_findings;
+    let n = part.report.n_diagnostics;
     if n == 0 {
         return None;
     }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::{NoticeLevel, PictureChoice, UnitMemory};
+use crate::formats::ReadOptions;
 use crate::jobs::PartSource;
 use crate::role::PerRole;
 
@@ -89,6 +90,8 @@ pub struct Settings {
     pub is_mouse_asked: bool,
     /// No animations.
     pub reduce_motion: bool,
+    /// Limit on each file with its includes, unpacked, in GiB.
+    pub read_limit: f64,
     /// Files opened last, newest first.
     pub recent: Vec<PathBuf>,
     /// Labels of the commands that were searched for last, newest first.
@@ -125,6 +128,7 @@ impl Default for Settings {
             mouse: MouseScheme::default(),
             is_mouse_asked: false,
             reduce_motion: false,
+            read_limit: ReadOptions::USUAL_LIMIT,
             recent: Vec::new(),
             recent_commands: Vec::new(),
             unit_memory: UnitMemory::default(),
@@ -148,6 +152,8 @@ impl Default for Settings {
 impl Settings {
     /// Smallest and largest size of the window's text.
     pub const UI_SCALES: std::ops::RangeInclusive<f32> = 0.75..=2.5;
+    /// Read limits that can be chosen, in GiB.
+    pub const READ_LIMITS: std::ops::RangeInclusive<f64> = 0.1..=1024.0;
 
     /// Puts a file first in the list of recent files; `now` in seconds since 1970.
     pub fn remember(&mut self, source: &PartSource, now: u64) {
@@ -176,6 +182,12 @@ impl Settings {
             self.ui_scale.clamp(low, high)
         } else {
             1.0
+        };
+        let (low, high) = Self::READ_LIMITS.into_inner();
+        self.read_limit = if self.read_limit.is_finite() {
+            self.read_limit.clamp(low, high)
+        } else {
+            ReadOptions::USUAL_LIMIT
         };
         self.marked_levels.retain(|&n| n > 0);
         self.marked_levels.sort_unstable_by(|a, b| b.cmp(a));

@@ -23,6 +23,7 @@ pub use shape::{RimFit, ShapeKind, ShapeReason, ShapeStatement, ShapeTolerance};
 pub use sliding::{FreeMotion, FreeMotionKind, Freedom, free_motions};
 pub use uncertainty::{PartDirection, PoseUncertainty};
 pub use verdict::Verdict;
+pub use words::error_beside;
 
 use serde::{Deserialize, Serialize};
 

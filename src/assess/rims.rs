@@ -1,10 +1,8 @@
 //! Borders and holes of two parts under a pose: do they lie where they belong? A part that is three
 //! percent longer than its counterpart fits its surface well and misses its rims.
 
-use std::collections::HashMap;
-
 use super::contact::robust_weights;
-use crate::geometry::{Point3, Similarity, Vector3};
+use crate::geometry::{Border, Point3, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::{ClosestPoint, PointTree};
 
@@ -17,8 +15,6 @@ const RAGGED: f64 = 2.5;
 const N_PLACES: usize = 600;
 /// Rims that run in directions farther apart than this are not the same: cosine of 37°.
 const PARALLEL: f64 = 0.8;
-/// The sheet lies around a hole: its rim faces its middle with at least this mean cosine.
-const INWARD: f64 = 0.3;
 /// Holes whose radii differ by more than this factor are not the same hole.
 const SAME_RADIUS: f64 = 1.6;
 /// A place is paired if nothing nearer than this share of its distance is beside its counterpart.
@@ -79,6 +75,8 @@ pub(super) struct Rims {
 struct Rim {
     points: Vec<Point3>,
     normals: Vec<Vector3>,
+    /// Its middle by length.
+    center: Point3,
     length: f64,
     is_hole: bool,
 }
@@ -218,15 +216,9 @@ fn solid_at(
 }
 
 fn hole(rim: &Rim, target_from_rim: &Similarity) -> RimHole {
-    let n = rim.points.len();
-    let mut sum = Vector3::zeros();
-    for (i, p) in rim.points.iter().enumerate() {
-        let next = &rim.points[(i + 1) % n];
-        sum += nalgebra::center(p, next).coords * (next - p).norm();
-    }
     let normal: Vector3 = rim.normals.iter().sum();
     RimHole {
-        center: target_from_rim.apply(&Point3::from(sum / rim.length)),
+        center: target_from_rim.apply(&rim.center),
         radius: rim.length / std::f64::consts::TAU * target_from_rim.scale,
         normal: target_from_rim.rotate(&normal.try_normalize(0.0).unwrap_or_default()),
     }
@@ -324,43 +316,24 @@ fn along(rims: &[Rim], spacing: f64) -> Vec<Place> {
     places
 }
 
-/// The border edges chained to rims. An open chain, which ends where two sheets touch, is walked like a
-/// closed one without its closing edge being long.
+/// The closed borders. A chain that ends where two sheets touch is none that the parts must share.
 fn rims_of(surface: &Surface) -> Vec<Rim> {
-    let edges = surface.border_edges();
-    let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
-    for &[from, to] in edges.iter().rev() {
-        next.entry(from).or_default().push(to);
-    }
-    let positions = surface.mesh().positions();
-    let mut rims = Vec::new();
-    for &[start, _] in &edges {
-        let mut vertices = Vec::new();
-        let mut at = start;
-        while let Some(to) = next.get_mut(&at).and_then(Vec::pop) {
-            vertices.push(at);
-            at = to;
+    let closed = surface.borders().iter();
+    let closed = closed.filter(|border| border.closed && border.vertices.len() > 2);
+    let rim = |border: &Border| {
+        let vertices = border.vertices.iter().map(|&v| v as usize);
+        Rim {
+            points: vertices
+                .clone()
+                .map(|v| surface.mesh().positions()[v])
+                .collect(),
+            normals: vertices.map(|v| surface.vertex_normals()[v]).collect(),
+            center: border.center,
+            length: border.length,
+            is_hole: border.is_hole,
         }
-        if vertices.len() < 3 || at != start {
-            continue;
-        }
-        let points: Vec<Point3> = vertices.iter().map(|&v| positions[v as usize]).collect();
-        let after = points.iter().cycle().skip(1);
-        let length = points.iter().zip(after).map(|(a, b)| (b - a).norm()).sum();
-        let normals = vertices
-            .iter()
-            .map(|&v| surface.vertex_normals()[v as usize]);
-        rims.push(Rim {
-            normals: normals.collect(),
-            points,
-            length,
-            is_hole: false,
-        });
-    }
-    for rim in &mut rims {
-        rim.is_hole = is_hole(rim);
-    }
-    rims
+    };
+    closed.map(rim).collect()
 }
 
 /// Median distance of a rim's node from the middle between its neighbours; next to nothing along straight
@@ -377,21 +350,6 @@ fn ragged(rims: &[Rim], unit: f64) -> f64 {
     }
     steps.sort_unstable_by(f64::total_cmp);
     steps.get(steps.len() / 2).copied().unwrap_or(0.0)
-}
-
-/// Whether the sheet lies around the rim, so that the way out of it points to the middle.
-fn is_hole(rim: &Rim) -> bool {
-    let center = hole(rim, &Similarity::identity()).center;
-    let n = rim.points.len();
-    let (mut inward, mut whole) = (0.0, 0.0);
-    for (i, p) in rim.points.iter().enumerate() {
-        let side = rim.points[(i + 1) % n] - p;
-        let outwards = side.cross(&rim.normals[i]);
-        let arm = p - center;
-        inward -= arm.dot(&outwards);
-        whole += arm.norm() * outwards.norm();
-    }
-    inward > INWARD * whole
 }
 
 #[cfg(test)]

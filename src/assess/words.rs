@@ -3,11 +3,13 @@
 
 use std::f64::consts::PI;
 
+use super::deviation::{ConstantOffset, OffsetKind, OverlapClass};
 use super::{
     FreeMotion, FreeMotionKind, PartDirection, PoseKind, PoseStatement, Reason, ShapeKind,
     ShapeReason, ShapeStatement, Twin, TwinAxis, Verdict,
 };
 use crate::geometry::{Point3, Vector3};
+use crate::registration::{Termination, UnitGuess};
 use crate::text::{Lengths, counted, fixed, percent, vector};
 
 /// Rotations smaller than this are not mentioned.
@@ -49,18 +51,15 @@ impl Reason {
     pub fn words(&self, lengths: Lengths) -> String {
         match self {
             Self::OppositeHand { score_ratio } => format!(
-                "the opposite hand fits better (score ratio {score_ratio:.2}): match it mirrored, \
-                 or choose the other part"
+                "looks like the opposite-hand part: mirrored, the {}; match it mirrored, or choose \
+                 the other part",
+                error_beside(*score_ratio)
             ),
             Self::NearMirrorImage { score_ratio } => format!(
-                "the part is nearly its own mirror image, and the opposite hand fits slightly \
-                 better (score ratio {score_ratio:.2})"
+                "the part is nearly its own mirror image: mirrored, the {}",
+                error_beside(*score_ratio)
             ),
-            Self::DifferentUnits { size_ratio, unit } => format!(
-                "the crash part is {size_ratio:.4} times as large as the stamped part: are the \
-                 files in different units ({})? The factor {:.6} was not applied",
-                unit.words, unit.factor
-            ),
+            Self::DifferentUnits { size_ratio, unit } => different_units(*size_ratio, *unit),
             Self::PairScale { scale } => {
                 format!("the paired points fit best at a scale of {scale:.4}")
             }
@@ -77,17 +76,18 @@ impl Reason {
             ),
             Self::Shape { difference } => difference.words(lengths),
             Self::NearAlternative { score_ratio, twin } => format!(
-                "{} the part fits nearly as well (score ratio {score_ratio:.2}): check which pose \
-                 is meant",
-                another_pose(*twin, lengths)
+                "{} the part fits nearly as well ({}): check which pose is meant",
+                another_pose(*twin, lengths),
+                error_beside(*score_ratio)
             ),
             Self::EqualAlternative {
                 score_ratio,
                 twin,
                 n_equivalent,
             } => format!(
-                "ambiguous: {} the part fits equally well (score ratio {score_ratio:.3}); {} in all",
+                "ambiguous: {} the part fits equally well ({}); {} in all",
                 another_pose(*twin, lengths),
+                error_beside(*score_ratio),
                 counted(*n_equivalent, "equivalent pose")
             ),
             Self::Stopped => "the match was stopped before it converged".to_owned(),
@@ -101,6 +101,63 @@ impl Reason {
                 lengths.of(*p95)
             ),
             Self::Sentence(text) => text.clone(),
+        }
+    }
+}
+
+/// The error of another pose beside that of the best: "error 8 % higher", "error 5.6 × lower".
+pub fn error_beside(score_ratio: f64) -> String {
+    let (times, how) = if score_ratio < 1.0 {
+        (score_ratio.recip(), "lower")
+    } else {
+        (score_ratio, "higher")
+    };
+    match times {
+        // Less than half a percent is said with the digit that tells it from none.
+        t if t < 1.005 => format!("error {:.1} % {how}", 100.0 * (score_ratio - 1.0).abs()),
+        t if t < 2.0 => format!("error {:.0} % {how}", 100.0 * (score_ratio - 1.0).abs()),
+        t if t.is_finite() => format!("error {t:.1} × {how}"),
+        _ => format!("error far {how}"),
+    }
+}
+
+impl Termination {
+    /// Why an iteration ended, in words.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::MaxIterations => "reached the iteration limit",
+            Self::Stopped => "stopped on request",
+            Self::Degenerate => "the pairs fix no motion",
+            Self::NoPairs => "no point found a partner",
+            Self::ClosedForm => "closed form",
+        }
+    }
+}
+
+impl OverlapClass {
+    /// The words for people.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Matched => "matched",
+            Self::OffByMore => "beyond the limit",
+            Self::OnlyHere => "on this part only",
+        }
+    }
+}
+
+impl ConstantOffset {
+    /// What it looks like, with a length as the caller writes lengths:
+    /// "looks like tool side against mid-surface, 0.6 mm".
+    pub fn words(&self, length: impl Fn(f64) -> String) -> String {
+        let distance = length(self.value.abs());
+        match self.kind {
+            OffsetKind::ToolSideAgainstMidSurface => {
+                format!("looks like tool side against mid-surface, {distance}")
+            }
+            OffsetKind::OppositeSides => {
+                format!("looks like one side of the sheet against the other, {distance}")
+            }
         }
     }
 }
@@ -222,6 +279,24 @@ impl PoseStatement {
     }
 }
 
+fn different_units(size_ratio: f64, unit: UnitGuess) -> String {
+    let [larger, times] = if size_ratio < 1.0 {
+        ["stamped", &rounded(size_ratio.recip())]
+    } else {
+        ["crash", &rounded(size_ratio)]
+    };
+    format!(
+        "the {larger} part is about {times} × larger: is the stamped part in {} and the crash part in \
+         {}? No factor was applied",
+        unit.source.plural(),
+        unit.target.plural()
+    )
+}
+
+fn rounded(times: f64) -> String {
+    fixed(times, if times < 100.0 { 1 } else { 0 })
+}
+
 fn both_overlaps(source: f64, target: f64) -> String {
     format!(
         "{} of the stamped part and {} of the crash part",
@@ -288,4 +363,26 @@ fn axis_words(direction: &Vector3) -> String {
         }
     }
     format!("the direction {}", vector((*direction).into(), 3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::error_beside;
+
+    #[test]
+    fn ratios_are_read_as_differences_of_the_error() {
+        let pairs = [
+            (1.08, "error 8 % higher"),
+            (1.0004, "error 0.0 % higher"),
+            (1.003, "error 0.3 % higher"),
+            (0.93, "error 7 % lower"),
+            (0.18, "error 5.6 × lower"),
+            (12.34, "error 12.3 × higher"),
+            (f64::INFINITY, "error far higher"),
+            (0.0, "error far lower"),
+        ];
+        for (ratio, words) in pairs {
+            assert_eq!(error_beside(ratio), words);
+        }
+    }
 }

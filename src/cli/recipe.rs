@@ -192,7 +192,7 @@ mod tests {
                 crash: side("crash.k", leak(&asked.crash)),
                 stamped: side("stamped.k", leak(&asked.stamped)),
             },
-            include_folders: &asked.crash.read.include_folders,
+            read: &asked.crash.read,
             settings: &asked.recipe.settings,
             max_triangles: asked.max_triangles,
             current: &asked.current,
@@ -279,6 +279,10 @@ mod tests {
             |a| {
                 let folders = vec!["my includes".into(), "b".into()];
                 a.crash.read.include_folders = folders;
+                a.stamped.read = a.crash.read.clone();
+            },
+            |a| {
+                a.crash.read = ReadOptions::default().with_limit(0.1);
                 a.stamped.read = a.crash.read.clone();
             },
         ];

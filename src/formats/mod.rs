@@ -93,15 +93,23 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
-    /// All limits in proportion, for `gib` times 2^30 bytes. The default is that of 4 GiB.
+    /// The limit in GiB where nothing else is said.
+    pub const USUAL_LIMIT: f64 = 4.0;
+
+    /// The limit on bytes, in GiB.
+    pub fn limit(&self) -> f64 {
+        self.max_bytes as f64 / f64::from(1 << 30)
+    }
+
+    /// All limits in proportion, for `gib` times 2^30 bytes.
     #[must_use]
     pub fn with_limit(self, gib: f64) -> Self {
         let usual = Self::default();
-        let factor = gib / 4.0;
+        let factor = gib / Self::USUAL_LIMIT;
         Self {
-            max_bytes: (usual.max_bytes as f64 * factor) as u64,
-            max_files: (usual.max_files as f64 * factor) as usize,
-            max_set_ids: (usual.max_set_ids as f64 * factor) as u64,
+            max_bytes: (usual.max_bytes as f64 * factor).round() as u64,
+            max_files: (usual.max_files as f64 * factor).round() as usize,
+            max_set_ids: (usual.max_set_ids as f64 * factor).round() as u64,
             ..self
         }
     }
@@ -210,9 +218,9 @@ pub fn read_from(
         let (named, is) = (by_name.label(), format.label());
         let message = format!("the file is named like {named} but is {is}, and is read as that");
         let kind = DiagnosticKind::MisleadingName;
-        let finding = Diagnostic::new(kind, message);
+        let diagnostic = Diagnostic::new(kind, message);
         let file = std::sync::Arc::from(path);
-        model.diagnostics.push(finding.at(Position::file(&file)));
+        model.diagnostics.push(diagnostic.at(Position::file(&file)));
     }
     Ok(model)
 }

@@ -23,7 +23,7 @@ const WAVE: usize = 64 << 20;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "more than the limit of {} on what is read, unpacked and with all included files; \
-     --read-limit raises it",
+     raise it with --read-limit or in the preferences",
     in_gib(*.max_bytes)
 )]
 pub struct TooLarge {

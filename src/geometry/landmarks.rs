@@ -1,23 +1,21 @@
-//! Places of a sheet that two meshes of it share: centres of holes and corners of the rim. Nodes differ
+//! Places of a sheet that two meshes of it share: centres of holes and corners of the borders. Nodes differ
 //! from mesh to mesh, these do not.
 
-use super::{BorderLoop, Point3, Topology, TriMesh};
+use super::{Border, Point3, TriMesh};
 
-/// Rims up to this share of the box's diagonal in length are holes.
-const HOLE: f64 = 0.6;
-/// A rim is round if its points differ so little in their distance from the middle.
+/// A hole is round if its points differ so little in their distance from the middle.
 const ROUND: f64 = 0.25;
-/// The rim turns by at least so much at a corner, in degrees.
+/// A border turns by at least so much at a corner, in degrees.
 const CORNER_DEG: f64 = 45.0;
-/// Rims with fewer vertices are slits.
+/// Holes with fewer vertices are slits.
 const LEAST: usize = 6;
 
 /// A hole in a sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hole {
-    /// Middle of its rim.
+    /// Middle of its border.
     pub center: Point3,
-    /// Mean distance of the rim from the middle.
+    /// Mean distance of the border from the middle.
     pub radius: f64,
 }
 
@@ -26,19 +24,18 @@ pub struct Hole {
 pub struct Landmarks {
     /// Round holes.
     pub holes: Vec<Hole>,
-    /// Corners of the outer rim and of holes that are not round.
+    /// Corners of the trim and of holes that are not round.
     pub corners: Vec<Point3>,
 }
 
 impl Landmarks {
-    /// Walks along all rims of a mesh that is joined at equal positions. O(triangles).
-    pub fn of(mesh: &TriMesh, topology: &Topology) -> Self {
-        let size = mesh.aabb().diagonal();
+    /// Walks along all borders of a mesh. O(border edges).
+    pub fn of(mesh: &TriMesh, borders: &[Border]) -> Self {
         let mut found = Self::default();
-        for rim in topology.border_loops(mesh) {
-            match round_hole(mesh, &rim, size) {
+        for border in borders {
+            match round_hole(mesh, border) {
                 Some(hole) => found.holes.push(hole),
-                None => found.corners.extend(corners(mesh, &rim)),
+                None => found.corners.extend(corners(mesh, border)),
             }
         }
         found
@@ -49,44 +46,29 @@ fn point(mesh: &TriMesh, vertex: u32) -> Point3 {
     mesh.positions()[vertex as usize]
 }
 
-fn round_hole(mesh: &TriMesh, rim: &BorderLoop, size: f64) -> Option<Hole> {
-    if !rim.closed || rim.vertices.len() < LEAST {
+fn round_hole(mesh: &TriMesh, border: &Border) -> Option<Hole> {
+    if !border.is_hole || border.vertices.len() < LEAST {
         return None;
     }
-    let points: Vec<Point3> = rim.vertices.iter().map(|&v| point(mesh, v)).collect();
-    let next = points.iter().cycle().skip(1);
-    let sides: Vec<(f64, Point3)> = points
-        .iter()
-        .zip(next)
-        .map(|(a, b)| ((b - a).norm(), nalgebra::center(a, b)))
-        .collect();
-    let length: f64 = sides.iter().map(|(length, _)| length).sum();
-    if length <= 0.0 || length > HOLE * size {
-        return None;
-    }
-    let sum = sides
-        .iter()
-        .map(|(length, middle)| middle.coords * *length)
-        .sum::<super::Vector3>();
-    let center = Point3::from(sum / length);
-    let far = points.iter().map(|p| (p - center).norm());
+    let center = border.center;
     let (mut least, mut most, mut total) = (f64::INFINITY, 0.0_f64, 0.0);
-    for radius in far {
+    for &vertex in &border.vertices {
+        let radius = (point(mesh, vertex) - center).norm();
         least = least.min(radius);
         most = most.max(radius);
         total += radius;
     }
-    let radius = total / points.len() as f64;
+    let radius = total / border.vertices.len() as f64;
     (most - least < ROUND * radius).then_some(Hole { center, radius })
 }
 
-fn corners(mesh: &TriMesh, rim: &BorderLoop) -> Vec<Point3> {
-    let n = rim.vertices.len();
+fn corners(mesh: &TriMesh, border: &Border) -> Vec<Point3> {
+    let n = border.vertices.len();
     if n < 3 {
         return Vec::new();
     }
-    let at = |i: usize| point(mesh, rim.vertices[i % n]);
-    let range = if rim.closed { 0..n } else { 1..n - 1 };
+    let at = |i: usize| point(mesh, border.vertices[i % n]);
+    let range = if border.closed { 0..n } else { 1..n - 1 };
     let least = CORNER_DEG.to_radians();
     let turns = |&i: &usize| {
         let (before, after) = (at(i) - at(i + n - 1), at(i + 1) - at(i));
@@ -97,9 +79,10 @@ fn corners(mesh: &TriMesh, rim: &BorderLoop) -> Vec<Point3> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Topology, Vector3};
     use super::*;
 
-    /// A plate of 40 × 20 with a hole of radius 4 in the middle: a ring of quads between rims.
+    /// A plate of 40 × 20 with a hole of radius 4 in the middle: a ring of quads between both borders.
     fn plate() -> TriMesh {
         let n = 48_u32;
         let mut positions = Vec::new();
@@ -129,7 +112,9 @@ mod tests {
     #[test]
     fn holes_and_corners_are_found() {
         let plate = plate();
-        let found = Landmarks::of(&plate, &Topology::of(&plate));
+        let normals = vec![Vector3::z(); plate.n_vertices()];
+        let borders = Border::all(&plate, &Topology::of(&plate), &normals);
+        let found = Landmarks::of(&plate, &borders);
         assert_eq!(found.holes.len(), 1);
         assert!(found.holes[0].center.coords.norm() < 1e-9);
         assert!((found.holes[0].radius - 4.0).abs() < 1e-9);

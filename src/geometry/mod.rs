@@ -1,6 +1,7 @@
 //! Points, boxes, triangle meshes, their topology, and poses. Everything is `f64`.
 
 mod aabb;
+mod borders;
 pub mod camera;
 pub(crate) mod chunks;
 mod clean;
@@ -15,6 +16,7 @@ mod topology;
 mod weld;
 
 pub use aabb::Aabb;
+pub use borders::Border;
 pub use camera::{Camera, Projection};
 pub use clean::CleanMesh;
 pub use landmarks::{Hole, Landmarks};

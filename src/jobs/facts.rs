@@ -53,7 +53,7 @@ impl PartFacts {
             area: measures.area,
             edge_length: measures.mean_edge_length,
             mean_normal: measures.mean_normal,
-            landmarks: Landmarks::of(&part.mesh, part.surface.topology()),
+            landmarks: Landmarks::of(part.surface.mesh(), part.surface.borders()),
             thickness: part.mean_thickness(),
             formed,
         }

@@ -17,7 +17,7 @@ pub enum PipelineError {
     #[error(transparent)]
     Format(#[from] FormatError),
     /// The chosen part is not there or has no area.
-    #[error("{error}{near}: {path:?}{}", because(.finding))]
+    #[error("{error}{near}: {path:?}{}", because(.diagnostic))]
     Selection {
         /// What is wrong with the choice.
         error: SelectionError,
@@ -26,7 +26,7 @@ pub enum PipelineError {
         /// The file it was made for.
         path: PathBuf,
         /// The most severe diagnostic of the reader, which may be why.
-        finding: Option<Box<Diagnostic>>,
+        diagnostic: Option<Box<Diagnostic>>,
     },
     /// The build lacks the example.
     #[error("the example is not in this build")]
@@ -109,9 +109,9 @@ pub enum PipelineError {
 }
 
 /// ". The reader found: deck.k:5:7: error: …", if it found anything.
-fn because(finding: &Option<Box<Diagnostic>>) -> String {
-    let words = |finding: &Diagnostic| format!(". The reader found: {finding}");
-    finding.as_deref().map(words).unwrap_or_default()
+fn because(diagnostic: &Option<Box<Diagnostic>>) -> String {
+    let words = |diagnostic: &Diagnostic| format!(". The reader found: {diagnostic}");
+    diagnostic.as_deref().map(words).unwrap_or_default()
 }
 
 impl PipelineError {

@@ -67,7 +67,7 @@ pub struct LoadReport {
     /// Triangles that were turned to agree with their neighbours.
     pub n_turned: usize,
     /// Warnings and errors of the reader; notes are not counted.
-    pub n_findings: u64,
+    pub n_diagnostics: u64,
     /// Time to read, in milliseconds; 0 if the model was at hand.
     pub read_ms: f64,
     /// Time to choose, join, orient and build tree and normals, in milliseconds.
@@ -301,7 +301,7 @@ pub fn prepare(
             near: near_parts(&model, &error),
             error,
             path: path.to_path_buf(),
-            finding: model.diagnostics.most_severe().cloned().map(Box::new),
+            diagnostic: model.diagnostics.most_severe().cloned().map(Box::new),
         })?;
     monitor.check()?;
     let mean_thickness = mean_thickness(&model, &chosen);
@@ -313,7 +313,7 @@ pub fn prepare(
         near: String::new(),
         error: error.into(),
         path: path.to_path_buf(),
-        finding: None,
+        diagnostic: None,
     })?;
     let clean = CleanMesh::of(scaled, monitor)?;
     let origins = Origins {
@@ -333,7 +333,7 @@ pub fn prepare(
         n_triangles: mesh.n_triangles(),
         n_joined: n_vertices - mesh.n_vertices(),
         n_turned,
-        n_findings: findings(&model.diagnostics) + findings(&chosen.diagnostics),
+        n_diagnostics: diagnostics(&model.diagnostics) + diagnostics(&chosen.diagnostics),
         read_ms: 0.0,
         prepare_ms: millis_since(start),
     };
@@ -370,8 +370,8 @@ fn mean_thickness(model: &Model, chosen: &formats::Surface) -> Option<f64> {
     (mean > 0.0).then_some(mean)
 }
 
-/// How many findings are more than notes.
-fn findings(diagnostics: &Diagnostics) -> u64 {
+/// How many diagnostics are more than notes.
+fn diagnostics(diagnostics: &Diagnostics) -> u64 {
     let graver = diagnostics
         .counts()
         .filter(|(kind, _)| kind.severity() > Severity::Note);

@@ -17,7 +17,7 @@ use crate::registration::{
     self, MatchInput, MatchMonitor, MatchOutcome, MatchSettings, Method, StartMethod,
     StartSettings, Surface, Termination,
 };
-use crate::role::PerRole;
+use crate::role::{PerRole, Role};
 pub use crate::settings::MatchRecipe;
 use crate::simplify::SimplifySettings;
 use crate::units::LengthUnit;
@@ -119,14 +119,14 @@ pub fn match_parts<'a>(
     monitor.progress("align", 0, None);
     let (target, source) = (&parts.crash.surface, &parts.stamped.surface);
     let small = reduced
-        .map(|pair| small_surfaces(pair, monitor))
+        .map(|pair| small_surfaces(parts, pair, monitor))
         .transpose()?;
     monitor.check()?;
     let prepare_ms = millis_since(prepare);
     let input = MatchInput {
         source,
         target,
-        reduced: small.as_ref().map(|small| (&small.stamped, &small.crash)),
+        reduced: small.as_ref().map(|small| (&*small.stamped, &*small.crash)),
     };
     let settings = with_current_pose(&recipe.settings, current);
     monitor.progress("match", 0, None);
@@ -259,14 +259,24 @@ fn level(
     Ok(levels.level(n).mesh)
 }
 
-/// Prepared surfaces of the reduced meshes.
+/// Prepared surfaces of the reduced meshes; a part that is not reduced has its own already.
 fn small_surfaces(
+    parts: PerRole<&LoadedPart>,
     pair: &ReducedPair,
     monitor: &Monitor,
-) -> Result<PerRole<Surface>, PipelineError> {
+) -> Result<PerRole<Arc<Surface>>, PipelineError> {
+    let surface = |role, side| -> Result<Arc<Surface>, PipelineError> {
+        match pair.max_triangles.get(role) {
+            None => Ok(Arc::clone(&parts.get(role).surface)),
+            Some(_) => {
+                let mesh = pair.meshes.get(role);
+                Ok(Arc::new(Surface::build(mesh, side, monitor)?))
+            }
+        }
+    };
     let (crash, stamped) = rayon::join(
-        || Surface::build(&pair.meshes.crash, "target", monitor),
-        || Surface::build(&pair.meshes.stamped, "source", monitor),
+        || surface(Role::Crash, "target"),
+        || surface(Role::Stamped, "source"),
     );
     Ok(PerRole::new(crash?, stamped?))
 }

@@ -38,7 +38,7 @@ pub use result::{
     Alternative, IterationRecord, MatchOutcome, MatchTimings, MirrorCheck, Side, StartOutcome,
     StartRecord,
 };
-pub use scale_check::{ScaleCheck, UNIT_FACTORS, UnitGuess, guess_unit};
+pub use scale_check::{ScaleCheck, UnitGuess, guess_unit};
 pub use settings::{DataSide, Hand, MatchSettings, Method, Search, limits};
 pub use surface::{Measures, Surface};
 pub use wide::{WideFind, WideSearch};

@@ -4,18 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::surface::Surface;
 use crate::geometry::serial::any_float;
-
-/// Factors between length units in use: mm, cm, m, inch, foot.
-pub const UNIT_FACTORS: [(f64, &str); 8] = [
-    (10.0, "cm and mm"),
-    (25.4, "inch and mm"),
-    (304.8, "foot and mm"),
-    (1000.0, "m and mm"),
-    (0.1, "mm and cm"),
-    (1.0 / 25.4, "mm and inch"),
-    (1.0 / 304.8, "mm and foot"),
-    (0.001, "mm and m"),
-];
+use crate::units::LengthUnit;
 
 /// What sizes and pairs say about the units of both meshes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -30,22 +19,36 @@ pub struct ScaleCheck {
     pub unit: Option<UnitGuess>,
 }
 
-/// The name keeps serde from borrowing the words from its input.
-type Words = &'static str;
-
-/// A factor between length units; stored as the factor.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// The length units that the files seem to be in; stored as the factor between them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "f64", try_from = "f64")]
 pub struct UnitGuess {
-    /// Multiply the source by this.
-    pub factor: f64,
-    /// The units of source and target, in words.
-    pub words: Words,
+    /// Of the source.
+    pub source: LengthUnit,
+    /// Of the target.
+    pub target: LengthUnit,
+}
+
+impl UnitGuess {
+    /// Lengths of the source are multiplied by this to be lengths of the target.
+    pub fn factor(self) -> f64 {
+        self.source.factor_to(self.target)
+    }
+
+    /// Every other unit against millimetres, in which sheet parts are modelled.
+    fn all() -> impl Iterator<Item = Self> {
+        let mm = LengthUnit::Millimeter;
+        let others = LengthUnit::ALL.into_iter().filter(move |&unit| unit != mm);
+        others.flat_map(move |unit| {
+            let guess = |source, target| Self { source, target };
+            [guess(unit, mm), guess(mm, unit)]
+        })
+    }
 }
 
 impl From<UnitGuess> for f64 {
     fn from(guess: UnitGuess) -> Self {
-        guess.factor
+        guess.factor()
     }
 }
 
@@ -53,9 +56,9 @@ impl TryFrom<f64> for UnitGuess {
     type Error = String;
 
     fn try_from(factor: f64) -> Result<Self, String> {
-        let known = UNIT_FACTORS.into_iter().find(|(known, _)| *known == factor);
-        let guess = known.map(|(factor, words)| Self { factor, words });
-        guess.ok_or_else(|| format!("{factor} is no factor between units"))
+        let is_it = |guess: &Self| (guess.factor() / factor - 1.0).abs() < 1e-9;
+        let known = Self::all().find(is_it);
+        known.ok_or_else(|| format!("{factor} is no factor between units"))
     }
 }
 
@@ -79,10 +82,9 @@ pub fn guess_unit(size_ratio: f64) -> Option<UnitGuess> {
     if !log.is_finite() || log < 4.0_f64.ln() {
         return None;
     }
-    UNIT_FACTORS
-        .into_iter()
-        .map(|(factor, words)| (((size_ratio / factor).ln()).abs(), factor, words))
+    UnitGuess::all()
+        .map(|guess| ((size_ratio / guess.factor()).ln().abs(), guess))
         .min_by(|a, b| a.0.total_cmp(&b.0))
-        .filter(|(off, ..)| *off < 3.0_f64.ln())
-        .map(|(_, factor, words)| UnitGuess { factor, words })
+        .filter(|(off, _)| *off < 3.0_f64.ln())
+        .map(|(_, guess)| guess)
 }

@@ -7,8 +7,8 @@ use nalgebra::SymmetricEigen;
 use super::RegistrationError;
 use crate::geometry::chunks::for_chunks;
 use crate::geometry::{
-    CleanMesh, CornerNormals, Matrix3, Point3, Similarity, Topology, TriMesh, Vector3, VertexFans,
-    corner_normals, face_normals, vertex_normals,
+    Border, CleanMesh, CornerNormals, Matrix3, Point3, Similarity, Topology, TriMesh, Vector3,
+    VertexFans, corner_normals, face_normals, vertex_normals,
 };
 use crate::monitor::{Cancelled, Monitor};
 use crate::search::{Bvh, Feature, PointTree, SurfaceHit};
@@ -30,6 +30,8 @@ pub struct Surface {
     corner_normals: CornerNormals,
     border_edges: Vec<u8>,
     border_vertices: Vec<bool>,
+    /// Trims and holes, found when first asked for.
+    borders: OnceLock<Vec<Border>>,
     measures: Measures,
 }
 
@@ -107,6 +109,7 @@ impl Surface {
             corner_normals: normals.of_corners,
             border_edges,
             border_vertices,
+            borders: OnceLock::new(),
             measures,
             topology,
             mesh,
@@ -195,7 +198,7 @@ impl Surface {
         hit.point - pull * 0.5
     }
 
-    /// True if a hit lies on the rim of the surface.
+    /// True if a hit lies on a border of the surface.
     pub fn is_on_border(&self, hit: &SurfaceHit) -> bool {
         let triangle = hit.triangle as usize;
         match hit.feature {
@@ -208,15 +211,10 @@ impl Surface {
         }
     }
 
-    /// The edges with one triangle, as their vertices in the direction of the triangle.
-    pub(crate) fn border_edges(&self) -> Vec<[u32; 2]> {
-        let triangles = self.border_edges.iter().zip(self.mesh.triangles());
-        let of_triangle = |(&edges, corners): (&u8, &[u32; 3])| {
-            let on_border = (0..3).filter(move |edge| edges >> edge & 1 == 1);
-            let corners = *corners;
-            on_border.map(move |edge| [corners[edge], corners[(edge + 1) % 3]])
-        };
-        triangles.flat_map(of_triangle).collect()
+    /// Trims and holes.
+    pub fn borders(&self) -> &[Border] {
+        self.borders
+            .get_or_init(|| Border::all(&self.mesh, &self.topology, &self.vertex_normals))
     }
 
     /// The vertex closest to `query` within `max_distance`, as (vertex, squared distance).

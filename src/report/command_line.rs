@@ -2,9 +2,9 @@
 //!
 //! The other direction, from words to settings, is in the module of the command line; a test walks both.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use crate::formats::Selection as PartSelection;
+use crate::formats::{ReadOptions, Selection as PartSelection};
 use crate::geometry::Similarity;
 use crate::registration::{MatchSettings, StartMethod};
 use crate::role::{PerRole, Role};
@@ -29,8 +29,8 @@ pub struct CommandSide<'a> {
 pub struct CommandLine<'a> {
     /// The two files.
     pub sides: PerRole<CommandSide<'a>>,
-    /// Further folders for included files.
-    pub include_folders: &'a [PathBuf],
+    /// Further folders for included files, and the limit on what is read.
+    pub read: &'a ReadOptions,
     /// Method and parameters.
     pub settings: &'a MatchSettings,
     /// Maximum number of triangles of each mesh the starts run on.
@@ -51,8 +51,12 @@ impl CommandLine<'_> {
         for (role, side) in self.sides.iter() {
             words.side(role, side);
         }
-        for folder in self.include_folders {
+        for folder in &self.read.include_folders {
             words.option("include-folder", folder.display().to_string());
+        }
+        let limit = self.read.limit();
+        if limit != ReadOptions::USUAL_LIMIT {
+            words.option("read-limit", exact(limit));
         }
         let PerRole { crash, stamped } = self.max_triangles;
         let is_common = crash == stamped;
@@ -217,7 +221,7 @@ mod tests {
                 crash: side("my car.k", &parts, 1.0),
                 stamped: side("-it's.dynain", &PartSelection::All, 25.4),
             },
-            include_folders: &[],
+            read: &ReadOptions::default(),
             settings,
             max_triangles: PerRole::new(None, Some(2000)),
             current,

@@ -30,7 +30,7 @@ pub struct ModelInfo {
     pub forming: FormingInfo,
     /// What could not be understood.
     pub diagnostics: Vec<DiagnosticInfo>,
-    /// How many findings were made in all; of each kind only the first are listed.
+    /// How many diagnostics were made in all; of each kind only the first are listed.
     pub n_diagnostics: u64,
 }
 
@@ -88,12 +88,12 @@ pub struct FormingInfo {
     pub plastic_strain_range: Option<[f64; 2]>,
 }
 
-/// One finding of the reader.
+/// One diagnostic of the reader.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DiagnosticInfo {
     /// `note`, `warning` or `error`.
     pub severity: &'static str,
-    /// What kind of finding, in two or three words.
+    /// What kind of diagnostic, in two or three words.
     pub kind: &'static str,
     /// The file, if known.
     pub file: Option<String>,
@@ -204,7 +204,7 @@ impl DiagnosticInfo {
         }
     }
 
-    /// The finding field by field.
+    /// The diagnostic field by field.
     pub fn of(diagnostic: &Diagnostic) -> Self {
         let position = diagnostic.position.as_ref();
         Self {

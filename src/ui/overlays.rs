@@ -1,6 +1,6 @@
 //! What lies over the window: help sheet, command search, preferences, messages, about.
 
-use egui::{Align, Layout, Modal, RichText, ScrollArea, Ui, vec2};
+use egui::{Align, DragValue, Layout, Modal, RichText, ScrollArea, Ui, vec2};
 
 use super::palette::{self, palette_ui};
 use super::picture_options::picture_ui;
@@ -212,6 +212,16 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 settings.muted.insert(level);
             }
         }
+    });
+    form_row(ui, "Read limit", label, |ui| {
+        let field = DragValue::new(&mut settings.read_limit)
+            .range(Settings::READ_LIMITS)
+            .speed(0.1)
+            .suffix(" GiB");
+        ui.add(field).on_hover_text(
+            "Largest file that is read, unpacked and with all its included files. Reload a file \
+             after raising it.",
+        );
     });
     ui.add_space(UNIT);
     ui.checkbox(&mut settings.reduce_motion, "Reduce motion");

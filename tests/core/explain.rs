@@ -55,7 +55,7 @@ fn a_weak_match_has_causes_whose_remedies_do_something() {
     let causes = window.state.causes();
     assert!(!causes.is_empty() && causes.len() <= 3);
     // The strip is bent about one direction only.
-    let slides = causes.iter().find(|cause| cause.title.contains("slides"));
+    let slides = causes.iter().find(|cause| cause.title.contains("Sliding"));
     assert!(
         slides.unwrap().evidence.contains("the y axis"),
         "{slides:?}"

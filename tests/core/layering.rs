@@ -2,58 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-/// Each module with the modules it may use besides itself. Everything else is forbidden.
-const MAY_USE: &[(&str, &str)] = &[
-    ("monitor", ""),
-    ("role", ""),
-    ("colormap", ""),
-    ("units", ""),
-    ("text", "units"),
-    ("palette", "colormap role"),
-    ("geometry", "monitor"),
-    ("formats", "geometry monitor units"),
-    ("simplify", "geometry monitor"),
-    ("search", "geometry monitor"),
-    ("samples", "formats geometry monitor"),
-    ("registration", "search geometry monitor"),
-    ("mapping", "search geometry monitor"),
-    ("assess", "registration search geometry monitor text units"),
-    (
-        "settings",
-        "registration search geometry monitor text units",
-    ),
-    (
-        "report",
-        "settings assess mapping registration formats geometry colormap role text units",
-    ),
-    (
-        "pipeline",
-        "report settings assess mapping registration samples search simplify formats geometry colormap \
-         monitor palette role text units",
-    ),
-    (
-        "jobs",
-        "pipeline report settings assess mapping registration samples search simplify formats geometry \
-         colormap monitor palette role text units",
-    ),
-    (
-        "app",
-        "jobs pipeline report settings assess mapping registration samples search simplify formats \
-         geometry colormap monitor palette role text units",
-    ),
-    (
-        "cli",
-        "pipeline report settings assess mapping registration samples search simplify formats geometry \
-         colormap monitor palette role text units",
-    ),
-    ("render", "geometry colormap monitor palette"),
-    (
-        "ui",
-        "render app jobs pipeline report settings assess mapping registration samples search simplify \
-         formats geometry colormap monitor palette role text units",
-    ),
-];
-
 /// Modules above the UI boundary, the only ones that may name egui, eframe or wgpu.
 const ABOVE_THE_BOUNDARY: &[&str] = &["ui", "render"];
 
@@ -76,6 +24,41 @@ pub fn rust_files(root: &Path) -> Vec<PathBuf> {
 
 pub fn source_root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+}
+
+/// Each module with the modules it may use besides itself, as the table of ARCHITECTURE.md says. Everything
+/// else is forbidden.
+fn may_use() -> Vec<(String, Vec<String>)> {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("ARCHITECTURE.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let (_, table) = page.split_once("| module | may use |").unwrap();
+    let quoted = |cell: &str| -> Vec<String> {
+        let words = cell.split('`').skip(1).step_by(2);
+        words.map(str::to_owned).collect()
+    };
+    let mut rows: Vec<(String, Vec<String>)> = Vec::new();
+    for line in table.lines().skip(2).take_while(|line| !line.is_empty()) {
+        let cells: Vec<&str> = line.trim_matches('|').split('|').collect();
+        let [modules, allowed] = cells[..] else {
+            panic!("{line} has not two cells");
+        };
+        let above: Vec<String> = rows.iter().map(|(name, _)| name.clone()).collect();
+        let allowed = match allowed.trim() {
+            "nothing of ours" => Vec::new(),
+            "every row above" => above,
+            names => {
+                let names = quoted(names);
+                for name in &names {
+                    assert!(above.contains(name), "{name} stands below its user: {line}");
+                }
+                names
+            }
+        };
+        let modules = quoted(modules);
+        assert!(!modules.is_empty(), "{line} names no module");
+        rows.extend(modules.into_iter().map(|module| (module, allowed.clone())));
+    }
+    rows
 }
 
 /// The module of the first floor a file belongs to: `src/ui/shell.rs` → `ui`.
@@ -105,20 +88,21 @@ fn crate_paths(line: &str) -> Vec<String> {
 
 #[test]
 fn modules_look_down_only() {
+    let may_use = may_use();
     let mut broken = Vec::new();
     for path in rust_files(&source_root()) {
         let module = module_of(&path);
         if ["lib", "main"].contains(&module.as_str()) {
             continue;
         }
-        let row = MAY_USE.iter().find(|(name, _)| *name == module);
-        let (_, allowed) = row.unwrap_or_else(|| panic!("module {module} has no row in MAY_USE"));
+        let row = may_use.iter().find(|(name, _)| *name == module);
+        let (_, allowed) = row.unwrap_or_else(|| panic!("ARCHITECTURE.md has no row for {module}"));
         let text = std::fs::read_to_string(&path).unwrap();
         for (number, line) in text.lines().enumerate() {
             let code = line.split("//").next().unwrap();
             for used in crate_paths(code) {
-                let known = MAY_USE.iter().any(|(name, _)| *name == used);
-                if known && used != module && !allowed.split(' ').any(|name| name == used) {
+                let known = may_use.iter().any(|(name, _)| *name == used);
+                if known && used != module && !allowed.contains(&used) {
                     let line = number + 1;
                     broken.push(format!("{}:{line}: {module} uses {used}", path.display()));
                 }
@@ -148,6 +132,20 @@ fn nothing_below_the_ui_boundary_knows_the_window() {
         }
     }
     assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+#[test]
+fn every_row_is_a_module() {
+    let rows = may_use();
+    assert!(rows.len() > 15, "{rows:?}");
+    for (module, _) in rows {
+        let root = source_root();
+        let is_there = root.join(&module).is_dir() || root.join(format!("{module}.rs")).is_file();
+        assert!(
+            is_there,
+            "ARCHITECTURE.md has a row for {module}, src has none"
+        );
+    }
 }
 
 #[test]

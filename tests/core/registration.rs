@@ -535,7 +535,7 @@ fn other_units_are_guessed_and_not_applied() {
     let outcome = run(&source, &target, &MatchSettings::default());
     assert_eq!(outcome.target_from_source.scale, 1.0);
     let unit = outcome.scale_check.unit.unwrap();
-    assert!((unit.factor - 25.4).abs() < 1e-12, "{unit:?}");
+    assert!((unit.factor() - 25.4).abs() < 1e-12, "{unit:?}");
     assert!(guess_unit(1.5).is_none() && guess_unit(0.5).is_none());
 }
 

@@ -225,3 +225,80 @@ fn the_readme_shows_every_subcommand() {
         .collect();
     assert!(missing.is_empty(), "not in README.md: {missing:?}");
 }
+
+/// The pages of the project that name files and options.
+fn pages() -> [(&'static str, String); 3] {
+    ["README.md", "ARCHITECTURE.md", "docs/files.md"].map(|name| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+        (name, std::fs::read_to_string(path).unwrap())
+    })
+}
+
+/// What stands in backticks on a page, outside of blocks.
+fn quoted(page: &str) -> Vec<&str> {
+    let is_block = |index: usize| index % 2 == 1;
+    let texts = page.split("```").enumerate();
+    let texts = texts.filter(|(index, _)| !is_block(*index));
+    let words = texts.flat_map(|(_, text)| text.split('`').skip(1).step_by(2));
+    words.collect()
+}
+
+#[test]
+fn files_that_the_pages_name_are_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut missing = Vec::new();
+    for (name, page) in pages() {
+        for word in quoted(&page) {
+            let is_path = word.ends_with(".rs") || (word.ends_with('/') && word.len() > 1);
+            if !is_path || word.contains(['<', '*', ' ', '…', '\\']) {
+                continue;
+            }
+            let homes = [root.join(word), root.join("src").join(word)];
+            // A file may be named without its folder.
+            let is_named = |path: &std::path::PathBuf| path.ends_with(word);
+            let is_there = homes.iter().any(|path| path.exists())
+                || rust_files(root.join("src").as_path()).iter().any(is_named)
+                || rust_files(root.join("tests").as_path())
+                    .iter()
+                    .any(is_named);
+            if !is_there {
+                missing.push(format!("{name}: {word}"));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
+
+#[test]
+fn options_that_the_pages_name_are_options() {
+    use clap::CommandFactory as _;
+    let command = shapematch::cli::Cli::command();
+    let mut known: Vec<String> = vec!["help".to_owned(), "version".to_owned()];
+    let all = std::iter::once(&command).chain(command.get_subcommands());
+    for option in all.flat_map(clap::Command::get_opts) {
+        known.extend(option.get_long().map(str::to_owned));
+    }
+    // Of cargo and its benchmarks.
+    known.extend(
+        [
+            "no-default-features",
+            "features",
+            "bench",
+            "release",
+            "quick",
+        ]
+        .map(str::to_owned),
+    );
+    let mut unknown = Vec::new();
+    for (name, page) in pages() {
+        for rest in page.split("--").skip(1) {
+            let is_option = |c: &char| c.is_ascii_lowercase() || *c == '-';
+            let option: String = rest.chars().take_while(is_option).collect();
+            let option = option.trim_end_matches('-');
+            if !option.is_empty() && !known.iter().any(|one| one == option) {
+                unknown.push(format!("{name}: --{option}"));
+            }
+        }
+    }
+    assert!(unknown.is_empty(), "{}", unknown.join("\n"));
+}

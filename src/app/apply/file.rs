@@ -8,6 +8,7 @@ use crate::app::state::Guess;
 use crate::app::{
     Action, AppState, Effect, FileCommand, NoticeLevel, Part, Section, StampedPose, facts,
 };
+use crate::formats::ReadOptions;
 use crate::jobs::{JobKey, JobKind, PartFacts, PartSource, ProjectRequest};
 use crate::pipeline::load::{LoadSettings, LoadedPart};
 use crate::pipeline::project::is_project;
@@ -62,9 +63,17 @@ impl AppState {
         let files = paths.into_iter().zip(roles);
         files
             .flat_map(|(path, role)| {
-                self.load(role, PartSource::File(path), LoadSettings::default())
+                let settings = self.usual_load_settings();
+                self.load(role, PartSource::File(path), settings)
             })
             .collect()
+    }
+
+    fn usual_load_settings(&self) -> LoadSettings {
+        LoadSettings {
+            read: ReadOptions::default().with_limit(self.settings.read_limit),
+            ..LoadSettings::default()
+        }
     }
 
     /// The part a file without a role is first taken for.
@@ -108,7 +117,10 @@ impl AppState {
         let Some(part) = self.document.part(role) else {
             return Vec::new();
         };
-        let (source, settings) = (part.source.clone(), part.loaded.settings.clone());
+        let (source, mut settings) = (part.source.clone(), part.loaded.settings.clone());
+        // A file that met the limit is read again with a higher one.
+        let limit = settings.read.limit().max(self.settings.read_limit);
+        settings.read = settings.read.with_limit(limit);
         self.guess = Guess::default();
         self.load(role, source, settings)
     }

@@ -22,15 +22,6 @@ pub enum OverlapClass {
 impl OverlapClass {
     /// All, from good to nothing.
     pub const ALL: [Self; 3] = [Self::Matched, Self::OffByMore, Self::OnlyHere];
-
-    /// The word for the user.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Matched => "matched",
-            Self::OffByMore => "off by more than the limit",
-            Self::OnlyHere => "only here",
-        }
-    }
 }
 
 /// One value for every vertex of one part: how far the other part is away.

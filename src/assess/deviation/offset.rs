@@ -163,18 +163,4 @@ impl ConstantOffset {
             kind,
         })
     }
-
-    /// What it looks like, with a length as the caller writes lengths:
-    /// "looks like tool side against mid-surface, 0.6 mm".
-    pub fn words(&self, length: impl Fn(f64) -> String) -> String {
-        let distance = length(self.value.abs());
-        match self.kind {
-            OffsetKind::ToolSideAgainstMidSurface => {
-                format!("looks like tool side against mid-surface, {distance}")
-            }
-            OffsetKind::OppositeSides => {
-                format!("looks like one side of the sheet against the other, {distance}")
-            }
-        }
-    }
 }

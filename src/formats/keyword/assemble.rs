@@ -24,7 +24,7 @@ use super::transform::Transformation;
 use super::unit_clues::UnitClues;
 use crate::geometry::Point3;
 
-/// Where a run of nodes or elements comes from, so that a finding can name its line.
+/// Where a run of nodes or elements comes from, so that a diagnostic can name its line.
 #[derive(Clone)]
 pub(crate) struct Origin {
     file: Arc<SourceFile>,
@@ -260,8 +260,8 @@ impl Assembly {
                     raw.id
                 );
                 self.found.push_with(kind, || {
-                    let finding = Diagnostic::new(kind, message).at(file.position(raw.at));
-                    finding.found(label).expected(NUMBER_INSTEAD)
+                    let diagnostic = Diagnostic::new(kind, message).at(file.position(raw.at));
+                    diagnostic.found(label).expected(NUMBER_INSTEAD)
                 });
             }
             self.part_positions[index] = Some(file.position(raw.at));
@@ -282,8 +282,8 @@ impl Assembly {
         for (label, position, raw) in std::mem::take(&mut self.labelled) {
             if let Some(first) = seen.get(&label) {
                 let message = format!("part {label:?} is defined again (first at {first})");
-                let finding = Diagnostic::new(DiagnosticKind::DuplicatePart, message);
-                self.found.push(finding.at(position));
+                let diagnostic = Diagnostic::new(DiagnosticKind::DuplicatePart, message);
+                self.found.push(diagnostic.at(position));
                 continue;
             }
             seen.insert(label.clone(), position.clone());
@@ -296,9 +296,9 @@ impl Assembly {
                 "part {title:?} has a text label for an id; it is kept as part {id}, but elements \
                  can name it by a number only"
             );
-            let finding = Diagnostic::new(kind, message).at(position.clone());
+            let diagnostic = Diagnostic::new(kind, message).at(position.clone());
             self.found
-                .push(finding.found(label).expected(NUMBER_INSTEAD));
+                .push(diagnostic.found(label).expected(NUMBER_INSTEAD));
             self.part_positions[index] = Some(position);
             self.parts[index] = Part {
                 id,
@@ -332,9 +332,9 @@ impl Assembly {
         if had_tabs && !self.told_tabs {
             self.told_tabs = true;
             let message = "tabs are taken as steps to the next multiple of eight columns";
-            let finding = Diagnostic::new(DiagnosticKind::Tabs, message);
+            let diagnostic = Diagnostic::new(DiagnosticKind::Tabs, message);
             let place = origin.file.position(origin.range.start);
-            self.found.push(finding.at(place));
+            self.found.push(diagnostic.at(place));
         }
     }
 

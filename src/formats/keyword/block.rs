@@ -1,5 +1,5 @@
 //! Cutting a file into keyword blocks, and a block into cards. Both are cheap: nothing is copied
-//! but the keyword's name, and line numbers are worked out only when a finding needs one.
+//! but the keyword's name, and line numbers are worked out only when a diagnostic needs one.
 
 use std::ops::Range;
 
@@ -99,7 +99,7 @@ impl<'a> Block<'a> {
         self.file.position(self.offset)
     }
 
-    /// A finding about the block as a whole.
+    /// A diagnostic about the block as a whole.
     pub fn diagnose(&self, kind: DiagnosticKind, message: impl Into<String>) -> Diagnostic {
         Diagnostic::new(kind, message).at(self.position())
     }

@@ -417,7 +417,7 @@ impl<'a> Card<'a> {
         position
     }
 
-    /// A finding about one field; `what` names the thing that is lost, for example `"node 12"`.
+    /// A diagnostic about one field; `what` names the thing that is lost, for example `"node 12"`.
     pub fn diagnose(&self, error: &FieldError, what: &str) -> Diagnostic {
         let message = match error.kind {
             DiagnosticKind::UnresolvedParameter => format!("{what} uses an undefined parameter"),
@@ -487,7 +487,7 @@ impl<'a> Card<'a> {
         text.len() < self.text.len() && name.is_some_and(|name| is_known(&name))
     }
 
-    /// A finding about a card that cannot be read, with the probable reason. `what` names the
+    /// A diagnostic about a card that cannot be read, with the probable reason. `what` names the
     /// thing that is lost.
     pub(crate) fn diagnose_misread(
         &self,
@@ -509,7 +509,7 @@ impl<'a> Card<'a> {
         }
     }
 
-    /// A finding about a block whose cards, of which this is the first, are those of `layout`.
+    /// A diagnostic about a block whose cards, of which this is the first, are those of `layout`.
     pub(crate) fn diagnose_shifted(&self, layout: Layout) -> Diagnostic {
         let (message, expected) = match layout {
             Layout::Standard => (
@@ -532,7 +532,7 @@ impl<'a> Card<'a> {
             .expected(expected)
     }
 
-    /// A finding about a keyword that is read as data.
+    /// A diagnostic about a keyword that is read as data.
     pub(crate) fn diagnose_keyword(&self) -> Diagnostic {
         let message = "the keyword is taken for data because a blank stands before it";
         Diagnostic::new(DiagnosticKind::MisplacedKeyword, message)
@@ -543,7 +543,7 @@ impl<'a> Card<'a> {
 }
 
 impl Misread {
-    /// The kind of the finding; that of the field's error where the reason does not change it.
+    /// The kind of the diagnostic; that of the field's error where the reason does not change it.
     pub(crate) fn kind(this: Option<Self>, error: &FieldError) -> DiagnosticKind {
         match this {
             Some(Self::Keyword) => DiagnosticKind::MisplacedKeyword,

@@ -108,8 +108,10 @@ impl Reader<'_> {
             let n = blocks.n_encrypted();
             let s = if n == 1 { "" } else { "s" };
             let message = format!("{n} encrypted block{s} skipped");
-            let finding = Diagnostic::new(DiagnosticKind::Encrypted, message);
-            self.assembly.found.push(finding.at(file.position(first)));
+            let diagnostic = Diagnostic::new(DiagnosticKind::Encrypted, message);
+            self.assembly
+                .found
+                .push(diagnostic.at(file.position(first)));
         }
     }
 
@@ -369,8 +371,8 @@ impl Reader<'_> {
             let kind = DiagnosticKind::BadTransformation;
             let message = format!("the include's factor on {name} is no unit factor and left out");
             self.assembly.found.push_with(kind, || {
-                let finding = Diagnostic::new(kind, message).at(file.position(include.at));
-                finding
+                let diagnostic = Diagnostic::new(kind, message).at(file.position(include.at));
+                diagnostic
                     .found(format!("{factor:e}"))
                     .expected("a positive number of at most 1e12")
             });
@@ -416,8 +418,8 @@ impl Reader<'_> {
             }
             Err((kind, what)) => {
                 self.assembly.found.push_with(kind, || {
-                    let finding = Diagnostic::new(kind, format!("the included file {what}"));
-                    finding.at(file.position(include.at)).found(name)
+                    let diagnostic = Diagnostic::new(kind, format!("the included file {what}"));
+                    diagnostic.at(file.position(include.at)).found(name)
                 });
                 Ok(None)
             }
@@ -436,7 +438,7 @@ impl Reader<'_> {
         let max_files = self.options.max_files;
         if self.assembly.files.len() >= max_files {
             let message = format!(
-                "is left out: {max_files} files were read, which is the limit; --read-limit raises it"
+                "is left out: {max_files} files were read, which is the limit; raise it with --read-limit or in the preferences"
             );
             return Err((DiagnosticKind::LimitReached, message));
         }

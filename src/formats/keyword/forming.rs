@@ -259,9 +259,9 @@ impl Reader<'_, '_> {
                 format!("the strains of {what} {id} are in the element's own axes and left out");
             let column = head.field(EIGHT_BY_10, 7).column;
             self.diagnostics.push_with(kind, || {
-                let finding = Diagnostic::new(kind, message).at(head.position(column));
+                let diagnostic = Diagnostic::new(kind, message).at(head.position(column));
                 let found = format!("ILOCAL = {is_local}");
-                finding.found(found).expected("0 for the global axes")
+                diagnostic.found(found).expected("0 for the global axes")
             });
         }
         Ok(())
@@ -372,8 +372,8 @@ impl Reader<'_, '_> {
             let kind = DiagnosticKind::BadForming;
             let message = "a count of integration points or variables makes no sense";
             self.diagnostics.push_with(kind, || {
-                let finding = self.block.diagnose(kind, message).at(head.position(0));
-                finding
+                let diagnostic = self.block.diagnose(kind, message).at(head.position(0));
+                diagnostic
                     .found(bad.to_string())
                     .expected("a number from 0 to 10000")
             });

@@ -16,7 +16,7 @@ use super::number::{parse_int, parse_real};
 use super::parameter_card::{
     ExpressionCard, Kind, expression_cards, is_name, is_name_char, pairs, typed_name,
 };
-use super::parameter_error::{ParameterError, ParameterFinding, ParameterProblem};
+use super::parameter_error::{ParameterError, ParameterProblem, ParameterProblemAt};
 
 /// The number, or `None` for text.
 fn number(value: &Value) -> Option<Number> {
@@ -196,8 +196,8 @@ impl ParameterTable {
         let cards: Vec<Card<'_>> = block.cards().collect();
         let lines: Vec<String> = cards.iter().map(Card::line_text).collect();
         let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
-        for finding in self.read_block(keyword, &lines, block.layout.width(10)) {
-            let kind = match finding.problem {
+        for diagnostic in self.read_block(keyword, &lines, block.layout.width(10)) {
+            let kind = match diagnostic.problem {
                 ParameterProblem::KeptFirst(_) | ParameterProblem::TookLater(_) => {
                     DiagnosticKind::DuplicateParameter
                 }
@@ -206,9 +206,9 @@ impl ParameterTable {
                 }
                 _ => DiagnosticKind::BadParameter,
             };
-            let position = cards[finding.line_idx].position(finding.column - 1);
+            let position = cards[diagnostic.line_idx].position(diagnostic.column - 1);
             diagnostics.push_with(kind, || {
-                Diagnostic::new(kind, finding.problem.to_string()).at(position)
+                Diagnostic::new(kind, diagnostic.problem.to_string()).at(position)
             });
         }
     }
@@ -339,15 +339,15 @@ impl ParameterTable {
         keyword: ParameterKeyword,
         lines: &[&str],
         width: usize,
-    ) -> Vec<ParameterFinding> {
-        let mut findings = Vec::new();
+    ) -> Vec<ParameterProblemAt> {
+        let mut diagnostics = Vec::new();
         if keyword.layout == ParameterLayout::Expression {
             for card in expression_cards(lines, width) {
                 if let Err(problem) = self.define_expression(&card, keyword) {
-                    findings.push(card.finding(problem));
+                    diagnostics.push(card.diagnostic(problem));
                 }
             }
-            return findings;
+            return diagnostics;
         }
         for (line_idx, line) in lines.iter().enumerate() {
             let n_pairs = if keyword.layout == ParameterLayout::Typed {
@@ -362,7 +362,7 @@ impl ParameterTable {
                     } else {
                         name
                     };
-                    findings.push(ParameterFinding {
+                    diagnostics.push(ParameterProblemAt {
                         line_idx,
                         column: at.column,
                         problem,
@@ -370,7 +370,7 @@ impl ParameterTable {
                 }
             }
         }
-        findings
+        diagnostics
     }
 
     fn define_pair(

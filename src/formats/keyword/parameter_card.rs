@@ -1,6 +1,6 @@
 //! Cutting the cards of `*PARAMETER…` into names and values.
 
-use super::parameter_error::{ParameterError, ParameterFinding, ParameterProblem};
+use super::parameter_error::{ParameterError, ParameterProblem, ParameterProblemAt};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -135,7 +135,7 @@ impl ExpressionCard<'_> {
     }
 
     /// Places a problem on the line it belongs to.
-    pub(super) fn finding(&self, problem: ParameterProblem) -> ParameterFinding {
+    pub(super) fn diagnostic(&self, problem: ParameterProblem) -> ParameterProblemAt {
         let (mut line_idx, mut column) = (self.lines[0].0, self.name_column);
         if let ParameterProblem::Field(ParameterError::Expression(error)) = &problem {
             let mut rest = error.column - 1;
@@ -147,7 +147,7 @@ impl ExpressionCard<'_> {
                 rest -= text.len();
             }
         }
-        ParameterFinding {
+        ParameterProblemAt {
             line_idx,
             column,
             problem,

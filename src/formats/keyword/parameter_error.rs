@@ -46,7 +46,7 @@ pub enum ParameterProblem {
 
 /// A problem with its place in the block.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ParameterFinding {
+pub struct ParameterProblemAt {
     /// Index into the lines given to `ParameterTable::read_block`.
     pub line_idx: usize,
     /// Column in bytes, from 1.

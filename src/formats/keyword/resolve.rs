@@ -132,14 +132,14 @@ fn tell_no_elements(assembly: &mut Assembly, model: &Model) {
         let path: std::sync::Arc<std::path::Path> = std::sync::Arc::from(file.path.as_path());
         Position::file(&path)
     });
-    let finding = with_position(Diagnostic::new(kind, message), position);
-    assembly.found.push(finding);
+    let diagnostic = with_position(Diagnostic::new(kind, message), position);
+    assembly.found.push(diagnostic);
 }
 
-fn with_position(finding: Diagnostic, position: Option<Position>) -> Diagnostic {
+fn with_position(diagnostic: Diagnostic, position: Option<Position>) -> Diagnostic {
     match position {
-        Some(position) => finding.at(position),
-        None => finding,
+        Some(position) => diagnostic.at(position),
+        None => diagnostic,
     }
 }
 
@@ -466,8 +466,8 @@ fn carry_out_motions(
     motions.sort_by_key(|motion| matches!(motion, Motion::NodeSet { at_once: None, .. }));
     for motion in motions {
         monitor.check()?;
-        if let Err(finding) = carry_out(assembly, model, results, &motion) {
-            assembly.found.push(finding);
+        if let Err(diagnostic) = carry_out(assembly, model, results, &motion) {
+            assembly.found.push(diagnostic);
         }
     }
     Ok(())
@@ -587,8 +587,8 @@ fn tell_flat_shells(assembly: &Assembly, model: &mut Model) {
         let shell = &model.shells[index];
         let kind = DiagnosticKind::ZeroArea;
         model.diagnostics.push_with(kind, || {
-            let finding = Diagnostic::new(kind, format!("shell {} has no area", shell.id));
-            with_position(finding, assembly.shell_position(index, shell))
+            let diagnostic = Diagnostic::new(kind, format!("shell {} has no area", shell.id));
+            with_position(diagnostic, assembly.shell_position(index, shell))
         });
     }
 }

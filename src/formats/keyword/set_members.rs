@@ -181,7 +181,7 @@ impl Resolver<'_> {
         self.found.push_with(kind, || {
             let message = format!(
                 "the sets list more than {n} ids, the limit; from {} set {} on they are \
-                 incomplete; --read-limit raises it",
+                 incomplete; raise it with --read-limit or in the preferences",
                 set.kind.label(),
                 set.id
             );

@@ -269,8 +269,10 @@ impl Reader<'_> {
                 let kind = DiagnosticKind::MissingCard;
                 let describe = || {
                     let message = "a shell has no thickness card";
-                    let finding = Diagnostic::new(kind, message).at(card.position(0));
-                    finding.found(card.line_text()).expected("four thicknesses")
+                    let diagnostic = Diagnostic::new(kind, message).at(card.position(0));
+                    diagnostic
+                        .found(card.line_text())
+                        .expected("four thicknesses")
                 };
                 self.chunk.diagnostics.push_with(kind, describe);
                 return Ok(());

@@ -69,8 +69,8 @@ pub(crate) fn read_solids(
             Some(nodes) => nodes,
             None => {
                 let kind = DiagnosticKind::MissingCard;
-                let finding = Diagnostic::new(kind, "the last solid has no card with nodes");
-                chunk.diagnostics.push(finding.at(card.position(0)));
+                let diagnostic = Diagnostic::new(kind, "the last solid has no card with nodes");
+                chunk.diagnostics.push(diagnostic.at(card.position(0)));
                 break;
             }
         };
@@ -130,8 +130,8 @@ fn add_solid(
             .diagnostics
             .push_with(DiagnosticKind::DegenerateElement, || {
                 let message = format!("solid {id} has fewer than four different nodes");
-                let finding = Diagnostic::new(DiagnosticKind::DegenerateElement, message);
-                finding.at(card.position(0))
+                let diagnostic = Diagnostic::new(DiagnosticKind::DegenerateElement, message);
+                diagnostic.at(card.position(0))
             });
         return Ok(());
     };

@@ -63,7 +63,7 @@ impl SourceFile {
     }
 }
 
-/// A byte of a file, from which its line is worked out when a finding needs it.
+/// A byte of a file, from which its line is worked out when a diagnostic needs it.
 #[derive(Debug, Clone)]
 pub(crate) struct Place {
     file: Arc<SourceFile>,

@@ -154,16 +154,16 @@ impl Transformation {
                 Err(RowError::Option(option)) => {
                     let text = format!("transformation {id} has a row that is not carried out");
                     let position = card.position(0);
-                    let finding = Diagnostic::new(DiagnosticKind::BadTransformation, text)
+                    let diagnostic = Diagnostic::new(DiagnosticKind::BadTransformation, text)
                         .at(position)
                         .found(option)
                         .expected("SCALE, TRANSL, ROTATE, POS6P or another option of the manual");
-                    diagnostics.push(finding);
+                    diagnostics.push(diagnostic);
                 }
                 Err(RowError::MatrixCards) => {
                     let text = format!("transformation {id} lacks the two cards of its matrix");
-                    let finding = Diagnostic::new(DiagnosticKind::MissingCard, text);
-                    diagnostics.push(finding.at(card.position(0)));
+                    let diagnostic = Diagnostic::new(DiagnosticKind::MissingCard, text);
+                    diagnostics.push(diagnostic.at(card.position(0)));
                 }
             }
         }

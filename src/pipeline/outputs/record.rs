@@ -51,7 +51,7 @@ pub fn match_record(run: &MatchRun, parts: PerRole<&LoadedPart>) -> MatchRecord 
 fn command_line<'a>(run: &'a MatchRun, parts: PerRole<&'a LoadedPart>) -> CommandLine<'a> {
     CommandLine {
         sides: parts.map(LoadedPart::command_side),
-        include_folders: &parts.crash.settings.read.include_folders,
+        read: &parts.crash.settings.read,
         settings: &run.recipe.settings,
         max_triangles: run.max_triangles,
         current: &run.start_pose,
@@ -78,7 +78,7 @@ fn file(part: &LoadedPart, units: Option<KnownUnits>) -> FileRecord {
         length_factor: part.settings.length_factor,
         units: units.map(|known| known.units.label()),
         units_from: units.map(|known| known.origin.words()),
-        findings: part.report.n_findings,
+        findings: part.report.n_diagnostics,
         diagnostics: part
             .problems()
             .into_iter()
@@ -110,7 +110,7 @@ fn problems(part: &LoadedPart) -> Vec<String> {
         .take(N_PROBLEMS)
         .map(ToString::to_string)
         .collect();
-    let more = (part.report.n_findings as usize).saturating_sub(lines.len());
+    let more = (part.report.n_diagnostics as usize).saturating_sub(lines.len());
     if more > 0 {
         let name = part.file_name();
         let noun = if more == 1 { "problem" } else { "problems" };

@@ -54,6 +54,8 @@ pub struct PartEntry {
     pub units: Option<Units>,
     /// Further folders for included files.
     pub include_folders: Vec<PathBuf>,
+    /// Limit on what is read, in GiB.
+    pub read_limit: f64,
     /// The ceiling it was reduced to; `None` for the full mesh.
     pub max_triangles: Option<usize>,
     /// Ids of hidden parts of the deck.
@@ -72,6 +74,7 @@ impl Default for PartEntry {
             length_factor: 1.0,
             units: None,
             include_folders: Vec::new(),
+            read_limit: ReadOptions::USUAL_LIMIT,
             max_triangles: None,
             hidden: BTreeSet::new(),
             colors: BTreeMap::new(),
@@ -91,6 +94,7 @@ impl PartEntry {
             length_factor: settings.length_factor,
             units: settings.units,
             include_folders: settings.read.include_folders.clone(),
+            read_limit: settings.read.limit(),
             ..Self::default()
         }
     }
@@ -103,7 +107,7 @@ impl PartEntry {
             units: self.units,
             read: ReadOptions {
                 include_folders: self.include_folders.clone(),
-                ..ReadOptions::default()
+                ..ReadOptions::default().with_limit(self.read_limit)
             },
         }
     }

@@ -55,6 +55,122 @@ pub(crate) struct StageRules {
     pub(crate) max_iterations: usize,
 }
 
+/// A value for residuals solved in closed form and for those with normals, whose steps converge
+/// quadratically (Pottmann et al. 2006).
+#[derive(Debug, Clone, Copy)]
+struct ByOrder<T> {
+    point_to_point: T,
+    with_normals: T,
+}
+
+impl<T: Copy> ByOrder<T> {
+    const fn both(value: T) -> Self {
+        Self {
+            point_to_point: value,
+            with_normals: value,
+        }
+    }
+
+    fn of(&self, metric: Metric) -> T {
+        match metric {
+            Metric::PointToPoint => self.point_to_point,
+            Metric::PointToPlane | Metric::Symmetric => self.with_normals,
+        }
+    }
+}
+
+/// What one stage does differently from the settings.
+#[derive(Debug, Clone, Copy)]
+struct StageRow {
+    stage: Stage,
+    /// Normals may differ by up to 90°, facets stay flat, the floor is at least [`WIDE_FLOOR`].
+    wide_pairs: bool,
+    /// λ is at least [`WIDE_LAMBDA`].
+    wide_selection: ByOrder<bool>,
+    /// Pairs that lie so far beyond a border do not count, in mean edge lengths. Such points pull
+    /// towards the border, which is right far away and wrong near the pose.
+    max_overhang: f64,
+    /// Iterations at most; `None` as the settings say.
+    max_iterations: ByOrder<Option<usize>>,
+    /// Converged when a step moves no corner by more than so many `motion_tolerance`s.
+    tolerance: ByOrder<f64>,
+    /// Far from the pose a free scale shrinks the data until it lies anywhere on the model.
+    keeps_scale: bool,
+}
+
+/// The stages, one row each. What a row does not name is as the settings say.
+const STAGES: [StageRow; 5] = [
+    StageRow {
+        stage: Stage::Coarse,
+        wide_pairs: true,
+        wide_selection: ByOrder::both(true),
+        max_overhang: f64::INFINITY,
+        max_iterations: ByOrder::both(Some(20)),
+        tolerance: ByOrder::both(20.0),
+        keeps_scale: true,
+    },
+    StageRow {
+        stage: Stage::Refine,
+        wide_pairs: false,
+        // Point to point is still far from converged when the coarse stage ends.
+        wide_selection: ByOrder {
+            point_to_point: true,
+            with_normals: false,
+        },
+        max_overhang: 1.0,
+        max_iterations: ByOrder {
+            point_to_point: None,
+            with_normals: Some(60),
+        },
+        tolerance: ByOrder::both(1.0),
+        keeps_scale: false,
+    },
+    StageRow {
+        stage: Stage::Full,
+        wide_pairs: false,
+        wide_selection: ByOrder::both(false),
+        max_overhang: 0.1,
+        max_iterations: ByOrder {
+            point_to_point: None,
+            with_normals: Some(10),
+        },
+        // On meshes that agree exactly the error after a step is about the square of the step, so
+        // this ends at round-off; on others it is far below what the facets leave.
+        tolerance: ByOrder {
+            point_to_point: 1.0,
+            with_normals: 0.01,
+        },
+        keeps_scale: false,
+    },
+    StageRow {
+        stage: Stage::WideBasin,
+        wide_pairs: true,
+        wide_selection: ByOrder::both(true),
+        max_overhang: f64::INFINITY,
+        max_iterations: ByOrder::both(None),
+        tolerance: ByOrder::both(1.0),
+        keeps_scale: false,
+    },
+    StageRow {
+        stage: Stage::Converge,
+        wide_pairs: false,
+        wide_selection: ByOrder::both(false),
+        max_overhang: f64::INFINITY,
+        max_iterations: ByOrder::both(None),
+        tolerance: ByOrder::both(1.0),
+        keeps_scale: false,
+    },
+];
+
+impl Stage {
+    /// The row of this stage; rows stand in the order of the variants.
+    fn row(self) -> &'static StageRow {
+        let row = &STAGES[self as usize];
+        debug_assert_eq!(row.stage, self);
+        row
+    }
+}
+
 /// λ with a wide basin (Phillips, Liu, Tomasi 2007: a first run with 3 widens the basin).
 const WIDE_LAMBDA: f64 = 3.0;
 /// Floor with a wide basin, as a fraction of the mean edge length.
@@ -62,6 +178,10 @@ const WIDE_FLOOR: f64 = 0.1;
 /// Least floor, as a fraction of the mean edge length: facets of a developable box have no chordal
 /// error, but a floor of zero lets the fraction collapse.
 const LEAST_FLOOR: f64 = 0.005;
+/// Largest kept fraction, as a multiple of what the area of the model can cover.
+const MAX_FRACTION: f64 = 1.05;
+/// Longest step, as a fraction of the larger diagonal.
+const MAX_STEP: f64 = 0.3;
 
 /// σ0 that the settings ask for between these surfaces.
 pub(crate) fn floor(settings: &MatchSettings, a: &Surface, b: &Surface) -> f64 {
@@ -96,69 +216,55 @@ pub(crate) fn stage_rules(
     data: &Surface,
     model: &Surface,
 ) -> StageRules {
+    let row = stage.row();
     let edge = edge_length(data, model);
     let floor = floor(settings, data, model);
-    let wide = matches!(stage, Stage::Coarse | Stage::WideBasin);
-    let second_order = settings.metric != Metric::PointToPoint;
     let on_triangles = settings.pair_with == PairWith::Triangle;
     let min_cos = settings.max_normal_angle_deg.to_radians().cos();
-    let min_cos = if wide { min_cos.min(0.0) } else { min_cos };
-    // Points beyond the border pull towards it, which is right far away and wrong near the pose.
-    let max_overhang = match stage {
-        Stage::Full if on_triangles => 0.1 * edge,
-        Stage::Refine if on_triangles => edge,
-        _ => f64::INFINITY,
-    };
-    let cap = match stage {
-        Stage::Coarse => 20,
-        Stage::Refine if second_order => 60,
-        Stage::Full if second_order => 10,
-        _ => settings.max_iterations,
-    };
-    let tolerance = match stage {
-        Stage::Coarse => 20.0,
-        // On meshes that agree exactly the error after a step is about the square of the step, so
-        // this ends at round-off; on others it is far below what the facets leave.
-        Stage::Full if second_order => 1e-2,
-        Stage::Full | Stage::Refine | Stage::WideBasin | Stage::Converge => 1.0,
-    };
     StageRules {
         stage,
         matching: MatchRules {
             pair_with: settings.pair_with,
             reject: RejectRules {
-                min_cos,
+                min_cos: if row.wide_pairs {
+                    min_cos.min(0.0)
+                } else {
+                    min_cos
+                },
                 max_distance: f64::INFINITY,
-                max_overhang,
+                // Nodes have no place beyond a border: the nearest one is always on it.
+                max_overhang: if on_triangles {
+                    row.max_overhang * edge
+                } else {
+                    f64::INFINITY
+                },
             },
-            curved: on_triangles && !wide,
+            curved: on_triangles && !row.wide_pairs,
         },
         selection: SelectRules {
-            // Point to point is still far from converged when the coarse stage ends.
-            selection: widened(
-                settings.selection,
-                wide || (stage == Stage::Refine && !second_order),
-            ),
-            floor: if wide && floor > 0.0 {
+            selection: widened(settings.selection, row.wide_selection.of(settings.metric)),
+            floor: if row.wide_pairs && floor > 0.0 {
                 floor.max(WIDE_FLOOR * edge)
             } else {
                 floor
             },
-            max_fraction: (1.05 * model.measures().area / data.measures().area).min(1.0),
+            max_fraction: (MAX_FRACTION * model.measures().area / data.measures().area).min(1.0),
         },
         step: StepRules {
             metric: settings.metric,
-            // Far from the pose a free scale shrinks the data until it lies anywhere on the model.
-            motion: if stage == Stage::Coarse {
+            motion: if row.keeps_scale {
                 Motion::Rigid
             } else {
                 settings.motion
             },
             damping: 0.0,
-            max_translation: 0.3 * data.measures().diagonal.max(model.measures().diagonal),
+            max_translation: MAX_STEP * data.measures().diagonal.max(model.measures().diagonal),
         },
-        motion_tolerance: settings.motion_tolerance * tolerance * edge,
-        max_iterations: cap,
+        motion_tolerance: settings.motion_tolerance * row.tolerance.of(settings.metric) * edge,
+        max_iterations: row
+            .max_iterations
+            .of(settings.metric)
+            .unwrap_or(settings.max_iterations),
     }
 }
 
@@ -173,5 +279,17 @@ fn widened(selection: Selection, wide: bool) -> Selection {
             floor: Floor::Auto,
         },
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_stand_in_the_order_of_the_stages() {
+        for (index, row) in STAGES.iter().enumerate() {
+            assert_eq!(row.stage as usize, index);
+        }
     }
 }

@@ -19,17 +19,3 @@ pub enum Termination {
     /// A closed-form fit, which does not iterate.
     ClosedForm,
 }
-
-impl Termination {
-    /// The reason in words.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Converged => "converged",
-            Self::MaxIterations => "reached the iteration limit",
-            Self::Stopped => "stopped on request",
-            Self::Degenerate => "the pairs fix no motion",
-            Self::NoPairs => "no point found a partner",
-            Self::ClosedForm => "closed form",
-        }
-    }
-}

@@ -1,7 +1,5 @@
 //! Holes of two meshes that must coincide: what tells a part from its twin when all else is equal.
 
-use std::collections::HashMap;
-
 use crate::geometry::{Point3, Similarity};
 use crate::registration::surface::Surface;
 use crate::search::PointTree;
@@ -13,9 +11,6 @@ const N_POINTS: usize = 600;
 const TOLERANCE: f64 = 0.5;
 /// Points that the other mesh's rims are asked at lie this share of the tolerance apart.
 const SPACING: f64 = 0.5;
-/// Borders shorter than this share of the longest are holes. The longest is the trim, which two
-/// meshes of one sheet need not share.
-const HOLE: f64 = 0.5;
 
 /// The rims of a mesh's holes as points in its own frame.
 pub(crate) struct Holes {
@@ -28,7 +23,11 @@ pub(crate) struct Holes {
 impl Holes {
     /// Holes of `surface`; `edge_length` is that of the pair. O(border edges).
     pub(crate) fn new(surface: &Surface, edge_length: f64) -> Self {
-        let segments = rims(surface);
+        // The trim need not be shared by two meshes of one sheet.
+        let holes = surface.borders().iter().filter(|border| border.is_hole);
+        let segments: Vec<[Point3; 2]> = holes
+            .flat_map(|hole| hole.segments(surface.mesh()))
+            .collect();
         let length: f64 = segments.iter().map(|[a, b]| (b - a).norm()).sum();
         let spacing = SPACING * TOLERANCE * edge_length;
         // Rims that are far longer than the mesh is fine would only cost memory.
@@ -55,41 +54,6 @@ impl Holes {
         let n = self.samples.len();
         (n > 0).then(|| self.samples.iter().filter(is_there).count() as f64 / n as f64)
     }
-}
-
-/// Edges of all holes, from end to end.
-fn rims(surface: &Surface) -> Vec<[Point3; 2]> {
-    let edges = surface.border_edges();
-    let positions = surface.mesh().positions();
-    let ends = |[a, b]: [u32; 2]| [positions[a as usize], positions[b as usize]];
-    let borders = connected(&edges);
-    let mut lengths: HashMap<u32, f64> = HashMap::new();
-    for (&edge, border) in edges.iter().zip(&borders) {
-        let [a, b] = ends(edge);
-        *lengths.entry(*border).or_default() += (b - a).norm();
-    }
-    let longest = lengths.values().copied().fold(0.0, f64::max);
-    let is_hole = |border: &u32| lengths[border] < HOLE * longest;
-    let of_holes = edges.iter().zip(&borders).filter(|(_, b)| is_hole(b));
-    of_holes.map(|(&edge, _)| ends(edge)).collect()
-}
-
-/// For each edge a vertex that stands for all edges it hangs together with.
-fn connected(edges: &[[u32; 2]]) -> Vec<u32> {
-    fn root(parent: &mut HashMap<u32, u32>, mut vertex: u32) -> u32 {
-        while let Some(&above) = parent.get(&vertex).filter(|&&above| above != vertex) {
-            let next = parent.get(&above).copied().unwrap_or(above);
-            parent.insert(vertex, next);
-            vertex = next;
-        }
-        vertex
-    }
-    let mut parent = HashMap::new();
-    for &[a, b] in edges {
-        let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-        parent.insert(a.max(b), a.min(b));
-    }
-    edges.iter().map(|&[a, _]| root(&mut parent, a)).collect()
 }
 
 /// Points every `spacing` along the segments, in their order.

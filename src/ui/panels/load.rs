@@ -49,7 +49,7 @@ fn summary(state: &AppState) -> String {
     format!("■ {}  ▲ {}", count(Role::Crash), count(Role::Stamped))
 }
 
-/// One file: name, size, findings, open, more.
+/// One file: name, size, diagnostics, open, more.
 fn file_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         role_mark(ui, role);
@@ -104,7 +104,7 @@ fn loaded_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState, commands: &
         menu.ui(ui, |ui| file_menu_ui(ui, role, part, state, commands))
     });
     button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
-    button.on_hover_text("Open another, reload, close, findings");
+    button.on_hover_text("Open another, reload, close, diagnostics");
 }
 
 /// Says that a pose is applied; a click shows the part as loaded, another one at its pose.
@@ -148,8 +148,8 @@ fn detail(role: Role, part: &Part, state: &AppState) -> String {
     if part.length_factor() != 1.0 {
         text += &format!(" · lengths × {}", part.length_factor());
     }
-    if report.n_findings > 0 {
-        text += &format!(" · ⚠ {}", report.n_findings);
+    if report.n_diagnostics > 0 {
+        text += &format!(" · ⚠ {}", report.n_diagnostics);
     }
     text
 }
@@ -179,12 +179,12 @@ fn file_menu_ui(
     {
         commands.push(FileCommand::Reload(role).into());
     }
-    let n_findings = part.loaded.report.n_findings;
-    let findings = match n_findings {
+    let n_diagnostics = part.loaded.report.n_diagnostics;
+    let diagnostics = match n_diagnostics {
         0 => "Diagnostics".to_owned(),
-        n => format!("Diagnostics: {n} findings"),
+        n => format!("{n} diagnostics"),
     };
-    if ui.button(findings).clicked() {
+    if ui.button(diagnostics).clicked() {
         commands.push(ViewCommand::SetTab(BottomTab::Diagnostics).into());
     }
     ui.add_enabled_ui(is_free, |ui| {

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-fn read(table: &mut ParameterTable, keyword: &str, text: &str) -> Vec<ParameterFinding> {
+fn read(table: &mut ParameterTable, keyword: &str, text: &str) -> Vec<ParameterProblemAt> {
     let keyword = ParameterKeyword::parse(keyword).unwrap();
     let lines: Vec<&str> = text.lines().collect();
     table.read_block(keyword, &lines, 10)
@@ -123,8 +123,8 @@ fn second_definitions() {
             assert!(!table.set_duplication(Duplication::TakeLater));
         }
         read(&mut table, first, "rx, 1.0");
-        let findings = read(&mut table, "PARAMETER", "rx, 2.0");
-        (table.resolve("x").cloned(), findings.len())
+        let diagnostics = read(&mut table, "PARAMETER", "rx, 2.0");
+        (table.resolve("x").cloned(), diagnostics.len())
     };
     assert_eq!(case(None, "PARAMETER"), (Some(Value::Real(1.0)), 1));
     assert_eq!(case(Some(1), "PARAMETER"), (Some(Value::Real(1.0)), 1));
@@ -137,16 +137,16 @@ fn second_definitions() {
 #[test]
 fn findings_have_a_place() {
     let mut table = ParameterTable::new();
-    let findings = read(
+    let diagnostics = read(
         &mut table,
         "PARAMETER",
         "rok, 1, ibad, x1\n1abc, 3\nrtime, 1",
     );
-    let places: Vec<_> = findings.iter().map(|f| (f.line_idx, f.column)).collect();
+    let places: Vec<_> = diagnostics.iter().map(|f| (f.line_idx, f.column)).collect();
     assert_eq!(places, [(0, 15), (1, 1), (2, 1)]);
     let text = "R        x2.0*\n          (1.0 + nope)";
-    let findings = read(&mut table, "PARAMETER_EXPRESSION", text);
-    assert_eq!((findings[0].line_idx, findings[0].column), (1, 18));
+    let diagnostics = read(&mut table, "PARAMETER_EXPRESSION", text);
+    assert_eq!((diagnostics[0].line_idx, diagnostics[0].column), (1, 18));
     assert_eq!(ParameterKeyword::parse("PARAMETER_DUPLICATION"), None);
     assert_eq!(ParameterKeyword::parse("PARAMETERS"), None);
 }

@@ -8,10 +8,10 @@ use crate::role::Role;
 use crate::ui::theme::Palette;
 use crate::ui::widgets::{caption, grouped, nothing_yet, role_mark};
 
-/// Findings of a kind that are shown without being asked for.
+/// Diagnostics of a kind that are shown without being asked for.
 const FEW: u64 = 3;
 
-/// File by file one line for each kind of finding, which unfolds.
+/// File by file one line for each kind of diagnostic, which unfolds.
 pub fn diagnostics_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let loaded = || {
         let parts = Role::ALL.into_iter();
@@ -25,7 +25,7 @@ pub fn diagnostics_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
             Some(_) => "No problems found",
             None => "No file yet",
         };
-        let hint = "Findings of the reader stand here with file and line";
+        let hint = "What the reader has to say stands here with file and line";
         nothing_yet(ui, title, hint);
         return;
     }
@@ -44,7 +44,7 @@ pub fn diagnostics_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
                     if ui.small_button("Copy").clicked() {
                         let lines: Vec<String> =
                             diagnostics.iter().map(ToString::to_string).collect();
-                        let (text, what) = (lines.join("\n"), "Findings".to_owned());
+                        let (text, what) = (lines.join("\n"), "Diagnostics".to_owned());
                         commands.push(ExportCommand::CopyText { text, what }.into());
                     }
                 });
