@@ -131,8 +131,12 @@ impl Document {
     }
 
     /// Both parts, if both are there.
-    pub fn both(&self) -> Option<(&Part, &Part)> {
-        Some((self.parts.crash.as_ref()?, self.parts.stamped.as_ref()?))
+    pub fn both(&self) -> Option<PerRole<&Part>> {
+        let PerRole { crash, stamped } = self.parts.as_ref();
+        Some(PerRole {
+            crash: crash.as_ref()?,
+            stamped: stamped.as_ref()?,
+        })
     }
 
     /// The numbers of the present state of the inputs; 0 stands for "no part".
@@ -145,6 +149,11 @@ impl Document {
             },
             pose: self.pose.revision,
         }
+    }
+
+    /// True if the stamped part was moved.
+    pub fn has_pose(&self) -> bool {
+        self.pose.crash_from_stamped != Similarity::identity()
     }
 
     /// The pose of the stamped part.

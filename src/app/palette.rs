@@ -130,7 +130,7 @@ impl AppState {
             entries.push(write(label, Output::Cards(*form), no_match));
         }
         for mesh in MeshOutput::ALL {
-            let is_possible = self.can_write(Output::Mesh(mesh));
+            let is_possible = self.document.can_write(Output::Mesh(mesh));
             let reason = (!is_possible).then_some("There is no such mesh yet.");
             entries.push(write(
                 format!("Save: {}", mesh.label()),

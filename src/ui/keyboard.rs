@@ -64,7 +64,7 @@ impl Keyboard {
     ) -> Vec<Command> {
         self.was_typing = ctx.text_edit_focused();
         let (events, held) = ctx.input(|input| (input.events.clone(), input.modifiers));
-        let is_moving = state.view.move_tool.is_some() && owner == KeyOwner::Window;
+        let is_moving = state.moving.tool.is_some() && owner == KeyOwner::Window;
         let mut commands = Vec::new();
         for event in &events {
             if is_moving && let Some(input) = modal_input(event) {

@@ -249,7 +249,7 @@ fn message_ui(ui: &mut Ui, state: &AppState, notice: &Notice, commands: &mut Vec
     ui.horizontal_top(|ui| {
         let color = level_color(Palette::of(ui), notice.level);
         ui.label(RichText::new(notice.level.mark()).color(color));
-        caption(ui, clock_text(state.clock.day_time_at(notice.at)));
+        caption(ui, clock_text(state.log.clock.day_time_at(notice.at)));
         let count = match notice.count {
             1 => String::new(),
             n => format!(" (×{n})"),
@@ -269,7 +269,7 @@ fn message_ui(ui: &mut Ui, state: &AppState, notice: &Notice, commands: &mut Vec
 fn messages_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mut Vec<Command>) {
     ui.set_width(520.0);
     title(ui, "Messages", Some(commands));
-    if state.notices.n_unread() > 0 {
+    if state.log.notices.n_unread() > 0 {
         commands.push(NoticeCommand::MarkRead.into());
     }
     ScrollArea::vertical()
@@ -277,7 +277,7 @@ fn messages_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mut V
         .auto_shrink([false, true])
         .show(ui, |ui| {
             let mut is_empty = true;
-            for notice in state.notices.kept() {
+            for notice in state.log.notices.kept() {
                 is_empty = false;
                 message_ui(ui, state, notice, commands);
             }

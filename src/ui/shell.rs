@@ -105,7 +105,7 @@ impl Shell {
         let autosave = Autosave::start(files.sessions, move || waking.request_repaint())?;
         let worker = Worker::spawn(PipelineRunner, Arc::new(move || ctx.request_repaint()))?;
         let mut state = AppState::new(preferences.settings);
-        state.clock = clock();
+        state.log.clock = clock();
         let mut shell = Self {
             state,
             worker,
@@ -204,7 +204,7 @@ impl Shell {
                 place,
                 texts,
             } => {
-                let inputs = self.state.files();
+                let inputs = self.state.document.files();
                 self.pictures.want(
                     Wanted {
                         choice,
@@ -402,8 +402,8 @@ impl eframe::App for Shell {
             self.run_commands(commands, &ctx);
             ctx.request_repaint();
         }
-        if let Some(expiry) = self.state.notices.next_expiry() {
-            ctx.request_repaint_after(expiry.saturating_sub(self.state.now));
+        if let Some(expiry) = self.state.log.notices.next_expiry() {
+            ctx.request_repaint_after(expiry.saturating_sub(self.state.log.now));
         }
     }
 

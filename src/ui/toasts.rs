@@ -23,7 +23,7 @@ const MAX_LINES: usize = 6;
 
 /// Draws the toasts over everything but dialogs, within the 3D windows.
 pub fn toasts_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Command>) {
-    if state.notices.toasts().next().is_none() {
+    if state.log.notices.toasts().next().is_none() {
         return;
     }
     let room = super::panels::graphics::area(ctx);
@@ -49,7 +49,7 @@ pub fn toasts_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Comma
 fn fitting<'a>(ui: &Ui, state: &'a AppState, width: f32, room: f32) -> Vec<&'a Notice> {
     let mut left = room;
     let mut fitting = Vec::new();
-    for notice in state.notices.toasts() {
+    for notice in state.log.notices.toasts() {
         let lines = ui.painter().layout_job(text(ui, notice, width));
         let buttons = if buttons(notice) { ROW + 6.0 } else { 0.0 };
         left -= lines.size().y + buttons + 3.0 * UNIT;

@@ -287,7 +287,7 @@ fn two_files_without_roles_are_sorted_by_content() {
     assert_eq!(window.part(Role::Crash).facts.parts.len(), 2);
     assert_eq!(window.part(Role::Stamped).facts.formed, 1);
     let offers_swap = |n: &Notice| n.offer == Some(Action::Swap);
-    assert!(window.state.notices.toasts().any(offers_swap));
+    assert!(window.state.log.notices.toasts().any(offers_swap));
     let before = window.mesh(Role::Crash);
     window.apply(FileCommand::Swap);
     assert!(
@@ -311,7 +311,7 @@ fn a_file_that_cannot_be_read_is_a_message_and_the_old_part_stays() {
     let before = window.state.document.clone();
     window.open("missing.k", Role::Crash);
     assert_eq!(window.state.document, before);
-    let toast = window.state.notices.toasts().next().unwrap();
+    let toast = window.state.log.notices.toasts().next().unwrap();
     assert_eq!(toast.level, NoticeLevel::Error);
     assert!(toast.text.contains("missing.k"));
 }
@@ -479,7 +479,7 @@ fn keys_move_along_an_axis_by_a_typed_value() {
     for c in "12.5".chars() {
         window.apply(MoveCommand::Input(ModalInput::Character(c)));
     }
-    let tool = window.state.view.move_tool.as_ref().unwrap();
+    let tool = window.state.moving.tool.as_ref().unwrap();
     assert_eq!(tool.modal.header(&tool.frame), "Move 12.5 along Z   [12.5]");
     window.apply(MoveCommand::Input(ModalInput::Accept));
     assert_eq!(window.pose().translation, Vector3::new(0.0, 0.0, 12.5));
@@ -499,7 +499,7 @@ fn escape_takes_a_move_by_keys_back_without_a_trace() {
     window.apply(Command::Escape);
     assert_eq!(window.state.document, before);
     assert_eq!(window.state.history.n_done(), n_done);
-    assert!(window.state.view.move_tool.is_none());
+    assert!(window.state.moving.tool.is_none());
 }
 
 #[test]
@@ -578,7 +578,7 @@ fn the_numbers_of_the_result_are_those_of_the_shown_pose() {
 fn the_command_line_gives_the_shown_pose_or_says_why_not() {
     let mut window = Window::with_both();
     window.act(Action::MatchOrStop);
-    let line = |window: &Window| window.state.command_line().unwrap();
+    let line = |window: &Window| window.state.document.command_line().unwrap();
     assert!(!line(&window).contains("--pose-number"));
     for number in [2, 3] {
         window.act(Action::NextAlternative);
@@ -599,7 +599,7 @@ fn moves_by_hand_are_in_the_log_with_their_unit() {
     let mut window = Window::new();
     window.open("says_mm.k", Role::Crash);
     window.open("stamped.k", Role::Stamped);
-    assert_eq!(window.state.unit_suffix(), " mm");
+    assert_eq!(window.state.document.unit_suffix(), " mm");
     let last = |window: &Window| {
         let row = window.state.log.latest("move");
         row.map(|row| row.text.clone())
@@ -620,7 +620,7 @@ fn moves_by_hand_are_in_the_log_with_their_unit() {
     window.apply(MoveCommand::EndDrag);
     assert_eq!(last(&window).as_deref(), Some("Move 2 mm along X"));
     window.act(Action::MoveTool);
-    let tool = window.state.view.move_tool.clone().unwrap();
+    let tool = window.state.moving.tool.clone().unwrap();
     assert_eq!(tool.frame.unit, " mm");
 }
 
@@ -760,12 +760,18 @@ fn equal_messages_count_up_and_short_ones_end() {
         window.apply(tell(NoticeLevel::Error));
     }
     window.apply(NoticeCommand::Tell(NoticeLevel::Success, "copied".into()));
-    let counts: Vec<usize> = window.state.notices.toasts().map(|n| n.count).collect();
+    let counts: Vec<usize> = window.state.log.notices.toasts().map(|n| n.count).collect();
     assert_eq!(counts, [1, 12]);
     window.state.tick(Duration::from_secs(5));
-    let texts: Vec<&str> = window.state.notices.toasts().map(|n| &*n.text).collect();
+    let texts: Vec<&str> = window
+        .state
+        .log
+        .notices
+        .toasts()
+        .map(|n| &*n.text)
+        .collect();
     assert_eq!(texts, ["disk full"]);
-    assert_eq!(window.state.notices.n_unread(), 1);
+    assert_eq!(window.state.log.notices.n_unread(), 1);
 }
 
 #[test]
@@ -824,6 +830,7 @@ fn nonsense_that_is_pasted_is_a_message() {
     assert!(
         window
             .state
+            .log
             .notices
             .toasts()
             .next()
@@ -1191,7 +1198,7 @@ fn several_selected_parts_are_hidden_and_isolated_in_one_step() {
     };
     window.apply(PartCommand::Select(Some(crash(11))));
     window.apply(PartCommand::ToggleSelected(crash(99)));
-    assert_eq!(window.state.view.selected.len(), 1, "no such part");
+    assert_eq!(window.state.parts.selected.len(), 1, "no such part");
     window.apply(PartCommand::ToggleSelected(crash(12)));
     window.act(Action::HideSelected);
     assert_eq!(hidden(&window), [11, 12]);
@@ -1266,7 +1273,7 @@ fn the_stamped_part_is_shown_as_loaded_and_its_pose_stays() {
         crash_from_stamped: shifted(5.0),
         name: "Shift".to_owned(),
     });
-    window.apply(ViewCommand::ShowAsLoaded(true));
+    window.apply(PreviewCommand::AsLoaded(true));
     assert_eq!(window.state.shown_pose(), Similarity::identity());
     assert_eq!(window.pose(), shifted(5.0));
     window.apply(Command::Escape);
@@ -1289,7 +1296,7 @@ fn the_free_window_has_a_use_of_its_own_and_the_left_camera() {
     );
     window.apply(ViewCommand::SetFreeWindow(FreeWindow::Section));
     assert_eq!(window.state.free_window(), Some(FreeWindow::Section));
-    assert!(window.state.view.section.shown().is_some());
+    assert!(window.state.inspect.section.shown().is_some());
     window.apply(ViewCommand::SetFreeWindow(FreeWindow::Deviation));
     assert_eq!(window.state.color_by(Role::Stamped), ColorBy::Deviation);
     assert_eq!(window.state.color_by(Role::Crash), ColorBy::Role);
@@ -1364,8 +1371,8 @@ fn a_muted_level_goes_to_the_bell_without_a_toast() {
     for level in [NoticeLevel::Warning, NoticeLevel::Error] {
         window.apply(NoticeCommand::Tell(level, "look".to_owned()));
     }
-    assert_eq!(window.state.notices.toasts().count(), 1);
-    assert_eq!(window.state.notices.n_unread(), 2);
+    assert_eq!(window.state.log.notices.toasts().count(), 1);
+    assert_eq!(window.state.log.notices.n_unread(), 2);
 }
 
 #[test]

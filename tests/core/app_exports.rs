@@ -71,14 +71,14 @@ fn a_card_for_a_file_in_another_unit_is_answered_with_the_converted_file() {
         }
         other => panic!("{other:?}"),
     }
-    let told = window.state.notices.kept().next().unwrap();
+    let told = window.state.log.notices.kept().next().unwrap();
     assert!(told.text.contains("1000"), "{}", told.text);
 }
 
 #[test]
 fn the_command_line_says_levels_settings_and_pose() {
     let mut window = Window::with_both();
-    let plain = window.state.command_line().unwrap();
+    let plain = window.state.document.command_line().unwrap();
     assert_eq!(plain, "shapematch match crash.k stamped.k");
     let mut recipe = window.state.document.recipe.clone();
     recipe.settings.starts.method = shapematch::registration::StartMethod::CurrentPose;
@@ -95,7 +95,7 @@ fn the_command_line_says_levels_settings_and_pose() {
         },
         max_triangles: 60,
     });
-    let line = window.state.command_line().unwrap();
+    let line = window.state.document.command_line().unwrap();
     for piece in [
         "--stamped-triangles 60",
         "--allowance 0.25",

@@ -27,7 +27,7 @@ fn nudge(window: &mut Window, distance: f64) {
 
 /// The last comparison as if it had taken so long.
 fn as_if_it_took(window: &mut Window, took: Duration) {
-    let compared = window.state.compared.as_mut().unwrap();
+    let compared = window.state.inspect.compared.as_mut().unwrap();
     let comparison = Comparison {
         took,
         ..Comparison::clone(&compared.comparison)
@@ -180,7 +180,7 @@ fn the_section_cuts_across_the_longest_side_and_steps_by_a_tenth_of_an_element()
     let mut window = Window::with_both();
     assert!(Action::SectionForward.enabled(&window.state).is_err());
     window.act(Action::ToggleSection);
-    let plane = window.state.view.section.shown().unwrap();
+    let plane = window.state.inspect.section.shown().unwrap();
     assert_eq!(plane.normal, Vector3::x());
     assert_eq!(
         plane.point,
@@ -189,19 +189,19 @@ fn the_section_cuts_across_the_longest_side_and_steps_by_a_tenth_of_an_element()
     window.act(Action::SectionForward);
     window.act(Action::SectionForward);
     window.act(Action::SectionBack);
-    let moved = window.state.view.section.shown().unwrap();
-    let step = window.state.section_step();
+    let moved = window.state.inspect.section.shown().unwrap();
+    let step = window.state.document.section_step();
     assert!((moved.distance(&plane.point) + step).abs() < 1e-12);
     window.act(Action::SectionZ);
-    let turned = window.state.view.section.shown().unwrap();
+    let turned = window.state.inspect.section.shown().unwrap();
     assert_eq!(turned, Plane::new(moved.point, &Vector3::z()));
     window.act(Action::ToggleSectionClip);
-    assert!(window.state.view.section.is_clipped);
+    assert!(window.state.inspect.section.is_clipped);
     window.act(Action::ToggleSection);
-    assert_eq!(window.state.view.section.shown(), None);
+    assert_eq!(window.state.inspect.section.shown(), None);
     window.act(Action::ToggleSection);
     assert_eq!(
-        window.state.view.section.shown(),
+        window.state.inspect.section.shown(),
         Some(turned),
         "it stays where it was"
     );

@@ -212,13 +212,13 @@ fn a_preview_shows_any_iteration_and_changes_nothing() {
         .position(|s| s.outcome != Some(StartOutcome::Won));
     let (start, iteration) = (loser.unwrap(), 1);
     let step = Preview::Step { start, iteration };
-    window.apply(ViewCommand::HoverPreview(Some(step)));
+    window.apply(PreviewCommand::Hover(Some(step)));
     let pose = outcome.starts[start].iterations[iteration].target_from_source;
     assert_eq!(window.state.shown_pose(), pose);
     assert!(window.state.is_preview());
-    window.apply(ViewCommand::HoverPreview(None));
+    window.apply(PreviewCommand::Hover(None));
     assert_eq!(window.state.shown_pose(), window.pose());
-    window.apply(ViewCommand::PinPreview(Some(Preview::Start(start))));
+    window.apply(PreviewCommand::Pin(Some(Preview::Start(start))));
     assert_eq!(window.state.shown_pose(), outcome.starts[start].last);
     assert_eq!(window.state.document, before);
     assert_eq!(window.state.history.n_done(), n_steps);

@@ -58,7 +58,7 @@ fn clicks_alternate_and_each_is_one_step() {
     assert_eq!(window.state.next_pick(), Some((0, Role::Stamped)));
     // Out of turn the point is picked anew.
     pick(&mut window, Role::Crash, Point3::new(1.0, 0.0, 0.0));
-    assert_eq!(window.state.pairs().len(), 1);
+    assert_eq!(window.state.document.current_pairs().len(), 1);
     pick(&mut window, Role::Stamped, Point3::origin());
     assert_eq!(window.state.next_pick(), Some((1, Role::Crash)));
     let n_steps = window.state.history.n_done();
@@ -67,11 +67,11 @@ fn clicks_alternate_and_each_is_one_step() {
     assert_eq!(window.state.next_pick(), Some((0, Role::Stamped)));
     window.act(Action::Redo);
     window.apply(PairCommand::Delete(0));
-    assert!(window.state.pairs().is_empty());
+    assert!(window.state.document.current_pairs().is_empty());
     window.act(Action::Undo);
-    assert_eq!(window.state.pairs().len(), 1);
+    assert_eq!(window.state.document.current_pairs().len(), 1);
     window.act(Action::Escape);
-    assert_eq!(window.state.view.pair_tool, None);
+    assert_eq!(window.state.pairs.tool, None);
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn the_fit_is_one_step_and_says_what_is_missing_before() {
         Err(Reason("Pick three pairs of points first."))
     );
     assert_eq!(
-        window.state.pair_fit().unwrap_err(),
+        window.state.document.pair_fit().unwrap_err(),
         "one more pair is needed"
     );
     for n in [3, 4] {
@@ -94,7 +94,7 @@ fn the_fit_is_one_step_and_says_what_is_missing_before() {
         assert!(window.pose().max_displacement(&pose(), &corners) < 1e-9);
         window.act(Action::Undo);
         assert_eq!(window.pose(), Similarity::identity());
-        assert_eq!(window.state.pairs().len(), n);
+        assert_eq!(window.state.document.current_pairs().len(), n);
     }
 }
 
@@ -108,7 +108,7 @@ fn points_on_a_line_are_refused_with_the_reason() {
         pick(&mut window, Role::Stamped, point);
     }
     assert!(Action::FitPairs.enabled(&window.state).is_err());
-    let reason = window.state.pair_fit().unwrap_err();
+    let reason = window.state.document.pair_fit().unwrap_err();
     assert!(reason.contains("one line"), "{reason}");
     window.apply(PairCommand::Fit);
     assert_eq!(window.pose(), Similarity::identity());
@@ -135,8 +135,8 @@ fn a_wrong_pair_is_named_and_picked_again() {
         right + Vector3::new(0.0, 5.0, 0.0),
     );
     assert_eq!(window.state.next_pick(), Some((4, Role::Crash)));
-    let fit = window.state.pair_fit().unwrap();
-    let doubt = window.state.pair_doubt_text(&fit).unwrap();
+    let fit = window.state.document.pair_fit().unwrap();
+    let doubt = window.state.document.pair_doubt_text(&fit).unwrap();
     assert!(doubt.starts_with("Pair 2 lies 5"), "{doubt}");
 }
 
@@ -185,7 +185,7 @@ fn refining_starts_from_the_present_pose_and_leaves_the_recipe() {
 fn pairs_of_parts_that_are_gone_do_not_count() {
     let mut window = with_pairs(3);
     window.open("stamped.k", Role::Stamped);
-    assert!(window.state.pairs().is_empty());
+    assert!(window.state.document.current_pairs().is_empty());
     window.act(Action::Undo);
-    assert_eq!(window.state.pairs().len(), 3);
+    assert_eq!(window.state.document.current_pairs().len(), 3);
 }

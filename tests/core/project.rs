@@ -201,7 +201,7 @@ fn a_file_that_changed_keeps_the_pose_and_ages_the_result() {
     );
     assert!(again.state.document.result.is_some());
     assert!(again.state.document.current_result().is_none());
-    let toast = again.state.notices.toasts().next().unwrap();
+    let toast = again.state.log.notices.toasts().next().unwrap();
     assert!(toast.text.contains("has changed since"), "{}", toast.text);
 }
 

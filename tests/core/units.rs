@@ -31,13 +31,13 @@ fn set(role: Role, units: impl Into<shapematch::units::Units>) -> FileCommand {
 fn unknown_units_are_said_to_be_unknown_and_can_be_set() {
     let mut window = Window::with_both();
     assert_eq!(words(&window, Role::Crash), "unknown");
-    assert_eq!(window.state.length_text(0.38), "0.380");
+    assert_eq!(window.state.document.length_text(0.38), "0.380");
     let before = window.state.document.clone();
     let n_done = window.state.history.n_done();
     window.apply(set(Role::Crash, UnitSystem::TonMmS));
     assert_eq!(words(&window, Role::Crash), "ton-mm-s, set by you");
     assert_eq!(words(&window, Role::Stamped), "mm, as the other part");
-    assert_eq!(window.state.length_text(0.38), "0.380 mm");
+    assert_eq!(window.state.document.length_text(0.38), "0.380 mm");
     // Only a word about the file has changed: what was measured stays valid.
     assert_eq!(window.state.document.stamp(), before.stamp());
     assert_eq!(window.state.history.n_done(), n_done + 1);
@@ -60,7 +60,10 @@ fn what_the_files_say_is_asked_about_once_and_is_one_undo_step() {
     assert_eq!(window.part(Role::Stamped).length_factor(), 1000.0);
     assert_eq!(window.state.unit_hint(), None);
     assert_eq!(words(&window, Role::Stamped), "m, set by you");
-    assert_eq!(window.state.length_unit(), Some(LengthUnit::Millimeter));
+    assert_eq!(
+        window.state.document.length_unit(),
+        Some(LengthUnit::Millimeter)
+    );
     assert_eq!(window.state.history.n_done(), n_done + 1);
     assert_eq!(window.state.history.undo_name(), Some("says_m.k is in m"));
     let after = window.state.document.clone();
@@ -105,7 +108,7 @@ fn another_unit_of_the_crash_file_carries_the_stamped_file_along() {
     window.apply(set(Role::Stamped, LengthUnit::Meter));
     window.apply(set(Role::Crash, LengthUnit::Centimeter));
     assert_eq!(window.part(Role::Stamped).length_factor(), 100.0);
-    assert_eq!(window.state.length_text(2.0), "2.00 cm");
+    assert_eq!(window.state.document.length_text(2.0), "2.00 cm");
 }
 
 fn bundled(name: &str, settings: &LoadSettings) -> LoadedPart {

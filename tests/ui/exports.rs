@@ -31,6 +31,7 @@ fn the_export_menu_offers_every_form_and_says_what_waits_for_a_match() {
         window
             .state()
             .state()
+            .log
             .notices
             .toasts()
             .any(|notice| notice.text == "Command line copied"),

@@ -142,7 +142,8 @@ fn the_section_has_a_handle_and_an_inset_and_both_move_the_plane() {
         harness.step();
     }
     assert_eq!(starts_with(&harness, "Outlines in the section plane"), 1);
-    let plane = |harness: &Harness<'_, Desk>| harness.state().state.view.section.shown().unwrap();
+    let plane =
+        |harness: &Harness<'_, Desk>| harness.state().state.inspect.section.shown().unwrap();
     let before = plane(&harness);
     let grip = harness
         .get_by_label("Section plane (stamped)")
@@ -176,7 +177,7 @@ fn the_section_has_a_handle_and_an_inset_and_both_move_the_plane() {
     assert_eq!(plane(&harness).normal, Vector3::y());
     harness.get_by_label("Section (section)").click_accesskit();
     harness.run_steps(2);
-    assert_eq!(harness.state().state.view.section.shown(), None);
+    assert_eq!(harness.state().state.inspect.section.shown(), None);
     assert_eq!(starts_with(&harness, "Outlines in the section plane"), 0);
 }
 
@@ -288,6 +289,6 @@ fn after_a_match_the_tab_tells_the_numbers_and_goes_to_the_worst_places() {
     );
     window.key_press(egui::Key::S);
     window.run_steps(3);
-    assert!(window.state().state().view.section.is_on);
+    assert!(window.state().state().inspect.section.is_on);
     window.check_accessibility();
 }

@@ -69,7 +69,7 @@ fn load_reduce_match_and_copy_by_keyboard_alone() {
     let keys = Modifiers::COMMAND | Modifiers::SHIFT;
     window.key_press_modifiers(keys, Key::C);
     window.run_steps(2);
-    let mut told = window.state().state().notices.toasts();
+    let mut told = window.state().state().log.notices.toasts();
     assert!(told.any(|notice| notice.text.starts_with("Matrix (stamped → crash")));
 }
 
@@ -104,7 +104,7 @@ fn select_a_part(window: &mut Window) {
 }
 
 fn n_selected(window: &Window) -> usize {
-    window.state().state().view.selected.len()
+    window.state().state().parts.selected.len()
 }
 
 #[test]

@@ -45,21 +45,27 @@ fn three_clicked_pairs_make_a_pose() {
         .into_iter()
         .enumerate()
     {
-        assert_eq!(window.state().state().pairs().len(), n);
+        assert_eq!(window.state().state().document.current_pairs().len(), n);
         for role in Role::ALL {
             click_in(&mut window, role, off.into());
         }
     }
     let state = window.state().state();
-    assert_eq!(state.pairs().len(), 3);
+    assert_eq!(state.document.current_pairs().len(), 3);
     assert!(
         state
-            .pairs()
+            .document
+            .current_pairs()
             .iter()
             .all(|p| p.crash.is_some() && p.stamped.is_some())
     );
-    assert!(state.view.selected.is_empty(), "a pick is no selection");
-    let expected = state.pair_fit().expect("a pose").fit.target_from_source;
+    assert!(state.parts.selected.is_empty(), "a pick is no selection");
+    let expected = state
+        .document
+        .pair_fit()
+        .expect("a pose")
+        .fit
+        .target_from_source;
     click(&mut window, "Fit the pairs");
     finish(&mut window);
     assert_eq!(
@@ -67,9 +73,9 @@ fn three_clicked_pairs_make_a_pose() {
         expected
     );
     click(&mut window, "Delete pair 2");
-    assert_eq!(window.state().state().pairs().len(), 2);
+    assert_eq!(window.state().state().document.current_pairs().len(), 2);
     assert!(window.query_by_label("One more pair is needed.").is_some());
     window.key_press(egui::Key::Escape);
     window.run_steps(2);
-    assert_eq!(window.state().state().view.pair_tool, None);
+    assert_eq!(window.state().state().pairs.tool, None);
 }

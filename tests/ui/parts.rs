@@ -100,7 +100,7 @@ fn five_thousand_parts_are_listed_filtered_and_walked_through() {
         role: Role::Crash,
         id: FIRST + 30,
     };
-    assert!(window.state().state().view.selected.contains(&selected));
+    assert!(window.state().state().parts.selected.contains(&selected));
 
     // Letters typed one after the other all go into the field, the × comes and goes beside it.
     window.get_by_label("Filter parts").focus();

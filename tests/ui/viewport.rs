@@ -295,8 +295,8 @@ fn a_click_selects_the_part_and_beside_it_nothing() {
         press(&harness, pos, PointerButton::Primary, true);
         press(&harness, pos, PointerButton::Primary, false);
         harness.run_steps(2);
-        let view = &harness.state().state.view;
-        (view.selected.first().copied(), view.focus)
+        let state = &harness.state().state;
+        (state.parts.selected.first().copied(), state.view.focus)
     };
     let (selected, focus) = click(area.center());
     assert_eq!(selected.map(|part| part.role), Some(Role::Crash));
@@ -321,7 +321,7 @@ fn ctrl_and_click_add_to_the_selection_and_take_from_it() {
             });
         }
         harness.run_steps(2);
-        harness.state().state.view.selected.len()
+        harness.state().state.parts.selected.len()
     };
     let counts = [Role::Crash, Role::Stamped, Role::Crash].map(&mut click);
     assert_eq!(counts, [1, 2, 1]);
@@ -364,7 +364,7 @@ fn hovering_names_the_part_and_says_nothing_twice() {
 #[test]
 fn the_gizmo_moves_the_part_in_one_step() {
     let mut desk = Desk::with_sheets(None);
-    desk.apply(ViewCommand::ToggleGizmo.into());
+    desk.apply(MoveCommand::ToggleGizmo.into());
     let mut harness = harness(desk);
     let before = *harness.state().state.document.crash_from_stamped();
     let camera = harness.state().camera(Role::Stamped);

@@ -23,22 +23,22 @@ pub(super) fn always(_: &AppState) -> Result<(), Reason> {
 
 /// A part is loaded and no job holds the inputs.
 pub(super) fn any_part_unlocked(state: &AppState) -> Result<(), Reason> {
-    state.has_any_part()?;
-    state.is_unlocked()
+    state.document.has_any_part()?;
+    state.jobs.is_unlocked()
 }
 
 /// The part is loaded and no job holds the inputs.
 pub(super) fn part_unlocked(state: &AppState, role: Role) -> Result<(), Reason> {
-    state.has_part(role)?;
-    state.is_unlocked()
+    state.document.has_part(role)?;
+    state.jobs.is_unlocked()
 }
 
 pub(super) fn has_stamped(state: &AppState) -> Result<(), Reason> {
-    state.has_part(Role::Stamped)
+    state.document.has_part(Role::Stamped)
 }
 
 pub(super) fn has_selection(state: &AppState) -> Result<(), Reason> {
-    require(!state.view.selected.is_empty(), "Select a part first.")
+    require(!state.parts.selected.is_empty(), "Select a part first.")
 }
 
 pub(super) fn is_reduced(state: &AppState) -> Result<(), Reason> {
@@ -55,5 +55,5 @@ pub(super) fn has_result(state: &AppState) -> Result<(), Reason> {
 pub(super) fn has_starts(state: &AppState) -> Result<(), Reason> {
     let n_starts = state.current_starts().map_or(0, |s| s.poses.len());
     require(n_starts > 0, "Align the surface normals first.")?;
-    state.is_unlocked()
+    state.jobs.is_unlocked()
 }

@@ -6,7 +6,7 @@ use super::row::some;
 use super::{Action, ActionRow, Key, Keys, MenuGroup, Shortcut};
 use crate::app::{
     AppState, Axis, AxisFrame, Command, HistoryCommand, MotionKind, MoveCommand, PairCommand,
-    PartCommand, ViewCommand,
+    PartCommand,
 };
 use crate::geometry::Similarity;
 
@@ -25,7 +25,7 @@ const HISTORY: &[ActionRow] = &[
         keys: Keys::repeat(&[ctrl('Z')]),
         enabled: |state| {
             require(state.history.undo_name().is_some(), "Nothing to undo.")?;
-            state.is_unlocked()
+            state.jobs.is_unlocked()
         },
         command: |_| some(HistoryCommand::Undo),
     },
@@ -36,7 +36,7 @@ const HISTORY: &[ActionRow] = &[
         keys: Keys::repeat(&[ctrl_shift('Z'), ctrl('Y')]),
         enabled: |state| {
             require(state.history.redo_name().is_some(), "Nothing to redo.")?;
-            state.is_unlocked()
+            state.jobs.is_unlocked()
         },
         command: |_| some(HistoryCommand::Redo),
     },
@@ -108,7 +108,7 @@ const TOOLS: &[ActionRow] = &[
         tooltip: "Show handles that move and rotate the stamped part",
         keys: Keys::press(&[shift('G')]),
         enabled: always,
-        command: |_| some(ViewCommand::ToggleGizmo),
+        command: |_| some(MoveCommand::ToggleGizmo),
     },
     ActionRow {
         action: Action::PairTool,
@@ -124,7 +124,7 @@ const TOOLS: &[ActionRow] = &[
         tooltip: "Move along the axes of the crash model, of the part, or of the view",
         keys: Keys::NONE,
         enabled: always,
-        command: |state| some(ViewCommand::SetMoveAxes(next_axes(state.view.move_axes))),
+        command: |state| some(MoveCommand::SetAxes(next_axes(state.moving.axes))),
     },
 ];
 

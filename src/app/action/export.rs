@@ -28,7 +28,7 @@ const COPY: &[ActionRow] = &[
         label: "Copy as command line",
         tooltip: "Copy the command that gives this pose again without the window, bit for bit",
         keys: Keys::NONE,
-        enabled: AppState::can_copy_command_line,
+        enabled: |state| state.document.can_copy_command_line(),
         command: |_| some(ExportCommand::CopyCommandLine),
     },
     ActionRow {
@@ -63,7 +63,7 @@ const SAVE: &[ActionRow] = &[
         label: "Save node deviations…",
         tooltip: "Write the distance of every node from the other part, as CSV",
         keys: Keys::NONE,
-        enabled: AppState::has_both_parts,
+        enabled: |state| state.document.has_both_parts(),
         command: |_| save(Output::Deviations),
     },
     ActionRow {
@@ -98,7 +98,7 @@ const IMAGE: &[ActionRow] = &[
         label: "Save image…",
         tooltip: "Choose size, background and windows of an image, then write it",
         keys: Keys::press(&[Shortcut::shift(Key::Function(12))]),
-        enabled: AppState::has_any_part,
+        enabled: |state| state.document.has_any_part(),
         command: |state| some(toggled_dialog(state, Dialog::Picture)),
     },
     ActionRow {
@@ -106,7 +106,7 @@ const IMAGE: &[ActionRow] = &[
         label: "Save image again",
         tooltip: "Write an image of the 3D windows with the settings used last",
         keys: Keys::press(&[function(12)]),
-        enabled: AppState::has_any_part,
+        enabled: |state| state.document.has_any_part(),
         command: |_| take_picture(false),
     },
     ActionRow {
@@ -114,7 +114,7 @@ const IMAGE: &[ActionRow] = &[
         label: "Save image without background",
         tooltip: "Write an image of the 3D windows with a transparent background",
         keys: Keys::press(&[Shortcut::ctrl(Key::Function(12))]),
-        enabled: AppState::has_any_part,
+        enabled: |state| state.document.has_any_part(),
         command: |_| take_picture(true),
     },
 ];

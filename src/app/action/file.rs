@@ -4,7 +4,7 @@ use super::conditions::{always, any_part_unlocked, part_unlocked};
 use super::row::keys::{ctrl, ctrl_shift};
 use super::row::some;
 use super::{Action, ActionRow, Keys, MenuGroup, toggled_dialog};
-use crate::app::{AppState, Command, Dialog, FileCommand, ProjectCommand};
+use crate::app::{Command, Dialog, FileCommand, ProjectCommand};
 use crate::role::Role;
 
 pub(super) const GROUPS: &[MenuGroup] = &[
@@ -20,7 +20,7 @@ const OPEN: &[ActionRow] = &[
         label: "Open crash model…",
         tooltip: "Choose the crash model; its part stays fixed",
         keys: Keys::press(&[ctrl('O')]),
-        enabled: AppState::is_unlocked,
+        enabled: |state| state.jobs.is_unlocked(),
         command: |_| some(FileCommand::AskOpen(Role::Crash)),
     },
     ActionRow {
@@ -28,7 +28,7 @@ const OPEN: &[ActionRow] = &[
         label: "Open stamped part…",
         tooltip: "Choose the result of the stamping simulation; this part moves",
         keys: Keys::press(&[ctrl_shift('O')]),
-        enabled: AppState::is_unlocked,
+        enabled: |state| state.jobs.is_unlocked(),
         command: |_| some(FileCommand::AskOpen(Role::Stamped)),
     },
     ActionRow {
@@ -36,7 +36,7 @@ const OPEN: &[ActionRow] = &[
         label: "Open the example pair",
         tooltip: "Load a generated crash part and its stamped part",
         keys: Keys::NONE,
-        enabled: AppState::is_unlocked,
+        enabled: |state| state.jobs.is_unlocked(),
         command: |_| some(FileCommand::OpenExample),
     },
 ];
@@ -47,7 +47,7 @@ const PROJECT: &[ActionRow] = &[
         label: "Open project…",
         tooltip: "Open saved work: both files, pose, levels, settings and result",
         keys: Keys::NONE,
-        enabled: AppState::is_unlocked,
+        enabled: |state| state.jobs.is_unlocked(),
         command: |_| some(ProjectCommand::AskOpen),
     },
     ActionRow {
@@ -55,7 +55,7 @@ const PROJECT: &[ActionRow] = &[
         label: "Save project",
         tooltip: "Save pose, levels, settings and result; the geometry stays in its files",
         keys: Keys::press(&[ctrl('S')]),
-        enabled: AppState::has_any_part,
+        enabled: |state| state.document.has_any_part(),
         command: |_| some(ProjectCommand::Save),
     },
     ActionRow {
@@ -63,7 +63,7 @@ const PROJECT: &[ActionRow] = &[
         label: "Save project as…",
         tooltip: "Save the work to another file",
         keys: Keys::press(&[ctrl_shift('S')]),
-        enabled: AppState::has_any_part,
+        enabled: |state| state.document.has_any_part(),
         command: |_| some(ProjectCommand::SaveAs),
     },
 ];

@@ -94,14 +94,14 @@ const STARTS: &[ActionRow] = &[
             has_starts(state)?;
             require(state.shown_start().is_some(), "Show a start first.")
         },
-        command: |state| some(MatchCommand::UseStart(state.current_starts()?.shown?)),
+        command: |state| some(MatchCommand::UseStart(state.previews.start?)),
     },
     ActionRow {
         action: Action::FitPairs,
         label: "Fit the pairs",
         tooltip: "Align the picked points; with more than three pairs by least squares",
         keys: Keys::NONE,
-        enabled: AppState::can_fit_pairs,
+        enabled: |state| state.document.can_fit_pairs(&state.jobs),
         command: |_| some(PairCommand::Fit),
     },
 ];
@@ -117,7 +117,7 @@ const MATCH: &[ActionRow] = &[
                 return Ok(());
             }
             state.can_match()?;
-            state.has_start_pose()
+            state.document.has_start_pose()
         },
         command: |state| {
             some(if state.jobs.is_active(JobKey::Match) {
@@ -140,7 +140,7 @@ const MATCH: &[ActionRow] = &[
         label: "Cancel the run",
         tooltip: "End the run and keep the old pose",
         keys: Keys::NONE,
-        enabled: |state| require(state.locking_job().is_some(), "Nothing is running."),
+        enabled: |state| require(state.jobs.locking_job().is_some(), "Nothing is running."),
         command: |_| some(MatchCommand::Cancel),
     },
 ];
@@ -181,5 +181,5 @@ fn has_alternative(state: &AppState) -> Result<(), Reason> {
     require(n_alternatives > 0, "No other pose fits nearly as well.")?;
     let is_same_pair = run.stamp.parts == state.document.stamp().parts;
     require(is_same_pair, "A part was exchanged after the match.")?;
-    state.is_unlocked()
+    state.jobs.is_unlocked()
 }

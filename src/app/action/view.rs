@@ -26,7 +26,7 @@ const COMPARE: &[ActionRow] = &[
         label: "Move over",
         tooltip: "Show the stamped part in the left window, or back in its own",
         keys: Keys::press(&[key('M')]),
-        enabled: AppState::has_both_parts,
+        enabled: |state| state.document.has_both_parts(),
         command: |_| some(ViewCommand::ToggleMoveOver),
     },
     ActionRow {
@@ -50,7 +50,7 @@ const COMPARE: &[ActionRow] = &[
         label: "Fit all",
         tooltip: "Bring everything visible into view",
         keys: Keys::press(&[Shortcut::plain(Key::Home)]),
-        enabled: AppState::has_any_part,
+        enabled: |state| state.document.has_any_part(),
         command: |state| some(ViewCommand::FitAll(state.view.focus)),
     },
 ];
@@ -127,7 +127,7 @@ const INSPECT: &[ActionRow] = &[
         label: "Deviation map",
         tooltip: "Colour the parts by the signed distance between them",
         keys: Keys::press(&[key('D')]),
-        enabled: AppState::has_both_parts,
+        enabled: |state| state.document.has_both_parts(),
         command: |state| shown_with(state, |display| toggle_color(display, ColorBy::Deviation)),
     },
     ActionRow {
@@ -135,7 +135,7 @@ const INSPECT: &[ActionRow] = &[
         label: "Overlap map",
         tooltip: "Show where the parts match, where they deviate, and what only one of them has",
         keys: Keys::press(&[key('O')]),
-        enabled: AppState::has_both_parts,
+        enabled: |state| state.document.has_both_parts(),
         command: |state| shown_with(state, |display| toggle_color(display, ColorBy::Overlap)),
     },
     ActionRow {
@@ -143,7 +143,7 @@ const INSPECT: &[ActionRow] = &[
         label: "Update the deviation",
         tooltip: "Measure the deviation again at the shown pose and levels",
         keys: Keys::NONE,
-        enabled: AppState::has_both_parts,
+        enabled: |state| state.document.has_both_parts(),
         command: |_| some(InspectCommand::Update),
     },
 ];
@@ -154,19 +154,19 @@ const SECTION: &[ActionRow] = &[
         label: "Section",
         tooltip: "Cut both parts with a plane and show their outlines",
         keys: Keys::press(&[key('S')]),
-        enabled: AppState::has_any_part,
-        command: |state| some(ViewCommand::SetSection(state.section_toggled())),
+        enabled: |state| state.document.has_any_part(),
+        command: |state| some(InspectCommand::SetSection(toggled(state))),
     },
     ActionRow {
         action: Action::ToggleSectionClip,
         label: "Cut away one half",
         tooltip: "Hide what lies in front of the section plane",
         keys: Keys::press(&[shift('S')]),
-        enabled: AppState::has_any_part,
+        enabled: |state| state.document.has_any_part(),
         command: |state| {
-            some(ViewCommand::SetSection(SectionView {
-                is_clipped: !state.view.section.is_clipped,
-                ..state.section_across(&section_normal(state))
+            some(InspectCommand::SetSection(SectionView {
+                is_clipped: !state.inspect.section.is_clipped,
+                ..across(state, &section_normal(state))
             }))
         },
     },
@@ -175,7 +175,7 @@ const SECTION: &[ActionRow] = &[
         label: "Section across X",
         tooltip: "Section plane normal to x",
         keys: Keys::NONE,
-        enabled: AppState::has_any_part,
+        enabled: |state| state.document.has_any_part(),
         command: |state| section_across(state, &Vector3::x()),
     },
     ActionRow {
@@ -183,7 +183,7 @@ const SECTION: &[ActionRow] = &[
         label: "Section across Y",
         tooltip: "Section plane normal to y",
         keys: Keys::NONE,
-        enabled: AppState::has_any_part,
+        enabled: |state| state.document.has_any_part(),
         command: |state| section_across(state, &Vector3::y()),
     },
     ActionRow {
@@ -191,7 +191,7 @@ const SECTION: &[ActionRow] = &[
         label: "Section across Z",
         tooltip: "Section plane normal to z",
         keys: Keys::NONE,
-        enabled: AppState::has_any_part,
+        enabled: |state| state.document.has_any_part(),
         command: |state| section_across(state, &Vector3::z()),
     },
     ActionRow {
@@ -199,7 +199,7 @@ const SECTION: &[ActionRow] = &[
         label: "Section across the view",
         tooltip: "Section plane facing the viewer",
         keys: Keys::NONE,
-        enabled: AppState::has_any_part,
+        enabled: |state| state.document.has_any_part(),
         command: |state| {
             let camera = state.view.cameras.get(state.view.focus);
             section_across(state, &-camera.forward())
@@ -229,7 +229,7 @@ const CAMERA: &[ActionRow] = &[
         label: "Fit selection",
         tooltip: "Bring the selected parts into view, or everything",
         keys: Keys::press(&[key('F')]),
-        enabled: AppState::has_any_part,
+        enabled: |state| state.document.has_any_part(),
         command: |state| some(ViewCommand::Focus(state.view.focus)),
     },
     ActionRow {
@@ -374,8 +374,8 @@ const WINDOW: &[ActionRow] = &[
 ];
 
 fn has_section(state: &AppState) -> Result<(), Reason> {
-    state.has_any_part()?;
-    require(state.view.section.is_on, "Show the section first.")
+    state.document.has_any_part()?;
+    require(state.inspect.section.is_on, "Show the section first.")
 }
 
 /// The picture with one choice changed.
@@ -403,19 +403,32 @@ fn toggle_line(line: &mut Option<f32>) {
 
 /// What the section plane is normal to now, or would be.
 fn section_normal(state: &AppState) -> Vector3 {
-    let plane = state.view.section.plane;
+    let plane = state.inspect.section.plane;
     plane
         .unwrap_or_else(|| state.default_section_plane())
         .normal
 }
 
+fn toggled(state: &AppState) -> SectionView {
+    let section = state.inspect.section;
+    section.toggled(|| state.default_section_plane())
+}
+
+fn across(state: &AppState, normal: &Vector3) -> SectionView {
+    let section = state.inspect.section;
+    section.across(normal, || state.default_section_plane())
+}
+
 fn section_across(state: &AppState, normal: &Vector3) -> Option<Command> {
-    some(ViewCommand::SetSection(state.section_across(normal)))
+    some(InspectCommand::SetSection(across(state, normal)))
 }
 
 fn section_moved(state: &AppState, n_steps: f64) -> Option<Command> {
-    let section = state.section_moved(n_steps * state.section_step())?;
-    some(ViewCommand::SetSection(section))
+    let section = state
+        .inspect
+        .section
+        .moved(n_steps * state.document.section_step())?;
+    some(InspectCommand::SetSection(section))
 }
 
 fn look(state: &AppState, view: StandardView) -> Option<Command> {

@@ -307,7 +307,7 @@ fn recent_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Comma
     ui.add_space(2.0 * UNIT);
     secondary(ui, "Recent");
     let width = 260.0_f32.min(ui.available_width());
-    let now = state.clock.unix_at(state.now);
+    let now = state.log.clock.unix_at(state.log.now);
     for path in recent {
         let name = path.file_name().unwrap_or(path.as_os_str());
         let name = name.to_string_lossy().into_owned();

@@ -6,7 +6,8 @@ use super::part_list::part_list_ui;
 use super::section::{elided, section_ui};
 use super::units;
 use crate::app::{
-    Action, AppState, BottomTab, ColorBy, Command, Display, FileCommand, Part, Section, ViewCommand,
+    Action, AppState, BottomTab, ColorBy, Command, Display, FileCommand, Part, PreviewCommand,
+    Section, ViewCommand,
 };
 use crate::jobs::JobKey;
 use crate::role::Role;
@@ -74,7 +75,7 @@ fn file_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command
 fn loaded_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState, commands: &mut Vec<Command>) {
     let palette = Palette::of(ui);
     let name = part.loaded.file_name();
-    let has_badge = role == Role::Stamped && state.has_pose();
+    let has_badge = role == Role::Stamped && state.document.has_pose();
     let badge = if has_badge { ROW + UNIT } else { 0.0 };
     let room = ui.available_width() - ROW - UNIT - badge;
     let (rect, response) = ui.allocate_exact_size(vec2(room, 36.0), Sense::hover());
@@ -124,7 +125,7 @@ fn badge_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
     if response.on_hover_text(help).clicked() {
-        commands.push(ViewCommand::ShowAsLoaded(!is_as_loaded).into());
+        commands.push(PreviewCommand::AsLoaded(!is_as_loaded).into());
     }
 }
 
@@ -143,7 +144,7 @@ fn detail(role: Role, part: &Part, state: &AppState) -> String {
         );
     }
     if let Some(thickness) = part.facts.thickness {
-        text += &format!(" · t {}", state.length_text(thickness));
+        text += &format!(" · t {}", state.document.length_text(thickness));
     }
     if part.length_factor() != 1.0 {
         text += &format!(" · lengths × {}", part.length_factor());

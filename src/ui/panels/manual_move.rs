@@ -3,7 +3,7 @@
 use egui::{CollapsingHeader, DragValue, Key, Modifiers, Ui, vec2};
 
 use crate::app::{
-    Action, AppState, Axis, AxisFrame, Command, MoveCommand, ViewCommand, turns_deg, with_turns_deg,
+    Action, AppState, Axis, AxisFrame, Command, MoveCommand, turns_deg, with_turns_deg,
 };
 use crate::geometry::Similarity;
 use crate::report::parse_matrix;
@@ -34,11 +34,11 @@ pub fn manual_move_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
 fn axes_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     form_row(ui, "Axes", LABEL, |ui| {
         for frame in AxisFrame::ALL {
-            if chip(ui, frame.label(), state.view.move_axes == frame).clicked() {
-                commands.push(ViewCommand::SetMoveAxes(frame).into());
+            if chip(ui, frame.label(), state.moving.axes == frame).clicked() {
+                commands.push(MoveCommand::SetAxes(frame).into());
             }
         }
-        let look = if state.view.has_gizmo {
+        let look = if state.moving.has_gizmo {
             Look::On
         } else {
             Look::Plain
@@ -50,7 +50,7 @@ fn axes_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 /// A typed move along and a typed turn about each axis.
 fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let frame = state.view.move_axes;
+    let frame = state.moving.axes;
     for (name, unit, is_turn) in [("Move", "", false), ("Rotate", "°", true)] {
         let id = egui::Id::unique(("typed move", name));
         let mut value: f64 =
@@ -121,7 +121,7 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let pivot = part.bounds().center();
     let at: [f64; 3] = center.coords.into();
     let moved: [f64; 3] = (center - pivot).into();
-    let unit = state.unit_suffix();
+    let unit = state.document.unit_suffix();
     for (name, what, values) in [
         ("Centre", "Centre", at),
         ("Translation", "Translation since loading,", moved),

@@ -58,7 +58,7 @@ fn summary(state: &AppState) -> String {
             format!(
                 "{} · RMS {}",
                 assessment.verdict.label(),
-                state.length_text(assessment.coverage.rmse())
+                state.document.length_text(assessment.coverage.rmse())
             )
         }
         None if state.document.both().is_none() => String::new(),
@@ -80,7 +80,7 @@ fn align_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             action_button(ui, state, Action::PreviousStart, previous, commands)
                 .widget_info(|| named_button("Previous start"));
         });
-        let text = match starts.shown {
+        let text = match state.previews.start {
             Some(index) => format!("start {} of {}", index + 1, starts.poses.len()),
             None => format!("{} starts", starts.poses.len()),
         };
@@ -91,7 +91,7 @@ fn align_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             action_button(ui, state, Action::NextStart, next, commands)
                 .widget_info(|| named_button("Next start"));
         });
-        if starts.shown.is_some() {
+        if state.previews.start.is_some() {
             let look = ("Use", Look::Plain, vec2(48.0, ROW));
             action_button(ui, state, Action::UseStart, look, commands);
             if ui
@@ -126,7 +126,7 @@ fn start_help(method: StartMethod) -> &'static str {
 /// Start, then method: the two links of the chain, and the gear for the rest.
 fn chain_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut recipe = state.document.recipe.clone();
-    let is_free = state.locking_job().is_none();
+    let is_free = state.jobs.locking_job().is_none();
     ui.add_enabled_ui(is_free, |ui| {
         form_row(ui, "Start", LABEL, |ui| {
             ComboBox::from_id_salt("start")
@@ -208,13 +208,13 @@ fn status_ui(ui: &mut Ui, state: &AppState) {
             "start {}/{n_starts} · iteration {} · RMS {} · overlap {} · ",
             latest.start + 1,
             latest.number + 1,
-            state.length_text(latest.record.rmse),
+            state.document.length_text(latest.record.rmse),
             whole_percent(latest.record.fraction)
         );
     } else if let Some(progress) = job.progress {
         text += &format!("{} · ", progress.phase);
     }
-    text += &duration_text(state.now.saturating_sub(job.since));
+    text += &duration_text(state.log.now.saturating_sub(job.since));
     let color = Palette::of(ui).secondary;
     let label = ui.add(egui::Label::new(RichText::new(text).small().color(color)).wrap());
     ui.ctx().accesskit_node_builder(label.id, |node| {

@@ -13,14 +13,14 @@ use crate::ui::widgets::{
 
 /// The card with the pairs, while the tool is on or pairs are there.
 pub fn pairs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    if state.view.pair_tool.is_none() && state.pairs().is_empty() {
+    if state.pairs.tool.is_none() && state.document.current_pairs().is_empty() {
         return;
     }
     ui.add_space(2.0);
     card(ui, |ui| {
         head_ui(ui, state, commands);
-        let fit = state.pair_fit();
-        for (index, pair) in state.pairs().iter().enumerate() {
+        let fit = state.document.pair_fit();
+        for (index, pair) in state.document.current_pairs().iter().enumerate() {
             row_ui(ui, state, (index, pair), fit.as_ref().ok(), commands);
         }
         match &fit {
@@ -46,12 +46,13 @@ fn head_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.label("Point pairs");
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let button = |label: &'static str| Button::new(label).min_size(vec2(0.0, ROW));
-            let is_on = state.view.pair_tool.is_some();
+            let is_on = state.pairs.tool.is_some();
             let label = if is_on { "Done" } else { "Pick more" };
             if ui.add(button(label)).clicked() {
                 commands.push(PairCommand::ToggleTool.into());
             }
-            if !state.pairs().is_empty() && ui.add(button("Delete all")).clicked() {
+            if !state.document.current_pairs().is_empty() && ui.add(button("Delete all")).clicked()
+            {
                 commands.push(PairCommand::DeleteAll.into());
             }
         });
@@ -83,7 +84,7 @@ fn row_ui(
             };
             let name = format!("Pick pair {} on the {} part again", index + 1, role.word());
             let what = pair.get(role).map(|picked| picked.kind.words());
-            let asks = state.view.pair_tool.and_then(|tool| tool.repick);
+            let asks = state.pairs.tool.and_then(|tool| tool.repick);
             let is_asked = asks == Some((index, role));
             let button = Button::new(RichText::new(text).small()).selected(is_asked);
             let response = ui.add(button.min_size(vec2(54.0, ROW - 2.0)));
@@ -118,7 +119,7 @@ fn residual_ui(
         secondary(ui, "–");
         return;
     };
-    let text = state.length_text(*residual);
+    let text = state.document.length_text(*residual);
     if fit.and_then(PointPairFit::worst) == Some(index) {
         let color = Palette::of(ui).check;
         ui.label(RichText::new(format!("⚠ {text}")).color(color))
@@ -129,7 +130,7 @@ fn residual_ui(
 }
 
 fn doubt_ui(ui: &mut Ui, state: &AppState, fit: &PointPairFit) {
-    match state.pair_doubt_text(fit) {
+    match state.document.pair_doubt_text(fit) {
         Some(doubt) => {
             let color = Palette::of(ui).check;
             let text = RichText::new(format!("⚠ {doubt}")).color(color);
@@ -137,7 +138,7 @@ fn doubt_ui(ui: &mut Ui, state: &AppState, fit: &PointPairFit) {
         }
         None => {
             let n_pairs = fit.residuals.len();
-            let rmse = state.length_text(fit.fit.rmse);
+            let rmse = state.document.length_text(fit.fit.rmse);
             caption(ui, format!("{n_pairs} pairs, RMS {rmse} after the fit"));
         }
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::{Align, Layout, ScrollArea, TextStyle, Ui, vec2};
 
 use super::part_row::{Columns, Row, count_text, row_ui};
-use crate::app::part_filter::PartFilter;
+use crate::app::filter::PartFilter;
 use crate::app::{AppState, ColorBy, Command, LikeWhat, PartCommand, PartRef};
 use crate::role::{PerRole, Role};
 use crate::ui::theme::ROW;
@@ -253,7 +253,7 @@ fn tell_hovered(ui: &Ui, state: &AppState, hovered: Option<PartRef>, commands: &
         }
         None => data.remove::<PartRef>(id),
     });
-    if hovered != state.view.hovered {
+    if hovered != state.parts.hovered {
         commands.push(PartCommand::Hover(hovered).into());
     }
 }
@@ -304,7 +304,7 @@ fn scroll_to_focus(ui: &Ui, listed: &Listed, (at, height): (f32, f32), offset: e
 
 /// The selected part of a large deck: one click makes it the one that is matched.
 fn chosen_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let mut selected = state.view.selected.iter();
+    let mut selected = state.parts.selected.iter();
     let (Some(&at), None) = (selected.next(), selected.next()) else {
         return;
     };
@@ -317,7 +317,7 @@ fn chosen_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     let label = format!("Match only {} {}", at.role.mark(), at.id);
     let button = egui::Button::new(label).min_size(vec2(ui.available_width(), ROW));
-    let can = state.locking_job().is_none();
+    let can = state.jobs.locking_job().is_none();
     // In a row of its own the text stands in the middle.
     ui.horizontal(|ui| {
         if ui.add_enabled(can, button).clicked() {

@@ -132,11 +132,11 @@ pub fn row_ui(
     let id = row.widget();
     let response = ui.interact(rect, id, Sense::click());
     let (at, name) = (row.at(), row.name());
-    let is_selected = state.view.selected.contains(&at);
+    let is_selected = state.parts.selected.contains(&at);
     if is_selected {
         let fill = palette.accent.gamma_multiply(0.35);
         ui.painter().rect_filled(rect, 4.0, fill);
-    } else if response.hovered() || state.view.hovered == Some(at) {
+    } else if response.hovered() || state.parts.hovered == Some(at) {
         ui.painter().rect_filled(rect, 4.0, palette.card);
     }
     focus_ring(ui, rect, &response);
@@ -184,7 +184,7 @@ fn hover_text(row: &Row<'_>, state: &AppState) -> String {
         grouped(summary.n_triangles)
     );
     if let Some(thickness) = summary.thickness {
-        text += &format!(", thickness {}", state.length_text(thickness));
+        text += &format!(", thickness {}", state.document.length_text(thickness));
     }
     if let Some(likeness) = row.likeness {
         text += &format!("\nlikeness {}", whole_percent(likeness));
@@ -380,7 +380,7 @@ fn eye_ui(ui: &Ui, rect: Rect, row: &Row<'_>, name: &str) -> Response {
 fn tick_ui(ui: &Ui, rect: Rect, row: &Row<'_>, (state, name): (&AppState, &str)) -> Response {
     let palette = Palette::of(ui);
     let is_used = row.part.is_used(row.summary.id);
-    let is_free = state.locking_job().is_none();
+    let is_free = state.jobs.locking_job().is_none();
     let sense = if is_free {
         Sense::click()
     } else {

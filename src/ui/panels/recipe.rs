@@ -93,7 +93,7 @@ fn setting_ui(ui: &mut Ui, state: &AppState, setting: &Setting, recipe: &mut Mat
 }
 
 fn value_ui(ui: &mut Ui, state: &AppState, setting: &Setting, value: &mut Value) {
-    let lengths = state.lengths();
+    let lengths = state.document.lengths();
     match (&setting.domain, value) {
         (Domain::Choice(words), Value::Choice(name)) => choice_ui(ui, setting, &words(), name),
         (Domain::Switch, Value::Switch(is_on)) => {

@@ -198,13 +198,16 @@ fn with_result(ui: &Ui, chip: Response, state: &AppState, level: Option<usize>) 
 fn result_text(state: &AppState, result: &LevelResult) -> String {
     let mut parts = Vec::new();
     if let Some(rmse) = result.rmse {
-        parts.push(format!("RMS {}", state.length_text(rmse)));
+        parts.push(format!("RMS {}", state.document.length_text(rmse)));
     }
     parts.push(duration_text(result.took));
     if result.max_triangles.is_some()
         && let Some(far) = state.distance_to_full(result)
     {
-        parts.push(format!("pose {} from full", state.length_text(far)));
+        parts.push(format!(
+            "pose {} from full",
+            state.document.length_text(far)
+        ));
     }
     parts.join(" · ")
 }
@@ -310,7 +313,7 @@ fn error_text(role: Role, level: &MeasuredLevel, state: &AppState) -> String {
             "RMS {} · max {} · border {}",
             length(d.rms),
             length(d.max),
-            state.length_text(d.border_max)
+            state.document.length_text(d.border_max)
         ),
         None if state.jobs.is_active(JobKey::MeasureLevel(role)) => {
             "measuring the distance to the full mesh…".to_owned()

@@ -21,7 +21,7 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     explain::failure_ui(ui, state, commands);
     let Some(result) = &state.document.result else {
         // A pose made by hand is worth copying too.
-        if state.has_pose() && Action::CopyMatrix.enabled(state).is_ok() {
+        if state.document.has_pose() && Action::CopyMatrix.enabled(state).is_ok() {
             matrix_ui(ui, state, commands);
         }
         return;
@@ -62,7 +62,7 @@ fn outdated_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &m
     let spread = format!(
         "{} · {}",
         length(coverage.rmse()),
-        state.length_text(coverage.p95())
+        state.document.length_text(coverage.p95())
     );
     figure(ui, "RMS · P95 then", &spread);
     let is_same_pair = result.stamp.parts == state.document.stamp().parts;
@@ -87,7 +87,7 @@ fn verdict_color(palette: &Palette, verdict: Verdict) -> Color32 {
 fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
     let palette = Palette::of(ui);
     let assessment = &result.run.assessment;
-    let lengths = state.lengths();
+    let lengths = state.document.lengths();
     // Where another pose fits better, an alternative is at best one to check.
     let verdict = match (result.alternative, assessment.verdict) {
         (Some(_), Verdict::Good) => Verdict::Check,
@@ -138,7 +138,7 @@ fn figures_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
         }
         if result.alternative.is_some() {
             let best = &result.run.assessment.coverage;
-            let (rms, p95) = (length(best.rmse()), state.length_text(best.p95()));
+            let (rms, p95) = (length(best.rmse()), state.document.length_text(best.p95()));
             figure(ui, "best pose: RMS · P95", &format!("{rms} · {p95}"));
         }
         let outcome = &result.run.outcome;
@@ -161,11 +161,14 @@ fn figures_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
 
 /// Overlap both ways and the spread of the distances, of the full meshes.
 fn coverage_ui(ui: &mut Ui, state: &AppState, coverage: &Coverage) {
-    let limit = state.length_text(coverage.limit);
+    let limit = state.document.length_text(coverage.limit);
     let over = |one: &OneSided| format!("{} within {limit}", percent(one.overlap));
     figure(ui, "stamped → crash", &over(&coverage.source_on_target));
     figure(ui, "crash → stamped", &over(&coverage.target_on_source));
-    let (rms, p95) = (length(coverage.rmse()), state.length_text(coverage.p95()));
+    let (rms, p95) = (
+        length(coverage.rmse()),
+        state.document.length_text(coverage.p95()),
+    );
     figure(ui, "RMS · P95", &format!("{rms} · {p95}"));
 }
 

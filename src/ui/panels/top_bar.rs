@@ -108,7 +108,7 @@ fn export_forms_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     save_menu(ui, "Save cards as", can_write, cards, commands);
     let meshes = MeshOutput::ALL
         .into_iter()
-        .filter(|mesh| state.can_write(Output::Mesh(*mesh)))
+        .filter(|mesh| state.document.can_write(Output::Mesh(*mesh)))
         .map(|mesh| (mesh.label(), Output::Mesh(mesh)));
     let can_write = state.document.parts.iter().any(|(_, part)| part.is_some());
     save_menu(ui, "Save part as", can_write, meshes, commands);
@@ -179,7 +179,7 @@ fn recent_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 fn bell_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let n_unread = state.notices.n_unread();
+    let n_unread = state.log.notices.n_unread();
     let palette = Palette::of(ui);
     let color = if n_unread > 0 {
         palette.check

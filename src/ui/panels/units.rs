@@ -75,7 +75,7 @@ pub fn unit_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
 
 /// The unit of all lengths in the window, with where it is known from.
 pub fn window_unit_ui(ui: &mut Ui, state: &AppState) {
-    let units = state.units();
+    let units = state.document.units();
     if state.document.parts.iter().all(|(_, part)| part.is_none()) {
         return;
     }

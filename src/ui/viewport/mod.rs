@@ -129,8 +129,8 @@ impl Viewports {
         let bounds = bounds.filter(|bounds| !bounds.is_empty());
         let center = bounds.map_or(Point3::origin(), |bounds| bounds.center());
         // What the hand or the running match moves must not lag behind.
-        let is_driven = state.live_pose.is_some()
-            || state.view.move_tool.is_some()
+        let is_driven = state.previews.live.is_some()
+            || state.moving.tool.is_some()
             || matches!(state.preview(), Some(Preview::Step { .. }))
             || self
                 .windows
@@ -284,7 +284,7 @@ impl Viewports {
         window.tools.update(ui, frame, commands);
         let is_busy = window.navigator.drag().is_some() || window.tools.takes_left();
         let hit = window.pointing.update(ui, frame, is_busy, commands);
-        let pick = if is_busy || state.view.move_tool.is_some() {
+        let pick = if is_busy || state.moving.tool.is_some() {
             None
         } else {
             picking::update(frame, commands)

@@ -24,6 +24,32 @@ pub(super) struct Pick {
     pub at: Pos2,
 }
 
+/// Something a click could pick, in the space of the window.
+struct Candidate {
+    /// In the window, points.
+    at: Pos2,
+    point: Point3,
+    kind: PickKind,
+}
+
+/// A hole or corner near the pointer.
+struct Near {
+    /// Distance from the pointer, as a part of its reach.
+    off: f32,
+    candidate: Candidate,
+}
+
+/// A hole or corner of the part.
+struct Landmark {
+    /// In the space of the window.
+    point: Point3,
+    /// From how far away it catches the pointer, points.
+    reach: f32,
+    /// How far behind the sheet it may lie, in lengths of the part.
+    depth: f64,
+    kind: PickKind,
+}
+
 /// What lies under the pointer; a click takes it.
 pub(super) fn update(frame: &FrameContext<'_>, commands: &mut Vec<Command>) -> Option<Pick> {
     PointPicker(frame).update(commands)
@@ -56,7 +82,7 @@ impl PointPicker<'_> {
     }
 
     fn pick(&self) -> Option<Pick> {
-        if self.0.state.is_preview() || self.0.state.locking_job().is_some() {
+        if self.0.state.is_preview() || self.0.state.jobs.locking_job().is_some() {
             return None;
         }
         let role = self.role()?;
@@ -68,7 +94,7 @@ impl PointPicker<'_> {
             .picture
             .hit_of(Some(role), &self.0.view.camera, pixel, screen_of(rect));
         let place = self.0.picture.place_of(role)?;
-        let (at, point, kind) = self
+        let Candidate { at, point, kind } = self
             .landmark(role, pos, hit.as_ref())
             .or_else(|| snapped(rect, &self.0.view.camera, pos, hit.as_ref()?))?;
         let picked = PickedPoint {
@@ -79,12 +105,7 @@ impl PointPicker<'_> {
     }
 
     /// The nearest hole or corner within reach that no sheet of the part hides.
-    fn landmark(
-        &self,
-        role: Role,
-        pos: Pos2,
-        hit: Option<&Hit>,
-    ) -> Option<(Pos2, Point3, PickKind)> {
+    fn landmark(&self, role: Role, pos: Pos2, hit: Option<&Hit>) -> Option<Candidate> {
         let place = self.0.picture.place_of(role)?;
         let landmarks = &self.0.state.document.part(role)?.facts.landmarks;
         let rect = self.0.rect();
@@ -93,23 +114,35 @@ impl PointPicker<'_> {
             let center = place.to_window(&hole.center);
             let radius = (hole.radius / size(&center)) as f32;
             let reach = HOLE_REACH.max(0.9 * radius);
-            (center, reach, hole.radius, PickKind::HoleCenter)
+            Landmark {
+                point: center,
+                reach,
+                depth: hole.radius,
+                kind: PickKind::HoleCenter,
+            }
         });
-        let corners = landmarks.corners.iter().map(|corner| {
-            let corner = place.to_window(corner);
-            (corner, REACH, 0.0, PickKind::Corner)
+        let corners = landmarks.corners.iter().map(|corner| Landmark {
+            point: place.to_window(corner),
+            reach: REACH,
+            depth: 0.0,
+            kind: PickKind::Corner,
         });
-        let within = holes
-            .chain(corners)
-            .filter_map(|(point, reach, depth, kind)| {
-                let at = pos_of(rect, &self.0.view.camera, &point)?;
-                let off = at.distance(pos) / reach;
-                let slack = depth + f64::from(2.0 * reach) * size(&point);
-                let is_seen = hit.is_none_or(|hit| !self.is_behind(&point, &hit.point, slack));
-                (off < 1.0 && is_seen).then_some((off, (at, point, kind)))
-            });
-        let nearest = within.min_by(|a, b| a.0.total_cmp(&b.0));
-        nearest.map(|(_, found)| found)
+        let within = holes.chain(corners).filter_map(|landmark| {
+            let Landmark {
+                point,
+                reach,
+                depth,
+                kind,
+            } = landmark;
+            let at = pos_of(rect, &self.0.view.camera, &point)?;
+            let off = at.distance(pos) / reach;
+            let slack = depth + f64::from(2.0 * reach) * size(&point);
+            let is_seen = hit.is_none_or(|hit| !self.is_behind(&point, &hit.point, slack));
+            let candidate = Candidate { at, point, kind };
+            (off < 1.0 && is_seen).then_some(Near { off, candidate })
+        });
+        let nearest = within.min_by(|a, b| a.off.total_cmp(&b.off));
+        nearest.map(|near| near.candidate)
     }
 
     /// True if a point lies farther from the viewer than another by more than `slack`.
@@ -124,10 +157,18 @@ impl PointPicker<'_> {
 }
 
 /// The corner of the triangle under the pointer if it is within reach, else the point of the surface.
-fn snapped(rect: Rect, camera: &Camera, pos: Pos2, hit: &Hit) -> Option<(Pos2, Point3, PickKind)> {
+fn snapped(rect: Rect, camera: &Camera, pos: Pos2, hit: &Hit) -> Option<Candidate> {
     let at = pos_of(rect, camera, &hit.node)?;
     if at.distance(pos) <= REACH {
-        return Some((at, hit.node, PickKind::Node(hit.node_id)));
+        return Some(Candidate {
+            at,
+            point: hit.node,
+            kind: PickKind::Node(hit.node_id),
+        });
     }
-    Some((pos, hit.point, PickKind::Surface))
+    Some(Candidate {
+        at: pos,
+        point: hit.point,
+        kind: PickKind::Surface,
+    })
 }

@@ -132,7 +132,7 @@ impl Picture {
         look: &Look,
         cuts: &PerRole<Option<Arc<Cut>>>,
     ) {
-        let section = &state.view.section;
+        let section = &state.inspect.section;
         let Some(plane) = section.shown().filter(|_| !self.bounds.is_empty()) else {
             return;
         };
@@ -240,8 +240,8 @@ fn is_on_side(wipe: crate::render::WipeSide, is_left: Option<bool>) -> bool {
 /// which two real sheets would cut into each other by half; without thickness a share of the element
 /// size. In the crash model's unit.
 pub(super) fn coincidence(state: &AppState) -> Option<f64> {
-    let (crash, stamped) = state.document.both()?;
-    let facts = [&crash.facts, &stamped.facts];
+    let both = state.document.both()?;
+    let facts = [&both.crash.facts, &both.stamped.facts];
     let known = facts.iter().filter_map(|facts| facts.thickness);
     let thickness = known.reduce(f64::min).filter(|t| *t > 0.0);
     let element = facts[0].edge_length.min(facts[1].edge_length);

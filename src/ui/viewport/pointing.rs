@@ -31,8 +31,8 @@ impl Pointing {
             self.hovered = part;
             commands.push(PartCommand::Hover(part).into());
         }
-        if frame.state.view.move_tool.is_none() {
-            if frame.state.view.pair_tool.is_none() {
+        if frame.state.moving.tool.is_none() {
+            if frame.state.pairs.tool.is_none() {
                 self.click(ui, frame, hit.as_ref(), commands);
             }
             if frame.response.secondary_clicked() {

@@ -119,7 +119,7 @@ impl SectionStore {
         meshes: &[(Role, Arc<ShownMesh>, Similarity)],
         wake: &egui::Context,
     ) {
-        let plane = state.view.section.shown();
+        let plane = state.inspect.section.shown();
         let keys = plane.into_iter().flat_map(|plane| {
             let key = move |(role, mesh, pose): &(Role, Arc<ShownMesh>, Similarity)| {
                 let key = CutKey {
@@ -154,7 +154,7 @@ impl SectionStore {
     /// The newest outlines of the parts that are loaded, while the section is shown.
     pub fn cuts(&self, state: &AppState) -> PerRole<Option<Arc<Cut>>> {
         let mut cuts = PerRole::default();
-        if state.view.section.shown().is_none() {
+        if state.inspect.section.shown().is_none() {
             return cuts;
         }
         for (role, ready) in self.ready.iter() {

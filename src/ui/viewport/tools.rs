@@ -44,7 +44,7 @@ fn move_frame(frame: &FrameContext<'_>) -> Option<MoveFrame> {
     let view = frame.view.camera.world_from_view.to_rotation_matrix();
     let pose = frame.state.document.crash_from_stamped();
     let moves = MoveFrame::new(pivot, pose, view.into_inner());
-    Some(moves.with_unit(frame.state.unit_suffix()))
+    Some(moves.with_unit(frame.state.document.unit_suffix()))
 }
 
 impl Tools {
@@ -60,12 +60,12 @@ impl Tools {
 
     /// Takes a frame of the pointer.
     pub fn update(&mut self, ui: &Ui, frame: &FrameContext<'_>, commands: &mut Vec<Command>) {
-        let tool = frame.state.view.move_tool.as_ref();
+        let tool = frame.state.moving.tool.as_ref();
         match tool.filter(|_| has_stamped(frame)) {
             Some(tool) => self.update_modal(ui, frame, tool, commands),
             None => self.modal = None,
         }
-        let is_wanted = frame.state.view.has_gizmo && tool.is_none() && has_stamped(frame);
+        let is_wanted = frame.state.moving.has_gizmo && tool.is_none() && has_stamped(frame);
         let can_move = frame.state.can_move().is_ok() && !frame.state.is_preview();
         self.has_gizmo = is_wanted && (can_move || self.gizmo.is_dragging());
         if self.has_gizmo {
@@ -122,7 +122,7 @@ impl Tools {
     /// Name of the handle under the pointer.
     pub fn hint(&self, state: &AppState) -> Option<String> {
         let handle = self.gizmo.active().filter(|_| self.has_gizmo)?;
-        Some(handle.label(state.view.move_axes))
+        Some(handle.label(state.moving.axes))
     }
 
     fn update_modal(
@@ -178,6 +178,6 @@ fn gizmo_view<'a>(frame: &'a FrameContext<'_>, axes: &'a MoveFrame) -> GizmoView
         camera: &frame.view.camera,
         screen: frame.screen(),
         frame: axes,
-        axes: frame.state.view.move_axes,
+        axes: frame.state.moving.axes,
     }
 }

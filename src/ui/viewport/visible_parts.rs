@@ -222,8 +222,8 @@ pub(super) fn part_looks(state: &AppState, part: &Part, role: Role, look: &Look)
         PartLook {
             color: given.or_else(|| is_by_part.then(|| look.part(index))),
             visible: part.is_visible(id),
-            selected: state.view.selected.contains(&PartRef { role, id }),
-            hovered: has_choice && state.view.hovered == Some(PartRef { role, id }),
+            selected: state.parts.selected.contains(&PartRef { role, id }),
+            hovered: has_choice && state.parts.hovered == Some(PartRef { role, id }),
         }
     });
     looks.collect()

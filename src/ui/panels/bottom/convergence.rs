@@ -4,7 +4,7 @@
 use egui::{Button, ComboBox, Key, Modifiers, Ui, vec2};
 use egui_plot::{GridMark, Line, Plot, PlotPoints, VLine};
 
-use crate::app::{AppState, Command, Preview, ViewCommand};
+use crate::app::{AppState, Command, Preview, PreviewCommand};
 use crate::registration::{IterationRecord, StartRecord};
 use crate::report::start_name;
 use crate::text::whole_percent;
@@ -61,9 +61,9 @@ pub fn convergence_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
         leader,
         shown,
         has_others: has_others(ui),
-        unit: state.unit_suffix(),
+        unit: state.document.unit_suffix(),
     };
-    let is_free = state.locking_job().is_none();
+    let is_free = state.jobs.locking_job().is_none();
     head_ui(ui, state, &mut curves, commands);
     let size = vec2((ui.available_width() - 16.0) / 2.0, ui.available_height());
     let mut pointed = Pointed::default();
@@ -101,12 +101,12 @@ fn scrub(
         }
     }
     if pointed.is_clicked && over.is_some() {
-        commands.push(ViewCommand::PinPreview(over).into());
+        commands.push(PreviewCommand::Pin(over).into());
     }
     // A pointer that rests must not fight with the keys.
     let is_moving = ui.input(|i| i.pointer.is_moving());
-    if over != state.view.hovered_preview && (is_moving || over.is_none()) {
-        commands.push(ViewCommand::HoverPreview(over).into());
+    if over != state.previews.hovered && (is_moving || over.is_none()) {
+        commands.push(PreviewCommand::Hover(over).into());
     }
 }
 
@@ -122,10 +122,10 @@ fn step(state: &AppState, curves: &Curves<'_>, way: i32, commands: &mut Vec<Comm
         None => last,
     };
     let start = curves.leader;
-    if state.view.hovered_preview.is_some() {
-        commands.push(ViewCommand::HoverPreview(None).into());
+    if state.previews.hovered.is_some() {
+        commands.push(PreviewCommand::Hover(None).into());
     }
-    commands.push(ViewCommand::PinPreview(Some(Preview::Step { start, iteration })).into());
+    commands.push(PreviewCommand::Pin(Some(Preview::Step { start, iteration })).into());
 }
 
 fn others_id() -> egui::Id {
@@ -149,7 +149,7 @@ fn head_ui(ui: &mut Ui, state: &AppState, curves: &mut Curves<'_>, commands: &mu
                     let is_on = number == leader;
                     let text = start_text(number, start);
                     if ui.selectable_label(is_on, text).clicked() {
-                        commands.push(ViewCommand::ChooseStart(Some(number)).into());
+                        commands.push(PreviewCommand::ChooseStart(Some(number)).into());
                     }
                 }
             })
@@ -160,17 +160,17 @@ fn head_ui(ui: &mut Ui, state: &AppState, curves: &mut Curves<'_>, commands: &mu
             ui.data_mut(|data| data.insert_temp(others_id(), has_others));
             curves.has_others = has_others;
         }
-        let is_free = state.locking_job().is_none() && !curves.iterations().is_empty();
+        let is_free = state.jobs.locking_job().is_none() && !curves.iterations().is_empty();
         for (sign, name, way) in [("◀", "Iteration before", -1), ("▶", "Next iteration", 1)] {
             if icon_button(ui, sign, name, is_free).clicked() {
                 step(state, curves, way, commands);
             }
         }
         figures_ui(ui, curves);
-        if state.view.pinned_preview.is_some() {
+        if state.previews.pinned.is_some() {
             let button = Button::new("Back to the result").min_size(vec2(0.0, ROW));
             if ui.add(button).clicked() {
-                commands.push(ViewCommand::PinPreview(None).into());
+                commands.push(PreviewCommand::Pin(None).into());
             }
         }
     });

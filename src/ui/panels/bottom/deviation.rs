@@ -132,7 +132,7 @@ fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])>
     let row = |name: &str, of: &dyn Fn(&crate::assess::deviation::DeviationStats) -> String| {
         (name.to_owned(), both.map(|way| of(&way.stats)))
     };
-    let inside = format!("within ±{}", state.length_text(tolerance));
+    let inside = format!("within ±{}", state.document.length_text(tolerance));
     let mut rows = vec![
         row(&inside, &|s| percent(s.share_inside(tolerance))),
         row("mean", &|s| signed(s.mean)),
@@ -145,7 +145,10 @@ fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])>
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
         let name = match class {
             OverlapClass::Matched => {
-                format!("matched, within {}", state.length_text(deviation.limit))
+                format!(
+                    "matched, within {}",
+                    state.document.length_text(deviation.limit)
+                )
             }
             OverlapClass::OffByMore => "beyond the limit".to_owned(),
             OverlapClass::OnlyHere => "on this part only".to_owned(),
@@ -159,11 +162,11 @@ fn numbers_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison) {
     let rows = rows(state, comparison);
     ui.spacing_mut().item_spacing.y = 0.0;
     if let Some(offset) = &comparison.deviation.source_on_target.stats.offset {
-        let words = offset.words(|value| state.length_text(value));
+        let words = offset.words(|value| state.document.length_text(value));
         let text = RichText::new(format!("Constant offset: {words}"));
         ui.add(egui::Label::new(text).wrap());
     }
-    let unit = state.unit_suffix();
+    let unit = state.document.unit_suffix();
     TableBuilder::new(ui)
         .id_salt("deviation numbers")
         .min_scrolled_height(0.0)
@@ -230,7 +233,11 @@ fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &m
                 let found = &spots[row.index()];
                 let role = found.role;
                 let place = found.spot.position;
-                let value = format!("{}{}", signed(found.spot.value), state.unit_suffix());
+                let value = format!(
+                    "{}{}",
+                    signed(found.spot.value),
+                    state.document.unit_suffix()
+                );
                 let node = match found.node {
                     Some(node) => format!("node {node}"),
                     None => format!("vertex {}", found.spot.vertex),

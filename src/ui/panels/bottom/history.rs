@@ -92,7 +92,7 @@ fn row_ui(
             color,
         );
         let at = pos2(rect.right() - 12.0, middle);
-        let time = clock_text(state.clock.day_time_at(row.at));
+        let time = clock_text(state.log.clock.day_time_at(row.at));
         painter.text(at, right_center, time, font.clone(), palette.secondary);
     }
     let label = pos2(rect.left() + 136.0, middle);

@@ -5,7 +5,7 @@ use egui::{Align, Button, Color32, Label, Layout, RichText, Sense, Ui};
 use egui_extras::{Column, TableBuilder, TableRow};
 
 use super::thumbnails::Thumbnails;
-use crate::app::{AppState, Command, MatchCommand, Preview, ViewCommand, duration_text};
+use crate::app::{AppState, Command, MatchCommand, Preview, PreviewCommand, duration_text};
 use crate::geometry::Similarity;
 use crate::registration::{StartGroup, StartOutcome, StartRecord, group_starts};
 use crate::report::{outcome_words, start_name};
@@ -57,9 +57,9 @@ pub fn starts_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     head_ui(ui, &table);
     let hovered = table_ui(ui, &table, commands);
-    let shown = state.view.hovered_preview;
-    if hovered != shown && state.locking_job().is_none() {
-        commands.push(ViewCommand::HoverPreview(hovered).into());
+    let shown = state.previews.hovered;
+    if hovered != shown && state.jobs.locking_job().is_none() {
+        commands.push(PreviewCommand::Hover(hovered).into());
     }
 }
 
@@ -97,7 +97,7 @@ fn open_groups(ui: &Ui) -> Vec<usize> {
 
 fn head_ui(ui: &mut Ui, table: &Table<'_>) {
     let n_starts = table.n_starts;
-    let text = if table.state.locking_job().is_some() {
+    let text = if table.state.jobs.locking_job().is_some() {
         format!("{n_starts} starts so far; rows fill while they run")
     } else {
         let n_best = table.n_best;
@@ -111,7 +111,7 @@ fn head_ui(ui: &mut Ui, table: &Table<'_>) {
 
 /// The rows; the preview of the one under the pointer.
 fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Option<Preview> {
-    let unit = table.state.unit_suffix();
+    let unit = table.state.document.unit_suffix();
     let titles = [
         String::new(),
         "start".to_owned(),
@@ -257,7 +257,7 @@ fn outcome_text(start: &StartRecord, state: &AppState) -> [String; 2] {
             };
             (sign, outcome_words(outcome))
         }
-        None if state.locking_job().is_some() => ("▶", "running".to_owned()),
+        None if state.jobs.locking_job().is_some() => ("▶", "running".to_owned()),
         None => ("■", "not ended".to_owned()),
     };
     [sign.to_owned(), words]

@@ -88,7 +88,7 @@ fn settings(state: &AppState) -> SweepSettings {
 }
 
 fn tables_ui(ui: &mut Ui, sweep: &Sweep, state: &AppState, commands: &mut Vec<Command>) {
-    let unit = state.unit_suffix();
+    let unit = state.document.unit_suffix();
     let reduction = sweep.reduction.iter().map(|row| {
         vec![
             grouped(row.triangles),

@@ -150,19 +150,19 @@ impl Thumbnails {
         state: &AppState,
         palette: &Palette,
     ) -> Vec<Task<Key, Picture>> {
-        let Some((crash, stamped)) = state.document.both() else {
+        let Some(both) = state.document.both() else {
             return Vec::new();
         };
         let parts = state.document.stamp().parts;
         let is_known = self.meshes.as_ref().is_some_and(|(of, _)| *of == parts);
         if !is_known {
-            let [crash, stamped] = [crash, stamped].map(|part| Arc::new(SmallMesh::of(part)));
-            self.meshes = Some((parts, PerRole { crash, stamped }));
+            let meshes = both.map(|part| Arc::new(SmallMesh::of(part)));
+            self.meshes = Some((parts, meshes));
         }
         let Some((_, meshes)) = &self.meshes else {
             return Vec::new();
         };
-        let camera = camera(crash);
+        let camera = camera(both.crash);
         let colors = [palette.crash, palette.stamped].map(|c| [c.r(), c.g(), c.b()]);
         let task = |(key, pose): (Key, Similarity)| {
             let (crash, stamped) = (Arc::clone(&meshes.crash), Arc::clone(&meshes.stamped));

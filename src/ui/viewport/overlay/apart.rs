@@ -42,8 +42,8 @@ fn centers(over: &Overlay<'_>) -> Option<[Point3; 2]> {
     if over.role() != Role::Crash || over.frame.view.over < 1.0 {
         return None;
     }
-    let (crash, stamped) = over.frame.state.document.both()?;
-    let (to, own) = (crash.bounds(), stamped.bounds());
+    let both = over.frame.state.document.both()?;
+    let (to, own) = (both.crash.bounds(), both.stamped.bounds());
     let from = over.frame.view.pose.apply(&own.center());
     let size = 0.5 * (to.diagonal() + own.diagonal() * over.frame.view.pose.scale);
     ((from - to.center()).norm() > FAR * size).then(|| [from, to.center()])

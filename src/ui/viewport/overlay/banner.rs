@@ -4,7 +4,7 @@
 use egui::{Button, CornerRadius, FontId, Rect, RichText, Stroke, Ui, vec2};
 
 use super::Overlay;
-use crate::app::{Action, AppState, Command, ViewCommand};
+use crate::app::{Action, AppState, Command, PreviewCommand};
 use crate::assess::Coverage;
 use crate::role::Role;
 use crate::ui::widgets::length;
@@ -67,11 +67,11 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
 
 /// A pose that is shown until it is let go.
 fn preview(state: &AppState) -> Option<Banner> {
-    let pinned = state.view.pinned_preview?;
+    let pinned = state.previews.pinned?;
     Some(Banner {
         text: format!("Preview of start {}: nothing was moved", pinned.start() + 1),
         label: "Show the real pose".to_owned(),
-        commands: vec![ViewCommand::PinPreview(None).into()],
+        commands: vec![PreviewCommand::Pin(None).into()],
     })
 }
 
@@ -88,10 +88,10 @@ fn poses(state: &AppState) -> Option<Banner> {
     let own = state.result_coverage().map(Coverage::rmse);
     match own {
         Some(own) if result.alternative.is_some() => {
-            let (own, best) = (length(own), state.length_text(best));
+            let (own, best) = (length(own), state.document.length_text(best));
             text += &format!(" · RMS {own} against {best}");
         }
-        Some(own) => text += &format!(" · RMS {}", state.length_text(own)),
+        Some(own) => text += &format!(" · RMS {}", state.document.length_text(own)),
         None => {}
     }
     let key = Action::NextAlternative.row().shortcut();

@@ -151,7 +151,7 @@ fn notes(over: &Overlay<'_>) -> Vec<String> {
     let is_left = over.role() == Role::Crash;
     let mut notes: Vec<String> = over.hint.clone().into_iter().collect();
     if is_left == state.view.is_moved_over
-        && let Some(tool) = &state.view.move_tool
+        && let Some(tool) = &state.moving.tool
     {
         notes.push(tool.modal.header(&tool.frame));
     }
@@ -165,7 +165,7 @@ fn notes(over: &Overlay<'_>) -> Vec<String> {
         notes.push(format!(
             "shown {}{} apart",
             short_number(separation),
-            state.unit_suffix()
+            state.document.unit_suffix()
         ));
     }
     notes
@@ -176,7 +176,7 @@ fn stripes(over: &Overlay<'_>) -> Option<String> {
     let scene = &over.frame.picture.scene;
     scene.coinciding()?;
     let distance = scene.coincidence?;
-    let unit = over.frame.state.unit_suffix();
+    let unit = over.frame.state.document.unit_suffix();
     Some(format!(
         "striped: both within {}{unit}",
         short_number(distance)
@@ -189,7 +189,7 @@ fn overlap(state: &AppState) -> Option<String> {
     let mut text = format!(
         "overlap {} within {}",
         whole_percent(known.overlap),
-        state.length_text(known.limit)
+        state.document.length_text(known.limit)
     );
     // Less than half a percent is no change to speak of.
     if let Some(change) = known.change.filter(|change| change.abs() >= 0.005) {
@@ -202,14 +202,14 @@ fn overlap(state: &AppState) -> Option<String> {
 /// What is shown instead of the real pose.
 fn preview(over: &Overlay<'_>) -> Option<String> {
     let state = over.frame.state;
-    if state.live_pose.is_some() {
+    if state.previews.live.is_some() {
         let running = state.jobs.running().and_then(|job| job.latest.as_ref());
         let text = running.map(|latest| format!("matching · iteration {}", latest.number + 1));
         return Some(text.unwrap_or_else(|| "matching".to_owned()));
     }
     if let Some(start) = state.shown_start() {
         let starts = state.current_starts()?;
-        let index = starts.shown? + 1;
+        let index = state.previews.start? + 1;
         let kind = start_kind_words(start.kind);
         return Some(format!("start {index} of {} · {kind}", starts.poses.len()));
     }

@@ -115,7 +115,11 @@ fn taken(ui: &Ui, over: &Overlay<'_>) -> Vec<Rect> {
 fn texts(over: &Overlay<'_>, placed: &Placed<'_>) -> [String; 2] {
     let label = placed.label;
     let value = match over.frame.state.label_value(label) {
-        Some(value) => format!("{}{}", signed(value), over.frame.state.unit_suffix()),
+        Some(value) => format!(
+            "{}{}",
+            signed(value),
+            over.frame.state.document.unit_suffix()
+        ),
         None if over.frame.state.comparison().is_none() => "–".to_owned(),
         None => "no counterpart".to_owned(),
     };

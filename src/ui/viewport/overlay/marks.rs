@@ -78,7 +78,7 @@ fn bar(painter: &Painter, over: &Overlay<'_>) -> f32 {
     };
     let left = over.frame.rect().left_bottom() + vec2(MARGIN + 84.0, -MARGIN - 8.0);
     let right = left + vec2(bar.pixels as f32, 0.0);
-    let text = length_text(bar.length) + over.frame.state.unit_suffix();
+    let text = length_text(bar.length) + over.frame.state.document.unit_suffix();
     let galley = painter.layout_no_wrap(text, FontId::proportional(11.5), over.frame.look.text);
     let ground = Rect::from_min_max(left + vec2(-8.0, -21.0), right + vec2(8.0, 8.0));
     painter.rect_filled(
@@ -148,7 +148,7 @@ fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
     let is_colored = |role| *state.view.display.coloring.on.get(role);
     match (over.kind?, hit.value) {
         (FieldKind::Deviation, Some(value)) => {
-            Some(format!("{}{}", signed(value), state.unit_suffix()))
+            Some(format!("{}{}", signed(value), state.document.unit_suffix()))
         }
         (FieldKind::Deviation, None) if is_colored(hit.role) => Some("no counterpart".to_owned()),
         (FieldKind::Deviation, None) => None,
@@ -160,7 +160,7 @@ fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
             };
             state.comparison().map(|_| class.label().to_owned())
         }
-        (_, value) => value.map(|value| state.length_text(value)),
+        (_, value) => value.map(|value| state.document.length_text(value)),
     }
 }
 

@@ -12,12 +12,18 @@ const LEADER: egui::Vec2 = vec2(16.0, -20.0);
 
 /// The marks of the parts in this window.
 pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
-    let pairs = over.frame.state.pairs();
+    let pairs = over.frame.state.document.current_pairs();
     if pairs.is_empty() || over.frame.view.over > 0.0 && over.frame.view.over < 1.0 {
         return;
     }
     let painter = over.painter(ui);
-    let worst = over.frame.state.pair_fit().ok().and_then(|fit| fit.worst());
+    let worst = over
+        .frame
+        .state
+        .document
+        .pair_fit()
+        .ok()
+        .and_then(|fit| fit.worst());
     for (index, pair) in pairs.iter().enumerate() {
         let place = |role: Role| {
             let picked = (*pair.get(role))?;

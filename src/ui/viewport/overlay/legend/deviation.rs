@@ -138,7 +138,9 @@ fn title(ui: &mut Ui, over: &Overlay<'_>, role: Role, commands: &mut Vec<Command
 pub(super) fn freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
     let text = match over.frame.state.freshness() {
         Freshness::Current => return,
-        Freshness::Missing if over.frame.state.locking_job().is_some() => "measured after the run",
+        Freshness::Missing if over.frame.state.jobs.locking_job().is_some() => {
+            "measured after the run"
+        }
         Freshness::Missing => "not measured yet",
         Freshness::Updating => "out of date · measuring",
         Freshness::OutOfDate => "out of date",
@@ -150,7 +152,7 @@ pub(super) fn freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comm
             over.frame.state.freshness(),
             Freshness::Missing | Freshness::OutOfDate
         );
-        let is_asked = is_open && over.frame.state.locking_job().is_none();
+        let is_asked = is_open && over.frame.state.jobs.locking_job().is_none();
         if is_asked {
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let button = Button::new(RichText::new("Update").size(11.5)).small();
@@ -444,14 +446,14 @@ fn tolerance(
         if response.changed() {
             coloring.tolerance = Some(value);
         }
-        ui.label(RichText::new(over.frame.state.unit_suffix()).size(12.0));
+        ui.label(RichText::new(over.frame.state.document.unit_suffix()).size(12.0));
     });
 }
 
 /// Mean and spread, what is alone, and a constant offset in words.
 fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
     let small = |text: String| RichText::new(text).size(11.0).color(over.frame.look.weak);
-    let unit = over.frame.state.unit_suffix();
+    let unit = over.frame.state.document.unit_suffix();
     let mean = format!(
         "mean {}{unit} · RMS {}{unit}",
         signed(stats.mean),
@@ -471,7 +473,7 @@ fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
         });
     }
     if let Some(offset) = &stats.offset {
-        let words = offset.words(|value| over.frame.state.length_text(value));
+        let words = offset.words(|value| over.frame.state.document.length_text(value));
         let text = RichText::new(format!("constant offset: {words}")).size(11.5);
         ui.add(egui::Label::new(text).wrap());
     }

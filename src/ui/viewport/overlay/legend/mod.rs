@@ -63,7 +63,7 @@ fn is_measured(kind: FieldKind) -> bool {
 
 /// True if the user folded the legend of a window, or the section takes the room for it.
 fn is_folded(ui: &Ui, over: &Overlay<'_>) -> bool {
-    let is_tight = over.frame.state.view.section.is_on && over.frame.rect().width() < 640.0;
+    let is_tight = over.frame.state.inspect.section.is_on && over.frame.rect().width() < 640.0;
     ui.data(|data| data.get_temp(fold_id(ui, over)))
         .unwrap_or(is_tight)
 }

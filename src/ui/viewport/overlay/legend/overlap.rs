@@ -37,7 +37,11 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     });
     deviation::freshness(ui, over, commands);
     ui.add_space(3.0);
-    let limit = over.frame.state.length_text(comparison.deviation.limit);
+    let limit = over
+        .frame
+        .state
+        .document
+        .length_text(comparison.deviation.limit);
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
         let words = match class {
             OverlapClass::Matched => "matched".to_owned(),

@@ -10,7 +10,7 @@ use egui::{
 use egui_plot::{Line, LineStyle, Plot, PlotPoint, PlotPoints, PlotUi, Points};
 
 use super::super::{MARGIN, Overlay};
-use crate::app::{Action, Command, SectionView, ViewCommand};
+use crate::app::{Action, Command, InspectCommand, SectionView};
 use crate::geometry::{Gap, Plane, Point3, gap_at, nearest_on_lines};
 use crate::role::{PerRole, Role};
 use crate::ui::viewport::sections::Cut;
@@ -37,7 +37,7 @@ pub(in crate::ui::viewport::overlay) fn show(
     cuts: &Cuts,
     commands: &mut Vec<Command>,
 ) {
-    let Some(plane) = over.frame.state.view.section.shown() else {
+    let Some(plane) = over.frame.state.inspect.section.shown() else {
         return;
     };
     let home = if over.frame.state.document.part(Role::Crash).is_some() {
@@ -139,7 +139,7 @@ fn head(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            let is_clipped = state.view.section.is_clipped;
+            let is_clipped = state.inspect.section.is_clipped;
             let buttons = [
                 ("×", Action::ToggleSection, false),
                 ("Cut", Action::ToggleSectionClip, is_clipped),
@@ -174,13 +174,13 @@ fn flip(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
         .add(button)
         .on_hover_text("Look at the plane from behind");
     if response.accessible_name("Flip the section plane").clicked()
-        && let Some(plane) = over.frame.state.view.section.plane
+        && let Some(plane) = over.frame.state.inspect.section.plane
     {
         let section = SectionView {
             plane: Some(Plane::new(plane.point, &-plane.normal)),
-            ..over.frame.state.view.section
+            ..over.frame.state.inspect.section
         };
-        commands.push(ViewCommand::SetSection(section).into());
+        commands.push(InspectCommand::SetSection(section).into());
     }
 }
 
@@ -351,12 +351,12 @@ fn foot(ui: &mut Ui, over: &Overlay<'_>, seen: &Seen, picked: &[[f64; 2]]) {
     let state = over.frame.state;
     let (text, is_fact) = if let [a, b] = picked {
         let [du, dv] = [b[0] - a[0], b[1] - a[1]];
-        let whole = state.length_text(du.hypot(dv));
+        let whole = state.document.length_text(du.hypot(dv));
         let parts = format!("{} across, {} up", signed(du), signed(dv));
         (format!("distance {whole}   ({parts})"), true)
     } else if let Some(gap) = &seen.gap {
-        let flush = state.length_text(gap.flush);
-        let across = format!("{}{}", signed(gap.gap), state.unit_suffix());
+        let flush = state.document.length_text(gap.flush);
+        let across = format!("{}{}", signed(gap.gap), state.document.unit_suffix());
         (format!("gap {across} · flush {flush}"), true)
     } else if seen.is_empty {
         ("the plane meets neither part".to_owned(), false)

@@ -7,7 +7,7 @@ use egui::{CursorIcon, PointerButton, Pos2, Rect, Sense, Stroke, Ui, Vec2, Widge
 pub(super) use inset::show;
 
 use super::Overlay;
-use crate::app::{Command, SectionView, ViewCommand};
+use crate::app::{Command, InspectCommand, SectionView};
 use crate::geometry::{Plane, Point3};
 use crate::ui::viewport::navigation::{pos_of, screen_of};
 
@@ -19,7 +19,7 @@ const TURN: f64 = 0.006;
 
 /// The handle in the middle of the plane: left drag moves it along its normal, right drag turns it.
 pub(super) fn handle(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
-    let Some((plane, center)) = over.frame.state.view.section.shown().zip(middle(over)) else {
+    let Some((plane, center)) = over.frame.state.inspect.section.shown().zip(middle(over)) else {
         return;
     };
     let Some(at) = pos_of(over.frame.rect(), &over.frame.view.camera, &center) else {
@@ -104,9 +104,9 @@ fn tilted(over: &Overlay<'_>, plane: &Plane, center: &Point3, delta: Vec2) -> Pl
 fn set(over: &Overlay<'_>, plane: Plane, commands: &mut Vec<Command>) {
     let section = SectionView {
         plane: Some(plane),
-        ..over.frame.state.view.section
+        ..over.frame.state.inspect.section
     };
-    commands.push(ViewCommand::SetSection(section).into());
+    commands.push(InspectCommand::SetSection(section).into());
 }
 
 /// A disc with an arrow along the normal.

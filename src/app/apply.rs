@@ -1,0 +1,134 @@
+//! What follows from each command: the topic it belongs to is given its state and the work, and what
+//! other topics have to follow comes after it.
+
+use super::{AppState, Command, Dialog, Effect, FreeWindow, NoticeCommand, Section, ViewCommand};
+
+impl AppState {
+    /// Changes the state as the command says and returns what has to be done outside. A command
+    /// that makes no sense now (its action is disabled) changes nothing.
+    pub fn apply(&mut self, command: impl Into<Command>) -> Vec<Effect> {
+        let command = command.into();
+        if let Some(section) = Section::of_command(&command) {
+            self.view.sections.touch(section);
+        }
+        let mut effects = self.apply_one(command);
+        while !self.follow_ups.is_empty() {
+            let follow_up = self.follow_ups.remove(0);
+            effects.extend(self.follow(follow_up));
+        }
+        effects.extend(self.keep_measuring());
+        effects
+    }
+
+    fn apply_one(&mut self, command: Command) -> Vec<Effect> {
+        let shown = self.shown_pose();
+        let frame = match &command {
+            Command::Move(_) => self.move_frame(),
+            _ => None,
+        };
+        let (mut work, topics) = self.split();
+        let work = &mut work;
+        match command {
+            Command::File(command) => return topics.parts.apply_file(work, command),
+            Command::Project(command) => {
+                let dialog = &mut topics.view.dialog;
+                return topics.project.apply(work, command, dialog);
+            }
+            Command::Part(command) => return topics.parts.apply_part(work, command),
+            Command::Reduce(command) => return topics.reduce.apply(work, command),
+            Command::Move(command) => topics.moving.apply(work, command, frame),
+            Command::Match(command) => return topics.matching.apply(work, command),
+            Command::Preview(command) => {
+                let is_unlocked = work.is_unlocked().is_ok();
+                work.previews.apply(command, is_unlocked);
+            }
+            Command::Pair(command) => topics.pairs.apply(work, command),
+            Command::Export(command) => return work.apply_export(command),
+            Command::View(command) => self.apply_view(command),
+            Command::Inspect(command) => return topics.inspect.apply(work, command, &shown),
+            Command::History(command) => {
+                if work.is_unlocked().is_ok() {
+                    topics.moving.reject_tool(work);
+                    work.apply_history(command);
+                }
+            }
+            Command::Notice(command) => match command {
+                NoticeCommand::Dismiss(id) => work.log.notices.dismiss(id),
+                NoticeCommand::MarkRead => work.log.notices.mark_read(),
+                NoticeCommand::Tell(level, text) => work.log_at(level, "window", None, text, None),
+            },
+            Command::Settings(settings) => return work.set_settings(*settings),
+            Command::Job(event) => return self.take_job_event(*event),
+            Command::Live(live) => self.take_live(*live),
+            Command::Escape => return self.escape(),
+            Command::Quit => return self.quit(),
+        }
+        Vec::new()
+    }
+
+    fn apply_view(&mut self, command: ViewCommand) {
+        let is_section = matches!(command, ViewCommand::SetFreeWindow(FreeWindow::Section));
+        if is_section && !self.inspect.section.is_on {
+            let section = self.inspect.section;
+            self.inspect.section = section.toggled(|| self.default_section_plane());
+        }
+        if matches!(
+            command,
+            ViewCommand::SetTab(_) | ViewCommand::ToggleGraphicsOnly
+        ) {
+            // The list the pointer was on may be gone.
+            self.previews.hovered = None;
+        }
+        self.with_scene(|view, scene| view.apply(command, scene));
+    }
+
+    /// Whatever changed, what the window shows of the distances follows.
+    fn keep_measuring(&mut self) -> Vec<Effect> {
+        let mut effects = Vec::new();
+        let is_moving = self.moving.is_grabbed() || self.is_preview();
+        let (shown, is_wanted) = (self.shown_pose(), self.wants_comparison());
+        let (mut work, topics) = self.split();
+        if is_wanted {
+            let inspect = topics.inspect;
+            effects.extend(inspect.keep_comparing(&mut work, &shown, is_moving));
+        }
+        effects.extend(topics.moving.keep_measuring_overlap(&mut work));
+        effects.extend(topics.matching.keep_measuring_alternative(&mut work));
+        effects
+    }
+
+    /// Ends what is on top: a dialog, a move by keys, a preview, then the running match.
+    fn escape(&mut self) -> Vec<Effect> {
+        let is_preview = self.is_preview();
+        let (mut work, topics) = self.split();
+        if topics.view.dialog.take().is_some() {
+            Vec::new()
+        } else if topics.moving.tool.is_some() {
+            topics.moving.reject_tool(&mut work);
+            Vec::new()
+        } else if topics.pairs.tool.take().is_some() {
+            Vec::new()
+        } else if let Some(key) = work.jobs.locking_job() {
+            work.cancel(key)
+        } else if is_preview {
+            work.previews.drop_all();
+            Vec::new()
+        } else if work.jobs.is_busy() {
+            let key = work.jobs.running().map(|job| job.key);
+            key.map_or_else(Vec::new, |key| work.cancel(key))
+        } else {
+            topics.parts.selected.clear();
+            topics.view.is_graphics_only = false;
+            Vec::new()
+        }
+    }
+
+    /// Leaves at once, or asks first if something would be lost.
+    pub(super) fn quit(&mut self) -> Vec<Effect> {
+        if self.is_unsaved() {
+            self.view.dialog = Some(Dialog::Unsaved);
+            return Vec::new();
+        }
+        vec![Effect::SaveSettings, Effect::Quit]
+    }
+}

@@ -1,0 +1,61 @@
+//! What stands in the way of an action: parts that are missing, jobs that hold the inputs.
+
+use super::{Document, JobBoard, Reason};
+use crate::jobs::JobKey;
+use crate::role::Role;
+
+impl JobBoard {
+    /// The job that keeps files, levels and poses as they are, if one runs.
+    pub fn locking_job(&self) -> Option<JobKey> {
+        let locks = [JobKey::Match, JobKey::Align, JobKey::Sweep];
+        locks.into_iter().find(|key| self.is_active(*key))
+    }
+
+    /// `Ok` unless a match or sweep holds the inputs.
+    pub fn is_unlocked(&self) -> Result<(), Reason> {
+        match self.locking_job() {
+            None => Ok(()),
+            Some(JobKey::Sweep) => Err(Reason("A sweep is running.")),
+            Some(JobKey::Align) => Err(Reason("The surface normals are being aligned.")),
+            Some(_) => Err(Reason("A match is running.")),
+        }
+    }
+}
+
+impl Document {
+    /// `Ok` if this part is loaded.
+    pub fn has_part(&self, role: Role) -> Result<(), Reason> {
+        match (self.part(role), role) {
+            (Some(_), _) => Ok(()),
+            (None, Role::Crash) => Err(Reason("Load the crash part first.")),
+            (None, Role::Stamped) => Err(Reason("Load the stamped part first.")),
+        }
+    }
+
+    /// `Ok` if a part is loaded.
+    pub fn has_any_part(&self) -> Result<(), Reason> {
+        self.has_part(Role::Crash)
+            .or_else(|_| self.has_part(Role::Stamped))
+            .map_err(|_| Reason("Load a part first."))
+    }
+
+    /// `Ok` if both parts are loaded.
+    pub fn has_both_parts(&self) -> Result<(), Reason> {
+        let any = self.has_any_part();
+        any.map_err(|_| Reason("Load both parts first."))?;
+        self.has_part(Role::Crash)?;
+        self.has_part(Role::Stamped)
+    }
+
+    /// `Ok` if the stamped part may be moved while these jobs run.
+    pub fn can_move(&self, jobs: &JobBoard) -> Result<(), Reason> {
+        self.has_part(Role::Stamped)?;
+        jobs.is_unlocked()
+    }
+
+    /// `Ok` if a match may start while these jobs run.
+    pub fn can_match(&self, jobs: &JobBoard) -> Result<(), Reason> {
+        self.has_both_parts()?;
+        jobs.is_unlocked()
+    }
+}

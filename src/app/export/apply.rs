@@ -1,0 +1,174 @@
+//! What exports change: the questions before them and what was written.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use super::{CopyForm, ExportCommand, PictureChoice, PicturePlace};
+use crate::app::work::Work;
+use crate::app::{Effect, NoticeLevel, Settings};
+use crate::jobs::{Destination, ExportRequest, Exported, JobKind};
+use crate::pipeline::outputs::{MeshOutput, Output, OutputInput};
+use crate::report::MatrixForm;
+use crate::role::{PerRole, Role};
+
+impl Work<'_> {
+    pub(in crate::app) fn apply_export(&mut self, command: ExportCommand) -> Vec<Effect> {
+        match command {
+            ExportCommand::Copy(form) => self.copy_form_now(form),
+            ExportCommand::AskSave(kind) => self.ask_place(kind),
+            ExportCommand::Write { kind, path } => self.write(kind, path),
+            ExportCommand::CopyCommandLine => match self.document.command_line() {
+                Some(line) => self.copy(line, "Command line"),
+                None => Vec::new(),
+            },
+            ExportCommand::CopyLog => self.copy(self.log.to_text(), "Log"),
+            ExportCommand::CopyText { text, what } => self.copy(text, &what),
+            ExportCommand::TakePicture { is_transparent } => self.take_picture(is_transparent),
+            ExportCommand::AskPicture(choice) => {
+                let settings = Settings {
+                    picture: choice,
+                    ..self.settings.clone()
+                };
+                let mut effects = self.set_settings(settings);
+                effects.push(self.ask_picture(choice));
+                effects
+            }
+            ExportCommand::WritePicture { choice, path } => {
+                let settings = Settings {
+                    picture_folder: path.parent().map(Path::to_path_buf),
+                    ..self.settings.clone()
+                };
+                let mut effects = self.set_settings(settings);
+                effects.push(self.picture_effect(choice, PicturePlace::File(path)));
+                effects
+            }
+        }
+    }
+
+    fn copy(&mut self, text: String, what: &str) -> Vec<Effect> {
+        self.notify(NoticeLevel::Success, format!("{what} copied"));
+        vec![Effect::CopyText(text)]
+    }
+
+    fn ask_picture(&self, choice: PictureChoice) -> Effect {
+        let name = format!("{}.png", self.document.picture_stem());
+        Effect::AskPicture { choice, name }
+    }
+
+    /// As the last time, into the folder of the last time; the first time it asks.
+    fn take_picture(&self, is_transparent: bool) -> Vec<Effect> {
+        let mut choice = self.settings.picture;
+        choice.is_transparent |= is_transparent;
+        vec![match &self.settings.picture_folder {
+            Some(folder) => {
+                let (folder, stem) = (folder.clone(), self.document.picture_stem());
+                self.picture_effect(choice, PicturePlace::Next { folder, stem })
+            }
+            None => self.ask_picture(choice),
+        }]
+    }
+
+    fn picture_effect(&self, choice: PictureChoice, place: PicturePlace) -> Effect {
+        Effect::TakePicture {
+            choice,
+            place,
+            texts: self.document.picture_texts(),
+        }
+    }
+
+    /// Copies the matrix at once; cards are made by the worker.
+    fn copy_form_now(&mut self, form: CopyForm) -> Vec<Effect> {
+        let mut effects = match form {
+            CopyForm::Matrix(form) => {
+                let text = form.write(self.document.crash_from_stamped());
+                let direction = match form {
+                    MatrixForm::Inverse => "crash → stamped",
+                    _ => "stamped → crash",
+                };
+                let what = format!("Matrix ({direction}, {}, all digits)", form.label());
+                self.copy(text, &what)
+            }
+            CopyForm::Cards(cards) => {
+                let what = format!("{} (stamped → crash, ten columns)", form.label());
+                let to = Destination::Clipboard(what);
+                self.request(Output::Cards(cards), to)
+            }
+        };
+        effects.extend(self.set_settings(Settings {
+            matrix_form: Some(form.name().to_owned()),
+            ..self.settings.clone()
+        }));
+        effects
+    }
+
+    /// Asks for a name. Cards cannot hold a unit factor, so the converted stamped file is offered
+    /// in their place.
+    fn ask_place(&mut self, kind: Output) -> Vec<Effect> {
+        let stamped = self.document.part(Role::Stamped);
+        let factor = stamped.map_or(1.0, |part| part.length_factor());
+        let kind = if matches!(kind, Output::Cards(_)) && factor != 1.0 {
+            let text = format!(
+                "The lengths of the stamped file are multiplied by {factor}, and the include card has \
+                 no field for that. Write the stamped file in the crash part's unit, open it in place \
+                 of the present one, match again, and then write the card."
+            );
+            self.notify(NoticeLevel::Warning, text);
+            Output::Mesh(MeshOutput::Converted)
+        } else {
+            kind
+        };
+        let name = self.document.suggested_name(kind);
+        vec![Effect::AskSave { kind, name }]
+    }
+
+    fn write(&mut self, output: Output, path: PathBuf) -> Vec<Effect> {
+        let path = output.with_extension(path);
+        self.request(output, Destination::File(path))
+    }
+
+    fn request(&mut self, output: Output, to: Destination) -> Vec<Effect> {
+        if !self.document.can_write(output) {
+            return Vec::new();
+        }
+        let input = self.output_input(output);
+        let request = ExportRequest { to, output, input };
+        vec![self.start(JobKind::Export(request))]
+    }
+
+    /// What an output is made from: the parts, the pose, and the match as it is shown, with the
+    /// chosen alternative.
+    fn output_input(&self, output: Output) -> OutputInput {
+        let part = |role| self.document.part(role);
+        let result = self.document.current_result();
+        OutputInput {
+            parts: PerRole::from_fn(|role| part(role).map(|part| part.loaded.to_arc())),
+            crash_from_stamped: *self.document.crash_from_stamped(),
+            run: result.map(|result| result.run.to_arc()),
+            alternative: result.and_then(|result| result.alternative),
+            reduced: PerRole::from_fn(|role| part(role).map(|part| part.reduced_mesh().clone())),
+            log: match output {
+                Output::Log => self.log.to_text(),
+                _ => String::new(),
+            },
+        }
+    }
+
+    pub(in crate::app) fn take_exported(
+        &mut self,
+        exported: Exported,
+        took: Duration,
+    ) -> Vec<Effect> {
+        for note in exported.notes {
+            self.log_step("export", None, note, None);
+        }
+        match (exported.to, exported.text) {
+            (Destination::Clipboard(what), Some(text)) => self.copy(text, &what),
+            (Destination::Clipboard(_), None) => Vec::new(),
+            (Destination::File(path), _) => {
+                let text = format!("written: {}", path.display());
+                self.log_at(NoticeLevel::Success, "export", None, text, Some(took));
+                Vec::new()
+            }
+        }
+    }
+}

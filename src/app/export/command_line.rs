@@ -1,0 +1,79 @@
+//! The state of the window as a line for a shell.
+
+use std::path::{Path, PathBuf};
+
+use crate::app::{Document, Part, Reason};
+use crate::jobs::PartSource;
+use crate::registration::StartMethod;
+use crate::report::command_line::{CommandLine, CommandSide};
+use crate::role::PerRole;
+
+/// Where the line puts the example pair, which is in no file.
+const EXAMPLE_FOLDER: &str = "shapematch-example";
+
+impl Document {
+    /// `Ok` if a line can give the pose that is shown: not where it was moved by hand after a match,
+    /// unless the match starts there.
+    pub fn can_copy_command_line(&self) -> Result<(), Reason> {
+        self.has_both_parts()?;
+        let is_moved = self.result.as_ref().is_some_and(|result| {
+            let now = self.stamp();
+            result.stamp.parts == now.parts && result.stamp.pose != now.pose
+        });
+        let begins_here = self.recipe.settings.starts.method == StartMethod::CurrentPose;
+        if is_moved && !begins_here {
+            return Err(Reason(
+                "The pose was changed after the match. Go back to the result, or match again.",
+            ));
+        }
+        Ok(())
+    }
+
+    /// The line that does the match with the present files, parts, levels, settings and pose, without
+    /// the window and bit for bit; `None` without both parts.
+    pub fn command_line(&self) -> Option<String> {
+        let both = self.both()?;
+        let PerRole { crash, stamped } = both;
+        let recipe = &self.recipe;
+        let ceilings = both.map(Part::ceiling);
+        let is_reduced = ceilings.iter().any(|(_, ceiling)| ceiling.is_some());
+        let (crash_path, stamped_path) = (path(crash), path(stamped));
+        let line = CommandLine {
+            sides: PerRole {
+                crash: CommandSide {
+                    path: &crash_path,
+                    ..crash.loaded.command_side()
+                },
+                stamped: CommandSide {
+                    path: &stamped_path,
+                    ..stamped.loaded.command_side()
+                },
+            },
+            read: &crash.loaded.settings.read,
+            settings: &recipe.settings,
+            max_triangles: if is_reduced {
+                ceilings
+            } else {
+                PerRole::both(recipe.max_triangles)
+            },
+            current: self.crash_from_stamped(),
+            alternative: self.current_result().and_then(|result| result.alternative),
+        };
+        let is_example = [crash, stamped]
+            .iter()
+            .any(|part| part.source == PartSource::Example);
+        let before = if is_example {
+            format!("shapematch sample {EXAMPLE_FOLDER} --bundled && ")
+        } else {
+            String::new()
+        };
+        Some(before + &line.line())
+    }
+}
+
+fn path(part: &Part) -> PathBuf {
+    match part.source {
+        PartSource::File(_) => part.loaded.path.clone(),
+        PartSource::Example => Path::new(EXAMPLE_FOLDER).join(&part.loaded.path),
+    }
+}

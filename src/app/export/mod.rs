@@ -1,0 +1,104 @@
+//! Which exports are possible now, and their questions.
+
+mod apply;
+mod command;
+mod command_line;
+mod picture;
+
+use std::path::PathBuf;
+
+pub use command::ExportCommand;
+pub use picture::{PictureChoice, PicturePlace, PictureSize, PictureWindows};
+
+use super::{AppState, Document};
+use crate::pipeline::outputs::{Needs, Output};
+use crate::report::{CardForm, MatrixForm};
+
+/// What "Copy" puts on the clipboard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CopyForm {
+    /// The matrix.
+    Matrix(MatrixForm),
+    /// LS-DYNA cards.
+    Cards(CardForm),
+}
+
+impl CopyForm {
+    /// All, in the order of the menu.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let matrices = MatrixForm::ALL.iter().copied().map(Self::Matrix);
+        let cards = [CardForm::StampedPart, CardForm::IncludeTransform];
+        matrices.chain(cards.map(Self::Cards))
+    }
+
+    /// Name in the menu.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Matrix(form) => form.label(),
+            Self::Cards(CardForm::IncludeTransform) => "Transformation cards",
+            Self::Cards(_) => "Include card",
+        }
+    }
+
+    /// The word under which the last choice is kept.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Matrix(form) => form.name(),
+            Self::Cards(form) => form.name(),
+        }
+    }
+
+    /// True if it can be copied now: cards need a match.
+    pub fn is_possible(self, state: &AppState) -> bool {
+        state.document.can_write(self.output())
+    }
+
+    /// The output whose text it is.
+    pub fn output(self) -> Output {
+        match self {
+            Self::Matrix(form) => Output::Matrix(form),
+            Self::Cards(form) => Output::Cards(form),
+        }
+    }
+}
+
+impl Document {
+    /// True if there is what an output needs.
+    pub fn can_write(&self, output: Output) -> bool {
+        match output.needs() {
+            Needs::Window => true,
+            Needs::Part(role) => self.part(role).is_some(),
+            Needs::ReducedPart(role) => {
+                let part = self.part(role);
+                part.is_some_and(|part| part.level.is_some())
+            }
+            Needs::BothParts => self.both().is_some(),
+            Needs::Match => self.current_result().is_some(),
+        }
+    }
+
+    /// The files of both parts with their includes, which no output may overwrite.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let parts = self.parts.iter();
+        parts
+            .filter_map(|(_, part)| part.as_ref())
+            .flat_map(|part| part.loaded.files())
+            .collect()
+    }
+
+    /// A file name to start from, made of the name of the part's file.
+    pub(in crate::app) fn suggested_name(&self, output: Output) -> String {
+        let part = self.part(output.named_after());
+        output.default_name(part.map(|part| part.loaded.file_name()).as_deref())
+    }
+}
+
+impl AppState {
+    /// The form that was copied last, or the matrix by rows where that is not possible now.
+    pub fn copy_form(&self) -> CopyForm {
+        let last = self.settings.matrix_form.as_deref();
+        let mut known = CopyForm::all().filter(|form| form.is_possible(self));
+        let found = known.find(|form| Some(form.name()) == last);
+        found.unwrap_or(CopyForm::Matrix(MatrixForm::Rows))
+    }
+}

@@ -1,0 +1,127 @@
+//! What a change in one topic asks of the others: the only place where topics meet.
+
+use std::path::PathBuf;
+
+use super::{AppState, BottomTab, Effect, Part, Section, ShownGeometry};
+use crate::geometry::Point3;
+use crate::jobs::ProjectRequest;
+use crate::role::{PerRole, Role};
+
+/// Moves of the centre up to this share of the part's size leave the cameras alone.
+const NUDGE: f64 = 0.25;
+
+/// What happened in one topic that others follow.
+#[derive(Debug, Clone)]
+pub(super) enum FollowUp {
+    /// A file that was opened is a project.
+    OpenProject(ProjectRequest),
+    /// Crash and stamped part changed places.
+    PartsSwapped,
+    /// A part was read.
+    PartLoaded(Role),
+    /// A part took another selection or unit.
+    PartReselected(Role),
+    /// A level was made.
+    LevelMade,
+    /// A match was taken over; where the centre of the stamped part was before.
+    Matched { before: Option<Point3> },
+    /// A sweep began.
+    SweepBegun,
+    /// A sweep ended with its tables.
+    SweepEnded,
+    /// A comparison was cancelled.
+    ComparisonEnded,
+    /// A place is to be seen close up.
+    LookAt(Role, Point3),
+    /// The document is that of another step.
+    SteppedInHistory,
+    /// The project is to be written there.
+    WriteProject(PathBuf),
+    /// The session is to be kept in case of a crash, if there is something new.
+    Autosave,
+    /// The program is to be left.
+    Quit,
+}
+
+impl AppState {
+    pub(super) fn follow(&mut self, follow_up: FollowUp) -> Vec<Effect> {
+        match follow_up {
+            FollowUp::OpenProject(request) => {
+                let (mut work, topics) = self.split();
+                let dialog = &mut topics.view.dialog;
+                return topics.project.open(&mut work, request, dialog);
+            }
+            FollowUp::PartsSwapped => self.view.cameras.swap(),
+            FollowUp::PartLoaded(role) => {
+                self.with_scene(|view, scene| view.fit_after_load(role, scene));
+                self.go_on_from_load();
+            }
+            FollowUp::PartReselected(role) => {
+                self.with_scene(|view, scene| view.fit_after_load(role, scene));
+                let (mut work, topics) = self.split();
+                return topics.reduce.reduce_again(&mut work, role);
+            }
+            FollowUp::LevelMade => self.view.shown = ShownGeometry::Reduced,
+            FollowUp::Matched { before } => {
+                if let Some(result) = &self.document.result {
+                    self.reduce.keep_match_level(&self.document, &result.run);
+                }
+                self.follow_far_move(before);
+            }
+            FollowUp::SweepBegun => self.view.tab = BottomTab::Sweep,
+            FollowUp::SweepEnded => {
+                if let Some(sweep) = self.matching.sweep() {
+                    self.reduce.keep_sweep_levels(&self.document, sweep);
+                }
+            }
+            FollowUp::ComparisonEnded => {
+                let stamp = self.document.stamp();
+                self.inspect.give_up_comparing(stamp);
+            }
+            FollowUp::LookAt(role, point) => {
+                self.with_scene(|view, scene| view.look_at(role, &point, scene));
+            }
+            FollowUp::SteppedInHistory => self.parts.forget_missing(&self.document),
+            FollowUp::WriteProject(path) => {
+                return vec![Effect::WriteProject {
+                    path,
+                    project: Box::new(self.to_project(0)),
+                    document: Box::new(self.document.clone()),
+                }];
+            }
+            FollowUp::Autosave => return self.autosave(),
+            FollowUp::Quit => return self.quit(),
+        }
+        Vec::new()
+    }
+
+    /// Two single parts need no choice, so the sections after loading come next; a deck of many
+    /// parts is chosen from first.
+    fn go_on_from_load(&mut self) {
+        let is_single = |part: &Part| part.facts.parts.len() <= 1;
+        let is_plain = |both: PerRole<&Part>| is_single(both.crash) && is_single(both.stamped);
+        if self.document.both().is_some_and(is_plain) {
+            self.view.sections.touch(Section::Match);
+            self.view.sections.touch(Section::Reduce);
+        }
+    }
+
+    /// A part that went far is no longer where the cameras look; one that was nudged still is.
+    fn follow_far_move(&mut self, before: Option<Point3>) {
+        let (Some(before), Some(after)) = (before, self.document.stamped_center()) else {
+            return;
+        };
+        let part = self.document.part(Role::Stamped);
+        let size = part.map_or(0.0, |part| part.bounds().diagonal());
+        if (after - before).norm() < NUDGE * size {
+            return;
+        }
+        let is_over = self.view.is_moved_over;
+        self.with_scene(|view, scene| {
+            view.fit_all(Role::Stamped, scene);
+            if is_over {
+                view.fit_all(Role::Crash, scene);
+            }
+        });
+    }
+}

@@ -1,0 +1,72 @@
+//! Undo, redo, and jumps in the history.
+
+use super::HistoryCommand;
+use crate::app::StampedPose;
+use crate::app::follow_up::FollowUp;
+use crate::app::work::Work;
+use crate::role::Role;
+
+impl Work<'_> {
+    pub(in crate::app) fn apply_history(&mut self, command: HistoryCommand) {
+        match command {
+            HistoryCommand::Undo => self.undo(),
+            HistoryCommand::Redo => self.redo(),
+            HistoryCommand::JumpTo(n_done) => self.jump_to(n_done),
+            HistoryCommand::ResetAll => self.reset_all(),
+        }
+    }
+
+    fn undo(&mut self) {
+        if let Some((name, document)) = self.history.undo(self.document.clone()) {
+            *self.document = document;
+            self.after_jump();
+            self.log_step("undo", None, name, None);
+        }
+    }
+
+    fn redo(&mut self) {
+        if let Some((name, document)) = self.history.redo(self.document.clone()) {
+            *self.document = document;
+            self.after_jump();
+            self.log_step("redo", None, name, None);
+        }
+    }
+
+    fn jump_to(&mut self, n_done: usize) {
+        while self.history.n_done() > n_done && self.history.undo_name().is_some() {
+            self.undo();
+        }
+        while self.history.n_done() < n_done && self.history.redo_name().is_some() {
+            self.redo();
+        }
+    }
+
+    /// What is shown and selected may be gone.
+    fn after_jump(&mut self) {
+        self.previews.drop_all();
+        self.follow(FollowUp::SteppedInHistory);
+    }
+
+    fn reset_all(&mut self) {
+        let revision = self.history.next_revision();
+        self.previews.drop_all();
+        self.commit("Reset to initial state", |document| {
+            for role in Role::ALL {
+                if let Some(part) = document.parts.get_mut(role) {
+                    part.level = None;
+                    part.wanted_level = None;
+                    part.hidden.clear();
+                    part.colors.clear();
+                }
+            }
+            document.result = None;
+            let as_loaded = StampedPose::default().crash_from_stamped;
+            if document.pose.crash_from_stamped != as_loaded {
+                document.pose = StampedPose {
+                    crash_from_stamped: as_loaded,
+                    revision,
+                };
+            }
+        });
+    }
+}

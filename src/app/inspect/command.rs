@@ -1,0 +1,32 @@
+//! What can happen to deviation, section and labels.
+
+use super::SectionView;
+use crate::app::GestureId;
+use crate::geometry::Point3;
+use crate::role::Role;
+
+/// What becomes of labels, and what is looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub enum InspectCommand {
+    /// Measure the deviation at the shown pose.
+    Update,
+    /// Pin a label to the node next to a point of the part's own frame.
+    Pin(Role, Point3),
+    /// Call a label so.
+    Rename {
+        /// Which label.
+        id: u64,
+        /// What it is called.
+        name: String,
+        /// The typing it belongs to.
+        gesture: GestureId,
+    },
+    /// Take a label away.
+    Remove(u64),
+    /// Take all labels away.
+    RemoveAll,
+    /// Bring a point of the part's own frame close into view.
+    LookAt(Role, Point3),
+    /// The section plane, as a whole.
+    SetSection(SectionView),
+}

@@ -1,0 +1,202 @@
+//! What the events of background jobs change.
+
+use std::time::Duration;
+
+use super::parts::NewPart;
+use super::reduce::take_level_measured;
+use super::{AppState, Effect, NoticeLevel};
+use crate::jobs::{JobEvent, JobKey, JobOutput, JobStage, Live, Stamp};
+use crate::role::Role;
+
+impl AppState {
+    pub(super) fn take_job_event(&mut self, event: JobEvent) -> Vec<Effect> {
+        let was_cancelled = self
+            .jobs
+            .running()
+            .is_some_and(|job| job.id == event.id && job.is_cancelling);
+        self.jobs.take_event(&event, self.log.now);
+        match event.stage {
+            JobStage::Started => Vec::new(),
+            JobStage::Cancelled => {
+                self.take_cancelled(event.key, event.elapsed);
+                Vec::new()
+            }
+            JobStage::Failed(message) => {
+                self.take_failed(event.key, message, event.elapsed);
+                Vec::new()
+            }
+            // It ended before the worker heard the question; the answer to the user stands.
+            JobStage::Finished(_) if was_cancelled => {
+                self.take_cancelled(event.key, event.elapsed);
+                Vec::new()
+            }
+            JobStage::Finished(_) if !self.is_wanted(event.key, event.stamp) => {
+                let (step, role) = step_of(event.key);
+                let text = "discarded: inputs changed";
+                self.work().log_step(step, role, text, Some(event.elapsed));
+                self.previews.live = None;
+                Vec::new()
+            }
+            JobStage::Finished(output) => {
+                self.take_output(output, &event.key, event.stamp, event.elapsed)
+            }
+        }
+    }
+
+    /// True if the inputs a job was asked for are still those of the document.
+    fn is_wanted(&self, key: JobKey, stamp: Stamp) -> bool {
+        let now = self.document.stamp();
+        match key {
+            JobKey::Load(_) | JobKey::OpenProject | JobKey::Export => true,
+            JobKey::Reselect(role) | JobKey::Reduce(role) => {
+                now.parts.get(role) == stamp.parts.get(role)
+            }
+            // What was measured is written on the level itself, which may be shown again.
+            JobKey::MeasureLevel(_) => true,
+            // A number for a pose that has moved on is the one before the next.
+            JobKey::Overlap => now.parts == stamp.parts,
+            JobKey::Align | JobKey::Match | JobKey::Sweep | JobKey::Compare => {
+                now.parts == stamp.parts
+            }
+            JobKey::Measure => now == stamp,
+        }
+    }
+
+    fn take_output(
+        &mut self,
+        output: JobOutput,
+        key: &JobKey,
+        stamp: Stamp,
+        took: Duration,
+    ) -> Vec<Effect> {
+        let (mut work, topics) = self.split();
+        let work = &mut work;
+        match output {
+            JobOutput::ProjectOpened(opened) => return self.take_project(*opened, took),
+            JobOutput::Loaded {
+                role, part, facts, ..
+            } if matches!(key, JobKey::Reselect(_)) => {
+                let new = NewPart {
+                    role,
+                    part,
+                    facts,
+                    took,
+                };
+                topics.parts.take_reselected(work, new);
+            }
+            JobOutput::Loaded {
+                role,
+                source,
+                part,
+                facts,
+            } => {
+                let new = NewPart {
+                    role,
+                    part,
+                    facts,
+                    took,
+                };
+                return topics.parts.take_loaded(work, source, new);
+            }
+            JobOutput::Reduced {
+                role,
+                recording,
+                level,
+            } => {
+                return topics
+                    .reduce
+                    .take_reduced(work, role, recording, level, took);
+            }
+            JobOutput::LevelMeasured { role, level } => {
+                take_level_measured(work, role, &level, took);
+            }
+            JobOutput::Matched(run) => return topics.matching.take_matched(work, run, took),
+            JobOutput::Aligned(poses) => topics.matching.take_aligned(work, poses, took),
+            JobOutput::Measured(measurement) => {
+                let matching = topics.matching;
+                matching.take_measured(work, measurement, stamp, took);
+            }
+            JobOutput::Compared(comparison) => topics.inspect.take_compared(comparison, stamp),
+            JobOutput::Overlapped { overlap, limit } => {
+                topics.moving.take_overlap(overlap, limit, stamp);
+            }
+            JobOutput::Swept(table) => topics.matching.take_swept(work, table, took),
+            JobOutput::Exported(exported) => return work.take_exported(exported, took),
+        }
+        Vec::new()
+    }
+
+    fn take_cancelled(&mut self, key: JobKey, elapsed: Duration) {
+        self.end_of(key);
+        // A job that was replaced before it began is no news.
+        if elapsed > Duration::ZERO {
+            let (step, role) = step_of(key);
+            self.work().log_step(step, role, "cancelled", Some(elapsed));
+        }
+    }
+
+    fn take_failed(&mut self, key: JobKey, message: String, elapsed: Duration) {
+        self.end_of(key);
+        let (step, role) = step_of(key);
+        let what_now = match key {
+            JobKey::Load(_) => "Nothing was loaded; choose another file or fix this one",
+            JobKey::Export => "Nothing was written; choose another place",
+            _ => "Parts and pose are as they were",
+        };
+        let mut letters = message.chars();
+        let first: String = letters
+            .next()
+            .into_iter()
+            .flat_map(char::to_uppercase)
+            .collect();
+        let text = format!("{first}{}. {what_now}", letters.as_str());
+        self.work()
+            .log_at(NoticeLevel::Error, step, role, text, Some(elapsed));
+        if key == JobKey::Match {
+            let (work, topics) = self.split();
+            topics.matching.match_failed(&work, message);
+        }
+    }
+
+    fn end_of(&mut self, key: JobKey) {
+        match key {
+            JobKey::Match => {
+                let (mut work, topics) = self.split();
+                topics.matching.match_ended(&mut work);
+            }
+            JobKey::Load(_) => self.parts.load_ended(),
+            JobKey::Compare => self.inspect.give_up_comparing(self.document.stamp()),
+            _ => {}
+        }
+    }
+
+    pub(super) fn take_live(&mut self, live: Live) {
+        self.jobs.take_live(&live);
+        self.matching.take_sweep_rows();
+        let is_match = self
+            .jobs
+            .running()
+            .is_some_and(|job| job.key == JobKey::Match && live.job == Some(job.id));
+        if is_match && self.jobs.is_active(JobKey::Match) {
+            let (mut work, topics) = self.split();
+            topics.matching.take_live(&mut work, live);
+        }
+    }
+}
+
+/// The word and the part of a job in the log.
+fn step_of(key: JobKey) -> (&'static str, Option<Role>) {
+    match key {
+        JobKey::Load(role) => ("load", Some(role)),
+        JobKey::Reselect(role) => ("select", Some(role)),
+        JobKey::Reduce(role) => ("reduce", Some(role)),
+        JobKey::MeasureLevel(role) => ("measure", Some(role)),
+        JobKey::Align => ("align", None),
+        JobKey::Match => ("match", None),
+        JobKey::Measure | JobKey::Overlap => ("measure", None),
+        JobKey::Compare => ("compare", None),
+        JobKey::Sweep => ("sweep", None),
+        JobKey::OpenProject => ("project", None),
+        JobKey::Export => ("export", None),
+    }
+}

@@ -1,0 +1,73 @@
+//! What is told to the user: the rows of the log, toasts and bell, and what time it is.
+
+mod command;
+mod notice;
+mod rows;
+
+use std::time::Duration;
+
+pub use command::NoticeCommand;
+pub use notice::{Notice, NoticeId, NoticeLevel, Notices};
+pub use rows::{Clock, Log, LogRow, age_text, clock_text, duration_text};
+
+use crate::role::Role;
+
+/// The rows of the log pane, toasts and bell, and the time they are stamped with.
+#[derive(Debug, Clone, Default)]
+pub struct LogState {
+    log: Log,
+    /// Toasts and bell.
+    pub notices: Notices,
+    /// Time since the program began, as the shell last told.
+    pub now: Duration,
+    /// When the program began, as the shell told.
+    pub clock: Clock,
+}
+
+impl LogState {
+    /// The rows, oldest first.
+    pub fn rows(&self) -> &[LogRow] {
+        self.log.rows()
+    }
+
+    /// The last row of a step.
+    pub fn latest(&self, step: &str) -> Option<&LogRow> {
+        self.log.latest(step)
+    }
+
+    /// All durations together.
+    pub fn total(&self) -> Duration {
+        self.log.total()
+    }
+
+    /// The rows as text.
+    pub fn to_text(&self) -> String {
+        self.log.to_text()
+    }
+
+    /// Tells how long the program runs; ends toasts whose time is over.
+    pub(super) fn tick(&mut self, now: Duration) {
+        self.now = now;
+        self.notices.expire(now);
+    }
+
+    /// Adds a row.
+    pub(super) fn push(
+        &mut self,
+        level: NoticeLevel,
+        step: &'static str,
+        role: Option<Role>,
+        text: String,
+        took: Option<Duration>,
+    ) {
+        self.log.push(LogRow {
+            at: self.clock.day_time_at(self.now),
+            step,
+            role,
+            text,
+            took,
+            level,
+            count: 1,
+        });
+    }
+}

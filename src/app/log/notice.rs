@@ -1,0 +1,203 @@
+//! Messages to the user: level, text, repeats.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use crate::app::Action;
+
+/// How loud a message is, quiet first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum NoticeLevel {
+    /// Log only.
+    Info,
+    /// A short toast.
+    Success,
+    /// A toast, and a line in the bell's list.
+    Note,
+    /// Stays until it is read.
+    Warning,
+    /// Stays until it is closed.
+    Error,
+}
+
+impl NoticeLevel {
+    /// Those that have toasts, quiet first.
+    pub const TOLD: [Self; 4] = [Self::Success, Self::Note, Self::Warning, Self::Error];
+
+    /// Its name.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Info => "Steps",
+            Self::Success => "Successes",
+            Self::Note => "Notes",
+            Self::Warning => "Warnings",
+            Self::Error => "Errors",
+        }
+    }
+
+    /// How long the toast stays; `None` until it is dismissed, zero for no toast.
+    pub fn lifetime(self) -> Option<Duration> {
+        match self {
+            Self::Info => Some(Duration::ZERO),
+            Self::Success => Some(Duration::from_secs(4)),
+            Self::Note => Some(Duration::from_secs(8)),
+            Self::Warning | Self::Error => None,
+        }
+    }
+
+    /// True if the bell's list keeps it.
+    pub fn is_kept(self) -> bool {
+        self >= Self::Note
+    }
+
+    /// The sign that goes with the colour.
+    pub fn mark(self) -> &'static str {
+        match self {
+            Self::Info => "",
+            Self::Success => "✔",
+            Self::Note => "ℹ",
+            Self::Warning => "⚠",
+            Self::Error => "✖",
+        }
+    }
+}
+
+/// Name of one notice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct NoticeId(pub u64);
+
+/// One message to the user.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Notice {
+    /// Its name.
+    pub id: NoticeId,
+    /// How loud it is.
+    pub level: NoticeLevel,
+    /// What happened, where, and what can be done.
+    pub text: String,
+    /// How often it came (×12).
+    pub count: usize,
+    /// When it last came, since the program began.
+    pub at: Duration,
+    /// True until it was read or dismissed.
+    pub is_unread: bool,
+    /// What the user may want to do about it, beside closing it.
+    pub offer: Option<Action>,
+    is_toast: bool,
+}
+
+/// Most toasts on the screen at once.
+pub const MAX_TOASTS: usize = 3;
+/// Messages the bell's list keeps.
+const MAX_KEPT: usize = 200;
+
+/// The toasts and the bell's list.
+#[derive(Debug, Clone, Default)]
+pub struct Notices {
+    items: Vec<Notice>,
+    n_given: u64,
+}
+
+impl Notices {
+    /// Shows a message; the same message again only counts up and shows anew. A muted one goes
+    /// into the bell's list only.
+    pub fn push(&mut self, level: NoticeLevel, text: String, when: (Duration, bool)) {
+        self.add(level, text, when, None);
+    }
+
+    /// [`Notices::push`] with a button for an action.
+    pub fn offer(
+        &mut self,
+        level: NoticeLevel,
+        text: String,
+        when: (Duration, bool),
+        action: Action,
+    ) {
+        self.add(level, text, when, Some(action));
+    }
+
+    fn add(
+        &mut self,
+        level: NoticeLevel,
+        text: String,
+        (now, is_muted): (Duration, bool),
+        offer: Option<Action>,
+    ) {
+        if level == NoticeLevel::Info {
+            return;
+        }
+        let same = |n: &Notice| n.level == level && n.text == text;
+        let count = match self.items.iter().position(same) {
+            Some(index) => self.items.remove(index).count + 1,
+            None => 1,
+        };
+        self.n_given += 1;
+        self.items.push(Notice {
+            id: NoticeId(self.n_given),
+            level,
+            text,
+            count,
+            at: now,
+            is_unread: true,
+            offer,
+            is_toast: !is_muted,
+        });
+        if self.items.len() > MAX_KEPT {
+            self.items.remove(0);
+        }
+    }
+
+    /// Ends toasts whose time is over.
+    pub fn expire(&mut self, now: Duration) {
+        for notice in &mut self.items {
+            let lifetime = notice.level.lifetime();
+            if lifetime.is_some_and(|lifetime| now.saturating_sub(notice.at) >= lifetime) {
+                notice.is_toast = false;
+            }
+        }
+        self.items.retain(|n| n.is_toast || n.level.is_kept());
+    }
+
+    /// Closes a toast and marks it read.
+    pub fn dismiss(&mut self, id: NoticeId) {
+        for notice in self.items.iter_mut().filter(|n| n.id == id) {
+            notice.is_toast = false;
+            notice.is_unread = false;
+        }
+    }
+
+    /// The bell was opened: all is read, and warnings no longer cover the view.
+    pub fn mark_read(&mut self) {
+        for notice in &mut self.items {
+            notice.is_unread = false;
+            if notice.level != NoticeLevel::Error {
+                notice.is_toast = false;
+            }
+        }
+    }
+
+    /// The toasts to be drawn, newest first, at most three.
+    pub fn toasts(&self) -> impl Iterator<Item = &Notice> {
+        let shown = self.items.iter().rev().filter(|n| n.is_toast);
+        shown.take(MAX_TOASTS)
+    }
+
+    /// The bell's list, newest first.
+    pub fn kept(&self) -> impl Iterator<Item = &Notice> {
+        self.items.iter().rev().filter(|n| n.level.is_kept())
+    }
+
+    /// Unread lines in the bell's list.
+    pub fn n_unread(&self) -> usize {
+        self.kept().filter(|n| n.is_unread).count()
+    }
+
+    /// When the next toast ends, so that an idle window knows when to draw again.
+    pub fn next_expiry(&self) -> Option<Duration> {
+        let toasts = self.items.iter().filter(|n| n.is_toast);
+        toasts
+            .filter_map(|n| Some(n.at + n.level.lifetime()?))
+            .min()
+    }
+}

@@ -1,0 +1,192 @@
+//! The lines of the log with their durations.
+
+use std::time::Duration;
+
+use crate::app::NoticeLevel;
+use crate::role::Role;
+
+/// One line of the log pane, made from the result of a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LogRow {
+    /// Local time of day; past midnight it goes on counting.
+    pub at: Duration,
+    /// What was done, in one word: load, reduce, align, match …
+    pub step: &'static str,
+    /// The part it was done to, if it is about one.
+    pub role: Option<Role>,
+    /// What came out.
+    pub text: String,
+    /// How long it took.
+    pub took: Option<Duration>,
+    /// How loud it is.
+    pub level: NoticeLevel,
+    /// How often it came in a row.
+    pub count: usize,
+}
+
+impl LogRow {
+    /// The text, and how often it came if that is more than once.
+    pub fn counted_text(&self) -> String {
+        match self.count {
+            0 | 1 => self.text.clone(),
+            n => format!("{} (×{n})", self.text),
+        }
+    }
+
+    fn says_the_same(&self, other: &Self) -> bool {
+        let key = |row: &Self| (row.step, row.role, row.level);
+        key(self) == key(other) && self.text == other.text
+    }
+}
+
+/// The log pane's rows, oldest first.
+#[derive(Debug, Clone, Default)]
+pub struct Log {
+    rows: Vec<LogRow>,
+}
+
+impl Log {
+    /// Adds a row; a message that repeats the one before only counts it up.
+    pub fn push(&mut self, row: LogRow) {
+        let is_message = row.level >= NoticeLevel::Note;
+        match self.rows.last_mut() {
+            Some(last) if is_message && last.says_the_same(&row) => {
+                last.count += 1;
+                last.at = row.at;
+            }
+            _ => self.rows.push(row),
+        }
+    }
+
+    /// All rows.
+    pub fn rows(&self) -> &[LogRow] {
+        &self.rows
+    }
+
+    /// The time of all steps together.
+    pub fn total(&self) -> Duration {
+        self.rows.iter().filter_map(|row| row.took).sum()
+    }
+
+    /// The latest row about a step.
+    pub fn latest(&self, step: &str) -> Option<&LogRow> {
+        self.rows.iter().rev().find(|row| row.step == step)
+    }
+
+    /// The rows as text with tabs between the columns, for the clipboard.
+    pub fn to_text(&self) -> String {
+        let line = |row: &LogRow| {
+            let role = row.role.map_or("", Role::word);
+            let took = row.took.map_or_else(String::new, duration_text);
+            let (at, text) = (clock_text(row.at), row.counted_text());
+            format!("{at}\t{}\t{role}\t{text}\t{took}\n", row.step)
+        };
+        self.rows.iter().map(line).collect()
+    }
+}
+
+/// When the program began. Nothing below the shell reads a clock; it is told once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Clock {
+    /// The local time of day.
+    pub day_time: Duration,
+    /// Seconds since 1970.
+    pub unix: u64,
+}
+
+impl Clock {
+    /// The local time of day so long after the beginning.
+    pub fn day_time_at(&self, now: Duration) -> Duration {
+        self.day_time + now
+    }
+
+    /// Seconds since 1970 so long after the beginning.
+    pub fn unix_at(&self, now: Duration) -> u64 {
+        self.unix + now.as_secs()
+    }
+}
+
+/// How long ago something was, roughly: just now, 5 min ago, 3 h ago, 12 days ago.
+pub fn age_text(seconds: u64) -> String {
+    match seconds {
+        0..60 => "just now".to_owned(),
+        60..3_600 => format!("{} min ago", seconds / 60),
+        3_600..86_400 => format!("{} h ago", seconds / 3_600),
+        86_400..172_800 => "yesterday".to_owned(),
+        _ => format!("{} days ago", seconds / 86_400),
+    }
+}
+
+/// Hours, minutes and seconds of a time of day: 14:02:11.
+pub fn clock_text(at: Duration) -> String {
+    let seconds = at.as_secs() % 86_400;
+    let (hours, minutes) = (seconds / 3600, seconds / 60 % 60);
+    format!("{hours:02}:{minutes:02}:{:02}", seconds % 60)
+}
+
+/// A duration as people read it: 83 ms, 1.24 s, 2 min 5 s.
+pub fn duration_text(duration: Duration) -> String {
+    let secs = duration.as_secs_f64();
+    if secs < 0.0995 {
+        format!("{:.1} ms", secs * 1e3)
+    } else if secs < 0.9995 {
+        format!("{:.0} ms", secs * 1e3)
+    } else if secs < 60.0 {
+        format!("{secs:.2} s")
+    } else {
+        let whole = secs.round();
+        format!("{:.0} min {:.0} s", (whole / 60.0).floor(), whole % 60.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(level: NoticeLevel, text: &str) -> LogRow {
+        LogRow {
+            at: Duration::ZERO,
+            step: "load",
+            role: None,
+            text: text.to_owned(),
+            took: None,
+            level,
+            count: 1,
+        }
+    }
+
+    #[test]
+    fn the_time_of_day_starts_anew_at_midnight() {
+        let at = |hours: u64, seconds| clock_text(Duration::from_secs(hours * 3600 + seconds));
+        assert_eq!(at(14, 131), "14:02:11");
+        assert_eq!(at(24, 61), "00:01:01");
+    }
+
+    #[test]
+    fn ages_are_told_roughly() {
+        let told = [3, 60, 7_199, 90_000, 1_000_000].map(age_text);
+        let expected = [
+            "just now",
+            "1 min ago",
+            "1 h ago",
+            "yesterday",
+            "11 days ago",
+        ];
+        assert_eq!(told, expected);
+    }
+
+    #[test]
+    fn repeated_messages_are_one_row_and_repeated_steps_are_not() {
+        let mut log = Log::default();
+        for _ in 0..12 {
+            log.push(row(NoticeLevel::Error, "no such file"));
+        }
+        assert_eq!(log.rows().len(), 1);
+        assert!(log.to_text().contains("no such file (×12)"));
+        log.push(row(NoticeLevel::Warning, "no such file"));
+        for _ in 0..2 {
+            log.push(row(NoticeLevel::Info, "loaded"));
+        }
+        assert_eq!(log.rows().len(), 4);
+    }
+}

@@ -1,0 +1,222 @@
+//! Why a match is weak: the likely causes with what speaks for them, and one thing to do about each.
+
+use crate::app::{Action, AppState, Command, FileCommand, MatchCommand};
+use crate::assess::{Assessment, Clarity, Reason, ShapeReason, Verdict, error_beside};
+use crate::pipeline::match_parts::MatchRecipe;
+use crate::registration::{Hand, StartMethod};
+use crate::role::Role;
+use crate::text::{capital, fixed, sentence, whole_percent};
+
+/// Causes that are listed; more would be guessing.
+const MOST: usize = 3;
+/// The opposite hand is a likely cause below this ratio of scores.
+const OTHER_HAND: f64 = 0.98;
+/// Less overlap of the better covered part is little.
+const LITTLE_OVERLAP: f64 = 0.6;
+
+/// A likely cause of a weak or failed match.
+#[derive(Debug, Clone)]
+pub struct Cause {
+    /// The cause as a question.
+    pub title: String,
+    /// The evidence for it, as a sentence.
+    pub evidence: String,
+    /// The remedy: the label of its button and what it does.
+    pub remedy: Option<(String, Vec<Command>)>,
+}
+
+impl AppState {
+    /// The likely causes why the present result is not good, the likeliest first.
+    pub fn causes(&self) -> Vec<Cause> {
+        let Some(result) = self.document.current_result() else {
+            return Vec::new();
+        };
+        let assessment = &result.run.assessment;
+        if assessment.verdict == Verdict::Good {
+            return Vec::new();
+        }
+        let found = [
+            self.units_cause(assessment),
+            self.hand_cause(assessment),
+            self.twin_cause(assessment),
+            self.freedom_cause(assessment),
+            self.overlap_cause(assessment),
+            self.shape_cause(assessment),
+        ];
+        found.into_iter().flatten().take(MOST).collect()
+    }
+
+    /// Why the last match gave no pose, if these are still its parts.
+    pub fn match_failure(&self) -> Option<&str> {
+        let parts = self.document.stamp().parts;
+        let failed = self
+            .matching
+            .failure
+            .as_ref()
+            .filter(|(of, _)| *of == parts);
+        failed.map(|(_, message)| message.as_str())
+    }
+
+    /// What to try after a match that gave no pose.
+    pub fn failure_causes(&self) -> Vec<Cause> {
+        if self.match_failure().is_none() {
+            return Vec::new();
+        }
+        let units = self.unit_remedy().map(|remedy| Cause {
+            title: "Different units".to_owned(),
+            evidence: "The sizes of the two files differ by a factor between units.".to_owned(),
+            remedy: Some(remedy),
+        });
+        let starts = Cause {
+            title: "Too few start poses".to_owned(),
+            evidence: "From no start pose did the parts come into contact.".to_owned(),
+            remedy: self.retry("Try all starts", |recipe| {
+                recipe.settings.starts.method = StartMethod::All;
+            }),
+        };
+        let by_hand = Cause {
+            title: "Parts too far apart".to_owned(),
+            evidence: "Three point pairs give a start pose.".to_owned(),
+            remedy: self.do_action(Action::PairTool, "Pick point pairs"),
+        };
+        units.into_iter().chain([starts, by_hand]).collect()
+    }
+
+    /// Changes the recipe and runs again.
+    fn retry(
+        &self,
+        label: &str,
+        change: impl FnOnce(&mut MatchRecipe),
+    ) -> Option<(String, Vec<Command>)> {
+        let mut recipe = self.document.recipe.clone();
+        change(&mut recipe);
+        if recipe == self.document.recipe || self.can_match().is_err() {
+            return None;
+        }
+        let commands = vec![
+            MatchCommand::SetRecipe(Box::new(recipe)).into(),
+            MatchCommand::Run.into(),
+        ];
+        Some((label.to_owned(), commands))
+    }
+
+    fn do_action(&self, action: Action, label: &str) -> Option<(String, Vec<Command>)> {
+        let commands = action.command(self);
+        commands.map(|command| (label.to_owned(), vec![command]))
+    }
+
+    fn unit_remedy(&self) -> Option<(String, Vec<Command>)> {
+        let hint = self.unit_hint()?;
+        let factor = self.hinted_length_factor()?;
+        let role = Role::Stamped;
+        let (label, command) = match hint.unit {
+            Some(unit) => {
+                let units = Some(unit.into());
+                let command = FileCommand::SetUnits { role, units };
+                (format!("Treat stamped as {unit}"), command)
+            }
+            None => {
+                let command = FileCommand::SetLengthFactor { role, factor };
+                (format!("Multiply stamped lengths by {factor}"), command)
+            }
+        };
+        Some((label, vec![command.into()]))
+    }
+
+    fn units_cause(&self, assessment: &Assessment) -> Option<Cause> {
+        let check = &assessment.scale_check;
+        check.unit.as_ref()?;
+        Some(Cause {
+            title: "Different units".to_owned(),
+            evidence: format!(
+                "The crash part is {} times as large as the stamped part.",
+                fixed(check.size_ratio, 4)
+            ),
+            remedy: self.unit_remedy(),
+        })
+    }
+
+    fn hand_cause(&self, assessment: &Assessment) -> Option<Cause> {
+        let ratio = assessment.mirror_check.score_ratio?;
+        let hand = self.document.recipe.settings.hand;
+        (ratio < OTHER_HAND).then(|| Cause {
+            title: "Opposite-hand part".to_owned(),
+            evidence: format!("Mirrored, the part fits better: {}.", error_beside(ratio)),
+            remedy: self.retry("Match the opposite hand", |recipe| {
+                recipe.settings.hand = match hand {
+                    Hand::Mirrored => Hand::Same,
+                    Hand::Same | Hand::Either => Hand::Mirrored,
+                };
+            }),
+        })
+    }
+
+    fn twin_cause(&self, assessment: &Assessment) -> Option<Cause> {
+        let ambiguity = &assessment.ambiguity;
+        if ambiguity.clarity == Clarity::Clear {
+            return None;
+        }
+        let how = ambiguity
+            .twin
+            .map(|twin| twin.words(self.document.lengths()));
+        Some(Cause {
+            title: "Ambiguous pose".to_owned(),
+            evidence: format!(
+                "{}, the part fits almost as well ({}): check holes and beads.",
+                capital(how.as_deref().unwrap_or("in another pose")),
+                error_beside(ambiguity.ratio.unwrap_or(1.0))
+            ),
+            remedy: self.do_action(Action::NextAlternative, "Show the other pose"),
+        })
+    }
+
+    fn freedom_cause(&self, assessment: &Assessment) -> Option<Cause> {
+        let motion = assessment.freedom.motion?;
+        Some(Cause {
+            title: "Sliding possible".to_owned(),
+            evidence: sentence(&motion.words()),
+            remedy: self.do_action(Action::PairTool, "Pick point pairs"),
+        })
+    }
+
+    fn overlap_cause(&self, assessment: &Assessment) -> Option<Cause> {
+        let coverage = &assessment.coverage;
+        let overlap = coverage.better_overlap();
+        (overlap < LITTLE_OVERLAP).then(|| Cause {
+            title: "Wrong location".to_owned(),
+            evidence: format!(
+                "Only {} of the better covered part lies within {} of the other.",
+                whole_percent(overlap),
+                self.document.length_text(coverage.limit)
+            ),
+            remedy: self
+                .retry("Try all starts", |recipe| {
+                    recipe.settings.starts.method = StartMethod::All;
+                })
+                .or_else(|| self.do_action(Action::PairTool, "Pick point pairs")),
+        })
+    }
+
+    fn shape_cause(&self, assessment: &Assessment) -> Option<Cause> {
+        let differ = assessment.reasons.iter().find_map(|reason| match reason {
+            Reason::Shape {
+                difference: ShapeReason::Surface { by, .. } | ShapeReason::Bent { by, .. },
+            } => Some(*by),
+            _ => None,
+        });
+        let by = differ?;
+        Some(Cause {
+            title: "Springback or another forming state".to_owned(),
+            evidence: format!(
+                "At 95 % of the area the surfaces differ by up to {}, more than the tolerance.",
+                self.document.length_text(by)
+            ),
+            remedy: self.retry(
+                &format!("Allow {}", self.document.length_text(by)),
+                |recipe| {
+                    recipe.settings.allowance = by;
+                },
+            ),
+        })
+    }
+}

@@ -1,0 +1,74 @@
+//! Distances and overlap at the pose that is shown.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::MatchState;
+use crate::app::work::Work;
+use crate::app::{AppState, Document, Effect, facts};
+use crate::assess::Coverage;
+use crate::jobs::{JobKey, JobKind, MeasureInput, Stamp};
+
+impl AppState {
+    /// Distances and overlap of the current result at the pose that is shown: those of the match for its
+    /// best pose, for an alternative what was measured there; `None` until that is known.
+    pub fn result_coverage(&self) -> Option<&Coverage> {
+        let result = self.document.current_result()?;
+        match result.alternative {
+            None => Some(&result.run.assessment.coverage),
+            Some(_) => self.matching.current_measurement(&self.document),
+        }
+    }
+}
+
+impl MatchState {
+    /// The measurement, if parts and pose are still those it was made at.
+    fn current_measurement(&self, document: &Document) -> Option<&Coverage> {
+        let stamp = document.stamp();
+        let (at, measurement) = self.measurement.as_ref()?;
+        (*at == stamp).then_some(&**measurement)
+    }
+
+    /// The match measured its best pose; an alternative that is shown is measured as soon as it is.
+    pub(in crate::app) fn keep_measuring_alternative(
+        &mut self,
+        work: &mut Work<'_>,
+    ) -> Vec<Effect> {
+        let stamp = work.document.stamp();
+        let result = work.document.current_result();
+        let is_alternative = result.is_some_and(|result| result.alternative.is_some());
+        let is_known = self.current_measurement(work.document).is_some()
+            || self.alternative_asked == Some(stamp);
+        let is_free = work.is_unlocked().is_ok() && !work.jobs.is_active(JobKey::Measure);
+        if !is_alternative || is_known || !is_free {
+            return Vec::new();
+        }
+        self.alternative_asked = Some(stamp);
+        measure(work)
+    }
+
+    pub(in crate::app) fn take_measured(
+        &mut self,
+        work: &mut Work<'_>,
+        measurement: Arc<Coverage>,
+        stamp: Stamp,
+        took: Duration,
+    ) {
+        let line = facts::measure_line(&measurement, work.document.lengths());
+        work.log_step("measure", None, line, Some(took));
+        self.measurement = Some((stamp, measurement.into()));
+    }
+}
+
+pub(super) fn measure(work: &mut Work<'_>) -> Vec<Effect> {
+    let Some(both) = work.document.both() else {
+        return Vec::new();
+    };
+    let input = MeasureInput {
+        parts: both.map(|part| part.loaded.to_arc()),
+        crash_from_stamped: *work.document.crash_from_stamped(),
+    };
+    let mut effects = work.cancel(JobKey::Measure);
+    effects.push(work.start(JobKind::Measure(input)));
+    effects
+}

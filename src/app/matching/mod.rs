@@ -1,0 +1,116 @@
+//! Alignment, match and sweep: what was found, what is running, and which of its poses are looked at.
+
+mod command;
+mod explain;
+mod first_poses;
+mod measure;
+mod preview;
+mod result;
+mod run;
+mod starts;
+mod sweep;
+
+pub use command::{MatchCommand, PreviewCommand};
+pub use explain::Cause;
+pub use preview::{Preview, Previews};
+pub use starts::{LiveStarts, Starts};
+
+use super::work::Work;
+use super::{AppState, Effect, GestureId, History, Reason, Shared};
+use crate::assess::Coverage;
+use crate::jobs::{JobKind, Live, Stamp, SweepRows};
+use crate::pipeline::sweep::Sweep;
+use crate::role::PerRole;
+
+/// What alignment, match, measurement and sweep gave, beside the result in the document.
+#[derive(Debug, Clone, Default)]
+pub struct MatchState {
+    /// The first poses of the last alignment.
+    starts: Option<Starts>,
+    /// The starts of the running match, or of the last one if it gave no result.
+    live_starts: LiveStarts,
+    /// Why the last match gave no result, with the parts it was run on.
+    failure: Option<(PerRole<u64>, String)>,
+    /// Distances and overlap with the state they were measured in.
+    measurement: Option<(Stamp, Shared<Coverage>)>,
+    /// The state of the alternative that was measured last without being asked for.
+    alternative_asked: Option<Stamp>,
+    /// The tables of the last sweep.
+    sweep: Option<Shared<Sweep>>,
+    /// The rows of the running sweep, and where the next ones come from.
+    sweep_so_far: Option<(Sweep, SweepRows)>,
+    recipe_gesture: Option<GestureId>,
+}
+
+impl AppState {
+    /// `Ok` if the match may start now.
+    pub fn can_match(&self) -> Result<(), Reason> {
+        self.document.can_match(&self.jobs)
+    }
+}
+
+impl MatchState {
+    pub(super) fn apply(&mut self, work: &mut Work<'_>, command: MatchCommand) -> Vec<Effect> {
+        match command {
+            MatchCommand::SetRecipe(recipe) => self.set_recipe(work, *recipe),
+            MatchCommand::Align => return run::start_with_input(work, JobKind::Align),
+            MatchCommand::ShowStart(index) => self.show_start(work, index),
+            MatchCommand::StepStart(direction) => self.step_start(work, direction),
+            MatchCommand::UseMatchStart(index) => self.use_match_start(work, index),
+            MatchCommand::UseStart(index) => self.use_start(work, index),
+            MatchCommand::Run => return self.run_match(work),
+            MatchCommand::Refine => return self.refine(work),
+            MatchCommand::Stop => return run::stop_run(work),
+            MatchCommand::Cancel => return run::cancel_run(work),
+            MatchCommand::ShowAlternative(index) => result::show_alternative(work, index),
+            MatchCommand::NextAlternative => result::next_alternative(work),
+            MatchCommand::Measure => return measure::measure(work),
+            MatchCommand::Sweep(settings) => return self.run_sweep(work, *settings),
+        }
+        Vec::new()
+    }
+
+    /// The gesture of a series of changes of the match settings.
+    fn recipe_gesture(&mut self, history: &mut History) -> GestureId {
+        let open = self.recipe_gesture;
+        let gesture = match open.filter(|gesture| history.is_open(*gesture)) {
+            Some(gesture) => gesture,
+            None => history.next_gesture(),
+        };
+        *self.recipe_gesture.insert(gesture)
+    }
+
+    /// The tables of the last sweep.
+    pub(super) fn sweep(&self) -> Option<&Shared<Sweep>> {
+        self.sweep.as_ref()
+    }
+
+    /// A project was opened: only its sweep is known.
+    pub(super) fn reopen(&mut self, sweep: Option<Shared<Sweep>>) {
+        self.sweep = sweep;
+        self.starts = None;
+        self.measurement = None;
+        self.live_starts.clear();
+    }
+
+    /// The running match told how far it is.
+    pub(super) fn take_live(&mut self, work: &mut Work<'_>, live: Live) {
+        if let Some(best) = &live.best {
+            work.previews.live = Some(best.target_from_source);
+        }
+        self.live_starts.add(live.starts, live.iterations);
+    }
+
+    /// A match ended without a result. Its starts are worth seeing only where nothing better is.
+    pub(super) fn match_ended(&mut self, work: &mut Work<'_>) {
+        work.previews.live = None;
+        if work.document.result.is_some() {
+            self.live_starts.clear();
+        }
+    }
+
+    /// The last match gave no pose.
+    pub(super) fn match_failed(&mut self, work: &Work<'_>, message: String) {
+        self.failure = Some((work.document.stamp().parts, message));
+    }
+}

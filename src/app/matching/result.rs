@@ -1,0 +1,98 @@
+//! Taking a match over, and choosing among its poses.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::MatchState;
+use crate::app::follow_up::FollowUp;
+use crate::app::work::Work;
+use crate::app::{Effect, MatchResult, facts};
+use crate::geometry::Similarity;
+use crate::jobs::Stamp;
+use crate::pipeline::match_parts::MatchRun;
+
+/// A run that took longer is worth a word to the desktop.
+const LONG_RUN: Duration = Duration::from_secs(10);
+
+impl MatchState {
+    pub(in crate::app) fn take_matched(
+        &mut self,
+        work: &mut Work<'_>,
+        run: Arc<MatchRun>,
+        took: Duration,
+    ) -> Vec<Effect> {
+        let (line, level) = (
+            facts::match_line(&run, work.document.lengths()),
+            facts::match_level(&run),
+        );
+        for (step, text, took) in facts::match_steps(&run) {
+            work.log_step(step, None, text, Some(took));
+        }
+        work.previews.live = None;
+        self.live_starts.clear();
+        let pose = run.crash_from_stamped;
+        let before = work.document.stamped_center();
+        take_pose_as_result(work, "Match".to_owned(), pose, |stamp| MatchResult {
+            run: run.into(),
+            alternative: None,
+            stamp,
+        });
+        work.follow(FollowUp::Matched { before });
+        // Its phases have their own rows; counting the whole again would double the total.
+        work.log_at(level, "result", None, line.clone(), None);
+        if took >= LONG_RUN {
+            vec![Effect::NotifyDesktop(line)]
+        } else {
+            Vec::new()
+        }
+    }
+}
+
+pub(super) fn show_alternative(work: &mut Work<'_>, alternative: Option<usize>) {
+    let Some(result) = work.document.result.clone() else {
+        return;
+    };
+    let is_same_pair = result.stamp.parts == work.document.stamp().parts;
+    let pose = facts::match_pose(&result.run, alternative);
+    let Some(crash_from_stamped) = pose.filter(|_| is_same_pair) else {
+        return;
+    };
+    if work.can_move().is_err() {
+        return;
+    }
+    let name = match alternative {
+        None => "Best pose".to_owned(),
+        Some(index) => format!("Alternative {}", index + 2),
+    };
+    take_pose_as_result(work, name, crash_from_stamped, |stamp| MatchResult {
+        alternative,
+        stamp,
+        ..result
+    });
+}
+
+pub(super) fn next_alternative(work: &mut Work<'_>) {
+    let Some(result) = &work.document.result else {
+        return;
+    };
+    let n_alternatives = facts::n_alternatives(&result.run);
+    let next = result.alternative.map_or(0, |index| index + 1);
+    let next = (next < n_alternatives).then_some(next);
+    show_alternative(work, next);
+}
+
+/// Pose and result as one undo step.
+fn take_pose_as_result(
+    work: &mut Work<'_>,
+    name: String,
+    crash_from_stamped: Similarity,
+    result: impl FnOnce(Stamp) -> MatchResult,
+) {
+    let revision = work.history.next_revision();
+    work.previews.drop_all();
+    work.commit(name, |document| {
+        document.pose.crash_from_stamped = crash_from_stamped;
+        document.pose.revision = revision;
+        document.result = Some(result(document.stamp()));
+    });
+}

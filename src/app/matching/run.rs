@@ -1,0 +1,94 @@
+//! Beginning, stopping and cancelling of alignment and match.
+
+use std::sync::Arc;
+
+use super::MatchState;
+use crate::app::work::Work;
+use crate::app::{Effect, Part};
+use crate::jobs::{JobKind, MatchInput};
+use crate::pipeline::match_parts::{MatchRecipe, ReducedPair};
+use crate::registration::StartMethod;
+
+impl MatchState {
+    pub(super) fn set_recipe(&mut self, work: &mut Work<'_>, recipe: MatchRecipe) {
+        if work.is_unlocked().is_ok() {
+            // A slider sends many recipes; they are one step until something else happens.
+            let gesture = self.recipe_gesture(work.history);
+            work.commit_in("Match settings", Some(gesture), |d| d.recipe = recipe);
+        }
+    }
+
+    pub(super) fn run_match(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
+        self.run_match_of(work, JobKind::Match)
+    }
+
+    /// From where the part lies now; a wide search would lead away from it.
+    pub(super) fn refine(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
+        self.run_match_of(work, |mut input| {
+            input.recipe.settings.starts.method = StartMethod::CurrentPose;
+            input.recipe.settings.starts.extra_starts = false;
+            JobKind::Match(input)
+        })
+    }
+
+    pub(super) fn run_match_of(
+        &mut self,
+        work: &mut Work<'_>,
+        kind: impl FnOnce(MatchInput) -> JobKind,
+    ) -> Vec<Effect> {
+        let effects = start_with_input(work, kind);
+        if !effects.is_empty() {
+            self.live_starts.clear();
+            self.failure = None;
+            work.previews.chosen_start = None;
+            work.previews.live = None;
+        }
+        effects
+    }
+}
+
+/// The inputs of a match: the levels that are shown, the settings, the pose.
+fn match_input(work: &Work<'_>) -> Option<MatchInput> {
+    work.document.can_match(work.jobs).ok()?;
+    let both = work.document.both()?;
+    let is_reduced = both.crash.level.is_some() || both.stamped.level.is_some();
+    let reduced = is_reduced.then(|| ReducedPair {
+        meshes: both.map(|part| Arc::clone(part.reduced_mesh())),
+        max_triangles: both.map(Part::ceiling),
+    });
+    let mut recipe = work.document.recipe.clone();
+    if recipe.settings.starts.method == StartMethod::GivenPoses {
+        let fit = work.document.pair_fit().ok()?;
+        recipe.settings.starts.poses = vec![fit.fit.target_from_source];
+    }
+    Some(MatchInput {
+        parts: both.map(|part| part.loaded.to_arc()),
+        reduced,
+        recipe,
+        current: *work.document.crash_from_stamped(),
+    })
+}
+
+pub(super) fn start_with_input(
+    work: &mut Work<'_>,
+    kind: impl FnOnce(MatchInput) -> JobKind,
+) -> Vec<Effect> {
+    let Some(input) = match_input(work) else {
+        return Vec::new();
+    };
+    work.previews.drop_all();
+    vec![work.start(kind(input))]
+}
+
+pub(super) fn stop_run(work: &mut Work<'_>) -> Vec<Effect> {
+    let Some(key) = work.jobs.locking_job() else {
+        return Vec::new();
+    };
+    work.jobs.ending(key, false);
+    vec![Effect::StopJob(key)]
+}
+
+pub(super) fn cancel_run(work: &mut Work<'_>) -> Vec<Effect> {
+    let key = work.jobs.locking_job();
+    key.map_or_else(Vec::new, |key| work.cancel(key))
+}

@@ -1,0 +1,81 @@
+//! The sweep over levels and settings, and the rows that come in.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::MatchState;
+use super::run::start_with_input;
+use crate::app::follow_up::FollowUp;
+use crate::app::work::Work;
+use crate::app::{AppState, Effect, NoticeLevel};
+use crate::jobs::{JobKey, JobKind, SweepInput, SweepRows};
+use crate::pipeline::sweep::{Sweep, SweepSettings};
+use crate::role::Role;
+
+impl AppState {
+    /// The tables of the running sweep as far as they are measured, or those of the last one.
+    pub fn shown_sweep(&self) -> Option<&Sweep> {
+        let known = &self.matching;
+        let so_far = known.sweep_so_far.as_ref();
+        let running = so_far.filter(|_| self.jobs.is_active(JobKey::Sweep));
+        running.map(|(sweep, _)| sweep).or(known.sweep.as_deref())
+    }
+}
+
+impl MatchState {
+    pub(super) fn run_sweep(
+        &mut self,
+        work: &mut Work<'_>,
+        settings: SweepSettings,
+    ) -> Vec<Effect> {
+        let rows = SweepRows::default();
+        let told = rows.clone();
+        let effects = start_with_input(work, |input| {
+            JobKind::Sweep(SweepInput {
+                parts: input.parts,
+                settings,
+                rows,
+            })
+        });
+        if !effects.is_empty() {
+            let n_triangles = work
+                .document
+                .part(Role::Stamped)
+                .map_or(0, |part| part.loaded.report.n_triangles);
+            let begun = Sweep {
+                n_triangles,
+                ..Sweep::default()
+            };
+            self.sweep_so_far = Some((begun, told));
+            work.follow(FollowUp::SweepBegun);
+        }
+        effects
+    }
+
+    /// Takes over the rows that the running sweep has measured since the last look.
+    pub(in crate::app) fn take_sweep_rows(&mut self) {
+        if let Some((sweep, rows)) = &mut self.sweep_so_far {
+            for row in rows.take() {
+                sweep.push(row);
+            }
+        }
+    }
+
+    pub(in crate::app) fn take_swept(
+        &mut self,
+        work: &mut Work<'_>,
+        table: Arc<Sweep>,
+        took: Duration,
+    ) {
+        self.sweep = Some(table.into());
+        self.sweep_so_far = None;
+        work.follow(FollowUp::SweepEnded);
+        work.log_at(
+            NoticeLevel::Success,
+            "sweep",
+            None,
+            "sweep finished",
+            Some(took),
+        );
+    }
+}

@@ -1,0 +1,69 @@
+//! What can happen to the pose by hand.
+
+use super::{Axis, AxisFrame, ModalInput, MotionKind, MoveFrame};
+use crate::app::GestureId;
+use crate::geometry::Similarity;
+
+/// Moves of the stamped part by hand. The crash part has no pose.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MoveCommand {
+    /// While dragging: the motion since the grab, in the space of the crash model.
+    Drag {
+        /// The drag.
+        gesture: GestureId,
+        /// Motion since the grab.
+        delta: Similarity,
+        /// Name of the undo step.
+        name: String,
+    },
+    /// The drag ended.
+    EndDrag,
+    /// The drag is taken back.
+    AbandonDrag(GestureId),
+    /// A typed distance along an axis of a frame.
+    Translate {
+        /// Which axis.
+        axis: Axis,
+        /// Of which frame.
+        frame: AxisFrame,
+        /// In lengths of the crash model.
+        distance: f64,
+    },
+    /// A typed angle about an axis of a frame through the part's centre.
+    Rotate {
+        /// Which axis.
+        axis: Axis,
+        /// Of which frame.
+        frame: AxisFrame,
+        /// In degrees.
+        degrees: f64,
+    },
+    /// A whole new pose, for example from a field.
+    SetPose {
+        /// The pose.
+        crash_from_stamped: Similarity,
+        /// Name of the undo step.
+        name: String,
+    },
+    /// A pose as text, in any common layout.
+    Paste(String),
+    /// Rotate by 180° about one of the part's own axes through its centre.
+    Flip(Axis),
+    /// Make the centres of the two boxes coincide.
+    AlignCenters,
+    /// Back to the pose as loaded.
+    Reset,
+    /// Begin to move or rotate by keys.
+    Begin {
+        /// Move or rotate.
+        kind: MotionKind,
+        /// Pivot and axes now.
+        frame: MoveFrame,
+    },
+    /// An input to the move by keys.
+    Input(ModalInput),
+    /// Show the gizmo or not.
+    ToggleGizmo,
+    /// Whose axes gizmo and keys use.
+    SetAxes(AxisFrame),
+}

@@ -1,0 +1,203 @@
+//! Pairs of points that the user picked on both parts, and the pose they stand for.
+
+mod apply;
+mod command;
+
+pub use command::PairCommand;
+use serde::{Deserialize, Serialize};
+
+use super::{AppState, Document, JobBoard, Reason};
+use crate::geometry::Point3;
+use crate::geometry::serial::xyz;
+use crate::registration::{
+    PairDoubt, PointPairFit, RegistrationError, StartMethod, fit_point_pairs,
+};
+use crate::role::{PerRole, Role};
+
+/// What a picked point is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PickKind {
+    /// A node, with its number in the deck where it has one.
+    Node(Option<u64>),
+    /// The middle of a round hole.
+    HoleCenter,
+    /// A corner of the rim.
+    Corner,
+    /// A point of the surface.
+    Surface,
+}
+
+impl PickKind {
+    /// In one word, for narrow columns.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Node(_) => "node",
+            Self::HoleCenter => "hole",
+            Self::Corner => "corner",
+            Self::Surface => "point",
+        }
+    }
+
+    /// In words.
+    pub fn words(self) -> String {
+        match self {
+            Self::Node(Some(id)) => format!("node {id}"),
+            Self::Node(None) => "node".to_owned(),
+            Self::HoleCenter => "hole centre".to_owned(),
+            Self::Corner => "corner".to_owned(),
+            Self::Surface => "point".to_owned(),
+        }
+    }
+}
+
+/// A picked point.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PickedPoint {
+    /// Where, in the space of its own part (for the crash part that is the crash model's).
+    #[serde(with = "xyz")]
+    pub point: Point3,
+    /// What is there.
+    pub kind: PickKind,
+}
+
+/// One point on each part that belong together; the last pair may lack one.
+pub type PointPair = PerRole<Option<PickedPoint>>;
+
+/// The pairs with the parts they were picked on.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PointPairs {
+    /// The loaded parts, as in [`crate::jobs::Stamp`].
+    pub parts: PerRole<u64>,
+    /// In the order they were picked.
+    pub pairs: Vec<PointPair>,
+}
+
+/// The tool that picks pairs, while it is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PairTool {
+    /// A point that is picked again.
+    pub repick: Option<(usize, Role)>,
+}
+
+/// The tool that picks pairs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PairsState {
+    /// Where it stands, while it is on.
+    pub tool: Option<PairTool>,
+}
+
+/// What picked pairs say, or why they say nothing yet.
+pub type PairVerdict = Result<PointPairFit, String>;
+
+impl Document {
+    /// The pairs, if they belong to the parts that are loaded.
+    pub fn current_pairs(&self) -> &[PointPair] {
+        let known = &self.pairs;
+        if known.parts == self.stamp().parts {
+            &known.pairs
+        } else {
+            &[]
+        }
+    }
+
+    /// The best motion for the whole pairs; else what is missing, as a sentence.
+    pub fn pair_fit(&self) -> PairVerdict {
+        let whole = self.current_pairs().iter();
+        let whole = whole.filter_map(|pair| Some((pair.stamped?.point, pair.crash?.point)));
+        let (source, target): (Vec<_>, Vec<_>) = whole.unzip();
+        fit_point_pairs(&source, &target).map_err(|error| match error {
+            RegistrationError::TooFewPairs { n_pairs } => match 3 - n_pairs.min(3) {
+                3 => "three pairs of points fix a pose: pick the first one".to_owned(),
+                1 => "one more pair is needed".to_owned(),
+                n => format!("{n} more pairs are needed"),
+            },
+            RegistrationError::CollinearPoints => {
+                "the points lie on one line, so the turn about it is free: pick one beside it"
+                    .to_owned()
+            }
+            RegistrationError::CoincidentPoints => {
+                "the points lie in one place: pick them far apart".to_owned()
+            }
+            other => other.to_string(),
+        })
+    }
+
+    /// What is doubtful about the pairs, as a sentence.
+    pub fn pair_doubt_text(&self, fit: &PointPairFit) -> Option<String> {
+        Some(match fit.doubt? {
+            PairDoubt::Far { pair, distance } => format!(
+                "Pair {} lies {} from where the others put it: pick it again or delete it.",
+                pair + 1,
+                self.length_text(distance)
+            ),
+            PairDoubt::Exchanged {
+                pairs: [a, b],
+                rmse,
+            } => format!(
+                "The points of pairs {} and {} may be swapped: exchanged, all pairs fit within {}.",
+                a + 1,
+                b + 1,
+                self.length_text(rmse)
+            ),
+            PairDoubt::Mirrored { .. } => {
+                "The pairs fit a mirrored part much better: is this the opposite hand?".to_owned()
+            }
+        })
+    }
+
+    /// `Ok` unless the match begins with pairs that are not there.
+    pub(in crate::app) fn has_start_pose(&self) -> Result<(), Reason> {
+        let method = self.recipe.settings.starts.method;
+        let has = method != StartMethod::GivenPoses || self.pair_fit().is_ok();
+        has.then_some(()).ok_or(Reason(
+            "Pick three pairs of points first, or choose another start.",
+        ))
+    }
+
+    /// `Ok` if the pairs fix a pose and the part may be moved.
+    pub fn can_fit_pairs(&self, jobs: &JobBoard) -> Result<(), Reason> {
+        self.can_move(jobs)?;
+        match self.pair_fit() {
+            Ok(_) => Ok(()),
+            Err(_) if self.current_pairs().len() < 3 => {
+                Err(Reason("Pick three pairs of points first."))
+            }
+            Err(_) => Err(Reason(
+                "The pairs do not fix a pose: pick one beside the others.",
+            )),
+        }
+    }
+}
+
+impl AppState {
+    /// The pair and the part the next click is for, if the tool is on.
+    pub fn next_pick(&self) -> Option<(usize, Role)> {
+        self.pairs.next_pick(&self.document)
+    }
+}
+
+impl PairsState {
+    /// The pair and the part the next click is for, if the tool is on. In its own window each part may
+    /// also be clicked out of turn.
+    fn next_pick(&self, document: &Document) -> Option<(usize, Role)> {
+        let tool = self.tool?;
+        if let Some(repick) = tool.repick {
+            return Some(repick);
+        }
+        let pairs = document.current_pairs();
+        let n_pairs = pairs.len();
+        Some(match pairs.last() {
+            Some(last) if last.crash.is_none() => (n_pairs - 1, Role::Crash),
+            Some(last) if last.stamped.is_none() => (n_pairs - 1, Role::Stamped),
+            _ => (n_pairs, Role::Crash),
+        })
+    }
+
+    /// The pair a click on a part goes to. Out of turn it replaces the point that is there.
+    fn place_of_pick(&self, document: &Document, role: Role) -> Option<usize> {
+        let (pair, asked) = self.next_pick(document)?;
+        let is_repick = self.tool?.repick.is_some();
+        (asked == role || !is_repick).then_some(pair)
+    }
+}

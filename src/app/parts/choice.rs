@@ -1,0 +1,184 @@
+//! What the choice, look and visibility of parts change.
+
+use super::{PartCommand, PartRef, PartsState};
+use crate::app::work::Work;
+use crate::app::{Effect, Part};
+use crate::formats::Selection;
+use crate::role::Role;
+
+impl PartsState {
+    pub(in crate::app) fn apply_part(
+        &mut self,
+        work: &mut Work<'_>,
+        command: PartCommand,
+    ) -> Vec<Effect> {
+        match command {
+            PartCommand::Select(part) => {
+                let known = part.filter(|part| self.knows(work, *part));
+                self.selected = known.into_iter().collect();
+            }
+            PartCommand::ToggleSelected(part) => {
+                if !self.selected.remove(&part) && self.knows(work, part) {
+                    self.selected.insert(part);
+                }
+            }
+            PartCommand::Hover(part) => self.hovered = part,
+            PartCommand::SetVisible(part, is_visible) => self.set_visible(work, part, is_visible),
+            PartCommand::ShowOnly(part) => self.show_only(work, part),
+            PartCommand::HideSelected => self.hide_selected(work),
+            PartCommand::ShowOnlySelected => self.show_only_selected(work),
+            PartCommand::ShowAll => self.show_all(work),
+            PartCommand::SetColor(part, color) => self.set_color(work, part, color),
+            PartCommand::OrderLike(to) => self.order_like(work.document, to),
+            PartCommand::SetUsed(part, is_used) => return self.set_used(work, part, is_used),
+            PartCommand::UseOnly(part) => {
+                return self.use_parts(work, part.role, Selection::Parts(vec![part.id]));
+            }
+            PartCommand::UseAll(role) => return self.use_parts(work, role, Selection::All),
+        }
+        Vec::new()
+    }
+
+    fn knows(&self, work: &Work<'_>, part: PartRef) -> bool {
+        let has = |p: &Part| p.facts.parts.iter().any(|row| row.id == part.id);
+        work.document.part(part.role).is_some_and(has)
+    }
+
+    /// Title of a part of a deck, or its number.
+    fn part_name(&self, work: &Work<'_>, part: PartRef) -> String {
+        let rows = work.document.part(part.role).map(|p| &p.facts.parts);
+        let row = rows.and_then(|rows| rows.iter().find(|row| row.id == part.id));
+        match row {
+            Some(row) if !row.title.is_empty() => row.title.clone(),
+            _ => format!("part {}", part.id),
+        }
+    }
+
+    fn change_part(
+        &mut self,
+        work: &mut Work<'_>,
+        name: String,
+        role: Role,
+        change: impl FnOnce(&mut Part),
+    ) {
+        work.commit(name, |document| {
+            if let Some(part) = document.parts.get_mut(role) {
+                change(part);
+            }
+        });
+    }
+
+    fn set_visible(&mut self, work: &mut Work<'_>, part: PartRef, is_visible: bool) {
+        if !self.knows(work, part) {
+            return;
+        }
+        let verb = if is_visible { "Show" } else { "Hide" };
+        let name = format!("{verb} {}", self.part_name(work, part));
+        self.change_part(work, name, part.role, |p| {
+            if is_visible {
+                p.hidden.remove(&part.id);
+            } else {
+                p.hidden.insert(part.id);
+            }
+        });
+    }
+
+    fn show_only(&mut self, work: &mut Work<'_>, part: PartRef) {
+        if !self.knows(work, part) {
+            return;
+        }
+        let name = format!("Isolate {}", self.part_name(work, part));
+        self.change_part(work, name, part.role, |p| {
+            let others = p.facts.parts.iter().map(|row| row.id);
+            p.hidden = others.filter(|id| *id != part.id).collect();
+        });
+    }
+
+    fn hide_selected(&mut self, work: &mut Work<'_>) {
+        let selected = self.selected.clone();
+        let name = format!("Hide {}", self.selection_name(work));
+        work.commit(name, |document| {
+            for at in selected {
+                if let Some(part) = document.parts.get_mut(at.role) {
+                    part.hidden.insert(at.id);
+                }
+            }
+        });
+    }
+
+    /// Models of which nothing is selected stay as they are.
+    fn show_only_selected(&mut self, work: &mut Work<'_>) {
+        let selected = self.selected.clone();
+        let name = format!("Isolate {}", self.selection_name(work));
+        work.commit(name, |document| {
+            for role in Role::ALL {
+                let is_kept = |id| selected.contains(&PartRef { role, id });
+                let part = document.parts.get_mut(role).as_mut();
+                let has_some = selected.iter().any(|at| at.role == role);
+                if let Some(part) = part.filter(|_| has_some) {
+                    let all = part.facts.parts.iter().map(|row| row.id);
+                    part.hidden = all.filter(|id| !is_kept(*id)).collect();
+                }
+            }
+        });
+    }
+
+    /// What is selected, for the names of steps.
+    fn selection_name(&self, work: &Work<'_>) -> String {
+        let mut selected = self.selected.iter();
+        match (selected.next(), selected.next()) {
+            (Some(part), None) => self.part_name(work, *part),
+            _ => format!("{} parts", self.selected.len()),
+        }
+    }
+
+    fn show_all(&mut self, work: &mut Work<'_>) {
+        work.commit("Show all parts", |document| {
+            for role in Role::ALL {
+                if let Some(part) = document.parts.get_mut(role) {
+                    part.hidden.clear();
+                }
+            }
+        });
+    }
+
+    fn set_color(&mut self, work: &mut Work<'_>, part: PartRef, color: Option<[u8; 3]>) {
+        if !self.knows(work, part) {
+            return;
+        }
+        let name = format!("Colour of {}", self.part_name(work, part));
+        self.change_part(work, name, part.role, |p| {
+            match color {
+                Some(color) => p.colors.insert(part.id, color),
+                None => p.colors.remove(&part.id),
+            };
+        });
+    }
+
+    fn set_used(&mut self, work: &mut Work<'_>, part: PartRef, is_used: bool) -> Vec<Effect> {
+        let Some(loaded) = work.document.part(part.role) else {
+            return Vec::new();
+        };
+        let mut used = loaded.facts.used.clone();
+        let has_changed = if is_used {
+            used.insert(part.id)
+        } else {
+            used.remove(&part.id)
+        };
+        if !has_changed || used.is_empty() {
+            return Vec::new();
+        }
+        self.use_parts(
+            work,
+            part.role,
+            Selection::Parts(used.into_iter().collect()),
+        )
+    }
+
+    fn use_parts(&mut self, work: &mut Work<'_>, role: Role, selection: Selection) -> Vec<Effect> {
+        if work.is_unlocked().is_err() {
+            return Vec::new();
+        }
+        self.reselect(work, role, |settings| settings.selection = selection)
+    }
+}

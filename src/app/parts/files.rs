@@ -1,0 +1,392 @@
+//! What opening, swapping and reloading of files change.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::{FileCommand, Guess, PartsState};
+use crate::app::follow_up::FollowUp;
+use crate::app::work::Work;
+use crate::app::{Action, Effect, NoticeLevel, Part, Settings, StampedPose, facts};
+use crate::formats::ReadOptions;
+use crate::jobs::{JobKey, JobKind, PartFacts, PartSource, ProjectRequest};
+use crate::pipeline::load::{LoadSettings, LoadedPart};
+use crate::pipeline::project::is_project;
+use crate::role::{PerRole, Role};
+
+/// A part that was read, or made again from the model in memory.
+pub(in crate::app) struct NewPart {
+    /// What it is taken for.
+    pub role: Role,
+    /// The surface that was made.
+    pub part: Arc<LoadedPart>,
+    /// What was counted and measured about it.
+    pub facts: Arc<PartFacts>,
+    /// How long it took.
+    pub took: Duration,
+}
+
+impl PartsState {
+    pub(in crate::app) fn apply_file(
+        &mut self,
+        work: &mut Work<'_>,
+        command: FileCommand,
+    ) -> Vec<Effect> {
+        if work.is_unlocked().is_err() {
+            return Vec::new();
+        }
+        match command {
+            FileCommand::AskOpen(role) => vec![Effect::AskOpen(role)],
+            FileCommand::Open { paths, role } => self.open(work, paths, role),
+            FileCommand::OpenExample => self.open_example(work),
+            FileCommand::Reload(role) => self.reload(work, role),
+            FileCommand::ReloadAll => Role::ALL
+                .into_iter()
+                .flat_map(|role| self.reload(work, role))
+                .collect(),
+            FileCommand::Close(role) => self.close(work, role),
+            FileCommand::Swap => self.swap(work),
+            FileCommand::SetLengthFactor { role, factor } => {
+                self.set_length_factor(work, role, factor)
+            }
+            FileCommand::SetUnits { role, units } => self.set_units(work, role, units),
+            FileCommand::DismissUnitHint => self.dismiss_unit_hint(work),
+            FileCommand::ForgetRecent(path) => {
+                work.settings.recent.retain(|known| *known != path);
+                work.settings.opened.remove(&path);
+                vec![Effect::SaveSettings]
+            }
+        }
+    }
+
+    fn open(
+        &mut self,
+        work: &mut Work<'_>,
+        paths: Vec<PathBuf>,
+        role: Option<Role>,
+    ) -> Vec<Effect> {
+        if let Some(path) = paths.iter().find(|path| is_project(path)) {
+            work.follow(FollowUp::OpenProject(ProjectRequest {
+                path: path.clone(),
+                ..ProjectRequest::default()
+            }));
+            return Vec::new();
+        }
+        let n_paths = paths.len();
+        if n_paths > 2 {
+            let text = format!("{n_paths} files were dropped; the first two are opened");
+            work.log_at(NoticeLevel::Note, "load", None, text, None);
+        }
+        let first = role.unwrap_or_else(|| self.role_to_fill(work));
+        let roles = [first, first.other()];
+        if role.is_none() || n_paths > 1 {
+            self.guess.n_pending = n_paths.min(2);
+        } else {
+            self.guess = Guess::default();
+        }
+        let files = paths.into_iter().zip(roles);
+        files
+            .flat_map(|(path, role)| {
+                self.load(
+                    work,
+                    role,
+                    PartSource::File(path),
+                    usual_load_settings(work.settings),
+                )
+            })
+            .collect()
+    }
+
+    /// The part a file without a role is first taken for.
+    fn role_to_fill(&self, work: &Work<'_>) -> Role {
+        let is_crash_there = work.document.part(Role::Crash).is_some();
+        let is_stamped_there = work.document.part(Role::Stamped).is_some();
+        if is_crash_there && !is_stamped_there {
+            Role::Stamped
+        } else {
+            Role::Crash
+        }
+    }
+
+    fn open_example(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
+        self.guess = Guess::default();
+        let example = |role| (role, PartSource::Example);
+        Role::ALL
+            .map(example)
+            .into_iter()
+            .flat_map(|(role, source)| self.load(work, role, source, LoadSettings::default()))
+            .collect()
+    }
+
+    /// A newer load of a part ends the older one.
+    fn load(
+        &mut self,
+        work: &mut Work<'_>,
+        role: Role,
+        source: PartSource,
+        settings: LoadSettings,
+    ) -> Vec<Effect> {
+        let mut effects = Vec::new();
+        for key in [JobKey::Load(role), JobKey::Reselect(role)] {
+            if work.jobs.is_active(key) {
+                effects.extend(work.cancel(key));
+            }
+        }
+        effects.push(work.start(JobKind::Load {
+            role,
+            source,
+            settings,
+        }));
+        effects
+    }
+
+    fn reload(&mut self, work: &mut Work<'_>, role: Role) -> Vec<Effect> {
+        let Some(part) = work.document.part(role) else {
+            return Vec::new();
+        };
+        let (source, mut settings) = (part.source.clone(), part.loaded.settings.clone());
+        // A file that met the limit is read again with a higher one.
+        let limit = settings.read.limit().max(work.settings.read_limit);
+        settings.read = settings.read.with_limit(limit);
+        self.guess = Guess::default();
+        self.load(work, role, source, settings)
+    }
+
+    fn close(&mut self, work: &mut Work<'_>, role: Role) -> Vec<Effect> {
+        let name = format!("Close the {} part", role.word());
+        let revision = work.history.next_revision();
+        work.previews.drop_all();
+        work.commit(name, |document| {
+            *document.parts.get_mut(role) = None;
+            document.result = None;
+            document.pose = StampedPose {
+                revision,
+                ..StampedPose::default()
+            };
+        });
+        Vec::new()
+    }
+
+    fn swap(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
+        let revision = work.history.next_revision();
+        work.previews.drop_all();
+        let has_swapped = work.commit("Swap the parts", |document| {
+            if document.parts.crash.is_some() || document.parts.stamped.is_some() {
+                document.parts.swap();
+                document.result = None;
+                document.pose = StampedPose {
+                    revision,
+                    ..StampedPose::default()
+                };
+            }
+        });
+        if has_swapped {
+            self.selected.clear();
+            work.follow(FollowUp::PartsSwapped);
+            work.log_step("load", None, "crash and stamped part exchanged", None);
+        }
+        Vec::new()
+    }
+
+    fn set_length_factor(&mut self, work: &mut Work<'_>, role: Role, factor: f64) -> Vec<Effect> {
+        self.reselect(work, role, |settings| settings.length_factor = factor)
+    }
+
+    /// What became of a part that took another selection, factor or unit.
+    fn reselect_name(
+        &self,
+        work: &Work<'_>,
+        role: Role,
+        part: &LoadedPart,
+        facts: &PartFacts,
+    ) -> String {
+        let old_factor = work.document.part(role).map(Part::length_factor);
+        let factor = part.settings.length_factor;
+        match part.settings.units {
+            _ if old_factor == Some(factor) => {
+                format!("Match {}", facts::counted(facts.used.len(), "part"))
+            }
+            Some(units) => format!("{} is in {}", part.file_name(), units.label()),
+            None => format!("Lengths × {factor}"),
+        }
+    }
+
+    /// Makes the surface of a part again from the model in memory.
+    pub(super) fn reselect(
+        &mut self,
+        work: &mut Work<'_>,
+        role: Role,
+        change: impl FnOnce(&mut LoadSettings),
+    ) -> Vec<Effect> {
+        let Some(part) = work.document.part(role) else {
+            return Vec::new();
+        };
+        let loaded = part.loaded.to_arc();
+        let mut settings = loaded.settings.clone();
+        change(&mut settings);
+        if settings == loaded.settings {
+            return Vec::new();
+        }
+        let mut effects = work.cancel(JobKey::Reselect(role));
+        effects.push(work.start(JobKind::Reselect {
+            role,
+            part: loaded,
+            settings,
+        }));
+        effects
+    }
+
+    /// A part was read: into its place with it, then the questions that follow.
+    pub(in crate::app) fn take_loaded(
+        &mut self,
+        work: &mut Work<'_>,
+        source: PartSource,
+        new: NewPart,
+    ) -> Vec<Effect> {
+        let NewPart {
+            role,
+            part,
+            facts,
+            took,
+        } = new;
+        let is_guess = self.guess.n_pending > 0;
+        let role = if is_guess && self.belongs_other_side(work, role, &facts) {
+            role.other()
+        } else {
+            role
+        };
+        work.log_step(
+            "load",
+            Some(role),
+            facts::load_line(&part, &facts),
+            Some(took),
+        );
+        if let Some((level, line)) = facts::diagnostics_line(&part) {
+            work.log_at(level, "load", Some(role), line, None);
+        }
+        let now = work.unix_now();
+        work.settings.remember(&source, now);
+        let part = self.with_remembered_units(work, part);
+        self.place(work, role, source, part, facts);
+        if is_guess {
+            self.guess.n_pending -= 1;
+            if self.guess.n_pending == 0 {
+                self.settle_guess(work);
+            }
+        }
+        work.follow(FollowUp::PartLoaded(role));
+        self.refresh_likeness(work.document);
+        let mut effects = vec![Effect::SaveSettings];
+        effects.extend(self.settle_length_factor(work));
+        effects
+    }
+
+    /// A single file without a role whose content says stamped, and nothing stamped there yet.
+    fn belongs_other_side(&self, work: &Work<'_>, role: Role, facts: &PartFacts) -> bool {
+        let is_single = self.guess.n_pending == 1;
+        let is_free = work.document.part(role.other()).is_none();
+        is_single && is_free && role == Role::Crash && facts.formed > 0
+    }
+
+    fn place(
+        &mut self,
+        work: &mut Work<'_>,
+        role: Role,
+        source: PartSource,
+        part: Arc<LoadedPart>,
+        facts: Arc<PartFacts>,
+    ) {
+        let name = format!("Load {}", part.file_name());
+        let (revision, pose_revision) =
+            (work.history.next_revision(), work.history.next_revision());
+        work.previews.drop_all();
+        work.commit(name, |document| {
+            let old = document.parts.get_mut(role);
+            let same = old.take().filter(|old| old.source == source);
+            let mut new = Part::new(part, facts, source, revision);
+            if let Some(same) = same {
+                // The same file again: what the user chose about it stays, results go stale.
+                new.hidden = same.hidden;
+                new.colors = same.colors;
+                new.wanted_level = same.wanted_level;
+            } else {
+                document.result = None;
+                document.pose = StampedPose {
+                    revision: pose_revision,
+                    ..StampedPose::default()
+                };
+            }
+            *document.parts.get_mut(role) = Some(new);
+        });
+    }
+
+    /// Both files are there: the one that looks more like the end of a forming simulation is the
+    /// stamped part.
+    fn settle_guess(&mut self, work: &mut Work<'_>) {
+        let Some(PerRole { crash, stamped }) = work.document.both() else {
+            return;
+        };
+        if crash.facts.formed > stamped.facts.formed {
+            self.swap(work);
+        }
+        self.tell_guess(work);
+    }
+
+    /// What was guessed, why, and the way out.
+    fn tell_guess(&mut self, work: &mut Work<'_>) {
+        let Some(PerRole { stamped, .. }) = work.document.both() else {
+            return;
+        };
+        let why = match stamped.facts.formed {
+            0 => "no file says which it is",
+            1 => "it is one part with a thickness for each element",
+            _ => "it carries forming results",
+        };
+        let text = format!(
+            "{} is taken for the stamped part: {why}",
+            stamped.loaded.file_name()
+        );
+        work.log_step("load", None, text.clone(), None);
+        let is_muted = work.settings.muted.contains(&NoticeLevel::Note);
+        work.log.notices.offer(
+            NoticeLevel::Note,
+            text,
+            (work.log.now, is_muted),
+            Action::Swap,
+        );
+    }
+
+    /// A part took another selection or unit.
+    pub(in crate::app) fn take_reselected(&mut self, work: &mut Work<'_>, new: NewPart) {
+        let NewPart {
+            role,
+            part,
+            facts,
+            took,
+        } = new;
+        let line = facts::load_line(&part, &facts);
+        let revision = work.history.next_revision();
+        let name = self.reselect_name(work, role, &part, &facts);
+        let gesture = self.unit_gesture.take();
+        work.previews.drop_all();
+        work.commit_in(name, gesture, |document| {
+            if let Some(old) = document.parts.get_mut(role) {
+                old.loaded = part.into();
+                old.facts = facts.into();
+                old.revision = revision;
+                old.level = None;
+            }
+        });
+        work.log_step("select", Some(role), line, Some(took));
+        self.refresh_likeness(work.document);
+        work.follow(FollowUp::PartReselected(role));
+    }
+}
+
+/// How a file is read that was not read before.
+fn usual_load_settings(settings: &Settings) -> LoadSettings {
+    LoadSettings {
+        read: ReadOptions::default().with_limit(settings.read_limit),
+        ..LoadSettings::default()
+    }
+}

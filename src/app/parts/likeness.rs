@@ -1,0 +1,105 @@
+//! The parts of the decks in the order of their likeness to one of them.
+
+use std::collections::BTreeMap;
+
+use super::{PartRef, PartsState};
+use crate::app::{AppState, Document};
+use crate::pipeline::likeness::{Moments, Signature};
+use crate::role::{PerRole, Role};
+
+/// A crash model of so many parts is sorted as soon as the stamped part is known.
+const MANY: usize = 20;
+
+/// What parts are compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LikeWhat {
+    /// All parts of a deck that are matched, taken together.
+    Used(Role),
+    /// One part of a deck.
+    Part(PartRef),
+}
+
+impl LikeWhat {
+    /// The deck it belongs to; the parts of the other deck are compared with it.
+    pub fn role(self) -> Role {
+        match self {
+            Self::Used(role) => role,
+            Self::Part(part) => part.role,
+        }
+    }
+}
+
+/// How like each part of one deck is to something of the other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Likeness {
+    /// What they are compared with.
+    pub to: LikeWhat,
+    /// From 1, the same, towards 0; by id.
+    pub of_part: BTreeMap<u64, f64>,
+    /// The ids, the most alike first; those without area come last.
+    pub order: Vec<u64>,
+    parts: PerRole<u64>,
+}
+
+impl AppState {
+    /// The likenesses that the part list is sorted by, if they are those of the loaded parts.
+    pub fn current_likeness(&self) -> Option<&Likeness> {
+        let parts = self.document.stamp().parts;
+        self.parts.likeness.as_ref().filter(|l| l.parts == parts)
+    }
+}
+
+impl PartsState {
+    pub(super) fn order_like(&mut self, document: &Document, to: Option<LikeWhat>) {
+        self.likeness = to.and_then(|to| document.likeness_to(to));
+    }
+
+    /// After a part came or went: the same comparison again, or the obvious one for a whole car.
+    pub(super) fn refresh_likeness(&mut self, document: &Document) {
+        let is_car = document
+            .part(Role::Crash)
+            .is_some_and(|part| part.facts.parts.len() > MANY);
+        let of_car = is_car.then_some(LikeWhat::Used(Role::Stamped));
+        let to = self.likeness.as_ref().map(|l| l.to).or(of_car);
+        self.order_like(document, to);
+    }
+}
+
+impl Document {
+    /// O(parts · log parts).
+    fn likeness_to(&self, to: LikeWhat) -> Option<Likeness> {
+        let given = self.signature(to)?;
+        let facts = &self.part(to.role().other())?.facts;
+        let mut of_part = BTreeMap::new();
+        for row in &facts.parts {
+            let moments = facts.moments.get(&row.id);
+            if let Some(signature) = moments.and_then(|m| m.signature(row.thickness)) {
+                of_part.insert(row.id, given.likeness(&signature));
+            }
+        }
+        let rank = |id: &u64| of_part.get(id).copied().unwrap_or(-1.0);
+        let mut order: Vec<u64> = facts.parts.iter().map(|row| row.id).collect();
+        order.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
+        Some(Likeness {
+            to,
+            of_part,
+            order,
+            parts: self.stamp().parts,
+        })
+    }
+
+    fn signature(&self, what: LikeWhat) -> Option<Signature> {
+        let facts = &self.part(what.role())?.facts;
+        match what {
+            LikeWhat::Used(_) => {
+                let used = facts.used.iter().filter_map(|id| facts.moments.get(id));
+                let together = used.fold(Moments::default(), |sum, m| sum.and(m));
+                together.signature(facts.thickness)
+            }
+            LikeWhat::Part(part) => {
+                let row = facts.parts.iter().find(|row| row.id == part.id)?;
+                facts.moments.get(&part.id)?.signature(row.thickness)
+            }
+        }
+    }
+}

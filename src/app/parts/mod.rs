@@ -1,0 +1,66 @@
+//! The two files and the parts in them: which are loaded, chosen, matched and alike, in which units.
+
+mod choice;
+mod command;
+mod files;
+pub mod filter;
+mod likeness;
+mod set_units;
+mod unit_memory;
+mod units;
+
+use std::collections::BTreeSet;
+
+pub use command::{FileCommand, PartCommand};
+pub(super) use files::NewPart;
+pub use likeness::{LikeWhat, Likeness};
+pub use unit_memory::UnitMemory;
+pub use units::UnitHint;
+
+use super::{Document, GestureId};
+use crate::role::{PerRole, Role};
+
+/// A part of a deck.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PartRef {
+    /// In which of the two models.
+    pub role: Role,
+    /// The deck's number.
+    pub id: u64,
+}
+
+/// What is chosen among the parts, and what is still asked about the files.
+#[derive(Debug, Clone, Default)]
+pub struct PartsState {
+    /// The selected parts of the decks.
+    pub selected: BTreeSet<PartRef>,
+    /// The part of a deck under the pointer, in the tree or in a window.
+    pub hovered: Option<PartRef>,
+    /// What the part list is sorted by, if not the order of the files.
+    likeness: Option<Likeness>,
+    guess: Guess,
+    /// The parts for which the hint about units was answered.
+    unit_hint_dismissed_for: Option<PerRole<u64>>,
+    /// The undo step of a change of units that a new factor belongs to.
+    unit_gesture: Option<GestureId>,
+}
+
+/// Roles that were not said but have to be found out from the content.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+struct Guess {
+    /// Loads of this guess that have not ended.
+    n_pending: usize,
+}
+
+impl PartsState {
+    /// A file could not be read, or was not waited for.
+    pub(super) fn load_ended(&mut self) {
+        self.guess.n_pending = self.guess.n_pending.saturating_sub(1);
+    }
+
+    /// What is selected may be gone after a step back.
+    pub(super) fn forget_missing(&mut self, document: &Document) {
+        let is_there = |part: &PartRef| document.part(part.role).is_some();
+        self.selected.retain(is_there);
+    }
+}

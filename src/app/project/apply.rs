@@ -1,0 +1,157 @@
+//! What saving of projects changes, and the questions before one is opened.
+
+use std::path::PathBuf;
+
+use super::{ProjectCommand, ProjectState};
+use crate::app::follow_up::FollowUp;
+use crate::app::work::Work;
+use crate::app::{Dialog, Document, Effect, NoticeLevel};
+use crate::jobs::{JobKind, Located, ProjectRequest};
+use crate::pipeline::project::{EXTENSION, is_project};
+use crate::role::Role;
+
+impl ProjectState {
+    /// `dialog` is what lies over the window.
+    pub(in crate::app) fn apply(
+        &mut self,
+        work: &mut Work<'_>,
+        command: ProjectCommand,
+        dialog: &mut Option<Dialog>,
+    ) -> Vec<Effect> {
+        match command {
+            ProjectCommand::AskOpen => vec![Effect::AskOpenProject],
+            ProjectCommand::Open(request) => self.open(work, request, dialog),
+            ProjectCommand::Restore(path) => {
+                let request = ProjectRequest {
+                    path,
+                    is_autosave: true,
+                    ..ProjectRequest::default()
+                };
+                self.open(work, request, dialog)
+            }
+            ProjectCommand::AskLocate(role) => vec![Effect::AskLocate(role)],
+            ProjectCommand::Locate(role, located) => self.locate(work, role, located, dialog),
+            ProjectCommand::GiveUp => {
+                self.missing = None;
+                *dialog = None;
+                Vec::new()
+            }
+            ProjectCommand::Save => self.save(work),
+            ProjectCommand::SaveAs => self.ask_save(work.document),
+            ProjectCommand::Write(path) => write(work, path),
+            ProjectCommand::Written(path, document) => self.written(work, path, *document),
+            ProjectCommand::NotWritten => {
+                self.quits_when_saved = false;
+                Vec::new()
+            }
+            ProjectCommand::Autosave => {
+                work.follow(FollowUp::Autosave);
+                Vec::new()
+            }
+            ProjectCommand::NotifyRecovered(sessions) => {
+                self.sessions = sessions;
+                Vec::new()
+            }
+            ProjectCommand::DismissRecovery => self.dismiss_recovery(),
+            ProjectCommand::SaveAndQuit => {
+                *dialog = None;
+                self.quits_when_saved = true;
+                self.save(work)
+            }
+            ProjectCommand::QuitUnsaved => {
+                *dialog = None;
+                vec![Effect::SaveSettings, Effect::Quit]
+            }
+        }
+    }
+
+    pub(super) fn dismiss_recovery(&mut self) -> Vec<Effect> {
+        for session in &mut self.sessions {
+            session.is_lost = false;
+        }
+        vec![Effect::DismissRecovery]
+    }
+
+    fn save(&self, work: &mut Work<'_>) -> Vec<Effect> {
+        match self.path.clone() {
+            Some(path) => write(work, path),
+            None => self.ask_save(work.document),
+        }
+    }
+
+    fn ask_save(&self, document: &Document) -> Vec<Effect> {
+        let known = self.path.clone();
+        let suggested = known.unwrap_or_else(|| suggested_path(document));
+        vec![Effect::AskSaveProject(suggested)]
+    }
+
+    fn written(&mut self, work: &mut Work<'_>, path: PathBuf, document: Document) -> Vec<Effect> {
+        let text = format!("project saved: {}", path.display());
+        work.log_at(NoticeLevel::Success, "project", None, text, None);
+        self.saved = Some(document);
+        let now = work.unix_now();
+        work.settings.remember_path(&path, now);
+        self.path = Some(path);
+        if std::mem::take(&mut self.quits_when_saved) {
+            work.follow(FollowUp::Quit);
+        }
+        vec![Effect::SaveSettings]
+    }
+
+    pub(in crate::app) fn open(
+        &mut self,
+        work: &mut Work<'_>,
+        request: ProjectRequest,
+        dialog: &mut Option<Dialog>,
+    ) -> Vec<Effect> {
+        if work.is_unlocked().is_err() {
+            return Vec::new();
+        }
+        self.missing = None;
+        *dialog = None;
+        vec![work.start(JobKind::OpenProject(request))]
+    }
+
+    /// A file that was not found is somewhere else, or done without; when none is left to be asked
+    /// for, the project is opened.
+    fn locate(
+        &mut self,
+        work: &mut Work<'_>,
+        role: Role,
+        located: Located,
+        dialog: &mut Option<Dialog>,
+    ) -> Vec<Effect> {
+        let Some((mut request, mut missing)) = self.missing.take() else {
+            return Vec::new();
+        };
+        *request.located.get_mut(role) = located;
+        *missing.get_mut(role) = None;
+        if missing.iter().any(|(_, missing)| missing.is_some()) {
+            self.missing = Some((request, missing));
+            return Vec::new();
+        }
+        self.open(work, request, dialog)
+    }
+}
+
+/// Beside the stamped file, under its name.
+fn suggested_path(document: &Document) -> PathBuf {
+    let part = document.part(Role::Stamped);
+    let part = part.or_else(|| document.part(Role::Crash));
+    let path = part.map_or_else(|| PathBuf::from("match"), |part| part.loaded.path.clone());
+    let name = path.file_name().map(|name| name.to_string_lossy());
+    let stem = name.as_deref().and_then(|name| name.split('.').next());
+    let stem = stem.filter(|stem| !stem.is_empty()).unwrap_or("match");
+    path.with_file_name(format!("{stem}.{EXTENSION}"))
+}
+
+fn write(work: &mut Work<'_>, mut path: PathBuf) -> Vec<Effect> {
+    if !is_project(&path) {
+        let mut name = path.file_name().unwrap_or_default().to_os_string();
+        name.push(".");
+        name.push(EXTENSION);
+        path.set_file_name(name);
+    }
+    work.follow(FollowUp::WriteProject(path));
+    Vec::new()
+}

@@ -1,0 +1,45 @@
+//! What can happen to projects.
+
+use std::path::PathBuf;
+
+use crate::app::Document;
+use crate::jobs::{Located, ProjectRequest};
+use crate::pipeline::autosave::RecoveredSession;
+use crate::role::Role;
+
+/// Projects: files that hold the work.
+#[derive(Debug, Clone)]
+pub enum ProjectCommand {
+    /// Ask for a project with a dialog.
+    AskOpen,
+    /// Open a project.
+    Open(ProjectRequest),
+    /// Open an autosaved session.
+    Restore(PathBuf),
+    /// Ask where a file of the project is that was not found.
+    AskLocate(Role),
+    /// A file of the project is there, or is done without.
+    Locate(Role, Located),
+    /// Do not open the project whose files are missing.
+    GiveUp,
+    /// Write the project to its file, or ask where to.
+    Save,
+    /// Ask where to write the project.
+    SaveAs,
+    /// Write the project there.
+    Write(PathBuf),
+    /// The shell wrote this state of the work.
+    Written(PathBuf, Box<Document>),
+    /// The shell could not write, or the user closed the dialog.
+    NotWritten,
+    /// Save the session in case of a crash, if there is something new.
+    Autosave,
+    /// The shell found sessions of the last runs.
+    NotifyRecovered(Vec<RecoveredSession>),
+    /// Leave lost sessions where they are; the menu still offers them.
+    DismissRecovery,
+    /// Save, and leave the program when that is done.
+    SaveAndQuit,
+    /// Leave the program without saving.
+    QuitUnsaved,
+}

@@ -1,0 +1,182 @@
+//! The project that is worked on: its file, what of it is saved, and what is written into it.
+
+mod apply;
+mod command;
+mod open;
+mod window;
+
+use std::path::PathBuf;
+
+pub use command::ProjectCommand;
+use serde_json::{Map, Value};
+
+use self::window::WindowEntry;
+use super::{AppState, Document, Effect, MatchResult, Part, age_text, clock_text};
+use crate::jobs::{PartSource, ProjectRequest};
+use crate::pipeline::autosave::RecoveredSession;
+use crate::pipeline::match_parts::MatchRecipe;
+use crate::pipeline::project::{PartEntry, Project, ResultEntry};
+use crate::role::{PerRole, Role};
+
+/// The project that is worked on.
+#[derive(Debug, Clone, Default)]
+pub struct ProjectState {
+    /// Its file, if it has one.
+    pub path: Option<PathBuf>,
+    /// Sessions of the last runs, newest first.
+    pub sessions: Vec<RecoveredSession>,
+    /// Its files that were not found, and what was asked for.
+    pub missing: Option<(ProjectRequest, PerRole<Option<PathBuf>>)>,
+    /// The document as it was saved or opened.
+    saved: Option<Document>,
+    /// The document and whether there was a sweep when the session was autosaved last.
+    autosaved: Option<(Document, bool)>,
+    /// Fields of a later program.
+    others: Map<String, Value>,
+    /// The window closes as soon as the project is written.
+    quits_when_saved: bool,
+}
+
+impl ProjectState {
+    /// The name of the project's file without its ending.
+    pub fn name(&self) -> Option<String> {
+        let stem = self.path.as_ref()?.file_stem()?;
+        Some(stem.to_string_lossy().into_owned())
+    }
+
+    /// The newest session that its program did not live to save.
+    pub fn lost_session(&self) -> Option<&RecoveredSession> {
+        self.sessions.iter().find(|session| session.is_lost)
+    }
+}
+
+impl AppState {
+    /// The work as a project; `saved_at` is in seconds since 1970.
+    pub fn to_project(&self, saved_at: u64) -> Project {
+        let document = &self.document;
+        let entry = |role| document.part(role).map(part_entry);
+        Project {
+            program: String::new(),
+            saved_at,
+            parts: PerRole::from_fn(entry),
+            pose: *document.crash_from_stamped(),
+            recipe: document.recipe.clone(),
+            result: document.result.as_ref().map(|result| ResultEntry {
+                is_current: document.current_result().is_some(),
+                alternative: result.alternative,
+                run: result.run.clone_inner(),
+            }),
+            sweep: self.matching.sweep().map(|sweep| sweep.clone_inner()),
+            // A window that cannot be told leaves the work itself whole.
+            window: serde_json::to_value(WindowEntry::of(self)).ok(),
+            others: self.project.others.clone(),
+        }
+    }
+
+    /// True if something was done that opening the files again would not bring back.
+    pub fn has_work(&self) -> bool {
+        let document = &self.document;
+        let is_touched = |part: &Part| {
+            let settings = &part.loaded.settings;
+            part.wanted_level.is_some()
+                || !part.hidden.is_empty()
+                || !part.colors.is_empty()
+                || settings.units.is_some()
+                || settings.length_factor != 1.0
+                || settings.selection != crate::formats::Selection::All
+        };
+        let parts = [&document.parts.crash, &document.parts.stamped];
+        let has_parts = parts.iter().any(|part| part.is_some());
+        has_parts
+            && (parts.into_iter().flatten().any(is_touched)
+                || document.pose.crash_from_stamped != crate::geometry::Similarity::identity()
+                || document.result.is_some()
+                || !document.labels.is_empty()
+                || !document.pairs.pairs.is_empty()
+                || document.recipe != MatchRecipe::default()
+                || self.matching.sweep().is_some())
+    }
+
+    /// True if closing the window now would lose something.
+    pub fn is_unsaved(&self) -> bool {
+        self.has_work() && self.project.saved.as_ref() != Some(&self.document)
+    }
+
+    /// True if there is something new to be kept in case of a crash, and no drag is under way.
+    pub fn needs_autosave(&self) -> bool {
+        let is_moving = self.moving.is_moving();
+        let is_known = |(kept, has_sweep): &(Document, bool)| {
+            *kept == self.document && *has_sweep == self.matching.sweep().is_some()
+        };
+        !is_moving && self.has_work() && !self.project.autosaved.as_ref().is_some_and(is_known)
+    }
+
+    /// Keeps the session in case of a crash, if there is something new.
+    pub(super) fn autosave(&mut self) -> Vec<Effect> {
+        if !self.needs_autosave() {
+            return Vec::new();
+        }
+        let has_sweep = self.matching.sweep().is_some();
+        self.project.autosaved = Some((self.document.clone(), has_sweep));
+        vec![Effect::Autosave(Box::new(self.to_project(0)))]
+    }
+
+    /// A time of the past, in seconds since 1970, as people say it: "14:02", "14:02, 3 days ago".
+    pub fn when_text(&self, unix: u64) -> String {
+        const DAY: i64 = 86_400;
+        let ago = self.log.clock.unix_at(self.log.now).saturating_sub(unix);
+        let local = self
+            .log
+            .clock
+            .day_time_at(self.log.now)
+            .as_secs()
+            .cast_signed()
+            - ago.cast_signed();
+        let time = std::time::Duration::from_secs(local.rem_euclid(DAY).cast_unsigned());
+        let minutes = &clock_text(time)[..5];
+        if (0..DAY).contains(&local) {
+            minutes.to_owned()
+        } else {
+            format!("{minutes}, {}", age_text(ago.max(DAY.cast_unsigned())))
+        }
+    }
+
+    /// What the work is, in a line: "stamped.dynain on crash.k · GOOD".
+    pub fn work_title(&self) -> String {
+        let name = |role| self.document.part(role).map(|part| part.loaded.file_name());
+        let mut title = match (name(Role::Crash), name(Role::Stamped)) {
+            (Some(crash), Some(stamped)) => format!("{stamped} on {crash}"),
+            (Some(one), None) | (None, Some(one)) => one,
+            (None, None) => String::new(),
+        };
+        if let Some(result) = self.document.current_result() {
+            title += " · ";
+            title += result.run.assessment.verdict.label();
+        }
+        title
+    }
+}
+
+fn part_entry(part: &Part) -> PartEntry {
+    let file = match &part.source {
+        PartSource::File(path) => Some(std::path::absolute(path).unwrap_or_else(|_| path.clone())),
+        PartSource::Example => None,
+    };
+    PartEntry {
+        max_triangles: part.wanted_level,
+        hidden: part.hidden.clone(),
+        colors: part.colors.clone(),
+        ..PartEntry::of(&part.loaded, file)
+    }
+}
+
+impl MatchResult {
+    /// A stored result, in force for these inputs.
+    fn restored(entry: ResultEntry, stamp: crate::jobs::Stamp) -> Self {
+        Self {
+            run: std::sync::Arc::new(entry.run).into(),
+            alternative: entry.alternative,
+            stamp,
+        }
+    }
+}

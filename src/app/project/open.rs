@@ -1,0 +1,212 @@
+//! Opening of a project, which replaces what every topic knows.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::window::WindowEntry;
+use crate::app::{
+    AppState, Dialog, Document, Effect, MatchResult, NoticeLevel, Part, PointPairs, ShownGeometry,
+    StampedPose,
+};
+use crate::jobs::{JobKind, MeasureLevelInput, OpenedPart, OpenedProject, ProjectRequest, Stamp};
+use crate::pipeline::project::{PartEntry, Project, ResultEntry};
+use crate::role::{PerRole, Role};
+
+impl AppState {
+    pub(in crate::app) fn take_project(
+        &mut self,
+        opened: OpenedProject,
+        took: Duration,
+    ) -> Vec<Effect> {
+        if opened.missing.iter().any(|(_, missing)| missing.is_some()) {
+            self.project.missing = Some((opened.request, opened.missing));
+            self.view.dialog = Some(Dialog::MissingFiles);
+            return Vec::new();
+        }
+        let OpenedProject {
+            request,
+            project,
+            notes,
+            parts,
+            ..
+        } = opened;
+        let name = if request.is_autosave {
+            "the recovered session".to_owned()
+        } else {
+            file_name(&request.path)
+        };
+        for note in notes {
+            let text = format!("{name}: {note}");
+            self.work()
+                .log_at(NoticeLevel::Note, "project", None, text, None);
+        }
+        self.tell_changed_files(&parts);
+        self.previews.drop_all();
+        let window = self.read_window(&project);
+        let effects = self.place_project(&name, &project, &parts, window.as_ref());
+        self.show_project(&project, window);
+        let filed = self.file_project(request, &project);
+        let text = format!("opened {name}: {}", self.work_title());
+        self.work().log_step("project", None, text, Some(took));
+        let mut all = vec![Effect::SaveSettings];
+        all.extend(filed);
+        all.extend(effects);
+        all
+    }
+
+    fn tell_changed_files(&mut self, parts: &PerRole<Option<OpenedPart>>) {
+        for (role, part) in parts.iter() {
+            if let Some(part) = part.as_ref().filter(|part| part.is_changed) {
+                let text = format!(
+                    "{} has changed since the project was saved; poses are kept, results are out \
+                     of date",
+                    part.part.file_name()
+                );
+                self.work()
+                    .log_at(NoticeLevel::Warning, "project", Some(role), text, None);
+            }
+        }
+    }
+
+    /// The whole project is one undo step.
+    fn place_project(
+        &mut self,
+        name: &str,
+        project: &Project,
+        parts: &PerRole<Option<OpenedPart>>,
+        window: Option<&WindowEntry>,
+    ) -> Vec<Effect> {
+        let mut effects = Vec::new();
+        let mut document = Document {
+            recipe: project.recipe.clone(),
+            pose: StampedPose {
+                crash_from_stamped: project.pose,
+                revision: self.history.next_revision(),
+            },
+            ..Document::default()
+        };
+        for role in Role::ALL {
+            let entry = project.parts.get(role).as_ref();
+            let (Some(opened), Some(entry)) = (parts.get(role), entry) else {
+                self.reduce.keep_recording(role, None);
+                continue;
+            };
+            let revision = self.history.next_revision();
+            *document.parts.get_mut(role) = Some(part_of(opened, entry, revision));
+            let level = opened.level.clone();
+            let recording = level.clone().map(|(recording, _)| (revision, recording));
+            self.reduce.keep_recording(role, recording);
+            effects.extend(level.map(|(recording, level)| {
+                JobKind::MeasureLevel(MeasureLevelInput {
+                    role,
+                    recording,
+                    level,
+                })
+            }));
+        }
+        let is_complete = |opened: &Option<OpenedPart>, entry: Option<&PartEntry>| {
+            opened.is_some() == entry.is_some() && opened.as_ref().is_none_or(|p| !p.is_changed)
+        };
+        let PerRole { crash, stamped } = project.parts.as_ref().map(Option::as_ref);
+        let is_same = is_complete(&parts.crash, crash) && is_complete(&parts.stamped, stamped);
+        document.result = project.result.clone().map(|entry| {
+            let stamp = result_stamp(&entry, document.stamp(), is_same);
+            MatchResult::restored(entry, stamp)
+        });
+        if let Some(window) = window {
+            for label in window.labels.iter().cloned() {
+                let part = document.part(label.role).map(|part| part.revision);
+                let id = self.history.next_revision();
+                document
+                    .labels
+                    .extend(part.map(|part| label.label(id, part)));
+            }
+            document.pairs = PointPairs {
+                parts: document.stamp().parts,
+                pairs: window.pairs.clone(),
+            };
+        }
+        self.work()
+            .commit(format!("Open {name}"), |old| *old = document);
+        let mut work = self.work();
+        effects.into_iter().map(|kind| work.start(kind)).collect()
+    }
+
+    /// The window looks as it did; what is missing in the project stays.
+    fn show_project(&mut self, project: &Project, window: Option<WindowEntry>) {
+        let sweep = project.sweep.clone().map(|sweep| Arc::new(sweep).into());
+        self.matching.reopen(sweep);
+        self.parts.selected.clear();
+        self.view.n_restored += 1;
+        match window {
+            Some(window) => window.show(self),
+            None => self.fit_project(),
+        }
+    }
+
+    /// How the window looked, if the project says it in words that are known.
+    fn read_window(&mut self, project: &Project) -> Option<WindowEntry> {
+        match serde_json::from_value(project.window.clone()?) {
+            Ok(window) => Some(window),
+            Err(error) => {
+                let text = format!("how the window looked is not understood: {error}");
+                self.work()
+                    .log_at(NoticeLevel::Note, "project", None, text, None);
+                None
+            }
+        }
+    }
+
+    fn fit_project(&mut self) {
+        self.view.shown = ShownGeometry::Reduced;
+        for role in Role::ALL {
+            self.with_scene(|view, scene| view.fit_after_load(role, scene));
+        }
+    }
+
+    /// Where the project lies and what of it is saved.
+    fn file_project(&mut self, request: ProjectRequest, project: &Project) -> Vec<Effect> {
+        self.project.others = project.others.clone();
+        if request.is_autosave {
+            let path = project.window.as_ref().and_then(|window| {
+                let path = window.get("project")?.as_str()?;
+                Some(PathBuf::from(path))
+            });
+            self.project.path = path;
+            self.project.saved = None;
+            // From here on this run keeps it.
+            return self.project.dismiss_recovery();
+        } else {
+            let now = self.work().unix_now();
+            self.settings.remember_path(&request.path, now);
+            self.project.path = Some(request.path);
+            self.project.saved = Some(self.document.clone());
+        }
+        Vec::new()
+    }
+}
+
+fn file_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    name.to_string_lossy().into_owned()
+}
+
+fn part_of(opened: &OpenedPart, entry: &PartEntry, revision: u64) -> Part {
+    let (part, facts) = (Arc::clone(&opened.part), Arc::clone(&opened.facts));
+    let mut part = Part::new(part, facts, opened.source.clone(), revision);
+    part.hidden = entry.hidden.clone();
+    part.colors = entry.colors.clone();
+    part.wanted_level = entry.max_triangles;
+    part.level = opened.level.clone().map(|(_, level)| level.into());
+    part
+}
+
+/// The inputs a stored result stands for: the present ones only if nothing differs.
+fn result_stamp(entry: &ResultEntry, now: Stamp, is_same: bool) -> Stamp {
+    match (is_same, entry.is_current) {
+        (true, true) => now,
+        (true, false) => Stamp { pose: 0, ..now },
+        (false, _) => Stamp::default(),
+    }
+}

@@ -1,0 +1,233 @@
+//! What cameras, windows, panels and display choices change.
+
+use std::collections::BTreeSet;
+
+use super::{BottomTab, ViewCommand, ViewState};
+use crate::app::{AppState, Document, PartRef};
+use crate::geometry::{Aabb, Point3, Similarity, Vector3};
+use crate::role::Role;
+
+/// Nodes that a camera is fitted to at most; those between them lie within the margin.
+const MAX_FITTED: usize = 20_000;
+/// How much of the part is in view around a place that is looked at.
+const CLOSE: f64 = 0.12;
+
+/// What there is to be seen.
+pub(in crate::app) struct Scene<'a> {
+    pub document: &'a Document,
+    /// The pose the stamped part is drawn at.
+    pub pose: Similarity,
+    pub selected: &'a BTreeSet<PartRef>,
+}
+
+impl ViewState {
+    pub(in crate::app) fn apply(&mut self, command: ViewCommand, scene: &Scene<'_>) {
+        match command {
+            ViewCommand::SetCamera(..)
+            | ViewCommand::Standard(..)
+            | ViewCommand::PreviousCamera(_)
+            | ViewCommand::ToggleProjection(_)
+            | ViewCommand::FitAll(_)
+            | ViewCommand::Focus(_)
+            | ViewCommand::ToggleLink => self.apply_camera(&command, scene),
+            ViewCommand::SetOrbitStyle(style) => self.orbit_style = style,
+            ViewCommand::SetPivot(role, pivot) => *self.pivot.get_mut(role) = pivot,
+            ViewCommand::SetFocus(role) => self.focus = role,
+            ViewCommand::SetAspect(role, aspect) => *self.aspects.get_mut(role) = aspect,
+            ViewCommand::ToggleMoveOver => self.toggle_move_over(scene),
+            ViewCommand::SetShown(shown) => self.shown = shown,
+            ViewCommand::SetBlinking(is_blinking) => self.is_blinking = is_blinking,
+            ViewCommand::SetDisplay(display) => self.display = *display,
+            ViewCommand::SetTab(tab) => self.set_tab(tab),
+            ViewCommand::SetFreeWindow(free) => self.free_window = Some(free),
+            ViewCommand::OpenSection(section, is_open) => {
+                self.sections.set_open(section, is_open);
+            }
+            ViewCommand::UseSection(section) => self.sections.touch(section),
+            ViewCommand::ToggleGraphicsOnly => {
+                self.is_graphics_only = !self.is_graphics_only;
+            }
+            ViewCommand::SetDialog(dialog) => self.dialog = dialog,
+        }
+    }
+
+    fn apply_camera(&mut self, command: &ViewCommand, scene: &Scene<'_>) {
+        match *command {
+            ViewCommand::SetCamera(role, camera) => self.set_camera(role, camera),
+            ViewCommand::Standard(role, view) => {
+                self.remember_camera(role);
+                let mut camera = *self.cameras.get(role);
+                camera.set_standard_view(view);
+                self.set_camera(role, camera);
+            }
+            ViewCommand::PreviousCamera(role) => {
+                let previous = *self.previous_cameras.get(role);
+                self.remember_camera(role);
+                self.set_camera(role, previous);
+            }
+            ViewCommand::ToggleProjection(role) => {
+                let mut camera = *self.cameras.get(role);
+                camera.toggle_projection();
+                self.set_camera(role, camera);
+            }
+            ViewCommand::FitAll(role) => self.fit_all(role, scene),
+            ViewCommand::Focus(role) => match self.selected_bounds(role, scene) {
+                Some(bounds) => self.fit_window(role, &bounds.corners()),
+                None => self.fit_all(role, scene),
+            },
+            ViewCommand::ToggleLink => self.toggle_link(),
+            _ => {}
+        }
+    }
+
+    fn toggle_link(&mut self) {
+        self.are_linked = !self.are_linked;
+        let (role, camera) = (self.focus, *self.cameras.get(self.focus));
+        self.set_camera(role, camera);
+    }
+
+    fn fit_window(&mut self, role: Role, points: &[Point3]) {
+        let aspect = *self.aspects.get(role);
+        self.fit(role, points, aspect);
+    }
+
+    /// Fits what a window shows, tightly: a turned sheet fills the picture better than its box.
+    pub(in crate::app) fn fit_all(&mut self, role: Role, scene: &Scene<'_>) {
+        let mut points = Vec::new();
+        for of in self.shown_in(role) {
+            if let Some(part) = scene.document.part(*of) {
+                let pose = match of {
+                    Role::Crash => Similarity::identity(),
+                    Role::Stamped => scene.pose,
+                };
+                let positions = part.loaded.mesh.positions();
+                let step = positions.len().div_ceil(MAX_FITTED).max(1);
+                points.extend(positions.iter().step_by(step).map(|p| pose.apply(p)));
+            }
+        }
+        self.fit_window(role, &points);
+    }
+
+    /// The parts a window shows.
+    fn shown_in(&self, role: Role) -> &'static [Role] {
+        match role {
+            Role::Crash if self.is_moved_over => &Role::ALL,
+            Role::Crash => &[Role::Crash],
+            Role::Stamped => &[Role::Stamped],
+        }
+    }
+
+    /// Box around the selected parts that a window shows, if there are any.
+    fn selected_bounds(&self, role: Role, scene: &Scene<'_>) -> Option<Aabb> {
+        let mut all = Aabb::empty();
+        let here = self.shown_in(role);
+        for selected in scene.selected.iter().filter(|p| here.contains(&p.role)) {
+            let part = scene.document.part(selected.role);
+            let bounds = part.and_then(|part| part.facts.part_bounds.get(&selected.id));
+            if let Some(bounds) = bounds.filter(|bounds| !bounds.is_empty()) {
+                all = all.union(&match selected.role {
+                    Role::Crash => *bounds,
+                    Role::Stamped => moved_box(bounds, &scene.pose),
+                });
+            }
+        }
+        (!all.is_empty()).then_some(all)
+    }
+
+    fn toggle_move_over(&mut self, scene: &Scene<'_>) {
+        let can_move_over = scene.document.has_both_parts().is_ok();
+        if self.is_moved_over {
+            self.is_moved_over = false;
+            self.focus = Role::Stamped;
+        } else if can_move_over {
+            self.is_moved_over = true;
+            self.focus = Role::Crash;
+        }
+        self.fit_all(Role::Crash, scene);
+    }
+
+    fn set_tab(&mut self, tab: BottomTab) {
+        self.tab = tab;
+        self.is_graphics_only = false;
+    }
+
+    /// The first look at a part: its own camera, or both windows when moved over.
+    pub(in crate::app) fn fit_after_load(&mut self, role: Role, scene: &Scene<'_>) {
+        if role == Role::Stamped {
+            self.look_at_sheet(scene);
+        }
+        self.fit_all(role, scene);
+        if self.is_moved_over {
+            self.fit_all(Role::Crash, scene);
+        }
+    }
+
+    /// Brings a point of a part's own frame close into view.
+    pub(in crate::app) fn look_at(&mut self, role: Role, point: &Point3, scene: &Scene<'_>) {
+        let Some(part) = scene.document.part(role) else {
+            return;
+        };
+        let at = match role {
+            Role::Crash => *point,
+            Role::Stamped => scene.pose.apply(point),
+        };
+        let window = if self.is_moved_over {
+            Role::Crash
+        } else {
+            role
+        };
+        let half = Vector3::repeat(CLOSE / 2.0 * part.bounds().diagonal());
+        let around = Aabb::of_points(&[at - half, at + half]);
+        self.focus = window;
+        self.fit_window(window, &around.corners());
+    }
+
+    /// A stamped part comes in the axes of its die: look along its mean normal.
+    fn look_at_sheet(&mut self, scene: &Scene<'_>) {
+        let Some(part) = scene.document.part(Role::Stamped) else {
+            return;
+        };
+        let normal = part.facts.mean_normal;
+        if self.are_linked || normal.norm() == 0.0 {
+            return;
+        }
+        let pose = *scene.document.crash_from_stamped();
+        let corners = part.bounds().corners().map(|corner| pose.apply(&corner));
+        let direction = -pose.rotate(&normal);
+        self.cameras.stamped.look_along(&direction, &corners);
+    }
+}
+
+impl AppState {
+    /// What a window shows, in its own space: the left one that of the crash model, the right one
+    /// that of the crash model too, with the stamped part at its pose.
+    pub fn visible_bounds(&self, role: Role) -> Aabb {
+        let is_over = self.view.is_moved_over;
+        let mut bounds = Aabb::empty();
+        if role == Role::Crash {
+            bounds = bounds.union(&self.bounds_of(Role::Crash));
+        }
+        if role == Role::Stamped || is_over {
+            bounds = bounds.union(&self.bounds_of(Role::Stamped));
+        }
+        bounds
+    }
+
+    fn bounds_of(&self, role: Role) -> Aabb {
+        let Some(part) = self.document.part(role) else {
+            return Aabb::empty();
+        };
+        match role {
+            Role::Crash => part.bounds(),
+            Role::Stamped => moved_box(&part.bounds(), &self.shown_pose()),
+        }
+    }
+}
+
+/// Box around a moved box.
+fn moved_box(bounds: &Aabb, pose: &Similarity) -> Aabb {
+    if bounds.is_empty() {
+        return *bounds;
+    }
+    Aabb::of_points(&bounds.corners().map(|corner| pose.apply(&corner)))
+}

@@ -1,0 +1,53 @@
+//! What can happen to cameras, windows and panels.
+
+use super::{BottomTab, Dialog, Display, FreeWindow, Section, ShownGeometry};
+use crate::geometry::camera::{OrbitStyle, StandardView};
+use crate::geometry::{Camera, Point3};
+use crate::role::Role;
+
+/// What is shown and how.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ViewCommand {
+    /// A new camera after a drag or a turn of the wheel.
+    SetCamera(Role, Camera),
+    /// A view with a key of its own.
+    Standard(Role, StandardView),
+    /// The camera before the last jump.
+    PreviousCamera(Role),
+    /// Orthographic or perspective.
+    ToggleProjection(Role),
+    /// Fit what is visible.
+    FitAll(Role),
+    /// Fit the selected part, or all.
+    Focus(Role),
+    /// Link the two cameras or not.
+    ToggleLink,
+    /// Turntable or free.
+    SetOrbitStyle(OrbitStyle),
+    /// Pick or forget the pivot of a window.
+    SetPivot(Role, Option<Point3>),
+    /// Width over height of a window; the shell tells when it changes.
+    SetAspect(Role, f64),
+    /// The window that keys act on.
+    SetFocus(Role),
+    /// Move over or back.
+    ToggleMoveOver,
+    /// Reduced or detailed.
+    SetShown(ShownGeometry),
+    /// The blink key went down or up.
+    SetBlinking(bool),
+    /// Plain choices about the picture, as a whole.
+    SetDisplay(Box<Display>),
+    /// A tab of the bottom pane.
+    SetTab(BottomTab),
+    /// What the right window shows while its part is in the left one.
+    SetFreeWindow(FreeWindow),
+    /// Fold or unfold a section.
+    OpenSection(Section, bool),
+    /// The user works in a section; it is the last to be folded for want of room.
+    UseSection(Section),
+    /// Only the 3D windows, or everything.
+    ToggleGraphicsOnly,
+    /// Open something over the window, or close it.
+    SetDialog(Option<Dialog>),
+}

@@ -1,0 +1,183 @@
+//! Plain choices about what is shown.
+
+use serde::{Deserialize, Serialize};
+
+use crate::app::Coloring;
+use crate::role::PerRole;
+
+/// Which geometry the windows show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ShownGeometry {
+    /// The chosen level.
+    #[default]
+    Reduced,
+    /// The full mesh.
+    Detailed,
+}
+
+/// What the colours say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ColorBy {
+    /// Which of the two parts.
+    #[default]
+    Role,
+    /// Which part of the deck.
+    Part,
+    /// Sheet thickness.
+    Thickness,
+    /// Distance of the reduced to the full mesh.
+    ReductionError,
+    /// Signed distance between the parts.
+    Deviation,
+    /// Where the other part is, is off, or is missing.
+    Overlap,
+}
+
+impl ColorBy {
+    /// All, in the order of the menu.
+    pub const ALL: [Self; 6] = [
+        Self::Role,
+        Self::Part,
+        Self::Thickness,
+        Self::ReductionError,
+        Self::Deviation,
+        Self::Overlap,
+    ];
+
+    /// Name in the menu.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Role => "Crash / stamped",
+            Self::Part => "Part",
+            Self::Thickness => "Thickness",
+            Self::ReductionError => "Reduction error",
+            Self::Deviation => "Deviation",
+            Self::Overlap => "Overlap",
+        }
+    }
+}
+
+/// The tabs of the bottom pane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BottomTab {
+    /// What was done and how long it took.
+    #[default]
+    Log,
+    /// Times of the steps as bars.
+    Timings,
+    /// The starts of the last match.
+    Starts,
+    /// Residual and overlap over the iterations.
+    Convergence,
+    /// The paper's tables.
+    Sweep,
+    /// Distances between the parts.
+    Deviation,
+    /// Undo steps.
+    History,
+    /// What the reader found in the files.
+    Diagnostics,
+}
+
+impl BottomTab {
+    /// All, from left to right.
+    pub const ALL: [Self; 8] = [
+        Self::Log,
+        Self::Timings,
+        Self::Starts,
+        Self::Convergence,
+        Self::Sweep,
+        Self::Deviation,
+        Self::History,
+        Self::Diagnostics,
+    ];
+
+    /// Its title.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Log => "Log",
+            Self::Timings => "Timings",
+            Self::Starts => "Starts",
+            Self::Convergence => "Convergence",
+            Self::Sweep => "Sweep",
+            Self::Deviation => "Deviation",
+            Self::History => "History",
+            Self::Diagnostics => "Diagnostics",
+        }
+    }
+}
+
+/// What lies over the window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dialog {
+    /// All keys.
+    Help,
+    /// Search commands.
+    Palette,
+    /// Preferences.
+    Preferences,
+    /// The list of messages.
+    Messages,
+    /// The choices of a picture.
+    Picture,
+    /// Name, version, licences.
+    About,
+    /// Unsaved work, asked about before the program ends.
+    Unsaved,
+    /// Files of a project that were not found.
+    MissingFiles,
+}
+
+/// Plain choices about the picture, changed as a whole.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Display {
+    /// Opacity of each part, 0 to 1.
+    pub opacity: PerRole<f32>,
+    /// The crash part is drawn so that one sees through it.
+    pub is_see_through: bool,
+    /// The stamped part is drawn so far from where it is, along the mean normal; display only.
+    pub separation: f64,
+    /// Where the wipe line lies, 0 left to 1 right; `None` without a wipe.
+    pub wipe: Option<f32>,
+    /// A line splits each window: reduced left, full right. Where it lies, 0 to 1.
+    pub split: Option<f32>,
+    /// Edges of the mesh.
+    pub has_edges: bool,
+    /// Sharp edges and borders.
+    pub has_feature_edges: bool,
+    /// Nodes.
+    pub has_points: bool,
+    /// What the colours say.
+    pub color_by: ColorBy,
+    /// Maps, limits, tolerance.
+    pub coloring: Coloring,
+    /// The small axes in the corner.
+    pub has_axes: bool,
+    /// The scale bar.
+    pub has_scale_bar: bool,
+}
+
+impl Default for Display {
+    fn default() -> Self {
+        Self {
+            opacity: PerRole {
+                crash: 1.0,
+                stamped: 1.0,
+            },
+            is_see_through: false,
+            separation: 0.0,
+            wipe: None,
+            split: None,
+            has_edges: false,
+            has_feature_edges: true,
+            has_points: false,
+            color_by: ColorBy::default(),
+            coloring: Coloring::default(),
+            has_axes: true,
+            has_scale_bar: true,
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! What the right window shows while its part is in the left one.
+
+use serde::{Deserialize, Serialize};
+
+use super::ColorBy;
+use crate::app::AppState;
+use crate::geometry::Similarity;
+use crate::role::Role;
+
+/// The uses of the right window while the stamped part is moved over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FreeWindow {
+    /// A card with the way back.
+    Nothing,
+    /// The distances between the parts as colours.
+    Deviation,
+    /// Both parts, cut open by the section plane.
+    Section,
+    /// Both parts as they were read, without reduction.
+    FullMesh,
+    /// The stamped part at the best pose that differs from the result.
+    SecondPose,
+}
+
+impl FreeWindow {
+    /// All, in the order of the choice.
+    pub const ALL: [Self; 5] = [
+        Self::Nothing,
+        Self::FullMesh,
+        Self::Deviation,
+        Self::Section,
+        Self::SecondPose,
+    ];
+
+    /// Name in the choice.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Nothing => "Nothing",
+            Self::Deviation => "Deviation",
+            Self::Section => "Section",
+            Self::FullMesh => "Full mesh",
+            Self::SecondPose => "Second pose",
+        }
+    }
+}
+
+impl AppState {
+    /// What the right window shows beside the shared one; `None` while it has its own part. Without a
+    /// choice: the deviation where there is a result, else the full meshes.
+    pub fn free_window(&self) -> Option<FreeWindow> {
+        if !self.view.is_moved_over {
+            return None;
+        }
+        let by_itself = match self.document.current_result() {
+            Some(_) => FreeWindow::Deviation,
+            None => FreeWindow::FullMesh,
+        };
+        let chosen = self.view.free_window;
+        Some(
+            chosen
+                .filter(|free| self.is_free_use_shown(*free))
+                .unwrap_or(by_itself),
+        )
+    }
+
+    fn is_free_use_shown(&self, free: FreeWindow) -> bool {
+        let has_plane = self.inspect.section.shown().is_some();
+        self.can_use_free(free) && (free != FreeWindow::Section || has_plane)
+    }
+
+    /// True if the right window could be used so now.
+    pub fn can_use_free(&self, free: FreeWindow) -> bool {
+        free != FreeWindow::SecondPose || self.second_pose().is_some()
+    }
+
+    /// The best pose of the last match beside the one that is shown.
+    pub fn second_pose(&self) -> Option<Similarity> {
+        let result = self.document.current_result()?;
+        match result.alternative {
+            Some(_) => Some(result.run.crash_from_stamped),
+            None => {
+                let first = result.run.outcome.alternatives.first()?;
+                Some(first.target_from_source)
+            }
+        }
+    }
+
+    /// What the colours of a window say.
+    pub fn color_by(&self, window: Role) -> ColorBy {
+        match self.free_window().filter(|_| window == Role::Stamped) {
+            Some(FreeWindow::Deviation) => ColorBy::Deviation,
+            _ => self.view.display.color_by,
+        }
+    }
+
+    /// The window whose camera a window has: while the right one is free, both have the left one's.
+    pub fn camera_of(&self, window: Role) -> Role {
+        if self.view.is_moved_over {
+            Role::Crash
+        } else {
+            window
+        }
+    }
+}

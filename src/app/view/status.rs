@@ -1,0 +1,117 @@
+//! What a section says about itself, and what stands in the way of an action.
+
+use super::BottomTab;
+use crate::app::{AppState, Command, MoveCommand, Part};
+use crate::jobs::JobKey;
+use crate::role::Role;
+
+/// The paper's three sections.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Section {
+    /// 1 Load & display.
+    Load,
+    /// 2 Reduce.
+    Reduce,
+    /// 3 Match.
+    Match,
+}
+
+impl Section {
+    /// All, from top to bottom.
+    pub const ALL: [Self; 3] = [Self::Load, Self::Reduce, Self::Match];
+
+    /// Its place, from 0.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Its title.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Load => "Load & display",
+            Self::Reduce => "Reduce",
+            Self::Match => "Match",
+        }
+    }
+
+    /// The section whose work a command is, if it is plainly one section's.
+    pub(in crate::app) fn of_command(command: &Command) -> Option<Self> {
+        match command {
+            Command::File(_) => Some(Self::Load),
+            Command::Reduce(_) => Some(Self::Reduce),
+            // How tools and curves are shown is no work on the match.
+            Command::Move(MoveCommand::ToggleGizmo | MoveCommand::SetAxes(_)) => None,
+            Command::Match(_) | Command::Move(_) => Some(Self::Match),
+            _ => None,
+        }
+    }
+}
+
+/// Why what a section shows no longer fits the rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stale {
+    /// In words, for the tooltip.
+    pub reason: &'static str,
+}
+
+impl AppState {
+    /// The mark "out of date — rerun" of a section.
+    pub fn stale(&self, section: Section) -> Option<Stale> {
+        let reason = match section {
+            Section::Load => None,
+            Section::Reduce => Role::ALL
+                .into_iter()
+                .any(|role| self.is_reduction_stale(role))
+                .then_some("the part was read anew after it was reduced"),
+            Section::Match => self.match_stale_reason(),
+        };
+        reason.map(|reason| Stale { reason })
+    }
+
+    fn is_reduction_stale(&self, role: Role) -> bool {
+        let is_stale = |part: &Part| part.wanted_level.is_some() && part.level.is_none();
+        self.document.part(role).is_some_and(is_stale) && !self.jobs.is_active(JobKey::Reduce(role))
+    }
+
+    fn match_stale_reason(&self) -> Option<&'static str> {
+        let result = self.document.result.as_ref()?;
+        let stamp = self.document.stamp();
+        if result.stamp.parts != stamp.parts {
+            Some("a part was exchanged after the match")
+        } else if result.stamp.pose != stamp.pose {
+            Some("the stamped part was moved after the match")
+        } else {
+            None
+        }
+    }
+
+    /// True if a tab has something to show, or something to begin; the others stay away.
+    pub fn has_content(&self, tab: BottomTab) -> bool {
+        match tab {
+            BottomTab::Timings => self.log.rows().iter().any(|row| row.took.is_some()),
+            BottomTab::Starts | BottomTab::Convergence => {
+                self.matching.has_live_starts()
+                    || self.document.result.is_some()
+                    || self.jobs.is_active(JobKey::Match)
+            }
+            BottomTab::Sweep | BottomTab::Deviation => self.document.both().is_some(),
+            BottomTab::History => {
+                self.history.undo_name().is_some() || self.history.redo_name().is_some()
+            }
+            BottomTab::Diagnostics => self
+                .document
+                .parts
+                .iter()
+                .filter_map(|(_, part)| part.as_ref())
+                .any(|part| part.loaded.model.diagnostics.total() > 0),
+            BottomTab::Log => true,
+        }
+    }
+
+    /// The length factor that follows the hint: that of the stamped file times the hint's.
+    pub fn hinted_length_factor(&self) -> Option<f64> {
+        let hint = self.unit_hint()?;
+        let part = self.document.part(Role::Stamped)?;
+        Some(part.length_factor() * hint.factor)
+    }
+}
