@@ -15,6 +15,11 @@ pub const ROLES_ON_LIGHT: PerRole<Rgb> = PerRole {
     crash: [0x00, 0x72, 0xB2],
     stamped: [0xB2, 0x6B, 0x00],
 };
+/// Surfaces of the two parts on a light ground: shade darkens them to the colours above.
+pub const SURFACES_ON_LIGHT: PerRole<Rgb> = PerRole {
+    crash: [0x3D, 0x9A, 0xD1],
+    stamped: [0xDB, 0x98, 0x3A],
+};
 /// Top and bottom of the dark ground behind the parts.
 pub const DARK_GROUND: [Rgb; 2] = [[0x2B, 0x30, 0x37], [0x17, 0x1A, 0x1E]];
 /// Top and bottom of the light ground behind the parts.

@@ -32,6 +32,9 @@ pub struct Scene {
     /// Brightness of the light on surfaces; zero counts as one. More than one suits dark colours on a
     /// light ground.
     pub exposure: f32,
+    /// Share of the light that comes from everywhere, 0 … 1: the more, the truer the parts' colours and
+    /// the flatter their shapes.
+    pub ambient: f32,
     /// Pixels per point of the screen; widths and sizes are in points. Zero counts as one.
     pub pixels_per_point: f32,
 }
@@ -141,6 +144,10 @@ impl LineLook {
     };
     /// For light backgrounds.
     pub const LIGHT: Self = Self {
+        edge: [40, 46, 54, 110],
+        feature: [48, 52, 58, 150],
+        border: [48, 52, 58, 235],
+        border_width: 1.5,
         selection: [0, 0, 0],
         ..Self::DARK
     };

@@ -99,7 +99,7 @@ impl FrameUniform {
                 lines.feature_width * scale,
                 lines.border_width * scale,
                 lines.point_size * scale,
-                0.0,
+                scene.ambient.clamp(0.0, 1.0),
             ],
         }
     }

@@ -20,7 +20,7 @@ struct Frame {
     selection_color: vec4<f32>,
     // Where a field has no value.
     unmatched_color: vec4<f32>,
-    // Widths of creases and borders and the diameter of nodes, in pixels.
+    // Widths of creases and borders and the diameter of nodes, in pixels; share of ambient light.
     widths: vec4<f32>,
 }
 

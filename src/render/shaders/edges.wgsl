@@ -64,7 +64,8 @@ fn vs_wide(
     out.place = segment.place;
     out.shape = vec2<f32>(segment.length, segment.half_width);
     out.color = select(frame.feature_color, frame.border_color, border);
-    if has(BARE) {
+    // Of a clear part its lines are what is seen best, so they carry its colour.
+    if has(BARE) || drawable.color.a < 1.0 {
         out.color = vec4<f32>(drawable.color.rgb, select(0.8, 1.0, border));
     }
     return out;
@@ -76,5 +77,5 @@ fn fs_wide(in: WideVaryings) -> @location(0) vec4<f32> {
         discard;
     }
     let coverage = segment_coverage(in.place, in.shape.x, in.shape.y);
-    return premultiplied(vec4<f32>(in.color.rgb, in.color.a * coverage * drawable.color.a));
+    return premultiplied(vec4<f32>(in.color.rgb, in.color.a * coverage * min(4.0 * drawable.color.a, 1.0)));
 }

@@ -135,7 +135,7 @@ fn shaded(in: Varyings, front: bool) -> vec3<f32> {
     n = normalize(n + v * max(-dot(n, v), 0.0));
     let lit = light(n, v);
     var base = linear_from_srgb(in.color);
-    var diffuse = lit.diffuse;
+    var diffuse = mix(lit.diffuse, 1.0, frame.widths.w);
     var gloss = lit.gloss;
     if has(HAS_FIELD) {
         // Weak light, so that the legend stays true.

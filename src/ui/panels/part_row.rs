@@ -14,6 +14,8 @@ use crate::ui::widgets::{focus_ring, grouped, paint_role_mark};
 
 /// Space between two columns.
 const GAP: f32 = 6.0;
+/// Narrower lists leave the thickness to the tooltip, so that names keep their room.
+const WITH_THICKNESS: f32 = 380.0;
 
 /// A part of a deck with what it belongs to.
 #[derive(Clone, Copy)]
@@ -80,8 +82,9 @@ impl Columns {
         };
         let id = from(color.max + GAP, id);
         let tick = to(right, 22.0);
-        let thickness = to(tick.min - 2.0, 30.0);
-        let count = to(thickness.min - GAP, count);
+        let has_thickness = right - left >= WITH_THICKNESS;
+        let thickness = to(tick.min - 2.0, if has_thickness { 30.0 } else { 0.0 });
+        let count = to(thickness.min - if has_thickness { GAP } else { 0.0 }, count);
         let name = Rangef::new(id.max + GAP, count.min - GAP);
         Self {
             eye,
@@ -110,7 +113,12 @@ impl Columns {
             ("use", self.tick.max - 2.0, Align2::RIGHT_CENTER),
         ];
         for (text, x, align) in titles {
-            if text == "name" && self.name.span() < 32.0 {
+            let has_room = match text {
+                "name" => self.name.span() >= 32.0,
+                "t" => self.thickness.span() > 0.0,
+                _ => true,
+            };
+            if !has_room {
                 continue;
             }
             ui.painter()
@@ -315,10 +323,9 @@ fn paint(ui: &Ui, rect: Rect, row: &Row<'_>, columns: &Columns, state: &AppState
     };
     right(columns.count, count_text(row));
     let thickness = row.summary.thickness;
-    right(
-        columns.thickness,
-        thickness.map_or_else(String::new, |t| format!("{t:.2}")),
-    );
+    if let Some(thickness) = thickness.filter(|_| columns.thickness.span() > 0.0) {
+        right(columns.thickness, format!("{thickness:.2}"));
+    }
 }
 
 /// Elements, or the likeness while the list is sorted by it.

@@ -5,7 +5,7 @@ use egui::Color32;
 use super::{color, rgb};
 use crate::app::{AppState, ColorBy};
 use crate::colormap::Rgb;
-use crate::palette::{PARTS, ROLES_ON_DARK, ROLES_ON_LIGHT};
+use crate::palette::{PARTS, ROLES_ON_DARK, ROLES_ON_LIGHT, SURFACES_ON_LIGHT};
 use crate::render::{Background, LineLook};
 use crate::role::{PerRole, Role};
 
@@ -14,10 +14,14 @@ use crate::role::{PerRole, Role};
 pub(in crate::ui) struct Look {
     /// Crash and stamped.
     pub roles: PerRole<Rgb>,
+    /// Their surfaces in the light.
+    pub surfaces: PerRole<Rgb>,
     pub background: Background,
     pub lines: LineLook,
     /// Brightness of the light on the parts.
     pub exposure: f32,
+    /// Share of the light that comes from everywhere. On a light ground deep shade reads as dirt.
+    pub ambient: f32,
     /// Text over the picture, and the same fainter.
     pub text: Color32,
     pub weak: Color32,
@@ -40,9 +44,11 @@ pub fn part_color(ui: &egui::Ui, state: &AppState, index: usize) -> Option<Rgb> 
 impl Look {
     pub const DARK: Self = Self {
         roles: ROLES_ON_DARK,
+        surfaces: ROLES_ON_DARK,
         background: Background::DARK,
         lines: LineLook::DARK,
         exposure: 1.0,
+        ambient: 0.0,
         text: Color32::from_rgb(0xEC, 0xEF, 0xF3),
         weak: Color32::from_rgb(0xA9, 0xB2, 0xBD),
         plate: Color32::from_rgba_unmultiplied_const(0x16, 0x19, 0x1D, 0xC8),
@@ -53,9 +59,11 @@ impl Look {
     };
     pub const LIGHT: Self = Self {
         roles: ROLES_ON_LIGHT,
+        surfaces: SURFACES_ON_LIGHT,
         background: Background::LIGHT,
         lines: LineLook::LIGHT,
-        exposure: 1.45,
+        exposure: 1.35,
+        ambient: 0.4,
         text: Color32::from_rgb(0x1B, 0x20, 0x26),
         weak: Color32::from_rgb(0x4E, 0x58, 0x63),
         plate: Color32::from_rgba_unmultiplied_const(0xFF, 0xFF, 0xFF, 0xD2),

@@ -108,6 +108,7 @@ impl Picture {
             wipe: visible_parts::divider(state, view).map(visible_parts::Divider::share),
             coincidence: (!has_field).then(|| coincidence(state)).flatten(),
             exposure: look.exposure,
+            ambient: look.ambient,
             pixels_per_point,
             ..Scene::default()
         };
@@ -257,13 +258,18 @@ fn two_digits(length: f64) -> f64 {
 
 fn drawable(state: &AppState, view: &ViewFrame, look: &Look, layer: &Layer) -> Drawable {
     let PartInstance { role, .. } = layer.instance;
-    let (push_back, push_back_length) = match role {
-        Role::Crash => {
-            let part = state.document.part(role);
-            let element = part.map_or(0.0, |part| part.facts.edge_length);
-            (PUSH_BACK_PIXELS, PUSH_BACK_ELEMENTS * element)
-        }
-        Role::Stamped => (0.0, 0.0),
+    // Of sheets that lie in each other the stamped one is seen, and through a clear crash part both.
+    let behind = if visible_parts::crash_opacity(state) < 1.0 {
+        Role::Stamped
+    } else {
+        Role::Crash
+    };
+    let (push_back, push_back_length) = if role == behind {
+        let part = state.document.part(role);
+        let element = part.map_or(0.0, |part| part.facts.edge_length);
+        (PUSH_BACK_PIXELS, PUSH_BACK_ELEMENTS * element)
+    } else {
+        (0.0, 0.0)
     };
     let part = state.document.part(role);
     let parts = part.map(|part| Arc::from(visible_parts::part_looks(state, part, role, look)));
@@ -281,7 +287,7 @@ fn drawable(state: &AppState, view: &ViewFrame, look: &Look, layer: &Layer) -> D
             Role::Crash => Sheet::First,
             Role::Stamped => Sheet::Second,
         }),
-        ..Drawable::new(Arc::clone(&layer.mesh.drawn), *look.roles.get(role))
+        ..Drawable::new(Arc::clone(&layer.mesh.drawn), *look.surfaces.get(role))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::role::Role;
 use crate::ui::theme::Look;
 
 /// Opacity of the crash part when one sees through it.
-const SEE_THROUGH: f32 = 0.3;
+const SEE_THROUGH: f32 = 0.2;
 /// Opacity of the stamped part while something else than its real pose is shown.
 const PREVIEW: f32 = 0.62;
 
@@ -127,16 +127,22 @@ fn both_sides(instance: &PartInstance) -> [PartInstance; 2] {
     [side(false, WipeSide::Left), side(true, WipeSide::Right)]
 }
 
-fn crash(state: &AppState) -> PartInstance {
-    let mut opacity = state.view.display.opacity.crash;
-    if state.view.display.is_see_through {
-        opacity = opacity.min(SEE_THROUGH);
+/// Opacity of the crash part.
+pub(super) fn crash_opacity(state: &AppState) -> f32 {
+    let display = &state.view.display;
+    if display.is_see_through {
+        display.opacity.crash.min(SEE_THROUGH)
+    } else {
+        display.opacity.crash
     }
+}
+
+fn crash(state: &AppState) -> PartInstance {
     PartInstance {
         role: Role::Crash,
         world_from_part: Similarity::identity(),
         offset: Vector3::zeros(),
-        opacity,
+        opacity: crash_opacity(state),
         is_detailed: is_detailed(state),
         wipe: WipeSide::Both,
     }
