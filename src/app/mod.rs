@@ -65,7 +65,8 @@ pub use pairs::{
 };
 pub use palette::PaletteEntry;
 pub use parts::{
-    FileCommand, LikeWhat, Likeness, PartCommand, PartRef, PartsState, UnitHint, UnitMemory, filter,
+    FileCommand, LikeWhat, Likeness, MoreAlike, PartCommand, PartRef, PartsState, UnitHint,
+    UnitMemory, filter,
 };
 pub use project::{ProjectCommand, ProjectState};
 pub use reduce::{LevelResult, ReduceCommand, ReduceState};

@@ -77,13 +77,14 @@ pub fn missing_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-/// Work that its program did not live to save, offered while nothing is loaded.
+/// Work that its program did not live to save, offered until something was loaded.
 pub fn restore_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Command>) {
     let is_empty = state.document.parts.iter().all(|(_, part)| part.is_none());
+    let is_new = is_empty && state.history.names().next().is_none();
     let Some(work) = state
         .project
         .lost_session()
-        .filter(|_| is_empty && !state.jobs.is_busy())
+        .filter(|_| is_new && !state.jobs.is_busy())
     else {
         return;
     };

@@ -83,6 +83,8 @@ pub struct Shell {
     autosave: Autosave<Box<Document>>,
     place: Option<WindowPlace>,
     is_unsaved: bool,
+    /// It was told that they cannot be saved; once is enough.
+    has_told_unsaved: bool,
     /// The question about unsaved work was answered.
     may_close: bool,
     begin: Instant,
@@ -115,6 +117,7 @@ impl Shell {
             autosave,
             place: preferences.window,
             is_unsaved: false,
+            has_told_unsaved: false,
             may_close: false,
             begin: Instant::now(),
             title: String::new(),
@@ -253,8 +256,11 @@ impl Shell {
             settings: self.state.settings.clone(),
             window: self.place,
         };
-        if let Err(error) = self.preferences.write(&preferences) {
-            let text = format!("the preferences are not saved: {error}");
+        let written = self.preferences.write(&preferences);
+        if let Err(error) = written
+            && !std::mem::replace(&mut self.has_told_unsaved, true)
+        {
+            let text = format!("Preferences cannot be saved: {error}");
             self.state
                 .apply(NoticeCommand::Tell(NoticeLevel::Note, text));
         }

@@ -60,6 +60,32 @@ fn model(n: u32, size: f64, formed: bool) -> Model {
     model
 }
 
+/// A model of three parts, of which 22 is the strip that is stamped.
+fn car() -> Model {
+    let (mut positions, mut triangles, mut n_of_part) = (Vec::new(), Vec::new(), Vec::new());
+    for (n, size, x) in [(24, 9.0, 0.0), (20, 1.0, 300.0), (8, 4.0, 400.0)] {
+        let mesh = strip(n, size);
+        let first = positions.len() as u32;
+        let moved = mesh.positions().iter().map(|p| p + Vector3::x() * x);
+        positions.extend(moved);
+        let corners = mesh.triangles().iter();
+        triangles.extend(corners.map(|triangle| triangle.map(|corner| corner + first)));
+        n_of_part.push(mesh.n_triangles());
+    }
+    let mut model = Model::from_mesh(&TriMesh::new(positions, triangles).unwrap(), "car");
+    let one = model.parts[0].clone();
+    model.parts = [21, 22, 23]
+        .map(|id| shapematch::formats::model::Part { id, ..one.clone() })
+        .to_vec();
+    // Shells follow the triangles.
+    let parts = (0..).zip(n_of_part);
+    let of_shell = parts.flat_map(|(part, n)| std::iter::repeat_n(part, n));
+    for (shell, part) in model.shells.iter_mut().zip(of_shell) {
+        shell.part = part;
+    }
+    model
+}
+
 /// What the files of these tests hold, by name.
 fn read(source: &PartSource, settings: &LoadSettings) -> Result<LoadedPartAndFacts, String> {
     let PartSource::File(path) = source else {
@@ -68,6 +94,8 @@ fn read(source: &PartSource, settings: &LoadSettings) -> Result<LoadedPartAndFac
     let model = match path.to_str().unwrap() {
         "crash.k" => model(24, 1.0, false),
         "stamped.k" => model(20, 1.0, true),
+        "car.k" => car(),
+        "panel_stamped.k" | "panel_crash.k" => model(20, 1.0, false),
         "metres.k" => model(20, 0.001, true),
         "says_mm.k" => stated(model(24, 1.0, false), "units: mm", b"1"),
         "says_m.k" => stated(model(20, 0.001, true), "units: m", b"2"),
@@ -294,6 +322,66 @@ fn two_files_without_roles_are_sorted_by_content() {
         Arc::ptr_eq(&before, &window.mesh(Role::Stamped)),
         "nothing reloads"
     );
+}
+
+#[test]
+fn names_decide_where_the_content_of_two_files_says_nothing() {
+    let of = |names: [&str; 2]| {
+        let mut window = Window::new();
+        let paths = names.map(PathBuf::from).to_vec();
+        window.apply(FileCommand::Open { paths, role: None });
+        window.part(Role::Stamped).loaded.file_name()
+    };
+    assert_eq!(of(["panel_stamped.k", "panel_crash.k"]), "panel_stamped.k");
+    assert_eq!(of(["panel_crash.k", "panel_stamped.k"]), "panel_stamped.k");
+}
+
+#[test]
+fn a_deck_of_several_parts_asks_which_of_them_is_matched() {
+    let mut window = Window::new();
+    window.open("car.k", Role::Crash);
+    assert!(window.state.part_question().is_none(), "like what?");
+    window.open("stamped.k", Role::Stamped);
+    let asked = *window.state.part_question().unwrap();
+    assert_eq!((asked.part.id, asked.n_used), (22, 3));
+    window.apply(PartCommand::UseAll(Role::Crash));
+    assert!(window.state.part_question().is_none(), "it was answered");
+
+    // A weak match of all of them names this cause and no other.
+    let mut matched = Window::with_both();
+    matched.act(Action::MatchOrStop);
+    let mut result = matched.state.document.result.clone().unwrap();
+    result.stamp = window.state.document.stamp();
+    let mut run = (*result.run).clone();
+    let mut assessment = (*run.assessment).clone();
+    assessment.verdict = shapematch::assess::Verdict::Poor;
+    run.assessment = assessment.into();
+    result.run = Arc::new(run).into();
+    window.state.document.result = Some(result);
+    let causes = window.state.causes();
+    let titles: Vec<&str> = causes.iter().map(|cause| &*cause.title).collect();
+    assert_eq!(titles, ["3 crash parts are matched as one"]);
+    let (label, remedy) = causes[0].remedy.clone().unwrap();
+    assert_eq!(label, "Match only 22");
+    for command in remedy {
+        window.apply(command);
+    }
+    assert!(window.part(Role::Crash).facts.used.iter().eq(&[22]));
+    assert!(window.state.more_alike().is_none());
+
+    // The two halves of a strip are the stamped part only together.
+    assert!(Window::with_both().state.part_question().is_none());
+}
+
+#[test]
+fn the_right_window_keeps_the_deviation_while_the_part_is_moved() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    window.apply(ViewCommand::ToggleMoveOver);
+    assert_eq!(window.state.free_window(), Some(FreeWindow::Deviation));
+    window.apply(MoveCommand::Flip(Axis::X));
+    assert!(window.state.document.current_result().is_none());
+    assert_eq!(window.state.free_window(), Some(FreeWindow::Deviation));
 }
 
 #[test]

@@ -8,8 +8,8 @@ use egui::{Event, MouseWheelUnit, PointerButton, Pos2, Rect, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{
-    AppState, Command, Effect, FileCommand, FreeWindow, MoveCommand, PartCommand, PictureChoice,
-    Settings, ViewCommand,
+    AppState, ColorBy, Command, Effect, FileCommand, FreeWindow, MoveCommand, PartCommand,
+    PictureChoice, Settings, ViewCommand,
 };
 use shapematch::formats::Model;
 use shapematch::geometry::camera::{OrbitStyle, ScreenSize};
@@ -474,6 +474,29 @@ fn move_over_draws_the_stamped_part_in_the_left_picture() {
     let (_, orange) = counts(&mut harness);
     assert!(orange > 2000, "{orange} orange");
     harness.render().unwrap();
+}
+
+#[test]
+fn before_a_map_the_other_part_is_a_grey_ghost() {
+    let mut harness = drawn();
+    let n_blue = |harness: &mut Harness<'_, Desk>| {
+        let picture = left_picture(harness);
+        let is_blue = |p: &&image::Rgba<u8>| p.0[2] > p.0[0].saturating_add(40);
+        picture.pixels().filter(is_blue).count()
+    };
+    let desk = harness.state_mut();
+    desk.apply(ViewCommand::ToggleMoveOver.into());
+    harness.run_steps(3);
+    let before = n_blue(&mut harness);
+    assert!(before > 500, "{before} blue without a map");
+    let desk = harness.state_mut();
+    let mut display = desk.state.view.display.clone();
+    display.color_by = ColorBy::Deviation;
+    // So wide that the whole map is neutral: what is blue is the crash part.
+    display.coloring.limits = Some([-1000.0, 1000.0]);
+    desk.apply(ViewCommand::SetDisplay(Box::new(display)).into());
+    harness.run_steps(3);
+    assert_eq!(n_blue(&mut harness), 0);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The lines of the log with their durations.
 
+use std::path::Path;
 use std::time::Duration;
 
 use crate::app::NoticeLevel;
@@ -30,6 +31,18 @@ impl LogRow {
         match self.count {
             0 | 1 => self.text.clone(),
             n => format!("{} (×{n})", self.text),
+        }
+    }
+
+    /// What was done; of several exports also which file was written.
+    pub fn title(&self) -> String {
+        let path = self.text.strip_prefix("written: ").map(Path::new);
+        let name = path
+            .filter(|_| self.step == "export")
+            .and_then(Path::file_name);
+        match name {
+            Some(name) => format!("{} {}", self.step, name.display()),
+            None => self.step.to_owned(),
         }
     }
 
@@ -153,6 +166,14 @@ mod tests {
             level,
             count: 1,
         }
+    }
+
+    #[test]
+    fn an_export_is_called_by_its_file() {
+        let mut written = row(NoticeLevel::Success, "written: /tmp/report.html");
+        assert_eq!(written.title(), "load");
+        written.step = "export";
+        assert_eq!(written.title(), "export report.html");
     }
 
     #[test]

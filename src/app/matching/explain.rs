@@ -1,6 +1,6 @@
 //! Why a match is weak: the likely causes with what speaks for them, and one thing to do about each.
 
-use crate::app::{Action, AppState, Command, FileCommand, MatchCommand};
+use crate::app::{Action, AppState, Command, FileCommand, MatchCommand, PartCommand};
 use crate::assess::{Assessment, Clarity, Reason, ShapeReason, Verdict, error_beside};
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::registration::{Hand, StartMethod};
@@ -35,8 +35,13 @@ impl AppState {
         if assessment.verdict == Verdict::Good {
             return Vec::new();
         }
+        // Sizes and overlap of several parts say nothing about the one that is stamped; parts in
+        // different units lie nowhere on each other.
+        let first = self.parts_cause().or_else(|| self.units_cause(assessment));
+        if let Some(only) = first {
+            return vec![only];
+        }
         let found = [
-            self.units_cause(assessment),
             self.hand_cause(assessment),
             self.twin_cause(assessment),
             self.freedom_cause(assessment),
@@ -121,6 +126,17 @@ impl AppState {
             }
         };
         Some((label, vec![command.into()]))
+    }
+
+    fn parts_cause(&self) -> Option<Cause> {
+        let more = self.more_alike()?;
+        let title = self.document.part_title(more.part);
+        let commands = vec![PartCommand::UseOnly(more.part).into()];
+        Some(Cause {
+            title: format!("{} crash parts are matched as one", more.n_used),
+            evidence: format!("{title} alone is more like the stamped part than all together."),
+            remedy: Some((format!("Match only {}", more.part.id), commands)),
+        })
     }
 
     fn units_cause(&self, assessment: &Assessment) -> Option<Cause> {

@@ -34,7 +34,10 @@ impl PartsState {
             PartCommand::UseOnly(part) => {
                 return self.use_parts(work, part.role, Selection::Parts(vec![part.id]));
             }
-            PartCommand::UseAll(role) => return self.use_parts(work, role, Selection::All),
+            PartCommand::UseAll(role) => {
+                self.choice_made_for = Some(work.document.stamp().parts);
+                return self.use_parts(work, role, Selection::All);
+            }
         }
         Vec::new()
     }

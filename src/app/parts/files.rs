@@ -326,18 +326,21 @@ impl PartsState {
         let Some(PerRole { crash, stamped }) = work.document.both() else {
             return;
         };
-        if crash.facts.formed > stamped.facts.formed {
+        let is_by_name = crash.facts.formed == stamped.facts.formed
+            && stamped_word(crash) > stamped_word(stamped);
+        if crash.facts.formed > stamped.facts.formed || is_by_name {
             self.swap(work);
         }
-        self.tell_guess(work);
+        self.tell_guess(work, is_by_name);
     }
 
     /// What was guessed, why, and the way out.
-    fn tell_guess(&mut self, work: &mut Work<'_>) {
+    fn tell_guess(&mut self, work: &mut Work<'_>, is_by_name: bool) {
         let Some(PerRole { stamped, .. }) = work.document.both() else {
             return;
         };
         let why = match stamped.facts.formed {
+            _ if is_by_name => "its name says so",
             0 => "no file says which it is",
             1 => "it is one part with a thickness for each element",
             _ => "it carries forming results",
@@ -389,4 +392,11 @@ fn usual_load_settings(settings: &Settings) -> LoadSettings {
         read: ReadOptions::default().with_limit(settings.read_limit),
         ..LoadSettings::default()
     }
+}
+
+/// How plainly a file's name says that it is the stamped part: 1, that it is the crash part: -1, else 0.
+fn stamped_word(part: &Part) -> i32 {
+    let name = part.loaded.file_name().to_lowercase();
+    let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
+    i32::from(has(&["stamped", "stamping", "dynain", "formed"])) - i32::from(has(&["crash"]))
 }

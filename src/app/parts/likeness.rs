@@ -10,6 +10,9 @@ use crate::role::{PerRole, Role};
 /// A crash model of so many parts is sorted as soon as the stamped part is known.
 const MANY: usize = 20;
 
+/// Less alike parts are not taken for each other.
+const ALIKE: f64 = 0.5;
+
 /// What parts are compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LikeWhat {
@@ -49,6 +52,33 @@ impl AppState {
     }
 }
 
+/// A part of the crash model that is more like the stamped part than all that are matched together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MoreAlike {
+    /// That part.
+    pub part: PartRef,
+    /// Crash parts that are matched now.
+    pub n_used: usize,
+    parts: PerRole<u64>,
+}
+
+impl AppState {
+    /// The part of the crash model that should be matched alone, where all of several are.
+    pub fn more_alike(&self) -> Option<&MoreAlike> {
+        let parts = self.document.stamp().parts;
+        self.parts.more_alike.as_ref().filter(|l| l.parts == parts)
+    }
+
+    /// [`AppState::more_alike`] until the user said which parts are matched, or a match was made.
+    pub fn part_question(&self) -> Option<&MoreAlike> {
+        let parts = self.document.stamp().parts;
+        let is_answered = self.parts.choice_made_for == Some(parts);
+        let result = self.document.result.as_ref();
+        let is_matched = result.is_some_and(|result| result.stamp.parts == parts);
+        self.more_alike().filter(|_| !is_answered && !is_matched)
+    }
+}
+
 impl PartsState {
     pub(super) fn order_like(&mut self, document: &Document, to: Option<LikeWhat>) {
         self.likeness = to.and_then(|to| document.likeness_to(to));
@@ -62,10 +92,45 @@ impl PartsState {
         let of_car = is_car.then_some(LikeWhat::Used(Role::Stamped));
         let to = self.likeness.as_ref().map(|l| l.to).or(of_car);
         self.order_like(document, to);
+        self.more_alike = document.more_alike();
     }
 }
 
 impl Document {
+    /// O(parts · log parts).
+    fn more_alike(&self) -> Option<MoreAlike> {
+        let both = self.both()?;
+        let n_used = both.crash.facts.used.len();
+        if n_used < 2 || both.stamped.facts.used.len() != 1 {
+            return None;
+        }
+        let stamped = self.signature(LikeWhat::Used(Role::Stamped))?;
+        let together = self.signature(LikeWhat::Used(Role::Crash))?;
+        let found = self.likeness_to(LikeWhat::Used(Role::Stamped))?;
+        let mut order = found.order.iter();
+        let id = *order.find(|id| both.crash.is_used(**id))?;
+        let likeness = *found.of_part.get(&id)?;
+        let is_likelier = likeness > ALIKE.max(stamped.likeness(&together));
+        is_likelier.then_some(MoreAlike {
+            part: PartRef {
+                role: Role::Crash,
+                id,
+            },
+            n_used,
+            parts: self.stamp().parts,
+        })
+    }
+
+    /// Title of a part of a deck with its number, or the number alone.
+    pub fn part_title(&self, part: PartRef) -> String {
+        let rows = self.part(part.role).map(|p| &p.facts.parts);
+        let row = rows.and_then(|rows| rows.iter().find(|row| row.id == part.id));
+        match row {
+            Some(row) if !row.title.is_empty() => format!("{} {}", part.id, row.title),
+            _ => format!("part {}", part.id),
+        }
+    }
+
     /// O(parts · log parts).
     fn likeness_to(&self, to: LikeWhat) -> Option<Likeness> {
         let given = self.signature(to)?;

@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 
 pub use command::{FileCommand, PartCommand};
 pub(super) use files::NewPart;
-pub use likeness::{LikeWhat, Likeness};
+pub use likeness::{LikeWhat, Likeness, MoreAlike};
 pub use unit_memory::UnitMemory;
 pub use units::UnitHint;
 
@@ -38,6 +38,10 @@ pub struct PartsState {
     pub hovered: Option<PartRef>,
     /// What the part list is sorted by, if not the order of the files.
     likeness: Option<Likeness>,
+    /// The part that should be matched alone, if there is one.
+    more_alike: Option<MoreAlike>,
+    /// The parts for which the user said which of a deck are matched.
+    choice_made_for: Option<PerRole<u64>>,
     guess: Guess,
     /// The parts for which the hint about units was answered.
     unit_hint_dismissed_for: Option<PerRole<u64>>,

@@ -47,12 +47,15 @@ impl FreeWindow {
 
 impl AppState {
     /// What the right window shows beside the shared one; `None` while it has its own part. Without a
-    /// choice: the deviation where there is a result, else the full meshes.
+    /// choice: the deviation where the parts were matched, else the full meshes.
     pub fn free_window(&self) -> Option<FreeWindow> {
         if !self.view.is_moved_over {
             return None;
         }
-        let by_itself = match self.document.current_result() {
+        // A result that is out of date keeps its map, which then follows the pose.
+        let parts = self.document.stamp().parts;
+        let result = self.document.result.as_ref();
+        let by_itself = match result.filter(|result| result.stamp.parts == parts) {
             Some(_) => FreeWindow::Deviation,
             None => FreeWindow::FullMesh,
         };

@@ -3,6 +3,7 @@
 use egui::{Align, Layout, Sense, TextStyle, Ui, vec2};
 
 use super::part_list::part_list_ui;
+use super::part_question::part_question_ui;
 use super::section::{elided, section_ui};
 use super::units;
 use crate::app::{
@@ -30,6 +31,7 @@ pub fn load_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 file_ui(ui, role, state, commands);
             }
             units::unit_question_ui(ui, state, commands);
+            part_question_ui(ui, state, commands);
             if state.document.parts.iter().any(|(_, part)| part.is_some()) {
                 tools_ui(ui, state, commands);
                 part_list_ui(ui, state, commands);

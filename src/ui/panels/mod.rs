@@ -8,6 +8,7 @@ pub mod manual_move;
 pub mod matching;
 pub mod pairs;
 pub mod part_list;
+pub mod part_question;
 pub mod part_row;
 pub mod recipe;
 pub mod reduce;

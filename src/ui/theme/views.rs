@@ -83,6 +83,12 @@ impl Look {
         color(*self.roles.get(role))
     }
 
+    /// The grey a role's colour is of.
+    pub fn ghost(&self, role: Role) -> Rgb {
+        let [red, green, blue] = self.roles.get(role).map(u16::from);
+        [((red + 2 * green + blue) / 4) as u8; 3]
+    }
+
     /// Colour of the n-th part of a deck, if parts are told apart: ten colours that differ in
     /// lightness too, away from those of the roles.
     pub fn part(&self, index: usize) -> Rgb {

@@ -271,7 +271,12 @@ fn drawable(state: &AppState, view: &ViewFrame, look: &Look, layer: &Layer) -> D
     } else {
         (0.0, 0.0)
     };
+    let color = match layer.instance.is_ghost {
+        true => look.ghost(role),
+        false => *look.surfaces.get(role),
+    };
     let part = state.document.part(role);
+    let part = part.filter(|_| !layer.instance.is_ghost);
     let parts = part.map(|part| Arc::from(visible_parts::part_looks(state, part, role, look)));
     Drawable {
         world_from_mesh: layer.instance.world_from_part,
@@ -287,7 +292,7 @@ fn drawable(state: &AppState, view: &ViewFrame, look: &Look, layer: &Layer) -> D
             Role::Crash => Sheet::First,
             Role::Stamped => Sheet::Second,
         }),
-        ..Drawable::new(Arc::clone(&layer.mesh.drawn), *look.surfaces.get(role))
+        ..Drawable::new(Arc::clone(&layer.mesh.drawn), color)
     }
 }
 

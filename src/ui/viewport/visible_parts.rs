@@ -9,6 +9,8 @@ use crate::ui::theme::Look;
 
 /// Opacity of the crash part when one sees through it.
 const SEE_THROUGH: f32 = 0.2;
+/// Opacity of a part without colours of its own before or behind one that shows the deviation.
+const GHOST: f32 = 0.15;
 /// Opacity of the stamped part while something else than its real pose is shown.
 const PREVIEW: f32 = 0.62;
 
@@ -22,6 +24,8 @@ pub(super) struct PartInstance {
     pub opacity: f32,
     pub is_detailed: bool,
     pub wipe: WipeSide,
+    /// Grey, so that its own colour is not taken for one of the map.
+    pub is_ghost: bool,
 }
 
 /// What a line across the window separates.
@@ -71,6 +75,14 @@ pub(super) fn visible_parts(state: &AppState, view: &ViewFrame) -> Vec<PartInsta
     if state.document.part(Role::Stamped).is_some() {
         parts.extend(stamped(state, view));
     }
+    let is_shared = view.window == Role::Crash && state.view.is_moved_over;
+    if is_shared && state.color_by(view.window) == ColorBy::Deviation {
+        let colored = &state.view.display.coloring.on;
+        for instance in parts.iter_mut().filter(|part| !*colored.get(part.role)) {
+            instance.is_ghost = true;
+            instance.opacity = instance.opacity.min(GHOST);
+        }
+    }
     match divider(state, view) {
         Some(Divider::Wipe(_)) => {
             for instance in &mut parts {
@@ -101,6 +113,7 @@ fn beside(state: &AppState, view: &ViewFrame, free: FreeWindow) -> Vec<PartInsta
         opacity: 1.0,
         is_detailed: free == FreeWindow::FullMesh || is_detailed(state),
         wipe: WipeSide::Both,
+        is_ghost: false,
     };
     let pose = match free {
         FreeWindow::SecondPose => state.second_pose().unwrap_or(view.pose),
@@ -145,6 +158,7 @@ fn crash(state: &AppState) -> PartInstance {
         opacity: crash_opacity(state),
         is_detailed: is_detailed(state),
         wipe: WipeSide::Both,
+        is_ghost: false,
     }
 }
 
@@ -186,6 +200,7 @@ fn stamped(state: &AppState, view: &ViewFrame) -> Option<PartInstance> {
         opacity,
         is_detailed: is_detailed(state),
         wipe: WipeSide::Both,
+        is_ghost: false,
     })
 }
 

@@ -2,9 +2,13 @@
 
 use egui::{Align2, Rect, ScrollArea, Sense, TextStyle, Ui, pos2, vec2};
 
+use super::super::section::elided;
 use crate::app::{AppState, LogRow, duration_text};
 use crate::ui::theme::Palette;
 use crate::ui::widgets::nothing_yet;
+
+/// Width of the names, points.
+const TITLES: f32 = 144.0;
 
 /// One bar for each step that took time, in order; lengths share one scale.
 pub fn timings_ui(ui: &mut Ui, state: &AppState) {
@@ -41,20 +45,16 @@ fn bar_ui(ui: &mut Ui, row: &LogRow, share: f32) {
     let font = TextStyle::Body.resolve(ui.style());
     let middle = rect.center().y;
     let role = row.role.map_or("", crate::role::Role::mark);
-    let name = format!("{role} {}", row.step);
+    let name = format!("{role} {}", row.title());
     let color = row
         .role
         .map_or(palette.accent_text, |role| palette.role(role));
-    let painter = ui.painter();
     let left = pos2(rect.left(), middle);
-    painter.text(
-        left,
-        Align2::LEFT_CENTER,
-        name.trim(),
-        font.clone(),
-        palette.text,
-    );
-    let bars = rect.left() + 96.0;
+    let title = elided(ui, name.trim(), font.clone(), palette.text, TITLES - 8.0);
+    let at = left - vec2(0.0, 0.5 * title.size().y);
+    ui.painter().galley(at, title, palette.text);
+    let painter = ui.painter();
+    let bars = rect.left() + TITLES;
     let room = (rect.right() - bars - 96.0).max(16.0);
     let bar = Rect::from_min_max(
         pos2(bars, middle - 5.0),
