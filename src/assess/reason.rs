@@ -100,6 +100,9 @@ pub enum Reason {
         /// Distance that 95 % of the overlap stays below.
         #[serde(with = "any_float")]
         p95: f64,
+        /// Whether other poses were looked for everywhere.
+        #[serde(default)]
+        rivals_sought: bool,
     },
     /// A sentence of a project from a version that stored words instead of reasons.
     #[serde(untagged)]

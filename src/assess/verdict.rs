@@ -61,6 +61,7 @@ pub(super) fn decide(
         reasons.push(Reason::InOrder {
             overlap: shape.met,
             p95: assessment.coverage.p95(),
+            rivals_sought: outcome.rivals_sought,
         });
     }
     if let Some(pose) = &mut assessment.pose {

@@ -94,11 +94,19 @@ impl Reason {
             Self::EndedEarly { termination } => {
                 format!("the match ended early: {}", termination.label())
             }
-            Self::InOrder { overlap, p95 } => format!(
-                "{} of the smaller part overlaps, 95 % of it within {}, and no other pose fits \
-                 nearly as well",
+            Self::InOrder {
+                overlap,
+                p95,
+                rivals_sought,
+            } => format!(
+                "{} of the smaller part overlaps, 95 % of it within {}, and {}",
                 percent(*overlap),
-                lengths.of(*p95)
+                lengths.of(*p95),
+                if *rivals_sought {
+                    "no other pose fits nearly as well"
+                } else {
+                    "other poses were not looked for everywhere"
+                }
             ),
             Self::Sentence(text) => text.clone(),
         }

@@ -250,7 +250,7 @@ mod tests {
             |a| a.recipe.settings.motion_tolerance = 1e-9,
             |a| a.recipe.settings.starts.angle_segment_deg = 33.3,
             |a| a.recipe.settings.starts.both_signs ^= true,
-            |a| a.recipe.settings.starts.extra_starts ^= true,
+            |a| a.recipe.settings.starts.wide_search ^= true,
             |a| a.recipe.settings.starts.method = StartMethod::All,
             |a| {
                 a.recipe.settings.starts.method = StartMethod::GivenPoses;
@@ -369,7 +369,7 @@ mod tests {
         assert_eq!(settings.selection, Selection::Trimmed { overlap: 0.5 });
         assert_eq!(settings.pair_with, PairWith::Node);
         assert_eq!(settings.data_side, DataSide::Target);
-        assert!(!settings.starts.extra_starts && !settings.refine_on_full);
+        assert!(!settings.starts.wide_search && !settings.refine_on_full);
         assert_eq!(settings.n_coarse_points, 99);
         assert_eq!(asked.current.translation.x, 5.0);
     }

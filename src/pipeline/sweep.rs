@@ -58,7 +58,7 @@ impl Default for SweepSettings {
 /// times of all levels compare.
 fn nine_starts() -> MatchSettings {
     let mut settings = MatchSettings::default();
-    settings.starts.extra_starts = false;
+    settings.starts.wide_search = false;
     settings
 }
 

@@ -35,7 +35,8 @@ pub fn match_meshes<'a>(
 ///
 /// A stop request ends every stage early and keeps the best pose; a cancel request ends with
 /// [`RegistrationError::Cancelled`]. The result depends on meshes and settings alone, not on the
-/// number of threads. Cost: about half a million closest-point queries with the default settings.
+/// number of threads. Cost: the wide search takes the same time whatever the parts are, then about half a
+/// million closest-point queries follow with the default settings.
 pub fn match_surfaces<'a>(
     input: &MatchInput<'_>,
     settings: &MatchSettings,
@@ -65,7 +66,7 @@ pub fn match_surfaces<'a>(
     }
     if !searches.iter().any(MultiStart::is_acceptable) {
         for search in &mut searches {
-            search.run_extra_starts(&mut numbers, monitor)?;
+            search.run_wide_search(&mut numbers, monitor)?;
         }
     }
     decide(input, settings, searches, monitor).map(|mut outcome| {

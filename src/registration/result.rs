@@ -187,6 +187,10 @@ pub struct MatchOutcome {
     pub floor: f64,
     /// Distinct poses that were compared in the end, best first, without the result itself.
     pub alternatives: Vec<Alternative>,
+    /// True if the wide search and places of the larger part that are shaped alike were compared with
+    /// the result; else other poses may fit as well. False in results of earlier versions.
+    #[serde(default)]
+    pub rivals_sought: bool,
     /// Every start.
     pub starts: Vec<StartRecord>,
     /// Index of the start that won.

@@ -55,6 +55,7 @@ pub(super) fn match_same_nodes(
         objective: rmse,
         floor: 0.0,
         alternatives: Vec::new(),
+        rivals_sought: false,
         winner: 0,
         starts: vec![StartRecord {
             kind: StartKind::CurrentPose,

@@ -174,7 +174,7 @@ impl MatchSettings {
                 max_normal_angle_deg: 180.0,
                 starts: StartSettings {
                     both_signs: false,
-                    extra_starts: false,
+                    wide_search: false,
                     ..StartSettings::default()
                 },
                 ..base

@@ -334,7 +334,7 @@ impl MatchRecord {
             score_ratio: other.score_ratio,
         });
         Self {
-            schema: "shapematch.match/2",
+            schema: "shapematch.match/3",
             direction: DIRECTION,
             convention: CONVENTION,
             pose: PoseRecord::new(pose, context.sample_node, &context.center),

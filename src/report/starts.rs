@@ -26,7 +26,10 @@ pub fn start_name(start: &StartRecord) -> String {
 pub fn start_kind_words(kind: StartKind) -> String {
     match kind {
         StartKind::SurfaceNormal { angle_deg } => format!("surface normal {angle_deg:.0}°"),
-        StartKind::Patch { patch, angle_deg } => format!("patch {} {angle_deg:.0}°", patch + 1),
+        StartKind::Patch { patch, angle_deg } => {
+            let patch = patch + 1;
+            format!("surface normal of patch {patch}, {angle_deg:.0}°")
+        }
         StartKind::PrincipalFrame { signs } => format!("principal axes {}", signs + 1),
         StartKind::Covering { index } => format!("rotation {}", index + 1),
         StartKind::Wide { rotation, place } => {
@@ -35,6 +38,7 @@ pub fn start_kind_words(kind: StartKind) -> String {
         }
         StartKind::CurrentPose => "current pose".to_owned(),
         StartKind::Given { index } => format!("given pose {}", index + 1),
+        StartKind::Alike { index } => format!("place shaped alike, {}", index + 1),
         StartKind::Twin { axis } => format!("rotated 180° about axis {}", axis + 1),
     }
 }

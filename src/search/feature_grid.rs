@@ -115,6 +115,11 @@ impl FeatureGrid {
         narrow((point - self.origin) * self.scale)
     }
 
+    /// A direction and length of the grid's frame in that of the samples.
+    pub fn to_outer(&self, vector: [f32; 3]) -> Vector3 {
+        Vector3::from(vector.map(f64::from)) / self.scale
+    }
+
     /// Width of a cell, in grid units.
     pub fn cell(&self) -> f32 {
         1.0 / self.per_unit

@@ -212,6 +212,7 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
     let good = Reason::InOrder {
         overlap: 0.98,
         p95: 0.1,
+        rivals_sought: true,
     };
     let poor = poor.map(|reason| (reason, Verdict::Poor)).into_iter();
     let check = check.map(|reason| (reason, Verdict::Check));

@@ -163,7 +163,7 @@ fn the_record_has_its_keys() {
         let bytes = std::fs::read(pair.path(name)).unwrap();
         assert_eq!(file["sha256"], FileHash::of(&bytes).to_string());
     }
-    assert_eq!(record["schema"], "shapematch.match/2");
+    assert_eq!(record["schema"], "shapematch.match/3");
     let there = similarity(&record["matrix"]);
     let back = similarity(&record["inverse"]);
     let still = Similarity::identity().to_matrix4();

@@ -367,7 +367,7 @@ fn any_recipe() -> impl Strategy<Value = MatchRecipe> {
                         angle_segment_deg: x[2],
                         both_signs: is[2],
                         poses: vec![shifted(x[3]), shifted(-x[4])],
-                        extra_starts: is[3],
+                        wide_search: is[3],
                     },
                     search: if is[4] {
                         Search::CoarseToFine

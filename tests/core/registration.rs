@@ -97,7 +97,7 @@ fn current_pose() -> StartSettings {
     StartSettings {
         method: StartMethod::CurrentPose,
         both_signs: false,
-        extra_starts: false,
+        wide_search: false,
         ..StartSettings::default()
     }
 }
@@ -552,8 +552,8 @@ impl Observer for Begun {
 }
 
 #[test]
-fn starts_of_both_hands_and_extra_starts_are_numbered_once() {
-    // Half of a pan on another half: nothing acceptable is found at once, so extra starts follow.
+fn starts_of_both_hands_and_of_the_wide_search_are_numbered_once() {
+    // Half of a pan on another half.
     let target = pan(16.0, 0.35, |x, _| x < 10.0);
     let (source, _) = moved(&pan(14.0, 0.0, |x, _| x > -10.0), 1);
     let settings = MatchSettings {
@@ -567,9 +567,10 @@ fn starts_of_both_hands_and_extra_starts_are_numbered_once() {
     let monitor = Monitor::silent();
     let monitor = MatchMonitor::observed(&monitor, &begun);
     let outcome = match_meshes(&source, &target, &settings, monitor).unwrap();
-    let is_extra = |s: &StartRecord| matches!(s.kind, StartKind::Covering { .. });
+    let is_wide =
+        |s: &StartRecord| matches!(s.kind, StartKind::Wide { .. } | StartKind::Patch { .. });
     for mirrored in [false, true] {
-        let of_hand = |s: &&StartRecord| s.mirrored == mirrored && is_extra(s);
+        let of_hand = |s: &&StartRecord| s.mirrored == mirrored && is_wide(s);
         assert!(outcome.starts.iter().filter(of_hand).count() > 0);
     }
     let first_poses = begun.0.into_inner().unwrap();
@@ -596,7 +597,7 @@ fn words_of_earlier_versions_are_still_read() {
         refine_on_full: false,
         n_coarse_points: 77,
         starts: StartSettings {
-            extra_starts: false,
+            wide_search: false,
             ..StartSettings::default()
         },
         ..MatchSettings::default()
@@ -605,7 +606,7 @@ fn words_of_earlier_versions_are_still_read() {
         .unwrap()
         .replace("refine_on_full", "finish")
         .replace("n_coarse_points", "n_race_points")
-        .replace("extra_starts", "widen")
+        .replace("wide_search", "widen")
         .replace("coarse-to-fine", "race");
     assert!(former.contains("\"race\""), "{former}");
     assert_eq!(

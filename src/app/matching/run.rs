@@ -26,7 +26,7 @@ impl MatchState {
     pub(super) fn refine(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
         self.run_match_of(work, |mut input| {
             input.recipe.settings.starts.method = StartMethod::CurrentPose;
-            input.recipe.settings.starts.extra_starts = false;
+            input.recipe.settings.starts.wide_search = false;
             JobKind::Match(input)
         })
     }

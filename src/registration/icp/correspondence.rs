@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::reject::RejectRules;
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::registration::surface::Surface;
-use crate::search::{ClosestPoint, NormalFilter};
+use crate::search::{ClosestPoint, FeatureGrid, NormalFilter};
 
 /// What a data point is paired with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -80,6 +80,46 @@ pub(crate) fn correspond(
         .enumerate()
         .map(pair)
         .collect()
+}
+
+/// Pairs every sample with the plane of a sample of the model near it, in constant time however far
+/// away that is. Within a cell of the grid the plane is as good as the surface; beyond, the way within
+/// the plane counts too.
+pub(crate) fn correspond_on_grid(
+    samples: &[Sample],
+    grid: &FeatureGrid,
+    model_from_data: &Similarity,
+    min_cos: f64,
+) -> Vec<Correspondence> {
+    let slack = f64::from(grid.cell()) / grid.scale();
+    let pair = |sample: &Sample| {
+        let moved = model_from_data.apply(&sample.point);
+        let moved_normal = model_from_data.rotate(&sample.normal);
+        let local = grid.to_local(&moved);
+        let hint = grid.nearest_index(local);
+        let feature = &grid.features()[hint as usize];
+        let off = grid.to_outer(std::array::from_fn(|k| local[k] - feature.point[k]));
+        let normal = Vector3::from(feature.normal.map(f64::from));
+        let height = off.dot(&normal);
+        let along = off - normal * height;
+        let beyond = along * (1.0 - (slack / along.norm().max(slack)).min(1.0));
+        let matched = moved - normal * height - beyond;
+        let agrees = normal.dot(&moved_normal) >= min_cos;
+        Correspondence {
+            moved,
+            moved_normal,
+            matched,
+            matched_normal: normal,
+            weight: sample.weight,
+            distance_sq: if agrees {
+                (matched - moved).norm_squared()
+            } else {
+                f64::INFINITY
+            },
+            hint,
+        }
+    };
+    samples.iter().map(pair).collect()
 }
 
 fn match_point(

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::correspondence::{Correspondence, Sample, correspond};
+use super::correspondence::{Correspondence, Sample, correspond, correspond_on_grid};
 use super::metric::{StepRules, step};
 use super::select::{Selected, select};
 use super::stages::StageRules;
@@ -12,6 +12,7 @@ use crate::monitor::Cancelled;
 use crate::registration::observer::MatchMonitor;
 use crate::registration::result::{IterationRecord, Side};
 use crate::registration::surface::Surface;
+use crate::search::FeatureGrid;
 
 /// The smallest damping of a step, relative to the stiffness.
 const MIN_DAMPING: f64 = 1e-9;
@@ -112,6 +113,24 @@ impl Run {
         }
     }
 
+    /// Distance that a share of all points of the last iteration, by weight, does not exceed; infinite
+    /// where fewer found a partner.
+    pub(crate) fn quantile(&self, share: f64) -> f64 {
+        let mut sizes: Vec<(f64, f64)> = self
+            .pairs
+            .iter()
+            .map(|pair| (pair.distance_sq, pair.weight))
+            .collect();
+        sizes.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let total: f64 = sizes.iter().map(|(_, weight)| weight).sum();
+        let mut below = 0.0;
+        let found = sizes.iter().find(|(_, weight)| {
+            below += weight;
+            below >= share * total
+        });
+        found.map_or(f64::INFINITY, |(distance_sq, _)| distance_sq.sqrt())
+    }
+
     /// The kept pairs of the last iteration, closest first, under the pose before its step.
     pub(crate) fn kept_pairs(&self) -> impl Iterator<Item = &Correspondence> + Clone {
         self.kept.iter().map(|&i| &self.pairs[i as usize])
@@ -164,6 +183,8 @@ pub(crate) struct StageInput<'a> {
     pub(crate) model: &'a Surface,
     pub(crate) rules: &'a StageRules,
     pub(crate) frames: &'a Frames,
+    /// The model as a grid, where that is exact enough.
+    pub(crate) grid: Option<&'a FeatureGrid>,
 }
 
 /// Continues `run` for at most `n_iterations`, until the rules of its stage end it. A stop request
@@ -196,8 +217,11 @@ fn iterate(run: &mut Run, input: &StageInput<'_>, monitor: &MatchMonitor<'_>) {
         data, model, rules, ..
     } = *input;
     let pose = run.model_from_data;
-    // The pairs of the last iteration are hints: most points stay with their triangle.
-    run.pairs = correspond(&data.samples, model, &pose, &rules.matching, &run.pairs);
+    run.pairs = match input.grid {
+        Some(grid) => correspond_on_grid(&data.samples, grid, &pose, rules.matching.reject.min_cos),
+        // The pairs of the last iteration are hints: most points stay with their triangle.
+        None => correspond(&data.samples, model, &pose, &rules.matching, &run.pairs),
+    };
     let Some(selected) = select(&run.pairs, &rules.selection) else {
         run.termination = Some(Termination::NoPairs);
         return;

@@ -1,12 +1,27 @@
 //! A start on its way, and the choice of data and model it runs in.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
 use super::starts::Start;
 use crate::geometry::Similarity;
 use crate::registration::agreement::same_pose;
-use crate::registration::icp::{Data, Frames, Run};
+use crate::registration::icp::{Data, Frames, Run, Stage, StageRules, natural_floor, stage_rules};
 use crate::registration::observer::MatchMonitor;
 use crate::registration::result::{Side, StartOutcome, StartRecord};
+use crate::registration::settings::MatchSettings;
 use crate::registration::surface::Surface;
+use crate::search::FeatureGrid;
+
+/// The deviation of the shapes is measured on the closer part of the pairs, because the rest may have no
+/// counterpart: this share of them …
+const DEVIATION_SHARE: f64 = 0.3;
+/// … and so many times what they keep within: of values around nothing two thirds lie there.
+const DEVIATION_SCALE: f64 = 2.0;
+/// So many times the faceting is no deviation.
+const FACETING: f64 = 3.0;
+/// Largest deviation that is expected, as a share of the reach: of 1 % of the diagonal.
+const DEVIATION_REACH: f64 = 0.1;
 
 /// The surfaces of one stage in their roles.
 #[derive(Clone, Copy)]
@@ -34,6 +49,13 @@ pub(crate) struct DataChoice<'a> {
     pub(crate) fine: Pairing<'a>,
     pub(crate) frames: Frames,
     pub(crate) mirrored: bool,
+    /// The coarse model as a grid, if far questions are put to one.
+    pub(crate) grid: Option<Arc<FeatureGrid>>,
+    /// Points farther away than this find no partner on the exact meshes.
+    pub(crate) reach: f64,
+    /// How far the shapes differ besides their facets as the coarse stage saw it: springback, noise or an
+    /// offset of the sheets. Expected by the stages that follow.
+    pub(crate) deviation: f64,
 }
 
 impl DataChoice<'_> {
@@ -48,6 +70,31 @@ impl DataChoice<'_> {
         } else {
             start.target_from_source
         }
+    }
+
+    /// The rules of a stage between the surfaces of `pairing`.
+    pub(super) fn rules(
+        &self,
+        stage: Stage,
+        settings: &MatchSettings,
+        pairing: Pairing<'_>,
+    ) -> StageRules {
+        let mut expected = Cow::Borrowed(settings);
+        if self.deviation > settings.allowance {
+            expected.to_mut().allowance = self.deviation;
+        }
+        let mut rules = stage_rules(stage, &expected, pairing.data, pairing.model);
+        rules.matching.reject.max_distance = self.reach;
+        rules
+    }
+
+    /// How far the shapes differ under the pose of `run`, whose coarse stage has ended.
+    pub(super) fn deviation_of(&self, run: &Run) -> f64 {
+        let Pairing { data, model } = self.coarse;
+        let facets = natural_floor(data, model);
+        let most = self.reach * DEVIATION_REACH;
+        let differs = DEVIATION_SCALE * run.quantile(DEVIATION_SHARE) - FACETING * facets;
+        differs.clamp(0.0, most)
     }
 
     /// True for poses of the data that a further refinement would bring together.
@@ -73,6 +120,19 @@ impl Candidate {
             first: choice.frames.target_from_source(&pose),
             run: Run::new(start_idx, pose),
             outcome: None,
+        }
+    }
+
+    /// Where it is as a first pose of the source that was searched with.
+    pub(super) fn as_start(&self, choice: &DataChoice<'_>) -> Start {
+        let pose = self.run.model_from_data;
+        Start {
+            target_from_source: if choice.frames.data_is_target {
+                pose.inverse()
+            } else {
+                pose
+            },
+            ..self.start
         }
     }
 

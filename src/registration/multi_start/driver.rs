@@ -9,13 +9,14 @@ use super::score::{PoseScorer, TwoSided};
 use super::sizes::{
     incompatible_settings, last_stage_swaps, natural_data_side, sizes_incompatible,
 };
-use super::starts::{Start, extra_starts, patch_starts, starts};
+use super::starts::{Start, StartMethod, starts};
 use super::variations::{mirror_images, twins};
+use super::wide_starts::WideStarts;
 use crate::geometry::Similarity;
 use crate::monitor::Cancelled;
 use crate::registration::RegistrationError;
 use crate::registration::icp::{
-    Data, Frames, Run, Selection, Stage, StageInput, advance, edge_length, natural_floor,
+    Data, Floor, Frames, Run, Selection, Stage, StageInput, advance, edge_length, natural_floor,
     stage_rules,
 };
 use crate::registration::input::MatchInput;
@@ -41,8 +42,11 @@ const CLEARLY_WORSE: f64 = 8.0;
 const REDUCED_ERROR: f64 = 0.02;
 /// Below this kept fraction the data overhangs, and the other mesh's points are tried as well.
 const OVERHANG: f64 = 0.9;
-/// The smaller part is aligned with patches of the larger below this ratio of areas.
-const PATCH_RATIO: f64 = 0.75;
+/// Where the wide search brings the poses near, exact partners are looked for within this share of the
+/// smaller part's diagonal, which bounds the time of a question.
+const REACH: f64 = 0.1;
+/// Poses of the opposite hand that are looked at, of those that survive the wide search.
+const N_OPPOSITE: usize = 3;
 
 /// The search for one hand of the source: its choices of data and model with their candidates.
 pub(crate) struct MultiStart<'a> {
@@ -51,6 +55,9 @@ pub(crate) struct MultiStart<'a> {
     mirror: Option<Similarity>,
     pub(crate) choices: Vec<(DataChoice<'a>, Vec<Candidate>)>,
     scorer: PoseScorer<'a>,
+    wide: Option<WideStarts<'a>>,
+    /// Points farther away than this find no partner.
+    reach: f64,
     pub(crate) timings: SearchTimings,
 }
 
@@ -101,31 +108,50 @@ impl<'a> MultiStart<'a> {
         mirror: Option<Similarity>,
     ) -> Self {
         let (source, target) = (input.source, input.target);
-        let (reach, settings) = if sizes_incompatible(source, target) {
-            let diagonal = |surface: &Surface| surface.measures().diagonal;
-            let reach = diagonal(source).min(diagonal(target));
-            (reach, Cow::Owned(incompatible_settings(settings)))
-        } else {
-            (f64::INFINITY, Cow::Borrowed(settings))
+        let diagonal = |surface: &Surface| surface.measures().diagonal;
+        let smaller = diagonal(source).min(diagonal(target));
+        let is_incompatible = sizes_incompatible(source, target);
+        let is_wide = settings.starts.wide_search
+            && settings.search == Search::CoarseToFine
+            && !is_incompatible;
+        let reach = match (is_incompatible, is_wide) {
+            (true, _) => smaller,
+            (_, true) => REACH * smaller,
+            _ => f64::INFINITY,
         };
+        let wide = is_wide.then(|| WideStarts::of(&input)).flatten();
+        let larger = wide.as_ref().and_then(WideStarts::larger);
         Self {
-            scorer: PoseScorer::new(source, target, settings.allowance, reach),
+            scorer: PoseScorer::new(source, target, settings.allowance, reach, larger),
+            settings: if is_incompatible {
+                Cow::Owned(incompatible_settings(settings))
+            } else {
+                Cow::Borrowed(settings)
+            },
+            wide,
+            reach: if is_wide { reach } else { f64::INFINITY },
             input,
-            settings,
             mirror,
             choices: Vec::new(),
             timings: SearchTimings::default(),
         }
     }
 
-    /// Runs the starts, and the other choice of data where the data overhangs.
+    /// Runs the starts and what survives the wide search, and the other choice of data where the data
+    /// overhangs.
     pub(crate) fn run(
         &mut self,
         numbers: &mut StartNumbers,
         monitor: &MatchMonitor<'_>,
     ) -> Result<(), RegistrationError> {
         let begin = Instant::now();
-        let first = starts(self.input.source, self.input.target, &self.settings.starts)?;
+        let mut first = starts(self.input.source, self.input.target, &self.settings.starts)?;
+        let poses_are_given = self.poses_are_given();
+        let mut again = first.clone();
+        if let Some(wide) = self.wide.as_ref().filter(|_| !poses_are_given) {
+            again = wide.find(false, monitor.monitor)?;
+            first.extend(&again);
+        }
         self.timings.align += begin.elapsed();
         let side = self.data_side();
         self.add_choice(side);
@@ -136,33 +162,31 @@ impl<'a> MultiStart<'a> {
             && self.best_fraction(0) < OVERHANG;
         if swaps {
             self.add_choice(side.other());
-            self.run_starts(1, &first, numbers, monitor)?;
+            self.run_starts(1, &again, numbers, monitor)?;
         }
         Ok(())
     }
 
-    /// Runs extra starts, for when no pose is acceptable.
-    pub(crate) fn run_extra_starts(
+    /// Runs what survives the wide search, for when no given pose is acceptable.
+    pub(crate) fn run_wide_search(
         &mut self,
         numbers: &mut StartNumbers,
         monitor: &MatchMonitor<'_>,
     ) -> Result<(), RegistrationError> {
-        let applies = self.settings.starts.extra_starts
-            && !self.sizes_incompatible()
-            && self.settings.search == Search::CoarseToFine
-            && self.settings.selection != Selection::All;
-        if applies && !monitor.stop_requested() {
-            let begin = Instant::now();
-            let (source, target) = (self.input.source, self.input.target);
-            let mut extra = extra_starts(source, target);
-            let (a, b) = (source.measures().area, target.measures().area);
-            if a.min(b) < PATCH_RATIO * a.max(b) {
-                extra.extend(patch_starts(source, target, &self.settings.starts)?);
-            }
-            self.timings.align += begin.elapsed();
-            self.run_starts(0, &extra, numbers, monitor)?;
-        }
-        Ok(())
+        let poses_are_given = self.poses_are_given();
+        let wide = self.wide.as_ref().filter(|_| poses_are_given);
+        let Some(wide) = wide.filter(|_| !monitor.stop_requested()) else {
+            return Ok(());
+        };
+        let begin = Instant::now();
+        let found = wide.find(false, monitor.monitor)?;
+        self.timings.align += begin.elapsed();
+        Ok(self.run_starts(0, &found, numbers, monitor)?)
+    }
+
+    fn poses_are_given(&self) -> bool {
+        let method = self.settings.starts.method;
+        matches!(method, StartMethod::CurrentPose | StartMethod::GivenPoses)
     }
 
     /// True if no pose can be worth much because the sizes are too different.
@@ -203,6 +227,9 @@ impl<'a> MultiStart<'a> {
                 mirror: self.mirror.unwrap_or_default(),
             },
             mirrored: self.mirror.is_some(),
+            grid: self.wide.as_mut().and_then(|wide| wide.grid(side.other())),
+            reach: self.reach,
+            deviation: 0.0,
         };
         self.choices.push((choice, Vec::new()));
     }
@@ -236,9 +263,19 @@ impl<'a> MultiStart<'a> {
         run_coarse(choice, &mut candidates, settings, monitor)?;
         // A part that is nearly symmetric has a twin pose close by which no other start need reach.
         if let Some(&best) = ranking(&candidates).first() {
-            let mut late = enter(&twins(choice, &candidates[best]));
+            let best = &candidates[best];
+            let mut near = twins(choice, best);
+            if let Some(wide) = &self.wide {
+                near.extend(wide.alike(&best.as_start(choice), monitor.monitor)?);
+            }
+            let mut late = enter(&near);
             run_coarse(choice, &mut late, settings, monitor)?;
             candidates.extend(late);
+        }
+        let is_estimated =
+            self.input.reduced.is_none() && choice.grid.is_some() && expects_anything(settings);
+        if let Some(&best) = ranking(&candidates).first().filter(|_| is_estimated) {
+            choice.deviation = choice.deviation_of(&candidates[best].run);
         }
         self.timings.coarse += begin.elapsed();
         let begin = Instant::now();
@@ -246,6 +283,12 @@ impl<'a> MultiStart<'a> {
         self.timings.refine += begin.elapsed();
         done.extend(candidates);
         Ok(())
+    }
+
+    /// True if the pose was compared with all others that the wide search and the larger part's own
+    /// likeness offer.
+    pub(crate) fn has_sought_rivals(&self) -> bool {
+        self.wide.is_some() && !self.poses_are_given()
     }
 
     fn best_fraction(&self, choice_idx: usize) -> f64 {
@@ -290,18 +333,24 @@ impl<'a> MultiStart<'a> {
         }
     }
 
-    /// Score of the best mirror image of `winner` over its own score: a part that is nearly its own
-    /// mirror image fits well with the wrong hand, and only the comparison tells. `None` if no
-    /// mirror image found a pose.
+    /// Score of the opposite hand over that of `winner`: a part that is nearly its own mirror image fits
+    /// well with the wrong hand, and only the comparison tells. The hand is looked for where the mirror
+    /// images of the winner lie and, unless the winner `is_confident`, by the wide search. `None` if it
+    /// found no pose.
     pub(crate) fn mirror_ratio(
         &self,
         winner: &RankedCandidate,
+        is_confident: bool,
         monitor: &MatchMonitor<'_>,
     ) -> Result<Option<f64>, Cancelled> {
         let (choice, candidates) = &self.choices[winner.choice];
-        let images = mirror_images(choice, &candidates[winner.candidate]);
+        let mut starts = mirror_images(choice, &candidates[winner.candidate]);
+        if let Some(wide) = self.wide.as_ref().filter(|_| !is_confident) {
+            let found = wide.find(true, monitor.monitor)?;
+            starts.extend(found.into_iter().take(N_OPPOSITE));
+        }
         let candidate = |start: &Start| Candidate::new(choice, *start, 0);
-        let mut images: Vec<Candidate> = images.iter().map(candidate).collect();
+        let mut images: Vec<Candidate> = starts.iter().map(candidate).collect();
         run_coarse(choice, &mut images, &self.settings, monitor)?;
         let best_ratio = |images: &[Candidate]| {
             let best = *ranking(images).first()?;
@@ -374,7 +423,7 @@ impl<'a> MultiStart<'a> {
         } else {
             pairing
         };
-        let rules = stage_rules(Stage::Full, &self.settings, pairing.data, pairing.model);
+        let rules = choice.rules(Stage::Full, &self.settings, pairing);
         let mut points = Data::new(all_nodes(pairing.data, true));
         if flipped {
             points = points.flipped();
@@ -390,6 +439,7 @@ impl<'a> MultiStart<'a> {
             model: pairing.model,
             rules: &rules,
             frames: &frames,
+            grid: None,
         };
         advance(run, &input, rules.max_iterations, monitor)?;
         let refined = Refined {
@@ -404,5 +454,14 @@ impl<'a> MultiStart<'a> {
             run.model_from_data = run.model_from_data.inverse();
         }
         Ok(refined)
+    }
+}
+
+/// True if the deviation of the shapes is for the match to find out.
+fn expects_anything(settings: &MatchSettings) -> bool {
+    match settings.selection {
+        Selection::Fractional { floor, .. } => floor == Floor::Auto,
+        Selection::TrimmedSearch => true,
+        Selection::All | Selection::Trimmed { .. } => false,
     }
 }

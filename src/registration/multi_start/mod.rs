@@ -13,6 +13,7 @@ mod score;
 mod sizes;
 pub mod starts;
 mod variations;
+mod wide_starts;
 
 pub(super) use driver::{MultiStart, StartNumbers};
 pub(super) use outcome::decide;

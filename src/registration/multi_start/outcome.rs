@@ -2,14 +2,13 @@
 
 use std::time::Instant;
 
-use super::driver::{MultiStart, RankedCandidate, Refined, StartNumbers};
-use super::score::TwoSided;
+use super::driver::{MultiStart, RankedCandidate, Refined};
 use crate::geometry::Similarity;
 use crate::registration::RegistrationError;
 use crate::registration::agreement::same_pose;
 use crate::registration::closed_form::{Motion, PairFit, fit_pairs};
 use crate::registration::icp::{Run, Spread, Termination};
-use crate::registration::input::{MatchInput, Mirrored};
+use crate::registration::input::MatchInput;
 use crate::registration::observer::MatchMonitor;
 use crate::registration::result::{
     Alternative, MatchOutcome, MatchTimings, MirrorCheck, Side, StartRecord,
@@ -30,17 +29,17 @@ pub(crate) fn decide(
     let ranked = rank(&searches);
     let &(best, winner) = ranked.first().ok_or(RegistrationError::NoPairs)?;
     let is_confident = searches[best].is_confident();
+    let rivals_sought = searches[best].has_sought_rivals() && !monitor.stop_requested();
     let begin = Instant::now();
     let refined = searches[best].refine_winner(&winner, monitor)?;
     let full = begin.elapsed();
     let hand_is_known = settings.hand == Hand::Either || searches[best].sizes_incompatible();
     let mirror_ratio = if hand_is_known || monitor.stop_requested() {
         None
-    } else if is_confident || settings.hand == Hand::Mirrored {
-        let unobserved = monitor.monitor.without_observer();
-        searches[best].mirror_ratio(&winner, &MatchMonitor::from(&unobserved))?
     } else {
-        opposite_hand(input, settings, &winner.scores, monitor)?
+        // Starts of the other hand are no starts of this match, so nobody hears of them.
+        let unobserved = monitor.monitor.without_observer();
+        searches[best].mirror_ratio(&winner, is_confident, &MatchMonitor::from(&unobserved))?
     };
     let Refined {
         target_from_source,
@@ -71,6 +70,7 @@ pub(crate) fn decide(
         objective: run.score,
         floor,
         alternatives,
+        rivals_sought,
         winner: run.start_idx,
         starts,
         scale_check: ScaleCheck::new(input.source, input.target, pair_scale),
@@ -121,24 +121,6 @@ fn alternatives(
     }
     found.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
     found
-}
-
-/// Score of the mirrored source relative to `best`; `None` if it found no pose.
-fn opposite_hand(
-    input: &MatchInput<'_>,
-    settings: &MatchSettings,
-    best: &TwoSided,
-    monitor: &MatchMonitor<'_>,
-) -> Result<Option<f64>, RegistrationError> {
-    let mirrored = Mirrored::of(input, monitor.monitor)?;
-    // Starts of the mirrored part are no starts of this match, so nobody hears of them.
-    let unobserved = monitor.monitor.without_observer();
-    let mirror = Some(Similarity::mirror_x());
-    let mut search = MultiStart::new(mirrored.input(input), settings, mirror);
-    let mut numbers = StartNumbers::default();
-    search.run(&mut numbers, &MatchMonitor::from(&unobserved))?;
-    let found = search.ranked_candidates();
-    Ok(found.first().map(|c| c.scores.score() / best.score()))
 }
 
 /// The records of all starts in order of their numbers, and the summed times.

@@ -5,13 +5,14 @@ use rayon::prelude::*;
 use super::candidate::{BothSigns, Candidate, DataChoice, Pairing};
 use crate::monitor::Cancelled;
 use crate::registration::icp::{
-    Data, Run, Stage, StageInput, StageRules, Termination, advance, stage_rules,
+    Data, PairWith, Run, Stage, StageInput, StageRules, Termination, advance,
 };
 use crate::registration::observer::MatchMonitor;
 use crate::registration::result::StartOutcome;
 use crate::registration::settings::MatchSettings;
 use crate::registration::subsample::{all_nodes, subsample};
 use crate::registration::surface::Surface;
+use crate::search::FeatureGrid;
 
 /// Some iterations of the coarse stage at whose end only the better candidates go on.
 struct Round {
@@ -23,6 +24,8 @@ struct Round {
     keep: f64,
     /// At least so many go on.
     least: usize,
+    /// True if the grid will do, where there is one.
+    on_grid: bool,
 }
 
 /// The coarse stage of the usual starts, and of those that a preselection has left.
@@ -32,18 +35,21 @@ const ROUNDS: [Round; 3] = [
         points: 0.5,
         keep: 0.5,
         least: 10,
+        on_grid: true,
     },
     Round {
         n_iterations: 5,
         points: 1.0,
         keep: 0.5,
         least: 6,
+        on_grid: true,
     },
     Round {
         n_iterations: 10,
         points: 1.0,
         keep: 0.5,
         least: 4,
+        on_grid: false,
     },
 ];
 /// From this many starts on a preselection comes first, so that a wide search costs about as much
@@ -55,6 +61,7 @@ const PRESELECTION: Round = Round {
     points: 0.3,
     keep: 0.25,
     least: 24,
+    on_grid: true,
 };
 /// A candidate whose score is this many times the best one's is dropped at the end of a round.
 const CLEARLY_BEHIND: f64 = 8.0;
@@ -67,6 +74,7 @@ struct RoundInput<'a> {
     points: &'a BothSigns,
     model: &'a Surface,
     rules: &'a StageRules,
+    grid: Option<&'a FeatureGrid>,
 }
 
 /// How many candidates go on, and after how many iterations in all.
@@ -84,16 +92,18 @@ pub(crate) fn run_coarse(
     monitor: &MatchMonitor<'_>,
 ) -> Result<(), Cancelled> {
     let Pairing { data, model } = choice.coarse;
-    let rules = stage_rules(Stage::Coarse, settings, data, model);
+    let rules = choice.rules(Stage::Coarse, settings, choice.coarse);
     let preselection = (candidates.len() >= MANY_STARTS).then_some(PRESELECTION);
-    let mut in_use: Option<(f64, BothSigns)> = None;
+    let grid = choice.grid.as_deref();
+    let grid = grid.filter(|_| settings.pair_with == PairWith::Triangle);
+    let mut in_use: Option<((f64, bool), BothSigns)> = None;
     let mut done = 0;
     for round in preselection.iter().chain(&ROUNDS) {
         monitor.phase(rules.stage.name());
         done += round.n_iterations;
-        let unchanged = in_use
-            .take()
-            .filter(|(fraction, _)| *fraction == round.points);
+        let on_grid = round.on_grid && grid.is_some();
+        let key = (round.points, on_grid);
+        let unchanged = in_use.take().filter(|(last, _)| *last == key);
         let (_, points) = in_use.insert(unchanged.unwrap_or_else(|| {
             // Scores and pairs of other points do not carry over.
             for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
@@ -101,12 +111,13 @@ pub(crate) fn run_coarse(
             }
             let n_points = (round.points * settings.n_coarse_points as f64).ceil() as usize;
             let points = BothSigns::new(Data::new(subsample(data, n_points)));
-            (round.points, points)
+            (key, points)
         }));
         let input = RoundInput {
             points,
             model,
             rules: &rules,
+            grid: grid.filter(|_| on_grid),
         };
         advance_all(choice, candidates, input, round.n_iterations, monitor)?;
         let n_alive = candidates.iter().filter(|c| c.is_alive()).count();
@@ -134,7 +145,7 @@ pub(crate) fn refine(
     };
     prune(choice, candidates, cut(n_coarse), monitor);
     let points = BothSigns::new(Data::new(subsample(data, settings.n_refine_points)));
-    let rules = stage_rules(Stage::Refine, settings, data, model);
+    let rules = choice.rules(Stage::Refine, settings, choice.fine);
     monitor.phase(rules.stage.name());
     for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
         candidate.run.enter_stage();
@@ -143,6 +154,7 @@ pub(crate) fn refine(
         points: &points,
         model,
         rules: &rules,
+        grid: None,
     };
     let first = PRUNE_AFTER.min(rules.max_iterations);
     for n_iterations in [first, rules.max_iterations - first] {
@@ -163,7 +175,7 @@ pub(crate) fn run_every_start(
     let Pairing { data, model } = choice.coarse;
     let points = BothSigns::new(Data::new(all_nodes(data, true)));
     for stage in [Stage::WideBasin, Stage::Converge] {
-        let rules = stage_rules(stage, settings, data, model);
+        let rules = choice.rules(stage, settings, choice.coarse);
         monitor.phase(rules.stage.name());
         for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
             candidate.run.enter_stage();
@@ -172,6 +184,7 @@ pub(crate) fn run_every_start(
             points: &points,
             model,
             rules: &rules,
+            grid: None,
         };
         advance_all(choice, candidates, input, rules.max_iterations, monitor)?;
     }
@@ -196,6 +209,7 @@ fn advance_all(
                 model: input.model,
                 rules: input.rules,
                 frames: &choice.frames,
+                grid: input.grid,
             };
             advance(&mut candidate.run, &stage_input, n_iterations, monitor)
         })?;

@@ -1,19 +1,27 @@
 //! The measure by which poses from different starts, data choices and hands are compared.
 
+use std::sync::Arc;
+
 use super::holes::Holes;
-use crate::geometry::Similarity;
+use crate::geometry::{Point3, Similarity, Vector3};
 use crate::registration::icp::{
     Correspondence, Floor, MatchRules, PairWith, RejectRules, Sample, SelectRules, Selection,
     correspond, edge_length, natural_floor, select,
 };
 use crate::registration::subsample::subsample;
 use crate::registration::surface::Surface;
+use crate::search::FeatureGrid;
 
+/// A point whose way to a surface has a part along it of more than so many cells lies beyond its border.
+const BEYOND: f64 = 3.0;
 /// Points of each mesh that poses are compared with.
 const N_POINTS: usize = 2000;
 /// Price of area beyond the other mesh's border, as an exponent of the covered fraction. Low, because
 /// such area says nothing against a pose, while area that has a counterpart and misses it does.
 const OVERHANG_PRICE: f64 = 0.5;
+/// Where less than this fraction of the smaller part is covered, what is not covered says as much against
+/// a pose as what misses: a few points always fit.
+const SLIVER: f64 = 0.5;
 /// Points farther beyond the border than this fraction of the edge length overhang.
 const OVERHANG: f64 = 0.5;
 /// Fraction of the faceting that is left between nodes and the smooth surface; 0.2 to 0.5 on the
@@ -38,6 +46,10 @@ pub(crate) struct PoseScorer<'a> {
     floor: f64,
     /// Points farther away than this find no partner.
     reach: f64,
+    /// The larger part, which tells whether a point without partner lies beyond its border. Without it
+    /// such points miss.
+    far: Option<Arc<FeatureGrid>>,
+    source_is_smaller: bool,
 }
 
 /// Scores of both directions, in length units; smaller is better.
@@ -62,12 +74,13 @@ impl TwoSided {
 }
 
 impl<'a> PoseScorer<'a> {
-    /// `reach` is infinite where the sizes allow a match.
+    /// `reach` is infinite where far points are asked for too; else `far` is the larger part.
     pub(crate) fn new(
         source: &'a Surface,
         target: &'a Surface,
         allowance: f64,
         reach: f64,
+        far: Option<Arc<FeatureGrid>>,
     ) -> Self {
         let edge = edge_length(source, target);
         Self {
@@ -79,6 +92,8 @@ impl<'a> PoseScorer<'a> {
             target_holes: Holes::new(target, edge),
             floor: CURVED * natural_floor(source, target) + allowance,
             reach,
+            far,
+            source_is_smaller: source.measures().area <= target.measures().area,
         }
     }
 
@@ -146,9 +161,21 @@ impl<'a> PoseScorer<'a> {
         let mut pairs = correspond(&samples, model, model_from_data, &rules, &[]);
         let area = |pairs: &[Correspondence]| pairs.iter().map(|pair| pair.weight).sum::<f64>();
         let whole = area(&pairs);
+        let is_smaller = std::ptr::eq(model, self.target) == self.source_is_smaller;
+        let is_far_beyond = |pair: &Correspondence| match &self.far {
+            Some(grid) => !is_smaller || is_beyond(grid, &pair.moved),
+            None => false,
+        };
         // An overhanging point knows its triangle but has no partner.
-        pairs.retain(|pair| pair.distance_sq.is_finite() || pair.hint == u32::MAX);
+        pairs.retain(|pair| {
+            pair.distance_sq.is_finite() || pair.hint == u32::MAX && !is_far_beyond(pair)
+        });
         let covered = area(&pairs) / whole;
+        let sliver = if is_smaller {
+            (covered / SLIVER).min(1.0).powf(-LAMBDA)
+        } else {
+            1.0
+        };
         let floor = self.floor;
         let selection = SelectRules {
             selection: Selection::Fractional {
@@ -159,7 +186,17 @@ impl<'a> PoseScorer<'a> {
             max_fraction: 1.0,
         };
         select(&pairs, &selection).map_or(f64::INFINITY, |selected| {
-            selected.objective * covered.powf(-OVERHANG_PRICE)
+            selected.objective * covered.powf(-OVERHANG_PRICE) * sliver
         })
     }
+}
+
+/// True if a point far from a surface lies beside it instead of above it.
+fn is_beyond(grid: &FeatureGrid, point: &Point3) -> bool {
+    let local = grid.to_local(point);
+    let nearest = grid.nearest(local);
+    let off = Vector3::from_fn(|k, _| f64::from(local[k] - nearest.point[k]));
+    let normal = Vector3::from(nearest.normal.map(f64::from));
+    let along = off - normal * off.dot(&normal);
+    along.norm() > BEYOND * f64::from(grid.cell())
 }

@@ -12,6 +12,8 @@ mod rounds;
 mod seeds;
 mod step;
 
+use std::sync::Arc;
+
 use super::starts::StartKind;
 use super::surface::Surface;
 use crate::geometry::Similarity;
@@ -48,7 +50,7 @@ pub struct WideFind {
 pub struct WideSearch<'a> {
     data: &'a Surface,
     model: &'a Surface,
-    grid: FeatureGrid,
+    grid: Arc<FeatureGrid>,
     cloud: Cloud,
 }
 
@@ -123,19 +125,27 @@ const ROUNDS: [Round; 5] = [
 /// Reach of the first round, as a share of the data's diagonal.
 const REACH: f32 = 0.15;
 
+/// A surface as a grid. `None` if it has no extent.
+pub(crate) fn surface_grid(surface: &Surface) -> Option<FeatureGrid> {
+    let samples = area_samples(surface, N_GRID_SAMPLES);
+    FeatureGrid::build(&samples, &GridSettings::default())
+}
+
 impl<'a> WideSearch<'a> {
     /// Makes the grid of `model`, which should be the larger part, and samples `data`. About 10 ms.
     /// `None` if the model has no extent.
     pub fn new(data: &'a Surface, model: &'a Surface) -> Option<Self> {
-        let samples = area_samples(model, N_GRID_SAMPLES);
-        let grid = FeatureGrid::build(&samples, &GridSettings::default())?;
-        let cloud = Cloud::new(data, N_DATA_SAMPLES, grid.scale());
-        Some(Self {
+        Some(Self::on(data, model, Arc::new(surface_grid(model)?)))
+    }
+
+    /// The same with the grid that [`surface_grid`] makes of `model`.
+    pub(crate) fn on(data: &'a Surface, model: &'a Surface, grid: Arc<FeatureGrid>) -> Self {
+        Self {
             data,
             model,
+            cloud: Cloud::new(data, N_DATA_SAMPLES, grid.scale()),
             grid,
-            cloud,
-        })
+        }
     }
 
     /// The distinct poses that survive, best first; those of the opposite hand if `mirrored`. After
@@ -168,6 +178,11 @@ impl<'a> WideSearch<'a> {
             loss: f64::from(candidate.loss),
         };
         Ok(found.into_iter().map(find).collect())
+    }
+
+    /// True if the data may cover all of the model.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.counts() == WHOLE
     }
 
     fn counts(&self) -> SeedCounts {

@@ -2,7 +2,6 @@
 
 mod covering;
 mod frames;
-mod patches;
 mod surface_normals;
 
 use serde::{Deserialize, Serialize};
@@ -42,10 +41,11 @@ pub struct StartSettings {
     pub both_signs: bool,
     /// Poses `target_from_source` for [`StartMethod::GivenPoses`].
     pub poses: Vec<Similarity>,
-    /// Add principal frames and a covering of all rotations where a mean normal is weaker than
-    /// 0.2, and where no start gives an acceptable fit.
-    #[serde(alias = "widen")]
-    pub extra_starts: bool,
+    /// Search all rotations, both directions of the normals and, where the sizes differ, all places of
+    /// the larger part, and run what survives like the other starts. Where poses are given, only if
+    /// none of them gives an acceptable fit.
+    #[serde(alias = "extra_starts", alias = "widen")]
+    pub wide_search: bool,
 }
 
 impl Default for StartSettings {
@@ -55,7 +55,7 @@ impl Default for StartSettings {
             angle_segment_deg: 40.0,
             both_signs: true,
             poses: Vec::new(),
-            extra_starts: true,
+            wide_search: true,
         }
     }
 }
@@ -80,7 +80,8 @@ pub enum StartKind {
         /// Rotation about the mean normal, in degrees.
         angle_deg: f64,
     },
-    /// As `SurfaceNormal`, with one patch of the larger part.
+    /// "Align surface normal" in its local form, from the wide search: the mean normal around the
+    /// middle of the smaller part on that of a patch as large of the larger part.
     Patch {
         /// Number of the patch.
         patch: usize,
@@ -113,6 +114,11 @@ pub enum StartKind {
         /// Number in the list.
         index: usize,
     },
+    /// A good pose moved to another place of the larger part that is shaped alike, to find rivals.
+    Alike {
+        /// Number of the place, the most alike first.
+        index: usize,
+    },
     /// A good pose rotated by 180° about one of the part's principal axes, to find twins.
     Twin {
         /// Number of the axis.
@@ -130,9 +136,6 @@ pub struct Start {
     /// The pose.
     pub target_from_source: Similarity,
 }
-
-/// Mean normals shorter than this say little about a direction.
-const WEAK_NORMAL: f64 = 0.2;
 
 /// Number of rotations in the covering: 60 lie within 45° of every rotation.
 const N_COVERING: usize = 60;
@@ -162,37 +165,18 @@ pub(crate) fn starts(
             n_rotations,
             settings.both_signs,
         ));
-        let weakest = [source, target]
-            .map(|surface| surface.measures().mean_normal.norm())
-            .into_iter()
-            .fold(1.0, f64::min);
-        if all || (settings.extra_starts && weakest < WEAK_NORMAL) {
-            found.extend(extra_starts(source, target));
-        }
+    }
+    if all {
+        found.extend(with_signs(frames::poses(source, target), true));
+        found.extend(with_signs(
+            covering::poses(source, target, N_COVERING),
+            true,
+        ));
     }
     if found.is_empty() {
         return Err(RegistrationError::NoStarts);
     }
     Ok(found)
-}
-
-/// Principal frames and a covering of all rotations, both signs.
-pub(crate) fn extra_starts(source: &Surface, target: &Surface) -> Vec<Start> {
-    let mut found = with_signs(frames::poses(source, target), true);
-    found.extend(with_signs(
-        covering::poses(source, target, N_COVERING),
-        true,
-    ));
-    found
-}
-
-/// The smaller part on every patch of the larger, for parts that cover each other in part only.
-pub(crate) fn patch_starts(
-    source: &Surface,
-    target: &Surface,
-    settings: &StartSettings,
-) -> Result<Vec<Start>, RegistrationError> {
-    Ok(patches::starts(source, target, settings.n_rotations()?))
 }
 
 fn with_signs(poses: impl IntoIterator<Item = (StartKind, Similarity)>, both: bool) -> Vec<Start> {

@@ -80,7 +80,7 @@ fn head_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 fn settings(state: &AppState) -> SweepSettings {
     let mut settings = state.document.recipe.settings.clone();
     // The same starts at every level, so that the times compare.
-    settings.starts.extra_starts = false;
+    settings.starts.wide_search = false;
     SweepSettings {
         settings,
         ..SweepSettings::default()
