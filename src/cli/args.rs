@@ -240,6 +240,10 @@ pub struct BenchArgs {
     /// and honest verdicts.
     #[arg(long, conflicts_with = "crash")]
     pub robustness: bool,
+    /// Map generated parts with known fields instead: errors of both methods over pairs of meshes, times
+    /// and sizes.
+    #[arg(long, conflicts_with_all = ["crash", "robustness"])]
+    pub mapping: bool,
     /// Seed of shapes, placements and disturbances.
     #[arg(long, default_value_t = 1, requires = "robustness")]
     pub seed: u64,

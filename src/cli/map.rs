@@ -7,24 +7,27 @@ use anyhow::Context as _;
 use clap::builder::BoolishValueParser;
 use clap::{ArgAction, Args, ValueEnum};
 
+use super::map_text::summary;
 use super::recipe::pose;
 use super::{
     UsageError, check_outputs, json_target, print, progress, takes_stdout, write_json, write_output,
 };
 use crate::assess::Verdict;
 use crate::formats::ReadOptions;
+use crate::formats::keyword::materials::law_of as material_law;
 use crate::geometry::Similarity;
 use crate::mapping::{MapMethod, MapOptions, NormalSense, Overlap, Quantities, RuleKind};
 use crate::monitor::Monitor;
 use crate::pipeline::load::{LoadSettings, LoadedPart, load, parse_selection};
 use crate::pipeline::map::{
-    MapFiles, MapOutput, MapRecipe, MapRecord, PlacedPart, WriteKind, element_table, elements_path,
-    map_parts, map_record, write_mapping,
+    MapFiles, MapOutput, MapRecipe, MapRecord, OtherResult, PlacedPart, WriteKind, element_table,
+    elements_path, map_parts, map_record, map_report, unmapped_sets, write_mapping,
 };
 use crate::pipeline::match_parts::{MatchRecipe, match_parts};
 use crate::pipeline::outputs::{Content, Target};
+use crate::pipeline::project::Project;
+use crate::registration::Hand;
 use crate::role::PerRole;
-use crate::text::{grouped, length, millis};
 
 /// Exit status where a gate such as `--require` is not met; the files are written all the same.
 const EXIT_GATE: u8 = 1;
@@ -61,9 +64,14 @@ struct MapChoice {
     /// Factor on the stamped coordinates and thicknesses, for files in another length unit.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     stamped_length_factor: f64,
-    /// Factor on the stamped stresses, for files in another unit of stress.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
-    stress_factor: f64,
+    /// Factor on the stamped stresses, for files in another unit of stress. Without it stresses that are
+    /// clearly in another unit than the crash deck's are refused.
+    #[arg(long, value_name = "FACTOR")]
+    stress_factor: Option<f64>,
+    /// Material law of the stamped parts (24 or PIECEWISE_LINEAR_PLASTICITY), for files that hold none.
+    /// History variables go to parts of the same law alone.
+    #[arg(long, value_name = "LAW", value_parser = law)]
+    stamped_material: Option<String>,
     /// A further folder for included files; may be given several times.
     #[arg(long, value_name = "FOLDER")]
     include_folder: Vec<PathBuf>,
@@ -71,16 +79,23 @@ struct MapChoice {
     /// Give one for each stamped file. Without it the parts are matched first.
     #[arg(long, value_name = "FILE|NUMBERS", allow_hyphen_values = true)]
     pose: Vec<String>,
+    /// Take the pose from a .shapematch project.
+    #[arg(long, value_name = "FILE", conflicts_with = "pose")]
+    project: Option<PathBuf>,
     /// The parts already lie on each other.
-    #[arg(long, conflicts_with = "pose")]
+    #[arg(long, conflicts_with_all = ["pose", "project"])]
     identity: bool,
+    /// Where the parts are matched first: whether the stamped part is the crash part's own hand, the
+    /// opposite one (left for right), or either. Tensors are mirrored with it.
+    #[arg(long, value_enum, default_value = "same", conflicts_with_all = ["pose", "project", "identity"])]
+    hand: HandName,
 }
 
 /// Quantities and how they pass over.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Values")]
 struct MapValues {
-    /// Quantities, separated by commas: thickness, plastic, strain, stress; or usual (thickness,
+    /// Quantities, separated by commas: thickness, plastic, strain, stress, history; or usual (thickness,
     /// plastic), or full.
     #[arg(long, value_name = "LIST", default_value = "usual", value_parser = quantities)]
     quantities: Quantities,
@@ -118,6 +133,9 @@ struct MapValues {
     /// Factor on the mapped thickness.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     thickness_scale: f64,
+    /// Thickness at each corner instead of one for the element.
+    #[arg(long, value_name = "YES|NO", default_value = "no", action = ArgAction::Set, value_parser = BoolishValueParser::new())]
+    corner_thickness: bool,
 }
 
 /// What is written.
@@ -141,6 +159,16 @@ struct MapOutputArgs {
     /// Status, distances and values of every crash element as CSV.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    /// The elements without values of their own, one *SET_SHELL_LIST for each reason.
+    #[arg(long, value_name = "FILE")]
+    unmapped: Option<PathBuf>,
+    /// The result of another mapper, or the solver's own file of mapped states (INCOUT): differences
+    /// element by element. May be given several times, for thickness and states in two files.
+    #[arg(long, value_name = "FILE")]
+    compare: Vec<PathBuf>,
+    /// The mapping as one HTML file with pictures before and after.
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
     /// The result as JSON, to a file or to standard output with "-".
     #[arg(long, value_name = "FILE|-")]
     json: Option<PathBuf>,
@@ -152,6 +180,8 @@ Examples:
   shapematch map car.k stamped.dynain --crash-part 2000012 --out mapped.k --quantities full
   shapematch map crash.k left.dynain right.dynain --write deck --out crash_mapped.k
   shapematch map crash.k stamped.dynain --identity --csv elements.csv --require 95
+  shapematch map crash.k stamped.dynain --project work.shapematch --report map.html
+  shapematch map crash.k stamped.dynain --compare dyna.inc --json differences.json
 
 Exit status: 0 mapped, 1 failed or less mapped than --require asks for, 2 wrong usage, 3 mapped with a
 pose that the match calls poor.";
@@ -161,6 +191,13 @@ enum RuleName {
     Gauss,
     Lobatto,
     Equal,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum HandName {
+    Same,
+    Opposite,
+    Either,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -220,9 +257,10 @@ fn quantities(text: &str) -> Result<Quantities, String> {
             "plastic" => chosen.plastic_strain = true,
             "strain" => chosen.strain = true,
             "stress" => chosen.stress = true,
+            "history" => chosen.history = true,
             other => {
                 return Err(format!(
-                    "{other:?} is none of thickness, plastic, strain, stress, usual, full"
+                    "{other:?} is none of thickness, plastic, strain, stress, history, usual, full"
                 ));
             }
         }
@@ -230,8 +268,19 @@ fn quantities(text: &str) -> Result<Quantities, String> {
     Ok(chosen)
 }
 
+/// A law as its number or its keyword, with or without `MAT_`.
+fn law(text: &str) -> Result<String, String> {
+    let name = text.trim().to_ascii_uppercase();
+    let name = name.trim_start_matches('*').trim_start_matches("MAT_");
+    let name = match name.parse::<u16>() {
+        Ok(number) => format!("{number:03}"),
+        Err(_) => name.to_owned(),
+    };
+    material_law(&format!("MAT_{name}")).ok_or_else(|| format!("{text:?} is no material law"))
+}
+
 impl MapValues {
-    fn recipe(&self, stress_factor: f64) -> MapRecipe {
+    fn recipe(&self, choice: &MapChoice) -> MapRecipe {
         MapRecipe {
             options: MapOptions {
                 quantities: self.quantities,
@@ -254,6 +303,7 @@ impl MapValues {
                 },
                 fill_rings: self.fill,
                 thickness_scale: self.thickness_scale,
+                corner_thickness: self.corner_thickness,
             },
             n_layers: self.layers.map(usize::from),
             rule: self.rule.map(|rule| match rule {
@@ -262,7 +312,8 @@ impl MapValues {
                 RuleName::Equal => RuleKind::Equal,
             }),
             n_plane: self.n_plane,
-            stress_factor,
+            stress_factor: choice.stress_factor,
+            stamped_law: choice.stamped_material.clone(),
         }
     }
 }
@@ -273,6 +324,8 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let monitor = progress::monitor(quiet);
     let mut inputs = vec![args.crash.clone()];
     inputs.extend(args.stamped.iter().cloned());
+    inputs.extend(args.output.compare.iter().cloned());
+    inputs.extend(args.choice.project.iter().cloned());
     check_outputs(targets(&args.output), &inputs)?;
     let (crash, stamped) = load_all(args, &monitor)?;
     inputs.extend(crash.files());
@@ -287,7 +340,7 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
             crash_from_stamped,
         })
         .collect();
-    let recipe = args.values.recipe(args.choice.stress_factor);
+    let recipe = args.values.recipe(&args.choice);
     let run = map_parts(&crash, &placed, &recipe, &monitor)?;
     let output = args.output.out.as_ref().map(|path| MapOutput {
         kind: args.output.write.kind(),
@@ -297,8 +350,39 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let comments = comments(&crash, &placed);
     let write = |output: &MapOutput| write_mapping(&run, &crash, output, &comments, &monitor);
     let files = output.as_ref().map(write).transpose()?;
-    let record = map_record(&run, &crash, &placed, files.as_ref());
+    let compare = &args.output.compare;
+    let other = (!compare.is_empty())
+        .then(|| OtherResult::read(compare, &run, &crash, &monitor))
+        .transpose()?;
+    let record = map_record(&run, &crash, &placed, files.as_ref(), other.as_ref());
+    let mut written: Vec<(PathBuf, Vec<u8>)> = Vec::new();
+    if let Some(files) = &files {
+        written.extend(files.files.iter().cloned());
+    }
+    let outputs = &args.output;
+    if let Some(path) = &outputs.csv {
+        let table = element_table(&run, &crash, &placed, other.as_ref());
+        written.push((path.clone(), table.into_bytes()));
+    }
+    if let Some(path) = &outputs.unmapped {
+        written.push((path.clone(), unmapped_sets(&run, &crash.model).into_bytes()));
+    }
+    if let Some(path) = &outputs.report {
+        let page = map_report(&run, &record, &crash, &monitor)?;
+        written.push((path.clone(), page.into_bytes()));
+    }
     drop(monitor);
+    finish(outputs, &record, files.as_ref(), &written, is_poor)
+}
+
+/// Writes the files, prints the summary, and says how it went.
+fn finish(
+    outputs: &MapOutputArgs,
+    record: &MapRecord,
+    files: Option<&MapFiles>,
+    written: &[(PathBuf, Vec<u8>)],
+    is_poor: bool,
+) -> anyhow::Result<ExitCode> {
     let mut is_complete = true;
     let mut note = |path: &Path, written: anyhow::Result<()>| {
         if let Err(error) = written {
@@ -306,26 +390,20 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
             is_complete = false;
         }
     };
-    for (path, bytes) in files.iter().flat_map(|files| &files.files) {
+    for (path, bytes) in written {
         note(path, write_output(path, bytes));
     }
-    if let Some(path) = &args.output.csv {
-        note(
-            path,
-            write_output(path, element_table(&run, &crash, &placed).as_bytes()),
-        );
+    if let Some(path) = &outputs.json {
+        note(path, write_json(path, record));
     }
-    if let Some(path) = &args.output.json {
-        note(path, write_json(path, &record));
-    }
-    if !takes_stdout(args.output.json.as_deref()) {
-        print(&summary(&record, files.as_ref()))?;
+    if !takes_stdout(outputs.json.as_deref()) {
+        print(&summary(record, files))?;
     }
     for warning in &record.warnings {
         log::warn!("{warning}");
     }
     let share = 100.0 * record.mapped_area;
-    if let Some(required) = args.output.require.filter(|&required| share < required) {
+    if let Some(required) = outputs.require.filter(|&required| share < required) {
         log::error!("{share:.1} % of the area is mapped, {required} % are required");
         return Ok(ExitCode::from(EXIT_GATE));
     }
@@ -349,6 +427,11 @@ fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
     if n_poses > 0 && n_poses != n_files {
         return refuse(format!(
             "{n_poses} poses for {n_files} stamped files; give one for each"
+        ));
+    }
+    if args.choice.project.is_some() && n_files != 1 {
+        return refuse(format!(
+            "a project holds the pose of one stamped part, but {n_files} are named"
         ));
     }
     if args.values.n_plane.is_some_and(|n| n != 1 && n != 4) {
@@ -375,8 +458,15 @@ fn targets(output: &MapOutputArgs) -> Vec<Target> {
             ));
         }
     }
-    if let Some(path) = &output.csv {
-        targets.push(target("--csv", path, Content::Text));
+    let texts = [
+        ("--csv", &output.csv),
+        ("--unmapped", &output.unmapped),
+        ("--report", &output.report),
+    ];
+    for (name, path) in texts {
+        if let Some(path) = path {
+            targets.push(target(name, path, Content::Text));
+        }
     }
     targets
 }
@@ -415,6 +505,13 @@ fn poses(
     if args.choice.identity {
         return Ok((vec![Similarity::identity(); stamped.len()], false));
     }
+    if let Some(path) = &args.choice.project {
+        let (project, notes) = Project::read(path)?;
+        for note in notes {
+            log::warn!("{}: {note}", path.display());
+        }
+        return Ok((vec![project.pose], false));
+    }
     if !args.choice.pose.is_empty() {
         let poses: anyhow::Result<Vec<Similarity>> =
             args.choice.pose.iter().map(|text| pose(text)).collect();
@@ -422,10 +519,16 @@ fn poses(
     }
     let mut poses = Vec::new();
     let mut is_poor = false;
+    let mut recipe = MatchRecipe::default();
+    recipe.settings.hand = match args.choice.hand {
+        HandName::Same => Hand::Same,
+        HandName::Opposite => Hand::Mirrored,
+        HandName::Either => Hand::Either,
+    };
     for part in stamped {
         let parts = PerRole::new(crash, part);
         let start = Similarity::identity();
-        let run = match_parts(parts, None, &MatchRecipe::default(), &start, monitor)
+        let run = match_parts(parts, None, &recipe, &start, monitor)
             .with_context(|| format!("cannot match {}", part.path.display()))?;
         if run.assessment.verdict == Verdict::Poor {
             is_poor = true;
@@ -451,80 +554,4 @@ fn comments(crash: &LoadedPart, placed: &[PlacedPart<'_>]) -> Vec<String> {
         }
     }
     lines
-}
-
-fn summary(record: &MapRecord, files: Option<&MapFiles>) -> String {
-    let mut text = String::new();
-    let mut line = |head: &str, rest: String| text.push_str(&format!("{head:<9}{rest}\n"));
-    line(
-        "Mapped",
-        format!(
-            "{:.1} % of the area of {} elements in {}",
-            100.0 * record.mapped_area,
-            grouped(record.n_elements),
-            millis(record.map_ms)
-        ),
-    );
-    for row in &record.statuses {
-        line(
-            "",
-            format!("{:>9} {}", grouped(row.n_elements), row.status.label()),
-        );
-    }
-    let pairs = [
-        ("Thickness", &record.thickness),
-        ("Plastic", &record.plastic_strain),
-    ];
-    for (head, pair) in pairs {
-        if let Some(pair) = pair {
-            let (a, b) = (&pair.stamped, &pair.crash);
-            line(
-                head,
-                format!(
-                    " mean {} (stamped {}), {} to {}",
-                    length(b.mean),
-                    length(a.mean),
-                    length(b.min),
-                    length(b.max)
-                ),
-            );
-        }
-    }
-    if let Some(back) = &record.map_back {
-        let percent = |value: f64, range: f64| {
-            if range > 0.0 {
-                format!("{:.1} %", 100.0 * value / range)
-            } else {
-                "0 %".to_owned()
-            }
-        };
-        line(
-            "Map back",
-            format!(
-                "95 % within {} of the thickness range, {} of the plastic strain's",
-                percent(back.thickness_p95, back.thickness_range),
-                percent(back.plastic_p95, back.plastic_range)
-            ),
-        );
-    }
-    if let Some(files) = files {
-        for (path, bytes) in &files.files {
-            let megabytes = bytes.len() as f64 / 1e6;
-            line("Wrote", format!("{} ({megabytes:.1} MB)", path.display()));
-        }
-        line(
-            "",
-            format!(
-                "{} thicknesses, {} stress and {} strain cards, read back within {:.1e}",
-                grouped(files.n_thickness),
-                grouped(files.n_stress),
-                grouped(files.n_strain),
-                files.read_back_error
-            ),
-        );
-        if let Some(replaced) = &files.replaces {
-            line("", format!("takes the place of {}", replaced.display()));
-        }
-    }
-    text
 }

@@ -7,6 +7,8 @@ mod args;
 mod bench;
 mod info;
 mod map;
+mod map_bench;
+mod map_text;
 mod match_text;
 mod matching;
 mod progress;
@@ -47,6 +49,7 @@ pub fn run(task: &Task, quiet: bool) -> anyhow::Result<ExitCode> {
         Task::Info(args) => info::run(args, quiet),
         Task::Sample(args) => sample::run(args),
         Task::Bench(args) if args.robustness => robustness::run(args, quiet),
+        Task::Bench(args) if args.mapping => map_bench::run(args, quiet),
         Task::Bench(args) => bench::run(args, quiet),
     }
 }

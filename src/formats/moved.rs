@@ -1,6 +1,7 @@
 //! A model laid elsewhere.
 
-use super::model::{Forming, Model, ShellStress, Solid, StrainPoint, StressPoint};
+use super::model::{Forming, Model, Solid, StrainPoint, StressPoint};
+use crate::geometry::tensor::{Tensor, rotated};
 use crate::geometry::{Matrix3, Similarity};
 
 /// Which old corner each corner of a mirrored quad is: the first edge stays, reversed.
@@ -8,7 +9,8 @@ const REVERSED: [usize; 4] = [1, 0, 3, 2];
 
 /// The model under `motion`: nodes moved, stress and strain tensors turned with them (they are in
 /// the global frame), thicknesses scaled. Ids stay. Nodes whose id is repeated are moved like all
-/// others. History variables are kept as they are, also those that hold tensors. O(model).
+/// others. History variables are kept as they are; the tensors among them that the file names as such
+/// (`NTENSR`) are turned. O(model).
 ///
 /// Under a mirror the corners of shells and solids change to the order 2 1 4 3, and with them
 /// corner thicknesses, mid-side nodes and integration points in the plane. The mirrored sheet then
@@ -39,12 +41,15 @@ pub fn moved(model: &Model, motion: &Similarity) -> Model {
 fn turn(forming: &mut Forming, rotation: &Matrix3) {
     for index in 0..forming.n_stress() {
         for point in forming.stress_points_mut(index) {
-            point.stress = turn_tensor(&point.stress, rotation);
+            point.stress = rotated(&point.stress, rotation);
+        }
+        for tensor in forming.tensors_mut(index) {
+            *tensor = rotated(tensor, rotation);
         }
     }
     for index in 0..forming.n_strain() {
         for point in forming.strain_points_mut(index) {
-            point.strain = turn_tensor(&point.strain, rotation);
+            point.strain = rotated(&point.strain, rotation);
         }
     }
 }
@@ -107,11 +112,13 @@ fn reversed_points(forming: &Forming) -> Forming {
     for shell in forming.stresses() {
         let order = layer_order(shell.n_plane, shell.points, |point| point.t);
         let points: Vec<StressPoint> = order.iter().map(|&i| shell.points[i]).collect();
-        let history = order.iter().flat_map(|&i| history_of(&shell, i));
+        let history = order.iter().flat_map(|&i| shell.history_of(i));
         let history: Vec<f64> = history.copied().collect();
+        let tensors = order.iter().flat_map(|&i| shell.tensors_of(i));
+        let tensors: Vec<Tensor> = tensors.copied().collect();
         result
-            .add_stress(shell.element_id, shell.n_plane, &points, &history)
-            .expect("history has as many values as before");
+            .add_state(shell.element_id, shell.n_plane, &points, &history, &tensors)
+            .expect("history and tensors have as many values as before");
     }
     for shell in forming.strains() {
         let order = layer_order(shell.n_plane, shell.points, |point| point.t);
@@ -119,10 +126,6 @@ fn reversed_points(forming: &Forming) -> Forming {
         result.add_strain(shell.element_id, shell.n_plane, &points);
     }
     result
-}
-
-fn history_of<'a>(shell: &ShellStress<'a>, point: usize) -> &'a [f64] {
-    &shell.history[point * shell.n_history..][..shell.n_history]
 }
 
 /// The old index of each point. Points keep their order unless each run of `n_plane` is a layer.
@@ -136,21 +139,6 @@ fn layer_order<T>(n_plane: usize, points: &[T], t: impl Fn(&T) -> f64) -> Vec<us
         _ => i,
     };
     (0..points.len()).map(old).collect()
-}
-
-/// R·S·Rᵀ of a symmetric tensor xx, yy, zz, xy, yz, zx; shear components are those of the tensor.
-pub fn turn_tensor(tensor: &[f64; 6], rotation: &Matrix3) -> [f64; 6] {
-    let [xx, yy, zz, xy, yz, zx] = *tensor;
-    let full = Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);
-    let turned = rotation * full * rotation.transpose();
-    [
-        turned[(0, 0)],
-        turned[(1, 1)],
-        turned[(2, 2)],
-        turned[(0, 1)],
-        turned[(1, 2)],
-        turned[(2, 0)],
-    ]
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ mod sampling;
 pub mod section;
 pub mod serial;
 mod similarity;
+pub mod tensor;
 mod topology;
 mod weld;
 

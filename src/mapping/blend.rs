@@ -3,7 +3,7 @@
 use super::element::Context;
 use super::field::Field;
 use super::gather::Group;
-use super::tensor::{Tensor, normal_component, rotated, smallest_rotation};
+use crate::geometry::tensor::{Tensor, normal_component, rotated, smallest_rotation};
 use crate::geometry::{Matrix3, Vector3};
 
 /// A stress component along the normal below this share of the stress is rounding.

@@ -1,6 +1,9 @@
 //! Is the mapping right? Means, percentiles and histograms of both sides, and the way back.
 
+use std::collections::BTreeMap;
+
 use super::field::Layered;
+use super::history::SourceHistory;
 use super::options::{MapOptions, Quantities};
 use super::source::SourcePart;
 use super::target::{Mapped, TargetPart};
@@ -145,6 +148,8 @@ pub fn map_back(
             .collect(),
         states,
         strains: Layered::new(n),
+        history: SourceHistory::default(),
+        laws: BTreeMap::new(),
     };
     let rules = target.rules.clone();
     let moved = source.part.mesh.moved(&source.target_from_source);
@@ -152,6 +157,7 @@ pub fn map_back(
         rule_of: vec![0; moved.len()],
         n_plane: vec![1; moved.len()],
         nominal_thickness: vec![f64::NAN; moved.len()],
+        laws: BTreeMap::new(),
         rules: rules.into_iter().take(1).collect(),
         mesh: moved,
     };

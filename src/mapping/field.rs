@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::layers::LayerMatrix;
 use super::rule::LayerRule;
 use super::shells::{Neighbours, ShellMesh};
-use super::tensor::{Tensor, rotated, smallest_rotation, von_mises};
+use crate::geometry::tensor::{Tensor, rotated, smallest_rotation, von_mises};
 use crate::geometry::{Matrix3, Vector3};
 
 /// Places that belong to one layer: points of a layer share their T but for rounding.

@@ -11,11 +11,13 @@
 
 mod blend;
 mod checks;
+mod corners;
 mod element;
 mod error;
 mod field;
 mod fill;
 mod gather;
+mod history;
 mod layers;
 mod options;
 mod points;
@@ -23,12 +25,12 @@ mod rule;
 mod shells;
 mod source;
 mod target;
-pub mod tensor;
 mod uniqueness;
 
 pub use checks::{Distribution, Histogram, MapBack, distribution, histogram_distance, map_back};
 pub use error::MappingError;
 pub use field::Layered;
+pub use history::{LawGap, LayerHistory, MappedHistory, SourceHistory};
 pub use layers::{LayerBalance, LayerMatrix};
 pub use options::{MapMethod, MapOptions, NormalSense, Overlap, Quantities, Status};
 pub use rule::{LayerRule, RuleKind};
@@ -117,7 +119,11 @@ pub fn map(
     };
     let chunks = map_chunks(&context, monitor)?;
     let mut mapped = assemble(chunks, &context);
+    mapped.history = history::carry(sources, target, &mapped.elements, options.quantities);
     fill::fill(&mut mapped, target, options);
+    if options.corner_thickness && !mapped.thickness.is_empty() {
+        mapped.corners = corners::corner_thickness(&mapped.thickness, target);
+    }
     Ok(mapped)
 }
 
@@ -267,9 +273,11 @@ fn assemble(chunks: Vec<Buffers>, context: &Context<'_>) -> Mapped {
         } else {
             Vec::new()
         },
+        corners: Vec::new(),
         states: wanted.needs_states().then_some(states),
         strains: wanted.strain.then_some(strains),
         strains_are_at_surfaces: context.strains_at_surfaces,
+        history: None,
         senses: context.senses.to_vec(),
         median_offset,
         n_distant,

@@ -39,7 +39,7 @@ impl Quantities {
 
     /// True if stress points are needed.
     pub(super) fn needs_states(self) -> bool {
-        self.plastic_strain || self.stress
+        self.plastic_strain || self.stress || self.history
     }
 }
 
@@ -110,6 +110,8 @@ pub struct MapOptions {
     pub fill_rings: usize,
     /// Factor on the mapped thickness.
     pub thickness_scale: f64,
+    /// Thickness at each corner instead of one for the element.
+    pub corner_thickness: bool,
 }
 
 impl Default for MapOptions {
@@ -124,6 +126,7 @@ impl Default for MapOptions {
             overlap: Overlap::Nearest,
             fill_rings: 0,
             thickness_scale: 1.0,
+            corner_thickness: false,
         }
     }
 }

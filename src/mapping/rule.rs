@@ -3,6 +3,8 @@
 //! Places are the natural coordinate T from −1 (the side the normal points away from) to +1.
 //! Gauss and Lobatto tables: Abramowitz and Stegun 1964, tables 25.4 and 25.6.
 
+use serde::{Deserialize, Serialize};
+
 /// Places closer than this are the same: decks round T to about eight digits, some writers to five.
 const SAME_PLACE: f64 = 1e-4;
 
@@ -105,7 +107,8 @@ const LOBATTO: [&[(f64, f64)]; 8] = [
 ];
 
 /// The kinds of rule a shell section can ask for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum RuleKind {
     /// Gauss points, the default of the solver; the trapezoidal rule above ten layers.
     Gauss,

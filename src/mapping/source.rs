@@ -1,6 +1,9 @@
 //! The stamped part made ready: moved once, resampled to the target's layers, with its fields.
 
+use std::collections::BTreeMap;
+
 use super::field::{Field, FieldKind, LayerValues, Layered, Stencils, is_weld_line};
+use super::history::SourceHistory;
 use super::layers::{LayerBalance, LayerMatrix};
 use super::options::MapOptions;
 use super::rule::LayerRule;
@@ -23,6 +26,10 @@ pub struct SourcePart {
     pub states: Layered<7>,
     /// Strain xx, yy, zz, xy, yz, zx (tensor shear) at each layer or at both surfaces.
     pub strains: Layered<6>,
+    /// History variables.
+    pub history: SourceHistory,
+    /// Material law of the parts (as [`ShellMesh::parts`] numbers them) whose law is known.
+    pub laws: BTreeMap<u32, String>,
 }
 
 impl SourcePart {
@@ -252,7 +259,11 @@ fn is_uneven(corners: &[f64; 4]) -> bool {
     mean.is_finite() && corners.iter().any(|t| (t - mean).abs() > 1e-9 * mean)
 }
 
-fn thickness_field(thickness: &[f64], mesh: &ShellMesh, stencils: &Stencils) -> Field<1> {
+pub(super) fn thickness_field(
+    thickness: &[f64],
+    mesh: &ShellMesh,
+    stencils: &Stencils,
+) -> Field<1> {
     let values = LayerValues {
         n_layers: 1,
         values: thickness.iter().map(|&t| [t]).collect(),

@@ -1,5 +1,8 @@
 //! The crash part as the mapping sees it, and what it gets.
 
+use std::collections::BTreeMap;
+
+use super::history::MappedHistory;
 use super::options::Status;
 use super::rule::LayerRule;
 use super::shells::ShellMesh;
@@ -17,6 +20,8 @@ pub struct TargetPart {
     pub n_plane: Vec<u8>,
     /// For each element the thickness of its section; NaN where there is none.
     pub nominal_thickness: Vec<f64>,
+    /// Material law of the parts (as [`ShellMesh::parts`] numbers them) whose law is known.
+    pub laws: BTreeMap<u32, String>,
 }
 
 impl TargetPart {
@@ -29,6 +34,7 @@ impl TargetPart {
             rule_of: vec![0; n],
             n_plane: vec![1; n],
             nominal_thickness: vec![nominal_thickness; n],
+            laws: BTreeMap::new(),
         }
     }
 
@@ -121,11 +127,15 @@ pub struct Mapped {
     pub elements: Vec<ElementReport>,
     /// Thickness of each target element; NaN where it keeps its section's. Empty if not asked for.
     pub thickness: Vec<f64>,
+    /// Thickness at the corners of each element, whose mean is its thickness. Empty if not asked for.
+    pub corners: Vec<[f64; 4]>,
     /// Stress (six) and effective plastic strain at each layer, if asked for. Zero stress where only
     /// plastic strain was.
     pub states: Option<MappedLayers<7>>,
     /// Strain at both surfaces, or at each layer where the source has more than the surfaces.
     pub strains: Option<MappedLayers<6>>,
+    /// History variables, if they were asked for and a source has some.
+    pub history: Option<MappedHistory>,
     /// True if the strains are those of the two surfaces.
     pub strains_are_at_surfaces: bool,
     /// For each source, which sense of its normals was taken: `Some(false)` the same side,

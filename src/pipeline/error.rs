@@ -100,6 +100,36 @@ pub enum PipelineError {
         /// Id of the crash part.
         part: u64,
     },
+    /// Stresses of a part are read in element axes, which are not mapped.
+    #[error(
+        "part {part} of {name} is in part set {set}, whose initial stresses are in element axes (LISPSID on \
+         *CONTROL_SHELL); stresses are mapped in global axes: take the part out of the set, or map without \
+         stress and history (--quantities usual)"
+    )]
+    ElementAxes {
+        /// Id of the part.
+        part: u64,
+        /// Its file.
+        name: String,
+        /// The part set.
+        set: u64,
+    },
+    /// Stresses of the stamped file are in another unit.
+    #[error(
+        "the stresses of {name} seem to be in another unit: {why}. Give --stress-factor {factor:e} to \
+         convert them, or 1 to take them as they are"
+    )]
+    StressUnits {
+        /// The stamped file.
+        name: String,
+        /// What tells.
+        why: String,
+        /// The factor that would bring them into the crash deck's unit.
+        factor: f64,
+    },
+    /// Files to compare with hold nothing of the elements in question.
+    #[error("nothing to compare with: no thickness and no stress of these elements in {}", names(.0))]
+    NothingToCompare(Vec<PathBuf>),
     /// A copy of the deck would leave elements without their thickness.
     #[error("{0}")]
     MapOutput(String),
@@ -112,6 +142,11 @@ pub enum PipelineError {
 fn because(diagnostic: &Option<Box<Diagnostic>>) -> String {
     let words = |diagnostic: &Diagnostic| format!(". The reader found: {diagnostic}");
     diagnostic.as_deref().map(words).unwrap_or_default()
+}
+
+fn names(files: &[PathBuf]) -> String {
+    let names: Vec<String> = files.iter().map(|file| format!("{file:?}")).collect();
+    names.join(", ")
 }
 
 impl PipelineError {

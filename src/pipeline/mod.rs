@@ -9,6 +9,7 @@ pub mod inspect;
 pub mod likeness;
 pub mod load;
 pub mod map;
+pub mod map_bench;
 pub mod match_parts;
 pub mod outputs;
 pub mod preferences;

@@ -46,7 +46,7 @@ pub fn write_crash_deck(pair: &SamplePair) -> String {
     let mut deck = String::from("*KEYWORD\n*TITLE\n");
     let name = pair.settings.part.name();
     line(&mut deck, format_args!("Crash model, sample part {name}"));
-    deck.push_str("$ Unit system: mm, ms, kg, kN\n");
+    deck.push_str("$ Unit system: mm, s, ton, N\n");
     for part in &parts {
         let (id, title) = (part.part_id, &part.title);
         let thickness = rounded(part.thickness, 10, 4);
@@ -61,7 +61,7 @@ pub fn write_crash_deck(pair: &SamplePair) -> String {
         );
         line(&mut deck, format!("{thickness:>10}").repeat(4));
     }
-    deck.push_str("*MAT_ELASTIC_TITLE\nSTEEL\n         1   7.85E-6     210.0       0.3\n");
+    deck.push_str("*MAT_ELASTIC_TITLE\nSTEEL\n         1   7.85E-9  210000.0       0.3\n");
     deck.push_str("*SET_PART_LIST_TITLE\nPART TO MATCH\n");
     line(&mut deck, format_args!("{PART_SET:>10}"));
     line(&mut deck, format_args!("{:>10}", pair.crash.part_id));

@@ -4,10 +4,8 @@
 use super::mesher::FlatMesh;
 use super::path::Flat;
 use super::sheet::Sheet;
+use crate::geometry::tensor::{Tensor, components, rotated};
 use crate::geometry::{Matrix3, Similarity, Vector3};
-
-/// Symmetric tensor: xx, yy, zz, xy, yz, zx in the axes of the stamped side.
-pub type Tensor = [f64; 6];
 
 /// State of one surface layer of an element.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,28 +33,11 @@ impl ShellForming {
             *thickness *= target_from_source.scale;
         }
         for layer in &mut self.layers {
-            layer.stress = turned(&layer.stress, &target_from_source.rotation);
-            layer.strain = turned(&layer.strain, &target_from_source.rotation);
+            layer.stress = rotated(&layer.stress, &target_from_source.rotation);
+            layer.strain = rotated(&layer.strain, &target_from_source.rotation);
         }
         self
     }
-}
-
-fn turned(tensor: &Tensor, rotation: &Matrix3) -> Tensor {
-    let [xx, yy, zz, xy, yz, zx] = *tensor;
-    let matrix = Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);
-    components(&(rotation * matrix * rotation.transpose()))
-}
-
-fn components(m: &Matrix3) -> Tensor {
-    [
-        m[(0, 0)],
-        m[(1, 1)],
-        m[(2, 2)],
-        m[(0, 1)],
-        m[(1, 2)],
-        m[(2, 0)],
-    ]
 }
 
 /// Thinning, 0.01 … 0.22: more on walls and in radii, with a slow drift over the part.

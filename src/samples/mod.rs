@@ -22,8 +22,8 @@ mod variation;
 
 pub use bundle::{bundled, bundled_settings};
 pub use decks::{SampleFile, files, write_crash_deck, write_stamped_deck, write_truth};
-pub use forming::{FormingLayer, ShellForming, Tensor};
-pub use pair::{SampleMesh, SamplePair, generate};
+pub use forming::{FormingLayer, ShellForming};
+pub use pair::{SampleMesh, SamplePair, crash_truth, generate};
 pub use placement::random_placement;
 pub use variation::SampleShape;
 

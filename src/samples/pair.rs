@@ -127,16 +127,36 @@ pub fn generate(settings: &SampleSettings) -> SamplePair {
     }
 }
 
+/// What a perfect mapping of the stamped results gives on the crash elements: the fields of
+/// [`ShellForming`] are functions on the sheet, and these are their values at the crash nodes and
+/// element centres. In the order of the crash part's elements, tensors in vehicle axes. Holds for pairs
+/// without another version of the part.
+pub fn crash_truth(settings: &SampleSettings) -> Vec<ShellForming> {
+    let mut design = Design::of(settings.part);
+    if let Some(shape) = &settings.shape {
+        design = design.varied(shape);
+    }
+    let flat = crash_flat(settings.variant, &design, settings.crash_size);
+    let crash_from_die = Similarity::from(random_placement(settings.seed));
+    let truth = form(&design.sheet, &flat, design.thickness).into_iter();
+    truth
+        .map(|shell| shell.transformed(&crash_from_die))
+        .collect()
+}
+
 fn crash_mesh(
     part: SamplePart,
     variant: SampleVariant,
     design: &Design,
     size: Option<f64>,
 ) -> SampleMesh {
+    lift(part, design, &crash_flat(variant, design, size))
+}
+
+fn crash_flat(variant: SampleVariant, design: &Design, size: Option<f64>) -> FlatMesh {
     let mut layout = design.crash;
     layout.size = size.unwrap_or(layout.size);
-    let flat = mesher::mesh(&design.sheet, &design.crash_trim(variant), &layout);
-    lift(part, design, &flat)
+    mesher::mesh(&design.sheet, &design.crash_trim(variant), &layout)
 }
 
 fn stamped_mesh(

@@ -64,6 +64,12 @@ impl UnitSystem {
         }
     }
 
+    /// One unit of its stress in Pa.
+    pub fn stress_in_pa(self) -> f64 {
+        let [length, mass, time] = self.in_si();
+        mass / (length * time * time)
+    }
+
     /// One unit of its length in m, of its mass in kg, of its time in s.
     pub(super) fn in_si(self) -> [f64; 3] {
         match self {

@@ -54,6 +54,7 @@ fn add_parts(model: &mut Model) {
         id,
         title: format!("part {id}"),
         section_id: 3,
+        material_id: 0,
         thickness: Some([1.25, 1.25, 1.5, 1.25]),
         is_defined: true,
     };
@@ -88,6 +89,7 @@ fn add_elements(model: &mut Model, first: u64) {
         shell,
         thickness: [1.1, 1.2, 1.3, 1.4],
         beta,
+        n_plies: 0,
     };
     model.shell_extras = vec![extra(0, 0.0), extra(2, 30.0)];
     let solid = |n: u64, kind: SolidKind| Solid {

@@ -290,7 +290,7 @@ fn the_moved_deck_keeps_ids_and_turns_its_tensors() {
         let (was, is) = (before.forming.stress(index), back.forming.stress(index));
         assert_eq!(was.element_id, is.element_id);
         for (was, is) in was.points.iter().zip(is.points) {
-            let turned = shapematch::formats::moved::turn_tensor(
+            let turned = shapematch::geometry::tensor::rotated(
                 &was.stress,
                 &run.crash_from_stamped.rotation,
             );

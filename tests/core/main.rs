@@ -20,6 +20,7 @@ mod keyword;
 mod keyword_faults;
 mod keyword_large;
 mod layering;
+mod map_decks;
 mod map_files;
 mod mapping;
 mod match_starts;

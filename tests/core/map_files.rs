@@ -188,3 +188,168 @@ fn the_nearest_method_is_worse_by_the_way_back() {
     let (area, nearest) = (error("area"), error("nearest"));
     assert!(area < 0.75 * nearest, "{area} against {nearest}");
 }
+
+#[test]
+fn our_own_files_compare_as_equal_and_others_by_their_difference() {
+    let bracket = Bracket::new();
+    let (out, json) = (bracket.path("mapped.k"), bracket.path("map.json"));
+    let elements = bracket.path("mapped_elements.k");
+    let written = bracket.map(&["--out", &out, "--quantities", "full"]);
+    assert!(written.status.success(), "{}", text(&written.stderr));
+    let record = |options: &[&str]| -> Value {
+        let output = bracket.map(&[&["--json", &json], options].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap()
+    };
+    let csv = bracket.path("table.csv");
+    let both = [
+        "--quantities",
+        "full",
+        "--compare",
+        &out,
+        "--compare",
+        &elements,
+    ];
+    let same = record(&[&both[..], &["--csv", &csv]].concat());
+    let same = &same["comparison"];
+    assert_eq!(
+        (&same["n_only_here"], &same["n_only_other"]),
+        (&0.into(), &0.into())
+    );
+    for name in ["thickness", "plastic_strain", "von_mises"] {
+        let found = &same[name];
+        let max = found["max"].as_f64().unwrap();
+        let size = found["here"]["max"].as_f64().unwrap();
+        // Nine digits of each component.
+        assert!(max <= 1e-7 * size, "{name}: {max} of {size}");
+        assert_eq!(found["n_elements"], same["n_both"]);
+    }
+    let table = std::fs::read_to_string(&csv).unwrap();
+    assert!(
+        table
+            .lines()
+            .next()
+            .unwrap()
+            .ends_with("other_thickness,other_plastic_strain")
+    );
+    assert_eq!(table.lines().nth(1).unwrap().split(',').count(), 14);
+    // The nearest element differs, by what the table of elements says too.
+    let nearest = record(&[
+        "--method",
+        "nearest",
+        "--compare",
+        &elements,
+        "--compare",
+        &out,
+    ]);
+    let found = &nearest["comparison"]["plastic_strain"];
+    assert!(found["max"].as_f64().unwrap() > 1e-3, "{found}");
+    assert!(found["rms"].as_f64().unwrap() <= found["max"].as_f64().unwrap());
+    // A file of other elements is named.
+    let other = bracket.map(&["--compare", &bracket.path("pose.txt")]);
+    assert_eq!(other.status.code(), Some(1));
+    let bare = bracket.map(&["--compare", &bracket.path("crash.k")]);
+    assert!(
+        text(&bare.stderr).contains("nothing to compare with"),
+        "{}",
+        text(&bare.stderr)
+    );
+}
+
+#[test]
+fn the_report_holds_pictures_tables_and_the_comparison() {
+    let bracket = Bracket::new();
+    let (out, page) = (bracket.path("mapped.k"), bracket.path("map.html"));
+    let first = bracket.map(&["--out", &out]);
+    assert!(first.status.success(), "{}", text(&first.stderr));
+    let output = bracket.map(&["--report", &page, "--compare", &out]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let page = std::fs::read_to_string(&page).unwrap();
+    // Before, after and difference of two quantities, and the statuses.
+    assert_eq!(page.matches("data:image/png;base64,").count(), 7);
+    for words in [
+        "Thickness",
+        "Effective plastic strain",
+        "mapped less the stamped element",
+        "What became of the elements",
+        "Beside another result",
+        "the matrix by rows",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(!page.contains("NaN"));
+}
+
+#[test]
+fn unmapped_elements_come_as_sets_by_reason() {
+    let bracket = Bracket::new();
+    let sets = bracket.path("unmapped.k");
+    let output = bracket.map(&["--unmapped", &sets, "--max-distance", "1e-6", "--json", "-"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let record: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let read = model(&sets);
+    let rows = record["statuses"].as_array().unwrap().iter();
+    let rows: Vec<&Value> = rows.filter(|row| row["status"] != "mapped").collect();
+    assert!(!rows.is_empty());
+    assert_eq!(read.sets.shells.len(), rows.len());
+    for (set, row) in read.sets.shells.values().zip(rows) {
+        assert_eq!(
+            set.ids.len() as u64,
+            row["n_elements"].as_u64().unwrap(),
+            "{}",
+            set.title
+        );
+    }
+}
+
+#[test]
+fn corners_get_their_own_thickness_where_asked() {
+    let bracket = Bracket::new();
+    let out = bracket.path("crash_mapped.k");
+    let options = [
+        "--out",
+        &out,
+        "--write",
+        "deck",
+        "--corner-thickness",
+        "yes",
+    ];
+    let output = bracket.map(&options);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let corners = model(&out);
+    let output = bracket.map(&["--out", &out, "--write", "deck"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let means = model(&out);
+    assert_eq!(corners.shell_extras.len(), means.shell_extras.len());
+    let mut n_uneven = 0;
+    for (own, mean) in corners.shell_extras.iter().zip(&means.shell_extras) {
+        let n = corners.shells[own.shell as usize].corners().len();
+        let sum: f64 = own.thickness[..n].iter().sum();
+        assert!((sum / n as f64 - mean.thickness[0]).abs() < 1e-8);
+        n_uneven += usize::from((own.thickness[0] - own.thickness[2]).abs() > 1e-6);
+    }
+    assert!(n_uneven > corners.shell_extras.len() / 2, "{n_uneven}");
+}
+
+#[test]
+fn fields_of_the_samples_come_through_within_the_known_error() {
+    use shapematch::pipeline::map_bench::error_rows;
+    use shapematch::samples::{SamplePart, SampleSettings};
+    let settings = SampleSettings {
+        part: SamplePart::Bracket,
+        stamped_size: Some(2.5),
+        crash_size: Some(5.0),
+        ..SampleSettings::default()
+    };
+    let rows = error_rows(&settings, [2.5, 5.0], &Monitor::silent()).unwrap();
+    assert_eq!(rows.len(), 2);
+    let area = &rows[0];
+    assert!(area.mapped_area > 0.99, "{area:?}");
+    assert!(area.thickness_mean.abs() < 0.005, "{area:?}");
+    // Its radii are about as small as a crash element, where a mean is not the value at the centre.
+    assert!(area.plastic_mean.abs() < 0.02, "{area:?}");
+    assert!(
+        area.plastic_rms < 0.08 && area.thickness_rms < 0.08,
+        "{area:?}"
+    );
+}

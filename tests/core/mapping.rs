@@ -1,35 +1,37 @@
 //! Mapping against closed forms: constants, linear fields, tensors, order of convergence, borders,
 //! weld lines, hems, and the way there and back.
 
+use std::collections::BTreeMap;
+
+use shapematch::geometry::tensor::{Tensor, principal, rotated, von_mises};
 use shapematch::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
-use shapematch::mapping::tensor::{Tensor, principal, rotated, von_mises};
 use shapematch::mapping::*;
 use shapematch::monitor::Monitor;
 
 /// Where a point (u, v) of the flat blank lies.
-type Shape = fn(f64, f64) -> Point3;
+pub(super) type Shape = fn(f64, f64) -> Point3;
 
-fn flat(u: f64, v: f64) -> Point3 {
+pub(super) fn flat(u: f64, v: f64) -> Point3 {
     Point3::new(u, v, 0.0)
 }
 
 /// A cylinder of radius 20 about the x axis.
-fn cylinder(u: f64, v: f64) -> Point3 {
+pub(super) fn cylinder(u: f64, v: f64) -> Point3 {
     let angle = v / 20.0;
     Point3::new(u, 20.0 * angle.sin(), 20.0 * angle.cos())
 }
 
 /// Quads of about `size` over a blank of `length` × `width`, turned by `turn` in the blank and with
 /// inner nodes moved by a fifth of their size.
-struct Blank {
-    length: f64,
-    width: f64,
-    size: f64,
-    jitter: f64,
+pub(super) struct Blank {
+    pub length: f64,
+    pub width: f64,
+    pub size: f64,
+    pub jitter: f64,
 }
 
 impl Blank {
-    fn new(size: f64) -> Self {
+    pub fn new(size: f64) -> Self {
         Self {
             length: 100.0,
             width: 60.0,
@@ -38,7 +40,7 @@ impl Blank {
         }
     }
 
-    fn mesh(&self, shape: Shape) -> ShellMesh {
+    pub fn mesh(&self, shape: Shape) -> ShellMesh {
         let nu = (self.length / self.size).round() as u32;
         let nv = (self.width / self.size).round() as u32;
         let mut positions = Vec::new();
@@ -98,7 +100,7 @@ fn cut(mesh: &ShellMesh) -> ShellMesh {
 }
 
 /// Forming results given by functions of the centroid.
-fn source(
+pub(super) fn source(
     mesh: ShellMesh,
     n_layers: usize,
     state: impl Fn(usize, f64, &ShellMesh) -> [f64; 7],
@@ -124,18 +126,20 @@ fn source(
         thickness: vec![[1.0; 4]; mesh.len()],
         states,
         strains,
+        history: SourceHistory::default(),
+        laws: BTreeMap::new(),
         mesh,
     }
 }
 
-fn full() -> MapOptions {
+pub(super) fn full() -> MapOptions {
     MapOptions {
         quantities: Quantities::FULL,
         ..MapOptions::default()
     }
 }
 
-fn map_one(
+pub(super) fn map_one(
     part: &SourcePart,
     pose: Similarity,
     target: &TargetPart,
@@ -148,7 +152,7 @@ fn map_one(
     map(&[placed], target, options, &Monitor::silent()).unwrap()
 }
 
-fn target(mesh: ShellMesh, n_layers: usize) -> TargetPart {
+pub(super) fn target(mesh: ShellMesh, n_layers: usize) -> TargetPart {
     TargetPart::uniform(mesh, LayerRule::new(RuleKind::Gauss, n_layers), 1.0)
 }
 
@@ -273,7 +277,7 @@ fn sine(p: &Point3) -> f64 {
 }
 
 /// Mean of a function over a plane quad by many points.
-fn exact_mean(mesh: &ShellMesh, element: usize, f: impl Fn(&Point3) -> f64) -> f64 {
+pub(super) fn exact_mean(mesh: &ShellMesh, element: usize, f: impl Fn(&Point3) -> f64) -> f64 {
     let [a, b, c, d] = mesh.corner_points(element);
     let n = 12;
     let (mut sum, mut area) = (0.0, 0.0);
@@ -737,6 +741,8 @@ fn wrong_choices_and_missing_results_are_named() {
         thickness: Vec::new(),
         states: Layered::new(part.mesh.len()),
         strains: Layered::new(part.mesh.len()),
+        history: SourceHistory::default(),
+        laws: BTreeMap::new(),
         mesh: part.mesh.clone(),
     };
     let place = PlacedSource {

@@ -130,7 +130,7 @@ fn every_export_states_units_and_factors() {
     let crash = bundled("crash", &LoadSettings::default());
     let stamped = bundled("stamped", &settings);
     let known = crash.units().unwrap();
-    assert_eq!(known.words(), "kg-mm-ms, from title or comment");
+    assert_eq!(known.words(), "ton-mm-s, from title or comment");
     assert_eq!(
         PairUnits::sentences(PerRole::new(&crash, &stamped))[2],
         "stamped.dynain.gz: cm, set by you; its lengths were multiplied by 10"
@@ -149,7 +149,7 @@ fn every_export_states_units_and_factors() {
     let run = match_parts(parts, None, &recipe, &identity, &silent).unwrap();
     let record = match_record(&run, parts);
     assert_eq!(record.units.length, Some(LengthUnit::Millimeter));
-    assert_eq!(record.files.crash.units, Some("kg-mm-ms"));
+    assert_eq!(record.files.crash.units, Some("ton-mm-s"));
     assert_eq!(record.files.stamped.units, Some("mm"));
     let form = shapematch::report::CardForm::ALL[0];
     let cards = shapematch::pipeline::outputs::cards::cards(form, &run, parts).unwrap();

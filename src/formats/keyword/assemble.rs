@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position};
 use super::super::model::{
-    Part, RawTitles, ReadFile, Section, Shell, ShellControl, ShellExtra, Solid,
+    Material, Part, RawTitles, ReadFile, Section, Shell, ShellControl, ShellExtra, Solid,
 };
 use super::block::Block;
 use super::card::Layout;
@@ -143,6 +143,7 @@ pub(crate) struct Assembly {
     pub unit_clues: UnitClues,
     pub forming: RawForming,
     pub sections: Vec<Section>,
+    pub materials: Vec<Material>,
     pub shell_control: ShellControl,
     pub sets: Vec<(Arc<SourceFile>, RawSet)>,
     pub transformations: BTreeMap<u64, Transformation>,
@@ -269,6 +270,7 @@ impl Assembly {
                 id: raw.id,
                 title: self.raw_titles.add(&raw.title),
                 section_id: raw.section_id,
+                material_id: raw.material_id,
                 thickness: raw.thickness.map(|sum| [sum; 4]),
                 is_defined: true,
             };
@@ -304,6 +306,7 @@ impl Assembly {
                 id,
                 title,
                 section_id: raw.section_id,
+                material_id: raw.material_id,
                 thickness: raw.thickness.map(|sum| [sum; 4]),
                 is_defined: true,
             };

@@ -16,6 +16,7 @@ use super::include::{
     Context, Include, SearchPath, layout_of_keyword, read_include_transform, read_includes,
     read_paths,
 };
+use super::materials::read_material;
 use super::mesh::{ElementKeyword, ShellCards, element_keyword};
 use super::names::{is_known, probably_meant};
 use super::parameter::ParameterTable;
@@ -277,6 +278,10 @@ impl Reader<'_> {
             read_block(file, block, units, into, &mut assembly.found);
         } else if context.length == 1.0 {
             assembly.unit_clues.read_block(block);
+            if name.starts_with("MAT_") {
+                let material = read_material(block, context.offsets.material);
+                assembly.materials.extend(material);
+            }
         }
     }
 

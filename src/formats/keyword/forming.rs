@@ -10,6 +10,7 @@ use super::block::{Block, Cards};
 use super::card::{Card, EIGHT_BY_10, FIVE_BY_16, FieldError};
 use super::nodes::shifted;
 use super::source_file::{Place, SourceFile};
+use crate::geometry::tensor::Tensor;
 
 /// More points or history variables than any solver writes for one shell; such a count means that
 /// the cards are out of step.
@@ -204,7 +205,7 @@ impl Reader<'_, '_> {
         let n_points = n_plane.max(1) * n_thick.max(1);
         let factor = self.units.stress;
         // The counts are the file's word; memory is taken for what is there.
-        let (mut points, mut history) = (Vec::new(), Vec::new());
+        let (mut points, mut history, mut tensors) = (Vec::new(), Vec::new(), Vec::new());
         for _ in 0..n_points {
             let values = self.take(8, lines)?;
             let point = StressPoint {
@@ -215,11 +216,24 @@ impl Reader<'_, '_> {
             self.check_size(head, &point.stress);
             points.push(point);
             history.extend_from_slice(self.take(n_history, lines)?);
-            self.take(n_tensor, tensor_lines)?;
+            tensors.extend(tensors_in(self.take(n_tensor, tensor_lines)?));
+            if let Some(tensor) = tensors.last() {
+                self.check_size(head, tensor);
+            }
         }
         self.thermal(n_thermal_points, n_thermal, large)?;
         if let Some(id) = self.finish_element(head, id, offset) {
-            into.add_stress(id, n_plane.max(1), &points, &history);
+            into.add_state(id, n_plane.max(1), &points, &history, &tensors);
+        }
+        if n_tensor % 6 != 0 {
+            let kind = DiagnosticKind::BadForming;
+            let message = "tensor data that fill no whole tensors are left out";
+            self.diagnostics.push_with(kind, || {
+                let finding = self.block.diagnose(kind, message).at(head.position(0));
+                finding
+                    .found(format!("NTENSR = {n_tensor}"))
+                    .expected("a multiple of 6")
+            });
         }
         Ok(())
     }
@@ -463,6 +477,18 @@ impl Reader<'_, '_> {
             }
         }
     }
+}
+
+/// The whole tensors of a point; none if the values are no whole tensors.
+fn tensors_in(values: &[f64]) -> impl Iterator<Item = Tensor> {
+    let whole = if values.len().is_multiple_of(6) {
+        values
+    } else {
+        &[]
+    };
+    whole
+        .chunks_exact(6)
+        .map(|six| std::array::from_fn(|i| six[i]))
 }
 
 #[cfg(test)]

@@ -90,6 +90,7 @@ impl Context {
         PartOffsets {
             part: self.offsets.part,
             section: self.offsets.other,
+            material: self.offsets.material,
             length: self.length,
         }
     }

@@ -28,6 +28,7 @@ pub mod expression;
 pub mod fixed_width;
 mod forming;
 mod include;
+pub mod materials;
 mod mesh;
 pub(crate) mod names;
 mod nodes;

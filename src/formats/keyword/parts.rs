@@ -12,6 +12,7 @@ use super::nodes::shifted;
 pub(crate) struct PartOffsets {
     pub part: i64,
     pub section: i64,
+    pub material: i64,
     pub length: f64,
 }
 
@@ -22,6 +23,7 @@ pub(crate) struct RawPart {
     /// The title, byte by byte.
     pub title: Vec<u8>,
     pub section_id: u64,
+    pub material_id: u64,
     /// The text that stands in place of the part's id, which is 0 then.
     pub label: Option<String>,
     /// The text that stands in place of the section's id, which is 0 then.
@@ -105,6 +107,11 @@ fn part(
     } else {
         card.id(EIGHT_BY_10, 1)
     };
+    let material = if composite {
+        0
+    } else {
+        card.id(EIGHT_BY_10, 2).unwrap_or(0)
+    };
     // The other cards are passed over even if this one is no good.
     let thickness = if composite {
         Some(composite_thickness(block, cards) * offsets.length)
@@ -118,6 +125,7 @@ fn part(
         id: shifted(id, offsets.part),
         title: heading.title().to_owned(),
         section_id: shifted(section, offsets.section),
+        material_id: shifted(material, offsets.material),
         label,
         section_label,
         thickness: thickness.filter(|&sum| sum > 0.0),

@@ -310,6 +310,7 @@ fn give_thickness_to_parts(assembly: &mut Assembly, model: &mut Model) {
     }
     model.parts = std::mem::take(&mut assembly.parts);
     model.sections = std::mem::take(&mut assembly.sections);
+    model.materials = std::mem::take(&mut assembly.materials);
     model.shell_control = assembly.shell_control;
 }
 
@@ -395,6 +396,7 @@ fn spread_node_thickness(
             shell: index,
             thickness: [0.0; 4],
             beta: 0.0,
+            n_plies: 0,
         });
         for (own, of_node) in merged.thickness.iter_mut().zip(of_nodes) {
             if *own == 0.0 {

@@ -6,9 +6,9 @@ use std::ops::Range;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Forming, IdIndex, Model};
-use super::super::moved::turn_tensor;
 use super::forming::RawForming;
 use super::source_file::Place;
+use crate::geometry::tensor::rotated;
 use crate::geometry::{Matrix3, Matrix4};
 
 /// Two lengths that differ by more than this share of themselves are stretched differently. Cards
@@ -111,7 +111,13 @@ impl Results {
                 let ids = members(of_set.element_id, &raw.stress_places[index]).iter();
                 for &id in ids.filter(|&&id| known.insert(id)) {
                     forming
-                        .add_stress(id, of_set.n_plane, of_set.points, of_set.history)
+                        .add_state(
+                            id,
+                            of_set.n_plane,
+                            of_set.points,
+                            of_set.history,
+                            of_set.tensors,
+                        )
                         .expect("history has as many values for each point as in the set's");
                     stress_source.push(index);
                 }
@@ -216,12 +222,15 @@ impl Results {
         };
         for &index in stress {
             for point in self.forming.stress_points_mut(index) {
-                point.stress = turn_tensor(&point.stress, &rotation);
+                point.stress = rotated(&point.stress, &rotation);
+            }
+            for tensor in self.forming.tensors_mut(index) {
+                *tensor = rotated(tensor, &rotation);
             }
         }
         for &index in strain {
             for point in self.forming.strain_points_mut(index) {
-                point.strain = turn_tensor(&point.strain, &rotation);
+                point.strain = rotated(&point.strain, &rotation);
             }
         }
         Turned {

@@ -257,6 +257,7 @@ impl Reader<'_> {
                     shell: self.chunk.shells.len() as u32 - 1,
                     thickness: thickness.map(|t| t * self.offsets.length),
                     beta: if self.options.beta { angle } else { 0.0 },
+                    n_plies: 0,
                 });
             }
             Ok(_) => {}
@@ -288,9 +289,10 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Passes over the plies of a composite shell and keeps the sum of their thicknesses.
+    /// Passes over the plies of a composite shell and keeps their number and the sum of their thicknesses.
     fn plies(&mut self, cards: &mut Cards<'_>, is_kept: bool) {
         let mut sum = 0.0;
+        let mut n_plies = 0;
         loop {
             let before = cards.clone();
             let Some(card) = cards.next() else { break };
@@ -298,19 +300,26 @@ impl Reader<'_> {
                 *cards = before;
                 break;
             }
+            n_plies += 1;
             sum += card.length_or_zero(EIGHT_BY_10, 1).unwrap_or(0.0);
             // `_LONG` has a ply id in place of the second ply, without a thickness.
             if !card.is_empty_field(EIGHT_BY_10, 4) && is_real_text(card.field(EIGHT_BY_10, 5).text)
             {
+                n_plies += 1;
                 sum += card.length_or_zero(EIGHT_BY_10, 5).unwrap_or(0.0);
             }
         }
-        let has_own = self.options.thickness;
-        if is_kept && sum > 0.0 && !has_own {
+        let last = self.chunk.shells.len() as u32;
+        let own = self.chunk.extras.last_mut();
+        let own = own.filter(|extra| is_kept && extra.shell + 1 == last);
+        if let Some(extra) = own {
+            extra.n_plies = n_plies;
+        } else if is_kept && sum > 0.0 {
             self.chunk.extras.push(ShellExtra {
-                shell: self.chunk.shells.len() as u32 - 1,
+                shell: last - 1,
                 thickness: [sum * self.offsets.length; 4],
                 beta: 0.0,
+                n_plies,
             });
         }
     }

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::card::Layout;
 use super::exponential::{push_exponential, push_int};
+use crate::geometry::tensor::Tensor;
 use crate::monitor::{Cancelled, Monitor};
 
 /// Elements that are formatted as one piece.
@@ -23,8 +24,11 @@ pub struct ShellState<'a> {
     /// Stress xx, yy, zz, xy, yz, zx and effective plastic strain at each point: the number of
     /// layers times 1 or 4. Empty for no stress card.
     pub states: &'a [[f64; 7]],
-    /// History variables of each point, all with the same number; empty for none.
+    /// History variables of each layer, all with the same number; empty for none. Points of one layer
+    /// share them.
     pub history: &'a [f64],
+    /// Tensors among the history of each layer (`NTENSR`), likewise.
+    pub tensors: &'a [Tensor],
     /// Places T of the strains.
     pub strain_places: &'a [f64],
     /// Strain xx, yy, zz, xy, yz, zx at each of them; empty for no strain card.
@@ -98,27 +102,31 @@ fn stress_card(text: &mut Vec<u8>, state: &ShellState<'_>, format: StateFormat) 
         return;
     }
     let n_plane = state.states.len() / n_layers;
-    let n_history = state.history.len() / state.states.len();
+    let n_history = state.history.len() / n_layers;
+    let n_tensors = state.tensors.len() / n_layers;
     let counts = [
         n_plane,
         n_layers,
         n_history,
-        0,
+        6 * n_tensors,
         usize::from(format.is_large),
         0,
         0,
     ];
     push_header(text, state.id, &counts, format.layout);
     for (i, point) in state.states.iter().enumerate() {
-        let t = state.places[i / n_plane];
+        let layer = i / n_plane;
+        let t = state.places[layer];
         let [xx, yy, zz, xy, yz, zx, plastic] = *point;
         push_values(text, &[t, xx, yy, zz, xy, yz, zx, plastic], 8, format);
         push_values(
             text,
-            &state.history[i * n_history..][..n_history],
+            &state.history[layer * n_history..][..n_history],
             8,
             format,
         );
+        let tensors = &state.tensors[layer * n_tensors..][..n_tensors];
+        push_values(text, tensors.as_flattened(), 6, format);
     }
 }
 
@@ -205,6 +213,7 @@ mod tests {
             places: &[-0.577_350_269_2, 0.577_350_269_2],
             states: &states,
             history: &[],
+            tensors: &[],
             strain_places: &[-1.0, 1.0],
             strains: &strains,
         };
@@ -232,15 +241,22 @@ mod tests {
             places: &[0.0],
             states: &[[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.5]],
             history: &[9.0, -8.0],
+            tensors: &[[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], [7.0; 6]],
             strain_places: &[],
             strains: &[],
         };
         let expected = "\
 *INITIAL_STRESS_SHELL
-         7         1         1         2         0         0         0         0
+         7         1         1         2        12         0         0         0
  0.000E+00 1.000E+00 2.000E+00 3.000E+00 4.000E+00 5.000E+00 6.000E+00 5.000E-01
  9.000E+00-8.000E+00
+ 1.000E+00 2.000E+00 3.000E+00 4.000E+00 5.000E+00 6.000E+00
+ 7.000E+00 7.000E+00 7.000E+00 7.000E+00 7.000E+00 7.000E+00
 ";
         assert_eq!(text_of(state, false), expected);
+        // Large tensors run on over lines of five.
+        let large = text_of(state, true);
+        assert_eq!(large.lines().count(), 2 + 2 + 1 + 3);
+        assert!(large.ends_with("  7.00000000E+00  7.00000000E+00\n"));
     }
 }

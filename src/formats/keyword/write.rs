@@ -246,7 +246,8 @@ impl Writer<'_> {
                 self.line("*INITIAL_STRESS_SHELL");
             }
             let n_thick = shell.points.len() / shell.n_plane.max(1);
-            let counts = [shell.n_plane, n_thick, shell.n_history, 0, 1];
+            let n_tensor = 6 * shell.n_tensors;
+            let counts = [shell.n_plane, n_thick, shell.n_history, n_tensor, 1];
             self.int(shell.element_id, 10);
             for count in counts {
                 self.int(count as u64, 10);
@@ -255,7 +256,8 @@ impl Writer<'_> {
             for (i, point) in shell.points.iter().enumerate() {
                 let [xx, yy, zz, xy, yz, zx] = point.stress;
                 self.five_a_line(&[point.t, xx, yy, zz, xy, yz, zx, point.plastic_strain]);
-                self.five_a_line(&shell.history[i * shell.n_history..][..shell.n_history]);
+                self.five_a_line(shell.history_of(i));
+                self.five_a_line(shell.tensors_of(i).as_flattened());
             }
         }
         Ok(())
@@ -423,6 +425,7 @@ mod tests {
             shell: 1,
             thickness: [1.5, 1.6, 1.7, 0.0],
             beta: 30.0,
+            n_plies: 0,
         });
         let point = StressPoint {
             t: -1.0,

@@ -1,5 +1,7 @@
 //! Results of a forming simulation, as a dynain hands them over.
 
+use crate::geometry::tensor::Tensor;
+
 /// State of one integration point of a shell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StressPoint {
@@ -29,6 +31,8 @@ struct StressRecord {
     n_plane: u32,
     first_history: usize,
     n_history: u32,
+    first_tensor: usize,
+    n_tensors: u32,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,6 +56,23 @@ pub struct ShellStress<'a> {
     pub history: &'a [f64],
     /// History variables per point.
     pub n_history: usize,
+    /// Tensors that the material keeps among its history and the file names as such (`NTENSR`), in
+    /// the global frame, `n_tensors` for each point in turn.
+    pub tensors: &'a [Tensor],
+    /// Tensors per point.
+    pub n_tensors: usize,
+}
+
+impl<'a> ShellStress<'a> {
+    /// History variables of a point.
+    pub fn history_of(&self, point: usize) -> &'a [f64] {
+        &self.history[point * self.n_history..][..self.n_history]
+    }
+
+    /// Tensors of a point.
+    pub fn tensors_of(&self, point: usize) -> &'a [Tensor] {
+        &self.tensors[point * self.n_tensors..][..self.n_tensors]
+    }
 }
 
 /// The strains of one shell.
@@ -95,6 +116,7 @@ pub struct Forming {
     stress: Vec<StressRecord>,
     stress_points: Vec<StressPoint>,
     history: Vec<f64>,
+    tensors: Vec<Tensor>,
     strain: Vec<StrainRecord>,
     strain_points: Vec<StrainPoint>,
 }
@@ -109,8 +131,21 @@ impl Forming {
         points: &[StressPoint],
         history: &[f64],
     ) -> Option<()> {
+        self.add_state(element_id, n_plane, points, history, &[])
+    }
+
+    /// The same with `tensors`, of which each point has the same number too.
+    pub fn add_state(
+        &mut self,
+        element_id: u64,
+        n_plane: usize,
+        points: &[StressPoint],
+        history: &[f64],
+        tensors: &[Tensor],
+    ) -> Option<()> {
         let n_history = history.len().checked_div(points.len()).unwrap_or(0);
-        if n_history * points.len() != history.len() {
+        let n_tensors = tensors.len().checked_div(points.len()).unwrap_or(0);
+        if n_history * points.len() != history.len() || n_tensors * points.len() != tensors.len() {
             return None;
         }
         self.stress.push(StressRecord {
@@ -120,9 +155,12 @@ impl Forming {
             n_plane: u32::try_from(n_plane).ok()?,
             first_history: self.history.len(),
             n_history: u32::try_from(n_history).ok()?,
+            first_tensor: self.tensors.len(),
+            n_tensors: u32::try_from(n_tensors).ok()?,
         });
         self.stress_points.extend_from_slice(points);
         self.history.extend_from_slice(history);
+        self.tensors.extend_from_slice(tensors);
         Some(())
     }
 
@@ -152,12 +190,15 @@ impl Forming {
         let record = &self.stress[index];
         let n_points = record.n_points as usize;
         let n_history = record.n_history as usize;
+        let n_tensors = record.n_tensors as usize;
         ShellStress {
             element_id: record.element_id,
             n_plane: record.n_plane as usize,
             points: &self.stress_points[record.first_point..][..n_points],
             history: &self.history[record.first_history..][..n_points * n_history],
             n_history,
+            tensors: &self.tensors[record.first_tensor..][..n_points * n_tensors],
+            n_tensors,
         }
     }
 
@@ -175,6 +216,13 @@ impl Forming {
     pub fn stress_points_mut(&mut self, index: usize) -> &mut [StressPoint] {
         let record = &self.stress[index];
         &mut self.stress_points[record.first_point..][..record.n_points as usize]
+    }
+
+    /// The tensors of the `index`-th shell with stresses, to be turned.
+    pub fn tensors_mut(&mut self, index: usize) -> &mut [Tensor] {
+        let record = &self.stress[index];
+        let n = record.n_points as usize * record.n_tensors as usize;
+        &mut self.tensors[record.first_tensor..][..n]
     }
 
     /// The points of the `index`-th shell with strains, to be turned.

@@ -113,6 +113,8 @@ pub struct ShellExtra {
     pub thickness: [f64; 4],
     /// Material angle in degrees; 0 if none was given.
     pub beta: f64,
+    /// Plies of its own, which are its layers; 0 if it has none.
+    pub n_plies: u32,
 }
 
 /// Kind of a solid element.
@@ -146,6 +148,8 @@ pub struct Part {
     pub title: String,
     /// Id of the section; 0 if none was given.
     pub section_id: u64,
+    /// Id of the material; 0 if none was given.
+    pub material_id: u64,
     /// Thickness that elements without their own take: at the four corners.
     pub thickness: Option<[f64; 4]>,
     /// False if elements name the part but no file defines it.
@@ -170,6 +174,18 @@ pub struct Section {
     pub thickness: [f64; 4],
     /// Element formulation, layers and rule.
     pub formulation: ShellFormulation,
+}
+
+/// `*MAT_…`: what a material is called and how stiff it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// The deck's material id.
+    pub id: u64,
+    /// The law: its number where the keyword is one or a usual name ("24", "36"), else the keyword
+    /// without `MAT_`.
+    pub law: String,
+    /// Young's modulus in the deck's unit; 0 where the card's third field is none.
+    pub modulus: f64,
 }
 
 /// A named list of ids.
@@ -242,6 +258,8 @@ pub struct Model {
     pub parts: Vec<Part>,
     /// Shell sections.
     pub sections: Vec<Section>,
+    /// Materials; of those with the same id the first counts.
+    pub materials: Vec<Material>,
     /// What holds for the shells of all sections.
     pub shell_control: ShellControl,
     /// Sets of parts, shells and nodes.
@@ -288,6 +306,12 @@ impl Model {
     pub fn part_index(&self, id: u64) -> Option<u32> {
         let at = self.parts.iter().position(|part| part.id == id)?;
         u32::try_from(at).ok()
+    }
+
+    /// The material of a part, by index; `None` if it is not in the deck. O(materials).
+    pub fn material(&self, part: u32) -> Option<&Material> {
+        let id = self.parts.get(part as usize)?.material_id;
+        self.materials.iter().find(|material| material.id == id)
     }
 
     /// Corner thickness of a shell: its own where that is not 0, else its part's.

@@ -1,10 +1,13 @@
 //! From loaded decks to what the mapping takes.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
+use super::{MapRecipe, parts_in_use};
 use crate::formats::Model;
 use crate::geometry::{MeshError, Point3};
-use crate::mapping::{LayerRule, Layered, RuleKind, ShellMesh, SourcePart, TargetPart};
+use crate::mapping::{
+    LayerHistory, LayerRule, Layered, RuleKind, ShellMesh, SourceHistory, SourcePart, TargetPart,
+};
 use crate::pipeline::load::LoadedPart;
 
 /// The shells of a loaded part as a mapping mesh, with their indices in the model.
@@ -48,12 +51,13 @@ pub(super) fn part_shells(part: &LoadedPart) -> Result<PartShells, MeshError> {
 }
 
 /// The forming results of a stamped part. Thickness comes in the crash model's length unit, stress is
-/// multiplied by `stress_factor`.
+/// multiplied by the recipe's factor. History variables are taken where they are asked for.
 pub(super) fn source_part(
     part: &LoadedPart,
     shells: &PartShells,
-    stress_factor: f64,
+    recipe: &MapRecipe,
 ) -> SourcePart {
+    let stress_factor = recipe.stress_factor.unwrap_or(1.0);
     let model = &part.model;
     let factor = part.settings.length_factor;
     let thickness = shells.shells.iter().map(|&shell| {
@@ -62,6 +66,7 @@ pub(super) fn source_part(
     });
     let index = element_index(model, &shells.shells);
     let mut states = Layered::new(shells.shells.len());
+    let mut history = SourceHistory::new(shells.shells.len());
     for stress in model.forming.stresses() {
         if let Some(&element) = index.get(&stress.element_id) {
             let points = stress.points.iter().map(|point| {
@@ -69,6 +74,16 @@ pub(super) fn source_part(
                 (point.t, [xx, yy, zz, xy, yz, zx, point.plastic_strain])
             });
             states.set(element, points);
+            if recipe.options.quantities.history {
+                let layers = (0..).zip(stress.points).map(|(i, point)| {
+                    let kept = LayerHistory {
+                        values: stress.history_of(i),
+                        tensors: stress.tensors_of(i),
+                    };
+                    (point.t, kept)
+                });
+                history.set(element, layers);
+            }
         }
     }
     let mut strains = Layered::new(shells.shells.len());
@@ -84,8 +99,22 @@ pub(super) fn source_part(
         thickness: thickness.collect(),
         states,
         strains,
+        history,
+        laws: laws(model, shells, recipe.stamped_law.as_deref()),
         mesh: shells.mesh.clone(),
     }
+}
+
+/// The material laws of the parts in use, as far as they are known; `given` counts for all.
+fn laws(model: &Model, shells: &PartShells, given: Option<&str>) -> BTreeMap<u32, String> {
+    let parts = parts_in_use(shells).into_iter();
+    let law_of = |part: u32| match given {
+        Some(law) => Some(law.to_owned()),
+        None => Some(model.material(part)?.law.clone()),
+    };
+    parts
+        .filter_map(|part| Some((part, law_of(part)?)))
+        .collect()
 }
 
 /// Where each element id stands in the list.
@@ -141,6 +170,7 @@ pub(super) fn target_part(
         rule_of,
         n_plane,
         nominal_thickness: nominal.collect(),
+        laws: laws(model, shells, None),
         mesh: shells.mesh.clone(),
     }
 }

@@ -1,14 +1,24 @@
 //! Carries the forming results of stamped files onto a crash part: convert, map, check, write.
 
+mod compare;
 mod convert;
 mod output;
+mod ready;
 mod record;
+mod report;
+mod unmapped;
 
+use std::collections::BTreeSet;
 use std::time::Instant;
 
+use serde::{Deserialize, Serialize};
+
+pub use compare::{ComparisonRecord, DifferenceRecord, OtherResult};
 pub use convert::TargetLayers;
 pub use output::{MapFiles, MapOutput, WriteKind, elements_path, write_mapping};
-pub use record::{MapRecord, element_table, map_record};
+pub use record::{MapRecord, PairRecord, element_table, map_record};
+pub use report::map_report;
+pub use unmapped::unmapped_sets;
 
 use super::load::LoadedPart;
 use super::{PipelineError, millis_since};
@@ -21,7 +31,8 @@ use crate::monitor::Monitor;
 use convert::{PartShells, part_shells, source_part, target_part};
 
 /// What a mapping depends on besides the decks and the poses.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct MapRecipe {
     /// Quantities, method, limits.
     pub options: MapOptions,
@@ -31,20 +42,12 @@ pub struct MapRecipe {
     pub rule: Option<RuleKind>,
     /// Points in the plane of each layer, 1 or 4; `None` takes them from the element formulation.
     pub n_plane: Option<u8>,
-    /// Factor on the stresses of the stamped files, where their unit is another one.
-    pub stress_factor: f64,
-}
-
-impl Default for MapRecipe {
-    fn default() -> Self {
-        Self {
-            options: MapOptions::default(),
-            n_layers: None,
-            rule: None,
-            n_plane: None,
-            stress_factor: 1.0,
-        }
-    }
+    /// Factor on the stresses of the stamped files, where their unit is another one; `None` takes them
+    /// as they are, unless they are clearly in another unit, which is an error then.
+    pub stress_factor: Option<f64>,
+    /// Material law of the stamped parts ("24"), for files that hold none; history variables are
+    /// carried to parts of the same law alone.
+    pub stamped_law: Option<String>,
 }
 
 /// A stamped part with its pose on the crash part.
@@ -92,6 +95,47 @@ pub struct MapRun {
     pub check_ms: f64,
 }
 
+impl MapRun {
+    /// Mapped thickness of an element; NaN if it has none.
+    pub fn thickness(&self, element: usize) -> f64 {
+        let value = self.mapped.thickness.get(element);
+        value.copied().unwrap_or(f64::NAN)
+    }
+
+    /// Effective plastic strain of an element, weighted over its layers; NaN if it has none.
+    pub fn plastic_strain(&self, element: usize) -> f64 {
+        self.mapped.mean_plastic_strain(&self.target, element)
+    }
+
+    /// Largest von Mises stress of an element's layers, each the mean of its points in the plane; NaN if
+    /// it has none.
+    pub fn largest_von_mises(&self, element: usize) -> f64 {
+        let Some(states) = &self.mapped.states else {
+            return f64::NAN;
+        };
+        let points = states.of(element);
+        let rule = &self.target.rules[self.target.rule_of[element] as usize];
+        let n_plane = (points.len() / rule.len().max(1)).max(1);
+        let means = points.chunks(n_plane).map(|layer| {
+            let mean = |i: usize| layer.iter().map(|state| state[i]).sum::<f64>() / n_plane as f64;
+            std::array::from_fn(mean)
+        });
+        compare::largest_von_mises(&means.collect::<Vec<[f64; 7]>>())
+    }
+
+    /// A quantity of the source element that an element took its values from, given by part and
+    /// element; NaN without one.
+    pub fn at_partner(&self, element: usize, of: impl Fn(&SourcePart, usize) -> f64) -> f64 {
+        let partner = self.mapped.elements[element].partner;
+        partner.map_or(f64::NAN, |partner| {
+            of(
+                &self.sources[partner.source as usize],
+                partner.element as usize,
+            )
+        })
+    }
+}
+
 /// Maps the stamped parts onto `crash` and checks the result.
 pub fn map_parts(
     crash: &LoadedPart,
@@ -102,9 +146,13 @@ pub fn map_parts(
     let start = Instant::now();
     let crash_shells = part_shells(crash).map_err(mesh_error)?;
     let layers = Layers { crash, recipe };
-    let parts = crash_shells.mesh.parts();
-    for &part in parts {
+    let crash_parts = parts_in_use(&crash_shells);
+    for &part in &crash_parts {
         layers.of(part)?;
+    }
+    let wanted = recipe.options.quantities;
+    if wanted.stress || wanted.history {
+        ready::check_axes(crash, &crash_parts)?;
     }
     let target = target_part(crash, &crash_shells, |part| {
         layers.of(part).unwrap_or(FALLBACK_LAYERS)
@@ -116,8 +164,14 @@ pub fn map_parts(
     let shells = shells.map_err(mesh_error)?;
     let pairs = stamped.iter().zip(&shells);
     let sources: Vec<SourcePart> = pairs
-        .map(|(placed, shells)| source_part(placed.part, shells, recipe.stress_factor))
+        .map(|(placed, shells)| source_part(placed.part, shells, recipe))
         .collect();
+    for ((placed, shells), source) in stamped.iter().zip(&shells).zip(&sources) {
+        if wanted.stress || wanted.history {
+            ready::check_axes(placed.part, &parts_in_use(shells))?;
+        }
+        ready::check_stress_unit(crash, &crash_parts, placed.part, source, recipe)?;
+    }
     let placed: Vec<PlacedSource<'_>> = sources
         .iter()
         .zip(stamped)
@@ -145,6 +199,12 @@ pub fn map_parts(
         map_ms,
         check_ms: millis_since(start),
     })
+}
+
+/// The parts of some shells, each once, in rising order.
+fn parts_in_use(shells: &PartShells) -> Vec<u32> {
+    let parts: BTreeSet<u32> = shells.mesh.parts().iter().copied().collect();
+    parts.into_iter().collect()
 }
 
 /// Layers of elements whose part was already found to have some.

@@ -3,14 +3,14 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use super::compare::read_beside_nodes;
 use super::{MapRun, PipelineError};
 use crate::formats::keyword::card::Layout;
 use crate::formats::keyword::exchange::{Exchange, ExchangedDeck, exchange_thickness};
 use crate::formats::keyword::source_file::SourceFile;
 use crate::formats::keyword::state_cards::{ShellState, StateFormat, write_states};
-use crate::formats::keyword::write::{WriteOptions, write};
 use crate::formats::{self, Disk, Memory, Model, ReadOptions};
-use crate::mapping::{LayerRule, Status};
+use crate::mapping::Status;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
 use crate::report::build_id;
@@ -19,6 +19,9 @@ use crate::report::build_id;
 const SMALL_ROUNDING: f64 = 5.1e-4;
 /// Digits of a large card differ from the values by up to this share.
 const LARGE_ROUNDING: f64 = 1e-8;
+
+/// Where strains of the two surfaces stand.
+const SURFACES: [f64; 2] = [-1.0, 1.0];
 
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -70,7 +73,7 @@ pub struct MapFiles {
     pub n_stress: usize,
     /// Elements with a strain card.
     pub n_strain: usize,
-    /// Mapped elements whose thickness could not be put in, because they have plies of their own.
+    /// Mapped elements that were left as they are, because they have plies of their own.
     pub n_composite: usize,
     /// Largest difference between a value and what reading the files gives, relative to the largest
     /// value of its kind.
@@ -96,12 +99,21 @@ pub fn write_mapping(
         thickness: thickness_by_id(run, &crash.model, crash.settings.length_factor),
         monitor,
     };
+    let has_values = |element: &usize| run.mapped.elements[*element].status.has_values();
+    let n_composite = (0..run.shells.len())
+        .filter(|element| has_values(element) && is_composite(run, &crash.model, *element))
+        .count();
+    if output.kind == WriteKind::Part && n_composite > 0 {
+        return Err(PipelineError::MapOutput(format!(
+            "{n_composite} elements have plies of their own (_COMPOSITE), which a file of all elements \
+             would lose; write an include or a deck instead (--write)"
+        )));
+    }
     let decks = writer.decks(crash, output.kind)?;
     let n_thickness: usize = decks.iter().map(|(_, deck)| deck.n_exchanged).sum();
-    let n_composite: usize = decks.iter().map(|(_, deck)| deck.n_composite).sum();
     let n_wanted = writer.thickness.len();
-    if n_thickness + n_composite < n_wanted {
-        let missing = n_wanted - n_thickness - n_composite;
+    if n_thickness < n_wanted {
+        let missing = n_wanted - n_thickness;
         return Err(PipelineError::MapOutput(format!(
             "{missing} of {n_wanted} elements are not found under their id in {}; are ids shifted by an include \
              with offsets? Write the states alone (--quantities without thickness) or map onto a deck \
@@ -135,16 +147,8 @@ pub fn write_mapping(
     let mut files = MapFiles {
         files,
         n_thickness,
-        n_stress: run
-            .mapped
-            .states
-            .as_ref()
-            .map_or(0, |states| states.n_present()),
-        n_strain: run
-            .mapped
-            .strains
-            .as_ref()
-            .map_or(0, |strains| strains.n_present()),
+        n_stress: writer.count(|state| !state.states.is_empty()),
+        n_strain: writer.count(|state| !state.strains.is_empty()),
         n_composite,
         read_back_error: 0.0,
         replaces,
@@ -153,20 +157,32 @@ pub fn write_mapping(
     Ok(files)
 }
 
-/// New thickness of the mapped elements in the deck's own unit, by element id.
-fn thickness_by_id(run: &MapRun, model: &Model, length_factor: f64) -> HashMap<u64, f64> {
-    let values = run.shells.iter().zip(&run.mapped.thickness);
+/// New corner thicknesses of the mapped elements in the deck's own unit, by element id.
+fn thickness_by_id(run: &MapRun, model: &Model, length_factor: f64) -> HashMap<u64, [f64; 4]> {
+    let corners = |element: usize, mean: f64| {
+        let own = run.mapped.corners.get(element).copied();
+        own.unwrap_or([mean; 4]).map(|t| t / length_factor)
+    };
+    let values = run.shells.iter().zip(&run.mapped.thickness).enumerate();
     values
-        .filter(|(_, thickness)| thickness.is_finite())
-        .map(|(&shell, thickness)| (model.shells[shell as usize].id, thickness / length_factor))
+        .filter(|(element, (_, thickness))| {
+            thickness.is_finite() && !is_composite(run, model, *element)
+        })
+        .map(|(element, (&shell, mean))| (model.shells[shell as usize].id, corners(element, *mean)))
         .collect()
+}
+
+/// True if an element has plies, which are its layers, whatever its section says.
+fn is_composite(run: &MapRun, model: &Model, element: usize) -> bool {
+    let extra = model.shell_extra(run.shells[element]);
+    extra.is_some_and(|extra| extra.n_plies > 0)
 }
 
 struct MapWriter<'a> {
     run: &'a MapRun,
     model: &'a Model,
     is_large: bool,
-    thickness: HashMap<u64, f64>,
+    thickness: HashMap<u64, [f64; 4]>,
     monitor: &'a Monitor,
 }
 
@@ -188,7 +204,7 @@ impl MapWriter<'_> {
             .map(|&shell| (self.model.shells[shell as usize].id, ()))
             .collect();
         let exchange = |id: u64| match self.thickness.get(&id) {
-            Some(&thickness) => Exchange::Thickness([thickness; 4]),
+            Some(&thickness) => Exchange::Thickness(thickness),
             None if kind == WriteKind::Part && of_part.contains_key(&id) => Exchange::Listed,
             None => Exchange::Other,
         };
@@ -295,31 +311,47 @@ impl MapWriter<'_> {
         }
     }
 
-    fn states(&self, layout: Layout) -> Result<Vec<u8>, Cancelled> {
-        let surfaces = LayerRule::surfaces();
+    /// What is written for an element; no values for one that has plies of its own.
+    fn state_of(&self, element: usize) -> ShellState<'_> {
         let mapped = &self.run.mapped;
-        let state_of = |element: usize| {
-            let rule = &self.run.target.rules[self.run.target.rule_of[element] as usize];
-            let strain_rule = if mapped.strains_are_at_surfaces {
-                &surfaces
-            } else {
-                rule
-            };
-            ShellState {
-                id: self.model.shells[self.run.shells[element] as usize].id,
-                places: rule.places(),
-                states: mapped
-                    .states
-                    .as_ref()
-                    .map_or(&[][..], |states| states.of(element)),
-                history: &[],
-                strain_places: strain_rule.places(),
-                strains: mapped
-                    .strains
-                    .as_ref()
-                    .map_or(&[][..], |strains| strains.of(element)),
-            }
+        let rule = &self.run.target.rules[self.run.target.rule_of[element] as usize];
+        let strain_places = if mapped.strains_are_at_surfaces {
+            &SURFACES[..]
+        } else {
+            rule.places()
         };
+        let mut state = ShellState {
+            id: self.model.shells[self.run.shells[element] as usize].id,
+            places: rule.places(),
+            states: &[],
+            history: &[],
+            tensors: &[],
+            strain_places,
+            strains: &[],
+        };
+        if is_composite(self.run, self.model, element) {
+            return state;
+        }
+        if let Some(states) = &mapped.states {
+            state.states = states.of(element);
+        }
+        if let Some(history) = &mapped.history {
+            let kept = history.of(element);
+            (state.history, state.tensors) = (kept.values, kept.tensors);
+        }
+        if let Some(strains) = &mapped.strains {
+            state.strains = strains.of(element);
+        }
+        state
+    }
+
+    fn count(&self, has: impl Fn(&ShellState<'_>) -> bool) -> usize {
+        let all = 0..self.run.shells.len();
+        all.filter(|&element| has(&self.state_of(element))).count()
+    }
+
+    fn states(&self, layout: Layout) -> Result<Vec<u8>, Cancelled> {
+        let state_of = |element: usize| self.state_of(element);
         let format = StateFormat {
             layout,
             is_large: self.is_large,
@@ -341,7 +373,7 @@ impl MapWriter<'_> {
                 let memory = Memory::new().with(path, bytes.clone());
                 formats::read_from(&memory, path, &ReadOptions::default(), self.monitor)?
             } else {
-                self.read_with_nodes(bytes)?
+                read_beside_nodes(self.model, bytes, self.monitor)?
             };
             n_stress += read.forming.n_stress();
             n_strain += read.forming.n_strain();
@@ -391,23 +423,6 @@ impl MapWriter<'_> {
         Ok(largest)
     }
 
-    /// Reads a file as an include of a deck that holds the crash model's nodes.
-    fn read_with_nodes(&self, bytes: &[u8]) -> Result<Model, PipelineError> {
-        let nodes = Model {
-            nodes: self.model.nodes.clone(),
-            ..Model::default()
-        };
-        let mut deck = write(&nodes, &WriteOptions::default(), self.monitor)?;
-        deck.truncate(deck.len() - b"*END\n".len());
-        deck.extend_from_slice(b"*INCLUDE\nmapped.k\n*END\n");
-        let memory = Memory::new()
-            .with("nodes.k", deck)
-            .with("mapped.k", bytes.to_vec());
-        let options = ReadOptions::default();
-        let path = Path::new("nodes.k");
-        Ok(formats::read_from(&memory, path, &options, self.monitor)?)
-    }
-
     /// Largest difference of a stress or plastic strain, relative to the largest of its kind.
     fn stress_error(&self, read: &Model) -> f64 {
         let Some(states) = &self.run.mapped.states else {
@@ -420,10 +435,29 @@ impl MapWriter<'_> {
             .map(|&shell| self.model.shells[shell as usize].id);
         let element_of: HashMap<u64, usize> = ids.zip(0..).collect();
         let (mut stress, mut plastic) = ([0.0_f64; 2], [0.0_f64; 2]);
+        let (mut values, mut tensors) = ([0.0_f64; 2], [0.0_f64; 2]);
         for card in read.forming.stresses() {
             let Some(&element) = element_of.get(&card.element_id) else {
                 continue;
             };
+            let kept = self.state_of(element);
+            let n_plane = card.n_plane.max(1);
+            compare(
+                &mut values,
+                kept.history,
+                card.n_history,
+                n_plane,
+                card.history,
+            );
+            let n_tensor = 6 * card.n_tensors;
+            let read = card.tensors.as_flattened();
+            compare(
+                &mut tensors,
+                kept.tensors.as_flattened(),
+                n_tensor,
+                n_plane,
+                read,
+            );
             for (own, point) in states.of(element).iter().zip(card.points) {
                 for (a, b) in own[..6].iter().zip(point.stress) {
                     stress = [stress[0].max((a - b).abs()), stress[1].max(a.abs())];
@@ -434,7 +468,26 @@ impl MapWriter<'_> {
         }
         let relative =
             |[difference, size]: [f64; 2]| if size > 0.0 { difference / size } else { 0.0 };
-        relative(stress).max(relative(plastic))
+        let kinds = [stress, plastic, values, tensors].map(relative);
+        kinds.into_iter().fold(0.0, f64::max)
+    }
+}
+
+/// Largest difference and largest value of what each layer has `n` of, against what was read for each
+/// of its `n_plane` points. A wrong number of values is a difference without bound.
+fn compare(largest: &mut [f64; 2], own: &[f64], n: usize, n_plane: usize, read: &[f64]) {
+    if own.len() * n_plane != read.len() {
+        largest[0] = f64::INFINITY;
+        return;
+    }
+    let layers = own.chunks(n.max(1)).zip(read.chunks((n * n_plane).max(1)));
+    for (own, points) in layers {
+        for (a, b) in points
+            .chunks(n.max(1))
+            .flat_map(|point| own.iter().zip(point))
+        {
+            *largest = [largest[0].max((a - b).abs()), largest[1].max(a.abs())];
+        }
     }
 }
 

@@ -4,8 +4,9 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
+use super::compare::{ComparisonRecord, OtherResult, compare_with};
 use super::{MapFiles, MapRun, PlacedPart};
-use crate::mapping::{Distribution, Histogram, Status, histogram_distance};
+use crate::mapping::{Distribution, Histogram, Status, distribution, histogram_distance};
 use crate::pipeline::load::LoadedPart;
 use crate::report::{DIRECTION, build_id};
 
@@ -43,6 +44,8 @@ pub struct MapRecord {
     pub map_back: Option<MapBackRecord>,
     /// Largest relative difference when the written files are read back.
     pub read_back_error: Option<f64>,
+    /// Beside another result, if one was given.
+    pub comparison: Option<ComparisonRecord>,
     /// What to look at.
     pub warnings: Vec<String>,
     /// Milliseconds for the mapping without files and checks.
@@ -133,12 +136,14 @@ pub struct MapBackRecord {
     pub plastic_range: f64,
 }
 
-/// Puts a run into figures. `files` are what was made of it, if anything.
+/// Puts a run into figures. `files` are what was made of it, `other` is what it is to be compared with, if
+/// anything.
 pub fn map_record(
     run: &MapRun,
     crash: &LoadedPart,
     stamped: &[PlacedPart<'_>],
     files: Option<&MapFiles>,
+    other: Option<&OtherResult>,
 ) -> MapRecord {
     let areas = run.target.mesh.areas();
     let all: f64 = areas.iter().sum();
@@ -188,6 +193,7 @@ pub fn map_record(
             plastic_range: back.plastic_range,
         }),
         read_back_error: files.map(|files| files.read_back_error),
+        comparison: other.map(|other| compare_with(run, crash, other)),
         warnings: warnings(run, files),
         map_ms: run.map_ms,
         check_ms: run.check_ms,
@@ -195,7 +201,7 @@ pub fn map_record(
 }
 
 /// Values with areas, on the covered stamped elements and on the crash elements.
-type BothSides = [Vec<(f64, f64)>; 2];
+pub(super) type BothSides = [Vec<(f64, f64)>; 2];
 
 fn both_sides(
     run: &MapRun,
@@ -231,12 +237,7 @@ fn thickness_values(run: &MapRun) -> BothSides {
     both_sides(
         run,
         |element| run.sources[0].mean_thickness(element),
-        |element| {
-            run.mapped
-                .thickness
-                .get(element)
-                .map_or(f64::NAN, |t| t / scale)
-        },
+        |element| run.thickness(element) / scale,
     )
 }
 
@@ -246,6 +247,14 @@ fn plastic_values(run: &MapRun) -> BothSides {
         |element| run.sources[0].mean_plastic_strain(element),
         |element| run.mapped.mean_plastic_strain(&run.target, element),
     )
+}
+
+/// The distributions of both sides with their distance; `None` if one side has no values.
+pub(super) fn pair_of(values: &BothSides) -> Option<PairRecord> {
+    let [a, b] = values
+        .each_ref()
+        .map(|side| distribution(side.iter().copied()));
+    Some(pair_record((a?, b?), values))
 }
 
 fn pair_record((stamped, crash): (Distribution, Distribution), values: &BothSides) -> PairRecord {
@@ -310,9 +319,27 @@ fn warnings(run: &MapRun, files: Option<&MapFiles>) -> Vec<String> {
             ));
         }
     }
+    for gap in run.mapped.history.iter().flat_map(|h| &h.left_out) {
+        let law = |law: &Option<String>| match law {
+            Some(law) => format!("material {law}"),
+            None => "an unknown material".to_owned(),
+        };
+        let hint = if gap.source.is_none() {
+            " (--stamped-material names it)"
+        } else {
+            ""
+        };
+        warnings.push(format!(
+            "history variables of {} elements are left out: they belong to {} in the stamped file{hint}, \
+             the crash part has {}",
+            gap.n_elements,
+            law(&gap.source),
+            law(&gap.target)
+        ));
+    }
     if let Some(files) = files.filter(|files| files.n_composite > 0) {
         warnings.push(format!(
-            "{} elements have plies of their own and keep them: their thickness was not written",
+            "{} elements have plies of their own and keep them: nothing was written for them",
             files.n_composite
         ));
     }
@@ -320,12 +347,21 @@ fn warnings(run: &MapRun, files: Option<&MapFiles>) -> Vec<String> {
 }
 
 /// One row for each crash element: id, part, status, distances, angle, coverage, confidence, source,
-/// thickness and mean plastic strain.
-pub fn element_table(run: &MapRun, crash: &LoadedPart, stamped: &[PlacedPart<'_>]) -> String {
+/// thickness and mean plastic strain; with another result also its thickness and plastic strain.
+pub fn element_table(
+    run: &MapRun,
+    crash: &LoadedPart,
+    stamped: &[PlacedPart<'_>],
+    other: Option<&OtherResult>,
+) -> String {
     let mut table = String::from(
         "element,part,status,normal_distance,tangential_distance,angle_deg,coverage,confidence,\
-         source,source_element,thickness,plastic_strain\n",
+         source,source_element,thickness,plastic_strain",
     );
+    if other.is_some() {
+        table.push_str(",other_thickness,other_plastic_strain");
+    }
+    table.push('\n');
     let number = |value: f64| {
         if value.is_finite() {
             format!("{value}")
@@ -344,14 +380,7 @@ pub fn element_table(run: &MapRun, crash: &LoadedPart, stamped: &[PlacedPart<'_>
         let (source, source_element) = partner.map_or_else(Default::default, |(source, id)| {
             (source.to_string(), id.to_string())
         });
-        let thickness = run
-            .mapped
-            .thickness
-            .get(element)
-            .copied()
-            .unwrap_or(f64::NAN);
-        let plastic = run.mapped.mean_plastic_strain(&run.target, element);
-        let _ = writeln!(
+        let _ = write!(
             table,
             "{},{},{},{},{},{},{},{},{source},{source_element},{},{}",
             shell.id,
@@ -362,9 +391,14 @@ pub fn element_table(run: &MapRun, crash: &LoadedPart, stamped: &[PlacedPart<'_>
             number(report.angle_deg),
             number(report.coverage),
             number(report.confidence),
-            number(thickness),
-            number(plastic),
+            number(run.thickness(element)),
+            number(run.plastic_strain(element)),
         );
+        if let Some(other) = other {
+            let values = [other.thickness[element], other.plastic_strain(element)];
+            let _ = write!(table, ",{},{}", number(values[0]), number(values[1]));
+        }
+        table.push('\n');
     }
     table
 }

@@ -24,7 +24,7 @@ pub mod deck;
 pub mod node_table;
 pub mod record;
 pub mod report;
-mod report_figures;
+pub(super) mod report_figures;
 
 pub use check::{Content, Refusal, Target, check_targets, overwritten_inputs};
 

@@ -34,7 +34,7 @@ pub(super) struct FigureRenderer<'a> {
 
 /// From which side a sheet is seen.
 #[derive(Clone, Copy)]
-enum From {
+pub(in crate::pipeline) enum From {
     Front,
     Back,
 }
@@ -235,7 +235,7 @@ impl<'a> FigureRenderer<'a> {
 }
 
 /// Fits a view to points under a motion.
-fn fitted(
+pub(in crate::pipeline) fn fitted(
     view: Rotation,
     points: &[Point3],
     pose: &Similarity,
@@ -251,7 +251,7 @@ fn fitted(
 }
 
 /// A view on the broad side of a sheet, from a little below and aside; upright where the part is.
-fn view_of(surface: &Surface, from: From) -> Rotation {
+pub(in crate::pipeline) fn view_of(surface: &Surface, from: From) -> Rotation {
     let measures = surface.measures();
     let axes = measures.principal_axes;
     let (mut long, mut mid) = (Vector3::from(axes.column(0)), Vector3::from(axes.column(1)));

@@ -183,15 +183,8 @@ pub fn color_legend(scale: &ColorScale, lengths: Lengths) -> Markup {
         x: [scale.min, scale.max],
         y: [0.0, 1.0],
     };
-    let colors = scale.table(120);
-    let step = (axes.right - axes.left) / colors.len() as f64;
-    // A little wider than its place, so that no line shows between two.
-    let width = format!("{:.2}", step + 0.6);
     let content = html! {
-        @for (i, color) in colors.into_iter().enumerate() {
-            @let x = format!("{:.2}", axes.left + step * i as f64);
-            rect x=(x) y="2" width=(width) height="18" fill=(hex(color)) {}
-        }
+        (color_strip(scale, &axes))
         (axes.bottom_axis(&signed_ticks(scale, 7), &lengths.axis("signed distance")))
     };
     svg(
@@ -300,4 +293,85 @@ fn signed_ticks(scale: &ColorScale, n: usize) -> Vec<(f64, String)> {
         digits => sign(value).to_owned() + &digits,
     };
     scale.ticks(n).iter().map(|&v| (v, text(v))).collect()
+}
+
+/// The colours of a map with plain numbers below.
+pub fn plain_legend(scale: &ColorScale, name: &str) -> Markup {
+    let axes = Axes {
+        left: RIGHT,
+        right: LEGEND_WIDTH - RIGHT,
+        top: 2.0,
+        bottom: 20.0,
+        x: [scale.min, scale.max],
+        y: [0.0, 1.0],
+    };
+    let content = html! {
+        (color_strip(scale, &axes))
+        (axes.bottom_axis(&plain_ticks(scale, 7), name))
+    };
+    svg([LEGEND_WIDTH, 64.0], &format!("Colours: {name}"), &content)
+}
+
+fn color_strip(scale: &ColorScale, axes: &Axes) -> Markup {
+    let colors = scale.table(120);
+    let step = (axes.right - axes.left) / colors.len() as f64;
+    // A little wider than its place, so that no line shows between two.
+    let width = format!("{:.2}", step + 0.6);
+    html! {
+        @for (i, color) in colors.into_iter().enumerate() {
+            @let x = format!("{:.2}", axes.left + step * i as f64);
+            rect x=(x) y="2" width=(width) height="18" fill=(hex(color)) {}
+        }
+    }
+}
+
+fn plain_ticks(scale: &ColorScale, n: usize) -> Vec<(f64, String)> {
+    let ticks = scale.ticks(n).into_iter();
+    ticks.map(|at| (at, trimmed(at, DECIMALS))).collect()
+}
+
+/// Two histograms over one range: the first as bars, the second as a line.
+pub fn two_histograms(shares: &[Vec<f64>; 2], range: [f64; 2], name: &str) -> Markup {
+    let highest = shares.iter().flatten().copied().fold(1e-6, f64::max);
+    let scale = ColorScale::new(ColorMap::Viridis, range[0], range[1]);
+    let axes = Axes {
+        left: LEFT,
+        right: WIDTH - RIGHT,
+        top: 30.0,
+        bottom: 232.0,
+        x: [scale.min, scale.max],
+        y: [0.0, highest * 1.06],
+    };
+    let steps = [0.0, 0.25, 0.5, 0.75, 1.0];
+    let fractions = steps.map(|step| {
+        let share = step * highest;
+        (share, format!("{} %", trimmed(100.0 * share, 1)))
+    });
+    let place = |bins: &[f64], i: usize| {
+        let at = scale.min + (scale.max - scale.min) * i as f64 / bins.len().max(1) as f64;
+        axes.x(at)
+    };
+    let mut path = format!("M{:.1} {:.1}", axes.left, axes.bottom);
+    for (i, share) in shares[1].iter().enumerate() {
+        // Writing to a string cannot fail.
+        let _ = write!(
+            path,
+            "V{:.1}H{:.1}",
+            axes.y(*share),
+            place(&shares[1], i + 1)
+        );
+    }
+    let content = html! {
+        (axes.left_axis(&fractions, "fraction of the area"))
+        @for (i, share) in shares[0].iter().enumerate() {
+            @let (x, end) = (place(&shares[0], i), place(&shares[0], i + 1));
+            @let top = axes.y(*share);
+            rect x=(px(x)) y=(px(top)) width=(px(end - x)) height=(px(axes.bottom - top))
+                style="fill:var(--stamped);opacity:.45" {}
+        }
+        path d=(path) style="fill:none;stroke:var(--crash);stroke-width:2" {}
+        (axes.bottom_axis(&plain_ticks(&scale, 9), name))
+    };
+    let description = format!("Histograms of both sides: {name}");
+    svg([WIDTH, 282.0], &description, &content)
 }

@@ -2,11 +2,14 @@
 //! for the screen in both themes, for narrow windows and for paper. Works without its script.
 
 mod charts;
+mod map_page;
 mod page;
 mod sections;
 mod tables;
 
 use maud::{PreEscaped, html};
+
+pub use map_page::{MapReport, NumberRow, QuantityReport, map_figure};
 
 use self::page::printable;
 use super::MatchRecord;

@@ -306,11 +306,11 @@ fn motion(pose: &PoseRecord) -> Similarity {
     }
 }
 
-fn pictures(figures: &[Figure]) -> Markup {
+pub(super) fn pictures(figures: &[Figure]) -> Markup {
     html! { div.pictures { @for one in figures { (figure(one)) } } }
 }
 
-fn figure(figure: &Figure) -> Markup {
+pub(super) fn figure(figure: &Figure) -> Markup {
     html! {
         figure {
             div.plate {

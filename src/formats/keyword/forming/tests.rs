@@ -55,6 +55,13 @@ fn check(forming: &Forming, n_elements: usize, n_points: usize, n_history: usize
         for history in shell.history.chunks(n_history.max(1)) {
             assert_eq!(history, &HISTORY[..n_history]);
         }
+        // The decks with history variables have one tensor a point too.
+        let n_tensors = usize::from(n_history > 0);
+        assert_eq!(shell.n_tensors, n_tensors);
+        assert_eq!(shell.tensors.len(), n_tensors * n_points);
+        for tensor in shell.tensors {
+            assert_eq!(tensor, &HISTORY[..6]);
+        }
     }
 }
 
@@ -106,7 +113,13 @@ fn the_header_of_openradioss() {
     let mut deck = String::from("*INITIAL_STRESS_SHELL\n");
     deck += &ints(10, &[100, 1, 1, 0, 1]);
     deck += &(row(10, &POINT) + &row(10, &[7.0]));
-    check(&clean(&deck), 1, 1, 0);
+    let (forming, found) = read(&deck);
+    check(&forming, 1, 1, 0);
+    let told: Vec<String> = found.iter().map(|d| d.to_string()).collect();
+    assert!(
+        told.len() == 1 && told[0].contains("NTENSR = 1"),
+        "{told:?}"
+    );
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Symmetric second-order tensors as decks write them: xx, yy, zz, xy, yz, zx, tensor shear.
 
-use crate::geometry::{Matrix3, Vector3};
+use super::{Matrix3, Vector3};
 
 /// Components xx, yy, zz, xy, yz, zx in global axes. Shear components are those of the tensor
 /// (ε_xy = γ_xy / 2), so one formula turns stress and strain.
@@ -8,17 +8,24 @@ pub type Tensor = [f64; 6];
 
 /// R·σ·Rᵀ. A mirror is as good as a rotation, because the tensor is of second order.
 pub fn rotated(tensor: &Tensor, rotation: &Matrix3) -> Tensor {
-    let [xx, yy, zz, xy, yz, zx] = *tensor;
-    let full = Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);
-    let turned = rotation * full * rotation.transpose();
+    components(&(rotation * matrix(tensor) * rotation.transpose()))
+}
+
+/// The components of a symmetric matrix.
+pub fn components(matrix: &Matrix3) -> Tensor {
     [
-        turned[(0, 0)],
-        turned[(1, 1)],
-        turned[(2, 2)],
-        turned[(0, 1)],
-        turned[(1, 2)],
-        turned[(2, 0)],
+        matrix[(0, 0)],
+        matrix[(1, 1)],
+        matrix[(2, 2)],
+        matrix[(0, 1)],
+        matrix[(1, 2)],
+        matrix[(2, 0)],
     ]
+}
+
+fn matrix(tensor: &Tensor) -> Matrix3 {
+    let [xx, yy, zz, xy, yz, zx] = *tensor;
+    Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
 }
 
 /// Von Mises equivalent of a stress.
@@ -30,9 +37,7 @@ pub fn von_mises(stress: &Tensor) -> f64 {
 
 /// Principal values, largest first.
 pub fn principal(tensor: &Tensor) -> [f64; 3] {
-    let [xx, yy, zz, xy, yz, zx] = *tensor;
-    let full = Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);
-    let mut values: [f64; 3] = full.symmetric_eigenvalues().into();
+    let mut values: [f64; 3] = matrix(tensor).symmetric_eigenvalues().into();
     values.sort_by(|a, b| b.total_cmp(a));
     values
 }
@@ -62,8 +67,8 @@ pub fn smallest_rotation(from: &Vector3, to: &Vector3) -> Option<Matrix3> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Rotation;
     use super::*;
-    use crate::geometry::Rotation;
 
     fn sample() -> Tensor {
         [120.0, -35.0, 4.0, 22.0, -7.0, 13.0]

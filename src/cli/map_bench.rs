@@ -1,0 +1,89 @@
+//! `shapematch bench --mapping`: errors and times of the mapping.
+
+use std::fmt::Write as _;
+use std::process::ExitCode;
+
+use super::args::BenchArgs;
+use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
+use crate::pipeline::map_bench::{MapBench, map_bench};
+use crate::text::{fixed, grouped};
+
+/// Measures and prints the tables.
+pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
+    check_outputs(json_target(args.json.as_deref()), &[])?;
+    let monitor = progress::monitor(quiet);
+    let bench = map_bench(&monitor)?;
+    drop(monitor);
+    if !takes_stdout(args.json.as_deref()) {
+        print(&describe(&bench))?;
+    }
+    if let Some(path) = &args.json {
+        write_json(path, &bench)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn describe(bench: &MapBench) -> String {
+    let mut text = String::from(
+        "Errors against the known fields: RMS in % of the range of the truth, means and peak of the\n\
+         plastic strain against the truth in %, there and back 95 % of the range\n\n",
+    );
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "{:<10}{:>12}{:>18}{:>9}{:>8}{:>10}{:>9}{:>9}{:>11}{:>10}{:>8}{:>7}{:>8}",
+        "part",
+        "edges mm",
+        "elements",
+        "method",
+        "area",
+        "thickness",
+        "plastic",
+        "stress",
+        "mean thick",
+        "mean pl.",
+        "peak",
+        "back",
+        "ms"
+    );
+    let percent = |fraction: f64, decimals: usize| fixed(100.0 * fraction, decimals);
+    for row in &bench.errors {
+        let [stamped, crash] = row.sizes;
+        let [from, to] = row.n_elements;
+        let _ = writeln!(
+            text,
+            "{:<10}{:>12}{:>18}{:>9}{:>8}{:>10}{:>9}{:>9}{:>11}{:>10}{:>8}{:>7}{:>8.0}",
+            row.part,
+            format!("{stamped} → {crash}"),
+            format!("{} → {}", grouped(from), grouped(to)),
+            row.method,
+            percent(row.mapped_area, 1),
+            percent(row.thickness_rms, 2),
+            percent(row.plastic_rms, 2),
+            percent(row.stress_rms, 2),
+            percent(row.thickness_mean, 3),
+            percent(row.plastic_mean, 3),
+            percent(row.plastic_peak - 1.0, 1),
+            percent(row.back_p95, 1),
+            row.map_ms
+        );
+    }
+    let speed = &bench.speed;
+    let [from, to] = speed.n_elements;
+    let megabytes = speed.n_bytes as f64 / 1e6;
+    let _ = writeln!(
+        text,
+        "\n{} → {} elements, {} layers, all quantities, {} threads: mapped in {:.0} ms; {:.0} MB of states \
+         written in {:.0} ms ({:.0} MB/s); results of both sides {:.0} MB",
+        grouped(from),
+        grouped(to),
+        speed.n_layers,
+        speed.n_threads,
+        speed.map_ms,
+        megabytes,
+        speed.write_ms,
+        megabytes / speed.write_ms * 1e3,
+        speed.result_bytes as f64 / 1e6
+    );
+    text
+}

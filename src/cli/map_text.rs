@@ -1,0 +1,119 @@
+//! What `shapematch map` prints.
+
+use crate::pipeline::map::{ComparisonRecord, DifferenceRecord, MapFiles, MapRecord};
+use crate::text::{grouped, length, millis};
+
+/// The result in a few lines.
+pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>) -> String {
+    let mut text = String::new();
+    let mut line = |head: &str, rest: String| text.push_str(&format!("{head:<9}{rest}\n"));
+    line(
+        "Mapped",
+        format!(
+            "{:.1} % of the area of {} elements in {}",
+            100.0 * record.mapped_area,
+            grouped(record.n_elements),
+            millis(record.map_ms)
+        ),
+    );
+    for row in &record.statuses {
+        line(
+            "",
+            format!("{:>9} {}", grouped(row.n_elements), row.status.label()),
+        );
+    }
+    let pairs = [
+        ("Thickness", &record.thickness),
+        ("Plastic", &record.plastic_strain),
+    ];
+    for (head, pair) in pairs {
+        if let Some(pair) = pair {
+            let (a, b) = (&pair.stamped, &pair.crash);
+            line(
+                head,
+                format!(
+                    " mean {} (stamped {}), {} to {}",
+                    length(b.mean),
+                    length(a.mean),
+                    length(b.min),
+                    length(b.max)
+                ),
+            );
+        }
+    }
+    if let Some(back) = &record.map_back {
+        let percent = |value: f64, range: f64| {
+            if range > 0.0 {
+                format!("{:.1} %", 100.0 * value / range)
+            } else {
+                "0 %".to_owned()
+            }
+        };
+        line(
+            "Map back",
+            format!(
+                "95 % within {} of the thickness range, {} of the plastic strain's",
+                percent(back.thickness_p95, back.thickness_range),
+                percent(back.plastic_p95, back.plastic_range)
+            ),
+        );
+    }
+    for (head, rest) in record.comparison.iter().flat_map(compared) {
+        line(head, rest);
+    }
+    if let Some(files) = files {
+        for (path, bytes) in &files.files {
+            let megabytes = bytes.len() as f64 / 1e6;
+            line("Wrote", format!("{} ({megabytes:.1} MB)", path.display()));
+        }
+        line(
+            "",
+            format!(
+                "{} thicknesses, {} stress and {} strain cards, read back within {:.1e}",
+                grouped(files.n_thickness),
+                grouped(files.n_stress),
+                grouped(files.n_strain),
+                files.read_back_error
+            ),
+        );
+        if let Some(replaced) = &files.replaces {
+            line("", format!("takes the place of {}", replaced.display()));
+        }
+    }
+    text
+}
+
+/// The lines about another result.
+fn compared(other: &ComparisonRecord) -> Vec<(&'static str, String)> {
+    let counts = format!(
+        "with {}: {} elements in both, {} here alone, {} there alone",
+        other.files.join(", "),
+        grouped(other.n_both),
+        grouped(other.n_only_here),
+        grouped(other.n_only_other)
+    );
+    let rows = [
+        ("thickness", &other.thickness),
+        ("plastic strain", &other.plastic_strain),
+        ("von Mises stress", &other.von_mises),
+    ];
+    let mut lines = vec![("Compared", counts)];
+    for (name, difference) in rows {
+        if let Some(found) = difference {
+            lines.push(("", format!("{name} {}", differing(found))));
+        }
+    }
+    lines
+}
+
+fn differing(found: &DifferenceRecord) -> String {
+    format!(
+        "mean {} (there {}), RMS difference {}, 95 % within {}, at most {} at element {}",
+        length(found.here.mean),
+        length(found.other.mean),
+        length(found.rms),
+        length(found.p95),
+        length(found.max),
+        found.element
+    )
+}

@@ -1,0 +1,252 @@
+//! Another mapper's result, or the solver's own file of mapped states, beside ours, element by element.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::convert::element_index;
+use super::record::{DistributionRecord, PairRecord, pair_of};
+use super::{MapRun, PipelineError};
+use crate::formats::keyword::write::{WriteOptions, write};
+use crate::formats::{self, Disk, Memory, Model, ReadOptions};
+use crate::geometry::tensor::{Tensor, von_mises};
+use crate::mapping::{Layered, distribution};
+use crate::monitor::Monitor;
+use crate::pipeline::load::LoadedPart;
+
+/// What other files say of the elements of a mapping.
+#[derive(Debug, Clone)]
+pub struct OtherResult {
+    /// Where it was read from.
+    pub files: Vec<PathBuf>,
+    /// Thickness in the crash model's unit of lengths; NaN where no file has one.
+    pub thickness: Vec<f64>,
+    states: Layered<7>,
+}
+
+impl OtherResult {
+    /// Reads `files` for the elements of `run`. Elements are found by their id. A file without nodes, such
+    /// as an include or the solver's `dyna.inc`, is read as part of the crash deck. An error if a file
+    /// cannot be read or if none of them says anything of these elements.
+    pub fn read(
+        files: &[PathBuf],
+        run: &MapRun,
+        crash: &LoadedPart,
+        monitor: &Monitor,
+    ) -> Result<Self, PipelineError> {
+        let index = element_index(&crash.model, &run.shells);
+        let factor = crash.settings.length_factor;
+        let mut thickness = vec![f64::NAN; run.shells.len()];
+        let mut states = Layered::new(run.shells.len());
+        let mut n_found = 0_usize;
+        for path in files {
+            let model = read_other(path, crash, monitor)?;
+            for (shell, index_in_model) in model.shells.iter().zip(0..) {
+                let own = model
+                    .shell_extra(index_in_model)
+                    .map(|extra| extra.thickness);
+                let own = own.filter(|corners| *corners != [0.0; 4]);
+                if let (Some(corners), Some(&element)) = (own, index.get(&shell.id)) {
+                    let n = shell.corners().len();
+                    thickness[element] = corners[..n].iter().sum::<f64>() / n as f64 * factor;
+                    n_found += 1;
+                }
+            }
+            for stress in model.forming.stresses() {
+                if let Some(&element) = index.get(&stress.element_id) {
+                    let points = stress.points.iter().map(|point| {
+                        let [xx, yy, zz, xy, yz, zx] = point.stress;
+                        (point.t, [xx, yy, zz, xy, yz, zx, point.plastic_strain])
+                    });
+                    states.set(element, points);
+                    n_found += 1;
+                }
+            }
+        }
+        if n_found == 0 {
+            return Err(PipelineError::NothingToCompare(files.to_vec()));
+        }
+        Ok(Self {
+            files: files.to_vec(),
+            thickness,
+            states,
+        })
+    }
+
+    /// Effective plastic strain of an element, weighted over its layers; NaN if it has none.
+    pub fn plastic_strain(&self, element: usize) -> f64 {
+        self.states.of(element).map_or(f64::NAN, |(rule, layers)| {
+            let terms = rule.weights().iter().zip(layers);
+            terms.map(|(weight, state)| weight * state[6]).sum::<f64>() / 2.0
+        })
+    }
+
+    /// Largest von Mises stress of an element's layers; NaN if it has none.
+    pub fn von_mises(&self, element: usize) -> f64 {
+        let layers = self.states.of(element);
+        layers.map_or(f64::NAN, |(_, layers)| largest_von_mises(layers))
+    }
+
+    fn has_values(&self, element: usize) -> bool {
+        self.thickness[element].is_finite() || self.states.of(element).is_some()
+    }
+}
+
+/// Largest von Mises stress of some points; NaN if there are none.
+pub(super) fn largest_von_mises(points: &[[f64; 7]]) -> f64 {
+    let of_point = |state: &[f64; 7]| {
+        let stress: Tensor = std::array::from_fn(|i| state[i]);
+        von_mises(&stress)
+    };
+    points.iter().map(of_point).fold(f64::NAN, f64::max)
+}
+
+fn read_other(path: &Path, crash: &LoadedPart, monitor: &Monitor) -> Result<Model, PipelineError> {
+    let model = formats::read(path, &crash.settings.read, monitor)?;
+    if !model.nodes.is_empty() {
+        return Ok(model);
+    }
+    let bytes = formats::read_text(&Disk, path, &crash.settings.read, monitor)?;
+    read_beside_nodes(&crash.model, &bytes, monitor)
+}
+
+/// Reads a file as an include of a deck that holds the nodes of `crash`.
+pub(super) fn read_beside_nodes(
+    crash: &Model,
+    bytes: &[u8],
+    monitor: &Monitor,
+) -> Result<Model, PipelineError> {
+    let nodes = Model {
+        nodes: crash.nodes.clone(),
+        ..Model::default()
+    };
+    let mut deck = write(&nodes, &WriteOptions::default(), monitor)?;
+    deck.truncate(deck.len() - b"*END\n".len());
+    deck.extend_from_slice(b"*INCLUDE\nmapped.k\n*END\n");
+    let memory = Memory::new()
+        .with("nodes.k", deck)
+        .with("mapped.k", bytes.to_vec());
+    let options = ReadOptions::default();
+    Ok(formats::read_from(
+        &memory,
+        Path::new("nodes.k"),
+        &options,
+        monitor,
+    )?)
+}
+
+/// Our values less another's, over the elements that have both.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct DifferenceRecord {
+    /// Elements with both values.
+    pub n_elements: usize,
+    /// Our distribution over these elements.
+    pub here: DistributionRecord,
+    /// The other's.
+    pub other: DistributionRecord,
+    /// Half the sum of the differences of both histograms, 0 to 1.
+    pub histogram_distance: f64,
+    /// Area-weighted mean of ours less the other's.
+    pub mean: f64,
+    /// Root mean square difference, area-weighted.
+    pub rms: f64,
+    /// 95 % of the area differ by less.
+    pub p95: f64,
+    /// Largest difference.
+    pub max: f64,
+    /// Id of the element with it.
+    pub element: u64,
+}
+
+/// A comparison with another result.
+#[derive(Debug, Clone, Serialize)]
+pub struct ComparisonRecord {
+    /// Its files.
+    pub files: Vec<String>,
+    /// Elements with values in both.
+    pub n_both: usize,
+    /// Elements with values here alone.
+    pub n_only_here: usize,
+    /// Elements with values in the other alone.
+    pub n_only_other: usize,
+    /// Thickness.
+    pub thickness: Option<DifferenceRecord>,
+    /// Effective plastic strain, mean over the layers.
+    pub plastic_strain: Option<DifferenceRecord>,
+    /// Largest von Mises stress of the layers, where stresses were mapped.
+    pub von_mises: Option<DifferenceRecord>,
+}
+
+/// Compares a mapping with another result.
+pub(super) fn compare_with(
+    run: &MapRun,
+    crash: &LoadedPart,
+    other: &OtherResult,
+) -> ComparisonRecord {
+    let (mut n_both, mut n_only_here, mut n_only_other) = (0, 0, 0);
+    for (element, report) in run.mapped.elements.iter().enumerate() {
+        match (report.status.has_values(), other.has_values(element)) {
+            (true, true) => n_both += 1,
+            (true, false) => n_only_here += 1,
+            (false, true) => n_only_other += 1,
+            (false, false) => {}
+        }
+    }
+    let difference = |here: &dyn Fn(usize) -> f64, there: &dyn Fn(usize) -> f64| {
+        difference(run, crash, here, there)
+    };
+    let stress = run.recipe.options.quantities.stress;
+    let mises = |element: usize| run.largest_von_mises(element);
+    ComparisonRecord {
+        files: other
+            .files
+            .iter()
+            .map(|file| file.display().to_string())
+            .collect(),
+        n_both,
+        n_only_here,
+        n_only_other,
+        thickness: difference(&|e| run.thickness(e), &|e| other.thickness[e]),
+        plastic_strain: difference(&|e| run.plastic_strain(e), &|e| other.plastic_strain(e)),
+        von_mises: stress
+            .then(|| difference(&mises, &|e| other.von_mises(e)))
+            .flatten(),
+    }
+}
+
+fn difference(
+    run: &MapRun,
+    crash: &LoadedPart,
+    here: &dyn Fn(usize) -> f64,
+    there: &dyn Fn(usize) -> f64,
+) -> Option<DifferenceRecord> {
+    let areas = run.target.mesh.areas();
+    let values = (0..areas.len()).map(|element| (element, here(element), there(element)));
+    let both: Vec<(usize, f64, f64)> = values
+        .filter(|(_, here, there)| here.is_finite() && there.is_finite())
+        .collect();
+    let weighted = |value: &dyn Fn(&(usize, f64, f64)) -> f64| -> Vec<(f64, f64)> {
+        both.iter().map(|row| (value(row), areas[row.0])).collect()
+    };
+    let ours = weighted(&|row| row.1);
+    let theirs = weighted(&|row| row.2);
+    let signed = distribution(weighted(&|row| row.1 - row.2).into_iter())?;
+    let absolute = distribution(weighted(&|row| (row.1 - row.2).abs()).into_iter())?;
+    let squares = distribution(weighted(&|row| (row.1 - row.2).powi(2)).into_iter())?;
+    let worst = both.iter().max_by(|a, b| {
+        let off = |row: &&(usize, f64, f64)| (row.1 - row.2).abs();
+        off(a).total_cmp(&off(b)).then(b.0.cmp(&a.0))
+    })?;
+    let pair: PairRecord = pair_of(&[ours, theirs])?;
+    Some(DifferenceRecord {
+        n_elements: both.len(),
+        here: pair.stamped,
+        other: pair.crash,
+        histogram_distance: pair.histogram_distance,
+        mean: signed.mean,
+        rms: squares.mean.sqrt(),
+        p95: absolute.percentiles[2],
+        max: absolute.max,
+        element: crash.model.shells[run.shells[worst.0] as usize].id,
+    })
+}

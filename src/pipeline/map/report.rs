@@ -1,0 +1,342 @@
+//! The report of a mapping: draws the pictures and collects what [`crate::report::html`] lays out.
+
+use super::record::{DistributionRecord, MapRecord, PairRecord};
+use super::{DifferenceRecord, MapRun, PipelineError};
+use crate::colormap::{ColorMap, ColorScale, Rgb, UNMATCHED};
+use crate::geometry::{Camera, Point3, Similarity, TriMesh};
+use crate::mapping::{Histogram, ShellMesh, SourcePart};
+use crate::monitor::Monitor;
+use crate::palette::STATUS_COLORS;
+use crate::pipeline::load::LoadedPart;
+use crate::pipeline::outputs::report_figures::{From, fitted, view_of};
+use crate::report::html::{Figure, MapReport, NumberRow, QuantityReport, map_figure};
+use crate::report::picture::{Paint, PictureMesh, picture};
+use crate::report::{MatrixForm, number};
+use crate::text::{grouped, length, millis, percent};
+
+/// Pixels of a picture.
+const SIZE: [usize; 2] = [560, 380];
+/// Share of the area at either end that lies beyond the colours.
+const TAILS: usize = 1;
+
+/// Writes the report of a run as one HTML file with pictures of thickness and plastic strain before and
+/// after, their difference, and the status of the elements. `record` is that of the run.
+pub fn map_report(
+    run: &MapRun,
+    record: &MapRecord,
+    crash: &LoadedPart,
+    monitor: &Monitor,
+) -> Result<String, PipelineError> {
+    let painter = Painter::new(run, crash);
+    let mut quantities = Vec::new();
+    monitor.progress("draw", 0, Some(3));
+    let scale = run.recipe.options.thickness_scale;
+    if let Some(pair) = &record.thickness {
+        let on_source = |part: &SourcePart, element: usize| scale * part.mean_thickness(element);
+        let on_target = |element: usize| run.thickness(element);
+        quantities.push(painter.quantity("Thickness", pair, &on_source, &on_target));
+    }
+    monitor.check()?;
+    monitor.progress("draw", 1, Some(3));
+    if let Some(pair) = &record.plastic_strain {
+        let on_source = |part: &SourcePart, element: usize| part.mean_plastic_strain(element);
+        let on_target = |element: usize| run.plastic_strain(element);
+        let name = "Effective plastic strain, mean over the layers";
+        quantities.push(painter.quantity(name, pair, &on_source, &on_target));
+    }
+    monitor.check()?;
+    monitor.progress("draw", 2, Some(3));
+    let present = record.statuses.iter().map(|row| row.status);
+    let report = MapReport {
+        build: record.build.clone(),
+        names: [
+            crash.file_name(),
+            record
+                .stamped
+                .iter()
+                .map(|stamped| file_name(&stamped.file))
+                .collect::<Vec<_>>()
+                .join(", "),
+        ],
+        facts: facts(record),
+        warnings: record.warnings.clone(),
+        statuses: record
+            .statuses
+            .iter()
+            .map(|row| {
+                [
+                    row.status.label().to_owned(),
+                    grouped(row.n_elements),
+                    percent(row.area_share),
+                ]
+            })
+            .collect(),
+        status_figures: vec![painter.statuses()],
+        status_colors: present
+            .map(|status| {
+                (
+                    status.label().to_owned(),
+                    hex(STATUS_COLORS[status as usize]),
+                )
+            })
+            .collect(),
+        quantities,
+        comparison: comparison_rows(record),
+        compared_with: record
+            .comparison
+            .as_ref()
+            .map_or_else(String::new, |other| other.files.join(", ")),
+        poses: run
+            .poses
+            .iter()
+            .zip(&record.stamped)
+            .map(|(pose, stamped)| (file_name(&stamped.file), MatrixForm::Rows.write(pose)))
+            .collect(),
+    };
+    Ok(report.write())
+}
+
+fn file_name(path: &str) -> String {
+    let name = std::path::Path::new(path).file_name();
+    name.map_or_else(
+        || path.to_owned(),
+        |name| name.to_string_lossy().into_owned(),
+    )
+}
+
+fn facts(record: &MapRecord) -> Vec<(String, String)> {
+    let mut facts = vec![
+        ("Area with values".to_owned(), percent(record.mapped_area)),
+        ("Elements".to_owned(), grouped(record.n_elements)),
+        ("Mapped in".to_owned(), millis(record.map_ms)),
+    ];
+    for (name, pair) in [
+        ("Mean thickness", &record.thickness),
+        ("Mean plastic strain", &record.plastic_strain),
+    ] {
+        if let Some(pair) = pair {
+            let change = pair.crash.mean / pair.stamped.mean - 1.0;
+            let value = format!("{} ({:+.2} %)", length(pair.crash.mean), 100.0 * change);
+            facts.push((name.to_owned(), value));
+        }
+    }
+    if let Some(back) = &record.map_back {
+        for (name, p95, range) in [
+            (
+                "Thickness there and back",
+                back.thickness_p95,
+                back.thickness_range,
+            ),
+            (
+                "Plastic strain there and back",
+                back.plastic_p95,
+                back.plastic_range,
+            ),
+        ] {
+            if range > 0.0 {
+                let value = format!("95 % within {} of the range", percent(p95 / range));
+                facts.push((name.to_owned(), value));
+            }
+        }
+    }
+    facts
+}
+
+fn comparison_rows(record: &MapRecord) -> Vec<(String, [String; 6])> {
+    let Some(other) = &record.comparison else {
+        return Vec::new();
+    };
+    let row = |name: &str, difference: &Option<DifferenceRecord>| {
+        let found = difference.as_ref()?;
+        let cells = [
+            grouped(found.n_elements),
+            number(found.mean),
+            length(found.rms),
+            length(found.p95),
+            length(found.max),
+            found.element.to_string(),
+        ];
+        Some((name.to_owned(), cells))
+    };
+    let rows = [
+        row("Thickness", &other.thickness),
+        row("Effective plastic strain", &other.plastic_strain),
+        row("Largest von Mises stress", &other.von_mises),
+    ];
+    rows.into_iter().flatten().collect()
+}
+
+fn number_row(of: &DistributionRecord) -> NumberRow {
+    [of.mean, of.min, of.p5, of.p50, of.p95, of.p99, of.max].map(length)
+}
+
+fn hex([r, g, b]: Rgb) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// Draws elements in one colour each, both sides under one camera.
+struct Painter<'a> {
+    run: &'a MapRun,
+    camera: Camera,
+    target: ElementMesh,
+    sources: Vec<ElementMesh>,
+}
+
+/// A mesh whose elements share no corner, so that each has its own colour.
+struct ElementMesh {
+    mesh: TriMesh,
+    element_of_vertex: Vec<u32>,
+}
+
+impl ElementMesh {
+    fn new(shells: &ShellMesh) -> Self {
+        let (triangles, element_of) = shells.triangles();
+        let corners = triangles.triangles().iter().flatten();
+        let positions: Vec<Point3> = corners
+            .map(|&corner| triangles.positions()[corner as usize])
+            .collect();
+        let split = (0..triangles.n_triangles() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
+        let mesh = TriMesh::new(positions, split.collect());
+        Self {
+            mesh: mesh.expect("corners count the positions, which were checked"),
+            element_of_vertex: element_of.iter().flat_map(|&e| [e, e, e]).collect(),
+        }
+    }
+
+    fn colors(&self, color: impl Fn(usize) -> Rgb) -> Vec<Rgb> {
+        let elements = self.element_of_vertex.iter();
+        elements.map(|&element| color(element as usize)).collect()
+    }
+}
+
+impl<'a> Painter<'a> {
+    fn new(run: &'a MapRun, crash: &LoadedPart) -> Self {
+        let view = view_of(&crash.surface, From::Front);
+        let target = ElementMesh::new(&run.target.mesh);
+        let still = Similarity::identity();
+        Self {
+            run,
+            camera: fitted(view, target.mesh.positions(), &still, SIZE),
+            target,
+            sources: run
+                .sources
+                .iter()
+                .map(|source| ElementMesh::new(&source.mesh))
+                .collect(),
+        }
+    }
+
+    /// Before, after and difference with tables and histograms.
+    fn quantity(
+        &self,
+        name: &str,
+        pair: &PairRecord,
+        on_source: &dyn Fn(&SourcePart, usize) -> f64,
+        on_target: &dyn Fn(usize) -> f64,
+    ) -> QuantityReport {
+        let low = pair.stamped.p5.min(pair.crash.p5);
+        let high = pair.stamped.p99.max(pair.crash.p99);
+        let scale = ColorScale::new(ColorMap::Viridis, low, high.max(low + f64::MIN_POSITIVE));
+        let difference =
+            |element: usize| on_target(element) - self.run.at_partner(element, on_source);
+        let areas = self.run.target.mesh.areas();
+        let all = (0..areas.len()).map(|e| (difference(e).abs(), areas[e]));
+        let spread = crate::mapping::distribution(all);
+        let limit = spread.map_or(0.0, |found| found.percentiles[2 + TAILS]);
+        let limit = if limit > 0.0 {
+            limit
+        } else {
+            1e-3 * high.abs().max(1e-9)
+        };
+        let signed = ColorScale::symmetric(limit, 0.0);
+        let color = |scale: &ColorScale, value: f64| {
+            if value.is_finite() {
+                scale.color(value)
+            } else {
+                UNMATCHED
+            }
+        };
+        let before = self.draw_sources(|source, element| {
+            color(&scale, on_source(&self.run.sources[source], element))
+        });
+        let after = self.draw_target(|element| color(&scale, on_target(element)));
+        let apart = self.draw_target(|element| color(&signed, difference(element)));
+        let bins = |values: Vec<(f64, f64)>, range: [f64; 2]| {
+            Histogram::new(values.into_iter(), range[0], range[1]).shares
+        };
+        let range = [
+            pair.stamped.min.min(pair.crash.min),
+            pair.stamped.max.max(pair.crash.max),
+        ];
+        let first = &self.run.sources[0];
+        let covered = self
+            .run
+            .checks
+            .map_back
+            .as_ref()
+            .map(|back| &back.is_covered);
+        let is_covered = |e: &usize| covered.is_none_or(|covered| covered[*e]);
+        let stamped = (0..first.mesh.len()).filter(is_covered);
+        let stamped = stamped.map(|e| (on_source(first, e), first.mesh.areas()[e]));
+        let crash = (0..areas.len()).map(|e| (on_target(e), areas[e]));
+        QuantityReport {
+            name: name.to_owned(),
+            rows: vec![
+                ("▲ stamped, covered".to_owned(), number_row(&pair.stamped)),
+                ("■ crash, mapped".to_owned(), number_row(&pair.crash)),
+            ],
+            shares: [bins(stamped.collect(), range), bins(crash.collect(), range)],
+            range,
+            histogram_distance: pair.histogram_distance,
+            figures: vec![
+                map_figure(
+                    before,
+                    SIZE,
+                    "▲ Stamped part,",
+                    "before, moved by the pose.",
+                ),
+                map_figure(after, SIZE, "■ Crash part,", "mapped; grey has no value."),
+                map_figure(
+                    apart,
+                    SIZE,
+                    "Difference,",
+                    "mapped less the stamped element.",
+                ),
+            ],
+            scales: [scale, signed],
+        }
+    }
+
+    fn statuses(&self) -> Figure {
+        let elements = &self.run.mapped.elements;
+        let png = self.draw_target(|element| STATUS_COLORS[elements[element].status as usize]);
+        map_figure(png, SIZE, "■ Crash part,", "status of the elements.")
+    }
+
+    fn draw_target(&self, color: impl Fn(usize) -> Rgb) -> Vec<u8> {
+        let still = Similarity::identity();
+        let colors = self.target.colors(color);
+        let mesh = PictureMesh {
+            mesh: &self.target.mesh,
+            world_from_mesh: &still,
+            paint: Paint::PerVertex(&colors),
+        };
+        picture(SIZE, &self.camera, None, &[mesh]).to_png()
+    }
+
+    fn draw_sources(&self, color: impl Fn(usize, usize) -> Rgb) -> Vec<u8> {
+        let numbered = self.sources.iter().enumerate();
+        let colors: Vec<Vec<Rgb>> = numbered
+            .map(|(source, mesh)| mesh.colors(|element| color(source, element)))
+            .collect();
+        let all = self.sources.iter().zip(&self.run.poses).zip(&colors);
+        let meshes: Vec<PictureMesh<'_>> = all
+            .map(|((source, pose), colors)| PictureMesh {
+                mesh: &source.mesh,
+                world_from_mesh: pose,
+                paint: Paint::PerVertex(colors),
+            })
+            .collect();
+        picture(SIZE, &self.camera, None, &meshes).to_png()
+    }
+}

@@ -1,0 +1,230 @@
+//! The report of a mapping: what became of the elements, both sides of each quantity with pictures, and
+//! another result beside it.
+
+use maud::{Markup, PreEscaped, html};
+
+use super::page::{Column, block, cell, fact_table, printable, section, table};
+use super::sections::pictures;
+use super::{Figure, charts};
+use crate::colormap::ColorScale;
+
+/// A row of numbers: mean, smallest, 5, 50, 95, 99 %, largest.
+pub type NumberRow = [String; 7];
+
+/// One quantity on both sides.
+#[derive(Debug, Clone, PartialEq)]
+pub struct QuantityReport {
+    /// What it is called, with its unit.
+    pub name: String,
+    /// Rows by what they are about.
+    pub rows: Vec<(String, NumberRow)>,
+    /// Shares of the area in equal bins, of the stamped part and of the crash part.
+    pub shares: [Vec<f64>; 2],
+    /// What the bins span.
+    pub range: [f64; 2],
+    /// How far both histograms are apart, 0 to 1.
+    pub histogram_distance: f64,
+    /// Before, after and the difference.
+    pub figures: Vec<Figure>,
+    /// Colours of the first two pictures, and of the difference.
+    pub scales: [ColorScale; 2],
+}
+
+/// Everything the report of a mapping shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapReport {
+    /// Which program made it.
+    pub build: String,
+    /// Names of the crash file and of the stamped files.
+    pub names: [String; 2],
+    /// The main figures, by name.
+    pub facts: Vec<(String, String)>,
+    /// What to look at.
+    pub warnings: Vec<String>,
+    /// Elements by status: words, count, share of the area.
+    pub statuses: Vec<[String; 3]>,
+    /// The elements in the colours of their status, with the colour of each.
+    pub status_figures: Vec<Figure>,
+    /// Colours of the statuses that occur.
+    pub status_colors: Vec<(String, String)>,
+    /// Thickness, plastic strain …
+    pub quantities: Vec<QuantityReport>,
+    /// Another result: what each row is about, and elements, mean, RMS, 95 %, largest difference, element.
+    pub comparison: Vec<(String, [String; 6])>,
+    /// The files of the other result.
+    pub compared_with: String,
+    /// The matrix of each stamped part by rows.
+    pub poses: Vec<(String, String)>,
+}
+
+impl MapReport {
+    /// The page.
+    pub fn write(&self) -> String {
+        let [crash, stamped] = self.names.each_ref().map(|name| printable(name));
+        let page = html! {
+            (PreEscaped("<!DOCTYPE html>\n"))
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="generator" content=(self.build);
+                    title { (stamped) " mapped onto " (crash) }
+                    style { (PreEscaped(include_str!("style.css"))) }
+                }
+                body {
+                    header {
+                        p.kicker { "Mapping of forming results" }
+                        h1 {
+                            span.stamped { "▲ " (stamped) } span.joint { " onto " }
+                            span.crash { "■ " (crash) }
+                        }
+                        (self.facts())
+                    }
+                    main { (self.main()) }
+                    footer { p { (self.build) } }
+                    script { (PreEscaped(include_str!("script.js"))) }
+                }
+            }
+            "\n"
+        };
+        page.into_string()
+    }
+
+    fn facts(&self) -> Markup {
+        html! {
+            dl.figures {
+                @for (name, value) in &self.facts {
+                    div { dt { (name) } dd { (value) } }
+                }
+            }
+            @if !self.warnings.is_empty() {
+                div class="verdict check" {
+                    strong { "Look at" }
+                    ul { @for warning in &self.warnings { li { (printable(warning)) } } }
+                }
+            }
+        }
+    }
+
+    fn main(&self) -> Markup {
+        html! {
+            (section("elements", "Elements", &self.elements()))
+            @for (i, quantity) in self.quantities.iter().enumerate() {
+                (section(&format!("quantity-{i}"), &quantity.name, &quantity.content()))
+            }
+            @if !self.comparison.is_empty() {
+                (section("comparison", "Beside another result", &self.other()))
+            }
+            (section("poses", "Poses", &self.pose_blocks()))
+        }
+    }
+
+    fn elements(&self) -> Markup {
+        let rows: Vec<Vec<Markup>> = self
+            .statuses
+            .iter()
+            .map(|row| row.iter().map(cell).collect())
+            .collect();
+        let columns = [
+            Column::text("Status"),
+            Column::number("Elements"),
+            Column::number("Area"),
+        ];
+        html! {
+            (table("What became of the elements of the crash part", &columns, &rows))
+            (pictures(&self.status_figures))
+            ul.legend {
+                @for (name, color) in &self.status_colors {
+                    li { i style={ "background:" (color) } {} (name) }
+                }
+            }
+        }
+    }
+
+    fn other(&self) -> Markup {
+        let rows: Vec<Vec<Markup>> = self
+            .comparison
+            .iter()
+            .map(|(name, row)| {
+                let cells = row.iter().map(cell);
+                std::iter::once(cell(name)).chain(cells).collect()
+            })
+            .collect();
+        let columns = [
+            Column::text("Quantity"),
+            Column::number("Elements in both"),
+            Column::number("Mean difference"),
+            Column::number("RMS"),
+            Column::number("95 % within"),
+            Column::number("Largest"),
+            Column::number("at element"),
+        ];
+        html! {
+            p { "This mapping less " (printable(&self.compared_with)) ", element by element." }
+            (table("Differences, weighted by area", &columns, &rows))
+        }
+    }
+
+    fn pose_blocks(&self) -> Markup {
+        html! {
+            @for (name, rows) in &self.poses {
+                p { "crash = c · R · stamped + t for " (printable(name)) ", by rows:" }
+                (block("the matrix by rows", rows, false))
+            }
+        }
+    }
+}
+
+impl QuantityReport {
+    fn content(&self) -> Markup {
+        let rows: Vec<Vec<Markup>> = self
+            .rows
+            .iter()
+            .map(|(name, row)| {
+                let cells = row.iter().map(cell);
+                std::iter::once(cell(name)).chain(cells).collect()
+            })
+            .collect();
+        let columns = [
+            Column::text("Side"),
+            Column::number("Mean"),
+            Column::number("Min"),
+            Column::number("5 %"),
+            Column::number("Median"),
+            Column::number("95 %"),
+            Column::number("99 %"),
+            Column::number("Max"),
+        ];
+        let facts = [(
+            "Distance of the histograms (0 equal, 1 disjoint)",
+            cell(format!("{:.4}", self.histogram_distance)),
+        )];
+        html! {
+            div class="pictures three" {
+                @for one in &self.figures { (super::sections::figure(one)) }
+            }
+            div.scale { (charts::plain_legend(&self.scales[0], &self.name)) }
+            div.scale { (charts::plain_legend(&self.scales[1], "difference, mapped less stamped")) }
+            (table("Distribution, weighted by area", &columns, &rows))
+            h3 { "Distribution" }
+            (charts::two_histograms(&self.shares, self.range, &self.name))
+            ul.legend {
+                li { i style="background:var(--stamped);opacity:.45" {} "▲ stamped, where it is covered" }
+                li { i.line style="border-color:var(--crash)" {} "■ crash, mapped" }
+            }
+            (fact_table("Both histograms", &facts))
+        }
+    }
+}
+
+/// A picture of a mapping with its words.
+pub fn map_figure(png: Vec<u8>, size: [usize; 2], title: &str, caption: &str) -> Figure {
+    Figure {
+        png,
+        size,
+        alt: format!("{title} {caption}"),
+        title: title.to_owned(),
+        caption: caption.to_owned(),
+        is_marked: false,
+    }
+}
