@@ -116,6 +116,8 @@ impl AppState {
         } else if work.jobs.is_busy() {
             let key = work.jobs.running().map(|job| job.key);
             key.map_or_else(Vec::new, |key| work.cancel(key))
+        } else if topics.inspect.forget_place() {
+            Vec::new()
         } else {
             topics.parts.selected.clear();
             topics.view.is_graphics_only = false;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{AppState, BottomTab, Effect, Part, Section, ShownGeometry};
+use super::{AppState, BottomTab, Effect, NoticeLevel, Part, Section, ShownGeometry};
 use crate::geometry::Point3;
 use crate::jobs::ProjectRequest;
 use crate::role::{PerRole, Role};
@@ -23,8 +23,14 @@ pub(super) enum FollowUp {
     PartReselected(Role),
     /// A level was made.
     LevelMade,
-    /// A match was taken over; where the centre of the stamped part was before.
-    Matched { before: Option<Point3> },
+    /// A match was taken over.
+    Matched {
+        /// Where the centre of the stamped part was before.
+        before: Option<Point3>,
+        level: NoticeLevel,
+        /// What came out, in a line.
+        line: String,
+    },
     /// A sweep began.
     SweepBegun,
     /// A sweep ended with its tables.
@@ -62,7 +68,12 @@ impl AppState {
                 return topics.reduce.reduce_again(&mut work, role);
             }
             FollowUp::LevelMade => self.view.shown = ShownGeometry::Reduced,
-            FollowUp::Matched { before } => {
+            FollowUp::Matched {
+                before,
+                level,
+                line,
+            } => {
+                self.tell_result(level, line);
                 if let Some(result) = &self.document.result {
                     self.reduce.keep_match_level(&self.document, &result.run);
                 }
@@ -104,6 +115,15 @@ impl AppState {
             self.view.sections.touch(Section::Match);
             self.view.sections.touch(Section::Reduce);
         }
+    }
+
+    /// The card of section 3 says the result; a toast over the part says it only where the card is not
+    /// to be seen. The bell has it in any case.
+    fn tell_result(&mut self, level: NoticeLevel, line: String) {
+        let is_seen = self.view.sections.is_open(Section::Match) && !self.view.is_graphics_only;
+        let is_muted = is_seen || self.settings.muted.contains(&level);
+        let when = (self.log.now, is_muted);
+        self.log.notices.push(level, line, when);
     }
 
     /// A part that went far is no longer where the cameras look; one that was nudged still is.

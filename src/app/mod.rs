@@ -45,7 +45,7 @@ pub use export::{
 };
 pub use history::{GestureId, History, HistoryCommand, HistoryRow, StepKind};
 pub use inspect::{
-    Coloring, Compared, Freshness, InspectCommand, InspectState, Label, SectionView,
+    Coloring, Compared, Freshness, InspectCommand, InspectState, Label, LookedAt, SectionView,
 };
 pub use job_board::{JobBoard, RunningJob};
 pub use log::{

@@ -375,6 +375,20 @@ fn a_deck_of_several_parts_asks_which_of_them_is_matched() {
 }
 
 #[test]
+fn a_result_is_a_toast_only_where_its_card_is_not_seen() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    assert!(window.state.log.latest("result").is_some());
+    assert_eq!(window.state.log.notices.toasts().count(), 0);
+    let line = &window.state.log.latest("result").unwrap().text;
+    let has_it = |notice: &Notice| notice.text == *line;
+    assert!(window.state.log.notices.kept().any(has_it), "in the bell");
+    window.apply(ViewCommand::OpenSection(Section::Match, false));
+    window.act(Action::MatchOrStop);
+    assert_eq!(window.state.log.notices.toasts().count(), 1);
+}
+
+#[test]
 fn the_right_window_keeps_the_deviation_while_the_part_is_moved() {
     let mut window = Window::with_both();
     window.act(Action::MatchOrStop);

@@ -211,10 +211,18 @@ fn the_section_cuts_across_the_longest_side_and_steps_by_a_tenth_of_an_element()
 fn looking_at_a_place_brings_the_camera_there() {
     let mut window = with_map();
     let place = Point3::new(3.0, 2.0, 0.18);
-    window.apply(InspectCommand::LookAt(Role::Stamped, place));
+    window.apply(InspectCommand::LookAt {
+        role: Role::Stamped,
+        point: place,
+        text: "node 7".to_owned(),
+    });
+    let (role, marked) = window.state.looked_at().unwrap();
+    assert_eq!((role, &*marked.text), (Role::Stamped, "node 7"));
     let camera = window.state.view.cameras.stamped;
     let bounds = window.state.visible_bounds(Role::Stamped);
     assert!((camera.target - place).norm() < 1e-6);
     assert!(camera.height < 0.5 * bounds.diagonal());
     assert_eq!(window.state.view.focus, Role::Stamped);
+    window.apply(Command::Escape);
+    assert!(window.state.looked_at().is_none(), "the mark is gone first");
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::{Compared, InspectCommand, InspectState, Label};
+use super::{Compared, InspectCommand, InspectState, Label, LookedAt};
 use crate::app::Effect;
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
@@ -44,7 +44,15 @@ impl InspectState {
             InspectCommand::RemoveAll => {
                 work.commit("Remove all labels", |document| document.labels.clear());
             }
-            InspectCommand::LookAt(role, point) => work.follow(FollowUp::LookAt(role, point)),
+            InspectCommand::LookAt { role, point, text } => {
+                let part = work.document.part(role);
+                self.place = part.map(|part| LookedAt {
+                    part: part.revision,
+                    point,
+                    text,
+                });
+                work.follow(FollowUp::LookAt(role, point));
+            }
             InspectCommand::SetSection(section) => self.section = section,
         }
         Vec::new()

@@ -26,7 +26,14 @@ pub enum InspectCommand {
     /// Take all labels away.
     RemoveAll,
     /// Bring a point of the part's own frame close into view.
-    LookAt(Role, Point3),
+    LookAt {
+        /// Of which part.
+        role: Role,
+        /// The place.
+        point: Point3,
+        /// What is said about it where it is marked.
+        text: String,
+    },
     /// The section plane, as a whole.
     SetSection(SectionView),
 }

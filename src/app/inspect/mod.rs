@@ -55,6 +55,17 @@ pub struct Compared {
     pub comparison: Shared<Comparison>,
 }
 
+/// A place that was looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LookedAt {
+    /// Revision of the part it is on.
+    part: u64,
+    /// Where it is, in the part's own frame.
+    pub point: Point3,
+    /// What is said about it.
+    pub text: String,
+}
+
 /// The comparison of both parts and the section plane.
 #[derive(Debug, Clone, Default)]
 pub struct InspectState {
@@ -62,6 +73,8 @@ pub struct InspectState {
     pub section: SectionView,
     /// The last comparison of both parts, up to date or not.
     pub compared: Option<Compared>,
+    /// The place that was looked at last; marked until something else is.
+    place: Option<LookedAt>,
     /// The state at which a comparison failed or was cancelled.
     gave_up_comparing: Option<Stamp>,
 }
@@ -101,7 +114,20 @@ impl Document {
     }
 }
 
+impl InspectState {
+    /// Ends the mark at the place that was looked at; true if there was one.
+    pub(super) fn forget_place(&mut self) -> bool {
+        self.place.take().is_some()
+    }
+}
+
 impl AppState {
+    /// The place that was looked at last, with its part.
+    pub fn looked_at(&self) -> Option<(Role, &LookedAt)> {
+        let place = self.inspect.place.as_ref()?;
+        Some((self.document.role_of(place.part)?, place))
+    }
+
     /// The last comparison of the parts that are loaded, up to date or not.
     pub fn comparison(&self) -> Option<&Comparison> {
         self.inspect.comparison(&self.document)

@@ -37,9 +37,13 @@ impl MatchState {
             alternative: None,
             stamp,
         });
-        work.follow(FollowUp::Matched { before });
         // Its phases have their own rows; counting the whole again would double the total.
-        work.log_at(level, "result", None, line.clone(), None);
+        work.log.push(level, "result", None, line.clone(), None);
+        work.follow(FollowUp::Matched {
+            before,
+            level,
+            line: line.clone(),
+        });
         if took >= LONG_RUN {
             vec![Effect::NotifyDesktop(line)]
         } else {

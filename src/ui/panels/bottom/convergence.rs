@@ -268,11 +268,12 @@ impl Chart {
             .allow_boxed_zoom(false)
             .allow_axis_zoom_drag(false)
             .grid_color(palette.line)
+            .x_axis_label("iteration")
             .y_axis_label(label)
             .y_axis_min_width(48.0)
             .y_axis_formatter(format)
             .show(ui, |plot| {
-                let quiet = palette.secondary.gamma_multiply(0.4);
+                let quiet = palette.secondary.gamma_multiply(0.5);
                 let leader = curves.leader;
                 let others = curves.starts.iter().enumerate();
                 let others = others.filter(|(number, _)| curves.has_others && *number != leader);

@@ -9,6 +9,7 @@ use crate::app::{
     Action, AppState, Command, ExportCommand, Freshness, GestureId, InspectCommand, ViewCommand,
 };
 use crate::assess::deviation::OverlapClass;
+use crate::geometry::Point3;
 use crate::pipeline::inspect::Comparison;
 use crate::role::Role;
 use crate::ui::theme::{Palette, ROW};
@@ -37,6 +38,9 @@ pub fn deviation_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) 
         nothing_yet(ui, title, hint);
         return;
     };
+    // A bar that is shown beside the digits, not over them.
+    let scroll = &mut ui.spacing_mut().scroll;
+    scroll.floating_allocated_width = scroll.bar_width;
     head_ui(ui, state, comparison, commands);
     let height = ui.available_height();
     let width = ui.available_width();
@@ -267,7 +271,7 @@ fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &m
                     egui::WidgetInfo::labeled(egui::Role::Button, true, name)
                 });
                 if response.clicked() {
-                    commands.push(InspectCommand::LookAt(role, place).into());
+                    commands.push(look_at(role, place, format!("{value} · {node}")));
                 }
             });
         });
@@ -302,6 +306,10 @@ fn labels_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
+fn look_at(role: Role, point: Point3, text: String) -> Command {
+    InspectCommand::LookAt { role, point, text }.into()
+}
+
 fn label_ui(
     ui: &mut Ui,
     state: &AppState,
@@ -321,7 +329,7 @@ fn label_ui(
         let response = ui.add(go).on_hover_text(format!("Go to {node}"));
         let response = response.accessible_name(format!("Go to {node}"));
         if response.clicked() {
-            commands.push(InspectCommand::LookAt(role, label.position).into());
+            commands.push(look_at(role, label.position, node.clone()));
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let remove = icon_button(ui, "×", &format!("Remove the label at {node}"), true);

@@ -199,6 +199,27 @@ pub(super) fn node(ui: &Ui, over: &Overlay<'_>) {
     }
 }
 
+/// The place that was looked at, ringed, with what is said about it.
+pub(super) fn place(ui: &Ui, over: &Overlay<'_>) {
+    let Some((role, place)) = over.frame.state.looked_at() else {
+        return;
+    };
+    let shown = over.frame.picture.place_of(role);
+    let point = shown.map(|shown| shown.to_window(&place.point));
+    let at = point.and_then(|point| pos_of(over.frame.rect(), &over.frame.view.camera, &point));
+    let Some(at) = at else {
+        return;
+    };
+    let painter = over.painter(ui);
+    ring(&painter, over, at, 9.0);
+    let font = FontId::proportional(12.5);
+    let text = painter.layout_no_wrap(place.text.clone(), font, over.frame.look.text);
+    let corner = at + vec2(16.0, -16.0 - text.size().y);
+    let plate = Rect::from_min_size(corner, text.size()).expand2(vec2(6.0, 3.0));
+    painter.rect_filled(plate, CornerRadius::same(3), over.frame.look.plate);
+    painter.galley(corner, text, over.frame.look.text);
+}
+
 /// A ring that is seen on any ground.
 fn ring(painter: &Painter, over: &Overlay<'_>, at: Pos2, radius: f32) {
     painter.circle_stroke(at, radius, Stroke::new(3.0, over.frame.look.plate));

@@ -67,6 +67,7 @@ impl Overlay<'_> {
 pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
     marks::pivot(ui, over);
     marks::node(ui, over);
+    marks::place(ui, over);
     if over.is_preparing {
         cards::preparing(ui, over);
     }

@@ -40,13 +40,13 @@ pub(super) fn show(
     let before = over.frame.state.view.display.coloring;
     let mut coloring = before;
     if room.is_full {
-        side_words(ui, over, "+ on the crash normal side", true);
+        side_words(ui, over, "on the crash normal side", true);
     }
     limit_field(ui, over, scale, Limit::Upper, &mut coloring);
     bars(ui, over, (scale, stats), room.bar, &mut coloring);
     limit_field(ui, over, scale, Limit::Lower, &mut coloring);
     if room.is_full {
-        side_words(ui, over, "− opposite", false);
+        side_words(ui, over, "opposite", false);
     }
     ui.add_space(2.0);
     tolerance(ui, over, scale, stats, &mut coloring);

@@ -140,7 +140,11 @@ fn plate(ui: &mut Ui, over: &Overlay<'_>, add: impl FnOnce(&mut Ui)) {
             });
     });
     let used = shown.response.rect;
-    let shape = Shape::rect_filled(used, CornerRadius::same(6), over.frame.look.plate);
+    let shape = Shape::rect_filled(
+        used,
+        CornerRadius::same(6),
+        over.frame.look.plate.to_opaque(),
+    );
     ui.painter().set(ground, shape);
     ui.data_mut(|data| data.insert_temp(id, used));
 }
