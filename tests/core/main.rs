@@ -39,5 +39,6 @@ mod simplify;
 mod simplify_rules;
 mod textbook_qem;
 mod tidy;
+mod tuning;
 mod units;
 mod wide_search;

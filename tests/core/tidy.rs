@@ -227,8 +227,14 @@ fn the_readme_shows_every_subcommand() {
 }
 
 /// The pages of the project that name files and options.
-fn pages() -> [(&'static str, String); 3] {
-    ["README.md", "ARCHITECTURE.md", "docs/files.md"].map(|name| {
+fn pages() -> [(&'static str, String); 4] {
+    [
+        "README.md",
+        "ARCHITECTURE.md",
+        "docs/files.md",
+        "docs/tuning.md",
+    ]
+    .map(|name| {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
         (name, std::fs::read_to_string(path).unwrap())
     })
