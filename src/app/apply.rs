@@ -1,7 +1,9 @@
 //! What follows from each command: the topic it belongs to is given its state and the work, and what
 //! other topics have to follow comes after it.
 
-use super::{AppState, Command, Dialog, Effect, FreeWindow, NoticeCommand, Section, ViewCommand};
+use super::{
+    AppState, Command, Dialog, Effect, FreeWindow, NoticeCommand, Section, ViewCommand, mapping,
+};
 
 impl AppState {
     /// Changes the state as the command says and returns what has to be done outside. A command
@@ -38,6 +40,7 @@ impl AppState {
             Command::Reduce(command) => return topics.reduce.apply(work, command),
             Command::Move(command) => topics.moving.apply(work, command, frame),
             Command::Match(command) => return topics.matching.apply(work, command),
+            Command::Map(command) => return mapping::apply(work, command),
             Command::Preview(command) => {
                 let is_unlocked = work.is_unlocked().is_ok();
                 work.previews.apply(command, is_unlocked);

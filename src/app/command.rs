@@ -1,9 +1,9 @@
 //! Everything that can happen in the window, as data.
 
 use super::{
-    ExportCommand, FileCommand, HistoryCommand, InspectCommand, MatchCommand, MoveCommand,
-    NoticeCommand, PairCommand, PartCommand, PreviewCommand, ProjectCommand, ReduceCommand,
-    Settings, ViewCommand,
+    ExportCommand, FileCommand, HistoryCommand, InspectCommand, MapCommand, MatchCommand,
+    MoveCommand, NoticeCommand, PairCommand, PartCommand, PreviewCommand, ProjectCommand,
+    ReduceCommand, Settings, ViewCommand,
 };
 use crate::jobs::{JobEvent, Live};
 
@@ -22,6 +22,8 @@ pub enum Command {
     Move(MoveCommand),
     /// Alignment, match, sweep.
     Match(MatchCommand),
+    /// Forming results onto the crash part.
+    Map(MapCommand),
     /// Poses shown without moving anything.
     Preview(PreviewCommand),
     /// Pairs of points.
@@ -66,6 +68,7 @@ from_group!(
     PartCommand => Part,
     ReduceCommand => Reduce,
     MoveCommand => Move,
+    MapCommand => Map,
     MatchCommand => Match,
     ExportCommand => Export,
     ViewCommand => View,

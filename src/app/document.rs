@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use super::{Label, PointPairs, Shared};
+use super::{Label, Mapping, PointPairs, Shared};
 use crate::geometry::{Aabb, Similarity, TriMesh};
 use crate::jobs::{MeasuredLevel, PartFacts, PartSource, Stamp};
 use crate::pipeline::load::LoadedPart;
@@ -25,6 +25,8 @@ pub struct Document {
     pub recipe: MatchRecipe,
     /// The last match that was taken over.
     pub result: Option<MatchResult>,
+    /// Forming results onto the crash part.
+    pub mapping: Mapping,
     /// Values pinned to nodes, oldest first.
     pub labels: Vec<Label>,
 }

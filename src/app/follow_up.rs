@@ -77,6 +77,7 @@ impl AppState {
                 if let Some(result) = &self.document.result {
                     self.reduce.keep_match_level(&self.document, &result.run);
                 }
+                self.view.sections.unfold(Section::Map);
                 self.follow_far_move(before);
             }
             FollowUp::SweepBegun => self.view.tab = BottomTab::Sweep,

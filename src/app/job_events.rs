@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use super::mapping::take_mapped;
 use super::parts::NewPart;
 use super::reduce::take_level_measured;
 use super::{AppState, Effect, NoticeLevel};
@@ -58,7 +59,7 @@ impl AppState {
             JobKey::Align | JobKey::Match | JobKey::Sweep | JobKey::Compare => {
                 now.parts == stamp.parts
             }
-            JobKey::Measure => now == stamp,
+            JobKey::Measure | JobKey::Map => now == stamp,
         }
     }
 
@@ -116,6 +117,7 @@ impl AppState {
                 let matching = topics.matching;
                 matching.take_measured(work, measurement, stamp, took);
             }
+            JobOutput::Mapped(run) => take_mapped(work, run, took),
             JobOutput::Compared(comparison) => topics.inspect.take_compared(comparison, stamp),
             JobOutput::Overlapped { overlap, limit } => {
                 topics.moving.take_overlap(overlap, limit, stamp);
@@ -195,6 +197,7 @@ fn step_of(key: JobKey) -> (&'static str, Option<Role>) {
         JobKey::Match => ("match", None),
         JobKey::Measure | JobKey::Overlap => ("measure", None),
         JobKey::Compare => ("compare", None),
+        JobKey::Map => ("map", None),
         JobKey::Sweep => ("sweep", None),
         JobKey::OpenProject => ("project", None),
         JobKey::Export => ("export", None),

@@ -23,6 +23,7 @@ mod inspect;
 mod job_board;
 mod job_events;
 mod log;
+mod mapping;
 mod matching;
 mod moving;
 mod pairs;
@@ -52,6 +53,7 @@ pub use log::{
     Clock, Log, LogRow, LogState, Notice, NoticeCommand, NoticeId, NoticeLevel, Notices, age_text,
     clock_text, duration_text,
 };
+pub use mapping::{MapCommand, MapResult, Mapping, Quantity, UnmappedElement};
 pub use matching::{
     Cause, LiveStarts, MatchCommand, MatchState, Preview, PreviewCommand, Previews, Starts,
 };

@@ -7,6 +7,7 @@ use crate::assess::Coverage;
 use crate::geometry::{Similarity, TriMesh};
 use crate::pipeline::inspect::Comparison;
 use crate::pipeline::load::{LoadSettings, LoadedPart};
+use crate::pipeline::map::{MapRecipe, MapRun};
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
 use crate::pipeline::project::ProjectRequest;
 use crate::pipeline::reduce::{Deviation, Level, Levels};
@@ -37,6 +38,8 @@ pub enum JobKey {
     Measure,
     /// Deviation of every node.
     Compare,
+    /// Forming results onto the crash part.
+    Map,
     /// The overlap at a pose, from few points.
     Overlap,
     /// The paper's tables.
@@ -61,6 +64,7 @@ impl JobKey {
             Self::Match => "Matching",
             Self::Measure => "Measuring distances",
             Self::Compare => "Measuring the deviation",
+            Self::Map => "Mapping the forming results",
             Self::Overlap => "Measuring the overlap",
             Self::Sweep => "Running the sweep",
             Self::OpenProject => "Opening the project",
@@ -174,6 +178,17 @@ pub struct CompareInput {
     pub crash_from_stamped: Similarity,
 }
 
+/// Input of a mapping.
+#[derive(Debug, Clone)]
+pub struct MapInput {
+    /// The two parts.
+    pub parts: PerRole<Arc<LoadedPart>>,
+    /// Quantities, method, limits.
+    pub recipe: MapRecipe,
+    /// Where the stamped part lies.
+    pub crash_from_stamped: Similarity,
+}
+
 /// Everything the worker can do. A closed list, so that jobs can be listed, logged and tested.
 #[derive(Debug, Clone)]
 pub enum JobKind {
@@ -207,6 +222,8 @@ pub enum JobKind {
     Measure(MeasureInput),
     /// Deviation of every node.
     Compare(CompareInput),
+    /// Forming results onto the crash part.
+    Map(MapInput),
     /// The overlap at a pose, from few points.
     Overlap(MeasureInput),
     /// Levels × match.
@@ -229,6 +246,7 @@ impl JobKind {
             Self::Match(_) => JobKey::Match,
             Self::Measure(_) => JobKey::Measure,
             Self::Compare(_) => JobKey::Compare,
+            Self::Map(_) => JobKey::Map,
             Self::Overlap(_) => JobKey::Overlap,
             Self::Sweep(_) => JobKey::Sweep,
             Self::OpenProject(_) => JobKey::OpenProject,
@@ -277,6 +295,8 @@ pub enum JobOutput {
     Measured(Arc<Coverage>),
     /// Deviation of every node.
     Compared(Arc<Comparison>),
+    /// Forming results onto the crash part.
+    Mapped(Arc<MapRun>),
     /// The overlap from few points.
     Overlapped {
         /// Share of the part that is covered better.

@@ -18,8 +18,8 @@ pub use event::{JobEvent, JobStage};
 pub use export::{Destination, ExportRequest, Exported};
 pub use facts::PartFacts;
 pub use job::{
-    CompareInput, JobId, JobKey, JobKind, JobOutput, MatchInput, MeasureInput, MeasureLevelInput,
-    MeasuredLevel, Recording, ReduceInput, Stamp, SweepInput,
+    CompareInput, JobId, JobKey, JobKind, JobOutput, MapInput, MatchInput, MeasureInput,
+    MeasureLevelInput, MeasuredLevel, Recording, ReduceInput, Stamp, SweepInput,
 };
 pub use live::{Live, LiveIteration, LiveSlot};
 pub use project::{OpenedPart, OpenedProject};

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::export::export;
 use super::project::open_project;
-use super::{CompareInput, MatchInput, MeasureInput, SweepInput};
+use super::{CompareInput, MapInput, MatchInput, MeasureInput, SweepInput};
 use super::{
     JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource, Recording,
     ReduceInput,
@@ -14,6 +14,7 @@ use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::PipelineError;
 use crate::pipeline::inspect::compare_parts;
 use crate::pipeline::load::{self, LoadedPart};
+use crate::pipeline::map::{PlacedPart, map_parts};
 use crate::pipeline::match_parts::{self, match_parts};
 use crate::pipeline::reduce::Levels;
 use crate::pipeline::sweep::sweep;
@@ -104,6 +105,7 @@ impl Runner for PipelineRunner {
             JobKind::Match(input) => run_match(&input, match_monitor),
             JobKind::Measure(input) => measure(&input, monitor),
             JobKind::Compare(input) => compare(&input, monitor),
+            JobKind::Map(input) => map(&input, monitor),
             JobKind::Overlap(input) => overlap(&input),
             JobKind::Sweep(input) => run_sweep(&input, monitor),
             JobKind::OpenProject(request) => {
@@ -218,6 +220,15 @@ fn compare(input: &CompareInput, monitor: &Monitor) -> Result<JobOutput, JobErro
     let pose = &input.crash_from_stamped;
     let comparison = compare_parts(input.parts.as_deref(), levels, pose, monitor)?;
     Ok(JobOutput::Compared(Arc::new(comparison)))
+}
+
+fn map(input: &MapInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
+    let placed = PlacedPart {
+        part: &input.parts.stamped,
+        crash_from_stamped: input.crash_from_stamped,
+    };
+    let run = map_parts(&input.parts.crash, &[placed], &input.recipe, monitor)?;
+    Ok(JobOutput::Mapped(Arc::new(run)))
 }
 
 /// Nodes of each mesh that tell how warm a pose is.

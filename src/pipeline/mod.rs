@@ -4,6 +4,7 @@
 //! moves (source). Each stage returns what it did and how long it took; nothing here prints.
 
 pub mod autosave;
+pub mod forming_values;
 pub mod id_map;
 pub mod inspect;
 pub mod likeness;

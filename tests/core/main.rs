@@ -4,6 +4,7 @@
 
 mod app;
 mod app_exports;
+mod app_mapping;
 mod assess;
 mod autosave;
 mod cli;

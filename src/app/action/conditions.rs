@@ -52,6 +52,11 @@ pub(super) fn has_result(state: &AppState) -> Result<(), Reason> {
     require(has_result, "Run a match first.")
 }
 
+pub(super) fn has_mapping(state: &AppState) -> Result<(), Reason> {
+    let has_mapping = state.document.current_mapping().is_some();
+    require(has_mapping, "Map the forming results first.")
+}
+
 pub(super) fn has_starts(state: &AppState) -> Result<(), Reason> {
     let n_starts = state.current_starts().map_or(0, |s| s.poses.len());
     require(n_starts > 0, "Align the surface normals first.")?;

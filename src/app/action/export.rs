@@ -1,16 +1,18 @@
 //! The menu *Export*: what leaves the program.
 
-use super::conditions::{always, has_result, has_stamped};
+use super::conditions::{always, has_mapping, has_result, has_stamped};
 use super::row::keys::{ctrl_shift, function};
 use super::row::some;
 use super::{Action, ActionRow, Key, Keys, MenuGroup, Shortcut, toggled_dialog};
 use crate::app::{AppState, Command, CopyForm, Dialog, ExportCommand};
+use crate::pipeline::map::WriteKind;
 use crate::pipeline::outputs::{MeshOutput, Output};
 use crate::report::{CardForm, MatrixForm};
 
 pub(super) const GROUPS: &[MenuGroup] = &[
     MenuGroup::plain(COPY),
     MenuGroup::plain(SAVE),
+    MenuGroup::plain(MAPPED),
     MenuGroup::plain(IMAGE),
 ];
 
@@ -38,6 +40,41 @@ const COPY: &[ActionRow] = &[
         keys: Keys::NONE,
         enabled: always,
         command: |_| some(ExportCommand::CopyLog),
+    },
+];
+
+const MAPPED: &[ActionRow] = &[
+    ActionRow {
+        action: Action::SaveMappedDeck,
+        label: "Save mapped deck…",
+        tooltip: "Write a copy of the crash deck with mapped thickness and states, all else byte for byte",
+        keys: Keys::NONE,
+        enabled: has_mapping,
+        command: |_| save(Output::Mapped(WriteKind::Deck)),
+    },
+    ActionRow {
+        action: Action::SaveMappedPart,
+        label: "Save mapped part…",
+        tooltip: "Write all elements of the crash part with mapped thickness, and the states",
+        keys: Keys::NONE,
+        enabled: has_mapping,
+        command: |_| save(Output::Mapped(WriteKind::Part)),
+    },
+    ActionRow {
+        action: Action::SaveMapReport,
+        label: "Save mapping report…",
+        tooltip: "Write statistics and pictures before and after as one HTML page",
+        keys: Keys::NONE,
+        enabled: has_mapping,
+        command: |_| save(Output::MapReport),
+    },
+    ActionRow {
+        action: Action::SaveMapTable,
+        label: "Save mapping table…",
+        tooltip: "Write status, distances and values of every crash element, as CSV",
+        keys: Keys::NONE,
+        enabled: has_mapping,
+        command: |_| save(Output::MapTable),
     },
 ];
 

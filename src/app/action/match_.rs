@@ -4,7 +4,7 @@ use super::conditions::{has_starts, is_reduced, require};
 use super::row::keys::{function, key, shift};
 use super::row::some;
 use super::{Action, ActionRow, Key, Keys, MenuGroup, Reason, Shortcut};
-use crate::app::{AppState, MatchCommand, PairCommand, ReduceCommand, facts};
+use crate::app::{AppState, MapCommand, MatchCommand, PairCommand, ReduceCommand, facts};
 use crate::jobs::JobKey;
 use crate::role::{PerRole, Role};
 
@@ -13,7 +13,18 @@ pub(super) const GROUPS: &[MenuGroup] = &[
     MenuGroup::plain(STARTS),
     MenuGroup::plain(MATCH),
     MenuGroup::plain(RESULT),
+    MenuGroup::plain(MAP),
 ];
+
+const MAP: &[ActionRow] = &[ActionRow {
+    action: Action::MapOrCancel,
+    label: "Map",
+    tooltip: "Carry thickness, strain and stress of the stamped part onto the crash part; while it runs, \
+              give it up",
+    keys: Keys::NONE,
+    enabled: AppState::can_map,
+    command: |_| some(MapCommand::MapOrCancel),
+}];
 
 const REDUCE: &[ActionRow] = &[
     ActionRow {

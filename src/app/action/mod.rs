@@ -112,6 +112,16 @@ actions! {
     Preferences,
     /// Close the program.
     Quit,
+    /// Map the forming results, or give the running mapping up.
+    MapOrCancel,
+    /// Write the crash deck with the mapped results.
+    SaveMappedDeck,
+    /// Write the crash part with the mapped results.
+    SaveMappedPart,
+    /// Write the report of the mapping.
+    SaveMapReport,
+    /// Write the table of mapped elements.
+    SaveMapTable,
     /// One step back.
     Undo,
     /// One step forward.

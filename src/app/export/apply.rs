@@ -146,6 +146,10 @@ impl Work<'_> {
             run: result.map(|result| result.run.to_arc()),
             alternative: result.and_then(|result| result.alternative),
             reduced: PerRole::from_fn(|role| part(role).map(|part| part.reduced_mesh().clone())),
+            mapping: self
+                .document
+                .current_mapping()
+                .map(|result| result.run.to_arc()),
             log: match output {
                 Output::Log => self.log.to_text(),
                 _ => String::new(),

@@ -74,6 +74,7 @@ impl Document {
             }
             Needs::BothParts => self.both().is_some(),
             Needs::Match => self.current_result().is_some(),
+            Needs::Mapping => self.current_mapping().is_some(),
         }
     }
 

@@ -61,6 +61,7 @@ impl AppState {
             parts: PerRole::from_fn(entry),
             pose: *document.crash_from_stamped(),
             recipe: document.recipe.clone(),
+            mapping: document.mapping.recipe.clone(),
             result: document.result.as_ref().map(|result| ResultEntry {
                 is_current: document.current_result().is_some(),
                 alternative: result.alternative,

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use super::window::WindowEntry;
 use crate::app::{
-    AppState, Dialog, Document, Effect, MatchResult, NoticeLevel, Part, PointPairs, ShownGeometry,
-    StampedPose,
+    AppState, Dialog, Document, Effect, Mapping, MatchResult, NoticeLevel, Part, PointPairs,
+    ShownGeometry, StampedPose,
 };
 use crate::jobs::{JobKind, MeasureLevelInput, OpenedPart, OpenedProject, ProjectRequest, Stamp};
 use crate::pipeline::project::{PartEntry, Project, ResultEntry};
@@ -80,6 +80,10 @@ impl AppState {
         let mut effects = Vec::new();
         let mut document = Document {
             recipe: project.recipe.clone(),
+            mapping: Mapping {
+                recipe: project.mapping.clone(),
+                result: None,
+            },
             pose: StampedPose {
                 crash_from_stamped: project.pose,
                 revision: self.history.next_revision(),

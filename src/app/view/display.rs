@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::app::Coloring;
+use crate::pipeline::forming_values::FormingValue;
 use crate::role::PerRole;
 
 /// Which geometry the windows show.
@@ -33,18 +34,62 @@ pub enum ColorBy {
     Deviation,
     /// Where the other part is, is off, or is missing.
     Overlap,
+    /// 1 − thickness over that of the flat sheet.
+    Thinning,
+    /// Effective plastic strain, mean over the layers.
+    PlasticStrain,
+    /// Largest principal strain.
+    MajorStrain,
+    /// Smallest principal strain.
+    MinorStrain,
+    /// Largest von Mises stress of the layers.
+    VonMises,
+    /// Largest principal stress of the layers.
+    MajorStress,
+}
+
+impl From<FormingValue> for ColorBy {
+    fn from(value: FormingValue) -> Self {
+        match value {
+            FormingValue::Thinning => Self::Thinning,
+            FormingValue::PlasticStrain => Self::PlasticStrain,
+            FormingValue::MajorStrain => Self::MajorStrain,
+            FormingValue::MinorStrain => Self::MinorStrain,
+            FormingValue::VonMises => Self::VonMises,
+            FormingValue::MajorStress => Self::MajorStress,
+        }
+    }
 }
 
 impl ColorBy {
     /// All, in the order of the menu.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 12] = [
         Self::Role,
         Self::Part,
         Self::Thickness,
         Self::ReductionError,
         Self::Deviation,
         Self::Overlap,
+        Self::Thinning,
+        Self::PlasticStrain,
+        Self::MajorStrain,
+        Self::MinorStrain,
+        Self::VonMises,
+        Self::MajorStress,
     ];
+
+    /// The forming result that is shown, if it is one.
+    pub fn forming(self) -> Option<FormingValue> {
+        Some(match self {
+            Self::Thinning => FormingValue::Thinning,
+            Self::PlasticStrain => FormingValue::PlasticStrain,
+            Self::MajorStrain => FormingValue::MajorStrain,
+            Self::MinorStrain => FormingValue::MinorStrain,
+            Self::VonMises => FormingValue::VonMises,
+            Self::MajorStress => FormingValue::MajorStress,
+            _ => return None,
+        })
+    }
 
     /// Name in the menu.
     pub fn label(self) -> &'static str {
@@ -55,6 +100,12 @@ impl ColorBy {
             Self::ReductionError => "Reduction error",
             Self::Deviation => "Deviation",
             Self::Overlap => "Overlap",
+            Self::Thinning => FormingValue::Thinning.label(),
+            Self::PlasticStrain => FormingValue::PlasticStrain.label(),
+            Self::MajorStrain => FormingValue::MajorStrain.label(),
+            Self::MinorStrain => FormingValue::MinorStrain.label(),
+            Self::VonMises => FormingValue::VonMises.label(),
+            Self::MajorStress => FormingValue::MajorStress.label(),
         }
     }
 }

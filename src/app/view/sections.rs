@@ -1,4 +1,4 @@
-//! Which of the three sections of the left column are unfolded.
+//! Which of the four sections of the left column are unfolded.
 
 use super::Section;
 
@@ -9,15 +9,16 @@ const SLACK: f32 = 32.0;
 /// What the user asked for, and what was used last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sections {
-    is_open: [bool; 3],
+    is_open: [bool; 4],
     /// Latest first.
-    order: [Section; 3],
+    order: [Section; 4],
 }
 
 impl Default for Sections {
     fn default() -> Self {
         Self {
-            is_open: [true; 3],
+            // The mapping comes once there is a pose to map with.
+            is_open: [true, true, true, false],
             order: Section::ALL,
         }
     }
@@ -48,13 +49,18 @@ impl Sections {
         }
     }
 
+    /// Unfolds a section where there is room; those that were used keep the right of way.
+    pub fn unfold(&mut self, section: Section) {
+        self.is_open[section.index()] = true;
+    }
+
     /// Which sections are drawn unfolded when their bodies are so high and so much room is left
     /// beside the headers.
     ///
     /// Where not all fit, those used last have the right of way, and the latest is always shown.
     /// `before` is the answer of the frame before.
-    pub fn shown(&self, bodies: [f32; 3], room: f32, before: [bool; 3]) -> [bool; 3] {
-        let mut shown = [false; 3];
+    pub fn shown(&self, bodies: [f32; 4], room: f32, before: [bool; 4]) -> [bool; 4] {
+        let mut shown = [false; 4];
         let mut left = room;
         let mut is_first = true;
         for index in self.order.map(Section::index) {
@@ -76,12 +82,15 @@ impl Sections {
 mod tests {
     use super::*;
 
-    const BODIES: [f32; 3] = [200.0, 240.0, 500.0];
+    const BODIES: [f32; 4] = [200.0, 240.0, 500.0, 300.0];
 
     #[test]
     fn all_are_shown_where_there_is_room() {
         let sections = Sections::default();
-        assert_eq!(sections.shown(BODIES, 1000.0, [true; 3]), [true; 3]);
+        assert_eq!(
+            sections.shown(BODIES, 1000.0, [true; 4]),
+            [true, true, true, false]
+        );
     }
 
     #[test]
@@ -89,27 +98,30 @@ mod tests {
         let mut sections = Sections::default();
         sections.touch(Section::Reduce);
         sections.touch(Section::Match);
-        let shown = |room| sections.shown(BODIES, room, [true; 3]);
-        assert_eq!(shown(800.0), [false, true, true]);
-        assert_eq!(shown(600.0), [false, false, true]);
+        let shown = |room| sections.shown(BODIES, room, [true; 4]);
+        assert_eq!(shown(800.0), [false, true, true, false]);
+        assert_eq!(shown(600.0), [false, false, true, false]);
         // What is older may still fit where the one between does not.
-        assert_eq!(shown(720.0), [true, false, true]);
+        assert_eq!(shown(720.0), [true, false, true, false]);
         // The one in use stays even where it does not fit.
-        assert_eq!(shown(100.0), [false, false, true]);
+        assert_eq!(shown(100.0), [false, false, true, false]);
     }
 
     #[test]
     fn what_the_user_says_wins() {
         let mut sections = Sections::default();
         sections.set_open(Section::Match, false);
-        assert_eq!(sections.shown(BODIES, 9e9, [true; 3]), [true, true, false]);
+        assert_eq!(
+            sections.shown(BODIES, 9e9, [true; 4]),
+            [true, true, false, false]
+        );
         sections.touch(Section::Match);
-        assert!(!sections.shown(BODIES, 9e9, [true; 3])[2]);
+        assert!(!sections.shown(BODIES, 9e9, [true; 4])[2]);
         sections.set_open(Section::Match, true);
         assert_eq!(sections.in_use(), Section::Match);
         assert_eq!(
-            sections.shown(BODIES, 500.0, [true; 3]),
-            [false, false, true]
+            sections.shown(BODIES, 500.0, [true; 4]),
+            [false, false, true, false]
         );
     }
 
@@ -117,9 +129,9 @@ mod tests {
     fn a_folded_section_waits_for_more_than_just_enough() {
         let mut sections = Sections::default();
         sections.touch(Section::Match);
-        let bodies = [200.0, 0.0, 500.0];
-        assert!(sections.shown(bodies, 710.0, [true; 3])[0]);
-        assert!(!sections.shown(bodies, 710.0, [false, true, true])[0]);
-        assert!(sections.shown(bodies, 740.0, [false, true, true])[0]);
+        let bodies = [200.0, 0.0, 500.0, 0.0];
+        assert!(sections.shown(bodies, 710.0, [true; 4])[0]);
+        assert!(!sections.shown(bodies, 710.0, [false, true, true, false])[0]);
+        assert!(sections.shown(bodies, 740.0, [false, true, true, false])[0]);
     }
 }

@@ -5,7 +5,7 @@ use crate::app::{AppState, Command, MoveCommand, Part};
 use crate::jobs::JobKey;
 use crate::role::Role;
 
-/// The paper's three sections.
+/// The paper's three sections, and the mapping after them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Section {
     /// 1 Load & display.
@@ -14,11 +14,13 @@ pub enum Section {
     Reduce,
     /// 3 Match.
     Match,
+    /// 4 Map, beyond the paper.
+    Map,
 }
 
 impl Section {
     /// All, from top to bottom.
-    pub const ALL: [Self; 3] = [Self::Load, Self::Reduce, Self::Match];
+    pub const ALL: [Self; 4] = [Self::Load, Self::Reduce, Self::Match, Self::Map];
 
     /// Its place, from 0.
     pub fn index(self) -> usize {
@@ -31,6 +33,7 @@ impl Section {
             Self::Load => "Load & display",
             Self::Reduce => "Reduce",
             Self::Match => "Match",
+            Self::Map => "Map",
         }
     }
 
@@ -42,6 +45,7 @@ impl Section {
             // How tools and curves are shown is no work on the match.
             Command::Move(MoveCommand::ToggleGizmo | MoveCommand::SetAxes(_)) => None,
             Command::Match(_) | Command::Move(_) => Some(Self::Match),
+            Command::Map(_) => Some(Self::Map),
             _ => None,
         }
     }
@@ -64,8 +68,20 @@ impl AppState {
                 .any(|role| self.is_reduction_stale(role))
                 .then_some("the part was read anew after it was reduced"),
             Section::Match => self.match_stale_reason(),
+            Section::Map => self.map_stale_reason(),
         };
         reason.map(|reason| Stale { reason })
+    }
+
+    fn map_stale_reason(&self) -> Option<&'static str> {
+        let result = self.document.mapping.result.as_ref()?;
+        if result.stamp != self.document.stamp() {
+            Some("parts or pose changed after the mapping")
+        } else if result.asked != self.document.mapping.recipe {
+            Some("the options changed after the mapping")
+        } else {
+            None
+        }
     }
 
     fn is_reduction_stale(&self, role: Role) -> bool {

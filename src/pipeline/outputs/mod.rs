@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use super::PipelineError;
 use super::load::LoadedPart;
+use super::map::{MapRun, WriteKind};
 use super::match_parts::{MatchRun, with_alternative};
 use super::units::PairUnits;
 use super::write_file::write_file;
@@ -21,6 +22,7 @@ use crate::text::Lengths;
 pub mod cards;
 mod check;
 pub mod deck;
+mod mapped;
 pub mod node_table;
 pub mod record;
 pub mod report;
@@ -98,6 +100,12 @@ pub enum Output {
     Cards(CardForm),
     /// A mesh; the extension of the name chooses its format.
     Mesh(MeshOutput),
+    /// The mapped results as a deck.
+    Mapped(WriteKind),
+    /// The report of the mapping as HTML.
+    MapReport,
+    /// Status and values of every mapped element as CSV.
+    MapTable,
     /// A picture of the 3D windows, which the window draws.
     Picture,
     /// The log of the window as text.
@@ -117,6 +125,8 @@ pub enum Needs {
     BothParts,
     /// A match of both parts.
     Match,
+    /// A mapping of the forming results.
+    Mapping,
 }
 
 /// What outputs are made from.
@@ -132,6 +142,8 @@ pub struct OutputInput {
     pub alternative: Option<usize>,
     /// The meshes at their levels of reduction.
     pub reduced: PerRole<Option<Arc<TriMesh>>>,
+    /// The mapping of the forming results at this pose.
+    pub mapping: Option<Arc<MapRun>>,
     /// The text of the log.
     pub log: String,
 }
@@ -170,6 +182,10 @@ impl Output {
         Self::Cards(CardForm::StampedPart),
         Self::Cards(CardForm::StampedPartInverse),
         Self::Cards(CardForm::IncludeTransform),
+        Self::Mapped(WriteKind::Deck),
+        Self::Mapped(WriteKind::Part),
+        Self::MapReport,
+        Self::MapTable,
         Self::Picture,
         Self::Log,
     ];
@@ -183,6 +199,10 @@ impl Output {
             Self::Deviations => "Distances of all nodes as CSV",
             Self::Cards(form) => form.label(),
             Self::Mesh(mesh) => mesh.label(),
+            Self::Mapped(WriteKind::Deck) => "Crash deck with mapped results",
+            Self::Mapped(_) => "Crash part with mapped results",
+            Self::MapReport => "Mapping report as HTML",
+            Self::MapTable => "Mapped elements as CSV",
             Self::Picture => "Picture",
             Self::Log => "Log",
         }
@@ -200,6 +220,9 @@ impl Output {
             Self::Mesh(MeshOutput::Converted) => Some("--converted"),
             Self::Mesh(MeshOutput::Crash) => Some("--crash-mesh"),
             Self::Mesh(MeshOutput::MovedReduced | MeshOutput::CrashReduced)
+            | Self::Mapped(_)
+            | Self::MapReport
+            | Self::MapTable
             | Self::Picture
             | Self::Log => None,
         }
@@ -209,10 +232,10 @@ impl Output {
     pub fn extensions(self) -> &'static [(&'static str, &'static str)] {
         match self {
             Self::Matrix(MatrixForm::Json) | Self::Record => &[("JSON", "json")],
-            Self::Matrix(MatrixForm::Csv) | Self::Deviations => &[("CSV", "csv")],
+            Self::Matrix(MatrixForm::Csv) | Self::Deviations | Self::MapTable => &[("CSV", "csv")],
             Self::Matrix(_) | Self::Log => &[("Text", "txt")],
-            Self::Report => &[("HTML", "html")],
-            Self::Cards(_) => &[DECK],
+            Self::Report | Self::MapReport => &[("HTML", "html")],
+            Self::Cards(_) | Self::Mapped(_) => &[DECK],
             Self::Mesh(mesh) if mesh.is_reduced() => &[STL, PLY, OBJ, DECK],
             Self::Mesh(_) => &[DECK, STL, PLY, OBJ],
             Self::Picture => &[("PNG", "png")],
@@ -227,6 +250,7 @@ impl Output {
             Self::Deviations => Needs::BothParts,
             Self::Mesh(mesh) if mesh.is_reduced() => Needs::ReducedPart(mesh.role()),
             Self::Mesh(mesh) => Needs::Part(mesh.role()),
+            Self::Mapped(_) | Self::MapReport | Self::MapTable => Needs::Mapping,
             Self::Picture | Self::Log => Needs::Window,
         }
     }
@@ -234,7 +258,7 @@ impl Output {
     /// What its name has to follow.
     pub fn content(self) -> Content {
         match self {
-            Self::Cards(_) => Content::Deck,
+            Self::Cards(_) | Self::Mapped(_) => Content::Deck,
             Self::Mesh(_) => Content::Mesh,
             _ => Content::Text,
         }
@@ -253,6 +277,7 @@ impl Output {
     pub fn named_after(self) -> Role {
         match self {
             Self::Mesh(mesh) => mesh.role(),
+            Self::Mapped(_) => Role::Crash,
             _ => Role::Stamped,
         }
     }
@@ -272,6 +297,10 @@ impl Output {
             Self::Mesh(MeshOutput::Converted) => "converted",
             Self::Mesh(MeshOutput::Crash) => "copy",
             Self::Mesh(MeshOutput::CrashReduced) => "reduced",
+            Self::Mapped(WriteKind::Deck) => "mapped",
+            Self::Mapped(_) => "mapped_part",
+            Self::MapReport => "mapping",
+            Self::MapTable => "mapped_elements",
             Self::Picture => "picture",
             Self::Log => "log",
         };
@@ -323,6 +352,9 @@ impl Output {
                 let notes = Vec::new();
                 return Ok(Made { bytes, notes });
             }
+            Self::Mapped(kind) => return mapped::deck(kind, input, monitor),
+            Self::MapReport => (mapped::report(input, monitor)?, Vec::new()),
+            Self::MapTable => (mapped::table(input)?, Vec::new()),
             Self::Log => (input.log.clone(), Vec::new()),
             Self::Picture => return Err(PipelineError::Lacks("a window")),
         };

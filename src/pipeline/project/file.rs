@@ -17,6 +17,7 @@ use crate::geometry::Similarity;
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::{LoadSettings, LoadedPart};
+use crate::pipeline::map::MapRecipe;
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun};
 use crate::pipeline::sweep::Sweep;
 use crate::pipeline::write_file::{write_file, write_file_in_new_folder};
@@ -151,6 +152,8 @@ pub struct Project {
     pub pose: Similarity,
     /// Every setting of the match.
     pub recipe: MatchRecipe,
+    /// Every choice of the mapping.
+    pub mapping: MapRecipe,
     /// The last match.
     pub result: Option<ResultEntry>,
     /// The tables of the last sweep.
@@ -171,6 +174,7 @@ struct Written<'a> {
     stamped: Option<PartEntry>,
     pose: &'a Similarity,
     recipe: &'a MatchRecipe,
+    mapping: &'a MapRecipe,
     window: &'a Option<Value>,
     #[serde(flatten)]
     others: &'a Map<String, Value>,
@@ -290,6 +294,7 @@ impl Project {
                 .unwrap_or_default(),
             saved_at: reader.take_or_tell("saved_at").unwrap_or_default(),
             recipe: reader.take_or_tell("recipe").unwrap_or_default(),
+            mapping: reader.take_or_tell("mapping").unwrap_or_default(),
             result: reader.take_or_tell("result"),
             sweep: reader.take_or_tell("sweep"),
             window: reader
@@ -328,6 +333,7 @@ impl Project {
             stamped,
             pose: &self.pose,
             recipe: &self.recipe,
+            mapping: &self.mapping,
             window: &self.window,
             others: &self.others,
             result: &self.result,

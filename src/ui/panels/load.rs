@@ -244,7 +244,7 @@ fn display_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                     .truncate()
                     .show_ui(ui, |ui| {
                         for by in ColorBy::ALL {
-                            ui.selectable_value(&mut display.color_by, by, by.label());
+                            color_row(ui, state, &mut display.color_by, by);
                         }
                     });
             });
@@ -252,5 +252,19 @@ fn display_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
     if display != state.view.display {
         commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
+    }
+}
+
+/// One row of the colours; greyed with its reason where no loaded part has such results.
+fn color_row(ui: &mut Ui, state: &AppState, chosen: &mut ColorBy, by: ColorBy) {
+    let reason = state.missing_for(by);
+    let row = egui::Button::selectable(*chosen == by, by.label());
+    let response = ui.add_enabled(reason.is_none(), row);
+    let response = match reason {
+        Some(reason) => response.on_disabled_hover_text(reason),
+        None => response,
+    };
+    if response.clicked() {
+        *chosen = by;
     }
 }

@@ -5,6 +5,7 @@ pub mod explain;
 pub mod graphics;
 pub mod load;
 pub mod manual_move;
+pub mod mapping;
 pub mod matching;
 pub mod pairs;
 pub mod part_list;
@@ -85,7 +86,7 @@ pub fn window_ui(
     remember_sizes(ui, state, [left.response.rect.width(), height], commands);
 }
 
-/// The paper's three sections, top to bottom.
+/// The paper's three sections and the mapping, top to bottom.
 fn left_column_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.take_available_space();
     let height = ui.available_height();
@@ -102,6 +103,7 @@ fn left_column_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             load::load_ui(&mut column, state, commands);
             reduce::reduce_ui(&mut column, state, commands);
             matching::matching_ui(&mut column, state, commands);
+            mapping::mapping_ui(&mut column, state, commands);
             section::drawn_ui(&column, state);
             column.add_space(UNIT);
             let height = column.min_rect().height();

@@ -1,4 +1,4 @@
-//! The frame of the three sections: number, title, summary, fold.
+//! The frame of the four sections: number, title, summary, fold.
 
 use egui::{
     Align2, CornerRadius, FontId, Margin, Rect, Sense, Stroke, TextStyle, Ui, UiBuilder, pos2, vec2,
@@ -57,8 +57,8 @@ const UNFOLDED: f32 = 48.0;
 /// How high the bodies were when they were last drawn, and which are drawn now.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Fold {
-    bodies: [f32; 3],
-    shown: [bool; 3],
+    bodies: [f32; 4],
+    shown: [bool; 4],
     /// The parts that were there in the frame before; a body that grows with a new part was not unfolded by anyone.
     parts: PerRole<u64>,
 }
@@ -71,8 +71,8 @@ impl Fold {
     fn read(ui: &Ui) -> Self {
         let kept = ui.data(|data| data.get_temp(Self::id()));
         kept.unwrap_or(Self {
-            bodies: [0.0; 3],
-            shown: [true; 3],
+            bodies: [0.0; 4],
+            shown: [true, true, true, false],
             parts: PerRole::default(),
         })
     }

@@ -1,5 +1,5 @@
-//! Numbers shown as colours: thickness and error of the reduction, made off the frame and kept while
-//! they are shown; distance between the parts and overlap, which the worker measures.
+//! Numbers shown as colours: thickness, forming results and error of the reduction, made off the frame and
+//! kept while they are shown; distance between the parts and overlap, which the worker measures.
 
 use std::sync::Arc;
 
@@ -8,6 +8,10 @@ use crate::app::{AppState, ColorBy};
 use crate::colormap::{ColorMap, ColorScale};
 use crate::geometry::{Point3, TriMesh};
 use crate::monitor::Monitor;
+use crate::pipeline::forming_values::{
+    FormingValue, forming_values, has_forming_value, mapped_value,
+};
+use crate::pipeline::map::MapRun;
 use crate::render::FieldLook;
 use crate::role::{PerRole, Role};
 use crate::search::{Bvh, SearchLimits, closest_many};
@@ -25,6 +29,7 @@ pub(super) enum FieldKind {
     ReductionError,
     Deviation,
     Overlap,
+    Forming(FormingValue),
 }
 
 impl FieldKind {
@@ -35,7 +40,7 @@ impl FieldKind {
             ColorBy::ReductionError => Some(Self::ReductionError),
             ColorBy::Deviation => Some(Self::Deviation),
             ColorBy::Overlap => Some(Self::Overlap),
-            ColorBy::Role | ColorBy::Part => None,
+            other => other.forming().map(Self::Forming),
         }
     }
 
@@ -51,6 +56,7 @@ impl FieldKind {
             Self::ReductionError => "Distance reduced to full",
             Self::Deviation => "Deviation",
             Self::Overlap => "Overlap",
+            Self::Forming(value) => value.label(),
         }
     }
 }
@@ -60,7 +66,8 @@ impl FieldKind {
 struct FieldKey {
     kind: FieldKind,
     mesh: MeshKey,
-    /// The other mesh of a reduction error, by identity.
+    /// The other mesh of a reduction error, by identity; the thickness that thinning is against, by
+    /// its bits.
     other: usize,
 }
 
@@ -150,15 +157,16 @@ impl FieldStore {
         match kind {
             FieldKind::Deviation => return Some(coloring.deviation_scale(state.comparison()?)),
             FieldKind::Overlap => return Some(ColorScale::new(ColorMap::Classes, 0.0, 1.0)),
-            FieldKind::Thickness | FieldKind::ReductionError => {}
+            FieldKind::Thickness | FieldKind::ReductionError | FieldKind::Forming(_) => {}
         }
         let ranges = self.ranges.iter().filter_map(|(_, range)| *range);
         let ranges = ranges.filter(|(of, _)| *of == kind).map(|(_, range)| range);
         let [low, high] = ranges.reduce(union)?;
-        let low = if kind == FieldKind::Thickness {
-            low
-        } else {
-            0.0
+        let low = match kind {
+            FieldKind::ReductionError => 0.0,
+            // From nothing upwards, where nothing is below.
+            FieldKind::Forming(_) if low > 0.0 => 0.0,
+            _ => low,
         };
         Some(coloring.on_scale(ColorScale::new(ColorMap::Viridis, low, high)))
     }
@@ -182,6 +190,14 @@ pub(super) fn is_wanted(state: &AppState, window: Role, role: Role) -> bool {
     match FieldKind::of(state.color_by(window)) {
         Some(FieldKind::Deviation) => *display.coloring.on.get(role) && has_both(state),
         Some(FieldKind::Overlap) => has_both(state),
+        Some(FieldKind::Forming(value)) => {
+            if role == Role::Crash && state.mapped_for(value.into()).is_some() {
+                return true;
+            }
+            let part = state.document.part(role);
+            let nominal = state.flat_thickness();
+            part.is_some_and(|part| has_forming_value(&part.loaded, value, nominal).is_ok())
+        }
         Some(_) => true,
         None => false,
     }
@@ -220,6 +236,10 @@ struct Order {
     mesh: Arc<ShownMesh>,
     /// What distances are measured to.
     other: Option<Arc<TriMesh>>,
+    /// What thinning is against.
+    flat: Option<f64>,
+    /// The mapping whose values the crash part carries instead of its own.
+    mapped: Option<Arc<MapRun>>,
 }
 
 impl Order {
@@ -233,15 +253,28 @@ impl Order {
             }
             _ => None,
         };
+        let flat = match kind {
+            FieldKind::Forming(FormingValue::Thinning) => state.flat_thickness(),
+            _ => None,
+        };
+        let mapped = match (role, kind) {
+            (Role::Crash, FieldKind::Thickness) => state.mapped_for(ColorBy::Thickness),
+            (Role::Crash, FieldKind::Forming(value)) => state.mapped_for(value.into()),
+            _ => None,
+        };
+        let run = mapped.as_ref().map_or(0, |run| Arc::as_ptr(run).addr());
+        let bits = flat.map_or(0, |t| t.to_bits() as usize) ^ run;
         let key = FieldKey {
             kind,
             mesh: mesh.key(),
-            other: other.as_ref().map_or(0, |mesh| Arc::as_ptr(mesh).addr()),
+            other: other.as_ref().map_or(bits, |mesh| Arc::as_ptr(mesh).addr()),
         };
         Some(Self {
             key,
             mesh: Arc::clone(mesh),
             other,
+            flat,
+            mapped,
         })
     }
 
@@ -263,7 +296,14 @@ impl Order {
                     distances(&Bvh::build(Arc::clone(other)), points)
                 }
             }
-            None => thickness(&self.mesh),
+            None => match (&self.mapped, self.key.kind) {
+                (Some(run), FieldKind::Forming(value)) => {
+                    mapped(&self.mesh, run, |e| mapped_value(run, e, value, self.flat))
+                }
+                (Some(run), _) => mapped(&self.mesh, run, |e| run.thickness(e)),
+                (None, FieldKind::Forming(value)) => forming(&self.mesh, value, self.flat),
+                (None, _) => thickness(&self.mesh),
+            },
         };
         Field {
             range: robust_range(&values),
@@ -288,32 +328,63 @@ fn distances(tree: &Bvh, points: &[Point3]) -> Vec<f32> {
     found.map(distance).collect()
 }
 
-/// Mean over the elements around each vertex, in the crash model's unit; NaN where no thickness is known.
+/// Thickness in the crash model's unit; NaN where none is known.
 fn thickness(shown: &ShownMesh) -> Vec<f32> {
     let part = &shown.source.part;
+    let factor = part.settings.length_factor;
+    let of_shell = |shell: u32| {
+        let corners = part.model.shell_thickness(shell)?;
+        Some(corners.iter().sum::<f64>() / 4.0 * factor)
+    };
+    let means = vertex_means(shown, of_shell).into_iter();
+    means.map(known).collect()
+}
+
+/// A forming result; NaN where there is none.
+fn forming(shown: &ShownMesh, value: FormingValue, flat: Option<f64>) -> Vec<f32> {
+    let values = forming_values(&shown.source.part, value, flat).unwrap_or_default();
+    let of_shell = |shell: u32| values.get(shell as usize).copied();
+    vertex_means(shown, |shell| {
+        of_shell(shell).filter(|value| value.is_finite())
+    })
+}
+
+/// A mapped quantity of the crash part; NaN where it has none.
+fn mapped(shown: &ShownMesh, run: &MapRun, value: impl Fn(usize) -> f64) -> Vec<f32> {
+    let mut values = vec![f64::NAN; shown.source.part.model.shells.len()];
+    for (element, &shell) in run.shells.iter().enumerate() {
+        if let Some(slot) = values.get_mut(shell as usize) {
+            *slot = value(element);
+        }
+    }
+    let of_shell = |shell: u32| values.get(shell as usize).copied();
+    vertex_means(shown, |shell| {
+        of_shell(shell).filter(|value| value.is_finite())
+    })
+}
+
+/// Mean over the shells around each vertex, by area; NaN where none has a value.
+fn vertex_means(shown: &ShownMesh, of_shell: impl Fn(u32) -> Option<f64>) -> Vec<f32> {
+    let n_shells = shown.source.part.model.shells.len();
     let mesh = shown.mesh();
     let mut sums = vec![[0.0_f64; 2]; mesh.n_vertices()];
     for (triangle, corners) in mesh.triangles().iter().enumerate() {
         let element = shown.source.element(triangle);
-        if (element as usize) >= part.model.shells.len() {
+        if (element as usize) >= n_shells {
             continue;
         }
-        let Some(of_corners) = part.model.shell_thickness(element) else {
+        let Some(value) = of_shell(element) else {
             continue;
         };
-        let mean = of_corners.iter().sum::<f64>() / 4.0 * part.settings.length_factor;
         let area = mesh.triangle_area(triangle);
         for &vertex in corners {
             let [sum, weight] = &mut sums[vertex as usize];
-            *sum += area * mean;
+            *sum += area * value;
             *weight += area;
         }
     }
     let means = sums.into_iter();
-    means
-        .map(|[sum, weight]| (sum / weight) as f32)
-        .map(known)
-        .collect()
+    means.map(|[sum, weight]| (sum / weight) as f32).collect()
 }
 
 /// A thickness of zero is one that was not given.

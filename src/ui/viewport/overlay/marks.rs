@@ -3,9 +3,13 @@
 use egui::{Align2, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 
 use super::{MARGIN, Overlay};
+use crate::app::AppState;
 use crate::assess::deviation::OverlapClass;
 use crate::geometry::Point3;
 use crate::geometry::camera::scale_bar;
+use crate::pipeline::forming_values::FormingValue;
+use crate::role::Role;
+use crate::text::{fixed, length};
 use crate::ui::viewport::fields::FieldKind;
 use crate::ui::viewport::navigation::{DragKind, pos_of, screen_of};
 use crate::ui::viewport::picture::Hit;
@@ -160,8 +164,23 @@ fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
             };
             state.comparison().map(|_| class.label().to_owned())
         }
+        (FieldKind::Forming(value), Some(number)) => Some(forming_text(state, value, number)),
         (_, value) => value.map(|value| state.document.length_text(value)),
     }
+}
+
+/// A forming result with its name; stresses with the unit of the deck, if that is known.
+fn forming_text(state: &AppState, value: FormingValue, number: f64) -> String {
+    let name = value.label().to_lowercase();
+    if !value.is_stress() {
+        return format!("{name} {}", fixed(number, 4));
+    }
+    let system = Role::ALL.into_iter().find_map(|role| {
+        let part = state.document.part(role)?;
+        part.loaded.units()?.units.system
+    });
+    let unit = system.map_or_else(String::new, |system| format!(" {}", system.stress()));
+    format!("{name} {}{unit}", length(number))
 }
 
 /// A ring about the point a rotation turns about, and a cross at the picked pivot.

@@ -51,7 +51,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     plate(ui, over, |ui| match kind {
         FieldKind::Deviation => deviation::show(ui, over, &scale, room, commands),
         FieldKind::Overlap => overlap::show(ui, over, commands),
-        FieldKind::Thickness | FieldKind::ReductionError => {
+        FieldKind::Thickness | FieldKind::ReductionError | FieldKind::Forming(_) => {
             bar::plain(ui, over, kind.label(), &scale, room.bar, commands);
         }
     });

@@ -1,0 +1,301 @@
+//! Carrying the forming results onto the crash part: what was chosen, what came out.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::work::Work;
+use super::{AppState, ColorBy, Document, Effect, NoticeLevel, Reason, Shared};
+use crate::geometry::Point3;
+use crate::jobs::{JobKey, JobKind, MapInput, Stamp};
+use crate::mapping::{Quantities, Status};
+use crate::pipeline::forming_values::{FormingValue, has_forming_value, nominal_thickness};
+use crate::pipeline::map::{MapRecipe, MapRecord, MapRun, PlacedPart, map_record};
+use crate::role::{PerRole, Role};
+use crate::text::{counted, percent};
+
+/// Elements without values that are listed.
+const N_LISTED: usize = 40;
+
+/// What undo covers of the mapping.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mapping {
+    /// Quantities, method, limits.
+    pub recipe: MapRecipe,
+    /// The last mapping.
+    pub result: Option<MapResult>,
+}
+
+/// A mapping with the state it was made at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapResult {
+    /// Values, statuses, checks.
+    pub run: Shared<MapRun>,
+    /// The same in figures.
+    pub record: Shared<MapRecord>,
+    /// Parts and pose.
+    pub stamp: Stamp,
+    /// What was chosen when it was made.
+    pub asked: MapRecipe,
+}
+
+/// Mapping.
+#[derive(Debug, Clone)]
+pub enum MapCommand {
+    /// Other quantities or options.
+    SetRecipe(Box<MapRecipe>),
+    /// Map, or give the running mapping up.
+    MapOrCancel,
+}
+
+/// An element of the crash part that carries no values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UnmappedElement {
+    /// Its id in the deck.
+    pub id: u64,
+    /// Why.
+    pub status: Status,
+    /// Its centre.
+    pub center: Point3,
+}
+
+impl Document {
+    /// The mapping, if parts and pose are still those it was made at.
+    pub fn current_mapping(&self) -> Option<&MapResult> {
+        let result = self.mapping.result.as_ref();
+        result.filter(|result| result.stamp == self.stamp())
+    }
+
+    /// `Ok` if the forming results can be mapped now.
+    pub fn can_map(&self) -> Result<(), Reason> {
+        self.has_both_parts()?;
+        let Some(both) = self.both() else {
+            return Err(Reason("Load both parts first."));
+        };
+        let model = &both.stamped.loaded.model;
+        if model.forming.is_empty() && model.shell_extras.is_empty() {
+            return Err(Reason("The stamped file holds no forming results."));
+        }
+        Ok(())
+    }
+
+    /// Why the stamped part lacks a quantity; `None` if it has it.
+    pub fn lacks_quantity(&self, quantity: Quantity) -> Option<&'static str> {
+        let part = self.part(Role::Stamped)?;
+        let forming = &part.loaded.model.forming;
+        let (has, reason) = match quantity {
+            Quantity::Thickness => (
+                part.loaded.mean_thickness().is_some(),
+                "neither elements nor sections of the stamped file have a thickness",
+            ),
+            Quantity::PlasticStrain | Quantity::Stress => (
+                forming.n_stress() > 0,
+                "the stamped file has no *INITIAL_STRESS_SHELL",
+            ),
+            Quantity::Strain => (
+                forming.n_strain() > 0,
+                "the stamped file has no *INITIAL_STRAIN_SHELL",
+            ),
+            Quantity::History => (
+                forming
+                    .stresses()
+                    .any(|stress| stress.n_history + stress.n_tensors > 0),
+                "the stamped file has no history variables",
+            ),
+        };
+        (!has).then_some(reason)
+    }
+}
+
+/// A quantity as it is chosen in the window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Shell thickness.
+    Thickness,
+    /// Effective plastic strain.
+    PlasticStrain,
+    /// Strain tensors.
+    Strain,
+    /// Stress tensors.
+    Stress,
+    /// History variables.
+    History,
+}
+
+impl Quantity {
+    /// All, in the order of the form.
+    pub const ALL: [Self; 5] = [
+        Self::Thickness,
+        Self::PlasticStrain,
+        Self::Strain,
+        Self::Stress,
+        Self::History,
+    ];
+
+    /// Its name.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Thickness => "Thickness",
+            Self::PlasticStrain => "Plastic strain",
+            Self::Strain => "Strain",
+            Self::Stress => "Stress",
+            Self::History => "History",
+        }
+    }
+
+    /// The switch of it.
+    pub fn switch(self, of: &mut Quantities) -> &mut bool {
+        match self {
+            Self::Thickness => &mut of.thickness,
+            Self::PlasticStrain => &mut of.plastic_strain,
+            Self::Strain => &mut of.strain,
+            Self::Stress => &mut of.stress,
+            Self::History => &mut of.history,
+        }
+    }
+}
+
+impl AppState {
+    /// `Ok` if a mapping may start, or one runs that may be given up.
+    pub fn can_map(&self) -> Result<(), Reason> {
+        if self.jobs.is_active(JobKey::Map) {
+            return Ok(());
+        }
+        self.document.can_map()?;
+        self.jobs.is_unlocked()
+    }
+
+    /// The elements without values of the current mapping, the first of each reason in turn, at most
+    /// forty; and how many there are.
+    pub fn unmapped_elements(&self) -> (Vec<UnmappedElement>, usize) {
+        let parts = self.document.both().zip(self.document.current_mapping());
+        let Some((both, result)) = parts else {
+            return (Vec::new(), 0);
+        };
+        let run = &result.run;
+        let without = run.mapped.elements.iter().enumerate();
+        let without = without.filter(|(_, report)| !report.status.has_values());
+        // The first of each reason, then the others in the order of the deck.
+        let mut seen = Vec::new();
+        let mut rows: Vec<(bool, usize, Status)> = without
+            .map(|(element, report)| {
+                let is_known = seen.contains(&report.status);
+                if !is_known {
+                    seen.push(report.status);
+                }
+                (is_known, element, report.status)
+            })
+            .collect();
+        rows.sort_by_key(|row| row.0);
+        let n = rows.len();
+        rows.truncate(N_LISTED);
+        let element = |(_, element, status): (bool, usize, Status)| UnmappedElement {
+            id: both.crash.loaded.model.shells[run.shells[element] as usize].id,
+            status,
+            center: run.target.mesh.centroids()[element],
+        };
+        (rows.into_iter().map(element).collect(), n)
+    }
+
+    /// The thickness of the flat sheet: the crash part's section, else the stamped part's.
+    pub fn flat_thickness(&self) -> Option<f64> {
+        let of = |role| nominal_thickness(&self.document.part(role)?.loaded);
+        of(Role::Crash).or_else(|| of(Role::Stamped))
+    }
+
+    /// The current mapping, if it gives the crash part what a choice of colours asks for.
+    pub fn mapped_for(&self, by: ColorBy) -> Option<Arc<MapRun>> {
+        let run = &self.document.current_mapping()?.run;
+        let wanted = run.recipe.options.quantities;
+        let has = match by.forming() {
+            Some(FormingValue::Thinning) => wanted.thickness,
+            Some(FormingValue::PlasticStrain) => wanted.plastic_strain,
+            Some(FormingValue::VonMises | FormingValue::MajorStress) => wanted.stress,
+            Some(FormingValue::MajorStrain | FormingValue::MinorStrain) => wanted.strain,
+            None => by == ColorBy::Thickness && wanted.thickness,
+        };
+        has.then(|| run.to_arc())
+    }
+
+    /// Why no loaded part has what a choice of colours asks for; `None` if one has it.
+    pub fn missing_for(&self, by: ColorBy) -> Option<&'static str> {
+        let value = by.forming()?;
+        let flat = self.flat_thickness();
+        let mut reason = Some("no part is loaded");
+        for role in Role::ALL {
+            if let Some(part) = self.document.part(role) {
+                match has_forming_value(&part.loaded, value, flat) {
+                    Ok(()) => return None,
+                    Err(why) => reason = Some(why),
+                }
+            }
+        }
+        reason
+    }
+}
+
+pub(super) fn apply(work: &mut Work<'_>, command: MapCommand) -> Vec<Effect> {
+    match command {
+        MapCommand::SetRecipe(recipe) => {
+            work.commit("Mapping options", |document| {
+                document.mapping.recipe = *recipe
+            });
+        }
+        MapCommand::MapOrCancel if work.jobs.is_active(JobKey::Map) => {
+            return work.cancel(JobKey::Map);
+        }
+        MapCommand::MapOrCancel => return start(work),
+    }
+    Vec::new()
+}
+
+fn start(work: &mut Work<'_>) -> Vec<Effect> {
+    if work.document.can_map().is_err() || work.is_unlocked().is_err() {
+        return Vec::new();
+    }
+    let Some(both) = work.document.both() else {
+        return Vec::new();
+    };
+    let mut recipe = work.document.mapping.recipe.clone();
+    for quantity in Quantity::ALL {
+        if work.document.lacks_quantity(quantity).is_some() {
+            *quantity.switch(&mut recipe.options.quantities) = false;
+        }
+    }
+    let input = MapInput {
+        parts: both.map(|part| part.loaded.to_arc()),
+        recipe,
+        crash_from_stamped: *work.document.crash_from_stamped(),
+    };
+    vec![work.start(JobKind::Map(input))]
+}
+
+/// Takes a mapping over as one undo step.
+pub(super) fn take_mapped(work: &mut Work<'_>, run: Arc<MapRun>, took: Duration) {
+    let Some(both) = work.document.both() else {
+        return;
+    };
+    let parts: PerRole<_> = both.map(|part| part.loaded.to_arc());
+    let placed = PlacedPart {
+        part: &parts.stamped,
+        crash_from_stamped: run.poses[0],
+    };
+    let record = map_record(&run, &parts.crash, &[placed], None, None);
+    let text = format!(
+        "{} of the area of {} mapped",
+        percent(record.mapped_area),
+        counted(record.n_elements, "element")
+    );
+    for warning in &record.warnings {
+        work.log_at(NoticeLevel::Warning, "map", None, warning.clone(), None);
+    }
+    work.log_step("map", None, text, Some(took));
+    let stamp = work.document.stamp();
+    work.commit("Map forming results", |document| {
+        document.mapping.result = Some(MapResult {
+            run: run.into(),
+            record: Arc::new(record).into(),
+            stamp,
+            asked: document.mapping.recipe.clone(),
+        });
+    });
+}

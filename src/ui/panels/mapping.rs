@@ -1,0 +1,200 @@
+//! Section 4: the forming results onto the crash part.
+
+use egui::{Ui, vec2};
+
+use super::section::section_ui;
+use crate::app::{
+    Action, AppState, ColorBy, Command, InspectCommand, MapCommand, MapResult, Quantity, Section,
+    ViewCommand,
+};
+use crate::jobs::JobKey;
+use crate::pipeline::map::{MapRecord, PairRecord};
+use crate::role::Role;
+use crate::text::{grouped, length, percent};
+use crate::ui::theme::{ROW, TALL};
+use crate::ui::widgets::{Look, action_button, caption, chip, paragraph, secondary, wide_action};
+
+/// The section.
+pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let summary = summary(state);
+    section_ui(
+        ui,
+        state,
+        Section::Map,
+        &summary,
+        commands,
+        |ui, commands| {
+            if let Err(reason) = state.document.can_map() {
+                paragraph(ui, &reason.to_string());
+                return;
+            }
+            quantities_ui(ui, state, commands);
+            run_ui(ui, state, commands);
+            if let Some(result) = state.document.current_mapping() {
+                result_ui(ui, state, result, commands);
+            }
+        },
+    );
+}
+
+fn summary(state: &AppState) -> String {
+    if state.jobs.is_active(JobKey::Map) {
+        return "running".to_owned();
+    }
+    let result = state.document.current_mapping();
+    result.map_or_else(String::new, |result| {
+        format!("{} of the area", percent(result.record.mapped_area))
+    })
+}
+
+/// What is mapped; what the stamped file lacks is greyed with its reason.
+fn quantities_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut recipe = state.document.mapping.recipe.clone();
+    ui.horizontal_wrapped(|ui| {
+        for quantity in Quantity::ALL {
+            let missing = state.document.lacks_quantity(quantity);
+            let is_on = quantity.switch(&mut recipe.options.quantities);
+            ui.add_enabled_ui(missing.is_none(), |ui| {
+                let response = chip(ui, quantity.label(), *is_on && missing.is_none());
+                let response = match missing {
+                    Some(reason) => response.on_disabled_hover_text(reason),
+                    None => response,
+                };
+                if response.clicked() {
+                    *is_on ^= true;
+                }
+            });
+        }
+    });
+    if recipe != state.document.mapping.recipe {
+        commands.push(MapCommand::SetRecipe(Box::new(recipe)).into());
+    }
+}
+
+fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let is_running = state.jobs.is_active(JobKey::Map);
+    let label = if is_running { "Cancel" } else { "Map" };
+    let look = if is_running {
+        Look::Plain
+    } else {
+        Look::Primary
+    };
+    wide_action(
+        ui,
+        state,
+        Action::MapOrCancel,
+        (label, look, TALL),
+        commands,
+    );
+    if is_running {
+        let running = state.jobs.running().filter(|job| job.key == JobKey::Map);
+        let words = running.map_or("Waiting for the previous task", |_| "Mapping …");
+        secondary(ui, words);
+    }
+}
+
+fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut Vec<Command>) {
+    let record = &result.record;
+    caption(ui, "Result");
+    for line in lines(record) {
+        ui.label(line);
+    }
+    for warning in &record.warnings {
+        paragraph(ui, warning);
+    }
+    caption(ui, "Colours");
+    ui.horizontal_wrapped(|ui| {
+        let mut display = state.view.display.clone();
+        for by in [
+            ColorBy::Thickness,
+            ColorBy::PlasticStrain,
+            ColorBy::VonMises,
+        ] {
+            if state.mapped_for(by).is_some()
+                && chip(ui, by.label(), display.color_by == by).clicked()
+            {
+                display.color_by = if display.color_by == by {
+                    ColorBy::Role
+                } else {
+                    by
+                };
+            }
+        }
+        if display != state.view.display {
+            commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
+        }
+    });
+    unmapped_ui(ui, state, commands);
+    caption(ui, "Write");
+    ui.horizontal_wrapped(|ui| {
+        for (action, label) in [
+            (Action::SaveMappedDeck, "Deck…"),
+            (Action::SaveMappedPart, "Part…"),
+            (Action::SaveMapReport, "Report…"),
+            (Action::SaveMapTable, "Table…"),
+        ] {
+            let look = (label, Look::Plain, vec2(64.0, ROW));
+            action_button(ui, state, action, look, commands);
+        }
+    });
+}
+
+/// Counts, means, and the way back.
+fn lines(record: &MapRecord) -> Vec<String> {
+    let mut lines = Vec::new();
+    for row in &record.statuses {
+        lines.push(format!(
+            "{} {} ({})",
+            grouped(row.n_elements),
+            row.status.label(),
+            percent(row.area_share)
+        ));
+    }
+    let mean = |name: &str, pair: &Option<PairRecord>| {
+        let pair = pair.as_ref()?;
+        Some(format!(
+            "{name}: mean {} (stamped {})",
+            length(pair.crash.mean),
+            length(pair.stamped.mean)
+        ))
+    };
+    lines.extend(mean("Thickness", &record.thickness));
+    lines.extend(mean("Plastic strain", &record.plastic_strain));
+    if let Some(back) = &record.map_back {
+        for (name, p95, range) in [
+            ("thickness", back.thickness_p95, back.thickness_range),
+            ("plastic strain", back.plastic_p95, back.plastic_range),
+        ] {
+            if range > 0.0 {
+                let share = percent(p95 / range);
+                lines.push(format!(
+                    "There and back: 95 % within {share} of the {name}'s range"
+                ));
+            }
+        }
+    }
+    lines
+}
+
+/// The elements without values; a click flies there.
+fn unmapped_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let (elements, n) = state.unmapped_elements();
+    if n == 0 {
+        return;
+    }
+    caption(ui, &format!("{} without values", grouped(n)));
+    egui::ScrollArea::vertical()
+        .id_salt("unmapped elements")
+        .max_height(4.0 * ROW)
+        .show(ui, |ui| {
+            for element in &elements {
+                let text = format!("{}  {}", element.id, element.status.label());
+                if ui.button(text).on_hover_text("Look there").clicked() {
+                    commands.push(InspectCommand::LookAt(Role::Crash, element.center).into());
+                }
+            }
+            if n > elements.len() {
+                secondary(ui, &format!("and {} more", grouped(n - elements.len())));
+            }
+        });
+}
