@@ -24,6 +24,7 @@ mod layering;
 mod map_decks;
 mod map_files;
 mod mapping;
+mod mapping_checks;
 mod match_starts;
 mod mesh_files;
 mod mirrored;
