@@ -25,10 +25,8 @@ fn at_the_known_pose() -> (Window, tempfile::TempDir) {
     for file in samples::files(&pair) {
         std::fs::write(folder.path().join(file.name), file.bytes).unwrap();
     }
-    let mut window = Window {
-        runner: Some(real),
-        ..Window::new()
-    };
+    let mut window = Window::new();
+    window.runner = Some(real);
     for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
         window.open(folder.path().join(name).to_str().unwrap(), role);
     }

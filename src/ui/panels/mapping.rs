@@ -189,8 +189,9 @@ fn unmapped_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         .show(ui, |ui| {
             for element in &elements {
                 let text = format!("{}  {}", element.id, element.status.label());
-                if ui.button(text).on_hover_text("Look there").clicked() {
-                    commands.push(InspectCommand::LookAt(Role::Crash, element.center).into());
+                if ui.button(&text).on_hover_text("Look there").clicked() {
+                    let (role, point) = (Role::Crash, element.center);
+                    commands.push(InspectCommand::LookAt { role, point, text }.into());
                 }
             }
             if n > elements.len() {
