@@ -161,7 +161,7 @@ fn every_export_states_units_and_factors() {
 fn stresses_in_other_units_are_told() {
     let crash = bundled("crash", &LoadSettings::default());
     let settings = LoadSettings {
-        units: Some(UnitSystem::TonMmS.into()),
+        units: Some(UnitSystem::KgMmMs.into()),
         ..LoadSettings::default()
     };
     let stamped = bundled("stamped", &settings);
