@@ -292,6 +292,7 @@ fn options_that_the_pages_name_are_options() {
             "bench",
             "release",
             "quick",
+            "test",
         ]
         .map(str::to_owned),
     );
