@@ -237,7 +237,7 @@ pub(super) fn apply(work: &mut Work<'_>, command: MapCommand) -> Vec<Effect> {
     match command {
         MapCommand::SetRecipe(recipe) => {
             work.commit("Mapping options", |document| {
-                document.mapping.recipe = *recipe
+                document.mapping.recipe = *recipe;
             });
         }
         MapCommand::MapOrCancel if work.jobs.is_active(JobKey::Map) => {

@@ -25,7 +25,7 @@ pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands,
         |ui, commands| {
             if let Err(reason) = state.document.can_map() {
-                paragraph(ui, &reason.to_string());
+                paragraph(ui, reason.to_string());
                 return;
             }
             quantities_ui(ui, state, commands);
@@ -182,7 +182,7 @@ fn unmapped_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if n == 0 {
         return;
     }
-    caption(ui, &format!("{} without values", grouped(n)));
+    caption(ui, format!("{} without values", grouped(n)));
     egui::ScrollArea::vertical()
         .id_salt("unmapped elements")
         .max_height(4.0 * ROW)
@@ -195,7 +195,7 @@ fn unmapped_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 }
             }
             if n > elements.len() {
-                secondary(ui, &format!("and {} more", grouped(n - elements.len())));
+                secondary(ui, format!("and {} more", grouped(n - elements.len())));
             }
         });
 }
