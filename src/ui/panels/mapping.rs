@@ -14,6 +14,9 @@ use crate::text::{grouped, length, percent};
 use crate::ui::theme::{ROW, TALL};
 use crate::ui::widgets::{Look, action_button, caption, chip, paragraph, secondary, wide_action};
 
+/// Quantities beside each other.
+const N_CHIPS: usize = 3;
+
 /// The section.
 pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let summary = summary(state);
@@ -50,22 +53,25 @@ fn summary(state: &AppState) -> String {
 /// What is mapped; what the stamped file lacks is greyed with its reason.
 fn quantities_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut recipe = state.document.mapping.recipe.clone();
-    ui.horizontal_wrapped(|ui| {
-        for quantity in Quantity::ALL {
-            let missing = state.document.lacks_quantity(quantity);
-            let is_on = quantity.switch(&mut recipe.options.quantities);
-            ui.add_enabled_ui(missing.is_none(), |ui| {
-                let response = chip(ui, quantity.label(), *is_on && missing.is_none());
-                let response = match missing {
-                    Some(reason) => response.on_disabled_hover_text(reason),
-                    None => response,
-                };
-                if response.clicked() {
-                    *is_on ^= true;
-                }
-            });
-        }
-    });
+    // What may be greyed has a part of the window of its own, which a wrapped row would not break.
+    for row in Quantity::ALL.chunks(N_CHIPS) {
+        ui.horizontal(|ui| {
+            for &quantity in row {
+                let missing = state.document.lacks_quantity(quantity);
+                let is_on = quantity.switch(&mut recipe.options.quantities);
+                ui.add_enabled_ui(missing.is_none(), |ui| {
+                    let response = chip(ui, quantity.label(), *is_on && missing.is_none());
+                    let response = match missing {
+                        Some(reason) => response.on_disabled_hover_text(reason),
+                        None => response,
+                    };
+                    if response.clicked() {
+                        *is_on ^= true;
+                    }
+                });
+            }
+        });
+    }
     if recipe != state.document.mapping.recipe {
         commands.push(MapCommand::SetRecipe(Box::new(recipe)).into());
     }
