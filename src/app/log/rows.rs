@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn an_export_is_called_by_its_file() {
-        let mut written = row(NoticeLevel::Success, "written: /tmp/report.html");
+        let mut written = row(NoticeLevel::Success, "written: parts/report.html");
         assert_eq!(written.title(), "load");
         written.step = "export";
         assert_eq!(written.title(), "export report.html");

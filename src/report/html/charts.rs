@@ -175,6 +175,13 @@ fn outline(axes: &Axes, histogram: &Histogram, width: f64) -> String {
 
 /// The colours of the map with their numbers.
 pub fn color_legend(scale: &ColorScale, lengths: Lengths) -> Markup {
+    let title = "Colours of the deviation map";
+    let ticks = signed_ticks(scale, 7);
+    legend(scale, &ticks, &lengths.axis("signed distance"), title)
+}
+
+/// The colours of a scale over an axis with its ticks.
+fn legend(scale: &ColorScale, ticks: &[(f64, String)], axis: &str, title: &str) -> Markup {
     let axes = Axes {
         left: RIGHT,
         right: LEGEND_WIDTH - RIGHT,
@@ -185,13 +192,9 @@ pub fn color_legend(scale: &ColorScale, lengths: Lengths) -> Markup {
     };
     let content = html! {
         (color_strip(scale, &axes))
-        (axes.bottom_axis(&signed_ticks(scale, 7), &lengths.axis("signed distance")))
+        (axes.bottom_axis(ticks, axis))
     };
-    svg(
-        [LEGEND_WIDTH, 64.0],
-        "Colours of the deviation map",
-        &content,
-    )
+    svg([LEGEND_WIDTH, 64.0], title, &content)
 }
 
 /// The map from end to end as a background.
@@ -297,19 +300,12 @@ fn signed_ticks(scale: &ColorScale, n: usize) -> Vec<(f64, String)> {
 
 /// The colours of a map with plain numbers below.
 pub fn plain_legend(scale: &ColorScale, name: &str) -> Markup {
-    let axes = Axes {
-        left: RIGHT,
-        right: LEGEND_WIDTH - RIGHT,
-        top: 2.0,
-        bottom: 20.0,
-        x: [scale.min, scale.max],
-        y: [0.0, 1.0],
-    };
-    let content = html! {
-        (color_strip(scale, &axes))
-        (axes.bottom_axis(&plain_ticks(scale, 7), name))
-    };
-    svg([LEGEND_WIDTH, 64.0], &format!("Colours: {name}"), &content)
+    legend(
+        scale,
+        &plain_ticks(scale, 7),
+        name,
+        &format!("Colours: {name}"),
+    )
 }
 
 fn color_strip(scale: &ColorScale, axes: &Axes) -> Markup {

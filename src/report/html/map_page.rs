@@ -142,14 +142,7 @@ impl MapReport {
     }
 
     fn other(&self) -> Markup {
-        let rows: Vec<Vec<Markup>> = self
-            .comparison
-            .iter()
-            .map(|(name, row)| {
-                let cells = row.iter().map(cell);
-                std::iter::once(cell(name)).chain(cells).collect()
-            })
-            .collect();
+        let rows = named_rows(&self.comparison);
         let columns = [
             Column::text("Quantity"),
             Column::number("Elements in both"),
@@ -175,16 +168,18 @@ impl MapReport {
     }
 }
 
+/// Rows of cells that begin with their names.
+fn named_rows<const N: usize>(rows: &[(String, [String; N])]) -> Vec<Vec<Markup>> {
+    let row = |(name, row): &(String, [String; N])| {
+        let cells = row.iter().map(cell);
+        std::iter::once(cell(name)).chain(cells).collect()
+    };
+    rows.iter().map(row).collect()
+}
+
 impl QuantityReport {
     fn content(&self) -> Markup {
-        let rows: Vec<Vec<Markup>> = self
-            .rows
-            .iter()
-            .map(|(name, row)| {
-                let cells = row.iter().map(cell);
-                std::iter::once(cell(name)).chain(cells).collect()
-            })
-            .collect();
+        let rows = named_rows(&self.rows);
         let columns = [
             Column::text("Side"),
             Column::number("Mean"),

@@ -1,0 +1,98 @@
+//! Statements about shapes whose difference is known.
+
+use super::super::AssessSettings;
+use super::super::statements;
+use super::*;
+use crate::geometry::TriMesh;
+
+/// A hat section of 400 by 120 mm whose nodes are moved by `displace`.
+fn hat(n: usize, displace: impl Fn(Point3) -> Point3) -> Surface {
+    let across = [-60.0, -40.0, -30.0, -10.0, 10.0, 30.0, 40.0, 60.0];
+    let height = [0.0, 0.0, 40.0, 40.0, 40.0, 40.0, 0.0, 0.0];
+    let m = across.len();
+    let mut points = Vec::new();
+    for i in 0..=n {
+        for (y, z) in across.iter().zip(height) {
+            let x = 400.0 * i as f64 / n as f64 - 200.0;
+            points.push(displace(Point3::new(x, *y, z)));
+        }
+    }
+    let cells = (0..n).flat_map(|i| (0..m - 1).map(move |j| (i * m + j) as u32));
+    let m = m as u32;
+    let triangles = cells.flat_map(|a| [[a, a + m, a + m + 1], [a, a + m + 1, a + 1]]);
+    let mesh = TriMesh::new(points, triangles.collect()).unwrap();
+    Surface::new(&mesh, "source").unwrap()
+}
+
+fn statement(source: &Surface, target: &Surface) -> ShapeStatement {
+    let settings = AssessSettings {
+        thickness: Some(1.5),
+        ..AssessSettings::default()
+    };
+    statements(source, target, &Similarity::identity(), 0.01, &settings).1
+}
+
+/// Deflection `w` along z of up to `most`, with the shift along x that keeps lengths.
+fn bent(most: f64) -> impl Fn(Point3) -> Point3 {
+    move |p| {
+        let x = p.x / 200.0;
+        let slope = 2.0 * most * x / 200.0;
+        Point3::new(p.x - (p.z - 20.0) * slope, p.y, p.z + most * (x * x - 0.3))
+    }
+}
+
+#[test]
+fn bending_is_springback_and_nothing_else() {
+    let (plain, sprung) = (hat(40, |p| p), hat(37, bent(1.5)));
+    let same = statement(&hat(37, |p| p), &plain);
+    assert_eq!(same.kind, ShapeKind::Same, "{same:?}");
+    let shape = statement(&sprung, &plain);
+    assert_eq!(shape.kind, ShapeKind::Deformed, "{shape:?}");
+    assert!(shape.remainder < 0.1, "{shape:?}");
+    assert!(
+        shape.springback > 0.5 && shape.springback < 1.6,
+        "{shape:?}"
+    );
+    let much = statement(&hat(37, bent(6.0)), &plain);
+    assert!(
+        matches!(much.reasons[..], [ShapeReason::Bent { .. }]),
+        "{much:?}"
+    );
+}
+
+#[test]
+fn a_longer_part_and_a_higher_part_are_other_versions() {
+    let plain = hat(40, |p| p);
+    let longer = hat(40, |p| Point3::new(1.02 * p.x, p.y, p.z));
+    let shape = statement(&longer, &plain);
+    assert_eq!(shape.kind, ShapeKind::OtherVersion, "{shape:?}");
+    assert!(
+        matches!(shape.reasons[0], ShapeReason::Rims { .. }),
+        "{shape:?}"
+    );
+    let higher = hat(40, |p| Point3::new(p.x, p.y, 1.12 * p.z));
+    let shape = statement(&higher, &plain);
+    assert!(
+        matches!(shape.reasons[0], ShapeReason::Surface { .. }),
+        "{shape:?}"
+    );
+}
+
+#[test]
+fn an_offset_of_a_section_with_walls_is_told_apart() {
+    // Every face moves by 0.7 along its normal, so the folds move along their bisectors.
+    let bisector = (17_f64.sqrt() - 1.0) / 4.0;
+    let skin = hat(37, |p| {
+        let is_fold = (29.0..41.0).contains(&p.y.abs());
+        let aside = if is_fold {
+            0.7 * bisector * p.y.signum()
+        } else {
+            0.0
+        };
+        Point3::new(p.x, p.y + aside, p.z + 0.7)
+    });
+    let shape = statement(&skin, &hat(40, |p| p));
+    let offset = shape.offset.unwrap();
+    assert!(shape.is_offset_separable);
+    assert!((offset - 0.7).abs() < 0.1, "{shape:?}");
+}
