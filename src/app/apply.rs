@@ -30,6 +30,9 @@ impl AppState {
         };
         let (mut work, topics) = self.split();
         let work = &mut work;
+        if command.ends_move() {
+            topics.moving.reject_tool(work);
+        }
         match command {
             Command::File(command) => return topics.parts.apply_file(work, command),
             Command::Project(command) => {
@@ -51,7 +54,6 @@ impl AppState {
             Command::Inspect(command) => return topics.inspect.apply(work, command, &shown),
             Command::History(command) => {
                 if work.is_unlocked().is_ok() {
-                    topics.moving.reject_tool(work);
                     work.apply_history(command);
                 }
             }

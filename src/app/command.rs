@@ -50,6 +50,23 @@ pub enum Command {
     Quit,
 }
 
+impl Command {
+    /// True if it changes what a move by keys stands on, or runs for long: such a move ends before it.
+    pub(super) fn ends_move(&self) -> bool {
+        matches!(
+            self,
+            Self::File(_)
+                | Self::Project(_)
+                | Self::Part(_)
+                | Self::Reduce(_)
+                | Self::Match(_)
+                | Self::Map(_)
+                | Self::Pair(_)
+                | Self::History(_)
+        )
+    }
+}
+
 macro_rules! from_group {
     ($($group:ident => $arm:ident),*) => {$(
         impl From<$group> for Command {

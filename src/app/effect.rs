@@ -27,9 +27,9 @@ pub enum Effect {
     AskSaveProject(PathBuf),
     /// Write a project; answer with `ProjectCommand::Written` and the document.
     WriteProject {
-        /// Where.
+        /// File the project is written to.
         path: PathBuf,
-        /// What.
+        /// Content of the project file.
         project: Box<Project>,
         /// The state that it holds.
         document: Box<Document>,
@@ -40,7 +40,7 @@ pub enum Effect {
     DismissRecovery,
     /// Ask where to write; answer with `ExportCommand::Write`.
     AskSave {
-        /// What.
+        /// What is written; decides the file extension.
         kind: Output,
         /// A file name to start from.
         name: String,
@@ -58,9 +58,9 @@ pub enum Effect {
     },
     /// Write a picture of the 3D windows.
     TakePicture {
-        /// How.
+        /// Size, background and overlays.
         choice: PictureChoice,
-        /// Where.
+        /// File or folder the picture goes to.
         place: PicturePlace,
         /// What the file says about itself: keyword and text.
         texts: Vec<(&'static str, String)>,

@@ -33,7 +33,7 @@ const HELP_PER_LETTER: [f64; 2] = [24.0, 16.0];
 /// What a synonym is worth beside the word itself.
 const SYNONYM_SHARE: f64 = 0.7;
 
-/// A find.
+/// A match of the query in a text.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Find {
     /// The more, the better.

@@ -8,7 +8,7 @@ use crate::monitor::Progress;
 /// The running job as the window shows it.
 #[derive(Debug, Clone)]
 pub struct RunningJob {
-    /// Its name.
+    /// Number that its events carry.
     pub id: JobId,
     /// What it is.
     pub key: JobKey,

@@ -38,7 +38,7 @@ pub struct MapResult {
     pub asked: MapRecipe,
 }
 
-/// Mapping.
+/// Commands of section 4.
 #[derive(Debug, Clone)]
 pub enum MapCommand {
     /// Other quantities or options.
@@ -52,9 +52,9 @@ pub enum MapCommand {
 pub struct UnmappedElement {
     /// Its id in the deck.
     pub id: u64,
-    /// Why.
+    /// Why the element has no mapped values.
     pub status: Status,
-    /// Its centre.
+    /// Centre of the element, in crash coordinates.
     pub center: Point3,
 }
 
@@ -131,7 +131,7 @@ impl Quantity {
         Self::History,
     ];
 
-    /// Its name.
+    /// Name of the quantity in section 4.
     pub fn label(self) -> &'static str {
         match self {
             Self::Thickness => "Thickness",

@@ -29,7 +29,7 @@ pub struct PaletteEntry {
     pub group: &'static str,
     /// What it does, in a sentence; searched too.
     pub help: String,
-    /// Its key.
+    /// Keys of the entry as text; empty for none.
     pub keys: String,
     /// Why it is not possible now.
     pub reason: Option<&'static str>,

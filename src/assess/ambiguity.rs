@@ -55,7 +55,7 @@ pub enum TwinAxis {
 pub struct Twin {
     /// Rotation angle, 0 to π.
     pub angle: f64,
-    /// Its axis.
+    /// Axis of the motion between the poses.
     pub axis: TwinAxis,
     /// Displacement of the part's centroid, in target length units.
     pub shift: f64,
@@ -86,7 +86,7 @@ impl Twin {
 }
 
 impl Ambiguity {
-    /// Judges alternatives sorted by their score ratio.
+    /// Assesses alternatives sorted by their error over that of the best pose.
     pub fn of(alternatives: &[Alternative]) -> Self {
         let ratio = alternatives.first().map(|a| a.score_ratio);
         let clarity = match ratio {

@@ -17,7 +17,7 @@ const RANK: f64 = 1e-7;
 /// A place of the smaller part beside the other part, in the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Contact {
-    /// Where.
+    /// Point of the surface, in the target's frame.
     pub(super) point: Point3,
     /// Unit normal on the target's side.
     pub(super) normal: Vector3,

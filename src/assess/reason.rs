@@ -57,14 +57,14 @@ pub enum Reason {
         /// Largest uncertainty of a node.
         #[serde(with = "any_float")]
         by: f64,
-        /// The tolerance.
+        /// The shape tolerance, a length.
         limit: f64,
         /// In which direction most.
         along: PartDirection,
     },
     /// The shapes differ.
     Shape {
-        /// How.
+        /// In what way the shapes differ.
         difference: ShapeReason,
     },
     /// A distinct pose fits nearly as well.
@@ -89,7 +89,7 @@ pub enum Reason {
     Stopped,
     /// The iteration ended without a fit.
     EndedEarly {
-        /// Why.
+        /// Why the iterations ended.
         termination: Termination,
     },
     /// Nothing speaks against the pose.

@@ -110,7 +110,7 @@ pub struct RimFit {
 pub enum ShapeReason {
     /// The parts meet over this share of the smaller one only.
     HardlyMet {
-        /// The share.
+        /// Fraction of the smaller part's area.
         share: f64,
     },
     /// Bend and twist reach farther than springback may.
@@ -126,7 +126,7 @@ pub enum ShapeReason {
         by: f64,
         /// What is accepted.
         limit: f64,
-        /// Where most.
+        /// Point of the largest difference, in the target's frame.
         #[serde(with = "xyz")]
         at: Point3,
     },
@@ -136,7 +136,7 @@ pub enum ShapeReason {
         by: f64,
         /// What is accepted.
         limit: f64,
-        /// Where most.
+        /// Point of the largest difference, in the target's frame.
         #[serde(with = "xyz")]
         at: Point3,
     },
@@ -146,7 +146,7 @@ pub enum ShapeReason {
         by: f64,
         /// What is accepted.
         limit: f64,
-        /// Where.
+        /// Point of the difference, in the target's frame.
         #[serde(with = "xyz")]
         at: Point3,
     },

@@ -37,7 +37,7 @@ pub enum FreeMotionKind {
 /// A family of motions that the surfaces do not resist.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FreeMotion {
-    /// The kind.
+    /// Translation, rotation or both.
     pub kind: FreeMotionKind,
     /// Unit direction of the axis or of the plane's normal, in the target's frame.
     #[serde(with = "xyz")]

@@ -35,7 +35,7 @@ pub enum PartDirection {
     Across,
     /// Through the sheet.
     Through,
-    /// Obliquely.
+    /// Oblique to the axes of the part.
     Oblique,
 }
 

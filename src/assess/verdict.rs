@@ -12,7 +12,7 @@ use crate::registration::{MatchOutcome, Termination};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// Use it.
+    /// The pose can be used.
     Good,
     /// Probably right; check the reasons.
     Check,

@@ -40,7 +40,7 @@ pub struct Cli {
     pub quiet: bool,
 }
 
-/// The subcommands.
+/// The subcommands of `shapematch`.
 #[derive(Debug, Subcommand)]
 pub enum Task {
     /// Match a stamped part to a crash part and print the matrix.

@@ -74,7 +74,7 @@ fn fit(text: &mut String, record: &MatchRecord) {
     let (metrics, lengths) = (&record.metrics, Lengths::new(record.units.length));
     let _ = writeln!(
         text,
-        "Fit      RMS {}, 95 % within {}, max {}",
+        "Fit      RMS {}, P95 {}, max {}",
         length(metrics.rmse),
         length(metrics.p95),
         lengths.of(metrics.max)

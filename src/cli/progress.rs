@@ -17,7 +17,7 @@ struct Line {
 
 /// A monitor with the line that shows its progress, if standard error is a terminal.
 pub struct Shown {
-    /// The monitor.
+    /// Given to the work; feeds the progress line.
     pub monitor: Monitor,
     line: Option<Arc<Line>>,
 }

@@ -10,7 +10,7 @@ pub const UNMATCHED: Rgb = [138, 141, 146];
 /// A colour map with the numbers at its ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ColorScale {
-    /// The colours.
+    /// Colour map the values are looked up in.
     pub map: ColorMap,
     /// Value at the lower end; smaller values take its colour.
     pub min: f64,
@@ -29,7 +29,7 @@ pub struct ColorScale {
 /// What is drawn over the colour of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Pattern {
-    /// Nothing.
+    /// The colour alone.
     #[default]
     Plain,
     /// Horizontal lines: a negative value.

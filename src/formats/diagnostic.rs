@@ -68,7 +68,7 @@ macro_rules! kinds {
         pub enum DiagnosticKind { $($(#[$doc])* $kind,)* }
 
         impl DiagnosticKind {
-            /// Every kind.
+            /// Every kind, in the order of the table.
             pub const ALL: &[Self] = &[$(Self::$kind,)*];
 
             /// A short name, for example `"missing node"`.
@@ -183,7 +183,7 @@ impl Diagnostic {
         }
     }
 
-    /// Says where.
+    /// Adds the position in the file.
     #[must_use]
     pub fn at(mut self, position: Position) -> Self {
         self.position = Some(position);

@@ -51,7 +51,7 @@ const EXPORT: &str = "export the mesh as an LS-DYNA keyword deck, STL, OBJ or PL
 const MESH: &str = "mesh the surface and export it as an LS-DYNA keyword deck, STL, OBJ or PLY";
 
 impl Foreign {
-    /// Every kind.
+    /// Every kind, in the order they are tried.
     pub const ALL: &[Self] = &[
         Self::Empty,
         Self::Html,

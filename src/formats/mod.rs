@@ -39,7 +39,7 @@ pub enum FormatError {
     /// The file cannot be opened or unpacked.
     #[error("cannot read the file ({reason}): {path:?}")]
     Open {
-        /// The file.
+        /// File that cannot be read.
         path: PathBuf,
         /// What the system says.
         reason: String,
@@ -49,7 +49,7 @@ pub enum FormatError {
     Foreign {
         /// What it is.
         kind: Foreign,
-        /// The file.
+        /// File that cannot be read.
         path: PathBuf,
     },
     /// A mesh file that is broken beyond use.
@@ -57,7 +57,7 @@ pub enum FormatError {
     Broken {
         /// What is wrong.
         reason: String,
-        /// The file.
+        /// File that cannot be read.
         path: PathBuf,
     },
     /// The reading was cancelled.

@@ -8,7 +8,7 @@ use crate::monitor::{Cancelled, Monitor};
 pub struct CleanMesh {
     /// The mesh. Every vertex is used.
     pub mesh: TriMesh,
-    /// Its edges.
+    /// Edges and borders of the cleaned mesh.
     pub topology: Topology,
     /// For every vertex of the input, its vertex in `mesh`; [`u32::MAX`] where no triangle uses it.
     pub vertex_of: Vec<u32>,

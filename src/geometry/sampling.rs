@@ -9,7 +9,7 @@ pub struct SurfaceSample {
     pub point: Point3,
     /// Unit normal of its triangle.
     pub normal: Vector3,
-    /// Its triangle.
+    /// Triangle the sample lies on.
     pub triangle: u32,
     /// The area it stands for; those of all samples sum to the area of the mesh.
     pub area: f64,

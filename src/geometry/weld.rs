@@ -19,7 +19,7 @@ pub struct Welded {
     pub triangle_of: Vec<u32>,
 }
 
-/// No vertex.
+/// Number that stands for no vertex.
 const NONE: u32 = u32::MAX;
 /// Pieces that the search for equal positions is cut into, by the last bits of the hash, so that
 /// the table of each stays in the processor's cache and threads can share the work.

@@ -20,7 +20,7 @@ pub enum JobStage {
 /// One line from the worker.
 #[derive(Debug, Clone)]
 pub struct JobEvent {
-    /// Which job.
+    /// Number of the job.
     pub id: JobId,
     /// Its place in the queue.
     pub key: JobKey,
@@ -28,7 +28,7 @@ pub struct JobEvent {
     pub stamp: Stamp,
     /// How long it has run; zero when it had not begun.
     pub elapsed: Duration,
-    /// What happened.
+    /// Started, progressed or ended.
     pub stage: JobStage,
 }
 

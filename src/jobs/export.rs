@@ -9,9 +9,9 @@ use crate::pipeline::outputs::{Output, OutputInput, Refusal, Target, check_targe
 /// What is to be made and where it goes.
 #[derive(Debug, Clone)]
 pub struct ExportRequest {
-    /// Where.
+    /// File or clipboard.
     pub to: Destination,
-    /// What.
+    /// What is written.
     pub output: Output,
     /// What it is made from.
     pub input: OutputInput,
@@ -20,7 +20,7 @@ pub struct ExportRequest {
 /// Where an export goes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Destination {
-    /// A file.
+    /// A file, replaced if it exists.
     File(PathBuf),
     /// The clipboard; texts only. What it is, for the toast.
     Clipboard(String),

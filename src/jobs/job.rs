@@ -32,7 +32,7 @@ pub enum JobKey {
     MeasureLevel(Role),
     /// First poses from the mean normals.
     Align,
-    /// The match.
+    /// Match of the two parts.
     Match,
     /// Distances and overlap at a pose.
     Measure,
@@ -46,7 +46,7 @@ pub enum JobKey {
     Sweep,
     /// Reading a project with its parts.
     OpenProject,
-    /// Writing files.
+    /// Writing of outputs.
     Export,
 }
 
@@ -117,7 +117,7 @@ pub struct MeasureLevelInput {
     pub role: Role,
     /// Where the level was taken from.
     pub recording: Arc<Recording>,
-    /// The level.
+    /// The reduced mesh with its measured distances.
     pub level: Arc<MeasuredLevel>,
 }
 
@@ -126,7 +126,7 @@ pub struct MeasureLevelInput {
 pub struct ReduceInput {
     /// Which part it is.
     pub role: Role,
-    /// The part.
+    /// The part the level belongs to.
     pub part: Arc<LoadedPart>,
     /// The recording made before, if there is one; makes any level cheap.
     pub recording: Option<Arc<Recording>>,
@@ -141,7 +141,7 @@ pub struct MatchInput {
     pub parts: PerRole<Arc<LoadedPart>>,
     /// The levels the search runs on; `None` where nothing is reduced.
     pub reduced: Option<ReducedPair>,
-    /// Every setting.
+    /// Settings of the match.
     pub recipe: MatchRecipe,
     /// The pose the stamped part has now.
     pub current: Similarity,
@@ -216,7 +216,7 @@ pub enum JobKind {
     MeasureLevel(MeasureLevelInput),
     /// First poses, surface normal on surface normal.
     Align(MatchInput),
-    /// The match.
+    /// Matches the two parts.
     Match(MatchInput),
     /// Distances and overlap at a pose.
     Measure(MeasureInput),
@@ -230,7 +230,7 @@ pub enum JobKind {
     Sweep(SweepInput),
     /// Reads a project with its parts.
     OpenProject(ProjectRequest),
-    /// Writes files.
+    /// Writes outputs.
     Export(ExportRequest),
 }
 
@@ -266,23 +266,23 @@ pub enum JobOutput {
         role: Role,
         /// Where it came from.
         source: PartSource,
-        /// The part.
+        /// The part as it was read.
         part: Arc<LoadedPart>,
         /// What the window shows about it.
         facts: Arc<PartFacts>,
     },
     /// A part was reduced.
     Reduced {
-        /// Which part.
+        /// Side that was reduced.
         role: Role,
         /// For the next level.
         recording: Arc<Recording>,
-        /// The level.
+        /// The reduced mesh with its measured distances.
         level: Arc<MeasuredLevel>,
     },
     /// The deviation of a level is now known.
     LevelMeasured {
-        /// Which part.
+        /// Side that was recorded.
         role: Role,
         /// The level that was measured.
         level: Arc<MeasuredLevel>,
@@ -304,7 +304,7 @@ pub enum JobOutput {
         /// Distance up to which a place counts as covered.
         limit: f64,
     },
-    /// The tables.
+    /// The tables of the benchmark.
     Swept(Arc<Sweep>),
     /// Something was written, or is ready for the clipboard.
     Exported(Exported),

@@ -15,7 +15,7 @@ use crate::role::{PerRole, Role};
 pub struct OpenedProject {
     /// What was asked for.
     pub request: ProjectRequest,
-    /// The project.
+    /// Content of the project file.
     pub project: Project,
     /// What was not understood.
     pub notes: Vec<String>,
@@ -30,7 +30,7 @@ pub struct OpenedProject {
 pub struct OpenedPart {
     /// Where it came from.
     pub source: PartSource,
-    /// The part.
+    /// The part as it was read.
     pub part: Arc<LoadedPart>,
     /// What was counted about it.
     pub facts: Arc<PartFacts>,

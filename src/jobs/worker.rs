@@ -104,7 +104,7 @@ impl Worker {
         self.end(|k| k == key, Monitor::request_cancel);
     }
 
-    /// Cancels everything.
+    /// Cancels the running job and drops the waiting ones.
     pub fn cancel_all(&self) {
         self.end(|_| true, Monitor::request_cancel);
     }

@@ -21,9 +21,9 @@ pub enum MappingError {
     /// A choice lies outside its range.
     #[error("{name} is {value}, but must be {range}")]
     Setting {
-        /// Which choice.
+        /// Name of the option.
         name: &'static str,
-        /// Its value.
+        /// Value it was given.
         value: f64,
         /// What it may be.
         range: &'static str,

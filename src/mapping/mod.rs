@@ -58,7 +58,7 @@ const CONFLICT_SHARE: f64 = 0.02;
 pub struct PlacedSource<'a> {
     /// The part in its own frame.
     pub part: &'a SourcePart,
-    /// Its pose.
+    /// Pose of the source.
     pub target_from_source: Similarity,
 }
 

@@ -69,7 +69,7 @@ pub enum NormalSense {
     Auto,
     /// The same side only.
     Signed,
-    /// Either side.
+    /// Both sides of the sheet.
     Either,
 }
 
@@ -92,7 +92,7 @@ pub enum Overlap {
 pub struct MapOptions {
     /// What is carried over.
     pub quantities: Quantities,
-    /// How.
+    /// How values are carried over.
     pub method: MapMethod,
     /// Largest distance of a partner in the target's length unit; `None` takes the larger of both
     /// element sizes.

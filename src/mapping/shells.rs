@@ -85,7 +85,7 @@ impl ShellMesh {
         self.corners.is_empty()
     }
 
-    /// Nodes.
+    /// Positions of the nodes.
     pub fn positions(&self) -> &[Point3] {
         &self.positions
     }
@@ -110,7 +110,7 @@ impl ShellMesh {
         &self.normals
     }
 
-    /// Areas.
+    /// Area of each element.
     pub fn areas(&self) -> &[f64] {
         &self.areas
     }

@@ -17,7 +17,7 @@ const SMALLEST_GAUGE: f64 = 0.01;
 /// A stamped part with its forming results, in its own frame.
 #[derive(Debug, Clone)]
 pub struct SourcePart {
-    /// The shells.
+    /// Elements the values belong to.
     pub mesh: ShellMesh,
     /// Thickness at the corners in the target's length unit; NaN or 0 where it is not known. Empty if
     /// there is none at all.

@@ -53,7 +53,7 @@ impl TargetPart {
 pub struct Partner {
     /// Which of the stamped parts.
     pub source: u32,
-    /// Its element.
+    /// Number of the element the point lies on.
     pub element: u32,
     /// The normals point to opposite sides, so layers are taken from the other end.
     pub is_flipped: bool,

@@ -25,7 +25,7 @@ const LOOK_AGAIN: Duration = Duration::from_secs(1);
 /// The session of another run, found in its autosave.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RecoveredSession {
-    /// Its file.
+    /// File the work is kept in.
     pub path: PathBuf,
     /// When it was saved last, in seconds since 1970 (UTC).
     pub saved_at: u64,

@@ -49,7 +49,7 @@ pub enum PipelineError {
     /// A file cannot be written.
     #[error("cannot write the file ({reason}): {path:?}")]
     Write {
-        /// The file.
+        /// File that is no project.
         path: PathBuf,
         /// What the system says.
         reason: String,
@@ -66,9 +66,9 @@ pub enum PipelineError {
          the same unit (--converted writes the stamped one in the crash part's unit)"
     )]
     CardsNeedOneUnit {
-        /// The file.
+        /// Name of the output.
         name: String,
-        /// The factor.
+        /// Length factor of the part.
         factor: f64,
     },
     /// The cards cannot be written.
@@ -109,7 +109,7 @@ pub enum PipelineError {
     ElementAxes {
         /// Id of the part.
         part: u64,
-        /// Its file.
+        /// Name of the file.
         name: String,
         /// The part set.
         set: u64,
@@ -122,7 +122,7 @@ pub enum PipelineError {
     StressUnits {
         /// The stamped file.
         name: String,
-        /// What tells.
+        /// The evidence, as a clause.
         why: String,
         /// The factor that would bring them into the crash deck's unit.
         factor: f64,

@@ -16,7 +16,7 @@ pub struct IdMap {
 pub struct NodeVertex {
     /// The node's place in the model.
     pub node: u32,
-    /// Its vertex.
+    /// Vertex of the mesh.
     pub vertex: u32,
 }
 

@@ -28,7 +28,7 @@ pub struct DrawnDeviation {
 /// Two parts compared at one pose. The stamped part is the source, the crash part the target.
 #[derive(Debug, Clone)]
 pub struct Comparison {
-    /// The pose.
+    /// Pose the distances were taken at.
     pub crash_from_stamped: Similarity,
     /// Distances of the full meshes, in both directions.
     pub deviation: Deviation,

@@ -43,7 +43,7 @@ impl Moments {
         }
     }
 
-    /// Both together.
+    /// The moments of both parts together.
     #[must_use]
     pub fn and(&self, other: &Self) -> Self {
         Self {

@@ -40,7 +40,7 @@ const N_RUNS: usize = 5;
 /// Errors of one method on one pair, by area over the crash elements with values.
 #[derive(Debug, Clone, Serialize)]
 pub struct ErrorRow {
-    /// The part.
+    /// Name of the sample part.
     pub part: String,
     /// Edges of the stamped and of the crash mesh.
     pub sizes: [f64; 2],
@@ -64,7 +64,7 @@ pub struct ErrorRow {
     pub plastic_peak: f64,
     /// 95 % of the plastic strain there and back, over its range.
     pub back_p95: f64,
-    /// Milliseconds.
+    /// Time of the mapping in milliseconds.
     pub map_ms: f64,
 }
 
@@ -75,7 +75,7 @@ pub struct SpeedRow {
     pub n_elements: [usize; 2],
     /// Layers of both sides.
     pub n_layers: usize,
-    /// Threads.
+    /// Number of threads used.
     pub n_threads: usize,
     /// Smallest time of the mapping, milliseconds.
     pub map_ms: f64,
@@ -87,16 +87,16 @@ pub struct SpeedRow {
     pub result_bytes: usize,
 }
 
-/// The tables.
+/// Tables of `bench --mapping`.
 #[derive(Debug, Clone, Serialize)]
 pub struct MapBench {
     /// Errors, two rows for each pair.
     pub errors: Vec<ErrorRow>,
-    /// Times.
+    /// Time, rate and memory at full size.
     pub speed: SpeedRow,
 }
 
-/// Measures everything.
+/// Makes all tables of `bench --mapping`.
 pub fn map_bench(monitor: &Monitor) -> Result<MapBench, PipelineError> {
     let mut errors = Vec::new();
     let n_rows = PAIRS.len() as u64 + 1;

@@ -33,7 +33,7 @@ pub struct MatchTimes {
     pub match_ms: f64,
     /// The independent check.
     pub verify_ms: f64,
-    /// Everything together.
+    /// Time of the whole run in milliseconds.
     pub total_ms: f64,
 }
 
@@ -58,7 +58,7 @@ pub struct MatchRun {
     /// Triangles of the meshes the starts ran on.
     #[serde(serialize_with = "PerRole::as_list")]
     pub n_triangles: PerRole<usize>,
-    /// Durations.
+    /// Time of each phase.
     pub times: MatchTimes,
     /// The alternative of the match that this is the run of, as [`with_alternative`] makes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -68,7 +68,7 @@ pub struct MatchRun {
 /// Meshes of both parts at a level of reduction that is at hand already.
 #[derive(Debug, Clone)]
 pub struct ReducedPair {
-    /// The meshes.
+    /// Meshes the match ran on.
     pub meshes: PerRole<Arc<TriMesh>>,
     /// Maximum number of triangles each was reduced to; `None` for a full mesh.
     pub max_triangles: PerRole<Option<usize>>,
@@ -230,7 +230,7 @@ pub(super) fn settle(
     }
 }
 
-/// The first poses of "Align surface normal": centroids and mean normals aligned, both signs,
+/// The first poses of "Align surface normals": centroids and mean normals aligned, both signs,
 /// rotated in steps. Each is `crash_from_stamped`.
 pub fn align(
     parts: PerRole<&LoadedPart>,

@@ -16,7 +16,7 @@ pub struct PreferencesFile {
 }
 
 impl PreferencesFile {
-    /// Keeps nothing.
+    /// Preferences that are neither read nor written.
     pub fn none() -> Self {
         Self::default()
     }

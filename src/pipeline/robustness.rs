@@ -21,9 +21,9 @@ pub struct RobustnessSettings {
     pub seed: u64,
     /// Runs of every scenario on every part.
     pub n_runs: usize,
-    /// Parts.
+    /// Sample parts to take.
     pub parts: Vec<SamplePart>,
-    /// Scenarios.
+    /// Disturbances to apply.
     pub scenarios: Vec<Scenario>,
     /// The settings of every match.
     pub settings: MatchSettings,
@@ -66,18 +66,18 @@ impl Ending {
     }
 }
 
-/// One match.
+/// One match with its known answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RobustnessRun {
     /// What was changed.
     pub scenario: Scenario,
-    /// The part.
+    /// Sample part it was made from.
     pub part: SamplePart,
     /// Seed of the pair.
     pub seed: u64,
     /// Where it ended.
     pub ending: Ending,
-    /// The verdict.
+    /// Verdict of the match.
     pub verdict: Verdict,
     /// The first reason of the verdict.
     pub reason: String,

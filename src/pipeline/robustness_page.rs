@@ -25,7 +25,7 @@ white-space:pre-line}svg{width:100%;height:auto;font:12px system-ui,sans-serif}s
 svg line{stroke:var(--line)}.g{fill:var(--good)}.c{fill:var(--check)}.p{fill:var(--poor)}.r{fill:var(--right)}\
 svg .limit{stroke:var(--poor);stroke-dasharray:5 4}";
 
-/// The page.
+/// The table with its plots as one HTML page.
 pub fn page(table: &RobustnessTable, runs: &[RobustnessRun]) -> String {
     let title = format!("Robustness of shapematch, seed {}", table.seed);
     let rows = table.rows.iter().chain(std::iter::once(&table.total));

@@ -15,7 +15,7 @@ pub type Counts = [usize; 3];
 pub struct RobustnessRow {
     /// What was changed.
     pub scenario: String,
-    /// Runs.
+    /// Number of matches.
     pub runs: usize,
     /// Verdicts of the runs that ended at the true pose.
     pub right: Counts,
@@ -45,9 +45,9 @@ pub struct RobustnessTable {
     pub seed: u64,
     /// One row for each scenario, in their order.
     pub rows: Vec<RobustnessRow>,
-    /// All together.
+    /// Sums over all scenarios.
     pub total: RobustnessRow,
-    /// Every run.
+    /// Every match.
     pub runs: Vec<RunRecord>,
 }
 

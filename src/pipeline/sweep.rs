@@ -116,7 +116,7 @@ pub enum SweepRow {
     Matching(MatchingRow),
 }
 
-/// The tables.
+/// Tables of the benchmark.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Sweep {
     /// Triangles of the stamped part before reduction.

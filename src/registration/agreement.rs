@@ -13,7 +13,7 @@ const SAME_SHIFT: f64 = 0.02;
 /// Where a part lies in its own frame, and how large it is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Extent {
-    /// Its centre.
+    /// Centre of the part in its own frame.
     pub center: Point3,
     /// Diagonal of its box.
     pub diagonal: f64,

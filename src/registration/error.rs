@@ -29,7 +29,7 @@ pub enum RegistrationError {
     /// Fewer than three pairs with positive weight and finite coordinates.
     #[error("{n_pairs} usable pairs do not fix a pose, at least three are needed")]
     TooFewPairs {
-        /// Usable pairs.
+        /// Number of usable pairs.
         n_pairs: usize,
     },
     /// All points of one side lie in one place.
@@ -53,9 +53,9 @@ pub enum RegistrationError {
     /// A setting is outside its range.
     #[error("{name} is {value}, but must be {}", range_words(.range))]
     Setting {
-        /// The setting.
+        /// Name of the setting.
         name: &'static str,
-        /// Its value.
+        /// Value it was given.
         value: f64,
         /// The range it has to lie in.
         range: RangeInclusive<f64>,

@@ -16,7 +16,7 @@ const NEGLIGIBLE: f64 = 1e-6;
 pub enum PairDoubt {
     /// One pair lies far from where all others put it.
     Far {
-        /// Which.
+        /// Number of the pair, from 0.
         pair: usize,
         /// How far, in target length units.
         distance: f64,

@@ -63,7 +63,7 @@ pub enum StartOutcome {
     },
     /// Others were ahead after so many iterations.
     Dropped {
-        /// Iterations made.
+        /// Number of iterations made.
         after: usize,
     },
     /// It found no pairs or its pairs fixed no motion.
@@ -117,7 +117,7 @@ impl StartRecord {
 /// A distinct pose that came close.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Alternative {
-    /// The pose.
+    /// The best pose.
     pub target_from_source: Similarity,
     /// How much worse than the result, 1 = equally good; the larger one of both directions.
     #[serde(with = "any_float")]
@@ -142,7 +142,7 @@ pub struct MirrorCheck {
 /// How long the phases took. For the reader; nothing depends on them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct MatchTimings {
-    /// First poses.
+    /// Time to make the first poses.
     pub align: Duration,
     /// All starts on few points.
     #[serde(alias = "race")]
@@ -191,7 +191,7 @@ pub struct MatchOutcome {
     /// the result; else other poses may fit as well. False in results of earlier versions.
     #[serde(default)]
     pub rivals_sought: bool,
-    /// Every start.
+    /// Every start, in the order of their numbers.
     pub starts: Vec<StartRecord>,
     /// Index of the start that won.
     pub winner: usize,
@@ -199,6 +199,6 @@ pub struct MatchOutcome {
     pub scale_check: ScaleCheck,
     /// Would the opposite hand fit?
     pub mirror_check: MirrorCheck,
-    /// Durations.
+    /// Time of each phase.
     pub timings: MatchTimings,
 }

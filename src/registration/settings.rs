@@ -84,7 +84,7 @@ pub struct MatchSettings {
     pub motion: Motion,
     /// Which hand of the source is tried.
     pub hand: Hand,
-    /// First poses.
+    /// How the first poses are made.
     pub starts: StartSettings,
     /// How they are searched.
     pub search: Search,

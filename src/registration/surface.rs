@@ -38,7 +38,7 @@ pub struct Surface {
 /// Size, place and direction of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measures {
-    /// Surface area.
+    /// Area of the surface.
     pub area: f64,
     /// Area-weighted centroid.
     pub centroid: Point3,

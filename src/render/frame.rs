@@ -8,7 +8,7 @@ use crate::geometry::Camera;
 pub struct Frame<'a> {
     /// What there is to see.
     pub scene: &'a Scene,
-    /// From where.
+    /// Camera the picture is taken with.
     pub camera: &'a Camera,
     /// Width and height in pixels; zero counts as one, sizes beyond the device's limit are cut.
     pub size: [u32; 2],

@@ -8,7 +8,7 @@ const FEATURE_COS: f64 = 0.906_307_787_036_650;
 const CERTAIN_COS: f64 = 0.829_037_572_555_041_7;
 /// Creases sharper than this are drawn however short they are: cos 50°.
 const SHARP_COS: f64 = 0.642_787_609_686_539_4;
-/// Softer creases are drawn where at least so many edges hang together: a fold that runs askew to the
+/// Softer creases are drawn where at least so many edges hang together: a fold that runs at an angle to the
 /// mesh jumps from row to row, and its pieces would look like stitches.
 const MIN_CHAIN: u32 = 20;
 /// And where at least one in so many is certain. Radii meshed with three or four elements bend by about

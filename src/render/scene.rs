@@ -171,7 +171,7 @@ pub struct Section {
 /// On which side of the wipe line something is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum WipeSide {
-    /// On both.
+    /// On both sides of the line.
     #[default]
     Both,
     /// Only left of it.
@@ -183,9 +183,9 @@ pub enum WipeSide {
 /// Of two sheets that may lie in each other, the one a mesh belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sheet {
-    /// One.
+    /// The sheet that takes the even stripes.
     First,
-    /// The other.
+    /// The sheet that takes the odd stripes.
     Second,
 }
 
@@ -204,7 +204,7 @@ impl Sheet {
 pub struct Drawable {
     /// The prepared mesh.
     pub mesh: Arc<RenderMesh>,
-    /// Its pose.
+    /// Pose of the mesh in the scene.
     pub world_from_mesh: Similarity,
     /// A shift for display only, in world units (separation).
     pub offset: Vector3,
@@ -336,7 +336,7 @@ pub struct FieldLook {
     /// Values by vertex of the mesh the [`RenderMesh`] was made of; NaN where there is none, which is
     /// drawn grey with a hatch. Missing values at the end count as NaN.
     pub values: Arc<[f32]>,
-    /// Their colours.
+    /// Colours of the values.
     pub scale: ColorScale,
 }
 
@@ -394,7 +394,7 @@ impl Default for Style {
 pub enum DepthMode {
     /// Hidden where a part is in front.
     Tested,
-    /// Always visible.
+    /// Drawn over everything.
     OnTop,
     /// Fully visible in front, faint behind.
     #[default]
@@ -501,9 +501,9 @@ pub enum MarkerShape {
 /// A symbol of constant size on the screen.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Marker {
-    /// Its centre.
+    /// Centre in the scene.
     pub position: Point3,
-    /// Its shape.
+    /// Form of the mark.
     pub shape: MarkerShape,
     /// Diameter in points.
     pub size: f32,
@@ -518,7 +518,7 @@ pub struct Marker {
 /// Triangles of one colour, without light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fill {
-    /// Corners.
+    /// Corners of each triangle.
     pub triangles: Vec<[Point3; 3]>,
     /// Colour and opacity.
     pub color: Rgba,

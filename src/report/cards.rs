@@ -21,7 +21,7 @@ pub enum CardForm {
 }
 
 impl CardForm {
-    /// Every form.
+    /// Every form, in the order of the menus.
     pub const ALL: &[Self] = &[
         Self::StampedPart,
         Self::StampedPartInverse,
@@ -109,7 +109,7 @@ pub enum CardError {
          the crash model first"
     )]
     Scaled {
-        /// The scale.
+        /// Scale factor of the pose.
         scale: f64,
     },
     /// The 3×3 block is no rotation.
@@ -118,7 +118,7 @@ pub enum CardError {
     /// A number that no field of ten columns can hold.
     #[error("{value} does not fit {width} columns")]
     DoesNotFit {
-        /// The number.
+        /// Number that does not fit the field.
         value: f64,
         /// Columns of the field.
         width: usize,
@@ -126,7 +126,7 @@ pub enum CardError {
     /// An id with more digits than its field.
     #[error("the id {id} has more than {width} digits")]
     IdTooLong {
-        /// The id.
+        /// Id that does not fit the field.
         id: u64,
         /// Columns of the field.
         width: usize,
@@ -134,7 +134,7 @@ pub enum CardError {
     /// No deck can include a file of this name.
     #[error("no deck can include the file {name:?}, because its name {fault}; rename it")]
     FileName {
-        /// The name.
+        /// Name that cannot stand in a card.
         name: String,
         /// What is wrong with it.
         fault: &'static str,

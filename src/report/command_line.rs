@@ -14,9 +14,9 @@ use crate::units::Units;
 /// One file of a match and what is taken from it.
 #[derive(Debug, Clone, Copy)]
 pub struct CommandSide<'a> {
-    /// The file.
+    /// Path of the file.
     pub path: &'a Path,
-    /// Its parts.
+    /// Parts that are used of it.
     pub selection: &'a PartSelection,
     /// Its lengths are multiplied by this.
     pub length_factor: f64,

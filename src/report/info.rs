@@ -37,13 +37,13 @@ pub struct ModelInfo {
 /// A file that was read.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FileInfo {
-    /// Its path.
+    /// Path of the file.
     pub path: String,
     /// Its length, unpacked.
     pub bytes: u64,
 }
 
-/// One part.
+/// Counts and sizes of one part.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PartInfo {
     /// The deck's part id.

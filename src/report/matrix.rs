@@ -25,7 +25,7 @@ pub enum MatrixForm {
 }
 
 impl MatrixForm {
-    /// Every form.
+    /// Every form, in the order of the menus.
     pub const ALL: &[Self] = &[
         Self::Rows,
         Self::Columns,

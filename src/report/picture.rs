@@ -32,7 +32,7 @@ pub struct PictureMesh<'a> {
     pub mesh: &'a TriMesh,
     /// Where it lies.
     pub world_from_mesh: &'a Similarity,
-    /// Its colours.
+    /// Colour of the sheet or of its values.
     pub paint: Paint<'a>,
 }
 

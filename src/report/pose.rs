@@ -18,9 +18,9 @@ pub struct PoseRecord {
     pub rotation_axis_angle: AxisAngle,
     /// The rotation as a unit quaternion w, x, y, z.
     pub quaternion: [f64; 4],
-    /// t.
+    /// Translation t.
     pub translation: [f64; 3],
-    /// c.
+    /// Scale factor c.
     pub scale: f64,
     /// Determinant of R: 1, or −1 for a mirrored part.
     pub determinant: f64,
@@ -30,7 +30,7 @@ pub struct PoseRecord {
     pub sample_node: Option<SampleNode>,
 }
 
-/// A rotation.
+/// The rotation as axis and angle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AxisAngle {
     /// Unit vector in the crash model's axes; x for no rotation.

@@ -71,16 +71,16 @@ pub struct MatchRecord {
     pub metrics: Metrics,
     /// Motions that change nothing, in words; absent if the shape fixes the pose.
     pub free_motion: Option<String>,
-    /// The method.
+    /// Method by its name.
     pub method: Method,
     /// All choices of the method.
     pub parameters: Parameters,
     /// Seed of random numbers. A match draws none, so there is none: same input, same bits.
     pub seed: Option<u64>,
-    /// Every start.
+    /// Every start, in the order of their numbers.
     #[serde(serialize_with = "starts::entries")]
     pub starts: Vec<StartRecord>,
-    /// Durations.
+    /// Time of each phase.
     pub timings: TimingsRecord,
     /// What the user should know besides the verdict.
     pub warnings: Vec<String>,
@@ -157,7 +157,7 @@ impl From<&OneSided> for OneWay {
     }
 }
 
-/// The computer.
+/// Computer the times were taken on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Machine {
     /// Operating system.
@@ -169,7 +169,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// This one.
+    /// The computer the program runs on.
     pub fn here() -> Self {
         Self {
             os: std::env::consts::OS,
@@ -253,7 +253,7 @@ pub struct TimingsRecord {
     pub match_ms: f64,
     /// The independent check.
     pub verify_ms: f64,
-    /// Everything together.
+    /// Time of the whole run in milliseconds.
     pub total_ms: f64,
 }
 
@@ -292,7 +292,7 @@ pub struct FileRecord {
 /// A file that another one includes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct IncludedFile {
-    /// Its path.
+    /// Path of the file.
     pub path: String,
     /// SHA-256 of the file as it is stored.
     #[serde(rename = "sha256")]
@@ -316,7 +316,7 @@ pub struct RecordContext {
     pub center: Point3,
     /// The two sides.
     pub files: PerRole<FileRecord>,
-    /// Durations.
+    /// Time of each phase.
     pub timings: TimingsRecord,
     /// What the user should know besides the verdict.
     pub warnings: Vec<String>,

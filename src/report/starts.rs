@@ -65,7 +65,7 @@ struct StartEntry {
     mirrored: bool,
     /// The part whose nodes were paired with the other one.
     data_side: &'static str,
-    /// Iterations made.
+    /// Number of iterations made.
     iterations: usize,
     /// Objective in the end; comparable between starts that went equally far.
     score: f64,

@@ -10,7 +10,7 @@ use crate::formats::keyword::fixed_width::fixed_width;
 pub struct SampleFile {
     /// File name without folder.
     pub name: &'static str,
-    /// Content.
+    /// Content of the file.
     pub bytes: Vec<u8>,
 }
 

@@ -56,7 +56,7 @@ pub enum SamplePart {
 }
 
 impl SamplePart {
-    /// All parts.
+    /// Every sample part.
     pub const ALL: [Self; 11] = [
         Self::Floor,
         Self::Rail,
@@ -152,7 +152,7 @@ pub enum SampleVariant {
 }
 
 impl SampleVariant {
-    /// All variants.
+    /// Every variant.
     pub const ALL: [Self; 10] = [
         Self::Plain,
         Self::Addendum,
@@ -218,7 +218,7 @@ impl SampleVariant {
 /// What to generate.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SampleSettings {
-    /// Which part.
+    /// The part it is a variant of.
     pub part: SamplePart,
     /// What differs between the sides.
     pub variant: SampleVariant,

@@ -60,7 +60,7 @@ pub fn closest_many(
 pub struct DistanceStats {
     /// Root mean square distance.
     pub rms: f64,
-    /// Mean distance.
+    /// Mean distance over the area.
     pub mean: f64,
     /// The distance that 95 % of the area does not exceed.
     pub p95: f64,

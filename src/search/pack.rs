@@ -171,7 +171,7 @@ fn any_perpendicular(unit: &Vector3) -> Vector3 {
     unit.cross(&other).normalize()
 }
 
-/// Four points.
+/// Four points side by side.
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
 pub(super) struct PointPack {

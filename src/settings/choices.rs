@@ -44,7 +44,7 @@ choices! { Method:
 }
 
 choices! { StartMethod:
-    SurfaceNormals => "surface-normal", "Align surface normal",
+    SurfaceNormals => "surface-normal", "Align surface normals",
         "Aligns centroids and mean normals, then rotates in steps about the normal";
     CurrentPose => "current", "Current pose",
         "Starts from the current pose, for example one set by hand";

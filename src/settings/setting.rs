@@ -51,7 +51,7 @@ impl Group {
         Self::Search,
     ];
 
-    /// The heading.
+    /// Heading of the group.
     pub fn title(self) -> &'static str {
         match self {
             Self::Method => "Method",
@@ -73,9 +73,9 @@ pub enum Domain {
     Count(RangeInclusive<usize>),
     /// A maximum, or none.
     Limit(RangeInclusive<usize>),
-    /// A number.
+    /// A number in a range.
     Number {
-        /// Its unit.
+        /// Unit of the number.
         unit: Unit,
         /// The range outside of which a match refuses it.
         range: RangeInclusive<f64>,
@@ -91,11 +91,11 @@ pub enum Domain {
 /// The unit of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
-    /// None.
+    /// Without unit.
     One,
     /// The length unit of the crash part.
     Length,
-    /// Degrees.
+    /// Angle in degrees.
     Degrees,
     /// Mean edge lengths.
     EdgeLengths,

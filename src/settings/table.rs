@@ -223,7 +223,7 @@ pub static SETTINGS: [Setting; 25] = [
         option: "allowance",
         former: &[],
         key: "allowance",
-        label: "Allowance",
+        label: "Offset tolerance",
         help: "Expected deviation besides faceting, such as springback",
         group: Group::Correspondences,
         domain: number(Unit::Length, limits::LENGTH, 0.01),

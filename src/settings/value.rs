@@ -51,7 +51,7 @@ impl Value {
 
 /// A field of the settings that can be taken as a [`Value`].
 pub(super) trait Field {
-    /// Its value.
+    /// The value as text, number or switch.
     fn value(&self) -> Value;
 
     /// Takes a value; false if it is of another kind.

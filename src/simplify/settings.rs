@@ -164,13 +164,13 @@ pub enum SimplifyError {
     BadSetting {
         /// The setting's name.
         name: &'static str,
-        /// Its value.
+        /// Value it was given.
         value: f64,
     },
     /// The list of parts does not fit the mesh.
     #[error("{n_labels} part labels were given for {n_triangles} triangles")]
     LabelCount {
-        /// Labels given.
+        /// Number of labels given.
         n_labels: usize,
         /// Triangles of the mesh.
         n_triangles: usize,

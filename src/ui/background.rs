@@ -16,7 +16,7 @@ pub(super) fn run_once(name: &str, work: impl FnOnce() + Send + 'static) -> bool
 pub(super) struct Task<K, T> {
     /// Its name; two tasks of one name make the same thing.
     pub key: K,
-    /// Makes it.
+    /// Makes the value, on the thread.
     pub work: Box<dyn FnOnce() -> T + Send>,
 }
 

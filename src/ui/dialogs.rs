@@ -54,7 +54,7 @@ enum Answer {
     },
 }
 
-/// Open questions.
+/// Questions that wait for an answer.
 pub struct Dialogs {
     sender: Sender<Answer>,
     receiver: Receiver<Answer>,

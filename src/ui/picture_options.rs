@@ -30,8 +30,8 @@ pub fn picture_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.add_space(UNIT);
     let is_taken = ui
         .horizontal(|ui| {
-            let is_taken = large_button(ui, "Write picture…", true).clicked();
-            caption(ui, "F12 takes the next one in the same way");
+            let is_taken = large_button(ui, "Save image…", true).clicked();
+            caption(ui, "F12 repeats this");
             is_taken
         })
         .inner;
@@ -63,7 +63,7 @@ fn size_ui(ui: &mut Ui, choice: &mut PictureChoice) {
                 }
             }
         });
-        form_row(ui, "Own size", LABEL, |ui| {
+        form_row(ui, "Custom size", LABEL, |ui| {
             let mut sides = match choice.size {
                 PictureSize::Pixels(sides) => sides,
                 PictureSize::Window(_) => [1920, 1080],

@@ -24,14 +24,14 @@ pub struct WindowPlace {
 pub struct Preferences {
     /// Preferences of the user.
     pub settings: Settings,
-    /// The window.
+    /// Size and place of the window.
     pub window: Option<WindowPlace>,
 }
 
 /// Places on disk that belong to the program.
 #[derive(Debug, Clone, Default)]
 pub struct UserFiles {
-    /// The preferences.
+    /// File the preferences are kept in.
     pub preferences: PreferencesFile,
     /// The folder for autosaved sessions; without one none are kept.
     pub sessions: Option<PathBuf>,

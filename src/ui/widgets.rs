@@ -51,7 +51,7 @@ pub fn role_mark(ui: &mut Ui, role: Role) -> Response {
     response.on_hover_text(name)
 }
 
-/// Quiet text.
+/// Text of less weight.
 pub fn secondary(ui: &mut Ui, text: impl Into<String>) -> Response {
     let color = Palette::of(ui).secondary;
     ui.label(RichText::new(text).color(color))

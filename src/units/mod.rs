@@ -194,7 +194,7 @@ impl UnitOrigin {
 /// Units with where they are known from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct KnownUnits {
-    /// The units.
+    /// The units found.
     pub units: Units,
     /// How they became known.
     pub origin: UnitOrigin,

@@ -34,7 +34,7 @@ impl UnitSystem {
         Self::LbInS,
     ];
 
-    /// Its name.
+    /// Name of the system, such as ton-mm-s.
     pub fn label(self) -> &'static str {
         match self {
             Self::KgMS => "kg-m-s",

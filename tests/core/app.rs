@@ -606,6 +606,32 @@ fn escape_takes_a_move_by_keys_back_without_a_trace() {
 }
 
 #[test]
+fn a_move_by_keys_ends_before_what_it_stands_on_changes() {
+    let begun = || {
+        let mut window = Window::with_both();
+        let before = window.state.document.clone();
+        window.act(Action::MoveTool);
+        window.apply(MoveCommand::Input(ModalInput::Character('1')));
+        assert_ne!(window.state.document, before);
+        (window, before)
+    };
+    let (mut window, before) = begun();
+    window.apply(FileCommand::Close(Role::Stamped));
+    assert!(window.state.moving.tool.is_none());
+    window.act(Action::Undo);
+    assert_eq!(window.state.document, before);
+
+    // Escape is for the match that runs, not for a tool below it.
+    let (mut window, before) = begun();
+    window.holds = true;
+    window.act(Action::MatchOrStop);
+    window.apply(Command::Escape);
+    assert!(window.state.moving.tool.is_none());
+    assert_eq!(window.state.document.pose, before.pose);
+    assert!(!window.state.jobs.is_busy());
+}
+
+#[test]
 fn turning_over_twice_comes_back() {
     for action in [Action::FlipX, Action::FlipY, Action::FlipZ] {
         let mut window = Window::with_both();

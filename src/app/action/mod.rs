@@ -43,7 +43,7 @@ impl Menu {
         Self::Help,
     ];
 
-    /// Its title.
+    /// Title of the menu in the menu bar.
     pub fn label(self) -> &'static str {
         match self {
             Self::File => "File",
@@ -278,7 +278,7 @@ actions! {
     SaveMoved,
     /// The choices of a picture.
     PictureOptions,
-    /// A picture.
+    /// Save a picture of the window under the pointer.
     TakePicture,
     /// A picture without background.
     TakePictureTransparent,

@@ -34,7 +34,7 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// No key.
+    /// The action has no key.
     pub const NONE: Self = Self::press(&[]);
 
     /// Keys that act once, when they go down.
@@ -65,13 +65,13 @@ impl Keys {
 /// One action of the table.
 #[derive(Debug)]
 pub struct ActionRow {
-    /// The action.
+    /// The action this row describes.
     pub action: Action,
-    /// Its name, in sentence case; "…" where more input follows.
+    /// Name in menus and search, in sentence case; "…" where more input follows.
     pub label: &'static str,
     /// What it does, in a sentence without a full stop.
     pub tooltip: &'static str,
-    /// Its keys.
+    /// Keys that trigger it, the one shown first in front.
     pub keys: Keys,
     /// `Ok` if it is possible now, else why it is not.
     pub enabled: fn(&AppState) -> Result<(), Reason>,

@@ -63,7 +63,7 @@ pub struct Shortcut {
     pub shift: bool,
     /// Alt is held.
     pub alt: bool,
-    /// The key.
+    /// The key pressed together with the modifiers.
     pub key: Key,
 }
 
@@ -78,7 +78,7 @@ impl Shortcut {
         }
     }
 
-    /// With Ctrl.
+    /// The key with Ctrl.
     pub const fn ctrl(key: Key) -> Self {
         Self {
             ctrl: true,
@@ -86,7 +86,7 @@ impl Shortcut {
         }
     }
 
-    /// With Shift.
+    /// The key with Shift.
     pub const fn shift(key: Key) -> Self {
         Self {
             shift: true,
@@ -94,7 +94,7 @@ impl Shortcut {
         }
     }
 
-    /// With Alt.
+    /// The key with Alt.
     pub const fn alt(key: Key) -> Self {
         Self {
             alt: true,

@@ -12,11 +12,11 @@ pub enum ExportCommand {
     Copy(CopyForm),
     /// Ask where to write something.
     AskSave(Output),
-    /// Write something.
+    /// Writes an output to a file.
     Write {
-        /// What.
+        /// What is written.
         kind: Output,
-        /// Where.
+        /// File it is written to.
         path: PathBuf,
     },
     /// The line that does the match without the window.
@@ -25,7 +25,7 @@ pub enum ExportCommand {
     CopyLog,
     /// A text that a panel shows.
     CopyText {
-        /// The text.
+        /// Text for the clipboard.
         text: String,
         /// What it is, for the toast.
         what: String,
@@ -39,9 +39,9 @@ pub enum ExportCommand {
     AskPicture(PictureChoice),
     /// A picture into a file.
     WritePicture {
-        /// How.
+        /// Size, background and overlays.
         choice: PictureChoice,
-        /// Where.
+        /// PNG file it is written to.
         path: PathBuf,
     },
 }

@@ -17,7 +17,7 @@ use crate::report::{CardForm, MatrixForm};
 /// What "Copy" puts on the clipboard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CopyForm {
-    /// The matrix.
+    /// The matrix in one of its forms.
     Matrix(MatrixForm),
     /// LS-DYNA cards.
     Cards(CardForm),

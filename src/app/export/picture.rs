@@ -69,11 +69,11 @@ impl PictureWindows {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PictureChoice {
-    /// Its size.
+    /// Size in pixels or relative to the window.
     pub size: PictureSize,
     /// What it shows.
     pub windows: PictureWindows,
-    /// Without background.
+    /// Draws the parts on transparent ground.
     pub is_transparent: bool,
     /// As on the screen, with legend, names and scale; then the size is that of the screen.
     pub has_overlays: bool,
@@ -105,11 +105,11 @@ impl PictureChoice {
 /// Where a picture goes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PicturePlace {
-    /// This file.
+    /// Into the file named here.
     File(PathBuf),
     /// The first name in a folder that is still free: "bp_1.png", "bp_2.png", …
     Next {
-        /// The folder.
+        /// Folder in which the next free name is taken.
         folder: PathBuf,
         /// What the name begins with.
         stem: String,

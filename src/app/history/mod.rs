@@ -111,7 +111,7 @@ impl StepKind {
 /// A step as the history's tab shows it.
 #[derive(Debug, Clone)]
 pub struct HistoryRow<'a> {
-    /// Its name.
+    /// Name of the step, as the undo menu shows it.
     pub name: &'a str,
     /// What it changed.
     pub kind: StepKind,

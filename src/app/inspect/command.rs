@@ -14,7 +14,7 @@ pub enum InspectCommand {
     Pin(Role, Point3),
     /// Call a label so.
     Rename {
-        /// Which label.
+        /// Number of the label.
         id: u64,
         /// What it is called.
         name: String,
@@ -29,7 +29,7 @@ pub enum InspectCommand {
     LookAt {
         /// Of which part.
         role: Role,
-        /// The place.
+        /// Point of the surface, in crash coordinates.
         point: Point3,
         /// What is said about it where it is marked.
         text: String,

@@ -51,7 +51,7 @@ pub enum Freshness {
 pub struct Compared {
     /// Revisions of the parts.
     pub parts: PerRole<u64>,
-    /// The numbers.
+    /// Numbers of the comparison.
     pub comparison: Shared<Comparison>,
 }
 

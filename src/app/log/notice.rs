@@ -9,7 +9,7 @@ use crate::app::Action;
 /// How loud a message is, quiet first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum NoticeLevel {
-    /// Log only.
+    /// Shown in the log only.
     Info,
     /// A short toast.
     Success,
@@ -25,7 +25,7 @@ impl NoticeLevel {
     /// Those that have toasts, quiet first.
     pub const TOLD: [Self; 4] = [Self::Success, Self::Note, Self::Warning, Self::Error];
 
-    /// Its name.
+    /// Name of the level in the log.
     pub fn label(self) -> &'static str {
         match self {
             Self::Info => "Steps",
@@ -70,7 +70,7 @@ pub struct NoticeId(pub u64);
 /// One message to the user.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Notice {
-    /// Its name.
+    /// Number by which it is dismissed.
     pub id: NoticeId,
     /// How loud it is.
     pub level: NoticeLevel,

@@ -71,7 +71,7 @@ impl Log {
         }
     }
 
-    /// All rows.
+    /// All rows, the oldest first.
     pub fn rows(&self) -> &[LogRow] {
         &self.rows
     }

@@ -10,7 +10,7 @@ pub enum Preview {
     Start(usize),
     /// Where a start was at one of its iterations.
     Step {
-        /// The start.
+        /// Number of the start in the starts table.
         start: usize,
         /// The iteration, counted from 0.
         iteration: usize,

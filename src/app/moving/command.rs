@@ -9,7 +9,7 @@ use crate::geometry::Similarity;
 pub enum MoveCommand {
     /// While dragging: the motion since the grab, in the space of the crash model.
     Drag {
-        /// The drag.
+        /// The drag all its motions belong to; they are one undo step.
         gesture: GestureId,
         /// Motion since the grab.
         delta: Similarity,
@@ -22,7 +22,7 @@ pub enum MoveCommand {
     AbandonDrag(GestureId),
     /// A typed distance along an axis of a frame.
     Translate {
-        /// Which axis.
+        /// Axis of the translation.
         axis: Axis,
         /// Of which frame.
         frame: AxisFrame,
@@ -31,16 +31,16 @@ pub enum MoveCommand {
     },
     /// A typed angle about an axis of a frame through the part's centre.
     Rotate {
-        /// Which axis.
+        /// Axis of the rotation.
         axis: Axis,
         /// Of which frame.
         frame: AxisFrame,
-        /// In degrees.
+        /// Angle in degrees, by the right-hand rule.
         degrees: f64,
     },
     /// A whole new pose, for example from a field.
     SetPose {
-        /// The pose.
+        /// The new pose.
         crash_from_stamped: Similarity,
         /// Name of the undo step.
         name: String,

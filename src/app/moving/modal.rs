@@ -9,7 +9,7 @@ const MAX_TYPED: usize = 24;
 /// Move or rotate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MotionKind {
-    /// Along axes.
+    /// Translation along axes.
     Move,
     /// About an axis.
     Rotate,
@@ -31,7 +31,7 @@ pub enum Constraint {
 pub enum ModalInput {
     /// X, Y or Z; with Shift the plane across it.
     Axis {
-        /// Which.
+        /// Axis the motion is constrained to.
         axis: Axis,
         /// True with Shift held.
         is_plane: bool,
@@ -47,9 +47,9 @@ pub enum ModalInput {
         /// Angle swept about the pivot on the screen, radians, counter-clockwise.
         angle: f64,
     },
-    /// Take it.
+    /// Keeps the motion as one undo step.
     Accept,
-    /// Go back.
+    /// Restores the pose from before the tool.
     Reject,
 }
 

@@ -7,19 +7,19 @@ use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
 /// One of three axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Axis {
-    /// The first.
+    /// X axis of the crash deck.
     X,
-    /// The second.
+    /// Y axis of the crash deck.
     Y,
-    /// The third.
+    /// Z axis of the crash deck.
     Z,
 }
 
 impl Axis {
-    /// All three.
+    /// The three axes in order.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
-    /// Its letter.
+    /// The axis as a capital letter.
     pub fn letter(self) -> char {
         match self {
             Self::X => 'X',
@@ -51,7 +51,7 @@ impl AxisFrame {
     /// All, in the order they are cycled through.
     pub const ALL: [Self; 3] = [Self::Global, Self::Part, Self::View];
 
-    /// Its name.
+    /// Name of the motion in the window.
     pub fn label(self) -> &'static str {
         match self {
             Self::Global => "global",

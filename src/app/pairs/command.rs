@@ -24,7 +24,7 @@ pub enum PairCommand {
     },
     /// Forget a pair.
     Delete(usize),
-    /// Forget all.
+    /// Deletes all pairs.
     DeleteAll,
     /// Lay the stamped points on the crash points.
     Fit,

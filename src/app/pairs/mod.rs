@@ -39,7 +39,7 @@ impl PickKind {
         }
     }
 
-    /// In words.
+    /// The reason as a sentence for the window.
     pub fn words(self) -> String {
         match self {
             Self::Node(Some(id)) => format!("node {id}"),

@@ -31,16 +31,16 @@ pub enum FileCommand {
     Swap,
     /// Multiply the lengths of a file, from the model in memory.
     SetLengthFactor {
-        /// Which.
+        /// Side whose units change.
         role: Role,
         /// Factor on the coordinates of the file.
         factor: f64,
     },
     /// Say which units a file is in, or with `None` leave that to the file and its sizes.
     SetUnits {
-        /// Which.
+        /// Side whose units change.
         role: Role,
-        /// Its units.
+        /// The units to use; `None` takes those the file states or implies.
         units: Option<Units>,
     },
     /// The sizes really are different.

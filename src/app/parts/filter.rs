@@ -2,7 +2,7 @@
 
 use crate::formats::PartSummary;
 
-/// One condition.
+/// One condition of the part filter.
 #[derive(Debug, Clone, PartialEq)]
 enum Term {
     /// The id begins with these digits, or the title holds them.

@@ -55,7 +55,7 @@ impl AppState {
 /// A part of the crash model that is more like the stamped part than all that are matched together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MoreAlike {
-    /// That part.
+    /// The part compared.
     pub part: PartRef,
     /// Crash parts that are matched now.
     pub n_used: usize,

@@ -7,9 +7,9 @@ use crate::role::PerRole;
 pub enum ReduceCommand {
     /// Reduce to at most so many triangles.
     To {
-        /// Which parts.
+        /// Sides to reduce.
         roles: PerRole<bool>,
-        /// The ceiling.
+        /// Maximum number of triangles.
         max_triangles: usize,
     },
     /// Go back to the full mesh.

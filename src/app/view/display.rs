@@ -145,7 +145,7 @@ impl BottomTab {
         Self::Diagnostics,
     ];
 
-    /// Its title.
+    /// Title of the tab.
     pub fn label(self) -> &'static str {
         match self {
             Self::Log => "Log",

@@ -10,7 +10,7 @@ const SLACK: f32 = 32.0;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sections {
     is_open: [bool; 4],
-    /// Latest first.
+    /// The sections in order of their last use, the latest first.
     order: [Section; 4],
 }
 

@@ -27,7 +27,7 @@ impl Section {
         self as usize
     }
 
-    /// Its title.
+    /// Title of the section with its number.
     pub fn title(self) -> &'static str {
         match self {
             Self::Load => "Load & display",

@@ -284,7 +284,7 @@ impl Judged {
     };
 }
 
-/// No triangle.
+/// Number that stands for no triangle.
 const NOBODY: u32 = u32::MAX;
 
 /// What is needed to tell the sides of a surface.

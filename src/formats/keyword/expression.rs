@@ -87,7 +87,7 @@ pub enum ExpressionProblem {
     /// A function with the wrong number of arguments.
     #[error("function {name:?} does not take {found} arguments")]
     ArgumentCount {
-        /// The function.
+        /// Name as it stands in the deck.
         name: String,
         /// How many arguments were given.
         found: usize,

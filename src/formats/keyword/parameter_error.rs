@@ -28,7 +28,7 @@ pub enum ParameterProblem {
     /// The value does not suit the type.
     #[error("{found:?} is not a value for parameter {name:?}")]
     BadValue {
-        /// The parameter.
+        /// Name of the parameter, without `&`.
         name: String,
         /// What stands in the value field.
         found: String,

@@ -34,7 +34,7 @@ impl SourceFile {
         &self.path
     }
 
-    /// Its bytes.
+    /// The bytes of the file, decompressed.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }

@@ -13,7 +13,7 @@ pub enum TransformError {
     /// A node that no file defines.
     #[error("row {row} of the transformation names node {node}, which is not defined")]
     MissingNode {
-        /// The row.
+        /// Row of the transformation, from 1.
         row: usize,
         /// The node's id.
         node: u64,
@@ -21,7 +21,7 @@ pub enum TransformError {
     /// A point that no `POINT` row defines.
     #[error("row {row} of the transformation names point {point}, which is not defined")]
     MissingPoint {
-        /// The row.
+        /// Row of the transformation, from 1.
         row: usize,
         /// The point's local id.
         point: u64,
@@ -29,19 +29,19 @@ pub enum TransformError {
     /// Two points that should span a direction coincide, or a direction is zero.
     #[error("row {row} of the transformation has no direction")]
     NoDirection {
-        /// The row.
+        /// Row of the transformation, from 1.
         row: usize,
     },
     /// Three points that should span a plane lie on a line.
     #[error("row {row} of the transformation has three points on one line")]
     Collinear {
-        /// The row.
+        /// Row of the transformation, from 1.
         row: usize,
     },
     /// The last column of a `MATRIX` row is not 0 0 0 1.
     #[error("row {row} of the transformation holds a matrix whose last column is not 0 0 0 1")]
     NotAffine {
-        /// The row.
+        /// Row of the transformation, from 1.
         row: usize,
     },
 }
@@ -93,7 +93,7 @@ pub enum TransformRow {
     },
     /// `POINT`: moves nothing.
     Point {
-        /// Local id.
+        /// Node id before the offset of the include.
         id: u64,
         /// Coordinates before any row.
         position: Point3,

@@ -152,7 +152,7 @@ pub struct DifferenceRecord {
     pub rms: f64,
     /// 95 % of the area differ by less.
     pub p95: f64,
-    /// Largest difference.
+    /// Largest difference without sign.
     pub max: f64,
     /// Id of the element with it.
     pub element: u64,
@@ -161,7 +161,7 @@ pub struct DifferenceRecord {
 /// A comparison with another result.
 #[derive(Debug, Clone, Serialize)]
 pub struct ComparisonRecord {
-    /// Its files.
+    /// Files the other result was read from.
     pub files: Vec<String>,
     /// Elements with values in both.
     pub n_both: usize,
@@ -169,7 +169,7 @@ pub struct ComparisonRecord {
     pub n_only_here: usize,
     /// Elements with values in the other alone.
     pub n_only_other: usize,
-    /// Thickness.
+    /// Differences of the thickness.
     pub thickness: Option<DifferenceRecord>,
     /// Effective plastic strain, mean over the layers.
     pub plastic_strain: Option<DifferenceRecord>,

@@ -128,7 +128,7 @@ pub(super) fn element_index(model: &Model, shells: &[u32]) -> HashMap<u64, usize
 pub struct TargetLayers {
     /// Number of layers.
     pub n_layers: usize,
-    /// Their rule.
+    /// Rule of integration through the thickness.
     pub rule: RuleKind,
     /// Points in the plane: 1 or 4.
     pub n_plane: u8,

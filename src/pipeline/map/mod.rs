@@ -87,7 +87,7 @@ pub struct MapRun {
     pub source_shells: Vec<Vec<u32>>,
     /// Values and status of each element.
     pub mapped: Mapped,
-    /// The checks.
+    /// Statistics, balance and way back.
     pub checks: MapChecks,
     /// Milliseconds for converting and mapping, without the checks.
     pub map_ms: f64,

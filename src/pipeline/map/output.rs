@@ -54,7 +54,7 @@ impl WriteKind {
 /// How the mapped state is written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MapOutput {
-    /// Which files.
+    /// Include, part or whole deck.
     pub kind: WriteKind,
     /// Where the first of them goes.
     pub path: PathBuf,

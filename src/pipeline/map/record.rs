@@ -57,7 +57,7 @@ pub struct MapRecord {
 /// One stamped deck.
 #[derive(Debug, Clone, Serialize)]
 pub struct StampedRecord {
-    /// Its file.
+    /// Path of the file.
     pub file: String,
     /// Its pose, rows of the 4×4 matrix.
     pub crash_from_stamped: [[f64; 4]; 4],
@@ -66,7 +66,7 @@ pub struct StampedRecord {
 /// Elements with one status.
 #[derive(Debug, Clone, Serialize)]
 pub struct StatusRecord {
-    /// Which.
+    /// Status the elements share.
     pub status: Status,
     /// How many elements.
     pub n_elements: usize,
@@ -88,7 +88,7 @@ pub struct PairRecord {
 /// An area-weighted distribution.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct DistributionRecord {
-    /// Mean.
+    /// Mean over the area.
     pub mean: f64,
     /// Smallest value.
     pub min: f64,

@@ -36,7 +36,7 @@ pub enum Refusal {
     /// It is one of the files that are read.
     #[error("{name} would overwrite a file that is read, {input:?}: {path:?}")]
     OverwritesInput {
-        /// The output.
+        /// Name of the output.
         name: String,
         /// Where it was to go.
         path: PathBuf,
@@ -46,7 +46,7 @@ pub enum Refusal {
     /// Two outputs go to one file.
     #[error("{name} and {other} name the same file: {path:?}")]
     SameFile {
-        /// The output.
+        /// Name of the output.
         name: String,
         /// Another one, named before it.
         other: String,
@@ -56,7 +56,7 @@ pub enum Refusal {
     /// The extension chooses the format, and this one names none.
     #[error("{name} needs a name that ends in .k, .dynain, .stl, .ply or .obj: {path:?}")]
     Extension {
-        /// The output.
+        /// Name of the output.
         name: String,
         /// Where it was to go.
         path: PathBuf,
@@ -64,7 +64,7 @@ pub enum Refusal {
     /// No deck could include a file of this name.
     #[error("{name}: no deck can include a file whose name {fault}: {path:?}")]
     DeckName {
-        /// The output.
+        /// Name of the output.
         name: String,
         /// Where it was to go.
         path: PathBuf,
@@ -74,11 +74,11 @@ pub enum Refusal {
     /// Nothing can be written there.
     #[error("{name} cannot be written ({reason}): {path:?}")]
     NotWritable {
-        /// The output.
+        /// Name of the output.
         name: String,
         /// Where it was to go.
         path: PathBuf,
-        /// Why.
+        /// Why it cannot be written.
         reason: String,
     },
 }

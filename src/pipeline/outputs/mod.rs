@@ -115,13 +115,13 @@ pub enum Output {
 /// What an output cannot do without.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
-    /// A window.
+    /// The picture of a window.
     Window,
-    /// A part.
+    /// A loaded part.
     Part(Role),
     /// A part at a level of reduction.
     ReducedPart(Role),
-    /// Both parts.
+    /// Two loaded parts.
     BothParts,
     /// A match of both parts.
     Match,
@@ -132,7 +132,7 @@ pub enum Needs {
 /// What outputs are made from.
 #[derive(Debug, Clone, Default)]
 pub struct OutputInput {
-    /// The parts.
+    /// The loaded parts.
     pub parts: PerRole<Option<Arc<LoadedPart>>>,
     /// Where the stamped part lies.
     pub crash_from_stamped: Similarity,
@@ -163,7 +163,7 @@ const PLY: (&str, &str) = ("PLY", "ply");
 const OBJ: (&str, &str) = ("Wavefront OBJ", "obj");
 
 impl Output {
-    /// Every output.
+    /// Every output, in the order of the menus.
     pub const ALL: &[Self] = &[
         Self::Record,
         Self::Matrix(MatrixForm::Rows),

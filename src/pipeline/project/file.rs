@@ -135,7 +135,7 @@ pub struct ResultEntry {
     /// The alternative that was shown instead of the best pose.
     #[serde(default)]
     pub alternative: Option<usize>,
-    /// The match.
+    /// Result of the match.
     pub run: MatchRun,
 }
 
@@ -188,7 +188,7 @@ pub enum ProjectError {
     /// It cannot be read from disk.
     #[error("cannot read the project ({reason}): {path:?}")]
     Read {
-        /// The file.
+        /// Path of the project file.
         path: PathBuf,
         /// What the system says.
         reason: String,
@@ -196,7 +196,7 @@ pub enum ProjectError {
     /// It is no JSON text.
     #[error("{path:?} is no project: line {line} {reason}")]
     NoText {
-        /// The file.
+        /// Path of the project file.
         path: PathBuf,
         /// Where reading ended.
         line: usize,
@@ -213,9 +213,9 @@ pub enum ProjectError {
         build_id()
     )]
     Newer {
-        /// The file.
+        /// Path of the project file.
         path: PathBuf,
-        /// Its version.
+        /// Version of the program that wrote it.
         version: String,
         /// The program that wrote it, as it calls itself.
         program: String,
@@ -223,9 +223,9 @@ pub enum ProjectError {
     /// A field that everything else depends on is not understood.
     #[error("the field {field:?} of the project {path:?} is not understood: {reason}")]
     Field {
-        /// The file.
+        /// Path of the project file.
         path: PathBuf,
-        /// Its name.
+        /// Name of the field.
         field: &'static str,
         /// What is wrong.
         reason: String,

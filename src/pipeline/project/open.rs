@@ -23,7 +23,7 @@ pub enum Located {
 /// A project to be opened.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ProjectRequest {
-    /// The project.
+    /// Path of the project file.
     pub path: PathBuf,
     /// Where its files are.
     pub located: PerRole<Located>,
@@ -36,7 +36,7 @@ pub struct ProjectRequest {
 pub struct FoundProject {
     /// What was asked for.
     pub request: ProjectRequest,
-    /// The project.
+    /// Content of the project file.
     pub project: Project,
     /// What was not understood, a sentence each.
     pub notes: Vec<String>,
@@ -51,7 +51,7 @@ pub struct FoundProject {
 pub struct FoundPart {
     /// Where it came from.
     pub source: PartSource,
-    /// The part.
+    /// The part as it was read.
     pub part: LoadedPart,
     /// True if the file is not the one the project was saved with.
     pub is_changed: bool,

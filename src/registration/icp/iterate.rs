@@ -142,7 +142,7 @@ impl Run {
 pub(crate) struct Spread {
     /// Distance below which 95 % of them lie, by weight.
     pub(crate) p95: f64,
-    /// The largest.
+    /// Largest distance of a kept pair.
     pub(crate) max: f64,
 }
 

@@ -146,16 +146,13 @@ pub(crate) fn refine(
     prune(choice, candidates, cut(n_coarse), monitor);
     let points = BothSigns::new(Data::new(subsample(data, settings.n_refine_points)));
     let rules = choice.rules(Stage::Refine, settings, choice.fine);
-    monitor.phase(rules.stage.name());
-    for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
-        candidate.run.enter_stage();
-    }
     let input = RoundInput {
         points: &points,
         model,
         rules: &rules,
         grid: None,
     };
+    enter_stage(candidates, input, monitor);
     let first = PRUNE_AFTER.min(rules.max_iterations);
     for n_iterations in [first, rules.max_iterations - first] {
         advance_all(choice, candidates, input, n_iterations, monitor)?;
@@ -176,20 +173,25 @@ pub(crate) fn run_every_start(
     let points = BothSigns::new(Data::new(all_nodes(data, true)));
     for stage in [Stage::WideBasin, Stage::Converge] {
         let rules = choice.rules(stage, settings, choice.coarse);
-        monitor.phase(rules.stage.name());
-        for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
-            candidate.run.enter_stage();
-        }
         let input = RoundInput {
             points: &points,
             model,
             rules: &rules,
             grid: None,
         };
+        enter_stage(candidates, input, monitor);
         advance_all(choice, candidates, input, rules.max_iterations, monitor)?;
     }
     merge(choice, candidates, monitor);
     Ok(())
+}
+
+/// Scores and pairs of another stage do not carry over; poses do.
+fn enter_stage(candidates: &mut [Candidate], input: RoundInput<'_>, monitor: &MatchMonitor<'_>) {
+    monitor.phase(input.rules.stage.name());
+    for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
+        candidate.run.enter_stage();
+    }
 }
 
 /// Continues all that are alive, in parallel; none knows of the others.

@@ -58,7 +58,7 @@ pub struct MapReport {
 }
 
 impl MapReport {
-    /// The page.
+    /// The whole page as HTML.
     pub fn write(&self) -> String {
         let [crash, stamped] = self.names.each_ref().map(|name| printable(name));
         let page = html! {

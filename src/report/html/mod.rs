@@ -21,7 +21,7 @@ use crate::text::Lengths;
 /// A picture with its words.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// PNG file.
+    /// The picture as the bytes of a PNG file.
     pub png: Vec<u8>,
     /// Pixels to each side.
     pub size: [usize; 2],
@@ -53,7 +53,7 @@ pub struct Figures {
 /// Cards, or why there are none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CardsInfo {
-    /// The keyword.
+    /// Keyword of the cards.
     pub name: &'static str,
     /// The text and the largest error that its rounding makes at a node, or why it cannot be written.
     pub text: Result<(String, f64), String>,
@@ -75,14 +75,14 @@ pub struct Report<'a> {
     pub deviation: &'a Deviation,
     /// The colours of the map.
     pub scale: ColorScale,
-    /// Pictures.
+    /// Pictures of the page.
     pub figures: &'a Figures,
     /// LS-DYNA cards.
     pub cards: &'a [CardsInfo],
 }
 
 impl Report<'_> {
-    /// The page.
+    /// The whole page as HTML.
     pub fn write(&self) -> String {
         let record = self.record;
         let names = record.files.as_ref().map(|file| printable(&file.name));

@@ -17,7 +17,7 @@ use crate::ui::widgets::{
     Look, action_button, caption, chip, grouped, icon_button, role_mark, secondary, square, tight,
 };
 
-/// The section.
+/// Draws section 1.
 pub fn load_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let summary = summary(state);
     section_ui(

@@ -17,7 +17,7 @@ use crate::ui::widgets::{Look, action_button, caption, chip, paragraph, secondar
 /// Quantities beside each other.
 const N_CHIPS: usize = 3;
 
-/// The section.
+/// Draws section 4.
 pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let summary = summary(state);
     section_ui(

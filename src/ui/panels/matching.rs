@@ -20,7 +20,7 @@ use crate::ui::widgets::{
 /// Width of the label column of this section.
 const LABEL: f32 = 56.0;
 
-/// The section.
+/// Draws section 3.
 pub fn matching_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let summary = summary(state);
     section_ui(

@@ -20,7 +20,7 @@ const WITH_THICKNESS: f32 = 380.0;
 /// A part of a deck with what it belongs to.
 #[derive(Clone, Copy)]
 pub struct Row<'a> {
-    /// Which model.
+    /// Side the part belongs to.
     pub role: Role,
     /// The model's part in the document.
     pub part: &'a Part,

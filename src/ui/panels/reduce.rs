@@ -15,7 +15,7 @@ use crate::ui::widgets::{
     role_mark, short_count, square, tight,
 };
 
-/// The section.
+/// Draws section 2.
 pub fn reduce_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let summary = summary(state);
     section_ui(

@@ -12,13 +12,13 @@ pub(in crate::ui) struct HandleColors {
     pub neutral: Color32,
     /// The active handle.
     pub highlight: Color32,
-    /// Around lines.
+    /// Colour around lines.
     pub rim: Color32,
     /// Of the axes.
     pub letter: Color32,
     /// Middle and rim of the dot.
     pub dot: [Color32; 2],
-    /// Around letters.
+    /// Colour around letters.
     pub halo: Color32,
 }
 

@@ -50,9 +50,9 @@ pub struct Palette {
     pub widget: Color32,
     /// A widget under the pointer.
     pub hovered: Color32,
-    /// Hair lines.
+    /// Thin lines between areas.
     pub line: Color32,
-    /// Text.
+    /// Ordinary text.
     pub text: Color32,
     /// Text that says less.
     pub secondary: Color32,

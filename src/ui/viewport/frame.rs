@@ -13,7 +13,7 @@ use crate::ui::theme::Look;
 /// What a window's picture depends on beside the state.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ViewFrame {
-    /// The window.
+    /// Which of the two windows.
     pub window: Role,
     /// Its camera as it is shown, on its way or not.
     pub camera: Camera,
@@ -45,7 +45,7 @@ impl FrameContext<'_> {
         self.response.rect
     }
 
-    /// Its size.
+    /// Size in points and pixels.
     pub fn screen(&self) -> ScreenSize {
         screen_of(self.rect())
     }

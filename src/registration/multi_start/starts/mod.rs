@@ -80,7 +80,7 @@ pub enum StartKind {
         /// Rotation about the mean normal, in degrees.
         angle_deg: f64,
     },
-    /// "Align surface normal" in its local form, from the wide search: the mean normal around the
+    /// "Align surface normals" in its local form, from the wide search: the mean normal around the
     /// middle of the smaller part on that of a patch as large of the larger part.
     Patch {
         /// Number of the patch.
@@ -133,7 +133,7 @@ pub struct Start {
     pub kind: StartKind,
     /// True if the source's normals count reversed.
     pub flipped: bool,
-    /// The pose.
+    /// The pose it starts from.
     pub target_from_source: Similarity,
 }
 

@@ -218,7 +218,7 @@ fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &m
     let spots = comparison.worst_spots();
     caption(ui, "Largest deviations (click to zoom)");
     if spots.is_empty() {
-        caption(ui, "none: the parts lie on each other or nowhere near");
+        caption(ui, "none: the parts coincide or are far apart");
         return;
     }
     ui.spacing_mut().item_spacing.y = 0.0;

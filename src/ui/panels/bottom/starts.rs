@@ -35,7 +35,7 @@ struct Table<'a> {
     open: Vec<usize>,
 }
 
-/// The table.
+/// Draws the table of starts.
 pub fn starts_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let starts = state.match_starts();
     if starts.is_empty() {

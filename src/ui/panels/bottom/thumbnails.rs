@@ -22,7 +22,7 @@ const SIZE: [usize; 2] = [144, 90];
 const MAX_TRIANGLES: usize = 2000;
 /// A stamped part that lies beside the crash part is still partly seen.
 const AIR: f64 = 1.2;
-/// Pictures kept.
+/// Pictures kept at most.
 const KEPT: usize = 256;
 
 /// What a picture shows. Two of the same key look alike.
