@@ -5,6 +5,7 @@
 //! is named for what it is ([`Foreign`]).
 
 pub mod diagnostic;
+mod file_bytes;
 mod foreign;
 mod hash;
 pub mod keyword;
@@ -22,6 +23,7 @@ mod triangulate;
 use std::path::{Path, PathBuf};
 
 pub use diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position, Severity};
+pub use file_bytes::FileBytes;
 pub use foreign::Foreign;
 pub use hash::{FileHash, HashError};
 pub use model::{Model, PartSummary, Selection, SelectionError, Surface};
@@ -189,7 +191,7 @@ pub fn read_text(
     path: &Path,
     options: &ReadOptions,
     monitor: &Monitor,
-) -> Result<Vec<u8>, FormatError> {
+) -> Result<FileBytes, FormatError> {
     let bytes = source::open_unpacked(source, path, options.max_bytes, monitor);
     Ok(text::normalised(
         bytes.map_err(|error| FormatError::open(path, &error))?,

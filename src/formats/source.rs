@@ -12,6 +12,7 @@ use std::path::{Component, Path, PathBuf};
 
 use rayon::prelude::*;
 
+use super::FileBytes;
 use crate::monitor::{Cancelled, Monitor};
 
 /// Bytes per positional read.
@@ -40,7 +41,7 @@ fn in_gib(n_bytes: u64) -> String {
 pub trait FileSource: Send + Sync {
     /// The bytes of a regular file as they are stored. [`TooLarge`] beyond `max_bytes`;
     /// [`io::ErrorKind::Interrupted`] after a cancel request.
-    fn open(&self, path: &Path, max_bytes: u64, monitor: &Monitor) -> io::Result<Vec<u8>>;
+    fn open(&self, path: &Path, max_bytes: u64, monitor: &Monitor) -> io::Result<FileBytes>;
 
     /// A regular file from its start, without holding all of it.
     fn stream(&self, path: &Path) -> io::Result<Box<dyn Read + '_>>;
@@ -73,7 +74,7 @@ impl Disk {
 }
 
 impl FileSource for Disk {
-    fn open(&self, path: &Path, max_bytes: u64, monitor: &Monitor) -> io::Result<Vec<u8>> {
+    fn open(&self, path: &Path, max_bytes: u64, monitor: &Monitor) -> io::Result<FileBytes> {
         let (file, before) = Self::open_regular(path)?;
         // Files of a system's own making (`/proc`) have content and no length.
         if before.len() == 0 {
@@ -123,15 +124,16 @@ pub(super) fn interrupted(cancelled: Cancelled) -> io::Error {
 }
 
 /// The first `n_bytes` of a file, in pieces on all cores.
-fn read_whole(file: &File, n_bytes: u64, max_bytes: u64, monitor: &Monitor) -> io::Result<Vec<u8>> {
+fn read_whole(
+    file: &File,
+    n_bytes: u64,
+    max_bytes: u64,
+    monitor: &Monitor,
+) -> io::Result<FileBytes> {
     let n = usize::try_from(n_bytes).ok();
     let n = n.filter(|_| n_bytes <= max_bytes);
     let n = n.ok_or_else(|| io::Error::other(TooLarge { max_bytes }))?;
-    // An allocation that fails is an error here; the zeroed one below would end the process.
-    Vec::<u8>::new()
-        .try_reserve_exact(n)
-        .map_err(|_| io::ErrorKind::OutOfMemory)?;
-    let mut bytes = vec![0; n];
+    let mut bytes = FileBytes::zeroed(n)?;
     for (wave, part) in bytes.chunks_mut(WAVE).enumerate() {
         monitor.check().map_err(interrupted)?;
         let pieces = part.par_chunks_mut(PIECE).enumerate();
@@ -169,7 +171,7 @@ fn read_at(file: &File, buffer: &mut [u8], offset: u64) -> io::Result<usize> {
 }
 
 /// All of a stream whose length is not known beforehand.
-fn read_stream(stream: impl Read, max_bytes: u64, monitor: &Monitor) -> io::Result<Vec<u8>> {
+fn read_stream(stream: impl Read, max_bytes: u64, monitor: &Monitor) -> io::Result<FileBytes> {
     let mut bytes = Vec::new();
     let mut limited = stream.take(max_bytes.saturating_add(1));
     loop {
@@ -181,7 +183,7 @@ fn read_stream(stream: impl Read, max_bytes: u64, monitor: &Monitor) -> io::Resu
     if bytes.len() as u64 > max_bytes {
         return Err(io::Error::other(TooLarge { max_bytes }));
     }
-    Ok(bytes)
+    Ok(bytes.into())
 }
 
 /// Opens a file and unpacks it if it is gzip by content.
@@ -190,7 +192,7 @@ pub fn open_unpacked(
     path: &Path,
     max_bytes: u64,
     monitor: &Monitor,
-) -> io::Result<Vec<u8>> {
+) -> io::Result<FileBytes> {
     let mut start = Vec::new();
     source.stream(path)?.take(2).read_to_end(&mut start)?;
     if start != [0x1f, 0x8b] {
@@ -237,12 +239,12 @@ impl Memory {
 }
 
 impl FileSource for Memory {
-    fn open(&self, path: &Path, max_bytes: u64, _monitor: &Monitor) -> io::Result<Vec<u8>> {
+    fn open(&self, path: &Path, max_bytes: u64, _monitor: &Monitor) -> io::Result<FileBytes> {
         let bytes = self.bytes(path)?;
         if bytes.len() as u64 > max_bytes {
             return Err(io::Error::other(TooLarge { max_bytes }));
         }
-        Ok(bytes.to_vec())
+        Ok(bytes.to_vec().into())
     }
 
     fn stream(&self, path: &Path) -> io::Result<Box<dyn Read + '_>> {
@@ -288,7 +290,7 @@ mod tests {
 
     const NO_LIMIT: u64 = u64::MAX;
 
-    fn open(path: &Path) -> io::Result<Vec<u8>> {
+    fn open(path: &Path) -> io::Result<FileBytes> {
         Disk.open(path, NO_LIMIT, &Monitor::silent())
     }
 
@@ -298,7 +300,7 @@ mod tests {
         packer.finish().unwrap()
     }
 
-    fn unpacked(bytes: Vec<u8>, max_bytes: u64) -> io::Result<Vec<u8>> {
+    fn unpacked(bytes: Vec<u8>, max_bytes: u64) -> io::Result<FileBytes> {
         let source = Memory::new().with("deck.k", bytes);
         open_unpacked(&source, Path::new("deck.k"), max_bytes, &Monitor::silent())
     }
@@ -307,7 +309,7 @@ mod tests {
     fn gzip_is_unpacked_by_content() {
         let bytes = unpacked(packed(b"*KEYWORD\n*END\n"), NO_LIMIT).unwrap();
         assert_eq!(&bytes[..], b"*KEYWORD\n*END\n");
-        assert_eq!(unpacked(vec![0x1f], NO_LIMIT).unwrap(), [0x1f]);
+        assert_eq!(unpacked(vec![0x1f], NO_LIMIT).unwrap()[..], [0x1f]);
         let mut cut = packed(&[b'x'; 5000]);
         cut.truncate(20);
         let error = unpacked(cut, NO_LIMIT).unwrap_err();
@@ -351,7 +353,7 @@ mod tests {
         let path = folder.path().join("large");
         let bytes: Vec<u8> = (0..5 * PIECE + 77).map(|i| (i % 251) as u8).collect();
         std::fs::write(&path, &bytes).unwrap();
-        assert!(open(&path).unwrap() == bytes);
+        assert!(open(&path).unwrap()[..] == bytes);
         let error = Disk.open(&path, 1000, &Monitor::silent()).unwrap_err();
         assert!(error.to_string().contains("limit"), "{error}");
         let monitor = Monitor::silent();

@@ -5,6 +5,8 @@ use std::borrow::Cow;
 
 use memchr::memchr;
 
+use super::FileBytes;
+
 /// Bytes at the start of a file that tell its encoding and its line ends.
 const HEAD: usize = 1 << 16;
 
@@ -53,13 +55,13 @@ fn visible(c: char) -> char {
 /// A text file as UTF-8 or single bytes with a newline at each line's end: UTF-16 is decoded, a
 /// byte order mark dropped, and a carriage return alone (old Mac) becomes a newline. Other bytes,
 /// also those of binary files, stay as they are. O(1) for an ordinary deck.
-pub(crate) fn normalised(bytes: Vec<u8>) -> Vec<u8> {
+pub(crate) fn normalised(bytes: FileBytes) -> FileBytes {
     let mut bytes = match utf16_order(&bytes) {
-        Some(order) => from_utf16(&bytes, order),
+        Some(order) => from_utf16(&bytes, order).into(),
         None => bytes,
     };
     if bytes.starts_with(b"\xef\xbb\xbf") {
-        bytes.drain(..3);
+        bytes = bytes[3..].into();
     }
     let head = &bytes[..bytes.len().min(HEAD)];
     let has_lone_returns = memchr(b'\r', head).is_some() && !head.contains(&0) && {
@@ -143,10 +145,10 @@ mod tests {
         let units = || text.encode_utf16();
         let little: Vec<u8> = units().flat_map(u16::to_le_bytes).collect();
         let big: Vec<u8> = units().flat_map(u16::to_be_bytes).collect();
-        let marked = |mark: &[u8], bytes: &[u8]| normalised([mark, bytes].concat());
+        let marked = |mark: &[u8], bytes: &[u8]| normalised([mark, bytes].concat().into()).to_vec();
         assert_eq!(marked(b"\xff\xfe", &little), text.as_bytes());
         assert_eq!(marked(b"\xfe\xff", &big), text.as_bytes());
-        let plain = |bytes: &[u8]| normalised(bytes[..40].to_vec());
+        let plain = |bytes: &[u8]| normalised(bytes[..40].into()).to_vec();
         // Twenty units, one of which takes two bytes.
         assert_eq!(plain(&little), &text.as_bytes()[..21]);
         assert_eq!(plain(&big), &text.as_bytes()[..21]);
@@ -155,11 +157,11 @@ mod tests {
 
     #[test]
     fn carriage_returns_alone_end_lines() {
-        let done = |text: &str| String::from_utf8(normalised(text.into())).unwrap();
+        let done = |text: &str| String::from_utf8(normalised(text.into()).to_vec()).unwrap();
         assert_eq!(done("*NODE\r1,2\r*END\r"), "*NODE\n1,2\n*END\n");
         assert_eq!(done("*NODE\r\n1,2\r\n"), "*NODE\r\n1,2\r\n");
         assert_eq!(done("*NODE\n1,2\rx\n3\n"), "*NODE\n1,2\rx\n3\n");
         let binary = [0u8, 13, 1, 13, 2, 13, 3];
-        assert_eq!(normalised(binary.to_vec()), binary);
+        assert_eq!(normalised(binary.to_vec().into())[..], binary);
     }
 }

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use shapematch::formats::model::{Forming, ShellStrain, ShellStress, StrainPoint, StressPoint};
 use shapematch::formats::{
-    self, Diagnostic, DiagnosticKind, Disk, FileSource, FormatError, Memory, Model, ReadOptions,
-    Selection,
+    self, Diagnostic, DiagnosticKind, Disk, FileBytes, FileSource, FormatError, Memory, Model,
+    ReadOptions, Selection,
 };
 use shapematch::monitor::Monitor;
 
@@ -31,7 +31,7 @@ fn decks() -> Vec<PathBuf> {
 struct DataFolder;
 
 impl FileSource for DataFolder {
-    fn open(&self, path: &Path, max: u64, monitor: &Monitor) -> std::io::Result<Vec<u8>> {
+    fn open(&self, path: &Path, max: u64, monitor: &Monitor) -> std::io::Result<FileBytes> {
         Disk.open(&data_folder().join(path), max, monitor)
     }
 

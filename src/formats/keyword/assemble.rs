@@ -33,6 +33,7 @@ pub(crate) struct Origin {
     elements: ElementOffsets,
     /// Where the block ends of which the run is a piece.
     block_end: usize,
+    has_encrypted: bool,
     /// Index of the run's first node or element.
     first: usize,
 }
@@ -45,6 +46,7 @@ impl Origin {
             layout: block.layout,
             elements: context.elements(),
             block_end: block.body.end,
+            has_encrypted: block.has_encrypted,
             first: 0,
         }
     }
@@ -74,6 +76,7 @@ impl Origin {
             layout: self.layout,
             offset: self.range.start,
             body: self.range.clone(),
+            has_encrypted: self.has_encrypted,
             parameters: None,
         }
     }

@@ -72,6 +72,10 @@ pub(crate) fn read<T: Send>(
 /// Ranges of about [`PIECE`] bytes that begin at a multiple of `n_cards` cards. Empty if cards
 /// cannot be counted without looking at what they mean.
 fn pieces(block: &Block<'_>, n_cards: usize) -> Vec<Range<usize>> {
+    // Encrypted text could run over a cut.
+    if block.has_encrypted {
+        return Vec::new();
+    }
     let bytes = block.file.bytes();
     let body = block.body.clone();
     let mut starts = vec![body.start];
@@ -87,9 +91,7 @@ fn pieces(block: &Block<'_>, n_cards: usize) -> Vec<Range<usize>> {
     let ends = starts[1..].iter().copied().chain([body.end]);
     let mut pieces: Vec<Range<usize>> = starts.iter().zip(ends).map(|(&a, b)| a..b).collect();
     if n_cards == 1 {
-        // An encrypted part could run over a cut.
-        let encrypted = memchr::memmem::find(&bytes[body], b"\n-----BEGIN").is_some();
-        return if encrypted { Vec::new() } else { pieces };
+        return pieces;
     }
     let counts: Option<Vec<usize>> = pieces
         .par_iter()
@@ -115,10 +117,8 @@ fn pieces(block: &Block<'_>, n_cards: usize) -> Vec<Range<usize>> {
     pieces
 }
 
-/// Cards in a range; `None` if there is a blank line, which may or may not be one, or encrypted
-/// text, which may run over the cut.
+/// Cards in a range; `None` if there is a blank line, which may or may not be one.
 fn count_cards(block: &Block<'_>, range: &Range<usize>) -> Option<usize> {
-    let text = &block.file.bytes()[range.clone()];
     let mut cards = block.cards_in(range.clone());
     let mut count = 0;
     while let Some((line, offset)) = cards.next_line() {
@@ -129,6 +129,5 @@ fn count_cards(block: &Block<'_>, range: &Range<usize>) -> Option<usize> {
         }
         count += 1;
     }
-    let encrypted = text.starts_with(b"-----") || memchr::memmem::find(text, b"\n-----").is_some();
-    (!encrypted).then_some(count)
+    Some(count)
 }

@@ -7,7 +7,7 @@ use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Model, ReadFile};
 use super::super::recognise::recognise;
 use super::super::source::{FileSource, TooLarge, open_unpacked, tidy};
-use super::super::{Foreign, Format, FormatError, ReadOptions, text};
+use super::super::{FileBytes, Foreign, Format, FormatError, ReadOptions, text};
 use super::assemble::{Assembly, Motion, Origin};
 use super::block::{Block, Blocks};
 use super::card::Layout;
@@ -38,7 +38,7 @@ const MAX_UNIT_FACTOR: f64 = 1e12;
 pub(crate) fn read_opened(
     source: &dyn FileSource,
     path: &Path,
-    bytes: Vec<u8>,
+    bytes: FileBytes,
     options: &ReadOptions,
     monitor: &Monitor,
 ) -> Result<Model, FormatError> {
@@ -432,7 +432,7 @@ impl Reader<'_> {
     }
 
     /// The bytes of an include at a path that exists; what keeps it from being read otherwise.
-    fn open_found(&self, path: PathBuf) -> Result<(PathBuf, Vec<u8>), (DiagnosticKind, String)> {
+    fn open_found(&self, path: PathBuf) -> Result<(PathBuf, FileBytes), (DiagnosticKind, String)> {
         if self.open.contains(&tidy(&path)) {
             return Err((DiagnosticKind::IncludeCycle, "includes itself".to_owned()));
         }

@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use memchr::memchr_iter;
 
+use super::super::FileBytes;
 use super::super::diagnostic::Position;
 
 /// Newlines are counted once per this many bytes when a first position is asked for.
@@ -14,14 +15,14 @@ const LINE_INDEX_STEP: usize = 1 << 16;
 #[derive(Debug)]
 pub struct SourceFile {
     path: Arc<Path>,
-    bytes: Vec<u8>,
+    bytes: FileBytes,
     /// Newlines before each multiple of [`LINE_INDEX_STEP`].
     line_index: OnceLock<Vec<u64>>,
 }
 
 impl SourceFile {
     /// A file of the given path with the given bytes.
-    pub fn new(path: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) -> Self {
+    pub fn new(path: impl Into<PathBuf>, bytes: impl Into<FileBytes>) -> Self {
         Self {
             path: Arc::from(path.into()),
             bytes: bytes.into(),
