@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{AppState, BottomTab, Effect, NoticeLevel, Part, Section, ShownGeometry};
+use super::{AppState, BottomTab, Effect, NoticeLevel, Part, Section, Showing, ShownGeometry};
 use crate::geometry::Point3;
 use crate::jobs::ProjectRequest;
 use crate::role::{PerRole, Role};
@@ -123,8 +123,11 @@ impl AppState {
     fn tell_result(&mut self, level: NoticeLevel, line: String) {
         let is_seen = self.view.sections.is_open(Section::Match) && !self.view.is_graphics_only;
         let is_muted = is_seen || self.settings.muted.contains(&level);
-        let when = (self.log.now, is_muted);
-        self.log.notices.push(level, line, when);
+        let showing = Showing {
+            now: self.log.now,
+            is_muted,
+        };
+        self.log.notices.push(level, line, showing);
     }
 
     /// A part that went far is no longer where the cameras look; one that was nudged still is.

@@ -50,8 +50,8 @@ pub use inspect::{
 };
 pub use job_board::{JobBoard, RunningJob};
 pub use log::{
-    Clock, Log, LogRow, LogState, Notice, NoticeCommand, NoticeId, NoticeLevel, Notices, age_text,
-    clock_text, duration_text,
+    Clock, Log, LogRow, LogState, Notice, NoticeCommand, NoticeId, NoticeLevel, Notices, Showing,
+    age_text, clock_text, duration_text,
 };
 pub use mapping::{MapCommand, MapResult, Mapping, Quantity, UnmappedElement};
 pub use matching::{

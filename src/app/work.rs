@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::follow_up::FollowUp;
 use super::{
     Document, Effect, GestureId, History, JobBoard, LogState, NoticeLevel, Previews, Reason,
-    Settings, StampedPose,
+    Settings, Showing, StampedPose,
 };
 use crate::geometry::Similarity;
 use crate::jobs::{JobKey, JobKind};
@@ -99,9 +99,16 @@ impl Work<'_> {
 
     /// Shows a toast, unless the user muted its level; the bell has it in any case.
     pub fn notify(&mut self, level: NoticeLevel, text: impl Into<String>) {
-        let is_muted = self.settings.muted.contains(&level);
-        let when = (self.log.now, is_muted);
-        self.log.notices.push(level, text.into(), when);
+        let showing = self.showing(level);
+        self.log.notices.push(level, text.into(), showing);
+    }
+
+    /// A message of now, muted if the user muted its level.
+    pub fn showing(&self, level: NoticeLevel) -> Showing {
+        Showing {
+            now: self.log.now,
+            is_muted: self.settings.muted.contains(&level),
+        }
     }
 
     /// A job for the worker, stamped with the present state.

@@ -78,7 +78,8 @@ impl Twin {
             found.map_or(TwinAxis::Other, |k| known[k])
         });
         Self {
-            angle: turn.angle(),
+            // The angle of a rotation matrix that rounding took from orthonormal can be no number.
+            angle: best.angle_to(other),
             axis,
             shift: (other.apply(center) - best.apply(center)).norm(),
         }
@@ -102,6 +103,40 @@ impl Ambiguity {
             ratio,
             n_equivalent: 1 + equivalent.count(),
             twin: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Rotation, TriMesh, Vector3};
+
+    #[test]
+    fn half_turns_have_an_angle_whatever_rounding_does() {
+        let corners = [
+            [0.0, 0.0, 0.0],
+            [3.0, 0.0, 0.0],
+            [0.0, 2.0, 0.0],
+            [0.0, 0.0, 1.0],
+        ];
+        let points = corners.map(crate::geometry::Point3::from).to_vec();
+        let mesh = TriMesh::new(points, vec![[0, 1, 2], [0, 2, 3], [0, 3, 1]]).unwrap();
+        let source = Surface::new(&mesh, "source").unwrap();
+        for k in 1..200 {
+            let k = f64::from(k);
+            let axis = Vector3::new(k.sin(), (2.0 * k).cos(), 0.3).normalize();
+            let turned = |angle: f64| {
+                let rotation = *Rotation::new(axis * angle).to_rotation_matrix().matrix();
+                // Rounded as a matrix read from a file is.
+                let rotation = rotation.map(|x| (x * 1e7).round() / 1e7);
+                Similarity {
+                    rotation,
+                    ..Similarity::identity()
+                }
+            };
+            let twin = Twin::of(&source, &turned(0.4), &turned(0.4 + std::f64::consts::PI));
+            assert!((twin.angle - std::f64::consts::PI).abs() < 1e-3, "{twin:?}");
         }
     }
 }

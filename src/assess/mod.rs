@@ -4,6 +4,7 @@ mod ambiguity;
 mod contact;
 mod coverage;
 pub mod deviation;
+mod held;
 mod pose;
 mod reason;
 mod rims;
@@ -16,6 +17,7 @@ mod words;
 
 pub use ambiguity::{Ambiguity, Clarity, Twin, TwinAxis};
 pub use coverage::{Coverage, OneSided, coverage, overlap_limit, quick_overlap};
+pub use held::{HeldPose, held_by_rims};
 pub use pose::{PoseKind, PoseStatement};
 pub use reason::Reason;
 pub use settle::settled;

@@ -136,6 +136,20 @@ impl Rims {
         }
     }
 
+    /// Length of the rims of holes where the other part is solid, as a share of all rims of the smaller
+    /// part.
+    pub(super) fn missing_share(&self) -> f64 {
+        let missing = self.missing.iter().flatten();
+        let length: f64 = missing
+            .map(|hole| hole.radius * std::f64::consts::TAU)
+            .sum();
+        if self.length > 0.0 {
+            length / self.length
+        } else {
+            0.0
+        }
+    }
+
     /// The pairs' weights, less for those that lie far apart beside the others.
     pub(super) fn weights(&self, noise: f64) -> Vec<f64> {
         let gaps: Vec<f64> = self.pairs.iter().map(|p| p.gap).collect();

@@ -26,10 +26,22 @@ pub fn settled(
     pose: &Similarity,
     settings: &AssessSettings,
 ) -> Option<Similarity> {
+    let near = RIM_SHARE * target.measures().diagonal;
+    settled_within(source, target, pose, settings, near)
+}
+
+/// [`settled`], with rims looked for within at least `near`.
+pub(super) fn settled_within(
+    source: &Surface,
+    target: &Surface,
+    pose: &Similarity,
+    settings: &AssessSettings,
+    near: f64,
+) -> Option<Similarity> {
     let tolerance = tolerance_of(target, settings);
     let diagonal = target.measures().diagonal;
     let reach = (REACH * diagonal).max(3.0 * tolerance.springback);
-    let near = (RIM_SHARE * diagonal).max(3.0 * tolerance.remainder);
+    let near = near.max(3.0 * tolerance.remainder);
     let chordal = |surface: &Surface| surface.measures().chordal_error;
     let noise = chordal(source).max(chordal(target)) + settings.allowance;
     let mut moved = *pose;

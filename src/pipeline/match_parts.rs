@@ -225,7 +225,10 @@ pub(super) fn settle(
     if !is_searched || outcome.termination == Termination::Stopped {
         return;
     }
-    if let Some(pose) = assess::settled(source, target, &outcome.target_from_source, check) {
+    if let Some(held) = assess::held_by_rims(source, target, outcome, check) {
+        outcome.target_from_source = held.target_from_source;
+        outcome.alternatives = held.alternatives;
+    } else if let Some(pose) = assess::settled(source, target, &outcome.target_from_source, check) {
         outcome.target_from_source = pose;
     }
 }

@@ -47,3 +47,20 @@ fn a_slice_of_the_table_is_right_and_honest() {
     assert_eq!(page.matches("<tr>").count(), 7);
     assert!(page.contains("springback 1 mm"));
 }
+
+/// Surfaces that slide on each other say nothing about the place along them.
+#[test]
+fn borders_and_holes_place_parts_that_slide() {
+    let settings = RobustnessSettings {
+        seed: 11,
+        parts: vec![SamplePart::Plate, SamplePart::Channel],
+        scenarios: vec![Scenario::SameSurface, Scenario::Springback(1.0)],
+        ..RobustnessSettings::default()
+    };
+    let runs = robustness(&settings, &Monitor::silent(), |_| ()).unwrap();
+    for run in &runs {
+        assert_eq!(run.ending, Ending::Right, "{run:?}");
+        assert_ne!(run.verdict, Verdict::Poor, "{run:?}");
+        assert!(run.node_error.is_some_and(|error| error < 1.0), "{run:?}");
+    }
+}

@@ -7,7 +7,7 @@ mod rows;
 use std::time::Duration;
 
 pub use command::NoticeCommand;
-pub use notice::{Notice, NoticeId, NoticeLevel, Notices};
+pub use notice::{Notice, NoticeId, NoticeLevel, Notices, Showing};
 pub use rows::{Clock, Log, LogRow, age_text, clock_text, duration_text};
 
 use crate::role::Role;

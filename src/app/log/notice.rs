@@ -92,6 +92,15 @@ pub const MAX_TOASTS: usize = 3;
 /// Messages the bell's list keeps.
 const MAX_KEPT: usize = 200;
 
+/// When and how a message is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Showing {
+    /// Time since the program began.
+    pub now: Duration,
+    /// True if it goes into the bell's list only.
+    pub is_muted: bool,
+}
+
 /// The toasts and the bell's list.
 #[derive(Debug, Clone, Default)]
 pub struct Notices {
@@ -100,30 +109,17 @@ pub struct Notices {
 }
 
 impl Notices {
-    /// Shows a message; the same message again only counts up and shows anew. A muted one goes
-    /// into the bell's list only.
-    pub fn push(&mut self, level: NoticeLevel, text: String, when: (Duration, bool)) {
-        self.add(level, text, when, None);
+    /// Shows a message; the same message again only counts up and shows anew.
+    pub fn push(&mut self, level: NoticeLevel, text: String, showing: Showing) {
+        self.add(level, text, showing, None);
     }
 
     /// [`Notices::push`] with a button for an action.
-    pub fn offer(
-        &mut self,
-        level: NoticeLevel,
-        text: String,
-        when: (Duration, bool),
-        action: Action,
-    ) {
-        self.add(level, text, when, Some(action));
+    pub fn offer(&mut self, level: NoticeLevel, text: String, showing: Showing, action: Action) {
+        self.add(level, text, showing, Some(action));
     }
 
-    fn add(
-        &mut self,
-        level: NoticeLevel,
-        text: String,
-        (now, is_muted): (Duration, bool),
-        offer: Option<Action>,
-    ) {
+    fn add(&mut self, level: NoticeLevel, text: String, showing: Showing, offer: Option<Action>) {
         if level == NoticeLevel::Info {
             return;
         }
@@ -138,10 +134,10 @@ impl Notices {
             level,
             text,
             count,
-            at: now,
+            at: showing.now,
             is_unread: true,
             offer,
-            is_toast: !is_muted,
+            is_toast: !showing.is_muted,
         });
         if self.items.len() > MAX_KEPT {
             self.items.remove(0);

@@ -350,13 +350,10 @@ impl PartsState {
             stamped.loaded.file_name()
         );
         work.log_step("load", None, text.clone(), None);
-        let is_muted = work.settings.muted.contains(&NoticeLevel::Note);
-        work.log.notices.offer(
-            NoticeLevel::Note,
-            text,
-            (work.log.now, is_muted),
-            Action::Swap,
-        );
+        let showing = work.showing(NoticeLevel::Note);
+        work.log
+            .notices
+            .offer(NoticeLevel::Note, text, showing, Action::Swap);
     }
 
     /// A part took another selection or unit.

@@ -7,6 +7,9 @@ use crate::geometry::{Point3, Vector3};
 /// Directions stiffer than this share of the stiffest are solved for, the others are left alone:
 /// there the surface slides on itself.
 const RANK_TOLERANCE: f64 = 1e-9;
+/// Independent places that the residuals stand for. What a part of another shape leaves of them is
+/// the same over large areas, so thousands of points say no more than a few places.
+const N_PLACES: f64 = 16.0;
 
 /// Sum of weighted rows aᵀx ≈ r with three rotations, three translations and one scale.
 ///
@@ -15,6 +18,18 @@ pub(super) struct NormalEquations {
     length: f64,
     matrix: SMatrix<f64, 7, 7>,
     rhs: SVector<f64, 7>,
+    residual_sq: f64,
+}
+
+/// How the normal equations are solved.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SolveRules {
+    /// Shortens a step, after one that made things worse: by 1 / (1 + damping).
+    pub(super) damping: f64,
+    /// How far a step is likely to move the data.
+    pub(super) likely_motion: f64,
+    /// True if the scale is solved for too.
+    pub(super) with_scale: bool,
 }
 
 /// Solution in the caller's lengths.
@@ -31,6 +46,7 @@ impl NormalEquations {
             length,
             matrix: SMatrix::zeros(),
             rhs: SVector::zeros(),
+            residual_sq: 0.0,
         }
     }
 
@@ -54,6 +70,7 @@ impl NormalEquations {
             scale * inverse,
         ];
         let residual = residual * inverse;
+        self.residual_sq += weight * residual * residual;
         for i in 0..7 {
             let weighted = row[i] * weight;
             for (j, value) in row.iter().enumerate().skip(i) {
@@ -63,13 +80,17 @@ impl NormalEquations {
         }
     }
 
-    /// The damped least-squares solution over the directions that the rows fix; the scale stays
-    /// untouched unless `with_scale`. `None` if nothing is fixed.
-    pub(super) fn solve(&self, damping: f64, with_scale: bool) -> Option<Solution> {
+    /// The least-squares solution over the directions that the rows fix; the scale stays untouched
+    /// unless asked for. `None` if nothing is fixed.
+    ///
+    /// A direction that hardly changes the residuals is followed no farther than what remains of them
+    /// supports (ridge regression, Hoerl and Kennard 1970): a flat plate that sprang back would
+    /// otherwise slide by hundreds of millimetres to better a millimetre.
+    pub(super) fn solve(&self, rules: &SolveRules) -> Option<Solution> {
         let mut matrix = self.matrix;
         matrix.fill_upper_triangle_with_lower_triangle();
         let mut rhs = self.rhs;
-        if !with_scale {
+        if !rules.with_scale {
             matrix.row_mut(6).fill(0.0);
             matrix.column_mut(6).fill(0.0);
             rhs[6] = 0.0;
@@ -82,13 +103,17 @@ impl NormalEquations {
         if largest <= 0.0 {
             return None;
         }
+        let fixed = || (0..7).filter(|&k| eigen.eigenvalues[k] > RANK_TOLERANCE * largest);
+        let force = |k: usize| eigen.eigenvectors.column(k).dot(&rhs);
+        let explained: f64 = fixed()
+            .map(|k| force(k).powi(2) / eigen.eigenvalues[k])
+            .sum();
+        let remaining = (self.residual_sq - explained).max(0.0);
+        let ridge = remaining / N_PLACES * (self.length / rules.likely_motion).powi(2);
         let mut solution = SVector::<f64, 7>::zeros();
-        for k in 0..7 {
-            let stiffness = eigen.eigenvalues[k];
-            if stiffness > RANK_TOLERANCE * largest {
-                let direction = eigen.eigenvectors.column(k);
-                solution += direction * (direction.dot(&rhs) / (stiffness * (1.0 + damping)));
-            }
+        for k in fixed() {
+            let stiffness = eigen.eigenvalues[k] * (1.0 + rules.damping) + ridge;
+            solution += eigen.eigenvectors.column(k) * (force(k) / stiffness);
         }
         let translation = Vector3::new(solution[3], solution[4], solution[5]) * self.length;
         Some(Solution {

@@ -182,6 +182,8 @@ const LEAST_FLOOR: f64 = 0.005;
 const MAX_FRACTION: f64 = 1.05;
 /// Longest step, as a fraction of the larger diagonal.
 const MAX_STEP: f64 = 0.3;
+/// Likely length of a step, as a fraction of the smaller diagonal.
+const LIKELY_STEP: f64 = 0.02;
 
 /// σ0 that the settings ask for between these surfaces.
 pub(crate) fn floor(settings: &MatchSettings, a: &Surface, b: &Surface) -> f64 {
@@ -259,6 +261,11 @@ pub(crate) fn stage_rules(
             },
             damping: 0.0,
             max_translation: MAX_STEP * data.measures().diagonal.max(model.measures().diagonal),
+            likely_motion: match settings.selection {
+                // What remains of the residuals is that of points without counterpart.
+                Selection::All | Selection::Trimmed { .. } => f64::INFINITY,
+                _ => LIKELY_STEP * data.measures().diagonal.min(model.measures().diagonal),
+            },
         },
         motion_tolerance: settings.motion_tolerance * row.tolerance.of(settings.metric) * edge,
         max_iterations: row

@@ -6,6 +6,7 @@ mod symmetric;
 use serde::{Deserialize, Serialize};
 
 use super::correspondence::Correspondence;
+use super::solve::SolveRules;
 use crate::geometry::Similarity;
 use crate::registration::closed_form::{Motion, fit_pairs};
 
@@ -31,6 +32,18 @@ pub(crate) struct StepRules {
     pub(crate) damping: f64,
     /// Longest translation of one step.
     pub(crate) max_translation: f64,
+    /// How far a step is likely to move the data; infinite where steps are to be taken whole.
+    pub(crate) likely_motion: f64,
+}
+
+impl StepRules {
+    fn solve(&self) -> SolveRules {
+        SolveRules {
+            damping: self.damping,
+            likely_motion: self.likely_motion,
+            with_scale: self.motion == Motion::Similarity,
+        }
+    }
 }
 
 /// Largest rotation of one step.

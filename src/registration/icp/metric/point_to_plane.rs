@@ -2,7 +2,6 @@
 
 use super::{MAX_ROTATION_DEG, StepRules};
 use crate::geometry::{Rotation, Similarity, Vector3};
-use crate::registration::closed_form::Motion;
 use crate::registration::icp::correspondence::Correspondence;
 use crate::registration::icp::solve::{NormalEquations, center_and_radius};
 
@@ -28,7 +27,7 @@ pub(super) fn step(
             residual,
         );
     }
-    let solution = equations.solve(rules.damping, rules.motion == Motion::Similarity)?;
+    let solution = equations.solve(&rules.solve())?;
     let (turn, shift) = limited(solution.rotation, solution.translation, rules);
     let rotation = *Rotation::new(turn).to_rotation_matrix().matrix();
     let scale = solution.scale.clamp(-0.2, 0.2).exp();

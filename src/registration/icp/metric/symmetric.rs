@@ -2,7 +2,6 @@
 
 use super::{MAX_ROTATION_DEG, StepRules};
 use crate::geometry::{Point3, Rotation, Similarity, Vector3};
-use crate::registration::closed_form::Motion;
 use crate::registration::icp::correspondence::Correspondence;
 use crate::registration::icp::solve::{NormalEquations, center_and_radius};
 
@@ -31,7 +30,7 @@ pub(super) fn step(
         let lever = (p + q).cross(&normal);
         equations.add(pair.weight, &lever, &normal, p.dot(&normal), residual);
     }
-    let solution = equations.solve(rules.damping, rules.motion == Motion::Similarity)?;
+    let solution = equations.solve(&rules.solve())?;
     let tangent = solution.rotation.norm();
     let half_angle = tangent.atan();
     let half_limit = MAX_ROTATION_DEG.to_radians() / 2.0;
