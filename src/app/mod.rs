@@ -77,5 +77,5 @@ pub use shared::Shared;
 pub use state::AppState;
 pub use view::{
     BottomTab, ColorBy, Dialog, Display, FreeWindow, Section, Sections, ShownGeometry, Stale,
-    ViewCommand, ViewState,
+    ViewCommand, ViewRoom, ViewState,
 };

@@ -6,8 +6,8 @@ use super::follow_up::FollowUp;
 use super::view::Scene;
 use super::work::Work;
 use super::{
-    Document, History, InspectState, JobBoard, LogState, MatchState, MovingState, PairsState,
-    PartsState, Previews, ProjectState, ReduceState, Settings, ViewState,
+    Document, FreeWindow, History, InspectState, JobBoard, LogState, MatchState, MovingState,
+    PairsState, PartsState, Previews, ProjectState, ReduceState, Settings, ViewState,
 };
 use crate::geometry::Similarity;
 
@@ -124,7 +124,9 @@ impl AppState {
         &mut self,
         look: impl FnOnce(&mut ViewState, &Scene<'_>) -> R,
     ) -> R {
+        let beside = self.free_window();
         let scene = Scene {
+            is_beside: beside.is_some_and(|free| free != FreeWindow::Nothing),
             pose: self.shown_pose(),
             document: &self.document,
             selected: &self.parts.selected,

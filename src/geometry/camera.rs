@@ -12,6 +12,7 @@ mod scale_bar;
 mod standard;
 
 pub use animation::CameraFlight;
+pub use fit::Covered;
 pub use motion::OrbitStyle;
 pub use scale_bar::{ScaleBar, scale_bar};
 pub use standard::StandardView;

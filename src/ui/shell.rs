@@ -22,7 +22,7 @@ use crate::report::picture::Picture;
 use crate::role::Role;
 
 /// Least size of the window, in points.
-const MIN_SIZE: [f32; 2] = [960.0, 600.0];
+const MIN_SIZE: [f32; 2] = [800.0, 540.0];
 /// Size at the first start.
 const FIRST_SIZE: [f32; 2] = [1400.0, 900.0];
 

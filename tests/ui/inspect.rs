@@ -79,8 +79,9 @@ fn the_limits_of_the_colours_are_dragged_and_stay_symmetric() {
     // The map is worked out in the background.
     for _ in 0..500 {
         harness.run_steps(1);
-        let label = "Upper limit of the colours (stamped)";
-        if harness.query_by_label(label).is_some() {
+        let label = "Unfold the legend (stamped)";
+        if let Some(button) = harness.query_by_label(label) {
+            button.click_accesskit();
             break;
         }
         std::thread::sleep(std::time::Duration::from_millis(10));

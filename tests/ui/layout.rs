@@ -1,11 +1,14 @@
 //! Nothing is cut and nothing lies on something else: what was painted is looked at, not a picture.
 
+use std::time::{Duration, Instant};
+
 use egui::{Pos2, Rect, Shape, Vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::NodeT as _;
-use shapematch::app::{Command, Theme};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use shapematch::app::{Action, Command, NoticeCommand, Theme, ViewCommand};
+use shapematch::geometry::camera::ScreenSize;
+use shapematch::role::Role;
 use shapematch::ui::Shell;
-use shapematch::ui::panels::graphics;
 
 use super::story::{click, finish, window};
 
@@ -49,17 +52,11 @@ fn collect(shape: &Shape, clip: Rect, found: &mut Vec<Painted>) {
     }
 }
 
-/// What lies over the 3D windows, among it toasts, which are meant to lie on something.
-fn is_in_graphics(painted: &Painted, window: &Window) -> bool {
-    let parts = &window.state().state().document.parts;
-    let is_empty = parts.crash.is_none() && parts.stamped.is_none();
-    !is_empty && graphics::area(&window.ctx).contains(painted.rect.center())
-}
-
 /// What is wrong unless every text lies within its clip sideways and on no other text.
 fn faults(window: &Window) -> Vec<String> {
     let mut texts = texts(window);
-    texts.retain(|text| !is_in_graphics(text, window));
+    // Stands in the place of the picture, and so under everything.
+    texts.retain(|text| text.text != "no graphics adapter");
     assert!(texts.len() > 10, "nothing was painted");
     let mut faults = Vec::new();
     for one in &texts {
@@ -134,29 +131,54 @@ fn set(window: &mut Window, theme: Theme, ui_scale: f32) {
     window
         .state_mut()
         .run_commands(vec![Command::Settings(Box::new(settings))], &ctx);
-    window.run_steps(4);
+    window.run_steps(2);
 }
 
+/// Toasts lie over the windows on purpose.
+fn dismiss_toasts(window: &mut Window) {
+    let toasts = window.state().state().log.notices.toasts();
+    let ids: Vec<_> = toasts.map(|notice| notice.id).collect();
+    let commands = ids.into_iter().map(|id| NoticeCommand::Dismiss(id).into());
+    act(window, commands.collect());
+}
+
+fn act(window: &mut Window, commands: Vec<Command>) {
+    let ctx = window.ctx.clone();
+    window.state_mut().run_commands(commands, &ctx);
+    window.run_steps(2);
+}
+
+/// Windows in pixels, and the scales of text and controls.
+const SIZES: [[f32; 2]; 5] = [
+    [800.0, 540.0],
+    [1024.0, 700.0],
+    [1280.0, 720.0],
+    [1920.0, 1080.0],
+    [3840.0, 2160.0],
+];
+const SCALES: [f32; 5] = [0.75, 1.0, 1.5, 2.0, 2.5];
+
 #[test]
-fn nothing_is_cut_at_any_scale_in_any_theme() {
+fn nothing_is_cut_at_any_size_and_scale_in_any_theme() {
     let mut window = window();
-    let scales = [
-        ("100 %", 1.0, [1280.0, 720.0]),
-        ("200 %", 2.0, [1280.0, 720.0]),
-        ("75 %", 0.75, [960.0, 600.0]),
-    ];
     let mut all = Vec::new();
     let mut look = |window: &mut Window, state: &str| {
-        for (name, scale, [width, height]) in scales {
-            window.set_size(Vec2::new(width, height) / scale);
+        dismiss_toasts(window);
+        for scale in SCALES {
             for theme in [Theme::Dark, Theme::Light] {
-                set(window, theme, 1.0);
-                let found = faults(window).into_iter();
-                all.extend(found.map(|fault| format!("{state}, {name}, {theme:?}: {fault}")));
+                set(window, theme, scale);
+                for [width, height] in SIZES {
+                    window.set_size(Vec2::new(width, height) / scale);
+                    window.run_steps(2);
+                    let place = format!("{state}, {width} × {height}, {scale}, {theme:?}");
+                    let found = faults(window).into_iter();
+                    all.extend(found.map(|fault| format!("{place}: {fault}")));
+                }
             }
         }
+        set(window, Theme::Dark, 1.0);
         window.set_size(Vec2::new(1400.0, 900.0));
-        window.run_steps(3);
+        window.run_steps(2);
     };
     look(&mut window, "empty");
     click(&mut window, "Open the example pair");
@@ -168,5 +190,102 @@ fn nothing_is_cut_at_any_scale_in_any_theme() {
     click(&mut window, "Match the parts");
     finish(&mut window);
     look(&mut window, "matched");
-    assert!(all.is_empty(), "{}", all.join("\n"));
+    let over = Action::ToggleMoveOver.command(window.state().state());
+    act(&mut window, over.into_iter().collect());
+    finish(&mut window);
+    look(&mut window, "moved over");
+    let map = Action::MapOrCancel.command(window.state().state());
+    act(&mut window, map.into_iter().collect());
+    finish(&mut window);
+    look(&mut window, "mapped");
+    let n = all.len();
+    assert!(all.is_empty(), "{n} faults\n{}", all.join("\n"));
+}
+
+#[test]
+fn a_fitted_part_lies_beside_what_lies_over_the_window() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    click(&mut window, "Match the parts");
+    finish(&mut window);
+    click(&mut window, "Move over");
+    finish(&mut window);
+    let deviation = Action::ToggleDeviation.command(window.state().state());
+    act(&mut window, deviation.into_iter().collect());
+    finish(&mut window);
+    let begin = Instant::now();
+    while window.query_by_label("Unfold the legend (crash)").is_none() {
+        assert!(begin.elapsed() < Duration::from_secs(120), "no legend");
+        std::thread::sleep(Duration::from_millis(10));
+        window.run_steps(1);
+    }
+    window.run_steps(20);
+    assert!(window.state().state().view.is_fitted(Role::Crash));
+    for size in [[1400.0, 900.0], [1280.0, 720.0], [1024.0, 700.0]] {
+        window.set_size(Vec2::from(size));
+        window.run_steps(40);
+        covers_nothing(&window, &format!("{size:?}, folded"));
+    }
+    window.set_size(Vec2::new(1400.0, 900.0));
+    window.run_steps(3);
+    click(&mut window, "Unfold the legend (crash)");
+    window.run_steps(40);
+    covers_nothing(&window, "unfolded");
+    // A camera that the user moved stays where it is.
+    let mut camera = window.state().state().view.cameras.crash;
+    camera.height *= 0.5;
+    act(
+        &mut window,
+        vec![ViewCommand::SetCamera(Role::Crash, camera).into()],
+    );
+    click(&mut window, "Fold the legend (crash)");
+    window.run_steps(4);
+    assert_eq!(window.state().state().view.cameras.crash, camera);
+}
+
+/// No point of either part is seen below the legend or the names of the left window.
+fn covers_nothing(window: &Window, what: &str) {
+    let state = window.state().state();
+    let area = window
+        .get_by(|node| {
+            let label = node.label();
+            label.is_some_and(|label| label.starts_with("Crash part, "))
+        })
+        .rect();
+    let button = window
+        .get_by(|node| {
+            let label = node.label();
+            label.is_some_and(|label| label.ends_with("fold the legend (crash)"))
+        })
+        .rect();
+    let both = state.document.both().expect("both parts");
+    let pose = state.document.crash_from_stamped();
+    let screen = ScreenSize {
+        width: f64::from(area.width()),
+        height: f64::from(area.height()),
+    };
+    let stamped = both.stamped.loaded.mesh.positions().iter();
+    let points = stamped.map(|point| pose.apply(point));
+    let points = points.chain(both.crash.loaded.mesh.positions().iter().copied());
+    let seen = points.map(|point| {
+        let at = state
+            .view
+            .cameras
+            .crash
+            .project(&point, screen)
+            .expect("before the eye");
+        area.min + Vec2::new(at.x as f32, at.y as f32)
+    });
+    let seen: Vec<Pos2> = seen.collect();
+    let bounds = Rect::from_points(&seen);
+    assert!(bounds.right() < button.left(), "{what}: {bounds} {button}");
+    assert!(bounds.top() > area.top() + 50.0, "{what}: {bounds} {area}");
+    assert!(
+        area.shrink(4.0).contains_rect(bounds),
+        "{what}: {bounds} {area}"
+    );
+    // And it is not needlessly small.
+    let fills = (bounds.width() / area.width()).max(bounds.height() / area.height());
+    assert!(fills > 0.55, "{what}: {bounds} {area}");
 }

@@ -224,6 +224,8 @@ actions! {
     ClearPivot,
     /// Only the 3D windows.
     ToggleGraphicsOnly,
+    /// Fold or unfold the left column.
+    ToggleColumn,
     /// Larger text.
     ScaleUp,
     /// Smaller text.

@@ -1,7 +1,7 @@
 //! The menu *View*: display, inspection, section, camera, size of the window's text.
 
 use super::conditions::{always, is_reduced, require};
-use super::row::keys::{ctrl_digit, digit, function, key, shift};
+use super::row::keys::{ctrl, ctrl_digit, digit, function, key, shift};
 use super::row::some;
 use super::{Action, ActionRow, Key, Keys, MenuGroup, Reason, Shortcut};
 use crate::app::{
@@ -346,6 +346,14 @@ const WINDOW: &[ActionRow] = &[
         keys: Keys::press(&[function(11)]),
         enabled: always,
         command: |_| some(ViewCommand::ToggleGraphicsOnly),
+    },
+    ActionRow {
+        action: Action::ToggleColumn,
+        label: "Left column",
+        tooltip: "Fold the left column to a rail, or unfold it",
+        keys: Keys::press(&[ctrl('B')]),
+        enabled: always,
+        command: |state| some(ViewCommand::FoldColumn(!state.view.is_column_folded())),
     },
     ActionRow {
         action: Action::ScaleUp,

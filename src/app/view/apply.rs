@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{BottomTab, ViewCommand, ViewState};
+use super::{BottomTab, ViewCommand, ViewRoom, ViewState};
 use crate::app::{AppState, Document, PartRef};
 use crate::geometry::{Aabb, Point3, Similarity, Vector3};
 use crate::role::Role;
@@ -18,6 +18,8 @@ pub(in crate::app) struct Scene<'a> {
     /// The pose the stamped part is drawn at.
     pub pose: Similarity,
     pub selected: &'a BTreeSet<PartRef>,
+    /// The right window shows something with the camera of the left one.
+    pub is_beside: bool,
 }
 
 impl ViewState {
@@ -33,7 +35,7 @@ impl ViewState {
             ViewCommand::SetOrbitStyle(style) => self.orbit_style = style,
             ViewCommand::SetPivot(role, pivot) => *self.pivot.get_mut(role) = pivot,
             ViewCommand::SetFocus(role) => self.focus = role,
-            ViewCommand::SetAspect(role, aspect) => *self.aspects.get_mut(role) = aspect,
+            ViewCommand::SetRoom(role, room) => self.set_room(role, room, scene),
             ViewCommand::ToggleMoveOver => self.toggle_move_over(scene),
             ViewCommand::SetShown(shown) => self.shown = shown,
             ViewCommand::SetBlinking(is_blinking) => self.is_blinking = is_blinking,
@@ -47,6 +49,11 @@ impl ViewState {
             ViewCommand::ToggleGraphicsOnly => {
                 self.is_graphics_only = !self.is_graphics_only;
             }
+            ViewCommand::FoldColumn(is_folded) => self.column = Some(is_folded),
+            ViewCommand::SetNarrow(is_narrow) => {
+                self.is_narrow = is_narrow;
+                self.column = None;
+            }
             ViewCommand::SetDialog(dialog) => self.dialog = dialog,
         }
     }
@@ -56,9 +63,14 @@ impl ViewState {
             ViewCommand::SetCamera(role, camera) => self.set_camera(role, camera),
             ViewCommand::Standard(role, view) => {
                 self.remember_camera(role);
+                let is_fitted = self.is_fitted(role);
                 let mut camera = *self.cameras.get(role);
                 camera.set_standard_view(view);
                 self.set_camera(role, camera);
+                // What was seen whole is seen whole from there too.
+                if is_fitted {
+                    self.refit(role, scene);
+                }
             }
             ViewCommand::PreviousCamera(role) => {
                 let previous = *self.previous_cameras.get(role);
@@ -72,7 +84,7 @@ impl ViewState {
             }
             ViewCommand::FitAll(role) => self.fit_all(role, scene),
             ViewCommand::Focus(role) => match self.selected_bounds(role, scene) {
-                Some(bounds) => self.fit_window(role, &bounds.corners()),
+                Some(bounds) => self.fit_window(role, &bounds.corners(), scene),
                 None => self.fit_all(role, scene),
             },
             ViewCommand::ToggleLink => self.toggle_link(),
@@ -86,13 +98,44 @@ impl ViewState {
         self.set_camera(role, camera);
     }
 
-    fn fit_window(&mut self, role: Role, points: &[Point3]) {
-        let aspect = *self.aspects.get(role);
-        self.fit(role, points, aspect);
+    fn fit_window(&mut self, role: Role, points: &[Point3], scene: &Scene<'_>) {
+        if !points.is_empty() {
+            self.remember_camera(role);
+            let room = self.room(role, scene);
+            self.fit(role, points, &room);
+        }
+    }
+
+    /// The room for a window's picture; one camera may serve two windows.
+    fn room(&self, role: Role, scene: &Scene<'_>) -> ViewRoom {
+        let own = *self.rooms.get(role);
+        if role == Role::Crash && scene.is_beside {
+            own.shared(&self.rooms.stamped)
+        } else {
+            own
+        }
+    }
+
+    /// Takes over the shape of a window and what lies over it; what was seen whole stays so.
+    fn set_room(&mut self, role: Role, room: ViewRoom, scene: &Scene<'_>) {
+        *self.rooms.get_mut(role) = room;
+        let of = if self.is_moved_over {
+            Role::Crash
+        } else {
+            role
+        };
+        if self.is_fitted(of) {
+            self.refit(of, scene);
+        }
     }
 
     /// Fits what a window shows, tightly: a turned sheet fills the picture better than its box.
     pub(in crate::app) fn fit_all(&mut self, role: Role, scene: &Scene<'_>) {
+        self.remember_camera(role);
+        self.refit(role, scene);
+    }
+
+    fn refit(&mut self, role: Role, scene: &Scene<'_>) {
         let mut points = Vec::new();
         for of in self.shown_in(role) {
             if let Some(part) = scene.document.part(*of) {
@@ -105,7 +148,9 @@ impl ViewState {
                 points.extend(positions.iter().step_by(step).map(|p| pose.apply(p)));
             }
         }
-        self.fit_window(role, &points);
+        let room = self.room(role, scene);
+        self.fit(role, &points, &room);
+        *self.fitted.get_mut(role) = Some(*self.cameras.get(role));
     }
 
     /// The parts a window shows.
@@ -179,7 +224,7 @@ impl ViewState {
         let half = Vector3::repeat(CLOSE / 2.0 * part.bounds().diagonal());
         let around = Aabb::of_points(&[at - half, at + half]);
         self.focus = window;
-        self.fit_window(window, &around.corners());
+        self.fit_window(window, &around.corners(), scene);
     }
 
     /// A stamped part comes in the axes of its die: look along its mean normal.

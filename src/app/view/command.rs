@@ -1,6 +1,6 @@
 //! What can happen to cameras, windows and panels.
 
-use super::{BottomTab, Dialog, Display, FreeWindow, Section, ShownGeometry};
+use super::{BottomTab, Dialog, Display, FreeWindow, Section, ShownGeometry, ViewRoom};
 use crate::geometry::camera::{OrbitStyle, StandardView};
 use crate::geometry::{Camera, Point3};
 use crate::role::Role;
@@ -26,8 +26,8 @@ pub enum ViewCommand {
     SetOrbitStyle(OrbitStyle),
     /// Pick or forget the pivot of a window.
     SetPivot(Role, Option<Point3>),
-    /// Width over height of a window; the shell tells when it changes.
-    SetAspect(Role, f64),
+    /// Shape of a window and what lies over it; the shell tells when it changes.
+    SetRoom(Role, ViewRoom),
     /// The window that keys act on.
     SetFocus(Role),
     /// Move over or back.
@@ -46,6 +46,10 @@ pub enum ViewCommand {
     OpenSection(Section, bool),
     /// The user works in a section; it is the last to be folded for want of room.
     UseSection(Section),
+    /// Fold the left column to a rail, or unfold it.
+    FoldColumn(bool),
+    /// Whether the window is too narrow for the left column beside the 3D windows; the shell tells.
+    SetNarrow(bool),
     /// Only the 3D windows, or everything.
     ToggleGraphicsOnly,
     /// Open something over the window, or close it.

@@ -14,7 +14,7 @@ pub use sections::Sections;
 pub use status::{Section, Stale};
 
 pub(super) use self::apply::Scene;
-use crate::geometry::camera::OrbitStyle;
+use crate::geometry::camera::{Covered, OrbitStyle};
 use crate::geometry::{Camera, Point3};
 use crate::role::{PerRole, Role};
 
@@ -27,8 +27,11 @@ pub struct ViewState {
     pub previous_cameras: PerRole<Camera>,
     /// How often a project brought its cameras. The windows then show them at once, as they are.
     pub n_restored: u64,
-    /// Width over height of each window.
-    pub aspects: PerRole<f64>,
+    /// Shape of each window and what lies over it.
+    pub rooms: PerRole<ViewRoom>,
+    /// The cameras as they were fitted last: one that is still there is fitted again when its window
+    /// changes.
+    fitted: PerRole<Option<Camera>>,
     /// Rotation and zoom of one window follow the other.
     pub are_linked: bool,
     /// Turntable or free.
@@ -51,6 +54,10 @@ pub struct ViewState {
     pub tab: BottomTab,
     /// Only the 3D windows are shown.
     pub is_graphics_only: bool,
+    /// The window is too narrow for the left column beside the 3D windows.
+    pub is_narrow: bool,
+    /// What the user said about the column since the window became narrow or wide.
+    column: Option<bool>,
     /// Which of the three sections are unfolded.
     pub sections: Sections,
     /// What lies over the window.
@@ -63,10 +70,8 @@ impl Default for ViewState {
             cameras: PerRole::default(),
             previous_cameras: PerRole::default(),
             n_restored: 0,
-            aspects: PerRole {
-                crash: 1.0,
-                stamped: 1.0,
-            },
+            rooms: PerRole::default(),
+            fitted: PerRole::default(),
             are_linked: false,
             orbit_style: OrbitStyle::Turntable,
             pivot: PerRole::default(),
@@ -78,6 +83,8 @@ impl Default for ViewState {
             display: Display::default(),
             tab: BottomTab::default(),
             is_graphics_only: false,
+            is_narrow: false,
+            column: None,
             sections: Sections::default(),
             dialog: None,
         }
@@ -98,13 +105,66 @@ impl ViewState {
         *self.previous_cameras.get_mut(role) = *self.cameras.get(role);
     }
 
-    /// Fits a window's camera to points; without any it stays.
-    pub fn fit(&mut self, role: Role, points: &[Point3], aspect: f64) {
+    /// Fits a window's camera to points, beside what lies over the window; without any it stays.
+    pub fn fit(&mut self, role: Role, points: &[Point3], room: &ViewRoom) {
         if !points.is_empty() {
-            self.remember_camera(role);
             let mut camera = *self.cameras.get(role);
-            camera.fit_to_points(points, aspect);
+            camera.fit_to_points_within(points, room.aspect, &room.covered);
             self.set_camera(role, camera);
+        }
+    }
+
+    /// True while the left column is a rail: in a narrow window, or because the user folded it.
+    pub fn is_column_folded(&self) -> bool {
+        self.column.unwrap_or(self.is_narrow)
+    }
+
+    /// True while a window shows what it was fitted to: the user has not moved its camera since.
+    pub fn is_fitted(&self, role: Role) -> bool {
+        *self.fitted.get(role) == Some(*self.cameras.get(role))
+    }
+}
+
+/// The shape of a 3D window and what lies over its picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ViewRoom {
+    /// Width over height.
+    pub aspect: f64,
+    /// What names, legend and buttons cover.
+    pub covered: Covered,
+}
+
+impl Default for ViewRoom {
+    fn default() -> Self {
+        Self {
+            aspect: 1.0,
+            covered: Covered::default(),
+        }
+    }
+}
+
+impl ViewRoom {
+    /// True if a picture fitted to one of both would look wrong in the other: by more than a hundredth
+    /// of a side.
+    pub fn differs(&self, other: &Self) -> bool {
+        let sides = |room: &Self| {
+            let Covered {
+                left,
+                right,
+                top,
+                bottom,
+            } = room.covered;
+            [room.aspect.ln(), left, right, top, bottom]
+        };
+        let pairs = sides(self).into_iter().zip(sides(other));
+        pairs.into_iter().any(|(a, b)| (a - b).abs() > 0.01)
+    }
+
+    /// The room that is free in both of two windows that show one camera's picture.
+    fn shared(&self, other: &Self) -> Self {
+        Self {
+            aspect: self.aspect.min(other.aspect),
+            covered: self.covered.union(&other.covered),
         }
     }
 }

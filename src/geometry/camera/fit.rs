@@ -5,50 +5,126 @@ use crate::geometry::{Aabb, Point3, Vector3};
 
 /// Air around a fitted scene, on each side, as a share of the picture.
 const MARGIN: f64 = 0.05;
+/// What lies over a picture leaves at least this share of its width and of its height.
+const LEAST_FREE: f64 = 0.4;
+
+/// What lies over the edges of a picture: shares of its width and height, each 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Covered {
+    /// Share of the width at the left.
+    pub left: f64,
+    /// Share of the width at the right.
+    pub right: f64,
+    /// Share of the height at the top.
+    pub top: f64,
+    /// Share of the height at the bottom.
+    pub bottom: f64,
+}
+
+impl Covered {
+    /// What either of two covers.
+    pub fn union(&self, other: &Self) -> Self {
+        Self {
+            left: self.left.max(other.left),
+            right: self.right.max(other.right),
+            top: self.top.max(other.top),
+            bottom: self.bottom.max(other.bottom),
+        }
+    }
+
+    /// The free rectangle in −1 … 1 from left to right and from bottom to top, never narrower than
+    /// two fifths of the picture, and with the margin taken off.
+    fn free(&self) -> Free {
+        let limited = |a: f64, b: f64| {
+            let (a, b) = (a.max(0.0), b.max(0.0));
+            let shrink = ((1.0 - LEAST_FREE) / (a + b).max(f64::EPSILON)).min(1.0);
+            let (a, b) = (a * shrink, b * shrink);
+            let air = MARGIN * (1.0 - a - b);
+            (2.0 * (a + air) - 1.0, 1.0 - 2.0 * (b + air))
+        };
+        Free {
+            x: limited(self.left, self.right),
+            y: limited(self.bottom, self.top),
+        }
+    }
+}
+
+/// The part of a picture that a scene is fitted into, each side within −1 … 1, low before high.
+struct Free {
+    x: (f64, f64),
+    y: (f64, f64),
+}
+
+impl Free {
+    fn center(&self) -> [f64; 2] {
+        [self.x, self.y].map(|(low, high)| 0.5 * (low + high))
+    }
+}
 
 impl Camera {
     /// Moves and zooms so that the box fills the picture with a margin of 5 %; the rotation stays.
     ///
     /// A box without size is centred and the zoom kept; for the empty box nothing changes.
     pub fn fit(&mut self, bounds: &Aabb, aspect: f64) {
-        self.fit_points(&bounds.corners(), aspect, bounds.is_empty());
+        let corners = bounds.corners();
+        let points = if bounds.is_empty() { &[][..] } else { &corners };
+        self.fit_to_points_within(points, aspect, &Covered::default());
     }
 
     /// As [`Camera::fit`], tight around points: a turned sheet fills the picture better than the
     /// corners of its box would. O(points).
     pub fn fit_to_points(&mut self, points: &[Point3], aspect: f64) {
-        self.fit_points(points, aspect, points.is_empty());
+        self.fit_to_points_within(points, aspect, &Covered::default());
     }
 
-    fn fit_points(&mut self, points: &[Point3], aspect: f64, nothing: bool) {
-        if nothing {
+    /// As [`Camera::fit_to_points`], into the rectangle of the picture over which nothing lies. O(points).
+    pub fn fit_to_points_within(&mut self, points: &[Point3], aspect: f64, covered: &Covered) {
+        let Some(first) = points.first() else {
             return;
-        }
-        let in_view = |p: &Point3| Point3::from(self.world_from_view.inverse() * (p - points[0]));
+        };
+        let aspect = aspect.max(1e-6);
+        let free = covered.free();
+        let in_view = |p: &Point3| Point3::from(self.world_from_view.inverse() * (p - first));
         let seen: Vec<Point3> = points.iter().map(in_view).collect();
         let extent = Aabb::of_points(&seen);
-        let center = extent.center();
-        let target = points[0] + self.world_from_view * center.coords;
-        let height = fitted_height(&seen, &center.coords, self.projection, aspect.max(1e-6));
-        let size = extent.diagonal();
-        let far_digits = 1e-9 * points[0].coords.norm();
-        if size > far_digits && height > 0.0 {
-            self.height = height / (1.0 - 2.0 * MARGIN);
+        let center = extent.center().coords;
+        let half = fitted_half_height(&seen, &center, self.projection, (&free, aspect));
+        let far_digits = 1e-9 * first.coords.norm();
+        if extent.diagonal() > far_digits && half > 0.0 {
+            self.height = 2.0 * half;
         }
-        self.target = target;
+        // The middle of what is seen comes to the middle of what is free.
+        let [x, y] = free.center();
+        let half = 0.5 * self.height;
+        let shift = Vector3::new(x * half * aspect, y * half, 0.0);
+        self.target = first + self.world_from_view * (center - shift);
     }
 }
 
-/// Height of the smallest picture about `center` that shows all points (view directions).
-fn fitted_height(points: &[Point3], center: &Vector3, projection: Projection, aspect: f64) -> f64 {
+/// Half the height of the smallest picture that shows all points (view directions) in its free
+/// rectangle, with `center` in the middle of that.
+fn fitted_half_height(
+    points: &[Point3],
+    center: &Vector3,
+    projection: Projection,
+    (free, aspect): (&Free, f64),
+) -> f64 {
+    // The eye stands so far back that the ray to each point stays inside the cone.
+    let slope = match projection {
+        Projection::Orthographic => 0.0,
+        Projection::Perspective { fov_y } => (fov_y / 2.0).tan(),
+    };
+    let [x, y] = free.center();
     let half_height = |p: &Point3| {
         let d = p.coords - center;
-        let wanted = d.y.abs().max(d.x.abs() / aspect);
-        match projection {
-            Projection::Orthographic => wanted,
-            // The eye stands so far back that the ray to this point stays inside the cone.
-            Projection::Perspective { fov_y } => wanted + d.z * (fov_y / 2.0).tan(),
-        }
+        // How much narrower the cone is here than at the middle.
+        let narrower = d.z * slope;
+        let along = |d: f64, (low, high): (f64, f64), middle: f64| {
+            let up = (d + high * narrower) / (high - middle);
+            let down = (d + low * narrower) / (low - middle);
+            up.max(down)
+        };
+        along(d.y, free.y, y).max(along(d.x / aspect, free.x, x))
     };
-    2.0 * points.iter().map(half_height).fold(0.0, f64::max)
+    points.iter().map(half_height).fold(0.0, f64::max)
 }

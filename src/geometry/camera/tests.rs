@@ -183,6 +183,52 @@ fn fitting_leaves_five_percent_of_air() {
 }
 
 #[test]
+fn fitting_keeps_clear_of_what_lies_over_the_picture() {
+    let covered = Covered {
+        left: 0.0,
+        right: 0.3,
+        top: 0.15,
+        bottom: 0.1,
+    };
+    let free = [
+        0.0,
+        0.7 * SCREEN.width,
+        0.15 * SCREEN.height,
+        0.9 * SCREEN.height,
+    ];
+    for mut camera in cameras() {
+        for view in StandardView::ALL {
+            camera.set_standard_view(view);
+            camera.fit_to_points_within(&scene().corners(), SCREEN.aspect(), &covered);
+            let air = [0.05 * 0.7 * SCREEN.width, 0.05 * 0.75 * SCREEN.height];
+            let mut least = f64::INFINITY;
+            for corner in scene().corners() {
+                let p = camera.project(&corner, SCREEN).unwrap();
+                let room = [p.x - free[0], free[1] - p.x, p.y - free[2], free[3] - p.y];
+                for (index, room) in room.into_iter().enumerate() {
+                    least = least.min(room - air[index / 2]);
+                }
+            }
+            // All inside, and as large as they can be.
+            assert!(least.abs() < 1e-6, "{view:?}: {least}");
+        }
+    }
+    // What is covered as a whole is fitted all the same.
+    let all = Covered {
+        left: 0.8,
+        right: 0.8,
+        ..Covered::default()
+    };
+    let mut camera = Camera::default();
+    camera.fit_to_points_within(&scene().corners(), 1.0, &all);
+    assert!(
+        camera.height.is_finite() && camera.height < 2000.0,
+        "{}",
+        camera.height
+    );
+}
+
+#[test]
 fn scenes_without_size_do_not_fail() {
     let point = Point3::new(1e6, -2e6, 3e6);
     for mut camera in cameras() {

@@ -11,6 +11,7 @@ pub mod pairs;
 pub mod part_list;
 pub mod part_question;
 pub mod part_row;
+pub mod rail;
 pub mod recipe;
 pub mod reduce;
 pub mod result;
@@ -22,7 +23,7 @@ use egui::{Frame, Margin, Panel, ScrollArea, Sense, Ui, UiBuilder, vec2};
 
 use super::theme::{Palette, UNIT};
 use super::viewport::Viewports;
-use crate::app::{AppState, Command, Settings};
+use crate::app::{AppState, Command, Settings, ViewCommand};
 
 /// Width of the left column at the first start.
 const COLUMN: f32 = 344.0;
@@ -32,6 +33,11 @@ const PANE: f32 = 200.0;
 const LOW_PANE: f32 = 126.0;
 /// A window lower than this is low.
 const LOW: f32 = 780.0;
+/// Least and largest width of the left column, and the share of the window it takes at most.
+const COLUMN_RANGE: [f32; 2] = [304.0, 480.0];
+const COLUMN_SHARE: f32 = 0.4;
+/// In a window smaller than this only the 3D windows, the rail and the menus have room.
+const TINY: egui::Vec2 = vec2(480.0, 330.0);
 
 /// The whole window.
 pub fn window_ui(
@@ -70,17 +76,43 @@ pub fn window_ui(
             .show(ui, |ui| bottom::bottom_ui(ui, state, commands));
         shown.response.rect.height()
     };
+    let window = ui.ctx().content_rect().size();
+    let is_narrow = COLUMN_SHARE * window.x < COLUMN_RANGE[0];
+    if is_narrow != state.view.is_narrow {
+        commands.push(ViewCommand::SetNarrow(is_narrow).into());
+    }
+    let is_tiny = window.x < TINY.x || window.y < TINY.y;
+    if state.view.is_column_folded() {
+        rail::rail_ui(ui, state, commands);
+        if !is_tiny {
+            bottom(ui, commands);
+        }
+        graphics::graphics_ui(ui, state, viewports, commands);
+        return;
+    }
     let mut height = None;
-    if state.settings.is_log_wide {
+    if state.settings.is_log_wide && !is_tiny {
         height = Some(bottom(ui, commands));
     }
-    reset_by_double_click(ui, state, ("left column", 0), commands);
-    let left = Panel::left("left column")
+    let [least, most] = COLUMN_RANGE;
+    let most = most.min(COLUMN_SHARE * window.x).max(least);
+    // A name of its own where the usual width has no room, which it then has again in a wider window.
+    let name = if most < column.unwrap_or(COLUMN) {
+        "narrow left column"
+    } else {
+        "left column"
+    };
+    reset_by_double_click(ui, state, (name, 0), commands);
+    let left = Panel::left(name)
         .resizable(true)
         .default_size(column.unwrap_or(COLUMN))
-        .size_range(304.0..=480.0)
+        .size_range(least..=most)
         .frame(Frame::new().fill(palette.panel).inner_margin(Margin::ZERO))
         .show(ui, |ui| left_column_ui(ui, state, commands));
+    if is_tiny {
+        graphics::graphics_ui(ui, state, viewports, commands);
+        return;
+    }
     let height = height.unwrap_or_else(|| bottom(ui, commands));
     graphics::graphics_ui(ui, state, viewports, commands);
     remember_sizes(ui, state, [left.response.rect.width(), height], commands);

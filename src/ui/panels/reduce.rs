@@ -58,6 +58,9 @@ fn summary(state: &AppState) -> String {
     }
 }
 
+/// Room for the choice of parts beside the maximum.
+const CHOICE: f32 = 128.0;
+
 /// The maximum, what it is for, and the button.
 fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut settings: Settings = state.settings.clone();
@@ -72,7 +75,7 @@ fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 let digits: String = text.chars().filter(char::is_ascii_digit).collect();
                 digits.parse().ok()
             })
-            .min_size(vec2(98.0, ROW));
+            .min_size(vec2((ui.available_width() - CHOICE).clamp(56.0, 98.0), ROW));
         let field = ui.add(field);
         ui.spacing_mut().button_padding.x = 8.0;
         is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));

@@ -2,6 +2,7 @@
 
 use egui::{Align, Button, Layout, MenuBar, RichText, Sense, Ui, pos2, vec2};
 
+use super::rail::fold_ui;
 use super::units::window_unit_ui;
 use crate::app::{
     Action, ActionRow, AppState, Command, CopyForm, Dialog, ExportCommand, Menu, MenuGroup,
@@ -18,18 +19,35 @@ use crate::ui::widgets::{caption, focus_ring};
 /// The bar at the top.
 pub fn top_bar_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     MenuBar::new().ui(ui, |ui| {
-        for menu in Menu::ALL {
-            ui.menu_button(menu.label(), |ui| {
-                ui.set_min_width(248.0);
-                menu_ui(ui, state, menu, commands);
-            });
+        fold_ui(ui, state, commands);
+        let room = ui.available_width();
+        if room < NARROW {
+            // One menu of menus.
+            ui.menu_button("☰ Menu", |ui| menus_ui(ui, state, commands));
+        } else {
+            menus_ui(ui, state, commands);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             bell_ui(ui, state, commands);
-            window_unit_ui(ui, state);
+            if room >= MEDIUM {
+                window_unit_ui(ui, state);
+            }
             search_ui(ui, commands);
         });
     });
+}
+
+/// Room below which the menus are one, and below which the unit is left out.
+const NARROW: f32 = 480.0;
+const MEDIUM: f32 = 560.0;
+
+fn menus_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    for menu in Menu::ALL {
+        ui.menu_button(menu.label(), |ui| {
+            ui.set_min_width(248.0);
+            menu_ui(ui, state, menu, commands);
+        });
+    }
 }
 
 /// The items of a menu; the table of actions says which.

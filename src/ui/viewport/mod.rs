@@ -80,8 +80,7 @@ impl Viewports {
         });
         let look = Look::of(ui.visuals().dark_mode);
         let window = self.windows.get_mut(role);
-        window.notice_restored(role, state);
-        window.tell_aspect(rect, role, state, commands);
+        window.notice_restored(state);
         window::tell_focus(&response, state.camera_of(role), state, commands);
         let view = self.view_frame(ui, role, state, rect, commands);
         let picture = self.picture_of(ui, &view, state, &look);

@@ -29,8 +29,6 @@ pub(super) struct Window {
     pub pointing: Pointing,
     /// The meshes that were drawn last, shown until newer ones are ready.
     pub shown: PerRole<Option<Arc<ShownMesh>>>,
-    /// Revision of the part that was shown last.
-    known_part: u64,
     /// The pose the camera has followed the part to.
     followed: StampedPose,
     /// The project whose cameras were taken over last.
@@ -45,32 +43,11 @@ pub(super) struct Window {
 impl Window {
     /// A project brings its own cameras: parts and pose that came with it are neither fitted nor
     /// followed.
-    pub fn notice_restored(&mut self, role: Role, state: &AppState) {
+    pub fn notice_restored(&mut self, state: &AppState) {
         let n_restored = state.view.n_restored;
         self.is_restored = std::mem::replace(&mut self.known_restored, n_restored) != n_restored;
         if self.is_restored {
-            self.known_part = state.document.part(role).map_or(0, |part| part.revision);
             self.followed = state.document.pose;
-        }
-    }
-
-    /// Tells the state how wide the window is. A part that was fitted before that was known is fitted
-    /// again.
-    pub fn tell_aspect(
-        &mut self,
-        rect: Rect,
-        role: Role,
-        state: &AppState,
-        commands: &mut Vec<Command>,
-    ) {
-        let revision = state.document.part(role).map_or(0, |part| part.revision);
-        let is_new = std::mem::replace(&mut self.known_part, revision) != revision;
-        let aspect = f64::from(rect.width() / rect.height());
-        if (*state.view.aspects.get(role) - aspect).abs() > 1e-3 {
-            commands.push(ViewCommand::SetAspect(role, aspect).into());
-            if is_new {
-                commands.push(ViewCommand::FitAll(role).into());
-            }
         }
     }
 

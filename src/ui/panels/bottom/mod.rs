@@ -11,8 +11,7 @@ mod sweep;
 mod thumbnails;
 mod timings;
 
-use egui::scroll_area::ScrollBarVisibility;
-use egui::{Align, Button, Frame, Layout, Margin, RichText, ScrollArea, Stroke, Ui, vec2};
+use egui::{Align, Button, Frame, Layout, Margin, RichText, Stroke, Ui, vec2};
 
 use crate::app::{AppState, BottomTab, Command, ViewCommand};
 use crate::ui::theme::{Palette, ROW, UNIT};
@@ -46,7 +45,7 @@ pub fn bottom_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 /// In a pane narrower than this the tabs become a menu, so that the status keeps its place.
-const NARROW: f32 = 620.0;
+const NARROW: f32 = 440.0;
 /// Room for the status at the right of the tabs.
 const STATUS: f32 = 216.0;
 
@@ -73,39 +72,80 @@ fn tabs_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
+/// As many tabs as fit, the one that is shown among them; the rest stand in a menu at their end.
 fn tab_row(
     ui: &mut Ui,
     tabs: &[BottomTab],
     state: &AppState,
     (room, commands): (f32, &mut Vec<Command>),
 ) {
-    ScrollArea::horizontal()
-        .id_salt("tabs")
-        .max_width(room)
-        .scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden)
-        .show(ui, |ui| {
-            ui.horizontal(|ui| {
-                for tab in tabs {
-                    tab_ui(ui, *tab, state, commands);
-                }
-            });
-        });
+    let (shown, more) = fitting(ui, tabs, state.view.tab, room);
+    for tab in shown {
+        tab_ui(ui, tab, state, commands);
+    }
+    if !more.is_empty() {
+        let (button, _) = egui::containers::menu::MenuButton::new("More  ▾")
+            .ui(ui, |ui| tab_items(ui, &more, state, commands));
+        button.on_hover_text("Tabs that have no room here");
+    }
+}
+
+/// Room for the menu of the tabs that do not fit.
+const MORE: f32 = 72.0;
+
+/// The tabs that fit, and the others.
+fn fitting(
+    ui: &Ui,
+    tabs: &[BottomTab],
+    now: BottomTab,
+    room: f32,
+) -> (Vec<BottomTab>, Vec<BottomTab>) {
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let around = 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
+    let width = |tab: &BottomTab| {
+        let color = egui::Color32::PLACEHOLDER;
+        let text = tab.label().to_owned();
+        let text = ui.painter().layout_no_wrap(text, font.clone(), color);
+        text.size().x + around
+    };
+    let widths: Vec<f32> = tabs.iter().map(width).collect();
+    if widths.iter().sum::<f32>() <= room {
+        return (tabs.to_vec(), Vec::new());
+    }
+    let at = tabs.iter().position(|tab| *tab == now);
+    let mut left = room - MORE - at.map_or(0.0, |at| widths[at]);
+    let (mut shown, mut more) = (Vec::new(), Vec::new());
+    for (tab, width) in tabs.iter().zip(widths) {
+        if *tab != now {
+            left -= width;
+        }
+        if *tab == now || left >= 0.0 {
+            shown.push(*tab);
+        } else {
+            more.push(*tab);
+        }
+    }
+    (shown, more)
 }
 
 /// The tabs as a menu whose button names the one that is shown.
 fn tab_menu(ui: &mut Ui, tabs: &[BottomTab], state: &AppState, commands: &mut Vec<Command>) {
     let label = format!("{}  ▾", state.view.tab.label());
     let (button, _) = egui::containers::menu::MenuButton::new(label).ui(ui, |ui| {
-        for tab in tabs {
-            let is_on = *tab == state.view.tab;
-            if ui.selectable_label(is_on, tab.label()).clicked() {
-                commands.push(ViewCommand::SetTab(*tab).into());
-                ui.close();
-            }
-        }
+        tab_items(ui, tabs, state, commands);
     });
     let name = format!("Tab {}", state.view.tab.label());
     button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+}
+
+fn tab_items(ui: &mut Ui, tabs: &[BottomTab], state: &AppState, commands: &mut Vec<Command>) {
+    for tab in tabs {
+        let is_on = *tab == state.view.tab;
+        if ui.selectable_label(is_on, tab.label()).clicked() {
+            commands.push(ViewCommand::SetTab(*tab).into());
+            ui.close();
+        }
+    }
 }
 
 fn tab_ui(ui: &mut Ui, tab: BottomTab, state: &AppState, commands: &mut Vec<Command>) {

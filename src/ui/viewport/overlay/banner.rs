@@ -12,6 +12,8 @@ use crate::ui::widgets::length;
 /// Above the scale bar and the readout.
 const BOTTOM: f32 = 62.0;
 const HEIGHT: f32 = 32.0;
+/// Where it begins, from the foot of the window.
+pub(super) const TOP: f32 = BOTTOM + HEIGHT;
 
 /// What the banner says and the button on it.
 struct Banner {
@@ -20,13 +22,13 @@ struct Banner {
     commands: Vec<Command>,
 }
 
-/// The banner, if there is something to say.
-pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
+/// The banner, if there is something to say; returns whether it is there.
+pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) -> bool {
     if over.role() != Role::Crash {
-        return;
+        return false;
     }
     let Some(banner) = preview(over.frame.state).or_else(|| poses(over.frame.state)) else {
-        return;
+        return false;
     };
     let font = FontId::proportional(12.5);
     let painter = over.painter(ui);
@@ -37,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     let center = over.frame.rect().center_bottom() - vec2(0.0, BOTTOM + HEIGHT / 2.0);
     let ground = Rect::from_center_size(center, vec2(width, HEIGHT));
     if width > over.frame.rect().width() - 8.0 {
-        return;
+        return false;
     }
     painter.rect_filled(ground, CornerRadius::same(6), over.frame.look.plate);
     let edge = Stroke::new(1.0, over.frame.look.role(Role::Stamped));
@@ -63,6 +65,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     if ui.put(area, button).clicked() {
         commands.extend(banner.commands);
     }
+    true
 }
 
 /// A pose that is shown until it is let go.

@@ -1,7 +1,8 @@
 //! What the right window is used for while its part is in the left one.
 
-use egui::{CornerRadius, FontId, Rect, Shape, Ui, UiBuilder, vec2};
+use egui::{CornerRadius, Rect, Shape, Ui, UiBuilder, vec2};
 
+use super::header::fitted;
 use super::{MARGIN, Overlay};
 use crate::app::{AppState, Command, FreeWindow, ViewCommand};
 use crate::role::Role;
@@ -11,14 +12,45 @@ use crate::ui::widgets::segments;
 const WIDTH: f32 = 416.0;
 const HEIGHT: f32 = 28.0;
 
+/// Where the row of choices has no room the choice is a menu.
+const NARROW: f32 = 380.0;
+const MENU: f32 = 150.0;
+/// Room for the folded legend.
+const LEGEND: f32 = 84.0;
+/// How far the choice and what it says reach down.
+pub(super) const BELOW_CHOICE: f32 = 2.0 + HEIGHT + 8.0 + 22.0;
+
 /// The choice between the uses.
 pub fn free_choice(ui: &mut Ui, state: &AppState, width: f32, commands: &mut Vec<Command>) {
     let now = state.free_window();
+    if width < NARROW {
+        free_menu(ui, state, width.min(MENU), commands);
+        return;
+    }
     let label = |free: FreeWindow| (free.label(), now == Some(free), state.can_use_free(free));
     let labels = FreeWindow::ALL.map(label);
     if let Some(index) = segments(ui, &labels, width) {
         commands.push(ViewCommand::SetFreeWindow(FreeWindow::ALL[index]).into());
     }
+}
+
+/// The same as a menu.
+fn free_menu(ui: &mut Ui, state: &AppState, width: f32, commands: &mut Vec<Command>) {
+    let now = state.free_window();
+    let menu = egui::ComboBox::from_id_salt("free window")
+        .selected_text(now.map_or("", FreeWindow::label))
+        .width(width)
+        .truncate();
+    ui.name_inputs("Use of the right window", |ui| {
+        menu.show_ui(ui, |ui| {
+            for free in FreeWindow::ALL {
+                let row = egui::Button::selectable(now == Some(free), free.label());
+                if ui.add_enabled(state.can_use_free(free), row).clicked() {
+                    commands.push(ViewCommand::SetFreeWindow(free).into());
+                }
+            }
+        });
+    });
 }
 
 /// The choice in the upper left corner, and below it what is shown.
@@ -28,7 +60,9 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
         return;
     };
     let painter = over.painter(ui);
-    let width = WIDTH.min(over.frame.rect().width() - 2.0 * MARGIN - 8.0);
+    let room = over.frame.rect().width() - 2.0 * MARGIN - 8.0;
+    let width = if room < NARROW { MENU } else { WIDTH };
+    let width = width.min(room);
     let corner = over.frame.rect().min + vec2(MARGIN + 4.0, MARGIN + 2.0);
     let area = Rect::from_min_size(corner, vec2(width, HEIGHT));
     let ground = Shape::rect_filled(
@@ -41,11 +75,13 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
         free_choice(ui, over.frame.state, width, commands);
     });
     let corner = area.left_bottom() + vec2(-4.0, 8.0);
-    let font = FontId::proportional(11.5);
-    let text = painter.layout_no_wrap(says(free).to_owned(), font, over.frame.look.weak);
+    let weak = over.frame.look.weak;
+    // A narrow window has the legend beside it.
+    let beside = if room < NARROW { LEGEND } else { 8.0 };
+    let text = fitted(&painter, says(free).to_owned(), 11.5, (weak, room - beside));
     let plate = Rect::from_min_size(corner, text.size() + vec2(16.0, 8.0));
     painter.rect_filled(plate, CornerRadius::same(6), over.frame.look.plate);
-    painter.galley(corner + vec2(8.0, 4.0), text, over.frame.look.weak);
+    painter.galley(corner + vec2(8.0, 4.0), text, weak);
 }
 
 fn says(free: FreeWindow) -> &'static str {

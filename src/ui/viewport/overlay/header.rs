@@ -14,57 +14,124 @@ use crate::report::start_kind_words;
 use crate::role::Role;
 use crate::text::whole_percent;
 
+/// Width and height of the row of camera buttons, and the least width of the names beside it.
+const BUTTONS: Vec2 = vec2(212.0, 24.0);
+const LEAST_NAMES: f32 = 150.0;
+/// Height of a part's name with its facts, and in one line.
+const BLOCK: f32 = 40.0;
+const LINE: f32 = 22.0;
+/// Windows smaller than this name each part in one line.
+const NARROW: f32 = 400.0;
+const LOW: f32 = 300.0;
+/// Height of a note.
+const NOTE: f32 = 17.0;
+
+/// Height of the names of the parts, without notes; `None` in a window with a header of its own.
+pub(super) fn height(over: &Overlay<'_>) -> Option<f32> {
+    (!is_free(over)).then(|| block_height(over) * roles(over).len() as f32 + 3.0)
+}
+
 /// Role mark, name and facts of each part in the window, then what is shown instead of the real pose.
 pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
     let painter = over.painter(ui);
     frame(over, &painter, over.frame.look.role(over.role()));
-    let small = |text: String| {
-        painter.layout_no_wrap(text, FontId::proportional(11.5), over.frame.look.weak)
-    };
-    let notes: Vec<_> = notes(over).into_iter().map(small).collect();
-    if is_free(over) {
+    let Some(names_height) = height(over) else {
         return;
-    }
-    let is_both = over.role() == Role::Crash && over.frame.state.view.is_moved_over;
-    let roles = if is_both {
-        &Role::ALL[..]
-    } else {
-        &[over.role()]
     };
-    let blocks: Vec<_> = roles
+    let window = over.frame.rect();
+    let beside = if has_buttons(over) {
+        BUTTONS.x + 8.0
+    } else {
+        0.0
+    };
+    let room = window.width() - 2.0 * MARGIN - beside - 36.0;
+    let small =
+        |text: String, room: f32| fitted(&painter, text, 11.5, (over.frame.look.weak, room));
+    let blocks: Vec<_> = roles(over)
         .iter()
-        .map(|&role| (role, title(&painter, over, role), small(facts(over, role))))
+        .map(|&role| {
+            let title = title(&painter, over, role);
+            let used = if is_small(over) {
+                title_width(&title) + 9.0
+            } else {
+                0.0
+            };
+            (role, title, small(facts(over, role), room - used))
+        })
         .collect();
-    let title_width = |title: &[Arc<Galley>; 2]| title[0].size().x + 7.0 + title[1].size().x;
-    let widths = blocks
-        .iter()
-        .map(|(_, title, facts)| title_width(title).max(facts.size().x));
+    let notes = notes(over).into_iter();
+    let notes: Vec<_> = notes.map(|text| small(text, room)).collect();
+    let widths = blocks.iter().map(|(_, title, facts)| {
+        let [title, facts] = [title_width(title), facts.size().x];
+        if is_small(over) {
+            title + 9.0 + facts
+        } else {
+            title.max(facts)
+        }
+    });
     let widest = widths
         .chain(notes.iter().map(|note| note.size().x))
         .fold(0.0, f32::max);
-    let height = 40.0 * blocks.len() as f32 + 17.0 * notes.len() as f32 + 3.0;
-    let top = over.frame.rect().min + Vec2::splat(MARGIN);
+    let height = names_height + NOTE * notes.len() as f32;
+    let top = window.min + Vec2::splat(MARGIN);
     let plate = Rect::from_min_size(top, vec2(widest + 36.0, height));
     painter.rect_filled(plate, CornerRadius::same(6), over.frame.look.plate);
-    let mut at = top + vec2(25.0, 5.0);
-    for (role, [name, what], facts) in blocks {
-        mark(
-            &painter,
-            role,
-            at + vec2(-12.0, 8.0),
-            5.0,
-            over.frame.look.role(role),
-        );
+    let mut at = top + vec2(25.0, if is_small(over) { 3.0 } else { 5.0 });
+    for (role, title, facts) in blocks {
+        let mark_at = at + vec2(-12.0, 8.0);
+        mark(&painter, role, mark_at, 5.0, over.frame.look.role(role));
+        let after = at + vec2(title_width(&title) + 9.0, 1.5);
+        let [name, what] = title;
         let second = at + vec2(name.size().x + 7.0, 0.0);
         painter.galley(at, name, over.frame.look.text);
         painter.galley(second, what, over.frame.look.weak);
-        painter.galley(at + vec2(0.0, 18.0), facts, over.frame.look.weak);
-        at.y += 40.0;
+        let below = if is_small(over) {
+            after
+        } else {
+            at + vec2(0.0, 18.0)
+        };
+        painter.galley(below, facts, over.frame.look.weak);
+        at.y += block_height(over);
     }
     for note in notes {
         painter.galley(at - vec2(0.0, 2.0), note, over.frame.look.text);
-        at.y += 17.0;
+        at.y += NOTE;
     }
+}
+
+/// True in a window without room for two lines about each part.
+fn is_small(over: &Overlay<'_>) -> bool {
+    over.frame.rect().width() < NARROW || over.frame.rect().height() < LOW
+}
+
+fn block_height(over: &Overlay<'_>) -> f32 {
+    if is_small(over) { LINE } else { BLOCK }
+}
+
+/// The parts that are named.
+fn roles(over: &Overlay<'_>) -> &'static [Role] {
+    match over.role() {
+        Role::Crash if over.frame.state.view.is_moved_over => &Role::ALL,
+        Role::Crash => &[Role::Crash],
+        Role::Stamped => &[Role::Stamped],
+    }
+}
+
+fn title_width(title: &[Arc<Galley>; 2]) -> f32 {
+    title[0].size().x + 7.0 + title[1].size().x
+}
+
+/// One line of text, cut with an ellipsis where there is no room for it.
+pub(super) fn fitted(
+    painter: &Painter,
+    text: String,
+    size: f32,
+    (color, room): (Color32, f32),
+) -> Arc<Galley> {
+    let font = FontId::proportional(size);
+    let mut job = egui::text::LayoutJob::simple_singleline(text, font, color);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(0.0));
+    painter.layout_job(job)
 }
 
 /// True in the right window once its part has left it: it has the left one's camera, and a header of
@@ -232,9 +299,14 @@ fn preview_text(state: &AppState) -> Option<String> {
     })
 }
 
+/// True where there is room for the buttons of the camera beside the names.
+fn has_buttons(over: &Overlay<'_>) -> bool {
+    over.frame.rect().width() >= LEAST_NAMES + 8.0 + BUTTONS.x + 2.0 * MARGIN
+}
+
 /// Buttons of the camera, top right.
 pub(super) fn buttons(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
-    if is_free(over) {
+    if is_free(over) || !has_buttons(over) {
         return;
     }
     let role = over.role();
@@ -251,15 +323,11 @@ pub(super) fn buttons(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comman
             ViewCommand::ToggleLink,
         ),
     ];
-    let size = vec2(212.0, 24.0);
     let corner = Pos2::new(
-        over.frame.rect().right() - MARGIN - size.x,
+        over.frame.rect().right() - MARGIN - BUTTONS.x,
         over.frame.rect().top() + MARGIN,
     );
-    let area = Rect::from_min_size(corner, size);
-    if area.left() < over.frame.rect().left() + 150.0 {
-        return;
-    }
+    let area = Rect::from_min_size(corner, BUTTONS);
     let plate = ui.painter().add(Shape::Noop);
     let builder = UiBuilder::new()
         .max_rect(area.shrink(2.0))

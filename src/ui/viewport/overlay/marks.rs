@@ -17,6 +17,8 @@ use crate::ui::widgets::signed;
 
 /// Length of an axis of the triad.
 const AXIS: f32 = 26.0;
+/// Windows lower than this have no axes.
+const LOW: f32 = 300.0;
 /// Longest scale bar.
 const MAX_BAR: f64 = 150.0;
 
@@ -24,7 +26,7 @@ const MAX_BAR: f64 = 150.0;
 pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
     let painter = over.painter(ui);
     let display = &over.frame.state.view.display;
-    if display.has_axes {
+    if has_triad(over) {
         triad(&painter, over);
     }
     let mut taken = over.frame.rect().left() + MARGIN;
@@ -32,6 +34,11 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
         taken = bar(&painter, over);
     }
     readout(&painter, over, taken);
+}
+
+/// A low window has no room for the axes.
+fn has_triad(over: &Overlay<'_>) -> bool {
+    over.frame.state.view.display.has_axes && over.frame.rect().height() >= LOW
 }
 
 /// Axes with their letters, those that point away fainter and drawn first.
@@ -80,7 +87,8 @@ fn bar(painter: &Painter, over: &Overlay<'_>) -> f32 {
     let Some(bar) = scale_bar(size, max_bar) else {
         return over.frame.rect().left() + MARGIN;
     };
-    let left = over.frame.rect().left_bottom() + vec2(MARGIN + 84.0, -MARGIN - 8.0);
+    let beside = if has_triad(over) { 84.0 } else { 8.0 };
+    let left = over.frame.rect().left_bottom() + vec2(MARGIN + beside, -MARGIN - 8.0);
     let right = left + vec2(bar.pixels as f32, 0.0);
     let text = length_text(bar.length) + over.frame.state.document.unit_suffix();
     let galley = painter.layout_no_wrap(text, FontId::proportional(11.5), over.frame.look.text);
@@ -135,7 +143,11 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32) {
     if let Some(value) = value_text(over, hit) {
         text = format!("{value}   {text}");
     }
-    let galley = painter.layout_no_wrap(text, FontId::monospace(11.0), over.frame.look.text);
+    let font = FontId::monospace(11.0);
+    let mut job = egui::text::LayoutJob::simple_singleline(text, font, over.frame.look.text);
+    let room = over.frame.rect().width() - 2.0 * MARGIN - 14.0;
+    job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(0.0));
+    let galley = painter.layout_job(job);
     let size = galley.size() + vec2(14.0, 8.0);
     let mut corner = over.frame.rect().right_bottom() - Vec2::splat(MARGIN) - size;
     if corner.x < taken + 6.0 {

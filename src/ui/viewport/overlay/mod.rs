@@ -11,6 +11,7 @@ mod labels;
 mod legend;
 mod marks;
 mod pairs;
+mod room;
 mod section;
 
 pub use free::free_choice;
@@ -78,13 +79,14 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     pairs::next(ui, over);
     section::handle(ui, over, commands);
     labels::show(ui, over, commands);
-    legend::show(ui, over, commands);
+    let legend = legend::show(ui, over, commands);
     marks::show(ui, over);
     header::show(ui, over);
     header::buttons(ui, over, commands);
-    banner::show(ui, over, commands);
+    let banner = banner::show(ui, over, commands);
     section::show(ui, over, over.cuts, commands);
     free::show(ui, over, commands);
+    room::tell(over, legend, banner, commands);
 }
 
 /// A text in the place of the picture.

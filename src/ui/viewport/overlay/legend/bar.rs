@@ -24,6 +24,7 @@ pub(super) fn plain(
     ui.horizontal(|ui| {
         ui.label(RichText::new(title).size(12.0));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            super::fold(ui, over);
             menu::maps(ui, over, false, commands);
         });
     });

@@ -58,18 +58,23 @@ pub(super) fn show(
     }
 }
 
-/// Only the bar with its numbers.
-pub(super) fn slim(ui: &mut Ui, over: &Overlay<'_>, scale: &ColorScale) {
-    super::fold(ui, over);
-    if over.frame.state.freshness() != Freshness::Current {
-        let color = Palette::of(ui).check;
-        ui.label(RichText::new("out of\ndate").size(11.0).color(color));
-        ui.set_opacity(0.45);
+/// Says on the folded legend that its colours are old, with the way to new ones.
+pub(super) fn slim_freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
+    let state = over.frame.state;
+    let freshness = state.freshness();
+    if freshness == Freshness::Current {
+        return;
     }
-    let (room, _) = ui.allocate_exact_size(vec2(super::SLIM, 196.0), Sense::hover());
-    let bar = Rect::from_min_size(room.min + vec2(1.0, 10.0), vec2(bar::BAR, 176.0));
-    bar::paint(ui.painter(), scale, bar, over);
-    bar::ticks(ui.painter(), scale, bar, over, false);
+    let old = RichText::new("out of\ndate").size(11.0);
+    ui.label(old.color(Palette::of(ui).check));
+    if freshness == Freshness::OutOfDate && state.jobs.locking_job().is_none() {
+        let button = Button::new(RichText::new("Update").size(11.0)).small();
+        let can = state.can_match().is_ok();
+        if ui.add_enabled(can, button).clicked() {
+            commands.push(InspectCommand::Update.into());
+        }
+    }
+    ui.set_opacity(0.45);
 }
 
 /// Before the first measurement has ended.

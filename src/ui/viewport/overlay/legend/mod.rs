@@ -6,66 +6,103 @@ mod menu;
 mod overlap;
 
 use egui::{
-    Align, CornerRadius, Frame, Layout, Margin, Pos2, Rect, Sense, Shape, Ui, UiBuilder, vec2,
+    Align, CornerRadius, Frame, Layout, Margin, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui,
+    UiBuilder, Vec2, vec2,
 };
 
 use super::{MARGIN, Overlay};
 use crate::app::Command;
+use crate::colormap::ColorScale;
 use crate::ui::viewport::fields::FieldKind;
 
-/// Width of what is inside the plate, and of the folded one.
+/// Width of what is inside the plate, and of the folded one; air beside it.
 const WIDTH: f32 = 172.0;
-const SLIM: f32 = 52.0;
-/// Windows lower than this have no legend, those lower than the next a short one.
-const LEAST_HEIGHT: f32 = 240.0;
+const SLIM: f32 = 48.0;
+const AIR: f32 = 8.0;
+/// Room above the legend for the buttons of the camera, and below it for the scale bar.
+const ABOVE: f32 = 44.0;
+const BELOW: f32 = 36.0;
+/// Windows lower than this have no legend, and up to the next only the folded one.
+const LEAST_HEIGHT: f32 = 170.0;
+const OPEN_HEIGHT: f32 = 260.0;
 const FULL_HEIGHT: f32 = 440.0;
 
-/// The legend below the buttons of the camera.
-pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
+/// The legend at the right edge, below the buttons of the camera; returns where it lies.
+pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) -> Option<Rect> {
+    let window = over.frame.rect();
+    let is_low = window.height() < LEAST_HEIGHT || window.width() < 4.0 * SLIM;
+    if is_low || !over.frame.picture.has_colored() {
+        return None;
+    }
     let Some((kind, scale)) = over.scale else {
         // The first measurement is under way.
-        if over.kind.is_some_and(is_measured) && over.frame.picture.has_colored() {
-            plate(ui, over, |ui| deviation::waiting(ui, over, commands));
+        if over.kind.is_some_and(is_measured) {
+            plate(ui, over, WIDTH, |ui| deviation::waiting(ui, over, commands));
         }
-        return;
+        return None;
     };
-    let is_low =
-        over.frame.rect().height() < LEAST_HEIGHT || over.frame.rect().width() < 2.0 * WIDTH;
-    if is_low || !over.frame.picture.has_colored() {
-        return;
+    if kind == FieldKind::Overlap {
+        let shown = plate(ui, over, WIDTH, |ui| overlap::show(ui, over, commands));
+        return Some(shown);
     }
-    if kind == FieldKind::Deviation && is_folded(ui, over) {
-        plate(ui, over, |ui| {
-            deviation::slim(ui, over, &scale);
-        });
-        return;
+    let can_open = window.height() >= OPEN_HEIGHT && window.width() >= 2.0 * WIDTH;
+    if is_folded(ui, over) || !can_open {
+        return Some(plate(ui, over, SLIM, |ui| {
+            slim(ui, over, (kind, &scale), can_open, commands);
+        }));
     }
     let room = Room {
-        is_full: over.frame.rect().height() >= FULL_HEIGHT,
-        bar: if over.frame.rect().height() >= FULL_HEIGHT {
+        is_full: window.height() >= FULL_HEIGHT,
+        bar: if window.height() >= FULL_HEIGHT {
             176.0
         } else {
-            (over.frame.rect().height() - 170.0).clamp(70.0, 150.0)
+            (window.height() - 170.0).clamp(70.0, 150.0)
         },
     };
-    plate(ui, over, |ui| match kind {
+    Some(plate(ui, over, WIDTH, |ui| match kind {
         FieldKind::Deviation => deviation::show(ui, over, &scale, room, commands),
-        FieldKind::Overlap => overlap::show(ui, over, commands),
-        FieldKind::Thickness | FieldKind::ReductionError | FieldKind::Forming(_) => {
-            bar::plain(ui, over, kind.label(), &scale, room.bar, commands);
-        }
-    });
+        _ => bar::plain(ui, over, kind.label(), &scale, room.bar, commands),
+    }))
 }
 
 fn is_measured(kind: FieldKind) -> bool {
     matches!(kind, FieldKind::Deviation | FieldKind::Overlap)
 }
 
-/// True if the user folded the legend of a window, or the section takes the room for it.
+/// What the colours say, and the bar with its numbers; the rest behind a button.
+fn slim(
+    ui: &mut Ui,
+    over: &Overlay<'_>,
+    (kind, scale): (FieldKind, &ColorScale),
+    can_open: bool,
+    commands: &mut Vec<Command>,
+) {
+    let name = RichText::new(kind.label()).size(11.0);
+    ui.add(egui::Label::new(name).wrap());
+    let is_length = !matches!(kind, FieldKind::Forming(_));
+    let unit = over.frame.state.document.unit_suffix();
+    if is_length && !unit.trim().is_empty() {
+        let unit = RichText::new(unit.trim()).size(11.0);
+        ui.label(unit.color(over.frame.look.weak));
+    }
+    if kind == FieldKind::Deviation {
+        deviation::slim_freshness(ui, over, commands);
+    }
+    let left = over.frame.rect().height() - ABOVE - BELOW - 84.0;
+    let height = left.clamp(60.0, 220.0);
+    let (room, _) = ui.allocate_exact_size(vec2(SLIM, height + 16.0), Sense::hover());
+    let bar = Rect::from_min_size(room.min + vec2(1.0, 8.0), vec2(bar::BAR, height));
+    bar::paint(ui.painter(), scale, bar, over);
+    bar::ticks(ui.painter(), scale, bar, over, false);
+    if can_open {
+        fold(ui, over);
+    }
+}
+
+/// True unless the user unfolded the legend of a window: folded it leaves the picture free.
 fn is_folded(ui: &Ui, over: &Overlay<'_>) -> bool {
-    let is_tight = over.frame.state.inspect.section.is_on && over.frame.rect().width() < 640.0;
     ui.data(|data| data.get_temp(fold_id(ui, over)))
-        .unwrap_or(is_tight)
+        .unwrap_or(true)
 }
 
 fn fold_id(ui: &Ui, over: &Overlay<'_>) -> egui::Id {
@@ -76,11 +113,11 @@ fn fold_id(ui: &Ui, over: &Overlay<'_>) -> egui::Id {
 fn fold(ui: &mut Ui, over: &Overlay<'_>) {
     let is_folded = is_folded(ui, over);
     let (sign, name) = if is_folded {
-        ("<", "Unfold the legend")
+        ("<  more", "Unfold the legend")
     } else {
         (">", "Fold the legend")
     };
-    let button = egui::Button::new(egui::RichText::new(sign).size(11.5)).small();
+    let button = egui::Button::new(egui::RichText::new(sign).size(11.0)).small();
     let response = ui.add(button).on_hover_text(name);
     let name = format!("{name} ({})", over.role().word());
     if response.accessible_name(name).clicked() {
@@ -103,50 +140,61 @@ pub(super) fn last_place(ui: &Ui, over: &Overlay<'_>) -> Option<Rect> {
     ui.data(|data| data.get_temp(id))
 }
 
-/// A plate in the upper right corner, as high as what is on it; the pointer does not reach through.
-fn plate(ui: &mut Ui, over: &Overlay<'_>, add: impl FnOnce(&mut Ui)) {
+/// An opaque plate at the right edge, as high as what is on it, which can be dragged elsewhere; the
+/// pointer does not reach through. Returns where it lies.
+fn plate(ui: &mut Ui, over: &Overlay<'_>, width: f32, add: impl FnOnce(&mut Ui)) -> Rect {
     let id = ui.make_persistent_id(("legend", over.role().word()));
-    if let Some(last) = ui.data(|data| data.get_temp::<Rect>(id)) {
-        ui.interact(last, id, Sense::click_and_drag());
-    }
-    let is_slim = over.kind == Some(FieldKind::Deviation) && is_folded(ui, over);
-    let outer = if is_slim { SLIM } else { WIDTH } + 20.0;
-    let corner = Pos2::new(
-        over.frame.rect().right() - MARGIN - outer,
-        over.frame.rect().top() + 44.0,
-    );
-    let room = Rect::from_min_max(
-        corner,
-        Pos2::new(
-            over.frame.rect().right() - MARGIN,
-            over.frame.rect().bottom() - MARGIN,
-        ),
-    );
+    let last = ui.data(|data| data.get_temp::<Rect>(id));
+    let moved = last.map_or(Vec2::ZERO, |last| dragged(ui, id, last));
+    let window = over.frame.rect();
+    let outer = width + 2.0 * AIR;
+    let size = vec2(outer, last.map_or(0.0, |last| last.height()));
+    let home = Pos2::new(window.right() - MARGIN - outer, window.top() + ABOVE);
+    let low = window.min + Vec2::splat(4.0);
+    let high = (window.max - size - Vec2::splat(4.0)).max(low);
+    let corner = (home + moved).clamp(low, high);
+    let room = Rect::from_min_max(corner, Pos2::new(corner.x + outer, window.bottom() - 4.0));
     let ground = ui.painter().add(Shape::Noop);
     let builder = UiBuilder::new()
         .max_rect(room)
         .layout(Layout::top_down(Align::Min));
     let shown = ui.scope_builder(builder, |ui| {
-        ui.set_clip_rect(over.frame.rect());
+        ui.set_clip_rect(window);
         ui.spacing_mut().item_spacing = vec2(5.0, 3.0);
         ui.spacing_mut().button_padding = vec2(4.0, 1.0);
         ui.spacing_mut().interact_size = vec2(36.0, 18.0);
         ui.visuals_mut().override_text_color = Some(over.frame.look.text);
         Frame::new()
-            .inner_margin(Margin::symmetric(10, 8))
+            .inner_margin(Margin::same(AIR as i8))
             .show(ui, |ui| {
-                ui.set_width(outer - 20.0);
+                ui.set_width(width);
                 add(ui);
             });
     });
     let used = shown.response.rect;
-    let shape = Shape::rect_filled(
-        used,
-        CornerRadius::same(6),
-        over.frame.look.plate.to_opaque(),
-    );
-    ui.painter().set(ground, shape);
+    let fill = over.frame.look.plate.to_opaque();
+    let line = Stroke::new(1.0, over.frame.look.plate_line);
+    let radius = CornerRadius::same(6);
+    let shape = egui::epaint::RectShape::new(used, radius, fill, line, egui::StrokeKind::Inside);
+    ui.painter().set(ground, Shape::Rect(shape));
     ui.data_mut(|data| data.insert_temp(id, used));
+    used
+}
+
+/// How far the user dragged the legend from its place; a double click puts it back.
+fn dragged(ui: &Ui, id: egui::Id, last: Rect) -> Vec2 {
+    let response = ui.interact(last, id, Sense::click_and_drag());
+    let response = response.on_hover_and_drag_cursor(egui::CursorIcon::Grab);
+    let id = id.with("moved");
+    let before: Vec2 = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let moved = match response.double_clicked() {
+        true => Vec2::ZERO,
+        false => before + response.drag_delta(),
+    };
+    if moved != before {
+        ui.data_mut(|data| data.insert_temp(id, moved));
+    }
+    moved
 }
 
 /// As many digits as the step between ticks needs.
