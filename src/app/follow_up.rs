@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::{AppState, BottomTab, Effect, NoticeLevel, Part, Section, Showing, ShownGeometry};
+use super::{
+    AppState, BottomTab, Effect, FreeWindow, NoticeLevel, Part, Section, Showing, ShownGeometry,
+};
 use crate::geometry::Point3;
 use crate::jobs::ProjectRequest;
 use crate::role::{PerRole, Role};
@@ -39,6 +41,8 @@ pub(super) enum FollowUp {
     ComparisonEnded,
     /// A place is to be seen close up.
     LookAt(Role, Point3),
+    /// The section was turned on or off.
+    SectionToggled,
     /// The document is that of another step.
     SteppedInHistory,
     /// The project is to be written there.
@@ -80,6 +84,7 @@ impl AppState {
                 self.view.sections.unfold(Section::Map);
                 self.follow_far_move(before);
             }
+            FollowUp::SectionToggled => self.show_section(),
             FollowUp::SweepBegun => self.view.tab = BottomTab::Sweep,
             FollowUp::SweepEnded => {
                 if let Some(sweep) = self.matching.sweep() {
@@ -128,6 +133,18 @@ impl AppState {
             is_muted,
         };
         self.log.notices.push(level, line, showing);
+    }
+
+    /// The outlines are drawn beside the parts: in the free window, or in a tab where there is none.
+    fn show_section(&mut self) {
+        let is_on = self.inspect.section.is_on;
+        let (view, tab) = (&mut self.view, BottomTab::Section);
+        match (is_on, view.is_moved_over) {
+            (true, true) => view.free_window = Some(FreeWindow::Section),
+            (true, false) => view.tab = tab,
+            (false, _) if view.tab == tab => view.tab = BottomTab::Log,
+            (false, _) => {}
+        }
     }
 
     /// A part that went far is no longer where the cameras look; one that was nudged still is.

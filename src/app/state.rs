@@ -126,7 +126,7 @@ impl AppState {
     ) -> R {
         let beside = self.free_window();
         let scene = Scene {
-            is_beside: beside.is_some_and(|free| free != FreeWindow::Nothing),
+            is_beside: beside.is_some_and(FreeWindow::is_picture),
             pose: self.shown_pose(),
             document: &self.document,
             selected: &self.parts.selected,

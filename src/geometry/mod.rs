@@ -24,7 +24,10 @@ pub use landmarks::{Hole, Landmarks};
 pub use mesh::{MeshError, TriMesh};
 pub use normals::{CornerNormals, VertexFans, corner_normals, face_normals, vertex_normals};
 pub use sampling::{SurfaceSample, sample_surface};
-pub use section::{Gap, Plane, SectionLine, gap_at, nearest_on_lines, section};
+pub use section::{
+    Gap, OutlineGap, OutlineGaps, Plane, SectionLine, gap_at, nearest_on_lines, outline_gaps,
+    section,
+};
 pub use similarity::{MatrixError, Similarity};
 pub use topology::{BorderLoop, Topology, orient_consistently};
 pub use weld::{Welded, weld};

@@ -105,6 +105,56 @@ pub fn gap_at(
     })
 }
 
+/// How far the points of one outline lie from another outline.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct OutlineGaps {
+    /// For each line and each of its points the way from the nearest place of the other outline;
+    /// `None` beyond that outline's ends and further than the limit.
+    pub ways: Vec<Vec<Option<Vector3>>>,
+    /// The longest of these ways, the first of equal ones.
+    pub worst: Option<OutlineGap>,
+}
+
+/// A way from one outline to another one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OutlineGap {
+    /// On the first outline.
+    pub from: Point3,
+    /// On the second one.
+    pub to: Point3,
+}
+
+/// A way that leans so much along the outline it begins at begins at its end, and is no gap.
+const LEANING: f64 = 0.5;
+
+/// The ways from `first` to the points of `second` that are no longer than `limit`. O(pieces · points).
+pub fn outline_gaps(first: &[SectionLine], second: &[SectionLine], limit: f64) -> OutlineGaps {
+    let mut found = OutlineGaps::default();
+    let mut longest = 0.0;
+    for line in second {
+        let ways = line.points.iter().map(|to| {
+            let nearest = nearest_on_lines(first, to)?;
+            let way = to - nearest.point;
+            let length = way.norm();
+            let leans = way.dot(&nearest.tangent).abs() > LEANING * length;
+            if length > limit || (leans && length > 0.0) {
+                return None;
+            }
+            if length > longest {
+                longest = length;
+                found.worst = Some(OutlineGap {
+                    from: nearest.point,
+                    to: *to,
+                });
+            }
+            Some(way)
+        });
+        let ways = ways.collect();
+        found.ways.push(ways);
+    }
+    found
+}
+
 /// A connected piece of a section.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectionLine {
@@ -313,6 +363,38 @@ mod tests {
 
     fn at(point: [f64; 3], normal: [f64; 3]) -> Plane {
         Plane::new(Point3::from(point), &Vector3::from(normal))
+    }
+
+    #[test]
+    fn gaps_between_outlines_end_where_an_outline_ends() {
+        let line = |points: &[[f64; 2]]| SectionLine {
+            points: points
+                .iter()
+                .map(|p| Point3::new(p[0], p[1], 0.0))
+                .collect(),
+            triangles: vec![0; points.len() - 1],
+            is_closed: false,
+        };
+        let first = [line(&[[0.0, 0.0], [10.0, 0.0]])];
+        let second = [line(&[
+            [2.0, 0.5],
+            [4.0, -1.5],
+            [9.0, 0.25],
+            [14.0, 0.25],
+            [5.0, 7.0],
+        ])];
+        let found = outline_gaps(&first, &second, 3.0);
+        let ways: Vec<_> = found.ways[0]
+            .iter()
+            .map(|way| way.map(|way| way.y))
+            .collect();
+        assert_eq!(ways, [Some(0.5), Some(-1.5), Some(0.25), None, None]);
+        let worst = found.worst.unwrap();
+        assert_eq!(
+            (worst.from, worst.to),
+            (Point3::new(4.0, 0.0, 0.0), Point3::new(4.0, -1.5, 0.0))
+        );
+        assert_eq!(outline_gaps(&[], &second, 3.0).worst, None);
     }
 
     #[test]

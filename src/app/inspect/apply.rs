@@ -53,7 +53,12 @@ impl InspectState {
                 });
                 work.follow(FollowUp::LookAt(role, point));
             }
-            InspectCommand::SetSection(section) => self.section = section,
+            InspectCommand::SetSection(section) => {
+                if self.section.is_on != section.is_on {
+                    work.follow(FollowUp::SectionToggled);
+                }
+                self.section = section;
+            }
         }
         Vec::new()
     }

@@ -126,6 +126,8 @@ pub enum BottomTab {
     Sweep,
     /// Distances between the parts.
     Deviation,
+    /// Both outlines in the section plane.
+    Section,
     /// Undo steps.
     History,
     /// What the reader found in the files.
@@ -134,13 +136,14 @@ pub enum BottomTab {
 
 impl BottomTab {
     /// All, from left to right.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Log,
         Self::Timings,
         Self::Starts,
         Self::Convergence,
         Self::Sweep,
         Self::Deviation,
+        Self::Section,
         Self::History,
         Self::Diagnostics,
     ];
@@ -154,6 +157,7 @@ impl BottomTab {
             Self::Convergence => "Convergence",
             Self::Sweep => "Sweep",
             Self::Deviation => "Deviation",
+            Self::Section => "Section",
             Self::History => "History",
             Self::Diagnostics => "Diagnostics",
         }

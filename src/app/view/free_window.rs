@@ -15,7 +15,7 @@ pub enum FreeWindow {
     Nothing,
     /// The distances between the parts as colours.
     Deviation,
-    /// Both parts, cut open by the section plane.
+    /// The outlines of both parts in the section plane, laid flat.
     Section,
     /// Both parts as they were read, without reduction.
     FullMesh,
@@ -32,6 +32,11 @@ impl FreeWindow {
         Self::Section,
         Self::SecondPose,
     ];
+
+    /// True for what is seen with the camera of the left window.
+    pub fn is_picture(self) -> bool {
+        !matches!(self, Self::Nothing | Self::Section)
+    }
 
     /// Name in the choice.
     pub fn label(self) -> &'static str {

@@ -111,6 +111,7 @@ impl AppState {
                     || self.jobs.is_active(JobKey::Match)
             }
             BottomTab::Sweep | BottomTab::Deviation => self.document.both().is_some(),
+            BottomTab::Section => self.inspect.section.shown().is_some(),
             BottomTab::History => {
                 self.history.undo_name().is_some() || self.history.redo_name().is_some()
             }

@@ -134,6 +134,11 @@ fn pane_ui(
     let is_flying = viewports.is_crossing(ui.input(|input| input.time));
     let is_free = state.free_window() == Some(FreeWindow::Nothing) && !is_flying;
     let is_away = role == Role::Stamped && is_free;
+    let is_drawing = role == Role::Stamped && state.free_window() == Some(FreeWindow::Section);
+    if is_drawing && !is_flying {
+        drawing_ui(ui, state, viewports, commands);
+        return;
+    }
     let has_part = state.document.part(role).is_some();
     if has_part && !is_away {
         viewports.show(ui, role, state, commands);
@@ -147,6 +152,19 @@ fn pane_ui(
     } else {
         empty_ui(ui, rect, role, state, commands);
     }
+}
+
+/// The section laid flat, below the choice of what the window shows.
+fn drawing_ui(ui: &mut Ui, state: &AppState, viewports: &Viewports, commands: &mut Vec<Command>) {
+    let rect = ui.max_rect();
+    ui.painter().rect_filled(rect, 0.0, Palette::of(ui).ground);
+    let inner = rect.shrink2(vec2(14.0, 10.0));
+    ui.scope_builder(UiBuilder::new().max_rect(inner), |ui| {
+        ui.spacing_mut().item_spacing = vec2(UNIT, UNIT);
+        let width = 416.0_f32.min(inner.width());
+        free_choice(ui, state, width, commands);
+        viewports.section_ui(ui, state, commands);
+    });
 }
 
 /// The stamped part is shown in the left window.

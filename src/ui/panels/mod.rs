@@ -58,6 +58,7 @@ pub fn window_ui(
     Panel::top("top bar")
         .frame(bar)
         .show(ui, |ui| top_bar::top_bar_ui(ui, state, commands));
+    let shown = &*viewports;
     let bottom = |ui: &mut Ui, commands: &mut Vec<Command>| {
         let room = ui.available_height();
         // A name for each of the two, because a panel asks for its size at the first look only.
@@ -73,7 +74,7 @@ pub fn window_ui(
             .default_size(size)
             .size_range(100.0..=(0.6 * room).max(120.0))
             .frame(Frame::new().fill(palette.panel).inner_margin(Margin::ZERO))
-            .show(ui, |ui| bottom::bottom_ui(ui, state, commands));
+            .show(ui, |ui| bottom::bottom_ui(ui, state, shown, commands));
         shown.response.rect.height()
     };
     let window = ui.ctx().content_rect().size();

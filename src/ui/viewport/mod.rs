@@ -1,6 +1,7 @@
 //! The two 3D windows: crash left, stamped right. They draw what the state says and turn mouse and
 //! keys into commands.
 
+mod drawing;
 mod fields;
 mod frame;
 mod gpu;
@@ -100,6 +101,23 @@ impl Viewports {
         self.paint(ui, &frame);
         self.interact(ui, &frame, commands);
         self.keep_moving(ui, role);
+    }
+
+    /// The section laid flat, in the rest of `ui`.
+    pub fn section_ui(&self, ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+        let Some(plane) = state.inspect.section.shown() else {
+            drawing::nothing_ui(ui);
+            return;
+        };
+        let gaps = self.sections.gaps(state);
+        let drawing = drawing::Drawing {
+            state,
+            look: &Look::of(ui.visuals().dark_mode),
+            plane,
+            cuts: &self.sections.cuts(state),
+            gaps: gaps.as_deref(),
+        };
+        drawing.show(ui, commands);
     }
 
     /// True while the stamped part flies from one window to the other.
@@ -230,7 +248,7 @@ impl Viewports {
             });
         let layers = layers.collect();
         let mut picture = Picture::new(state, view, look, layers, ui.pixels_per_point());
-        picture.cut(state, view, look, &cuts);
+        picture.cut(state, look, &cuts);
         picture
     }
 
@@ -294,7 +312,6 @@ impl Viewports {
             frame,
             drag: window.navigator.drag(),
             hit: hit.as_ref(),
-            cuts: &self.sections.cuts(state),
             scale: kind.and_then(|kind| Some((kind, self.fields.scale(role, state)?))),
             kind,
             hint: window.tools.hint(state),

@@ -6,7 +6,7 @@ use super::frame::ViewFrame;
 use super::meshes::ShownMesh;
 use super::sections::{self, Cut};
 use super::visible_parts::{self, PartInstance};
-use crate::app::{AppState, FreeWindow, PartRef};
+use crate::app::{AppState, PartRef};
 use crate::geometry::camera::{ScreenSize, ViewRay};
 use crate::geometry::{Aabb, Camera, Plane, Point3, Similarity, Vector3};
 use crate::render::{Drawable, FieldLook, PartLook, Scene, Section, Sheet};
@@ -126,13 +126,7 @@ impl Picture {
     }
 
     /// Adds the section plane and the outlines of the parts in it.
-    pub fn cut(
-        &mut self,
-        state: &AppState,
-        view: &ViewFrame,
-        look: &Look,
-        cuts: &PerRole<Option<Arc<Cut>>>,
-    ) {
+    pub fn cut(&mut self, state: &AppState, look: &Look, cuts: &PerRole<Option<Arc<Cut>>>) {
         let section = &state.inspect.section;
         let Some(plane) = section.shown().filter(|_| !self.bounds.is_empty()) else {
             return;
@@ -151,8 +145,7 @@ impl Picture {
             }
         }
         self.section_frame = Some(frame);
-        let is_for_it = visible_parts::free_window(state, view) == Some(FreeWindow::Section);
-        self.clip = Some(plane).filter(|_| section.is_clipped || is_for_it);
+        self.clip = Some(plane).filter(|_| section.is_clipped);
         let scene = Arc::make_mut(&mut self.scene);
         scene.overlay = overlay;
         scene.section = self.clip.map(|plane| Section {

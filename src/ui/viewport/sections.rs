@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::meshes::{MeshKey, ShownMesh};
 use crate::app::AppState;
-use crate::geometry::{Plane, Point3, SectionLine, Similarity, Vector3, section};
+use crate::geometry::{
+    Aabb, OutlineGaps, Plane, Point3, SectionLine, Similarity, Vector3, outline_gaps, section,
+};
 use crate::render::{DepthMode, Fill, Overlay, Polyline};
 use crate::role::{PerRole, Role};
 use crate::ui::background::{Background, Task};
@@ -49,6 +51,24 @@ impl Cut {
     pub fn normal(&self, triangle: u32) -> Vector3 {
         let normal = self.mesh.mesh().normal(triangle as usize);
         self.world_from_mesh.rotate(&normal)
+    }
+}
+
+/// Both outlines with the gaps between them.
+pub(super) struct Gaps {
+    pub cuts: PerRole<Arc<Cut>>,
+    pub found: OutlineGaps,
+}
+
+/// Gaps wider than this share of the crash outline's size are none: the parts differ there.
+const WIDEST: f64 = 0.1;
+
+impl Gaps {
+    fn make(cuts: PerRole<Arc<Cut>>) -> Self {
+        let points = cuts.crash.lines.iter().flat_map(|line| &line.points);
+        let size = Aabb::of_points(points).diagonal();
+        let found = outline_gaps(&cuts.crash.lines, &cuts.stamped.lines, WIDEST * size);
+        Self { cuts, found }
     }
 }
 
@@ -100,6 +120,8 @@ pub(super) struct SectionStore {
     background: Background<CutKey, Cut>,
     ready: PerRole<Option<(CutKey, Arc<Cut>)>>,
     failed: Vec<CutKey>,
+    measuring: Background<PerRole<CutKey>, Gaps>,
+    gaps: Option<(PerRole<CutKey>, Option<Arc<Gaps>>)>,
 }
 
 impl SectionStore {
@@ -108,6 +130,8 @@ impl SectionStore {
             background: Background::new("sections"),
             ready: PerRole::default(),
             failed: Vec::new(),
+            measuring: Background::new("gaps"),
+            gaps: None,
         }
     }
 
@@ -149,6 +173,37 @@ impl SectionStore {
                 None => self.failed.push(key),
             }
         }
+        self.measure(window, plane.is_some(), wake);
+    }
+
+    /// Asks for the gaps between the newest outlines.
+    fn measure(&mut self, window: Role, is_shown: bool, wake: &egui::Context) {
+        let (crash, stamped) = (&self.ready.crash, &self.ready.stamped);
+        let both = crash.as_ref().zip(stamped.as_ref()).filter(|_| is_shown);
+        let task = both.and_then(|((crash_key, crash), (stamped_key, stamped))| {
+            let key = PerRole::new(*crash_key, *stamped_key);
+            let is_one_plane = key.crash.plane == key.stamped.plane;
+            let is_known = self.gaps.as_ref().is_some_and(|(of, _)| *of == key);
+            let cuts = PerRole::new(Arc::clone(crash), Arc::clone(stamped));
+            (is_one_plane && !is_known).then(|| Task {
+                key,
+                work: Box::new(move || Gaps::make(cuts)),
+            })
+        });
+        let wanted = task.into_iter().collect();
+        for (key, gaps) in self.measuring.exchange(window, wanted, wake) {
+            self.gaps = Some((key, gaps.map(Arc::new)));
+        }
+    }
+
+    /// The newest gaps, of the outlines that are shown or of those before them.
+    pub fn gaps(&self, state: &AppState) -> Option<Arc<Gaps>> {
+        let plane = state.inspect.section.shown()?;
+        let (key, gaps) = self.gaps.as_ref()?;
+        // Another direction has other axes, in which old outlines would be nonsense.
+        let is_same = key.crash.plane.normal == plane.normal;
+        gaps.clone()
+            .filter(|_| is_same && state.document.both().is_some())
     }
 
     /// The newest outlines of the parts that are loaded, while the section is shown.
@@ -170,6 +225,6 @@ impl SectionStore {
 
     /// True while outlines are being made.
     pub fn is_waiting(&self) -> bool {
-        self.background.is_waiting()
+        self.background.is_waiting() || self.measuring.is_waiting()
     }
 }

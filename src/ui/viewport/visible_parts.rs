@@ -123,9 +123,9 @@ fn beside(state: &AppState, view: &ViewFrame, free: FreeWindow) -> Vec<PartInsta
     let parts = both.map(|(role, pose)| instance(role, pose)).into_iter();
     let colored = &state.view.display.coloring.on;
     let is_shown = |instance: &PartInstance| match free {
-        FreeWindow::Nothing => false,
+        FreeWindow::Nothing | FreeWindow::Section => false,
         FreeWindow::Deviation => *colored.get(instance.role),
-        FreeWindow::Section | FreeWindow::FullMesh | FreeWindow::SecondPose => true,
+        FreeWindow::FullMesh | FreeWindow::SecondPose => true,
     };
     parts.filter(is_shown).collect()
 }

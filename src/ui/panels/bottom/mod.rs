@@ -15,10 +15,16 @@ use egui::{Align, Button, Frame, Layout, Margin, RichText, Stroke, Ui, vec2};
 
 use crate::app::{AppState, BottomTab, Command, ViewCommand};
 use crate::ui::theme::{Palette, ROW, UNIT};
+use crate::ui::viewport::Viewports;
 use crate::ui::widgets::caption;
 
 /// Tabs and content.
-pub fn bottom_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+pub fn bottom_ui(
+    ui: &mut Ui,
+    state: &AppState,
+    viewports: &Viewports,
+    commands: &mut Vec<Command>,
+) {
     ui.take_available_space();
     ui.spacing_mut().item_spacing.y = 0.0;
     tabs_ui(ui, state, commands);
@@ -34,6 +40,7 @@ pub fn bottom_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         match state.view.tab {
             BottomTab::Log => log::log_ui(ui, state, commands),
             BottomTab::Deviation => deviation::deviation_ui(ui, state, commands),
+            BottomTab::Section => viewports.section_ui(ui, state, commands),
             BottomTab::Timings => timings::timings_ui(ui, state),
             BottomTab::Starts => starts::starts_ui(ui, state, commands),
             BottomTab::Convergence => convergence::convergence_ui(ui, state, commands),

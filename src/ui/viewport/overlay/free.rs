@@ -13,7 +13,7 @@ const WIDTH: f32 = 416.0;
 const HEIGHT: f32 = 28.0;
 
 /// Where the row of choices has no room the choice is a menu.
-const NARROW: f32 = 380.0;
+const NARROW: f32 = 366.0;
 const MENU: f32 = 150.0;
 /// Room for the folded legend.
 const LEGEND: f32 = 84.0;
@@ -86,9 +86,8 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
 
 fn says(free: FreeWindow) -> &'static str {
     match free {
-        FreeWindow::Nothing => "",
+        FreeWindow::Nothing | FreeWindow::Section => "",
         FreeWindow::Deviation => "distance between the parts · same camera",
-        FreeWindow::Section => "both parts cut open · same camera",
         FreeWindow::FullMesh => "both parts without reduction · same camera",
         FreeWindow::SecondPose => "the next best pose of the match · same camera",
     }

@@ -17,8 +17,6 @@ mod section;
 pub use free::free_choice;
 
 pub(super) use crate::text::grouped;
-use std::sync::Arc;
-
 use egui::{Align2, FontId, Painter, Rect, Ui};
 
 use super::fields::FieldKind;
@@ -26,10 +24,9 @@ use super::frame::FrameContext;
 use super::navigation::CameraDrag;
 use super::picking::Pick;
 use super::picture::Hit;
-use super::sections::Cut;
 use crate::app::Command;
 use crate::colormap::ColorScale;
-use crate::role::{PerRole, Role};
+use crate::role::Role;
 use crate::ui::theme::{Look, color};
 
 /// Air between the edge of the window and what lies over it.
@@ -44,8 +41,6 @@ pub(super) struct Overlay<'a> {
     pub scale: Option<(FieldKind, ColorScale)>,
     /// What the colours should show, measured or not.
     pub kind: Option<FieldKind>,
-    /// The outlines in the section plane.
-    pub cuts: &'a PerRole<Option<Arc<Cut>>>,
     /// What the handle under the pointer does.
     pub hint: Option<String>,
     /// What a click would pick for a pair of points.
@@ -84,7 +79,6 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     header::show(ui, over);
     header::buttons(ui, over, commands);
     let banner = banner::show(ui, over, commands);
-    section::show(ui, over, over.cuts, commands);
     free::show(ui, over, commands);
     room::tell(over, legend, banner, commands);
 }

@@ -101,8 +101,8 @@ fn slim(
 
 /// True unless the user unfolded the legend of a window: folded it leaves the picture free.
 fn is_folded(ui: &Ui, over: &Overlay<'_>) -> bool {
-    ui.data(|data| data.get_temp(fold_id(ui, over)))
-        .unwrap_or(true)
+    let id = fold_id(ui, over);
+    ui.data(|data| data.get_temp(id)).unwrap_or(true)
 }
 
 fn fold_id(ui: &Ui, over: &Overlay<'_>) -> egui::Id {
@@ -121,7 +121,8 @@ fn fold(ui: &mut Ui, over: &Overlay<'_>) {
     let response = ui.add(button).on_hover_text(name);
     let name = format!("{name} ({})", over.role().word());
     if response.accessible_name(name).clicked() {
-        ui.data_mut(|data| data.insert_temp(fold_id(ui, over), !is_folded));
+        let id = fold_id(ui, over);
+        ui.data_mut(|data| data.insert_temp(id, !is_folded));
     }
 }
 

@@ -1,10 +1,6 @@
-//! The section plane: its handle in the picture and the outlines laid flat beside it.
-
-mod inset;
+//! The handle of the section plane in the picture.
 
 use egui::{CursorIcon, PointerButton, Pos2, Rect, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
-
-pub(super) use inset::show;
 
 use super::Overlay;
 use crate::app::{Command, InspectCommand, SectionView};

@@ -1,0 +1,508 @@
+//! The section laid flat, in a window or tab of its own: the outlines of both parts, axes of equal
+//! scale, distances between clicked points, the gap at the cursor, and gaps drawn ten times as wide.
+
+use std::sync::Arc;
+
+use egui::{Align, Button, Color32, Layout, RichText, Sense, Ui, Vec2, WidgetInfo, vec2};
+use egui_plot::{Line, LineStyle, Plot, PlotBounds, PlotPoints, PlotUi, Points};
+
+use super::sections::{Cut, Gaps};
+use crate::app::{Action, AppState, Command, InspectCommand, SectionView};
+use crate::geometry::{Gap, Plane, Point3, SectionLine, Vector3, gap_at, nearest_on_lines};
+use crate::role::{PerRole, Role};
+use crate::text::capital;
+use crate::ui::theme::{Look, UNIT};
+use crate::ui::widgets::{nothing_yet, paint_role_mark, segments, signed};
+
+/// Clicks this near to an outline take a point of it.
+const SNAP: f64 = 12.0;
+/// The gap is told this near to the crash outline.
+const NEAR: f64 = 60.0;
+/// Zoom per point of the wheel.
+const ZOOM: f32 = 0.004;
+/// How many times as wide gaps are drawn on request.
+const EXAGGERATED: f64 = 10.0;
+/// Width of the crash outline, which lies below, and of the stamped one.
+const BELOW: f32 = 5.0;
+const ABOVE: f32 = 1.8;
+/// A room so many times as wide as it is high has the controls at its side.
+const WIDE: f32 = 2.2;
+/// Width of the controls at the side, and of the choice of directions.
+const SIDE: f32 = 190.0;
+const CHOICE: f32 = 172.0;
+/// At first so much of the outlines is seen around the worst gap, at most, and so many of its widths,
+/// at least.
+const CLOSE: f64 = 0.2;
+const WIDTHS: f64 = 40.0;
+
+/// What is drawn.
+pub(super) struct Drawing<'a> {
+    pub state: &'a AppState,
+    pub look: &'a Look,
+    pub plane: Plane,
+    pub cuts: &'a PerRole<Option<Arc<Cut>>>,
+    /// From the crash outline to the stamped one, once they are worked out.
+    pub gaps: Option<&'a Gaps>,
+}
+
+/// What the user chose, kept while the program runs.
+#[derive(Debug, Clone, Default)]
+struct Choices {
+    is_exaggerated: bool,
+    /// Clicked points.
+    picked: Vec<[f64; 2]>,
+    /// The direction of the plane that was zoomed to its worst gap.
+    zoomed: Option<String>,
+    zoom: Option<Zoom>,
+}
+
+/// Where the drawing goes next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Zoom {
+    WorstGap,
+    All,
+}
+
+/// Instead of a drawing where there is no plane.
+pub(super) fn nothing_ui(ui: &mut Ui) {
+    nothing_yet(ui, "No section", "S cuts the parts with a plane");
+}
+
+impl Drawing<'_> {
+    /// Controls and drawing in the rest of `ui`.
+    pub fn show(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let id = egui::Id::unique("section drawing").with(ui.ctx().viewport_id());
+        let mut choices: Choices = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+        ui.visuals_mut().override_text_color = Some(self.look.text);
+        ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
+        let room = ui.available_size();
+        let seen = if room.x > WIDE * room.y && room.x > 2.0 * SIDE {
+            self.beside(ui, &mut choices, commands)
+        } else {
+            self.below(ui, &mut choices, commands)
+        };
+        if let Some(at) = seen.clicked {
+            if choices.picked.len() > 1 {
+                choices.picked.clear();
+            }
+            choices.picked.push(at);
+        }
+        if seen.is_forgotten {
+            choices.picked.clear();
+        }
+        ui.data_mut(|data| data.insert_temp(id, choices));
+    }
+
+    /// A low and wide room: the controls stand left of the drawing.
+    fn beside(&self, ui: &mut Ui, choices: &mut Choices, commands: &mut Vec<Command>) -> Seen {
+        let height = ui.available_height();
+        ui.horizontal_top(|ui| {
+            let side = ui.allocate_ui(vec2(SIDE, height), |ui| {
+                ui.set_width(SIDE);
+                ui.vertical(|ui| {
+                    ui.horizontal(|ui| self.names(ui));
+                    self.directions(ui, commands);
+                    ui.horizontal(|ui| self.plane_buttons(ui, commands));
+                    ui.horizontal(|ui| self.zoom_buttons(ui, choices));
+                    ui.scope(|ui| ui.available_rect_before_wrap()).inner
+                })
+                .inner
+            });
+            ui.add_space(UNIT);
+            let seen = self.plot(ui, ui.available_size(), choices);
+            let builder = egui::UiBuilder::new().max_rect(side.inner);
+            ui.scope_builder(builder, |ui| {
+                ui.set_clip_rect(side.inner.intersect(ui.clip_rect()));
+                self.foot(ui, &seen, &choices.picked);
+            });
+            seen
+        })
+        .inner
+    }
+
+    /// A high room: controls above, measures below.
+    fn below(&self, ui: &mut Ui, choices: &mut Choices, commands: &mut Vec<Command>) -> Seen {
+        ui.horizontal_wrapped(|ui| {
+            self.names(ui);
+            ui.add_space(UNIT);
+            self.directions(ui, commands);
+            ui.add_space(UNIT);
+            self.plane_buttons(ui, commands);
+            ui.add_space(UNIT);
+            self.zoom_buttons(ui, choices);
+        });
+        let size = vec2(ui.available_width(), ui.available_height() - 24.0);
+        let seen = self.plot(ui, size, choices);
+        self.foot(ui, &seen, &choices.picked);
+        seen
+    }
+
+    /// Which colour is which part.
+    fn names(&self, ui: &mut Ui) {
+        for role in Role::ALL {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let (rect, _) = ui.allocate_exact_size(Vec2::splat(11.0), Sense::hover());
+            paint_role_mark(ui.painter(), rect, role, self.look.role(role));
+            ui.label(RichText::new(role.word()).size(12.0));
+            ui.add_space(6.0);
+        }
+        ui.spacing_mut().item_spacing.x = 6.0;
+    }
+
+    /// Across which direction the plane lies, as one choice.
+    fn directions(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let actions = [
+            ("X", Action::SectionX, Vector3::x()),
+            ("Y", Action::SectionY, Vector3::y()),
+            ("Z", Action::SectionZ, Vector3::z()),
+        ];
+        let lies = |axis: &Vector3| self.plane.normal.dot(axis).abs() > 1.0 - 1e-9;
+        let is_other = !actions.iter().any(|(_, _, axis)| lies(axis));
+        let mut labels = actions
+            .map(|(sign, _, axis)| (sign, lies(&axis), true))
+            .to_vec();
+        labels.push(("View", is_other, true));
+        if let Some(index) = segments(ui, &labels, CHOICE) {
+            let action = actions.get(index).map_or(Action::SectionView, |row| row.1);
+            commands.extend(action.command(self.state));
+        }
+    }
+
+    /// Flip, cut, close.
+    fn plane_buttons(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let flip = ui
+            .button("Flip")
+            .on_hover_text("Look at the plane from behind");
+        if flip.accessible_name("Flip the section plane").clicked() {
+            let section = SectionView {
+                plane: Some(Plane::new(self.plane.point, &-self.plane.normal)),
+                ..self.state.inspect.section
+            };
+            commands.push(InspectCommand::SetSection(section).into());
+        }
+        let is_clipped = self.state.inspect.section.is_clipped;
+        let buttons = [
+            ("Cut", Action::ToggleSectionClip, is_clipped),
+            ("×", Action::ToggleSection, false),
+        ];
+        for (sign, action, is_on) in buttons {
+            let row = action.row();
+            let response = ui.add(Button::new(sign).selected(is_on));
+            let name = format!("{} (section)", row.label);
+            let response = response.on_hover_text(row.tooltip).accessible_name(name);
+            if response.clicked() {
+                commands.extend(action.command(self.state));
+            }
+        }
+    }
+
+    /// How the outlines are shown.
+    fn zoom_buttons(&self, ui: &mut Ui, choices: &mut Choices) {
+        let button = Button::new("×10 gap").selected(choices.is_exaggerated);
+        let response = ui.add_enabled(self.gaps.is_some(), button);
+        let response = response.on_hover_text(
+            "Draw the stamped outline ten times as far from the crash outline as it is",
+        );
+        if response.clicked() {
+            choices.is_exaggerated ^= true;
+        }
+        let has_worst = self.gaps.is_some_and(|gaps| gaps.found.worst.is_some());
+        let worst = ui.add_enabled(has_worst, Button::new("Worst gap"));
+        if worst.on_hover_text("Zoom to the widest gap").clicked() {
+            choices.zoom = Some(Zoom::WorstGap);
+        }
+        if ui
+            .button("All")
+            .on_hover_text("Show the whole outlines")
+            .clicked()
+        {
+            choices.zoom = Some(Zoom::All);
+        }
+    }
+
+    /// The outlines with what is measured between them.
+    fn plot(&self, ui: &mut Ui, size: Vec2, choices: &mut Choices) -> Seen {
+        // Another direction of the plane is another picture.
+        let n = self.plane.normal;
+        let view = format!("{:.2} {:.2} {:.2}", n.x, n.y, n.z);
+        let has_worst = self.gaps.is_some_and(|gaps| gaps.found.worst.is_some());
+        if has_worst && choices.zoomed.as_ref() != Some(&view) {
+            choices.zoom = choices.zoom.or(Some(Zoom::WorstGap));
+            choices.zoomed = Some(view.clone());
+        }
+        let outlines = self.outlines(choices.is_exaggerated);
+        let mut seen = Seen {
+            is_empty: outlines.is_empty(),
+            is_exaggerated: choices.is_exaggerated,
+            ..Seen::default()
+        };
+        let zoom = choices
+            .zoom
+            .take()
+            .and_then(|zoom| self.bounds(zoom, &outlines, size));
+        let unit = self.state.document.unit_suffix();
+        let tick = move |mark: egui_plot::GridMark, _: &std::ops::RangeInclusive<f64>| {
+            format!("{}{unit}", tick_text(mark.value, mark.step_size))
+        };
+        let ticks = (tick, tick);
+        ui.visuals_mut().extreme_bg_color = Color32::TRANSPARENT;
+        let shown = Plot::new(("section", view))
+            .width(size.x.max(40.0))
+            .height(size.y.max(40.0))
+            .data_aspect(1.0)
+            .show_background(false)
+            .grid_color(self.look.weak.gamma_multiply(0.35))
+            .allow_scroll(false)
+            .allow_boxed_zoom(false)
+            .allow_axis_zoom_drag(false)
+            .x_axis_formatter(ticks.0)
+            .y_axis_formatter(ticks.1)
+            .y_axis_min_width(46.0)
+            .set_margin_fraction(vec2(0.06, 0.06))
+            .show_crosshair(false)
+            .label_formatter(|_| None)
+            .show(ui, |plot| {
+                if let Some(bounds) = zoom {
+                    plot.set_plot_bounds(bounds);
+                }
+                self.lines(plot, outlines);
+                zoom_by_wheel(plot);
+                self.measured(plot, &choices.picked);
+                self.look_at(plot, &mut seen);
+            });
+        let response = shown.response;
+        response.widget_info(|| {
+            WidgetInfo::labeled(egui::Role::Canvas, true, "Outlines in the section plane")
+        });
+        seen.clicked = seen.at.filter(|_| response.clicked());
+        seen.is_forgotten = response.secondary_clicked();
+        seen
+    }
+
+    /// The outlines in the axes of the plane, the crash part's first so that it lies below.
+    fn outlines(&self, is_exaggerated: bool) -> Vec<(Role, Vec<[f64; 2]>)> {
+        let mut outlines = Vec::new();
+        let wide = self.gaps.filter(|_| is_exaggerated);
+        for role in Role::ALL {
+            let cut = match wide {
+                Some(gaps) => Some(gaps.cuts.get(role)),
+                None => self.cuts.get(role).as_ref(),
+            };
+            let lines = cut.map_or(&[][..], |cut| &cut.lines);
+            for (index, line) in lines.iter().enumerate() {
+                let ways = wide
+                    .filter(|_| role == Role::Stamped)
+                    .and_then(|gaps| gaps.found.ways.get(index));
+                outlines.push((role, self.flat(line, ways)));
+            }
+        }
+        outlines
+    }
+
+    /// A line in the axes of the plane, its points moved on along `ways`.
+    fn flat(&self, line: &SectionLine, ways: Option<&Vec<Option<Vector3>>>) -> Vec<[f64; 2]> {
+        let n = line.points.len() + usize::from(line.is_closed);
+        let place = |index: usize| {
+            let index = index % line.points.len();
+            let way = ways.and_then(|ways| *ways.get(index)?).unwrap_or_default();
+            self.plane
+                .flat(&(line.points[index] + way * (EXAGGERATED - 1.0)))
+        };
+        (0..n).map(place).collect()
+    }
+
+    /// What is seen after a zoom.
+    fn bounds(
+        &self,
+        zoom: Zoom,
+        outlines: &[(Role, Vec<[f64; 2]>)],
+        size: Vec2,
+    ) -> Option<PlotBounds> {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for point in outlines.iter().flat_map(|(_, points)| points) {
+            for i in 0..2 {
+                low[i] = low[i].min(point[i]);
+                high[i] = high[i].max(point[i]);
+            }
+        }
+        let extent = (high[0] - low[0]).hypot(high[1] - low[1]);
+        if !extent.is_finite() {
+            return None;
+        }
+        let aspect = f64::from(size.x / size.y.max(1.0));
+        let (center, half) = match zoom {
+            Zoom::All => {
+                let center = [0, 1].map(|i| 0.5 * (low[i] + high[i]));
+                let half = (high[1] - low[1]).max((high[0] - low[0]) / aspect);
+                (center, 0.55 * half)
+            }
+            Zoom::WorstGap => {
+                let worst = self.gaps?.found.worst.as_ref()?;
+                let [a, b] = [self.plane.flat(&worst.from), self.plane.flat(&worst.to)];
+                let width = (b[0] - a[0]).hypot(b[1] - a[1]);
+                let half = (0.5 * WIDTHS * width).min(0.5 * CLOSE * extent);
+                ([0, 1].map(|i| 0.5 * (a[i] + b[i])), half / aspect.max(1.0))
+            }
+        };
+        let half = half.max(1e-6 * extent);
+        let half = [half * aspect, half];
+        let corner = |sign: f64| [0, 1].map(|i| center[i] + sign * half[i]);
+        Some(PlotBounds::from_min_max(corner(-1.0), corner(1.0)))
+    }
+
+    fn lines(&self, plot: &mut PlotUi<'_>, outlines: Vec<(Role, Vec<[f64; 2]>)>) {
+        for (role, points) in outlines {
+            let width = match role {
+                Role::Crash => BELOW,
+                Role::Stamped => ABOVE,
+            };
+            let line = Line::new(role.word(), PlotPoints::from(points))
+                .color(self.look.role(role))
+                .width(width)
+                .allow_hover(false);
+            plot.line(line);
+        }
+    }
+
+    /// The picked points and the line between them.
+    fn measured(&self, plot: &mut PlotUi<'_>, picked: &[[f64; 2]]) {
+        if picked.is_empty() {
+            return;
+        }
+        let points = || PlotPoints::from(picked.to_vec());
+        let line = Line::new("measured", points())
+            .color(self.look.tool)
+            .width(1.2)
+            .style(LineStyle::dashed_dense());
+        plot.line(line.allow_hover(false));
+        let ends = Points::new("ends", points())
+            .color(self.look.tool)
+            .radius(3.5)
+            .allow_hover(false);
+        plot.points(ends);
+    }
+
+    /// The place under the pointer, on an outline if one is near, and the gap there.
+    fn look_at(&self, plot: &mut PlotUi<'_>, seen: &mut Seen) {
+        let is_hovered = plot.response().hovered();
+        let Some(pointer) = plot.pointer_coordinate().filter(|_| is_hovered) else {
+            return;
+        };
+        let per_point = 1.0 / plot.transform().dpos_dvalue_x().abs().max(1e-12);
+        let query = self.plane.point_at([pointer.x, pointer.y]);
+        let nearest = self
+            .cuts
+            .iter()
+            .filter_map(|(_, cut)| nearest_on_lines(&cut.as_ref()?.lines, &query))
+            .map(|found| found.point)
+            .min_by(|a, b| distance(a, &query).total_cmp(&distance(b, &query)));
+        let is_near = |point: &Point3| distance(point, &query) < SNAP * per_point;
+        let snapped = nearest.filter(|point| is_near(point) && !seen.is_exaggerated);
+        let at = snapped.map_or([pointer.x, pointer.y], |point| self.plane.flat(&point));
+        seen.at = Some(at).filter(|_| !seen.is_exaggerated);
+        if snapped.is_some() {
+            let point = Points::new("snap", PlotPoints::from(vec![at]))
+                .color(self.look.tool)
+                .radius(3.0)
+                .filled(false)
+                .allow_hover(false);
+            plot.points(point);
+        }
+        let (Some(crash), Some(stamped)) = (&self.cuts.crash, &self.cuts.stamped) else {
+            return;
+        };
+        let normal = |triangle| crash.normal(triangle);
+        let gap = gap_at(&crash.lines, normal, &stamped.lines, &self.plane, &query);
+        seen.gap = gap.filter(|gap| distance(&gap.from, &query) < NEAR * per_point);
+        if let Some(gap) = &seen.gap {
+            let scale = if seen.is_exaggerated {
+                EXAGGERATED
+            } else {
+                1.0
+            };
+            let to = gap.from + (gap.to - gap.from) * scale;
+            let ends = vec![self.plane.flat(&gap.from), self.plane.flat(&to)];
+            let line = Line::new("gap", PlotPoints::from(ends))
+                .color(self.look.text)
+                .width(1.5)
+                .allow_hover(false);
+            plot.line(line);
+        }
+    }
+
+    /// What was measured, the gap at the pointer, the worst one, or what one can do.
+    fn foot(&self, ui: &mut Ui, seen: &Seen, picked: &[[f64; 2]]) {
+        let document = &self.state.document;
+        let worst = self.gaps.and_then(|gaps| gaps.found.worst.as_ref());
+        let (text, is_fact) = if let [a, b] = picked {
+            let [du, dv] = [b[0] - a[0], b[1] - a[1]];
+            let whole = document.length_text(du.hypot(dv));
+            let parts = format!("{} across, {} up", signed(du), signed(dv));
+            (format!("distance {whole}   ({parts})"), true)
+        } else if let Some(gap) = &seen.gap {
+            let flush = document.length_text(gap.flush);
+            let across = format!("{}{}", signed(gap.gap), document.unit_suffix());
+            (format!("gap {across} · flush {flush}"), true)
+        } else if seen.is_empty {
+            ("the plane meets neither part".to_owned(), false)
+        } else if picked.len() == 1 {
+            ("click the second point".to_owned(), false)
+        } else if let Some(worst) = worst {
+            let width = document.length_text(distance(&worst.from, &worst.to));
+            (
+                format!("widest gap {width} · click two points to measure"),
+                false,
+            )
+        } else {
+            ("click two points to measure".to_owned(), false)
+        };
+        let color = if is_fact {
+            self.look.text
+        } else {
+            self.look.weak
+        };
+        ui.with_layout(Layout::top_down(Align::Min), |ui| {
+            let text = RichText::new(capital(&text)).size(11.5).color(color);
+            ui.add(egui::Label::new(text).wrap());
+        });
+    }
+}
+
+/// What the pointer is at.
+#[derive(Default)]
+struct Seen {
+    at: Option<[f64; 2]>,
+    gap: Option<Gap>,
+    is_empty: bool,
+    is_exaggerated: bool,
+    clicked: Option<[f64; 2]>,
+    is_forgotten: bool,
+}
+
+fn zoom_by_wheel(plot: &mut PlotUi<'_>) {
+    if plot.response().hovered() {
+        let scroll = plot.ctx().input(|i| i.smooth_scroll_delta().y);
+        if scroll != 0.0 {
+            plot.zoom_bounds_around_hovered(Vec2::splat((scroll * ZOOM).exp()));
+        }
+    }
+}
+
+fn distance(a: &Point3, b: &Point3) -> f64 {
+    (a - b).norm()
+}
+
+/// A coordinate with the digits of its grid.
+fn tick_text(value: f64, step: f64) -> String {
+    let digits = (-step.abs().max(1e-12).log10()).ceil().clamp(0.0, 6.0) as usize;
+    let text = format!("{value:.digits$}");
+    if text
+        .trim_start_matches('-')
+        .chars()
+        .all(|c| matches!(c, '0' | '.'))
+    {
+        "0".to_owned()
+    } else {
+        text.replace('-', "−")
+    }
+}
