@@ -113,6 +113,20 @@ pub fn capital(text: &str) -> String {
     first.unwrap_or_default() + letters.as_str()
 }
 
+/// A message without the number that the system gives an error: "no such file (os error 2)".
+pub fn without_error_number(text: &str) -> String {
+    let mut words = String::new();
+    let mut rest = text;
+    while let Some(begin) = rest.find(" (os error ") {
+        let Some(length) = rest[begin..].find(')') else {
+            break;
+        };
+        words += &rest[..begin];
+        rest = &rest[begin + length + 1..];
+    }
+    words + rest
+}
+
 /// The text as a sentence: its first letter in upper case, and a full stop unless it ends in a mark.
 pub fn sentence(text: &str) -> String {
     let end = if text.ends_with(['.', '?', '!']) {
@@ -156,6 +170,19 @@ impl Lengths {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn messages_lose_the_numbers_of_errors() {
+        let error = std::io::Error::from_raw_os_error(2);
+        let text = format!("/a/b.k: {error}; again: {error}.");
+        let words = without_error_number(&text);
+        assert!(!words.contains("os error"), "{words}");
+        assert!(
+            words.starts_with("/a/b.k: ") && words.ends_with('.'),
+            "{words}"
+        );
+        assert_eq!(without_error_number("part (os error"), "part (os error");
+    }
 
     #[test]
     fn lengths_have_three_digits() {

@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
-use crate::jobs::{JobEvent, JobId, JobKey, JobStage, Live, LiveIteration};
+use crate::jobs::{JobEvent, JobId, JobKey, JobKind, JobStage, Live, LiveIteration, PartSource};
 use crate::monitor::Progress;
+use crate::text::capital;
 
 /// The running job as the window shows it.
 #[derive(Debug, Clone)]
@@ -12,6 +13,8 @@ pub struct RunningJob {
     pub id: JobId,
     /// What it is.
     pub key: JobKey,
+    /// The file it reads, if it reads one.
+    pub file: Option<String>,
     /// When it began, since the program began.
     pub since: Duration,
     /// Phase and count.
@@ -28,7 +31,34 @@ pub struct RunningJob {
 #[derive(Debug, Clone, Default)]
 pub struct JobBoard {
     running: Option<RunningJob>,
-    waiting: Vec<JobKey>,
+    waiting: Vec<(JobKey, Option<String>)>,
+}
+
+impl RunningJob {
+    /// What it does now, in words: "Reading floor.k · 12.5 MB".
+    pub fn words(&self) -> String {
+        let Some(progress) = self.progress else {
+            return match &self.file {
+                Some(file) => format!("Reading {file}"),
+                None => "Starting".to_owned(),
+            };
+        };
+        let file = self
+            .file
+            .as_ref()
+            .map_or_else(String::new, |file| format!(" {file}"));
+        let megabytes = progress.done as f64 / 1e6;
+        let mut words = match progress.phase {
+            "read deck" if megabytes >= 0.1 => format!("Reading{file} · {megabytes:.1} MB"),
+            "read deck" => format!("Reading{file}"),
+            "prepare" => format!("Preparing{file}"),
+            phase => capital(phase),
+        };
+        if let Some(total) = progress.total.filter(|total| *total > 0) {
+            words += &format!(" · {:.0} %", 100.0 * progress.done as f64 / total as f64);
+        }
+        words
+    }
 }
 
 impl JobBoard {
@@ -40,7 +70,7 @@ impl JobBoard {
     /// True if a job of this key runs or waits, and was not told to go.
     pub fn is_active(&self, key: JobKey) -> bool {
         let runs = |job: &RunningJob| job.key == key && !job.is_cancelling;
-        self.running.as_ref().is_some_and(runs) || self.waiting.contains(&key)
+        self.running.as_ref().is_some_and(runs) || self.waiting.iter().any(|(k, _)| *k == key)
     }
 
     /// True if any job runs or waits.
@@ -48,8 +78,16 @@ impl JobBoard {
         self.running.is_some() || !self.waiting.is_empty()
     }
 
-    pub(super) fn submitted(&mut self, key: JobKey) {
-        self.waiting.push(key);
+    pub(super) fn submitted(&mut self, kind: &JobKind) {
+        let file = match kind {
+            JobKind::Load {
+                source: PartSource::File(path),
+                ..
+            } => path.file_name(),
+            _ => None,
+        };
+        let file = file.map(|name| name.to_string_lossy().into_owned());
+        self.waiting.push((kind.key(), file));
     }
 
     pub(super) fn ending(&mut self, key: JobKey, is_cancelled: bool) {
@@ -61,10 +99,10 @@ impl JobBoard {
 
     pub(super) fn take_event(&mut self, event: &JobEvent, now: Duration) {
         if matches!(event.stage, JobStage::Started) {
-            self.remove_waiting(event.key);
             self.running = Some(RunningJob {
                 id: event.id,
                 key: event.key,
+                file: self.remove_waiting(event.key),
                 since: now,
                 progress: None,
                 latest: None,
@@ -86,9 +124,9 @@ impl JobBoard {
         }
     }
 
-    fn remove_waiting(&mut self, key: JobKey) {
-        if let Some(index) = self.waiting.iter().position(|k| *k == key) {
-            self.waiting.remove(index);
-        }
+    /// Takes a waiting job out; the file it reads.
+    fn remove_waiting(&mut self, key: JobKey) -> Option<String> {
+        let index = self.waiting.iter().position(|(k, _)| *k == key)?;
+        self.waiting.remove(index).1
     }
 }

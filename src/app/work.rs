@@ -10,6 +10,7 @@ use super::{
 use crate::geometry::Similarity;
 use crate::jobs::{JobKey, JobKind};
 use crate::role::Role;
+use crate::text::without_error_number;
 
 /// The work itself: the document with its history, jobs, preferences and messages, and what is to
 /// happen in other topics afterwards. A topic gets this and its own state, and no other topic's.
@@ -92,7 +93,7 @@ impl Work<'_> {
         text: impl Into<String>,
         took: Option<Duration>,
     ) {
-        let text = text.into();
+        let text = without_error_number(&text.into());
         self.notify(level, text.clone());
         self.log.push(level, step, role, text, took);
     }
@@ -113,7 +114,7 @@ impl Work<'_> {
 
     /// A job for the worker, stamped with the present state.
     pub fn start(&mut self, kind: JobKind) -> Effect {
-        self.jobs.submitted(kind.key());
+        self.jobs.submitted(&kind);
         Effect::StartJob(Box::new(kind), self.document.stamp())
     }
 

@@ -2,12 +2,13 @@
 //! into where the desktop has no dialog.
 
 use std::future::Future;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 use super::background::run_once;
-use super::theme::UNIT;
+use super::path_prompt::{self, Completion, plain_words};
+use super::theme::{Palette, UNIT};
 use super::widgets::{caption, large_button, paragraph};
 use crate::app::{Command, ExportCommand, FileCommand, PictureChoice, ProjectCommand};
 use crate::formats::Format;
@@ -46,12 +47,97 @@ enum Answer {
         path: Option<PathBuf>,
         took: Duration,
     },
-    /// A typed path leads to a file, or to nothing yet.
+    /// What a typed path leads to.
     Checked {
         question: Question,
         path: PathBuf,
-        exists: bool,
+        found: Found,
     },
+    /// How a typed path may go on.
+    Completed {
+        typed: String,
+        completion: Completion,
+    },
+}
+
+/// What is there at a path.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Found {
+    /// Nothing, in a folder that exists; or the file that is to be read.
+    Free,
+    /// A file that would be replaced.
+    Taken,
+    /// Nothing that could be read.
+    NoFile,
+    /// The folder is missing.
+    NoFolder(PathBuf),
+    /// A folder that is missing could not be made, and why.
+    NotMade(String),
+}
+
+impl Found {
+    /// Looks at a path, and makes its folder first if that is wanted.
+    fn at(path: &Path, question: &Question, makes_folder: bool) -> Self {
+        if question.is_open() {
+            return if path.exists() {
+                Self::Free
+            } else {
+                Self::NoFile
+            };
+        }
+        let folder = path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+            if !makes_folder {
+                return Self::NoFolder(folder.to_owned());
+            }
+            if let Err(error) = std::fs::create_dir_all(folder) {
+                return Self::NotMade(plain_words(&error));
+            }
+        }
+        if path.exists() {
+            Self::Taken
+        } else {
+            Self::Free
+        }
+    }
+}
+
+/// The field for those desktops that have no dialog.
+#[derive(Debug, Clone)]
+struct Prompt {
+    question: Question,
+    text: String,
+    /// The text stands there as a proposal: the first letter replaces it.
+    is_proposed: bool,
+    /// What is wrong with the path.
+    note: Option<String>,
+    /// The folder that would have to be made.
+    missing: Option<PathBuf>,
+    /// Names that begin as the typed one.
+    names: Vec<String>,
+}
+
+impl Prompt {
+    fn new(question: Question, text: String) -> Self {
+        Self {
+            question,
+            text,
+            is_proposed: true,
+            note: None,
+            missing: None,
+            names: Vec::new(),
+        }
+    }
+
+    fn with_note(question: Question, path: &Path, note: String) -> Self {
+        Self {
+            is_proposed: false,
+            note: Some(note),
+            ..Self::new(question, path.display().to_string())
+        }
+    }
 }
 
 /// Questions that wait for an answer.
@@ -61,7 +147,7 @@ pub struct Dialogs {
     /// A dialog of the desktop is open.
     is_asking: bool,
     /// The field for those desktops that have none.
-    prompt: Option<(Question, String)>,
+    prompt: Option<Prompt>,
     /// A file that would be overwritten.
     overwrite: Option<(Question, PathBuf)>,
 }
@@ -134,7 +220,7 @@ impl Dialogs {
         if is_asked {
             self.is_asking = true;
         } else {
-            self.prompt = Some((question, String::new()));
+            self.prompt = Some(Prompt::new(question, String::new()));
         }
     }
 
@@ -153,12 +239,12 @@ impl Dialogs {
                     match path {
                         // The dialog asked about the name as it was typed, not about this one.
                         Some(path) if question.with_ending(path.clone()) != path => {
-                            self.check(question, path, ctx);
+                            self.check(question, path, false, ctx);
                         }
                         Some(path) => commands.push(answered(&question, path)),
                         None if took < NOT_SHOWN => {
                             let suggestion = question.suggestion();
-                            self.prompt = Some((question, suggestion));
+                            self.prompt = Some(Prompt::new(question, suggestion));
                         }
                         None => commands.extend(closed(&question)),
                     }
@@ -166,31 +252,70 @@ impl Dialogs {
                 Answer::Checked {
                     question,
                     path,
-                    exists: true,
-                } => self.overwrite = Some((question, path)),
-                Answer::Checked { question, path, .. } => {
-                    commands.push(answered(&question, path));
+                    found,
+                } => commands.extend(self.checked(question, path, found)),
+                Answer::Completed { typed, completion } => {
+                    // Only if nothing was typed meanwhile.
+                    let prompt = self.prompt.as_mut().filter(|prompt| prompt.text == typed);
+                    if let Some(prompt) = prompt {
+                        prompt.text = completion.text;
+                        prompt.names = completion.names;
+                    }
                 }
             }
         }
         commands
     }
 
-    /// Looks on a thread of its own whether a file would be overwritten.
-    fn check(&mut self, question: Question, path: PathBuf, ctx: &egui::Context) {
+    /// What follows from what is there at a path.
+    fn checked(&mut self, question: Question, path: PathBuf, found: Found) -> Option<Command> {
+        let note = match found {
+            Found::Free => return Some(answered(&question, path)),
+            Found::Taken => {
+                self.overwrite = Some((question, path));
+                return None;
+            }
+            Found::NoFile => format!("{} does not exist.", path.display()),
+            Found::NotMade(reason) => format!("The folder cannot be created: {reason}."),
+            Found::NoFolder(folder) => {
+                let note = format!("Folder {} does not exist.", folder.display());
+                self.prompt = Some(Prompt {
+                    missing: Some(folder),
+                    ..Prompt::with_note(question, &path, note)
+                });
+                return None;
+            }
+        };
+        self.prompt = Some(Prompt::with_note(question, &path, note));
+        None
+    }
+
+    /// Looks on a thread of its own what is there at a path.
+    fn check(&self, question: Question, path: PathBuf, makes_folder: bool, ctx: &egui::Context) {
         let path = question.with_ending(path);
         let (sender, ctx) = (self.sender.clone(), ctx.clone());
         let answer = move || {
-            let exists = !question.is_open() && path.exists();
+            let found = Found::at(&path, &question, makes_folder);
             // The window may have closed meanwhile.
             let _ = sender.send(Answer::Checked {
                 question,
                 path,
-                exists,
+                found,
             });
             ctx.request_repaint();
         };
         run_once("file check", answer);
+    }
+
+    /// Looks on a thread of its own how a typed path may go on.
+    fn complete(&self, typed: String, ctx: &egui::Context) {
+        let (sender, ctx) = (self.sender.clone(), ctx.clone());
+        run_once("path completion", move || {
+            let completion = Completion::of(&typed);
+            // The window may have closed meanwhile.
+            let _ = sender.send(Answer::Completed { typed, completion });
+            ctx.request_repaint();
+        });
     }
 
     /// True while a question of ours lies over the window.
@@ -224,7 +349,7 @@ impl Dialogs {
         if is_taken {
             commands.push(answered(&question, path));
         } else if is_renamed {
-            self.prompt = Some((question, path.display().to_string()));
+            self.prompt = Some(Prompt::new(question, path.display().to_string()));
         } else if !is_closed && !shown.should_close() {
             self.overwrite = Some((question, path));
         } else {
@@ -234,54 +359,90 @@ impl Dialogs {
 
     /// The field to type a path into.
     fn prompt_ui(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
-        let Some((question, mut text)) = self.prompt.take() else {
+        let Some(mut prompt) = self.prompt.take() else {
             return;
         };
-        let (title, verb) = titles(&question);
-        let mut is_taken = false;
-        let mut is_closed = false;
+        let mut answer = None;
         let shown = modal(ctx, "path prompt").show(ctx, |ui| {
-            ui.set_width(480.0);
+            ui.set_width(480.0_f32.min(ctx.content_rect().width() - 80.0));
             ui.spacing_mut().item_spacing.y = UNIT;
-            ui.heading(title);
-            paragraph(
-                ui,
-                if question.is_open() {
-                    "No file dialog available. Enter a path, or drop the file on the window."
-                } else {
-                    "No file dialog available. Enter a path; the extension is added."
-                },
-            );
-            let field = egui::TextEdit::singleline(&mut text)
-                .hint_text("/folder/file.k")
-                .desired_width(f32::INFINITY)
-                .margin(egui::Margin::symmetric(8, 4));
-            let field = ui.add(field).accessible_name("Path of the file");
-            if !field.has_focus() && !field.lost_focus() {
-                field.request_focus();
-            }
-            is_taken |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-            ui.horizontal(|ui| {
-                let is_typed = !text.trim().is_empty();
-                is_taken |= ui
-                    .add_enabled_ui(is_typed, |ui| large_button(ui, verb, true))
-                    .inner
-                    .clicked();
-                is_closed |= large_button(ui, "Cancel", false).clicked();
-                if matches!(question, Question::Open(_) | Question::Locate(_)) {
-                    caption(ui, formats());
-                }
-            });
+            answer = prompt_content(ui, &mut prompt);
         });
-        let path = text.trim().trim_matches('"').to_owned();
-        if is_taken && !path.is_empty() {
-            self.check(question, PathBuf::from(path), ctx);
-        } else if !is_closed && !shown.should_close() {
-            self.prompt = Some((question, text));
-        } else {
-            commands.extend(closed(&question));
+        let path = path_prompt::expanded(prompt.text.trim().trim_matches('"'));
+        match answer {
+            Some(PromptAnswer::Complete) => self.complete(prompt.text.clone(), ctx),
+            Some(PromptAnswer::Take) if !path.as_os_str().is_empty() => {
+                return self.check(prompt.question, path, false, ctx);
+            }
+            Some(PromptAnswer::Create) => {
+                return self.check(prompt.question, path, true, ctx);
+            }
+            Some(PromptAnswer::Close) => return commands.extend(closed(&prompt.question)),
+            _ if shown.should_close() => return commands.extend(closed(&prompt.question)),
+            _ => {}
         }
+        self.prompt = Some(prompt);
     }
+}
+
+/// What was done in the prompt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum PromptAnswer {
+    Take,
+    Create,
+    Complete,
+    Close,
+}
+
+fn prompt_content(ui: &mut egui::Ui, prompt: &mut Prompt) -> Option<PromptAnswer> {
+    let (title, verb) = titles(&prompt.question);
+    let mut answer = None;
+    ui.heading(title);
+    paragraph(
+        ui,
+        if prompt.question.is_open() {
+            "No file dialog available. Enter a path, or drop the file on the window."
+        } else {
+            "No file dialog available. Enter a path; the extension is added."
+        },
+    );
+    let before = prompt.text.clone();
+    let field = path_prompt::field_ui(ui, &mut prompt.text, &mut prompt.is_proposed);
+    if prompt.text != before {
+        (prompt.note, prompt.missing) = (None, None);
+        prompt.names.clear();
+    }
+    if field.is_entered {
+        answer = Some(PromptAnswer::Take);
+    } else if field.wants_completion {
+        answer = Some(PromptAnswer::Complete);
+    }
+    if let Some(name) = path_prompt::names_ui(ui, &prompt.names) {
+        prompt.text = path_prompt::with_name(&prompt.text, &name);
+        prompt.names.clear();
+    }
+    if let Some(note) = &prompt.note {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(egui::RichText::new(note).color(Palette::of(ui).check));
+            if prompt.missing.is_some() && ui.button("Create").clicked() {
+                answer = Some(PromptAnswer::Create);
+            }
+        });
+    }
+    ui.horizontal(|ui| {
+        let is_typed = !prompt.text.trim().is_empty();
+        let take = ui.add_enabled_ui(is_typed, |ui| large_button(ui, verb, true));
+        if take.inner.clicked() {
+            answer = Some(PromptAnswer::Take);
+        }
+        if large_button(ui, "Cancel", false).clicked() {
+            answer = Some(PromptAnswer::Close);
+        }
+        if matches!(prompt.question, Question::Open(_) | Question::Locate(_)) {
+            caption(ui, formats());
+        }
+    });
+    answer
 }
 
 /// What follows from a dialog that was closed without an answer.
@@ -435,7 +596,7 @@ mod tests {
             name: "log.txt".to_owned(),
         };
         let mut answer = |typed: &str| {
-            dialogs.check(question(), folder.path().join(typed), &ctx);
+            dialogs.check(question(), folder.path().join(typed), false, &ctx);
             for _ in 0..500 {
                 let commands = dialogs.answers(&ctx);
                 if !commands.is_empty() || dialogs.overwrite.is_some() {
@@ -453,13 +614,52 @@ mod tests {
         assert_eq!(answer("a"), (0, Some(taken)));
     }
 
+    /// Waits for the answer of a thread and gives the commands that follow.
+    fn wait(dialogs: &mut Dialogs, ctx: &egui::Context) -> Vec<Command> {
+        for _ in 0..500 {
+            let commands = dialogs.answers(ctx);
+            if !commands.is_empty() || dialogs.is_open() {
+                return commands;
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        panic!("no answer");
+    }
+
+    #[test]
+    fn a_folder_is_made_only_when_that_is_asked_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let ctx = egui::Context::default();
+        let mut dialogs = Dialogs::default();
+        let question = Question::SaveProject(PathBuf::new());
+        let path = folder.path().join("new/deep/work");
+        dialogs.check(question.clone(), path.clone(), false, &ctx);
+        assert!(wait(&mut dialogs, &ctx).is_empty());
+        let prompt = dialogs.prompt.take().unwrap();
+        assert_eq!(prompt.missing, Some(folder.path().join("new/deep")));
+        assert!(prompt.note.unwrap().ends_with("does not exist."));
+        assert!(!folder.path().join("new").exists());
+        dialogs.check(question, path.clone(), true, &ctx);
+        let [command] = wait(&mut dialogs, &ctx).try_into().unwrap();
+        let written = path.with_extension(EXTENSION);
+        let is_meant =
+            matches!(command, Command::Project(ProjectCommand::Write(at)) if at == written);
+        assert!(is_meant);
+        assert!(folder.path().join("new/deep").is_dir());
+        // What is to be read has to be there.
+        let none = folder.path().join("none.k");
+        dialogs.check(Question::Open(Role::Crash), none, false, &ctx);
+        assert!(wait(&mut dialogs, &ctx).is_empty());
+        assert_eq!(dialogs.prompt.unwrap().missing, None);
+    }
+
     #[test]
     fn a_question_has_the_keys_for_itself() {
         let ctx = egui::Context::default();
         let mut dialogs = Dialogs::default();
         let keyboard = Keyboard::default();
         assert_eq!(keyboard.owner(&ctx, dialogs.is_open()), KeyOwner::Window);
-        dialogs.prompt = Some((Question::OpenProject, String::new()));
+        dialogs.prompt = Some(Prompt::new(Question::OpenProject, String::new()));
         assert_eq!(keyboard.owner(&ctx, dialogs.is_open()), KeyOwner::Question);
     }
 }

@@ -11,6 +11,7 @@ mod no_window;
 pub mod overlays;
 pub mod palette;
 pub mod panels;
+mod path_prompt;
 mod picture_options;
 mod pictures;
 pub mod preferences;

@@ -7,6 +7,7 @@ mod app_exports;
 mod app_mapping;
 mod assess;
 mod autosave;
+mod cancel;
 mod cli;
 mod deck_out;
 mod deviation;

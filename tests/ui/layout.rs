@@ -8,6 +8,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use shapematch::app::{Action, Command, NoticeCommand, Theme, ViewCommand};
 use shapematch::geometry::camera::ScreenSize;
 use shapematch::role::Role;
+use shapematch::text::capital;
 use shapematch::ui::Shell;
 
 use super::story::{click, finish, window};
@@ -211,27 +212,25 @@ fn a_fitted_part_lies_beside_what_lies_over_the_window() {
     finish(&mut window);
     click(&mut window, "Move over");
     finish(&mut window);
+    wait_for(&mut window, "Unfold the legend (stamped)");
+    window.run_steps(20);
+    covers_nothing(&window, "free window", Role::Stamped);
     let deviation = Action::ToggleDeviation.command(window.state().state());
     act(&mut window, deviation.into_iter().collect());
     finish(&mut window);
-    let begin = Instant::now();
-    while window.query_by_label("Unfold the legend (crash)").is_none() {
-        assert!(begin.elapsed() < Duration::from_secs(120), "no legend");
-        std::thread::sleep(Duration::from_millis(10));
-        window.run_steps(1);
-    }
+    wait_for(&mut window, "Unfold the legend (crash)");
     window.run_steps(20);
     assert!(window.state().state().view.is_fitted(Role::Crash));
     for size in [[1400.0, 900.0], [1280.0, 720.0]] {
         window.set_size(Vec2::from(size));
         window.run_steps(40);
-        covers_nothing(&window, &format!("{size:?}, folded"));
+        covers_nothing(&window, &format!("{size:?}, folded"), Role::Crash);
     }
     window.set_size(Vec2::new(1400.0, 900.0));
     window.run_steps(3);
     click(&mut window, "Unfold the legend (crash)");
     window.run_steps(40);
-    covers_nothing(&window, "unfolded");
+    covers_nothing(&window, "unfolded", Role::Crash);
     // A camera that the user moved stays where it is.
     let mut camera = window.state().state().view.cameras.crash;
     camera.height *= 0.5;
@@ -244,19 +243,31 @@ fn a_fitted_part_lies_beside_what_lies_over_the_window() {
     assert_eq!(window.state().state().view.cameras.crash, camera);
 }
 
-/// No point of either part is seen below the legend or the names of the left window.
-fn covers_nothing(window: &Window, what: &str) {
+/// The colours of a window are worked out in the background.
+fn wait_for(window: &mut Window, label: &str) {
+    let begin = Instant::now();
+    while window.query_by_label(label).is_none() {
+        assert!(begin.elapsed() < Duration::from_secs(120), "no {label}");
+        std::thread::sleep(Duration::from_millis(10));
+        window.run_steps(1);
+    }
+}
+
+/// No point of either part is seen below the legend or the names of a window.
+fn covers_nothing(window: &Window, what: &str, role: Role) {
     let state = window.state().state();
     let area = window
         .get_by(|node| {
             let label = node.label();
-            label.is_some_and(|label| label.starts_with("Crash part, "))
+            label
+                .is_some_and(|label| label.starts_with(&format!("{} part, ", capital(role.word()))))
         })
         .rect();
     let button = window
         .get_by(|node| {
             let label = node.label();
-            label.is_some_and(|label| label.ends_with("fold the legend (crash)"))
+            let button = format!("old the legend ({})", role.word());
+            label.is_some_and(|label| label.ends_with(&button))
         })
         .rect();
     let both = state.document.both().expect("both parts");

@@ -233,31 +233,25 @@ fn loading_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Comm
         .jobs
         .running()
         .filter(|job| job.key == JobKey::Load(role));
-    match running.and_then(|job| job.progress) {
-        Some(progress) => {
-            let text = progress.phase.to_owned();
-            if let Some(total) = progress.total.filter(|total| *total > 0) {
-                let share = progress.done as f32 / total as f32;
-                let bar = egui::ProgressBar::new(share)
-                    .desired_width(240.0)
-                    .desired_height(6.0);
-                ui.add(bar).accessible_name("Loading");
-                ui.add_space(UNIT);
-            }
-            secondary(ui, text);
-        }
-        None if running.is_some() => {
-            secondary(ui, "Reading");
-        }
-        None => {
-            secondary(ui, "Waiting for the previous file");
-        }
-    }
-    if running.is_some() {
+    let Some(job) = running else {
+        secondary(ui, "Waiting for the previous file");
+        return;
+    };
+    let counted = job.progress.and_then(|progress| {
+        let total = progress.total.filter(|total| *total > 0)?;
+        Some(progress.done as f32 / total as f32)
+    });
+    if let Some(share) = counted {
+        let bar = egui::ProgressBar::new(share)
+            .desired_width(240.0)
+            .desired_height(6.0);
+        ui.add(bar).accessible_name("Loading");
         ui.add_space(UNIT);
-        if ui.button("Cancel loading").clicked() {
-            commands.push(Command::Escape);
-        }
+    }
+    ui.add(egui::Label::new(RichText::new(job.words()).color(Palette::of(ui).secondary)).wrap());
+    ui.add_space(UNIT);
+    if ui.button("Cancel loading").clicked() {
+        commands.push(Command::Escape);
     }
 }
 

@@ -5,7 +5,8 @@ use egui::{Button, ComboBox, ProgressBar, RichText, Ui, vec2};
 use super::section::section_ui;
 use super::{manual_move, pairs, recipe, result};
 use crate::app::{
-    Action, AppState, Command, MatchCommand, Section, ShownGeometry, ViewCommand, duration_text,
+    Action, AppState, Command, MatchCommand, RunningJob, Section, ShownGeometry, ViewCommand,
+    duration_text,
 };
 use crate::jobs::JobKey;
 use crate::registration::{Method, StartMethod};
@@ -172,6 +173,7 @@ fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let look = ("▶  Match", Look::Primary, TALL);
         wide_action(ui, state, Action::MatchOrStop, look, commands)
             .widget_info(|| named_button("Match the parts"));
+        cancelling_ui(ui, state);
         return;
     }
     let is_stopping = state.jobs.running().is_some_and(|job| job.is_stopping);
@@ -187,6 +189,14 @@ fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         action_button(ui, state, Action::CancelRun, look, commands);
     });
     status_ui(ui, state);
+}
+
+/// Says that the worker has not yet let go of a match that was cancelled.
+fn cancelling_ui(ui: &mut Ui, state: &AppState) {
+    let is_meant = |job: &&RunningJob| job.key == JobKey::Match && job.is_cancelling;
+    if state.jobs.running().filter(is_meant).is_some() {
+        secondary(ui, "Cancelling…");
+    }
 }
 
 /// One live line under the buttons, and a bar only for what can be counted.

@@ -186,13 +186,13 @@ fn status_ui(ui: &mut Ui, state: &AppState) {
         caption(ui, "ready");
         return;
     };
-    let mut text = job.key.label().to_owned();
-    if let Some(progress) = job.progress {
-        text += &format!(" · {}", progress.phase);
-        if let Some(total) = progress.total.filter(|total| *total > 0) {
-            text += &format!(" {:.0} %", 100.0 * progress.done as f64 / total as f64);
-        }
-    }
+    let text = if job.is_cancelling {
+        format!("{} · cancelling…", job.key.label())
+    } else if job.file.is_some() {
+        job.words()
+    } else {
+        format!("{} · {}", job.key.label(), job.words().to_lowercase())
+    };
     let text = RichText::new(text).small().color(Palette::of(ui).secondary);
     let label = ui.add(egui::Label::new(text).truncate());
     ui.ctx().accesskit_node_builder(label.id, |node| {
