@@ -227,6 +227,7 @@ pub struct SampleArgs {
 
 /// `shapematch bench`.
 #[derive(Debug, Args)]
+#[command(group = clap::ArgGroup::new("table").args(["robustness", "mapping"]))]
 pub struct BenchArgs {
     /// The crash part; the generated car floor if no files are given.
     #[arg(requires = "stamped")]
@@ -250,8 +251,9 @@ pub struct BenchArgs {
     /// Runs of every scenario on every part.
     #[arg(long, value_name = "N", default_value_t = 1, requires = "robustness")]
     pub runs: usize,
-    /// Only these parts and scenarios, by the beginnings of their names, separated by commas.
-    #[arg(long, value_name = "NAMES", requires = "robustness")]
+    /// Only these parts and scenarios, by the beginnings of their names, separated by commas; of the
+    /// mapping one part, or "speed" for the times alone.
+    #[arg(long, value_name = "NAMES", requires = "table")]
     pub only: Option<String>,
     /// Write the table with plots as a page.
     #[arg(long, value_name = "FILE", requires = "robustness")]

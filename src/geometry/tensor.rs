@@ -11,6 +11,40 @@ pub fn rotated(tensor: &Tensor, rotation: &Matrix3) -> Tensor {
     components(&(rotation * matrix(tensor) * rotation.transpose()))
 }
 
+/// A rotation made ready to turn many tensors, or a mirror.
+#[derive(Debug, Clone, Copy)]
+pub struct Turn([[f64; 6]; 6]);
+
+impl Turn {
+    /// R·σ·Rᵀ is linear in σ: row by row what each component takes from all six.
+    pub fn new(rotation: &Matrix3) -> Self {
+        const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
+        let r = |i: usize, k: usize| rotation[(i, k)];
+        let mut rows = [[0.0; 6]; 6];
+        for (row, (i, j)) in rows.iter_mut().zip(ENTRIES) {
+            for (entry, (k, l)) in row.iter_mut().zip(ENTRIES) {
+                *entry = r(i, k) * r(j, l);
+                if k != l {
+                    *entry += r(i, l) * r(j, k);
+                }
+            }
+        }
+        Self(rows)
+    }
+
+    /// The turned tensor.
+    #[inline]
+    pub fn apply(&self, tensor: &Tensor) -> Tensor {
+        let mut turned = [0.0; 6];
+        for (sum, row) in turned.iter_mut().zip(&self.0) {
+            let lower = row[0] * tensor[0] + row[1] * tensor[1] + row[2] * tensor[2];
+            let upper = row[3] * tensor[3] + row[4] * tensor[4] + row[5] * tensor[5];
+            *sum = lower + upper;
+        }
+        turned
+    }
+}
+
 /// The components of a symmetric matrix.
 pub fn components(matrix: &Matrix3) -> Tensor {
     [
@@ -30,9 +64,14 @@ fn matrix(tensor: &Tensor) -> Matrix3 {
 
 /// Von Mises equivalent of a stress.
 pub fn von_mises(stress: &Tensor) -> f64 {
+    von_mises_sq(stress).sqrt()
+}
+
+/// Its square.
+pub fn von_mises_sq(stress: &Tensor) -> f64 {
     let [xx, yy, zz, xy, yz, zx] = *stress;
     let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
-    (0.5 * normal + 3.0 * (xy * xy + yz * yz + zx * zx)).sqrt()
+    0.5 * normal + 3.0 * (xy * xy + yz * yz + zx * zx)
 }
 
 /// Principal values, largest first.
@@ -86,6 +125,9 @@ mod tests {
             assert!((von_mises(&moved) - von_mises(&sample())).abs() < 1e-12 * 120.0);
             for (a, b) in principal(&moved).iter().zip(principal(&sample())) {
                 assert!((a - b).abs() < 1e-11 * 120.0);
+            }
+            for (a, b) in Turn::new(&motion).apply(&sample()).iter().zip(moved) {
+                assert!((a - b).abs() < 1e-12 * 120.0);
             }
             let back = rotated(&moved, &motion.transpose());
             for (a, b) in back.iter().zip(sample()) {

@@ -3,8 +3,8 @@
 use super::element::Context;
 use super::field::Field;
 use super::gather::Group;
-use crate::geometry::tensor::{Tensor, normal_component, rotated, smallest_rotation};
-use crate::geometry::{Matrix3, Vector3};
+use crate::geometry::Vector3;
+use crate::geometry::tensor::{Tensor, Turn, normal_component, smallest_rotation};
 
 /// A stress component along the normal below this share of the stress is rounding.
 const NORMAL_STRESS_ROUNDING: f64 = 1e-9;
@@ -136,7 +136,7 @@ impl Blend<'_> {
                     let mut value = field.weighted(element, from, group.area, &group.offset);
                     if let Some(turn) = turn {
                         let tensor: Tensor = std::array::from_fn(|i| value[i]);
-                        value[..6].copy_from_slice(&rotated(&tensor, turn));
+                        value[..6].copy_from_slice(&turn.apply(&tensor));
                     }
                     let sum = &mut values[layer * n_plane + plane];
                     for (sum, value) in sum.iter_mut().zip(value) {
@@ -149,14 +149,15 @@ impl Blend<'_> {
     }
 
     /// The smallest rotation from the source element's tangent plane into this element's.
-    fn turn(&self, group: &Group) -> Option<Matrix3> {
+    fn turn(&self, group: &Group) -> Option<Turn> {
         if self.is_copy {
             return None;
         }
         let source = &self.context.sources[group.source as usize];
         let normal = source.mesh.normals()[group.element as usize];
         let side = if group.is_flipped { -normal } else { normal };
-        smallest_rotation(&side, &self.context.target.mesh.normals()[self.element])
+        let normal = &self.context.target.mesh.normals()[self.element];
+        smallest_rotation(&side, normal).map(|turn| Turn::new(&turn))
     }
 }
 

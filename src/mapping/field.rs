@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use super::layers::LayerMatrix;
 use super::rule::LayerRule;
 use super::shells::{Neighbours, ShellMesh};
-use crate::geometry::tensor::{Tensor, rotated, smallest_rotation, von_mises};
-use crate::geometry::{Matrix3, Vector3};
+use crate::geometry::Vector3;
+use crate::geometry::tensor::{Tensor, Turn, smallest_rotation, von_mises_sq};
 
 /// Places that belong to one layer: points of a layer share their T but for rounding.
 const SAME_LAYER: f64 = 1e-4;
@@ -302,11 +302,10 @@ pub(super) enum FieldKind {
 
 impl FieldKind {
     /// The numbers turned by a rotation.
-    pub fn turned<const N: usize>(self, values: &[f64; N], rotation: &Matrix3) -> [f64; N] {
+    pub fn turned<const N: usize>(self, values: &[f64; N], turn: &Turn) -> [f64; N] {
         let mut turned = *values;
         if self != Self::Scalars {
-            let tensor = rotated(&tensor_of(values), rotation);
-            turned[..6].copy_from_slice(&tensor);
+            turned[..6].copy_from_slice(&turn.apply(&tensor_of(values)));
         }
         turned
     }
@@ -331,7 +330,7 @@ impl<const N: usize> Field<N> {
             .par_chunks_mut(n_layers)
             .enumerate()
             .with_min_len(256);
-        chunks.for_each(|(element, out)| {
+        chunks.for_each_init(Vec::new, |ranges, (element, out)| {
             if !layers.is_present[element] {
                 return;
             }
@@ -342,7 +341,7 @@ impl<const N: usize> Field<N> {
             {
                 return;
             }
-            fit(kind, &layers, mesh, stencils, element, out);
+            fit(kind, (&layers, mesh, stencils), element, ranges, out);
         });
         Self { layers, gradients }
     }
@@ -364,63 +363,83 @@ impl<const N: usize> Field<N> {
     }
 }
 
-fn fit<const N: usize>(
-    kind: FieldKind,
-    layers: &LayerValues<N>,
-    mesh: &ShellMesh,
-    stencils: &Stencils,
-    element: usize,
-    out: &mut [[[f64; N]; 2]],
-) {
-    let own = layers.of(element);
-    let normal = mesh.normals()[element];
-    let mut low = own.to_vec();
-    let mut high = own.to_vec();
-    let mut largest: Vec<f64> = vec![0.0; own.len()];
-    for (layer, values) in own.iter().enumerate() {
-        if kind == FieldKind::Stress {
-            largest[layer] = von_mises(&tensor_of(values));
+/// What the values of a layer around an element span.
+#[derive(Debug, Clone, Copy)]
+struct Range<const N: usize> {
+    low: [f64; N],
+    high: [f64; N],
+    /// Largest square of the von Mises stress.
+    mises_sq: f64,
+}
+
+impl<const N: usize> Range<N> {
+    fn of(kind: FieldKind, values: &[f64; N]) -> Self {
+        let mises_sq = match kind {
+            FieldKind::Stress => von_mises_sq(&tensor_of(values)),
+            _ => 0.0,
+        };
+        Self {
+            low: *values,
+            high: *values,
+            mises_sq,
         }
     }
+}
+
+/// `ranges` is room that is used again.
+fn fit<const N: usize>(
+    kind: FieldKind,
+    (layers, mesh, stencils): (&LayerValues<N>, &ShellMesh, &Stencils),
+    element: usize,
+    ranges: &mut Vec<Range<N>>,
+    out: &mut [[[f64; N]; 2]],
+) {
+    // Numbers that keep to the range of the neighbours.
+    let first_scalar = match kind {
+        FieldKind::Scalars => 0,
+        _ => 6.min(N),
+    };
+    let own = layers.of(element);
+    let normal = mesh.normals()[element];
+    ranges.clear();
+    ranges.extend(own.iter().map(|values| Range::of(kind, values)));
     for (other, weight) in stencils.of(element) {
-        let turn = smallest_rotation(&mesh.normals()[other], &normal);
+        let turn = match kind {
+            FieldKind::Scalars => None,
+            _ => smallest_rotation(&mesh.normals()[other], &normal),
+        };
+        let turn = turn.map(|turn| Turn::new(&turn));
         for (layer, values) in layers.of(other).iter().enumerate() {
             let values = match &turn {
                 Some(turn) => kind.turned(values, turn),
                 None => *values,
             };
+            let [along, across] = &mut out[layer];
             for i in 0..N {
                 let difference = values[i] - own[layer][i];
-                out[layer][0][i] += weight[0] * difference;
-                out[layer][1][i] += weight[1] * difference;
-                low[layer][i] = low[layer][i].min(values[i]);
-                high[layer][i] = high[layer][i].max(values[i]);
+                along[i] += weight[0] * difference;
+                across[i] += weight[1] * difference;
+            }
+            let range = &mut ranges[layer];
+            for i in first_scalar..N {
+                range.low[i] = range.low[i].min(values[i]);
+                range.high[i] = range.high[i].max(values[i]);
             }
             if kind == FieldKind::Stress {
-                largest[layer] = largest[layer].max(von_mises(&tensor_of(&values)));
+                range.mises_sq = range.mises_sq.max(von_mises_sq(&tensor_of(&values)));
             }
         }
     }
     let centre = mesh.centroids()[element];
     let corners = mesh.corner_points(element);
     let offsets = corners.map(|corner| stencils.in_plane(element, &(corner - centre)));
-    for (layer, gradient) in out.iter_mut().enumerate() {
-        let first_scalar = if kind == FieldKind::Scalars {
-            0
-        } else {
-            6.min(N)
-        };
+    for ((own, gradient), range) in own.iter().zip(out).zip(ranges) {
         if kind == FieldKind::Stress {
-            limit_stress(&own[layer], gradient, &offsets, largest[layer]);
+            limit_stress(own, gradient, &offsets, range.mises_sq);
         }
         for i in first_scalar..N {
-            let range = [low[layer][i], high[layer][i]];
-            let factor = scalar_limit(
-                own[layer][i],
-                [gradient[0][i], gradient[1][i]],
-                &offsets,
-                range,
-            );
+            let slope = [gradient[0][i], gradient[1][i]];
+            let factor = scalar_limit(own[i], slope, &offsets, [range.low[i], range.high[i]]);
             gradient[0][i] *= factor;
             gradient[1][i] *= factor;
         }
@@ -454,14 +473,14 @@ fn limit_stress<const N: usize>(
     value: &[f64; N],
     gradient: &mut [[f64; N]; 2],
     offsets: &[[f64; 2]; 4],
-    largest: f64,
+    largest_sq: f64,
 ) {
     let exceeds = |factor: f64| {
         offsets.iter().any(|offset| {
             let at_corner: Tensor = std::array::from_fn(|i| {
                 value[i] + factor * (gradient[0][i] * offset[0] + gradient[1][i] * offset[1])
             });
-            von_mises(&at_corner) > largest * (1.0 + 1e-12)
+            von_mises_sq(&at_corner) > largest_sq * (1.0 + 2e-12)
         })
     };
     let mut factor = 1.0;

@@ -2,12 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use super::field::{Field, FieldKind, LayerValues, Layered, Stencils, is_weld_line};
 use super::history::SourceHistory;
 use super::layers::{LayerBalance, LayerMatrix};
 use super::options::MapOptions;
 use super::rule::LayerRule;
 use super::shells::{Neighbours, ShellMesh};
+use crate::geometry::tensor::Turn;
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 use crate::search::{Bvh, ClosestPoint, Feature, NormalFilter, SurfaceHit};
 
@@ -102,11 +105,10 @@ impl PreparedSource {
     ) -> Self {
         let mesh = part.mesh.moved(target_from_source);
         let (triangles, triangle_element) = mesh.triangles();
-        let (bvh, border_bits) = rayon::join(
+        let (bvh, (border_bits, neighbours)) = rayon::join(
             || Bvh::build(triangles.clone()),
-            || mesh.border_bits(&triangles),
+            || (mesh.border_bits(&triangles), mesh.neighbours()),
         );
-        let neighbours = mesh.neighbours();
         let thickness: Vec<f64> = part.thickness.iter().map(mean_thickness).collect();
         let stencils = Stencils::new(&mesh, &neighbours, &thickness);
         let gauge = gauges(&mesh, &neighbours, &thickness);
@@ -198,9 +200,9 @@ impl PreparedSource {
         Some(hit.distance_sq.sqrt())
     }
 
-    /// The nearest element on the far side of `from` along `direction`: a second sheet.
-    pub fn next_sheet(&self, from: &Point3, direction: &Vector3) -> Option<(u32, f64)> {
-        let hit = self.bvh.first_hit(from, direction)?;
+    /// The nearest element on the far side of `from` along `direction` within `reach`: a second sheet.
+    pub fn next_sheet(&self, from: &Point3, direction: &Vector3, reach: f64) -> Option<(u32, f64)> {
+        let hit = self.bvh.first_hit_within(from, direction, reach)?;
         Some((self.triangle_element[hit.triangle as usize], hit.distance))
     }
 
@@ -297,9 +299,9 @@ fn turn_all<const N: usize>(
     target_from_source: &Similarity,
 ) -> LayerValues<N> {
     if target_from_source.rotation != Matrix3::identity() {
-        for value in &mut values.values {
-            *value = kind.turned(value, &target_from_source.rotation);
-        }
+        let turn = Turn::new(&target_from_source.rotation);
+        let all = values.values.par_iter_mut().with_min_len(1024);
+        all.for_each(|value| *value = kind.turned(value, &turn));
     }
     values
 }

@@ -81,11 +81,17 @@ pub struct ElementReport {
 }
 
 /// Layer values of the target elements that have any, `N` numbers at each point.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MappedLayers<const N: usize> {
     /// For each element where its values begin; one entry more than elements.
     starts: Vec<u32>,
     values: Vec<[f64; N]>,
+}
+
+impl<const N: usize> Default for MappedLayers<N> {
+    fn default() -> Self {
+        Self::with_capacity(0, 0)
+    }
 }
 
 impl<const N: usize> MappedLayers<N> {
@@ -99,7 +105,7 @@ impl<const N: usize> MappedLayers<N> {
     }
 
     /// Adds the values of the next element; none if it has none.
-    pub(super) fn push(&mut self, values: &[[f64; N]]) {
+    pub fn push(&mut self, values: &[[f64; N]]) {
         self.values.extend_from_slice(values);
         self.starts.push(self.values.len() as u32);
     }

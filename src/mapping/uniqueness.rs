@@ -16,26 +16,27 @@ impl Context<'_> {
         let mut uniqueness = 1.0_f64;
         let step = 1e-6 * self.target.mesh.size(element);
         for direction in [normal, -normal] {
-            // From the centre, and from just beyond the first sheet.
+            // From just beyond the first sheet, or from the centre on the side where it does not lie: no
+            // compatible sheet is nearer than the first.
             let along = (centre.point.point - from).dot(&direction);
-            for start in [0.0, along.max(0.0) + step] {
-                for (number, source) in self.sources.iter().enumerate() {
-                    let origin = from + direction * start;
-                    let Some((other, distance)) = source.next_sheet(&origin, &direction) else {
-                        continue;
-                    };
-                    let second = start + distance;
-                    let partner = (centre.source as usize, centre.point.element);
-                    if second >= reach
-                        || second <= first + step
-                        || !self.is_compatible(element, number, other)
-                        || (number == partner.0
-                            && source.is_near_along_sheet(partner.1, other, 2.0 * reach))
-                    {
-                        continue;
-                    }
-                    uniqueness = uniqueness.min(2.0 * (1.0 - first / second));
+            let start = along.max(0.0) + step;
+            let origin = from + direction * start;
+            for (number, source) in self.sources.iter().enumerate() {
+                let found = source.next_sheet(&origin, &direction, reach - start);
+                let Some((other, distance)) = found else {
+                    continue;
+                };
+                let second = start + distance;
+                let partner = (centre.source as usize, centre.point.element);
+                if second >= reach
+                    || second <= first + step
+                    || !self.is_compatible(element, number, other)
+                    || (number == partner.0
+                        && source.is_near_along_sheet(partner.1, other, 2.0 * reach))
+                {
+                    continue;
                 }
+                uniqueness = uniqueness.min(2.0 * (1.0 - first / second));
             }
         }
         uniqueness.clamp(0.0, 1.0)

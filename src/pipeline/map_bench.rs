@@ -14,11 +14,13 @@ use crate::formats::keyword::card::Layout;
 use crate::formats::keyword::state_cards::{ShellState, StateFormat, write_states};
 use crate::geometry::tensor::Tensor;
 use crate::mapping::{
-    LayerRule, Layered, MapMethod, MapOptions, Mapped, PlacedSource, Quantities, RuleKind,
-    ShellMesh, SourceHistory, SourcePart, TargetPart, map,
+    LayerRule, Layered, MapMethod, MapOptions, Mapped, MappedLayers, PlacedSource, Quantities,
+    RuleKind, ShellMesh, SourceHistory, SourcePart, TargetPart, map, map_back,
 };
 use crate::monitor::Monitor;
-use crate::samples::{self, SampleMesh, SamplePart, SampleSettings, ShellForming, crash_truth};
+use crate::samples::{
+    self, SampleMesh, SamplePart, SampleSettings, ShellForming, crash_means, stamped_means,
+};
 
 /// Part, edge of the stamped mesh, edge of the crash mesh, millimetres.
 const PAIRS: [(SamplePart, f64, f64); 7] = [
@@ -37,7 +39,8 @@ const TIMED_SIZES: [f64; 2] = [4.05, 5.75];
 /// The smallest of so many runs counts.
 const N_RUNS: usize = 5;
 
-/// Errors of one method on one pair, by area over the crash elements with values.
+/// Errors of one method on one pair, by area over the crash elements with values. The stamped elements
+/// hold the means of the exact fields over their area; the truth is the same over the crash elements.
 #[derive(Debug, Clone, Serialize)]
 pub struct ErrorRow {
     /// Name of the sample part.
@@ -46,7 +49,7 @@ pub struct ErrorRow {
     pub sizes: [f64; 2],
     /// Elements of both.
     pub n_elements: [usize; 2],
-    /// "area" or "nearest".
+    /// "area", "nearest", or "exact": the truth itself, to show what the crash mesh can hold at best.
     pub method: String,
     /// Share of the area with values.
     pub mapped_area: f64,
@@ -62,6 +65,8 @@ pub struct ErrorRow {
     pub plastic_mean: f64,
     /// Largest plastic strain over the largest true one.
     pub plastic_peak: f64,
+    /// Largest plastic strain over the largest of the stamped elements.
+    pub peak_of_stamped: f64,
     /// 95 % of the plastic strain there and back, over its range.
     pub back_p95: f64,
     /// Time of the mapping in milliseconds.
@@ -90,17 +95,22 @@ pub struct SpeedRow {
 /// Tables of `bench --mapping`.
 #[derive(Debug, Clone, Serialize)]
 pub struct MapBench {
-    /// Errors, two rows for each pair.
+    /// Errors, three rows for each pair.
     pub errors: Vec<ErrorRow>,
-    /// Time, rate and memory at full size.
-    pub speed: SpeedRow,
+    /// Time, rate and memory at full size, if they were asked for.
+    pub speed: Option<SpeedRow>,
 }
 
-/// Makes all tables of `bench --mapping`.
-pub fn map_bench(monitor: &Monitor) -> Result<MapBench, PipelineError> {
+/// Makes the tables of `bench --mapping`, or those that have `only` in their name: pairs have the name of
+/// their part, the times are called "speed".
+pub fn map_bench(only: Option<&str>, monitor: &Monitor) -> Result<MapBench, PipelineError> {
     let mut errors = Vec::new();
+    let is_wanted = |name: &str| only.is_none_or(|only| name.contains(only));
     let n_rows = PAIRS.len() as u64 + 1;
     for (row, (part, stamped, crash)) in PAIRS.into_iter().enumerate() {
+        if !is_wanted(part.name()) {
+            continue;
+        }
         monitor.progress("map pairs", row as u64, Some(n_rows));
         let settings = SampleSettings {
             part,
@@ -114,26 +124,27 @@ pub fn map_bench(monitor: &Monitor) -> Result<MapBench, PipelineError> {
     monitor.progress("map pairs", n_rows - 1, Some(n_rows));
     Ok(MapBench {
         errors,
-        speed: speed(monitor)?,
+        speed: is_wanted("speed").then(|| speed(monitor)).transpose()?,
     })
 }
 
-/// Both methods on one pair at its known pose.
+/// Both methods on one pair at its known pose, and the truth.
 pub fn error_rows(
     settings: &SampleSettings,
     sizes: [f64; 2],
     monitor: &Monitor,
 ) -> Result<Vec<ErrorRow>, PipelineError> {
-    let pair = samples::generate(settings);
-    let truth = crash_truth(settings);
+    let mut pair = samples::generate(settings);
+    pair.stamped.forming = stamped_means(settings);
+    let truth = crash_means(settings);
     let mut source = Memory::new();
     for file in samples::files(&pair) {
         source = source.with(file.name, file.bytes);
     }
     let load = |name: &str| load_from(&source, Path::new(name), &LoadSettings::default(), monitor);
     let (crash, stamped) = (load("crash.k")?, load("stamped.dynain")?);
-    let methods = [(MapMethod::Area, "area"), (MapMethod::Nearest, "nearest")];
-    let row = |(method, name): (MapMethod, &str)| {
+    let mut rows = Vec::new();
+    for (method, name) in [(MapMethod::Area, "area"), (MapMethod::Nearest, "nearest")] {
         let recipe = MapRecipe {
             options: MapOptions {
                 quantities: Quantities::FULL,
@@ -149,9 +160,66 @@ pub fn error_rows(
         };
         let run = map_parts(&crash, &[placed], &recipe, monitor)?;
         let truth = by_shell(&crash, &run, &truth);
-        Ok(error_row(settings.part, sizes, name, &run, &truth))
+        rows.push(error_row(settings.part, sizes, name, &run, &truth));
+        if method == MapMethod::Area {
+            let exact = with_truth(run, &truth, monitor)?;
+            rows.push(error_row(settings.part, sizes, "exact", &exact, &truth));
+        }
+    }
+    Ok(rows)
+}
+
+/// A run whose values are the truth.
+fn with_truth(
+    mut run: MapRun,
+    truth: &[&ShellForming],
+    monitor: &Monitor,
+) -> Result<MapRun, PipelineError> {
+    let mut states = MappedLayers::default();
+    for (element, truth) in truth.iter().enumerate() {
+        let rule = &run.target.rules[run.target.rule_of[element] as usize];
+        let n_planes = run
+            .mapped
+            .states
+            .as_ref()
+            .map_or(0, |s| s.of(element).len())
+            / rule.len();
+        let layer = |&t: &f64| std::iter::repeat_n(state_at(truth, t), n_planes);
+        let values: Vec<[f64; 7]> = rule.places().iter().flat_map(layer).collect();
+        states.push(&values);
+        if let Some(thickness) = run.mapped.thickness.get_mut(element)
+            && thickness.is_finite()
+        {
+            *thickness = truth.thickness[0];
+        }
+    }
+    run.mapped.states = Some(states);
+    let placed = PlacedSource {
+        part: &run.sources[0],
+        target_from_source: run.poses[0],
     };
-    methods.into_iter().map(row).collect()
+    let back = map_back(
+        &placed,
+        &run.target,
+        &run.mapped,
+        &run.recipe.options,
+        monitor,
+    );
+    run.checks.map_back = Some(back.map_err(PipelineError::Mapping)?);
+    run.map_ms = f64::NAN;
+    Ok(run)
+}
+
+/// The state of an element at a place through its thickness, linear between its layers.
+fn state_at(truth: &ShellForming, t: f64) -> [f64; 7] {
+    let [inner, outer] = truth.layers;
+    // The sample's layers are the Gauss points of two.
+    let share = (1.0 + t * 3.0_f64.sqrt()) / 2.0;
+    let mix = |a: f64, b: f64| a * (1.0 - share) + b * share;
+    std::array::from_fn(|i| match i {
+        6 => mix(inner.plastic_strain, outer.plastic_strain).max(0.0),
+        _ => mix(inner.stress[i], outer.stress[i]),
+    })
 }
 
 /// The truth of each element of a run; the deck's elements stand in the order of the sample's.
@@ -218,13 +286,7 @@ fn error_row(
     let (mut squares, mut area_sum, mut largest) = (0.0, 0.0, 0.0_f64);
     for (element, truth) in truth.iter().enumerate() {
         let area = run.target.mesh.areas()[element];
-        let n = if run.target.mesh.is_triangle(element) {
-            3
-        } else {
-            4
-        };
-        let true_thickness = truth.thickness[..n].iter().sum::<f64>() / n as f64;
-        thickness.add(run.thickness(element), true_thickness, area);
+        thickness.add(run.thickness(element), truth.thickness[0], area);
         let [inner, outer] = truth.layers;
         let mean = (inner.plastic_strain + outer.plastic_strain) / 2.0;
         plastic.add(run.plastic_strain(element), mean, area);
@@ -238,6 +300,8 @@ fn error_row(
         }
     }
     let back = run.checks.map_back.as_ref();
+    let of_stamped = &run.sources[0];
+    let stamped = (0..of_stamped.mesh.len()).map(|e| of_stamped.mean_plastic_strain(e));
     ErrorRow {
         part: part.name().to_owned(),
         sizes,
@@ -250,6 +314,7 @@ fn error_row(
         thickness_mean: thickness.mean_error(),
         plastic_mean: plastic.mean_error(),
         plastic_peak: plastic.peak(),
+        peak_of_stamped: plastic.largest / stamped.fold(f64::NAN, f64::max),
         back_p95: back.map_or(f64::NAN, |back| back.plastic_p95 / back.plastic_range),
         map_ms: run.map_ms,
     }

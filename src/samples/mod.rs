@@ -23,7 +23,7 @@ mod variation;
 pub use bundle::{bundled, bundled_settings};
 pub use decks::{SampleFile, files, write_crash_deck, write_stamped_deck, write_truth};
 pub use forming::{FormingLayer, ShellForming};
-pub use pair::{SampleMesh, SamplePair, crash_truth, generate};
+pub use pair::{SampleMesh, SamplePair, crash_means, generate, stamped_means};
 pub use placement::random_placement;
 pub use variation::SampleShape;
 

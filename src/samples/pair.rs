@@ -1,6 +1,6 @@
 //! Both sides of a pair, from settings to placed meshes.
 
-use super::forming::{ShellForming, form};
+use super::forming::{ShellForming, element_means, form};
 use super::mesher::{self, FlatMesh};
 use super::parts::Design;
 use super::placement::random_placement;
@@ -93,10 +93,7 @@ pub struct SamplePair {
 /// Makes a pair. Deterministic. A floor takes about a tenth of a second.
 pub fn generate(settings: &SampleSettings) -> SamplePair {
     let SampleSettings { part, variant, .. } = *settings;
-    let mut design = Design::of(part);
-    if let Some(shape) = &settings.shape {
-        design = design.varied(shape);
-    }
+    let mut design = shaped(settings);
     let placement = random_placement(settings.seed);
     let crash_from_die = Similarity::from(placement);
     let crash = crash_mesh(part, variant, &design, settings.crash_size);
@@ -104,15 +101,7 @@ pub fn generate(settings: &SampleSettings) -> SamplePair {
         design = design.varied(version);
     }
     let stamped = stamped_mesh(part, variant, &design, settings.stamped_size);
-    let stamped_from_die = if variant == SampleVariant::OppositeHand {
-        Similarity::mirror_x()
-    } else {
-        Similarity::from_scale(1.0 / variant.unit())
-    };
-    let mut stamped = stamped.transformed(&stamped_from_die);
-    if variant == SampleVariant::FlippedNormals {
-        stamped = stamped.flipped();
-    }
+    let (stamped, stamped_from_die) = as_stamped(stamped, variant);
     let neighbours = if variant == SampleVariant::WholeModel {
         neighbours(part, &placement)
     } else {
@@ -127,21 +116,54 @@ pub fn generate(settings: &SampleSettings) -> SamplePair {
     }
 }
 
-/// What a perfect mapping of the stamped results gives on the crash elements: the fields of
-/// [`ShellForming`] are functions on the sheet, and these are their values at the crash nodes and
-/// element centres. In the order of the crash part's elements, tensors in vehicle axes. Holds for pairs
-/// without another version of the part.
-pub fn crash_truth(settings: &SampleSettings) -> Vec<ShellForming> {
-    let mut design = Design::of(settings.part);
-    if let Some(shape) = &settings.shape {
-        design = design.varied(shape);
+/// The fields of [`ShellForming`] are functions on the sheet; these are their means over the elements
+/// of the stamped mesh, in its own axes and unit. In the order of its elements.
+pub fn stamped_means(settings: &SampleSettings) -> Vec<ShellForming> {
+    let mut design = shaped(settings);
+    if let Some(version) = &settings.version {
+        design = design.varied(version);
     }
+    let SampleSettings { variant, .. } = *settings;
+    let flat = stamped_flat(variant, &design, settings.stamped_size);
+    let stamped = SampleMesh {
+        forming: element_means(&design.sheet, &flat, design.thickness),
+        ..lift(settings.part, &design, &flat)
+    };
+    as_stamped(stamped, variant).0.forming
+}
+
+/// What a perfect mapping of [`stamped_means`] gives: the means over the crash elements. In the order
+/// of the crash part's elements, tensors in vehicle axes. Holds for pairs without another version.
+pub fn crash_means(settings: &SampleSettings) -> Vec<ShellForming> {
+    let design = shaped(settings);
     let flat = crash_flat(settings.variant, &design, settings.crash_size);
     let crash_from_die = Similarity::from(random_placement(settings.seed));
-    let truth = form(&design.sheet, &flat, design.thickness).into_iter();
-    truth
+    let means = element_means(&design.sheet, &flat, design.thickness).into_iter();
+    means
         .map(|shell| shell.transformed(&crash_from_die))
         .collect()
+}
+
+fn shaped(settings: &SampleSettings) -> Design {
+    let design = Design::of(settings.part);
+    match &settings.shape {
+        Some(shape) => design.varied(shape),
+        None => design,
+    }
+}
+
+/// Puts a mesh from die axes into those of the stamped side; also the motion that did it.
+fn as_stamped(stamped: SampleMesh, variant: SampleVariant) -> (SampleMesh, Similarity) {
+    let stamped_from_die = if variant == SampleVariant::OppositeHand {
+        Similarity::mirror_x()
+    } else {
+        Similarity::from_scale(1.0 / variant.unit())
+    };
+    let stamped = stamped.transformed(&stamped_from_die);
+    if variant == SampleVariant::FlippedNormals {
+        return (stamped.flipped(), stamped_from_die);
+    }
+    (stamped, stamped_from_die)
 }
 
 fn crash_mesh(
@@ -165,6 +187,15 @@ fn stamped_mesh(
     design: &Design,
     size: Option<f64>,
 ) -> SampleMesh {
+    let flat = stamped_flat(variant, design, size);
+    SampleMesh {
+        part_id: 1,
+        forming: form(&design.sheet, &flat, design.thickness),
+        ..lift(part, design, &flat)
+    }
+}
+
+fn stamped_flat(variant: SampleVariant, design: &Design, size: Option<f64>) -> FlatMesh {
     let trim = design.stamped_trim(variant);
     let mut layout = design.stamped;
     layout.size = size.unwrap_or(layout.size);
@@ -172,16 +203,11 @@ fn stamped_mesh(
         variant,
         SampleVariant::Addendum | SampleVariant::AddendumAndCut | SampleVariant::MissingFlanges
     );
-    let flat = match design.n_stamped_triangles {
+    match design.n_stamped_triangles {
         Some(n) if size.is_none() && finished => {
             mesher::mesh_exactly(&design.sheet, &trim, &layout, n)
         }
         _ => mesher::mesh(&design.sheet, &trim, &layout),
-    };
-    SampleMesh {
-        part_id: 1,
-        forming: form(&design.sheet, &flat, design.thickness),
-        ..lift(part, design, &flat)
     }
 }
 

@@ -3,6 +3,9 @@
 use super::path::{Flat, Path};
 use crate::geometry::{Point3, Vector3};
 
+/// Half width of the central differences, millimetres.
+const STEP: f64 = 1e-3;
+
 /// Values over the length of a part, joined by smooth steps.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Ramp(pub(super) Vec<(f64, f64)>);
@@ -138,11 +141,19 @@ impl Sheet {
 
     /// Unit normal, on the +z side of a flat part, by central differences.
     pub(super) fn normal(&self, p: &Flat) -> Vector3 {
-        const STEP: f64 = 1e-3;
+        self.area_vector(p).normalize()
+    }
+
+    /// Area of the surface over that in the plane.
+    pub(super) fn stretch(&self, p: &Flat) -> f64 {
+        self.area_vector(p).norm() / (4.0 * STEP * STEP)
+    }
+
+    fn area_vector(&self, p: &Flat) -> Vector3 {
         let along =
             self.point(&Flat::new(p.x + STEP, p.y)) - self.point(&Flat::new(p.x - STEP, p.y));
         let across =
             self.point(&Flat::new(p.x, p.y + STEP)) - self.point(&Flat::new(p.x, p.y - STEP));
-        along.cross(&across).normalize()
+        along.cross(&across)
     }
 }

@@ -24,6 +24,16 @@ impl Bvh {
     ///
     /// For picking: `f64` throughout, a few microseconds per ray.
     pub fn first_hit(&self, origin: &Point3, direction: &Vector3) -> Option<RayHit> {
+        self.first_hit_within(origin, direction, f64::INFINITY)
+    }
+
+    /// [`Bvh::first_hit`] at a distance of at most `max_distance`; quicker the shorter that is.
+    pub fn first_hit_within(
+        &self,
+        origin: &Point3,
+        direction: &Vector3,
+        max_distance: f64,
+    ) -> Option<RayHit> {
         let direction = direction.try_normalize(0.0)?;
         let finite = |v: &Vector3| v.iter().all(|x| x.is_finite());
         if !finite(&origin.coords) || !finite(&direction) {
@@ -32,25 +42,34 @@ impl Bvh {
         // Boxes are in local units; a uniform scale leaves the direction as it is.
         let local = self.frame.to_local(origin);
         let inverse = direction.map(|x| 1.0 / x);
+        // A hair beyond, because entries are rounded too.
+        let reach = |distance: f64| distance * self.frame.scale * (1.0 + 1e-9) + 1e-9;
+        let mut limit = reach(max_distance);
         let mut best: Option<RayHit> = None;
         let mut waiting: Vec<(f64, Link)> = self.tree.root.map(|r| (0.0, r)).into_iter().collect();
         while let Some((entry, link)) = waiting.pop() {
-            // A hair beyond, because the entry is rounded too.
-            if best.is_some_and(|hit| entry > hit.distance * self.frame.scale * (1.0 + 1e-9) + 1e-9)
-            {
+            if entry > limit {
                 continue;
             }
             match link.leaf() {
                 Ok(leaf) => {
                     for id in self.tree.packs[leaf].real_ids() {
                         let hit = self.meet(origin, &direction, id);
+                        let hit = hit.filter(|hit| hit.distance <= max_distance);
                         best = nearer(best, hit);
                     }
+                    limit = best.map_or(limit, |hit| reach(hit.distance));
                 }
                 Err(node) => {
-                    let mut entered = entries(&self.tree.nodes[node], &local, &inverse);
-                    entered.sort_by(|a, b| b.0.total_cmp(&a.0));
-                    waiting.extend(entered);
+                    let first = waiting.len();
+                    enter(
+                        &self.tree.nodes[node],
+                        &local,
+                        &inverse,
+                        limit,
+                        &mut waiting,
+                    );
+                    waiting[first..].sort_by(|a, b| b.0.total_cmp(&a.0));
                 }
             }
         }
@@ -93,15 +112,21 @@ fn nearer(best: Option<RayHit>, hit: Option<RayHit>) -> Option<RayHit> {
     }
 }
 
-/// The children whose boxes the ray enters, with the distance at which it does (slab test, Kay and
-/// Kajiya 1986). Boxes are a little larger than what they hold, which covers the rounding here.
-fn entries(node: &Node, origin: &Vector3, inverse: &Vector3) -> Vec<(f64, Link)> {
-    let mut entered = Vec::with_capacity(WIDTH);
+/// Appends the children whose boxes the ray enters before `limit`, with the distance at which it does
+/// (slab test, Kay and Kajiya 1986). Boxes are a little larger than what they hold, which covers the
+/// rounding here.
+fn enter(
+    node: &Node,
+    origin: &Vector3,
+    inverse: &Vector3,
+    limit: f64,
+    entered: &mut Vec<(f64, Link)>,
+) {
     for slot in 0..WIDTH {
         let Some([min, max]) = node.bounds(slot) else {
             continue;
         };
-        let (mut from, mut to) = (0.0_f64, f64::INFINITY);
+        let (mut from, mut to) = (0.0_f64, limit);
         for axis in 0..3 {
             let to_min = f64::from(min[axis]) - origin[axis];
             let to_max = f64::from(max[axis]) - origin[axis];
@@ -118,5 +143,4 @@ fn entries(node: &Node, origin: &Vector3, inverse: &Vector3) -> Vec<(f64, Link)>
             entered.push((from, node.child[slot]));
         }
     }
-    entered
 }
