@@ -111,6 +111,12 @@ press s
 rest
 keep section
 press s
+press ctrl+m
+await_rest 3
+press shift+c
+click 560 300 # an element, which is probed
+rest
+keep mapped
 drag 1100 701 0 -200 # more room for tables and curves
 click 492 515 # Starts
 rest

@@ -39,20 +39,6 @@ pub const PARTS: [Rgb; 10] = [
     [0xDD, 0xDD, 0xDD],
 ];
 
-/// What became of the elements of a mapping, from best to worst (mapped, partly, filled, near two sheets,
-/// on two parts, too far, wrong normal, outside, without results): blues and greens carry values.
-pub const STATUS_COLORS: [Rgb; 9] = [
-    [70, 140, 190],
-    [120, 190, 200],
-    [130, 180, 110],
-    [226, 196, 70],
-    [214, 140, 50],
-    [200, 80, 60],
-    [170, 70, 140],
-    [150, 150, 155],
-    [90, 90, 95],
-];
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -33,6 +33,8 @@ pub(super) enum FollowUp {
         /// What came out, in a line.
         line: String,
     },
+    /// A mapping was taken over.
+    Mapped,
     /// A sweep began.
     SweepBegun,
     /// A sweep ended with its tables.
@@ -85,6 +87,13 @@ impl AppState {
                 self.follow_far_move(before);
             }
             FollowUp::SectionToggled => self.show_section(),
+            FollowUp::Mapped => {
+                // Whoever looks at distances or at parts wants to see what came of the mapping.
+                if !self.is_mapping_shown() {
+                    self.view.display = self.with_map_picture(None);
+                }
+                self.view.tab = BottomTab::Mapping;
+            }
             FollowUp::SweepBegun => self.view.tab = BottomTab::Sweep,
             FollowUp::SweepEnded => {
                 if let Some(sweep) = self.matching.sweep() {

@@ -117,7 +117,7 @@ impl AppState {
                 let matching = topics.matching;
                 matching.take_measured(work, measurement, stamp, took);
             }
-            JobOutput::Mapped(run) => take_mapped(work, run, took),
+            JobOutput::Mapped { run, record } => take_mapped(work, run, record, took),
             JobOutput::Compared(comparison) => topics.inspect.take_compared(comparison, stamp),
             JobOutput::Overlapped { overlap, limit } => {
                 topics.moving.take_overlap(overlap, limit, stamp);

@@ -53,7 +53,9 @@ pub use log::{
     Clock, Log, LogRow, LogState, Notice, NoticeCommand, NoticeId, NoticeLevel, Notices, Showing,
     age_text, clock_text, duration_text,
 };
-pub use mapping::{MapCommand, MapResult, Mapping, Quantity, UnmappedElement};
+pub use mapping::{
+    MapCommand, MapDisplay, MapPicture, MapResult, Mapping, ProbeReport, Quantity, UnmappedElement,
+};
 pub use matching::{
     Cause, LiveStarts, MatchCommand, MatchState, Preview, PreviewCommand, Previews, Starts,
 };

@@ -27,6 +27,8 @@ pub enum ColorMap {
     Rainbow,
     /// Two colours, for two classes: a calm one below the middle, a loud one above.
     Classes,
+    /// One colour for each status of a mapped element, in equal steps.
+    Statuses,
 }
 
 impl ColorMap {
@@ -41,6 +43,7 @@ impl ColorMap {
             Self::CoolWarm => "Cool–warm",
             Self::Rainbow => "Rainbow, like LS-PrePost",
             Self::Classes => "Two classes",
+            Self::Statuses => "Statuses",
         }
     }
 
@@ -59,6 +62,10 @@ impl ColorMap {
             Self::Rainbow => between_stops(tables::RAINBOW, t),
             Self::Classes if t < 0.5 => [0x9E, 0xC9, 0xE2],
             Self::Classes => [0xC9, 0x3B, 0x7F],
+            Self::Statuses => {
+                let n = tables::STATUSES.len();
+                tables::STATUSES[((t * n as f64) as usize).min(n - 1)]
+            }
         }
     }
 }

@@ -36,7 +36,28 @@ pub enum Pattern {
     Lines,
     /// Dots: a positive value.
     Dots,
+    /// Lines that rise to the right.
+    Rising,
+    /// Lines that fall to the right.
+    Falling,
+    /// Both.
+    Crossed,
 }
+
+/// Number of statuses of a mapped element.
+const N_STATUSES: f64 = 9.0;
+/// Patterns of the statuses: those without values are told by their pattern alone too.
+const STATUS_PATTERNS: [Pattern; 9] = [
+    Pattern::Plain,
+    Pattern::Dots,
+    Pattern::Lines,
+    Pattern::Dots,
+    Pattern::Lines,
+    Pattern::Rising,
+    Pattern::Falling,
+    Pattern::Crossed,
+    Pattern::Lines,
+];
 
 impl ColorScale {
     /// A smooth map from `min` to `max`.
@@ -50,6 +71,11 @@ impl ColorScale {
             reversed: false,
             has_pattern: false,
         }
+    }
+
+    /// The statuses of mapped elements, counted from 0 from best to worst.
+    pub fn statuses() -> Self {
+        Self::new(ColorMap::Statuses, -0.5, N_STATUSES - 0.5)
     }
 
     /// The diverging map from `-limit` to `limit` with a neutral band of ± `tolerance`.
@@ -94,6 +120,10 @@ impl ColorScale {
 
     /// The pattern of a value.
     pub fn pattern(&self, value: f64) -> Pattern {
+        if self.map == ColorMap::Statuses {
+            let status = (self.position(value) * N_STATUSES) as usize;
+            return STATUS_PATTERNS[status.min(STATUS_PATTERNS.len() - 1)];
+        }
         if self.map == ColorMap::Classes {
             return if self.position(value) < 0.5 || value.is_nan() {
                 Pattern::Plain
@@ -197,6 +227,21 @@ mod tests {
         for max_ticks in 2..12 {
             assert!(ColorScale::symmetric(0.37, 0.0).ticks(max_ticks).len() <= max_ticks);
         }
+    }
+
+    #[test]
+    fn each_status_has_a_colour_and_a_pattern_of_its_own() {
+        let scale = ColorScale::statuses();
+        let looks: Vec<_> = (0..9)
+            .map(|i| (scale.color(f64::from(i)), scale.pattern(f64::from(i))))
+            .collect();
+        for (i, look) in looks.iter().enumerate() {
+            assert!(!looks[..i].contains(look), "{i}");
+        }
+        // Without colours the four reasons for an element without values still differ.
+        let reasons: Vec<Pattern> = looks[5..].iter().map(|look| look.1).collect();
+        assert!((0..4).all(|i| !reasons[..i].contains(&reasons[i])));
+        assert_eq!(looks[0].1, Pattern::Plain);
     }
 
     #[test]

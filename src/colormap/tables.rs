@@ -86,3 +86,17 @@ pub(super) const RAINBOW: &[[u8; 3]] = &[
     [255, 255, 0],
     [255, 0, 0],
 ];
+
+/// What became of the elements of a mapping, from best to worst (mapped, partly, filled, near two sheets,
+/// on two parts, too far, wrong normal, outside, without results): blues and greens carry values.
+pub(super) const STATUSES: [[u8; 3]; 9] = [
+    [70, 140, 190],
+    [120, 190, 200],
+    [130, 180, 110],
+    [226, 196, 70],
+    [214, 140, 50],
+    [200, 80, 60],
+    [170, 70, 140],
+    [150, 150, 155],
+    [90, 90, 95],
+];

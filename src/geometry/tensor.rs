@@ -32,7 +32,7 @@ impl Turn {
         Self(rows)
     }
 
-    /// The turned tensor.
+    /// The tensor in the turned axes: R·σ·Rᵀ.
     #[inline]
     pub fn apply(&self, tensor: &Tensor) -> Tensor {
         let mut turned = [0.0; 6];
@@ -67,7 +67,7 @@ pub fn von_mises(stress: &Tensor) -> f64 {
     von_mises_sq(stress).sqrt()
 }
 
-/// Its square.
+/// Square of the von Mises equivalent, for comparisons.
 pub fn von_mises_sq(stress: &Tensor) -> f64 {
     let [xx, yy, zz, xy, yz, zx] = *stress;
     let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);

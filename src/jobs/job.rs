@@ -7,7 +7,7 @@ use crate::assess::Coverage;
 use crate::geometry::{Similarity, TriMesh};
 use crate::pipeline::inspect::Comparison;
 use crate::pipeline::load::{LoadSettings, LoadedPart};
-use crate::pipeline::map::{MapRecipe, MapRun};
+use crate::pipeline::map::{MapRecipe, MapRecord, MapRun};
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
 use crate::pipeline::project::ProjectRequest;
 use crate::pipeline::reduce::{Deviation, Level, Levels};
@@ -296,7 +296,12 @@ pub enum JobOutput {
     /// Deviation of every node.
     Compared(Arc<Comparison>),
     /// Forming results onto the crash part.
-    Mapped(Arc<MapRun>),
+    Mapped {
+        /// Values, statuses, checks.
+        run: Arc<MapRun>,
+        /// The same in figures.
+        record: Arc<MapRecord>,
+    },
     /// The overlap from few points.
     Overlapped {
         /// Share of the part that is covered better.

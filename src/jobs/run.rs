@@ -14,7 +14,7 @@ use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::PipelineError;
 use crate::pipeline::inspect::compare_parts;
 use crate::pipeline::load::{self, LoadedPart};
-use crate::pipeline::map::{PlacedPart, map_parts};
+use crate::pipeline::map::{PlacedPart, map_parts, map_record};
 use crate::pipeline::match_parts::{self, match_parts};
 use crate::pipeline::reduce::Levels;
 use crate::pipeline::sweep::sweep;
@@ -228,7 +228,11 @@ fn map(input: &MapInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
         crash_from_stamped: input.crash_from_stamped,
     };
     let run = map_parts(&input.parts.crash, &[placed], &input.recipe, monitor)?;
-    Ok(JobOutput::Mapped(Arc::new(run)))
+    let record = map_record(&run, &input.parts.crash, &[placed], None, None);
+    Ok(JobOutput::Mapped {
+        run: Arc::new(run),
+        record: Arc::new(record),
+    })
 }
 
 /// Nodes of each mesh that tell how warm a pose is.

@@ -421,9 +421,10 @@ fn fit<const N: usize>(
                 across[i] += weight[1] * difference;
             }
             let range = &mut ranges[layer];
-            for i in first_scalar..N {
-                range.low[i] = range.low[i].min(values[i]);
-                range.high[i] = range.high[i].max(values[i]);
+            let span = range.low.iter_mut().zip(&mut range.high).zip(&values);
+            for ((low, high), value) in span.skip(first_scalar) {
+                *low = low.min(*value);
+                *high = high.max(*value);
             }
             if kind == FieldKind::Stress {
                 range.mises_sq = range.mises_sq.max(von_mises_sq(&tensor_of(&values)));

@@ -2,9 +2,11 @@
 
 use std::collections::HashMap;
 
+use serde::{Deserialize, Serialize};
+
 use super::load::LoadedPart;
-use super::map::MapRun;
-use crate::geometry::tensor::{principal, von_mises};
+use crate::geometry::tensor::{Tensor, principal, von_mises};
+use crate::mapping::LayerRule;
 
 /// What can be shown of forming results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,15 +52,164 @@ impl FormingValue {
     pub fn is_stress(self) -> bool {
         matches!(self, Self::VonMises | Self::MajorStress)
     }
+
+    /// True for strains, which stand in a card of their own.
+    pub fn is_strain(self) -> bool {
+        matches!(self, Self::MajorStrain | Self::MinorStrain)
+    }
+
+    /// True if it differs from layer to layer.
+    pub fn has_layers(self) -> bool {
+        self != Self::Thinning
+    }
+
+    /// The number of a stress point (stress, plastic strain).
+    pub fn of_state(self, state: &[f64; 7]) -> f64 {
+        let stress: Tensor = std::array::from_fn(|i| state[i]);
+        match self {
+            Self::VonMises => von_mises(&stress),
+            Self::MajorStress => principal(&stress)[0],
+            _ => state[6],
+        }
+    }
+
+    /// The number of a strain tensor.
+    pub fn of_strain(self, strain: &Tensor) -> f64 {
+        let [major, .., minor] = principal(strain);
+        if self == Self::MinorStrain {
+            minor
+        } else {
+            major
+        }
+    }
+}
+
+/// Which of the layers a number is taken from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LayerChoice {
+    /// Mean over the thickness.
+    Mean,
+    /// The layer that has most of it: the largest number, of minor strains the smallest.
+    Extreme,
+    /// The lowest layer, against the normal.
+    Bottom,
+    /// The middle of the sheet.
+    Middle,
+    /// The uppermost layer.
+    Top,
+}
+
+impl LayerChoice {
+    /// All, in the order of the choice.
+    pub const ALL: [Self; 5] = [
+        Self::Mean,
+        Self::Extreme,
+        Self::Bottom,
+        Self::Middle,
+        Self::Top,
+    ];
+
+    /// Name of the layers in the window.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Mean => "Mean",
+            Self::Extreme => "Extreme",
+            Self::Bottom => "Bottom",
+            Self::Middle => "Middle",
+            Self::Top => "Top",
+        }
+    }
+
+    /// What is shown of a quantity as long as nothing else is chosen.
+    pub fn usual(value: FormingValue) -> Self {
+        match value {
+            FormingValue::PlasticStrain => Self::Mean,
+            _ => Self::Extreme,
+        }
+    }
+
+    /// The same layer of a sheet whose normal points to the other side.
+    pub fn turned_over(self) -> Self {
+        match self {
+            Self::Bottom => Self::Top,
+            Self::Top => Self::Bottom,
+            other => other,
+        }
+    }
+
+    /// The number that stands for layers given by T, weight and number, rising in T; NaN without any.
+    pub fn pick(self, layers: &[[f64; 3]], value: FormingValue) -> f64 {
+        let numbers = layers.iter().map(|layer| layer[2]);
+        let end = |layer: Option<&[f64; 3]>| layer.map_or(f64::NAN, |layer| layer[2]);
+        match self {
+            Self::Mean => {
+                let weighted = layers.iter().map(|[_, weight, number]| weight * number);
+                weighted.sum::<f64>() / layers.iter().map(|layer| layer[1]).sum::<f64>()
+            }
+            Self::Extreme if value == FormingValue::MinorStrain => numbers.fold(f64::NAN, f64::min),
+            Self::Extreme => numbers.fold(f64::NAN, f64::max),
+            Self::Bottom => end(layers.first()),
+            Self::Top => end(layers.last()),
+            Self::Middle => match layers.iter().position(|layer| layer[0] >= 0.0) {
+                None => end(layers.last()),
+                Some(0) => end(layers.first()),
+                Some(above) => {
+                    let [[below, _, from], [t, _, to]] = [layers[above - 1], layers[above]];
+                    from + (to - from) * -below / (t - below)
+                }
+            },
+        }
+    }
+}
+
+/// Puts the points of an element together to layers with their weights.
+#[derive(Default)]
+struct LayerSorter {
+    rules: Vec<LayerRule>,
+    points: Vec<(f64, f64)>,
+    layers: Vec<[f64; 3]>,
+}
+
+/// Points closer than this in T lie in one layer.
+const SAME_LAYER: f64 = 1e-4;
+
+impl LayerSorter {
+    /// Layers of points given by T and number, rising in T.
+    fn layers(&mut self, points: impl Iterator<Item = (f64, f64)>) -> &[[f64; 3]] {
+        self.points.clear();
+        self.points.extend(points);
+        self.points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        self.layers.clear();
+        for layer in self.points.chunk_by(|a, b| b.0 - a.0 < SAME_LAYER) {
+            let sum: f64 = layer.iter().map(|point| point.1).sum();
+            self.layers
+                .push([layer[0].0, 1.0, sum / layer.len() as f64]);
+        }
+        let places: Vec<f64> = self.layers.iter().map(|layer| layer[0]).collect();
+        if places.is_empty() {
+            return &self.layers;
+        }
+        let known = self.rules.iter().position(|rule| rule.has_places(&places));
+        let known = known.unwrap_or_else(|| {
+            self.rules.push(LayerRule::from_places(places));
+            self.rules.len() - 1
+        });
+        for (layer, weight) in self.layers.iter_mut().zip(self.rules[known].weights()) {
+            layer[1] = *weight;
+        }
+        &self.layers
+    }
 }
 
 /// The values of all shells of a part's model, NaN where there is none; why there are none at all
 /// otherwise. Thinning is against `nominal`, in the crash part's unit; stresses are in the
-/// file's. O(shells + points).
+/// file's. `layer` is the usual one if `None`. O(shells + points).
 pub fn forming_values(
     part: &LoadedPart,
     value: FormingValue,
     nominal: Option<f64>,
+    layer: Option<LayerChoice>,
 ) -> Result<Vec<f64>, &'static str> {
     let model = &part.model;
     let mut values = vec![f64::NAN; model.shells.len()];
@@ -87,71 +238,27 @@ pub fn forming_values(
             n_found += 1;
         }
     };
-    match value {
-        FormingValue::MajorStrain | FormingValue::MinorStrain => {
-            for strain in model.forming.strains() {
-                let all = strain.points.iter().map(|point| principal(&point.strain));
-                let number = if value == FormingValue::MajorStrain {
-                    all.map(|[major, ..]| major).fold(f64::NAN, f64::max)
-                } else {
-                    all.map(|[.., minor]| minor).fold(f64::NAN, f64::min)
-                };
-                put(strain.element_id, number);
-            }
+    let layer = layer.unwrap_or(LayerChoice::usual(value));
+    let mut sorter = LayerSorter::default();
+    if value.is_strain() {
+        for strain in model.forming.strains() {
+            let points = strain.points.iter();
+            let points = points.map(|point| (point.t, value.of_strain(&point.strain)));
+            put(strain.element_id, layer.pick(sorter.layers(points), value));
         }
-        _ => {
-            for stress in model.forming.stresses() {
-                let points = stress.points.iter();
-                let number = match value {
-                    FormingValue::VonMises => points
-                        .map(|p| von_mises(&p.stress))
-                        .fold(f64::NAN, f64::max),
-                    FormingValue::MajorStress => points
-                        .map(|p| principal(&p.stress)[0])
-                        .fold(f64::NAN, f64::max),
-                    _ => {
-                        let sum: f64 = points.map(|p| p.plastic_strain).sum();
-                        sum / stress.points.len() as f64
-                    }
-                };
-                put(stress.element_id, number);
-            }
+    } else {
+        for stress in model.forming.stresses() {
+            let points = stress.points.iter().map(|point| {
+                let [xx, yy, zz, xy, yz, zx] = point.stress;
+                let state = [xx, yy, zz, xy, yz, zx, point.plastic_strain];
+                (point.t, value.of_state(&state))
+            });
+            put(stress.element_id, layer.pick(sorter.layers(points), value));
         }
     }
     match n_found {
         0 => Err(lacking(value)),
         _ => Ok(values),
-    }
-}
-
-/// The same of an element of a mapping's target; NaN where it has none.
-pub fn mapped_value(
-    run: &MapRun,
-    element: usize,
-    value: FormingValue,
-    nominal: Option<f64>,
-) -> f64 {
-    let stresses = run.mapped.states.as_ref().map(|states| states.of(element));
-    let strains = run
-        .mapped
-        .strains
-        .as_ref()
-        .map(|strains| strains.of(element));
-    let of_strains = |pick: fn(f64, f64) -> f64, at: usize| {
-        let all = strains.unwrap_or_default().iter();
-        all.map(|strain| principal(strain)[at]).fold(f64::NAN, pick)
-    };
-    match value {
-        FormingValue::Thinning => nominal.map_or(f64::NAN, |t| 1.0 - run.thickness(element) / t),
-        FormingValue::PlasticStrain => run.plastic_strain(element),
-        FormingValue::VonMises => run.largest_von_mises(element),
-        FormingValue::MajorStrain => of_strains(f64::max, 0),
-        FormingValue::MinorStrain => of_strains(f64::min, 2),
-        FormingValue::MajorStress => {
-            let all = stresses.unwrap_or_default().iter();
-            all.map(|state| principal(&std::array::from_fn(|i| state[i]))[0])
-                .fold(f64::NAN, f64::max)
-        }
     }
 }
 
@@ -229,7 +336,7 @@ mod tests {
     #[test]
     fn each_value_is_on_the_elements_that_have_it() {
         let part = sheet();
-        let of = |value| forming_values(&part, value, Some(1.0)).unwrap();
+        let of = |value| forming_values(&part, value, Some(1.0), None).unwrap();
         let only = |values: Vec<f64>, shell: usize, expected: f64| {
             assert!((values[shell] - expected).abs() < 1e-12, "{values:?}");
             assert!(values[1 - shell].is_nan(), "{values:?}");
@@ -239,9 +346,18 @@ mod tests {
         only(of(FormingValue::MajorStress), 0, 20.0);
         only(of(FormingValue::MajorStrain), 1, 0.2);
         only(of(FormingValue::MinorStrain), 1, -0.1);
+        let at = |layer| {
+            let all = forming_values(&part, FormingValue::PlasticStrain, None, Some(layer));
+            all.unwrap()[0]
+        };
+        let layers = LayerChoice::ALL.map(at);
+        let expected = [0.2, 0.3, 0.1, 0.2, 0.3];
+        for (found, expected) in layers.into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-12, "{layers:?}");
+        }
         // A triangle has three corners; its fourth is blank.
         only(of(FormingValue::Thinning), 1, 0.25);
-        let none = forming_values(&part, FormingValue::Thinning, None).unwrap_err();
+        let none = forming_values(&part, FormingValue::Thinning, None, None).unwrap_err();
         assert!(none.contains("flat sheet"));
         assert_eq!(
             has_forming_value(&part, FormingValue::VonMises, None),

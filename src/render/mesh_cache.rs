@@ -71,12 +71,17 @@ impl GpuMesh {
 
 /// Values at every corner of a mesh. Larger than `NO_VALUE` of `surface.wgsl` where there is none,
 /// because shaders may assume that NaN does not happen.
-fn field_at_corners(mesh: &RenderMesh, values: &[f32]) -> Vec<f32> {
-    let value = |&vertex: &u32| {
-        let value = values.get(vertex as usize).copied().unwrap_or(f32::NAN);
+fn field_at_corners(mesh: &RenderMesh, field: &FieldLook) -> Vec<f32> {
+    let value = |(corner, &vertex): (usize, &u32)| {
+        let at = if field.is_by_corner {
+            corner
+        } else {
+            vertex as usize
+        };
+        let value = field.values.get(at).copied().unwrap_or(f32::NAN);
         if value.is_finite() { value } else { f32::MAX }
     };
-    mesh.corner_vertices.iter().map(value).collect()
+    mesh.corner_vertices.iter().enumerate().map(value).collect()
 }
 
 /// An upload together with what keeps its key unique: as long as the weak reference lives, no other
@@ -120,7 +125,7 @@ impl MeshCache {
         match self.fields.entry(key) {
             Entry::Occupied(kept) => Some(Arc::clone(&kept.get().value)),
             Entry::Vacant(free) => {
-                let values = field_at_corners(mesh, &field.values);
+                let values = field_at_corners(mesh, field);
                 let counted = Counted::new(device, &values, wgpu::BufferUsages::VERTEX)?;
                 let kept = free.insert(Kept {
                     key: Arc::downgrade(&field.values),

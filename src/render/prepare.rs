@@ -211,8 +211,11 @@ fn field_texels(scale: &ColorScale) -> Vec<[u8; 4]> {
     let middle = |i: usize| scale.value_at((i as f64 + 0.5) / FIELD_STEPS as f64);
     let patterns = (0..FIELD_STEPS).map(|i| match scale.pattern(middle(i)) {
         Pattern::Plain => 255,
-        Pattern::Lines => 170,
-        Pattern::Dots => 85,
+        Pattern::Lines => 0,
+        Pattern::Dots => 50,
+        Pattern::Rising => 100,
+        Pattern::Falling => 150,
+        Pattern::Crossed => 200,
     });
     let colors = scale.table(FIELD_STEPS).into_iter().zip(patterns);
     colors.map(|([r, g, b], p)| [r, g, b, p]).collect()

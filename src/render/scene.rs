@@ -330,12 +330,15 @@ impl Default for PartLook {
     }
 }
 
-/// One number per mesh vertex, shown as colour.
+/// One number per mesh vertex, or per corner of the triangles, shown as colour.
 #[derive(Debug, Clone)]
 pub struct FieldLook {
     /// Values by vertex of the mesh the [`RenderMesh`] was made of; NaN where there is none, which is
     /// drawn grey with a hatch. Missing values at the end count as NaN.
     pub values: Arc<[f32]>,
+    /// The values stand at the corners of the triangles instead, three for each, so that neighbours
+    /// may differ at their common edge.
+    pub is_by_corner: bool,
     /// Colours of the values.
     pub scale: ColorScale,
 }

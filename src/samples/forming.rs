@@ -126,7 +126,7 @@ fn element_mean(sheet: &Sheet, corners: &[Flat; 4], thickness: f64) -> ShellForm
     let mut sums = [[0.0; 13]; 2];
     // Two Gauss points along each edge of a cell.
     let place = |k: usize| {
-        let side = if k % 2 == 0 { -1.0 } else { 1.0 };
+        let side = if k.is_multiple_of(2) { -1.0 } else { 1.0 };
         ((k / 2) as f64 + 0.5 + side * 0.5 / 3.0_f64.sqrt()) / n_cells as f64
     };
     for (i, j) in (0..2 * n_cells).flat_map(|i| (0..2 * n_cells).map(move |j| (i, j))) {

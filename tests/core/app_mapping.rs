@@ -1,9 +1,13 @@
 //! Section 4 of the window without a window: mapping, its colours, undo, and what is written.
 
-use shapematch::app::{Action, ColorBy, HistoryCommand, MapCommand, MoveCommand, Quantity};
+use shapematch::app::{
+    Action, ColorBy, FreeWindow, HistoryCommand, MapCommand, MoveCommand, Quantity,
+};
 use shapematch::jobs::{JobKind, JobOutput, PipelineRunner, Runner as _};
+use shapematch::mapping::Status;
 use shapematch::monitor::Monitor;
-use shapematch::pipeline::map::WriteKind;
+use shapematch::pipeline::forming_values::LayerChoice;
+use shapematch::pipeline::map::{MapRun, WriteKind};
 use shapematch::pipeline::outputs::{Output, OutputInput};
 use shapematch::role::{PerRole, Role};
 use shapematch::samples::{self, SamplePart, SampleSettings};
@@ -156,4 +160,206 @@ fn quantities_are_one_step_each_and_a_running_mapping_can_be_given_up() {
     let bare = Window::new();
     let reason = Action::MapOrCancel.enabled(&bare.state).unwrap_err();
     assert_eq!(reason.0, "Load both parts first.");
+}
+
+/// Plastic strain of each layer of an element, mean of its points in the plane.
+fn plastic_by_layer(run: &MapRun, element: usize) -> Vec<f64> {
+    let states = run.mapped.states.as_ref().unwrap().of(element);
+    let n_layers = run.target.rules[run.target.rule_of[element] as usize].len();
+    let n_plane = states.len() / n_layers;
+    let layers = states.chunks(n_plane);
+    let mean = |layer: &[[f64; 7]]| layer.iter().map(|s| s[6]).sum::<f64>() / n_plane as f64;
+    layers.map(mean).collect()
+}
+
+/// A window whose bracket was mapped with stresses and strains.
+fn mapped_in_full() -> (Window, tempfile::TempDir) {
+    let (mut window, folder) = at_the_known_pose();
+    let mut recipe = window.state.document.mapping.recipe.clone();
+    for quantity in [Quantity::Stress, Quantity::Strain] {
+        *quantity.switch(&mut recipe.options.quantities) = true;
+    }
+    window.apply(MapCommand::SetRecipe(Box::new(recipe)));
+    window.act(Action::MapOrCancel);
+    assert!(window.state.document.current_mapping().is_some());
+    (window, folder)
+}
+
+#[test]
+fn pictures_of_a_mapping_are_chosen_and_say_what_the_values_say() {
+    let (mut window, _folder) = mapped_in_full();
+    // The mapping is looked at by itself.
+    assert_eq!(window.state.color_by(Role::Crash), ColorBy::Thickness);
+    assert!(window.state.is_mapping_shown());
+    for (action, by) in [
+        (Action::ShowMapDifference, ColorBy::MapDifference),
+        (Action::ShowMapDistance, ColorBy::MapDistance),
+        (Action::ShowMapConfidence, ColorBy::MapConfidence),
+        (Action::ShowMapStatus, ColorBy::MapStatus),
+    ] {
+        window.act(action);
+        assert_eq!(window.state.color_by(Role::Crash), by);
+        // The stamped part shows the quantity itself beside it.
+        assert_eq!(window.state.color_by(Role::Stamped), ColorBy::Thickness);
+    }
+    // Another quantity keeps the kind of picture where it speaks of one.
+    window.act(Action::ShowMapDifference);
+    let all = window.state.mapped_quantities();
+    assert!(all.contains(&ColorBy::VonMises) && all.contains(&ColorBy::MinorStrain));
+    while window.state.map_quantity() != ColorBy::PlasticStrain {
+        window.act(Action::NextMapQuantity);
+    }
+    assert_eq!(window.state.color_by(Role::Crash), ColorBy::MapDifference);
+    assert_eq!(window.state.color_by(Role::Stamped), ColorBy::PlasticStrain);
+
+    // Layers: by itself the mean, then each, then the mean by itself again.
+    let layer = |window: &Window| window.state.shown_layer(ColorBy::PlasticStrain);
+    assert_eq!(layer(&window), Some(LayerChoice::Mean));
+    let result = window.state.document.current_mapping().unwrap();
+    let run = result.run.to_arc();
+    let element = (0..run.shells.len())
+        .find(|&e| run.mapped.elements[e].status == Status::Mapped)
+        .unwrap();
+    let plastic = plastic_by_layer(&run, element);
+    let partner = run.mapped.elements[element].partner.unwrap();
+    let source = &run.sources[0];
+    let (_, of_partner) = source.states.of(partner.element as usize).unwrap();
+    assert!(!partner.is_flipped);
+    let expect = |window: &Window, own: f64, theirs: f64| {
+        let shown = window.state.shown_value(ColorBy::PlasticStrain);
+        assert!((run.shown(element, &shown) - own).abs() < 1e-12);
+        let difference = run.difference(element, &shown);
+        assert!((difference - (own - theirs)).abs() < 1e-12, "{difference}");
+    };
+    expect(
+        &window,
+        run.plastic_strain(element),
+        source.mean_plastic_strain(partner.element as usize),
+    );
+    window.act(Action::NextLayer);
+    window.act(Action::NextLayer);
+    assert_eq!(layer(&window), Some(LayerChoice::Extreme));
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::NAN, f64::max);
+    let theirs = largest(&mut of_partner.iter().map(|state| state[6]));
+    expect(&window, largest(&mut plastic.iter().copied()), theirs);
+    window.act(Action::NextLayer);
+    assert_eq!(layer(&window), Some(LayerChoice::Bottom));
+    expect(&window, plastic[0], of_partner[0][6]);
+    window.act(Action::NextLayer);
+    window.act(Action::NextLayer);
+    assert_eq!(layer(&window), Some(LayerChoice::Top));
+    expect(&window, plastic[plastic.len() - 1], of_partner[1][6]);
+
+    // Picture and layer are kept with the window in a project.
+    let text = serde_json::to_string(&window.state.view.display).unwrap();
+    let back: shapematch::app::Display = serde_json::from_str(&text).unwrap();
+    assert_eq!(back, window.state.view.display);
+    window.act(Action::NextLayer);
+    assert_eq!(window.state.view.display.mapped.layer, None);
+
+    // In one window the parts would hide each other: the stamped one stands beside.
+    window.act(Action::ToggleMoveOver);
+    assert_eq!(window.state.free_window(), Some(FreeWindow::Stamped));
+    assert!(window.state.is_mapping_apart());
+    // A move takes the mapping away, and with it its pictures.
+    window.act(Action::FlipX);
+    assert!(!window.state.is_mapping_shown());
+    assert_ne!(window.state.free_window(), Some(FreeWindow::Stamped));
+    assert!(Action::ShowMapStatus.enabled(&window.state).is_err());
+    assert!(window.state.missing_for(ColorBy::MapStatus).is_some());
+}
+
+#[test]
+fn a_probe_tells_both_sides_of_an_element_and_is_one_step() {
+    let (mut window, _folder) = mapped_in_full();
+    let result = window.state.document.current_mapping().unwrap();
+    let run = result.run.to_arc();
+    let crash = window.part(Role::Crash).loaded.to_arc();
+    let stamped = window.part(Role::Stamped).loaded.to_arc();
+    let element = run.shells.len() / 2;
+    let id = crash.model.shells[run.shells[element] as usize].id;
+    let document = &window.state.document;
+    assert_eq!(document.mapped_element(Role::Crash, id), Some(element));
+    assert_eq!(document.mapped_element(Role::Crash, u64::MAX), None);
+    let partner = run.mapped.elements[element].partner.unwrap();
+    let shell = run.source_shells[0][partner.element as usize] as usize;
+    let stamped_id = stamped.model.shells[shell].id;
+    // A stamped element leads to an element that took its values from it.
+    let found = document.mapped_element(Role::Stamped, stamped_id).unwrap();
+    let of_found = run.mapped.elements[found].partner.unwrap();
+    assert_eq!(of_found.element, partner.element);
+
+    assert!(window.state.probe().is_none());
+    window.apply(MapCommand::Probe(Some(element)));
+    let probe = window.state.probe().unwrap();
+    assert_eq!((probe.id, probe.stamped_id), (id, Some(stamped_id)));
+    let of = |by: ColorBy| probe.values.iter().find(|row| row.0 == by).unwrap().1;
+    assert_eq!(of(ColorBy::Thickness)[1], run.mapped.thickness[element]);
+    let source = &run.sources[0];
+    let theirs = source.mean_thickness(partner.element as usize);
+    assert_eq!(of(ColorBy::Thickness)[0], theirs);
+    // The profile is that of the plastic strain, the first quantity with layers.
+    assert_eq!(probe.profile_of, Some(ColorBy::PlasticStrain));
+    let rule = &run.target.rules[run.target.rule_of[element] as usize];
+    let places: Vec<f64> = probe.profile.crash.iter().map(|point| point[0]).collect();
+    assert_eq!(places, rule.places());
+    let values: Vec<f64> = probe.profile.crash.iter().map(|point| point[1]).collect();
+    for (value, expected) in values.iter().zip(plastic_by_layer(&run, element)) {
+        assert!((value - expected).abs() < 1e-15);
+    }
+    assert_eq!(probe.profile.stamped.len(), 2);
+    // Undo ends the probe, another mapping of the same elements keeps it.
+    window.act(Action::MapOrCancel);
+    assert!(window.state.probe().is_some());
+    window.apply(HistoryCommand::Undo);
+    window.apply(HistoryCommand::Undo);
+    assert!(window.state.probe().is_none());
+    window.apply(HistoryCommand::Redo);
+    window.act(Action::EndProbe);
+    assert!(window.state.probe().is_none());
+    assert!(Action::EndProbe.enabled(&window.state).is_err());
+}
+
+#[test]
+fn checks_name_their_picture_and_add_up_with_the_mapping() {
+    let (window, _folder) = mapped_in_full();
+    let result = window.state.document.current_mapping().unwrap();
+    let (run, record) = (&result.run, &result.record);
+    assert!(record.checks.len() >= 8, "{:?}", record.checks);
+    let of = |name: &str| record.checks.iter().find(|c| c.name == name).unwrap();
+    let area = of("Area with values");
+    assert!(area.is_met == Some(true) && record.mapped_area > 0.95);
+    // The way back is told and not judged.
+    assert_eq!(of("Thickness there and back").is_met, None);
+    let (n_met, n_judged) = record.n_met();
+    assert_eq!(n_judged, record.checks.len() - 2);
+    let met = record.checks.iter().filter(|c| c.is_met == Some(true));
+    assert_eq!(n_met, met.count());
+    // The bracket's radii are as small as its crash elements, whose peak is told as too low.
+    let pair = record.plastic_strain.as_ref().unwrap();
+    let peak = pair.crash.max / pair.stamped.max - 1.0;
+    assert!(peak < -0.1, "{peak}");
+    assert_eq!(of("Largest plastic strain").is_met, Some(false));
+    let display = window.state.with_check(area.picture);
+    assert_eq!(display.color_by, ColorBy::MapStatus);
+    let thickness = of("Mean thickness");
+    let display = window.state.with_check(thickness.picture);
+    assert_eq!(display.color_by, ColorBy::MapDifference);
+    assert_eq!(display.mapped.quantity, ColorBy::Thickness);
+    // The worst place is worse than all others.
+    let shown = window.state.shown_value(ColorBy::Thickness);
+    let off = |element: usize| run.difference(element, &shown).abs();
+    let worst = off(thickness.worst.unwrap());
+    assert!((0..run.shells.len()).all(|e| off(e).is_nan() || off(e) <= worst));
+    // Statuses cover all elements, histograms all of the area.
+    let statuses = window.state.map_statuses();
+    let n: usize = statuses.iter().map(|row| row.1).sum();
+    assert_eq!(n, run.shells.len());
+    let share: f64 = statuses.iter().map(|row| row.2).sum();
+    assert!((share - 1.0).abs() < 1e-12);
+    for pair in [&record.thickness, &record.plastic_strain, &record.von_mises] {
+        for shares in &pair.as_ref().unwrap().histograms {
+            assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+        }
+    }
 }

@@ -13,7 +13,7 @@ use shapematch::ui::Shell;
 
 use super::story::{click, finish, window};
 
-type Window = Harness<'static, Shell>;
+pub(super) type Window = Harness<'static, Shell>;
 
 /// A text as it was painted.
 struct Painted {
@@ -54,7 +54,7 @@ fn collect(shape: &Shape, clip: Rect, found: &mut Vec<Painted>) {
 }
 
 /// What is wrong unless every text lies within its clip sideways and on no other text.
-fn faults(window: &Window) -> Vec<String> {
+pub(super) fn faults(window: &Window) -> Vec<String> {
     let mut texts = texts(window);
     // Stands in the place of the picture, and so under everything.
     texts.retain(|text| text.text != "no graphics adapter");

@@ -6,6 +6,7 @@ mod exports;
 mod inspect;
 mod keyboard;
 mod layout;
+mod mapping;
 mod no_window;
 mod pairs;
 mod panels;

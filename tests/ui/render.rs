@@ -368,6 +368,7 @@ fn fields_take_the_colours_of_their_scale() {
     let scale = ColorScale::new(ColorMap::Rainbow, 0.0, 1.0);
     drawable.field = Some(FieldLook {
         values: vec![0.0, 1.0, 1.0, 0.0].into(),
+        is_by_corner: false,
         scale,
     });
     let camera = from(StandardView::Top, Point3::origin());
@@ -383,9 +384,10 @@ fn fields_take_the_colours_of_their_scale() {
     // Values that are missing or not numbers are grey and hatched, up to half way to those that are not.
     drawable.field = Some(FieldLook {
         values: vec![0.0, f32::NAN].into(),
+        is_by_corner: false,
         scale,
     });
-    let shot = picture(&scene(vec![drawable]), &camera);
+    let shot = picture(&scene(vec![drawable.clone()]), &camera);
     let colors: Vec<[u8; 4]> = (45..75).map(|x| shot.get_pixel(x, 25).0).collect();
     assert!(colors.iter().all(|c| c[0].abs_diff(c[2]) < 16), "grey");
     let (low, high) = (
@@ -393,6 +395,25 @@ fn fields_take_the_colours_of_their_scale() {
         colors.iter().map(|&c| brightness(c)).max().unwrap(),
     );
     assert!(high > low + 60, "hatched");
+    // Values at corners change from one triangle to the next without a slope between them.
+    drawable.field = Some(FieldLook {
+        values: vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0].into(),
+        is_by_corner: true,
+        scale,
+    });
+    let shot = picture(&scene(vec![drawable]), &camera);
+    let seen = [(0.6, -0.5), (-0.5, 0.6)].map(|(x, y)| {
+        let [r, g, b, _] = color_at(&shot, &camera, &Point3::new(x, y, 0.0));
+        [r, g, b]
+    });
+    let ends = [0.0, 1.0].map(|value| scale.color(value));
+    for (shown, [r, g, b]) in seen.into_iter().zip(ends) {
+        let [sr, sg, sb] = shown;
+        assert!(
+            difference([sr, sg, sb, 255], [r, g, b, 255]) < 24,
+            "{shown:?}"
+        );
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The menu *Match*: reduction, first poses, the match and its result.
 
 use super::conditions::{has_starts, is_reduced, require};
-use super::row::keys::{function, key, shift};
+use super::row::keys::{ctrl, function, key, shift};
 use super::row::some;
 use super::{Action, ActionRow, Key, Keys, MenuGroup, Reason, Shortcut};
 use crate::app::{AppState, MapCommand, MatchCommand, PairCommand, ReduceCommand, facts};
@@ -21,7 +21,7 @@ const MAP: &[ActionRow] = &[ActionRow {
     label: "Map",
     tooltip: "Carry thickness, strain and stress of the stamped part onto the crash part; while it runs, \
               give it up",
-    keys: Keys::NONE,
+    keys: Keys::press(&[ctrl('M')]),
     enabled: AppState::can_map,
     command: |_| some(MapCommand::MapOrCancel),
 }];

@@ -178,6 +178,22 @@ actions! {
     ToggleOverlap,
     /// Measure the deviation again.
     UpdateDeviation,
+    /// Colours of the mapped values.
+    ShowMapped,
+    /// Colours of mapped less stamped.
+    ShowMapDifference,
+    /// Colours of the distance at the mapping.
+    ShowMapDistance,
+    /// Colours of the mapping's confidence.
+    ShowMapConfidence,
+    /// What became of the mapped elements.
+    ShowMapStatus,
+    /// Another quantity of the mapping.
+    NextMapQuantity,
+    /// Another layer of the sheet.
+    NextLayer,
+    /// No longer look at one element of the mapping.
+    EndProbe,
     /// The section plane.
     ToggleSection,
     /// Cut away what lies in front of the section plane.

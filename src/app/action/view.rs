@@ -1,12 +1,12 @@
 //! The menu *View*: display, inspection, section, camera, size of the window's text.
 
-use super::conditions::{always, is_reduced, require};
+use super::conditions::{always, has_mapping, is_reduced, require};
 use super::row::keys::{ctrl, ctrl_digit, digit, function, key, shift};
 use super::row::some;
 use super::{Action, ActionRow, Key, Keys, MenuGroup, Reason, Shortcut};
 use crate::app::{
-    AppState, ColorBy, Command, Display, InspectCommand, SectionView, Settings, ShownGeometry,
-    ViewCommand,
+    AppState, ColorBy, Command, Display, InspectCommand, MapCommand, MapPicture, SectionView,
+    Settings, ShownGeometry, ViewCommand,
 };
 use crate::geometry::Vector3;
 use crate::geometry::camera::{OrbitStyle, StandardView};
@@ -15,6 +15,7 @@ pub(super) const GROUPS: &[MenuGroup] = &[
     MenuGroup::plain(COMPARE),
     MenuGroup::submenu("Display", DISPLAY),
     MenuGroup::submenu("Inspect", INSPECT),
+    MenuGroup::submenu("Mapping", MAPPING),
     MenuGroup::submenu("Section", SECTION),
     MenuGroup::submenu("Camera", CAMERA),
     MenuGroup::plain(WINDOW),
@@ -145,6 +146,78 @@ const INSPECT: &[ActionRow] = &[
         keys: Keys::NONE,
         enabled: |state| state.document.has_both_parts(),
         command: |_| some(InspectCommand::Update),
+    },
+];
+
+const MAPPING: &[ActionRow] = &[
+    ActionRow {
+        action: Action::ShowMapped,
+        label: "Mapped values",
+        tooltip: "Colour the crash part by the mapped quantity and the stamped part by its own",
+        keys: Keys::press(&[key('C')]),
+        enabled: has_mapping,
+        command: |state| mapping_picture(state, None),
+    },
+    ActionRow {
+        action: Action::ShowMapDifference,
+        label: "Mapping difference",
+        tooltip: "Colour the crash part by the mapped less the stamped value",
+        keys: Keys::press(&[shift('C')]),
+        enabled: has_mapping,
+        command: |state| mapping_picture(state, Some(MapPicture::Difference)),
+    },
+    ActionRow {
+        action: Action::ShowMapDistance,
+        label: "Mapping distance",
+        tooltip: "Colour the crash part by the distance of the stamped sheet along its normals",
+        keys: Keys::NONE,
+        enabled: has_mapping,
+        command: |state| mapping_picture(state, Some(MapPicture::Distance)),
+    },
+    ActionRow {
+        action: Action::ShowMapConfidence,
+        label: "Mapping confidence",
+        tooltip: "Colour the crash part by how far its mapped values can be trusted",
+        keys: Keys::NONE,
+        enabled: has_mapping,
+        command: |state| mapping_picture(state, Some(MapPicture::Confidence)),
+    },
+    ActionRow {
+        action: Action::ShowMapStatus,
+        label: "Mapping status",
+        tooltip: "Show which elements were mapped, and why others were not",
+        keys: Keys::NONE,
+        enabled: has_mapping,
+        command: |state| mapping_picture(state, Some(MapPicture::Status)),
+    },
+    ActionRow {
+        action: Action::NextMapQuantity,
+        label: "Next mapped quantity",
+        tooltip: "Show the next quantity of the mapping",
+        keys: Keys::press(&[key('Q')]),
+        enabled: has_mapping,
+        command: |state| shown(state.with_next_map_quantity()),
+    },
+    ActionRow {
+        action: Action::NextLayer,
+        label: "Next layer",
+        tooltip: "Show another layer of the sheet: mean, extreme, bottom, middle, top, or as is usual",
+        keys: Keys::press(&[shift('Q')]),
+        enabled: has_mapping,
+        command: |state| shown(state.with_next_layer()),
+    },
+    ActionRow {
+        action: Action::EndProbe,
+        label: "End the probe",
+        tooltip: "Forget the probed element of the mapping",
+        keys: Keys::NONE,
+        enabled: |state| {
+            require(
+                state.probe().is_some(),
+                "No element of a mapping is probed.",
+            )
+        },
+        command: |_| some(MapCommand::Probe(None)),
     },
 ];
 
@@ -390,7 +463,15 @@ fn has_section(state: &AppState) -> Result<(), Reason> {
 fn shown_with(state: &AppState, change: impl FnOnce(&mut Display)) -> Option<Command> {
     let mut display = state.view.display.clone();
     change(&mut display);
+    shown(display)
+}
+
+fn shown(display: Display) -> Option<Command> {
     some(ViewCommand::SetDisplay(Box::new(display)))
+}
+
+fn mapping_picture(state: &AppState, picture: Option<MapPicture>) -> Option<Command> {
+    shown(state.with_map_picture(picture))
 }
 
 fn toggle_color(display: &mut Display, by: ColorBy) {

@@ -57,6 +57,17 @@ impl Coloring {
         }
     }
 
+    /// The chosen colours of values with a sign that are no deviation, from −limit to limit.
+    pub fn on_signed_scale(&self, limit: f64) -> ColorScale {
+        ColorScale {
+            map: self.signed_map,
+            n_bands: self.n_bands,
+            reversed: self.is_reversed,
+            has_pattern: self.has_pattern,
+            ..ColorScale::symmetric(limit, 0.0)
+        }
+    }
+
     /// The colours of a deviation.
     pub fn deviation_scale(&self, comparison: &Comparison) -> ColorScale {
         let deviation = &comparison.deviation;

@@ -83,6 +83,7 @@ impl AppState {
             mapping: Mapping {
                 recipe: project.mapping.clone(),
                 result: None,
+                probe: None,
             },
             pose: StampedPose {
                 crash_from_stamped: project.pose,

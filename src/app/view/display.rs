@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::Coloring;
+use crate::app::{Coloring, MapDisplay, MapPicture};
 use crate::pipeline::forming_values::FormingValue;
 use crate::role::PerRole;
 
@@ -46,6 +46,14 @@ pub enum ColorBy {
     VonMises,
     /// Largest principal stress of the layers.
     MajorStress,
+    /// Mapped less stamped.
+    MapDifference,
+    /// Distance of the stamped sheet from the mapped elements.
+    MapDistance,
+    /// How far mapped elements can be trusted.
+    MapConfidence,
+    /// What became of the elements of the mapping.
+    MapStatus,
 }
 
 impl From<FormingValue> for ColorBy {
@@ -63,7 +71,7 @@ impl From<FormingValue> for ColorBy {
 
 impl ColorBy {
     /// All, in the order of the menu.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 16] = [
         Self::Role,
         Self::Part,
         Self::Thickness,
@@ -76,7 +84,17 @@ impl ColorBy {
         Self::MinorStrain,
         Self::VonMises,
         Self::MajorStress,
+        Self::MapDifference,
+        Self::MapDistance,
+        Self::MapConfidence,
+        Self::MapStatus,
     ];
+
+    /// The picture of a mapping, if it is one.
+    pub fn map_picture(self) -> Option<MapPicture> {
+        let is_it = |picture: &MapPicture| picture.color_by() == self;
+        MapPicture::ALL.into_iter().find(is_it)
+    }
 
     /// The forming result that is shown, if it is one.
     pub fn forming(self) -> Option<FormingValue> {
@@ -106,6 +124,10 @@ impl ColorBy {
             Self::MinorStrain => FormingValue::MinorStrain.label(),
             Self::VonMises => FormingValue::VonMises.label(),
             Self::MajorStress => FormingValue::MajorStress.label(),
+            Self::MapDifference => "Mapping: difference",
+            Self::MapDistance => "Mapping: distance",
+            Self::MapConfidence => "Mapping: confidence",
+            Self::MapStatus => "Mapping: status",
         }
     }
 }
@@ -128,6 +150,8 @@ pub enum BottomTab {
     Deviation,
     /// Both outlines in the section plane.
     Section,
+    /// Checks, statistics and the probe of the mapping.
+    Mapping,
     /// Undo steps.
     History,
     /// What the reader found in the files.
@@ -136,7 +160,7 @@ pub enum BottomTab {
 
 impl BottomTab {
     /// All, from left to right.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Log,
         Self::Timings,
         Self::Starts,
@@ -144,6 +168,7 @@ impl BottomTab {
         Self::Sweep,
         Self::Deviation,
         Self::Section,
+        Self::Mapping,
         Self::History,
         Self::Diagnostics,
     ];
@@ -158,6 +183,7 @@ impl BottomTab {
             Self::Sweep => "Sweep",
             Self::Deviation => "Deviation",
             Self::Section => "Section",
+            Self::Mapping => "Mapping",
             Self::History => "History",
             Self::Diagnostics => "Diagnostics",
         }
@@ -209,6 +235,8 @@ pub struct Display {
     pub color_by: ColorBy,
     /// Maps, limits, tolerance.
     pub coloring: Coloring,
+    /// Of what the pictures of a mapping speak.
+    pub mapped: MapDisplay,
     /// The small axes in the corner.
     pub has_axes: bool,
     /// The scale bar.
@@ -231,6 +259,7 @@ impl Default for Display {
             has_points: false,
             color_by: ColorBy::default(),
             coloring: Coloring::default(),
+            mapped: MapDisplay::default(),
             has_axes: true,
             has_scale_bar: true,
         }

@@ -15,6 +15,8 @@ pub enum FreeWindow {
     Nothing,
     /// The distances between the parts as colours.
     Deviation,
+    /// The stamped part at its pose, while the left window shows the mapped crash part.
+    Stamped,
     /// The outlines of both parts in the section plane, laid flat.
     Section,
     /// Both parts as they were read, without reduction.
@@ -25,10 +27,11 @@ pub enum FreeWindow {
 
 impl FreeWindow {
     /// All, in the order of the choice.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Nothing,
         Self::FullMesh,
         Self::Deviation,
+        Self::Stamped,
         Self::Section,
         Self::SecondPose,
     ];
@@ -43,6 +46,7 @@ impl FreeWindow {
         match self {
             Self::Nothing => "Nothing",
             Self::Deviation => "Deviation",
+            Self::Stamped => "Stamped",
             Self::Section => "Section",
             Self::FullMesh => "Full mesh",
             Self::SecondPose => "Second pose",
@@ -52,7 +56,8 @@ impl FreeWindow {
 
 impl AppState {
     /// What the right window shows beside the shared one; `None` while it has its own part. Without a
-    /// choice: the deviation where the parts were matched, else the full meshes.
+    /// choice: the stamped part where the left one shows the mapping, the deviation where the parts were
+    /// matched, else the full meshes.
     pub fn free_window(&self) -> Option<FreeWindow> {
         if !self.view.is_moved_over {
             return None;
@@ -61,6 +66,7 @@ impl AppState {
         let parts = self.document.stamp().parts;
         let result = self.document.result.as_ref();
         let by_itself = match result.filter(|result| result.stamp.parts == parts) {
+            _ if self.is_mapping_shown() => FreeWindow::Stamped,
             Some(_) => FreeWindow::Deviation,
             None => FreeWindow::FullMesh,
         };
@@ -79,7 +85,11 @@ impl AppState {
 
     /// True if the right window could be used so now.
     pub fn can_use_free(&self, free: FreeWindow) -> bool {
-        free != FreeWindow::SecondPose || self.second_pose().is_some()
+        match free {
+            FreeWindow::SecondPose => self.second_pose().is_some(),
+            FreeWindow::Stamped => self.is_mapping_shown(),
+            _ => true,
+        }
     }
 
     /// The best pose of the last match beside the one that is shown.
@@ -98,6 +108,10 @@ impl AppState {
     pub fn color_by(&self, window: Role) -> ColorBy {
         match self.free_window().filter(|_| window == Role::Stamped) {
             Some(FreeWindow::Deviation) => ColorBy::Deviation,
+            // Beside a picture of the mapping the stamped part shows the quantity itself.
+            _ if window == Role::Stamped && self.view.display.color_by.map_picture().is_some() => {
+                self.map_quantity()
+            }
             _ => self.view.display.color_by,
         }
     }

@@ -112,6 +112,7 @@ impl AppState {
             }
             BottomTab::Sweep | BottomTab::Deviation => self.document.both().is_some(),
             BottomTab::Section => self.inspect.section.shown().is_some(),
+            BottomTab::Mapping => self.document.current_mapping().is_some(),
             BottomTab::History => {
                 self.history.undo_name().is_some() || self.history.redo_name().is_some()
             }

@@ -7,6 +7,8 @@ mod ready;
 mod record;
 mod report;
 mod unmapped;
+mod values;
+mod verdict;
 
 use std::collections::BTreeSet;
 use std::time::Instant;
@@ -16,9 +18,11 @@ use serde::{Deserialize, Serialize};
 pub use compare::{ComparisonRecord, DifferenceRecord, OtherResult};
 pub use convert::TargetLayers;
 pub use output::{MapFiles, MapOutput, WriteKind, elements_path, write_mapping};
-pub use record::{MapRecord, PairRecord, element_table, map_record};
+pub use record::{DistributionRecord, MapRecord, PairRecord, element_table, map_record};
 pub use report::map_report;
 pub use unmapped::unmapped_sets;
+pub use values::{Profile, ShownValue};
+pub use verdict::{CheckPicture, CheckRecord};
 
 use super::load::LoadedPart;
 use super::{PipelineError, millis_since};

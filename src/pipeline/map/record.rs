@@ -4,9 +4,12 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::compare::{ComparisonRecord, OtherResult, compare_with};
+use super::compare::{ComparisonRecord, OtherResult, compare_with, largest_von_mises};
+use super::verdict::{CheckRecord, checks_of};
 use super::{MapFiles, MapRun, PlacedPart};
-use crate::mapping::{Distribution, Histogram, Status, distribution, histogram_distance};
+use crate::mapping::{
+    Distribution, Histogram, SourcePart, Status, distribution, histogram_distance,
+};
 use crate::pipeline::load::LoadedPart;
 use crate::report::{DIRECTION, build_id};
 
@@ -40,8 +43,12 @@ pub struct MapRecord {
     pub thickness: Option<PairRecord>,
     /// Effective plastic strain before and after.
     pub plastic_strain: Option<PairRecord>,
+    /// Largest von Mises stress of the layers before and after.
+    pub von_mises: Option<PairRecord>,
     /// The way there and back.
     pub map_back: Option<MapBackRecord>,
+    /// What was found beside what is asked for.
+    pub checks: Vec<CheckRecord>,
     /// Largest relative difference when the written files are read back.
     pub read_back_error: Option<f64>,
     /// Beside another result, if one was given.
@@ -52,6 +59,16 @@ pub struct MapRecord {
     pub map_ms: f64,
     /// Milliseconds for the checks.
     pub check_ms: f64,
+}
+
+impl MapRecord {
+    /// How many checks are met, of those that are judged.
+    pub fn n_met(&self) -> (usize, usize) {
+        let judged = self.checks.iter().filter_map(|check| check.is_met);
+        judged.fold((0, 0), |(met, all), is_met| {
+            (met + usize::from(is_met), all + 1)
+        })
+    }
 }
 
 /// One stamped deck.
@@ -83,10 +100,13 @@ pub struct PairRecord {
     pub crash: DistributionRecord,
     /// Half the sum of the differences of both histograms, 0 to 1.
     pub histogram_distance: f64,
+    /// Shares of the area in fifty equal bins from the smallest to the largest value of both, stamped
+    /// and crash.
+    pub histograms: [Vec<f64>; 2],
 }
 
 /// An area-weighted distribution.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct DistributionRecord {
     /// Mean over the area.
     pub mean: f64,
@@ -162,7 +182,7 @@ pub fn map_record(
         }
     });
     let checks = &run.checks;
-    MapRecord {
+    let mut record = MapRecord {
         build: build_id(),
         schema: 1,
         direction: DIRECTION.to_owned(),
@@ -184,6 +204,8 @@ pub fn map_record(
         plastic_strain: checks
             .plastic_strain
             .map(|pair| pair_record(pair, &plastic_values(run))),
+        von_mises: von_mises(run),
+        checks: Vec::new(),
         map_back: checks.map_back.as_ref().map(|back| MapBackRecord {
             thickness_rms: back.thickness_rms,
             thickness_p95: back.thickness_p95,
@@ -197,7 +219,26 @@ pub fn map_record(
         warnings: warnings(run, files),
         map_ms: run.map_ms,
         check_ms: run.check_ms,
+    };
+    record.checks = checks_of(run, &record);
+    record
+}
+
+/// Largest von Mises stress of both sides, where stresses were mapped from one part.
+fn von_mises(run: &MapRun) -> Option<PairRecord> {
+    if !run.recipe.options.quantities.stress || run.checks.plastic_strain.is_none() {
+        return None;
     }
+    let source = |element: usize| von_mises_of(&run.sources[0], element);
+    pair_of(&both_sides(run, source, |element| {
+        run.largest_von_mises(element)
+    }))
+}
+
+/// Largest von Mises stress of the layers of a stamped element; NaN if it has none.
+pub(super) fn von_mises_of(part: &SourcePart, element: usize) -> f64 {
+    let states = part.states.of(element);
+    states.map_or(f64::NAN, |(_, layers)| largest_von_mises(layers))
 }
 
 /// Values with areas, on the covered stamped elements and on the crash elements.
@@ -266,6 +307,7 @@ fn pair_record((stamped, crash): (Distribution, Distribution), values: &BothSide
         stamped: stamped.into(),
         crash: crash.into(),
         histogram_distance: histogram_distance(&a, &b),
+        histograms: [a.shares, b.shares],
     }
 }
 

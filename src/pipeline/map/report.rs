@@ -1,12 +1,12 @@
 //! The report of a mapping: draws the pictures and collects what [`crate::report::html`] lays out.
 
-use super::record::{DistributionRecord, MapRecord, PairRecord};
-use super::{DifferenceRecord, MapRun, PipelineError};
+use super::record::{DistributionRecord, MapRecord, PairRecord, von_mises_of};
+use super::{DifferenceRecord, MapRun, PipelineError, ShownValue};
 use crate::colormap::{ColorMap, ColorScale, Rgb, UNMATCHED};
 use crate::geometry::{Camera, Point3, Similarity, TriMesh};
 use crate::mapping::{Histogram, ShellMesh, SourcePart};
 use crate::monitor::Monitor;
-use crate::palette::STATUS_COLORS;
+use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::outputs::report_figures::{From, fitted, view_of};
 use crate::report::html::{Figure, MapReport, NumberRow, QuantityReport, map_figure};
@@ -19,8 +19,9 @@ const SIZE: [usize; 2] = [560, 380];
 /// Share of the area at either end that lies beyond the colours.
 const TAILS: usize = 1;
 
-/// Writes the report of a run as one HTML file with pictures of thickness and plastic strain before and
-/// after, their difference, and the status of the elements. `record` is that of the run.
+/// Writes the report of a run as one HTML file with pictures of thickness, plastic strain and, where
+/// stresses were mapped, von Mises stress before and after, their difference, and the status of the
+/// elements. `record` is that of the run.
 pub fn map_report(
     run: &MapRun,
     record: &MapRecord,
@@ -42,6 +43,18 @@ pub fn map_report(
         let on_source = |part: &SourcePart, element: usize| part.mean_plastic_strain(element);
         let on_target = |element: usize| run.plastic_strain(element);
         let name = "Effective plastic strain, mean over the layers";
+        quantities.push(painter.quantity(name, pair, &on_source, &on_target));
+    }
+    monitor.check()?;
+    if let Some(pair) = &record.von_mises {
+        let shown = ShownValue {
+            value: Some(FormingValue::VonMises),
+            layer: None,
+            flat: None,
+        };
+        let on_source = |part: &SourcePart, element: usize| von_mises_of(part, element);
+        let on_target = |element: usize| run.shown(element, &shown);
+        let name = "Largest von Mises stress of the layers";
         quantities.push(painter.quantity(name, pair, &on_source, &on_target));
     }
     monitor.check()?;
@@ -76,7 +89,7 @@ pub fn map_report(
             .map(|status| {
                 (
                     status.label().to_owned(),
-                    hex(STATUS_COLORS[status as usize]),
+                    hex(ColorScale::statuses().color(f64::from(status as u8))),
                 )
             })
             .collect(),
@@ -309,7 +322,9 @@ impl<'a> Painter<'a> {
 
     fn statuses(&self) -> Figure {
         let elements = &self.run.mapped.elements;
-        let png = self.draw_target(|element| STATUS_COLORS[elements[element].status as usize]);
+        let scale = ColorScale::statuses();
+        let number = |element: usize| f64::from(elements[element].status as u8);
+        let png = self.draw_target(|element| scale.color(number(element)));
         map_figure(png, SIZE, "■ Crash part,", "status of the elements.")
     }
 

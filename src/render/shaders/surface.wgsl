@@ -82,15 +82,20 @@ fn field_color(value: f32) -> vec4<f32> {
     return textureLoad(field_colors, vec2<i32>(texel, 0), 0);
 }
 
-// 1 on the marks of a pattern of the screen: horizontal lines for negative values, dots for
-// positive ones.
+// 1 on the marks of a pattern of the screen: horizontal lines, dots, lines that rise, fall, or both.
 fn pattern(pixel: vec2<f32>, name: f32) -> f32 {
-    if name > 0.83 {
+    let number = i32(round(name * 5.1));
+    if number > 4 {
         return 0.0;
+    }
+    if number >= 2 {
+        let rising = select(0.0, hatch(pixel, 1.0, 5.0, 1.4), number != 3);
+        let falling = select(0.0, hatch(pixel, -1.0, 5.0, 1.4), number != 2);
+        return max(rising, falling);
     }
     let period = 6.0 * frame.eye.w;
     let half = 0.75 * frame.eye.w;
-    if name > 0.5 {
+    if number == 0 {
         let distance = abs(fract(pixel.y / period) - 0.5) * period;
         return 1.0 - smoothstep(half - 0.5, half + 0.5, distance);
     }

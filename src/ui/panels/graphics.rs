@@ -161,7 +161,7 @@ fn drawing_ui(ui: &mut Ui, state: &AppState, viewports: &Viewports, commands: &m
     let inner = rect.shrink2(vec2(14.0, 10.0));
     ui.scope_builder(UiBuilder::new().max_rect(inner), |ui| {
         ui.spacing_mut().item_spacing = vec2(UNIT, UNIT);
-        let width = 416.0_f32.min(inner.width());
+        let width = 496.0_f32.min(inner.width());
         free_choice(ui, state, width, commands);
         viewports.section_ui(ui, state, commands);
     });

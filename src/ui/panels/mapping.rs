@@ -4,14 +4,15 @@ use egui::{Ui, vec2};
 
 use super::section::section_ui;
 use crate::app::{
-    Action, AppState, ColorBy, Command, InspectCommand, MapCommand, MapResult, Quantity, Section,
-    ViewCommand,
+    Action, AppState, BottomTab, ColorBy, Command, InspectCommand, MapCommand, MapPicture,
+    MapResult, Quantity, Section, ViewCommand,
 };
 use crate::jobs::JobKey;
+use crate::pipeline::forming_values::LayerChoice;
 use crate::pipeline::map::{MapRecord, PairRecord};
 use crate::role::Role;
 use crate::text::{grouped, length, percent};
-use crate::ui::theme::{ROW, TALL};
+use crate::ui::theme::{Palette, ROW, TALL};
 use crate::ui::widgets::{Look, action_button, caption, chip, paragraph, secondary, wide_action};
 
 /// Quantities beside each other.
@@ -108,28 +109,8 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
     for warning in &record.warnings {
         paragraph(ui, warning);
     }
-    caption(ui, "Colours");
-    ui.horizontal_wrapped(|ui| {
-        let mut display = state.view.display.clone();
-        for by in [
-            ColorBy::Thickness,
-            ColorBy::PlasticStrain,
-            ColorBy::VonMises,
-        ] {
-            if state.mapped_for(by).is_some()
-                && chip(ui, by.label(), display.color_by == by).clicked()
-            {
-                display.color_by = if display.color_by == by {
-                    ColorBy::Role
-                } else {
-                    by
-                };
-            }
-        }
-        if display != state.view.display {
-            commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
-        }
-    });
+    checks_ui(ui, record, commands);
+    picture_ui(ui, state, commands);
     unmapped_ui(ui, state, commands);
     caption(ui, "Write");
     ui.horizontal_wrapped(|ui| {
@@ -143,6 +124,76 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
             action_button(ui, state, action, look, commands);
         }
     });
+}
+
+/// How many checks are met, and the way to them.
+fn checks_ui(ui: &mut Ui, record: &MapRecord, commands: &mut Vec<Command>) {
+    let (n_met, n_asked) = record.n_met();
+    let palette = Palette::of(ui);
+    let color = if n_met == n_asked {
+        palette.good
+    } else {
+        palette.check
+    };
+    let text = format!("{n_met} of {n_asked} checks met");
+    let button = egui::Button::new(egui::RichText::new(text).color(color));
+    let button = button.min_size(vec2(0.0, ROW));
+    let response = ui.add(button);
+    if response
+        .on_hover_text("Checks, distributions and probe, at the bottom")
+        .clicked()
+    {
+        commands.push(ViewCommand::SetTab(BottomTab::Mapping).into());
+    }
+}
+
+/// Which quantity is shown, in which picture, of which layers.
+fn picture_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let shown = &state.view.display;
+    let is_shown = state.is_mapping_shown();
+    let quantity = state.map_quantity();
+    let mut chosen = None;
+    caption(ui, "Quantity");
+    ui.horizontal_wrapped(|ui| {
+        for by in state.mapped_quantities() {
+            let is_told = matches!(shown.color_by, ColorBy::MapDifference) || shown.color_by == by;
+            if chip(ui, by.label(), is_shown && is_told && by == quantity).clicked() {
+                chosen = Some(state.with_map_quantity(by));
+            }
+        }
+    });
+    caption(ui, "Picture");
+    ui.horizontal_wrapped(|ui| {
+        let is_values = is_shown && shown.color_by.map_picture().is_none();
+        if chip(ui, "Values", is_values).clicked() {
+            chosen = Some(state.with_map_picture(None));
+        }
+        for picture in MapPicture::ALL {
+            let is_on = is_shown && shown.color_by == picture.color_by();
+            if chip(ui, picture.label(), is_on).clicked() {
+                chosen = Some(state.with_map_picture(Some(picture)));
+            }
+        }
+    });
+    let speaks_of_it = shown.color_by == quantity || shown.color_by == ColorBy::MapDifference;
+    if let Some(layer) = state.shown_layer(quantity).filter(|_| speaks_of_it) {
+        caption(ui, "Layers");
+        ui.horizontal(|ui| {
+            ui.spacing_mut().button_padding.x = 6.0;
+            ui.spacing_mut().item_spacing.x = 4.0;
+            for choice in LayerChoice::ALL {
+                if chip(ui, choice.label(), choice == layer).clicked() {
+                    let mut display = shown.clone();
+                    let usual = quantity.forming().map(LayerChoice::usual);
+                    display.mapped.layer = Some(choice).filter(|_| usual != Some(choice));
+                    chosen = Some(display);
+                }
+            }
+        });
+    }
+    if let Some(display) = chosen {
+        commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
+    }
 }
 
 /// Counts, means, and the way back.

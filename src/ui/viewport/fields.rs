@@ -3,15 +3,14 @@
 
 use std::sync::Arc;
 
+use super::map_fields;
 use super::meshes::{MeshKey, ShownMesh};
-use crate::app::{AppState, ColorBy};
+use crate::app::{AppState, ColorBy, MapPicture};
 use crate::colormap::{ColorMap, ColorScale};
 use crate::geometry::{Point3, TriMesh};
 use crate::monitor::Monitor;
-use crate::pipeline::forming_values::{
-    FormingValue, forming_values, has_forming_value, mapped_value,
-};
-use crate::pipeline::map::MapRun;
+use crate::pipeline::forming_values::{FormingValue, forming_values, has_forming_value};
+use crate::pipeline::map::{MapRun, ShownValue};
 use crate::render::FieldLook;
 use crate::role::{PerRole, Role};
 use crate::search::{Bvh, SearchLimits, closest_many};
@@ -30,6 +29,7 @@ pub(super) enum FieldKind {
     Deviation,
     Overlap,
     Forming(FormingValue),
+    Map(MapPicture),
 }
 
 impl FieldKind {
@@ -40,7 +40,10 @@ impl FieldKind {
             ColorBy::ReductionError => Some(Self::ReductionError),
             ColorBy::Deviation => Some(Self::Deviation),
             ColorBy::Overlap => Some(Self::Overlap),
-            other => other.forming().map(Self::Forming),
+            other => {
+                let picture = other.map_picture().map(Self::Map);
+                picture.or(other.forming().map(Self::Forming))
+            }
         }
     }
 
@@ -57,6 +60,7 @@ impl FieldKind {
             Self::Deviation => "Deviation",
             Self::Overlap => "Overlap",
             Self::Forming(value) => value.label(),
+            Self::Map(picture) => picture.label(),
         }
     }
 }
@@ -66,18 +70,20 @@ impl FieldKind {
 struct FieldKey {
     kind: FieldKind,
     mesh: MeshKey,
-    /// The other mesh of a reduction error, by identity; the thickness that thinning is against, by
-    /// its bits.
+    /// The other mesh of a reduction error or the mapping, by identity.
     other: usize,
+    /// What is shown of results.
+    shown: Option<ShownValue>,
 }
 
 /// A finished field.
 struct Field {
     values: Arc<[f32]>,
+    is_by_corner: bool,
     /// What the colours should span.
     range: [f64; 2],
     /// Keeps what the key names by its address.
-    _key: (Arc<ShownMesh>, Option<Arc<TriMesh>>),
+    _key: (Arc<ShownMesh>, Option<Arc<TriMesh>>, Option<Arc<MapRun>>),
 }
 
 /// The fields of both windows.
@@ -139,6 +145,7 @@ impl FieldStore {
         let look = |field: Arc<Field>| {
             Some(FieldLook {
                 values: Arc::clone(&field.values),
+                is_by_corner: field.is_by_corner,
                 scale: scale?,
             })
         };
@@ -157,11 +164,21 @@ impl FieldStore {
         match kind {
             FieldKind::Deviation => return Some(coloring.deviation_scale(state.comparison()?)),
             FieldKind::Overlap => return Some(ColorScale::new(ColorMap::Classes, 0.0, 1.0)),
-            FieldKind::Thickness | FieldKind::ReductionError | FieldKind::Forming(_) => {}
+            FieldKind::Map(MapPicture::Status) => return Some(ColorScale::statuses()),
+            FieldKind::Map(MapPicture::Confidence) => {
+                return Some(coloring.on_scale(ColorScale::new(ColorMap::Viridis, 0.0, 1.0)));
+            }
+            FieldKind::Thickness
+            | FieldKind::ReductionError
+            | FieldKind::Forming(_)
+            | FieldKind::Map(_) => {}
         }
         let ranges = self.ranges.iter().filter_map(|(_, range)| *range);
         let ranges = ranges.filter(|(of, _)| *of == kind).map(|(_, range)| range);
         let [low, high] = ranges.reduce(union)?;
+        if let FieldKind::Map(_) = kind {
+            return Some(coloring.on_signed_scale(low.abs().max(high.abs())));
+        }
         let low = match kind {
             FieldKind::ReductionError => 0.0,
             // From nothing upwards, where nothing is below.
@@ -190,6 +207,9 @@ pub(super) fn is_wanted(state: &AppState, window: Role, role: Role) -> bool {
     match FieldKind::of(state.color_by(window)) {
         Some(FieldKind::Deviation) => *display.coloring.on.get(role) && has_both(state),
         Some(FieldKind::Overlap) => has_both(state),
+        Some(FieldKind::Map(_)) => {
+            role == Role::Crash && state.document.current_mapping().is_some()
+        }
         Some(FieldKind::Forming(value)) => {
             if role == Role::Crash && state.mapped_for(value.into()).is_some() {
                 return true;
@@ -215,10 +235,12 @@ fn compared(kind: FieldKind, state: &AppState, role: Role, mesh: &ShownMesh) -> 
     match kind {
         FieldKind::Deviation if *coloring.on.get(role) => Some(FieldLook {
             values: Arc::clone(&drawn.signed),
+            is_by_corner: false,
             scale: coloring.deviation_scale(comparison),
         }),
         FieldKind::Overlap => Some(FieldLook {
             values: Arc::clone(&drawn.overlap),
+            is_by_corner: false,
             scale: ColorScale::new(ColorMap::Classes, 0.0, 1.0),
         }),
         _ => None,
@@ -236,8 +258,6 @@ struct Order {
     mesh: Arc<ShownMesh>,
     /// What distances are measured to.
     other: Option<Arc<TriMesh>>,
-    /// What thinning is against.
-    flat: Option<f64>,
     /// The mapping whose values the crash part carries instead of its own.
     mapped: Option<Arc<MapRun>>,
 }
@@ -253,27 +273,35 @@ impl Order {
             }
             _ => None,
         };
-        let flat = match kind {
-            FieldKind::Forming(FormingValue::Thinning) => state.flat_thickness(),
+        let by = match kind {
+            FieldKind::Thickness => Some(ColorBy::Thickness),
+            FieldKind::Forming(value) => Some(value.into()),
+            FieldKind::Map(_) => Some(state.map_quantity()),
             _ => None,
         };
-        let mapped = match (role, kind) {
-            (Role::Crash, FieldKind::Thickness) => state.mapped_for(ColorBy::Thickness),
-            (Role::Crash, FieldKind::Forming(value)) => state.mapped_for(value.into()),
-            _ => None,
-        };
+        let mapped = by.filter(|_| role == Role::Crash);
+        let mapped = mapped.and_then(|by| state.mapped_for(by));
+        if mapped.is_none() && matches!(kind, FieldKind::Map(_)) {
+            return None;
+        }
+        let shown = by.map(|by| ShownValue {
+            layer: match role {
+                Role::Crash => state.view.display.mapped.layer,
+                Role::Stamped => state.stamped_layer(),
+            },
+            ..state.shown_value(by)
+        });
         let run = mapped.as_ref().map_or(0, |run| Arc::as_ptr(run).addr());
-        let bits = flat.map_or(0, |t| t.to_bits() as usize) ^ run;
         let key = FieldKey {
             kind,
             mesh: mesh.key(),
-            other: other.as_ref().map_or(bits, |mesh| Arc::as_ptr(mesh).addr()),
+            other: other.as_ref().map_or(run, |mesh| Arc::as_ptr(mesh).addr()),
+            shown,
         };
         Some(Self {
             key,
             mesh: Arc::clone(mesh),
             other,
-            flat,
             mapped,
         })
     }
@@ -296,19 +324,27 @@ impl Order {
                     distances(&Bvh::build(Arc::clone(other)), points)
                 }
             }
-            None => match (&self.mapped, self.key.kind) {
-                (Some(run), FieldKind::Forming(value)) => {
-                    mapped(&self.mesh, run, |e| mapped_value(run, e, value, self.flat))
-                }
-                (Some(run), _) => mapped(&self.mesh, run, |e| run.thickness(e)),
-                (None, FieldKind::Forming(value)) => forming(&self.mesh, value, self.flat),
-                (None, _) => thickness(&self.mesh),
-            },
+            None => self.results(),
         };
         Field {
             range: robust_range(&values),
+            is_by_corner: matches!(self.key.kind, FieldKind::Map(_)),
             values: values.into(),
-            _key: (self.mesh, self.other),
+            _key: (self.mesh, self.other, self.mapped),
+        }
+    }
+
+    fn results(&self) -> Vec<f32> {
+        let Some(shown) = &self.key.shown else {
+            return Vec::new();
+        };
+        match (&self.mapped, self.key.kind) {
+            (Some(run), FieldKind::Map(picture)) => {
+                map_fields::at_corners(&self.mesh, run, picture, shown)
+            }
+            (Some(run), _) => mapped(&self.mesh, run, |e| run.shown(e, shown)),
+            (None, FieldKind::Forming(value)) => forming(&self.mesh, value, shown),
+            (None, _) => thickness(&self.mesh),
         }
     }
 }
@@ -341,8 +377,8 @@ fn thickness(shown: &ShownMesh) -> Vec<f32> {
 }
 
 /// A forming result; NaN where there is none.
-fn forming(shown: &ShownMesh, value: FormingValue, flat: Option<f64>) -> Vec<f32> {
-    let values = forming_values(&shown.source.part, value, flat).unwrap_or_default();
+fn forming(shown: &ShownMesh, value: FormingValue, of: &ShownValue) -> Vec<f32> {
+    let values = forming_values(&shown.source.part, value, of.flat, of.layer).unwrap_or_default();
     let of_shell = |shell: u32| values.get(shell as usize).copied();
     vertex_means(shown, |shell| {
         of_shell(shell).filter(|value| value.is_finite())

@@ -5,6 +5,7 @@ mod drawing;
 mod fields;
 mod frame;
 mod gpu;
+mod map_fields;
 mod meshes;
 mod motion;
 mod navigation;

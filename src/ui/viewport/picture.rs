@@ -338,7 +338,14 @@ fn hit_layer(
 fn value_at(layer: &Layer, hit: &crate::search::RayHit) -> Option<f64> {
     let field = layer.field.as_ref()?;
     let corners = layer.mesh.mesh().triangles()[hit.triangle as usize];
-    let values = corners.map(|v| field.values.get(v as usize).copied().unwrap_or(f32::NAN));
+    let values = std::array::from_fn::<f32, 3, _>(|i| {
+        let at = if field.is_by_corner {
+            3 * hit.triangle as usize + i
+        } else {
+            corners[i] as usize
+        };
+        field.values.get(at).copied().unwrap_or(f32::NAN)
+    });
     let sum = (0..3)
         .map(|i| f64::from(values[i]) * hit.barycentric[i])
         .sum::<f64>();

@@ -4,7 +4,9 @@ use egui::Ui;
 
 use super::frame::FrameContext;
 use super::picture::Hit;
-use crate::app::{ColorBy, Command, InspectCommand, PartCommand, PartRef, ViewCommand};
+use crate::app::{
+    BottomTab, ColorBy, Command, InspectCommand, MapCommand, PartCommand, PartRef, ViewCommand,
+};
 
 /// What a window remembers about the pointer.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -62,6 +64,11 @@ impl Pointing {
             && let Some(hit) = hit.filter(|hit| pins(ui, frame, hit))
         {
             commands.push(InspectCommand::Pin(hit.role, hit.in_part).into());
+        } else if frame.response.clicked()
+            && let Some(element) = hit.and_then(|hit| probed(ui, frame, hit))
+        {
+            commands.push(MapCommand::Probe(Some(element)).into());
+            commands.push(ViewCommand::SetTab(BottomTab::Mapping).into());
         } else if frame.response.clicked() {
             // Beside the parts, Ctrl keeps what was selected.
             match part {
@@ -138,6 +145,15 @@ fn pins(ui: &Ui, frame: &FrameContext<'_>, hit: &Hit) -> bool {
     let is_colored = *display.coloring.on.get(hit.role);
     let shown = frame.state.color_by(frame.view.window);
     shown == ColorBy::Deviation && is_colored && !is_toggling
+}
+
+/// The element of the mapping under a click, where the mapping is shown.
+fn probed(ui: &Ui, frame: &FrameContext<'_>, hit: &Hit) -> Option<usize> {
+    let is_toggling = ui.input(|i| i.modifiers.command);
+    if is_toggling || !frame.state.is_mapping_shown() {
+        return None;
+    }
+    frame.state.document.mapped_element(hit.role, hit.element?)
 }
 
 fn hit(frame: &FrameContext<'_>) -> Option<Hit> {

@@ -72,7 +72,9 @@ pub(super) fn visible_parts(state: &AppState, view: &ViewFrame) -> Vec<PartInsta
     if view.window == Role::Crash && state.document.part(Role::Crash).is_some() {
         parts.push(crash(state));
     }
-    if state.document.part(Role::Stamped).is_some() {
+    // The mapped part stands alone, its stamped part beside it.
+    let is_apart = view.over >= 1.0 && state.is_mapping_apart();
+    if state.document.part(Role::Stamped).is_some() && !is_apart {
         parts.extend(stamped(state, view));
     }
     let is_shared = view.window == Role::Crash && state.view.is_moved_over;
@@ -111,7 +113,8 @@ fn beside(state: &AppState, view: &ViewFrame, free: FreeWindow) -> Vec<PartInsta
         world_from_part,
         offset: Vector3::zeros(),
         opacity: 1.0,
-        is_detailed: free == FreeWindow::FullMesh || is_detailed(state),
+        is_detailed: matches!(free, FreeWindow::FullMesh | FreeWindow::Stamped)
+            || is_detailed(state),
         wipe: WipeSide::Both,
         is_ghost: false,
     };
@@ -125,6 +128,7 @@ fn beside(state: &AppState, view: &ViewFrame, free: FreeWindow) -> Vec<PartInsta
     let is_shown = |instance: &PartInstance| match free {
         FreeWindow::Nothing | FreeWindow::Section => false,
         FreeWindow::Deviation => *colored.get(instance.role),
+        FreeWindow::Stamped => instance.role == Role::Stamped,
         FreeWindow::FullMesh | FreeWindow::SecondPose => true,
     };
     parts.filter(is_shown).collect()
@@ -156,7 +160,8 @@ fn crash(state: &AppState) -> PartInstance {
         world_from_part: Similarity::identity(),
         offset: Vector3::zeros(),
         opacity: crash_opacity(state),
-        is_detailed: is_detailed(state),
+        // The elements of a mapping are those of the full mesh.
+        is_detailed: is_detailed(state) || state.is_mapping_shown(),
         wipe: WipeSide::Both,
         is_ghost: false,
     }

@@ -81,9 +81,28 @@ pub fn range(values: impl Iterator<Item = f64>) -> Option<RangeInclusive<f64>> {
     (low <= high).then_some(low - margin..=high + margin)
 }
 
+/// The ends of some values with a margin of a tenth, or of their size where they are all the same.
+pub fn margined(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    let finite = values.filter(|value| value.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    let size = low.abs().max(high.abs());
+    let margin = (0.1 * (high - low)).max(0.05 * size).max(1e-9);
+    (low <= high).then_some([low - margin, high + margin])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn margins_keep_equal_values_apart_from_the_edge() {
+        assert_eq!(margined([1.0, 3.0].into_iter()), Some([0.8, 3.2]));
+        let [low, high] = margined([2.0, f64::NAN, 2.0].into_iter()).unwrap();
+        assert!(low < 2.0 && high > 2.0);
+        assert_eq!(margined([f64::NAN].into_iter()), None);
+    }
 
     #[test]
     fn axes_are_read_in_numbers() {

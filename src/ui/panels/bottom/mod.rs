@@ -6,6 +6,7 @@ mod deviation;
 mod diagnostics;
 mod history;
 mod log;
+mod mapping;
 mod starts;
 mod sweep;
 mod thumbnails;
@@ -41,6 +42,7 @@ pub fn bottom_ui(
             BottomTab::Log => log::log_ui(ui, state, commands),
             BottomTab::Deviation => deviation::deviation_ui(ui, state, commands),
             BottomTab::Section => viewports.section_ui(ui, state, commands),
+            BottomTab::Mapping => mapping::mapping_ui(ui, state, commands),
             BottomTab::Timings => timings::timings_ui(ui, state),
             BottomTab::Starts => starts::starts_ui(ui, state, commands),
             BottomTab::Convergence => convergence::convergence_ui(ui, state, commands),

@@ -9,7 +9,7 @@ use crate::role::Role;
 use crate::ui::widgets::segments;
 
 /// Size of the choice.
-const WIDTH: f32 = 416.0;
+const WIDTH: f32 = 496.0;
 const HEIGHT: f32 = 28.0;
 
 /// Where the row of choices has no room the choice is a menu.
@@ -88,6 +88,7 @@ fn says(free: FreeWindow) -> &'static str {
     match free {
         FreeWindow::Nothing | FreeWindow::Section => "",
         FreeWindow::Deviation => "distance between the parts · same camera",
+        FreeWindow::Stamped => "stamped part at its pose · same camera",
         FreeWindow::FullMesh => "both parts without reduction · same camera",
         FreeWindow::SecondPose => "the next best pose of the match · same camera",
     }

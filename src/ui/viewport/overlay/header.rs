@@ -110,8 +110,9 @@ fn block_height(over: &Overlay<'_>) -> f32 {
 
 /// The parts that are named.
 fn roles(over: &Overlay<'_>) -> &'static [Role] {
+    let state = over.frame.state;
     match over.role() {
-        Role::Crash if over.frame.state.view.is_moved_over => &Role::ALL,
+        Role::Crash if state.view.is_moved_over && !state.is_mapping_apart() => &Role::ALL,
         Role::Crash => &[Role::Crash],
         Role::Stamped => &[Role::Stamped],
     }

@@ -3,10 +3,11 @@
 use egui::{Align2, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 
 use super::{MARGIN, Overlay};
-use crate::app::AppState;
+use crate::app::{AppState, ColorBy, MapPicture};
 use crate::assess::deviation::OverlapClass;
 use crate::geometry::Point3;
 use crate::geometry::camera::scale_bar;
+use crate::mapping::Status;
 use crate::pipeline::forming_values::FormingValue;
 use crate::role::Role;
 use crate::text::{fixed, length};
@@ -177,8 +178,35 @@ fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
             state.comparison().map(|_| class.label().to_owned())
         }
         (FieldKind::Forming(value), Some(number)) => Some(forming_text(state, value, number)),
+        (FieldKind::Map(picture), value) => map_text(state, picture, value),
         (_, value) => value.map(|value| state.document.length_text(value)),
     }
+}
+
+/// What a picture of the mapping says of an element.
+fn map_text(state: &AppState, picture: MapPicture, value: Option<f64>) -> Option<String> {
+    let Some(number) = value else {
+        return Some("no value".to_owned());
+    };
+    let by = state.map_quantity();
+    Some(match picture {
+        MapPicture::Difference => {
+            let unit = match by {
+                ColorBy::Thickness => state.document.unit_suffix(),
+                _ => "",
+            };
+            format!("difference {}{unit}", signed(number))
+        }
+        MapPicture::Distance => {
+            format!(
+                "distance {}{}",
+                signed(number),
+                state.document.unit_suffix()
+            )
+        }
+        MapPicture::Confidence => format!("confidence {}", fixed(number, 2)),
+        MapPicture::Status => Status::ALL.get(number.round() as usize)?.label().to_owned(),
+    })
 }
 
 /// A forming result with its name; stresses with the unit of the deck, if that is known.

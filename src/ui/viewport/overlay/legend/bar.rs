@@ -22,10 +22,17 @@ pub(super) fn plain(
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {
-        ui.label(RichText::new(title).size(12.0));
+        ui.add(egui::Label::new(RichText::new(title).size(12.0)).wrap());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             super::fold(ui, over);
-            menu::maps(ui, over, false, commands);
+            let values = if scale.map == over.frame.state.view.display.coloring.signed_map
+                && scale.min == -scale.max
+            {
+                menu::Values::Signed
+            } else {
+                menu::Values::Plain
+            };
+            menu::maps(ui, over, values, commands);
         });
     });
     ui.add_space(6.0);
@@ -55,11 +62,16 @@ pub(super) fn paint(painter: &Painter, scale: &ColorScale, bar: Rect, over: &Ove
 pub(super) fn patterns(painter: &Painter, rect: Rect, pattern_at: impl Fn(f32) -> Pattern) {
     const STEP: f32 = 6.0;
     let ink = ink(170);
+    let whole = pattern_at(rect.center().y);
+    if matches!(whole, Pattern::Rising | Pattern::Falling | Pattern::Crossed) {
+        slanted(painter, rect, whole);
+        return;
+    }
     let n_rows = (rect.height() / STEP) as usize;
     for row in 0..n_rows {
         let y = rect.top() + STEP * (row as f32 + 0.5);
         match pattern_at(y) {
-            Pattern::Plain => {}
+            Pattern::Plain | Pattern::Rising | Pattern::Falling | Pattern::Crossed => {}
             Pattern::Lines => {
                 painter.hline(rect.x_range(), y, Stroke::new(1.5, ink));
             }
@@ -74,6 +86,23 @@ pub(super) fn patterns(painter: &Painter, rect: Rect, pattern_at: impl Fn(f32) -
                 }
             }
         }
+    }
+}
+
+/// Lines that rise, fall, or both.
+fn slanted(painter: &Painter, rect: Rect, pattern: Pattern) {
+    let stroke = Stroke::new(1.4, ink(170));
+    let painter = painter.with_clip_rect(rect.intersect(painter.clip_rect()));
+    let mut x = rect.left() - rect.height();
+    while x < rect.right() {
+        let (from, to) = (x, x + rect.height());
+        if pattern != Pattern::Falling {
+            painter.line_segment([pos2(from, rect.bottom()), pos2(to, rect.top())], stroke);
+        }
+        if pattern != Pattern::Rising {
+            painter.line_segment([pos2(from, rect.top()), pos2(to, rect.bottom())], stroke);
+        }
+        x += 5.0 * std::f32::consts::SQRT_2;
     }
 }
 

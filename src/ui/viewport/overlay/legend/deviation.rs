@@ -134,7 +134,7 @@ fn title(ui: &mut Ui, over: &Overlay<'_>, role: Role, commands: &mut Vec<Command
         response.on_hover_text(hint);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             super::fold(ui, over);
-            menu::maps(ui, over, true, commands);
+            menu::maps(ui, over, menu::Values::Deviation, commands);
         });
     });
 }

@@ -11,8 +11,19 @@ use crate::ui::viewport::overlay::Overlay;
 /// Plain colours to choose from.
 const BANDS: [u8; 4] = [5, 7, 9, 11];
 
-/// The button with the menu of maps; `is_signed` for values with a sign, which have more choices.
-pub(super) fn maps(ui: &mut Ui, over: &Overlay<'_>, is_signed: bool, commands: &mut Vec<Command>) {
+/// What the colours stand for, which decides the choices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Values {
+    /// Values without a sign.
+    Plain,
+    /// Values with a sign.
+    Signed,
+    /// The deviation, whose limits and parts can be chosen too.
+    Deviation,
+}
+
+/// The button with the menu of maps.
+pub(super) fn maps(ui: &mut Ui, over: &Overlay<'_>, values: Values, commands: &mut Vec<Command>) {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let button = Button::new(RichText::new("Map").size(11.5)).small();
     let before = over.frame.state.view.display.coloring;
@@ -20,11 +31,11 @@ pub(super) fn maps(ui: &mut Ui, over: &Overlay<'_>, is_signed: bool, commands: &
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
         ui.visuals_mut().override_text_color = None;
         ui.set_min_width(190.0);
-        if is_signed {
+        if values == Values::Deviation {
             parts(ui, &mut coloring);
             ui.separator();
         }
-        choices(ui, &mut coloring, is_signed);
+        choices(ui, &mut coloring, values);
     });
     let name = format!("Colour map ({})", over.role().word());
     response
@@ -44,11 +55,10 @@ fn parts(ui: &mut Ui, coloring: &mut Coloring) {
     }
 }
 
-fn choices(ui: &mut Ui, coloring: &mut Coloring, is_signed: bool) {
-    let map = if is_signed {
-        &mut coloring.signed_map
-    } else {
-        &mut coloring.map
+fn choices(ui: &mut Ui, coloring: &mut Coloring, values: Values) {
+    let map = match values {
+        Values::Plain => &mut coloring.map,
+        Values::Signed | Values::Deviation => &mut coloring.signed_map,
     };
     for choice in ColorMap::ALL {
         ui.radio_value(map, choice, choice.label());
@@ -62,9 +72,13 @@ fn choices(ui: &mut Ui, coloring: &mut Coloring, is_signed: bool) {
             ui.selectable_value(&mut coloring.n_bands, Some(n), n.to_string());
         }
     });
-    if is_signed {
+    if values != Values::Plain {
         ui.checkbox(&mut coloring.has_pattern, "Pattern for the sign")
-            .on_hover_text("Dots in front, lines behind: readable without colours");
+            .on_hover_text(
+                "Dots for positive, lines for negative values: readable without colours",
+            );
+    }
+    if values == Values::Deviation {
         ui.separator();
         let is_automatic = coloring.limits.is_none() && coloring.tolerance.is_none();
         let automatic = Button::new("Automatic limits");

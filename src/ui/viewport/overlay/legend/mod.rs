@@ -4,6 +4,7 @@ mod bar;
 mod deviation;
 mod menu;
 mod overlap;
+mod status;
 
 use egui::{
     Align, CornerRadius, Frame, Layout, Margin, Pos2, Rect, RichText, Sense, Shape, Stroke, Ui,
@@ -11,8 +12,9 @@ use egui::{
 };
 
 use super::{MARGIN, Overlay};
-use crate::app::Command;
+use crate::app::{Command, MapPicture};
 use crate::colormap::ColorScale;
+use crate::pipeline::forming_values::LayerChoice;
 use crate::ui::viewport::fields::FieldKind;
 
 /// Width of what is inside the plate, and of the folded one; air beside it.
@@ -45,6 +47,10 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
         let shown = plate(ui, over, WIDTH, |ui| overlap::show(ui, over, commands));
         return Some(shown);
     }
+    if kind == FieldKind::Map(MapPicture::Status) {
+        let shown = plate(ui, over, WIDTH, |ui| status::show(ui, over, commands));
+        return Some(shown);
+    }
     let can_open = window.height() >= OPEN_HEIGHT && window.width() >= 2.0 * WIDTH;
     if is_folded(ui, over) || !can_open {
         return Some(plate(ui, over, SLIM, |ui| {
@@ -61,8 +67,30 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     };
     Some(plate(ui, over, WIDTH, |ui| match kind {
         FieldKind::Deviation => deviation::show(ui, over, &scale, room, commands),
-        _ => bar::plain(ui, over, kind.label(), &scale, room.bar, commands),
+        _ => bar::plain(ui, over, &title(over, kind), &scale, room.bar, commands),
     }))
+}
+
+/// What the numbers are, with what of it is shown.
+fn title(over: &Overlay<'_>, kind: FieldKind) -> String {
+    let state = over.frame.state;
+    let quantity = state.map_quantity();
+    let layered = |name: &str, layer: Option<LayerChoice>| match layer {
+        Some(layer) => format!("{name}, {}", layer.label().to_lowercase()),
+        None => name.to_owned(),
+    };
+    match kind {
+        FieldKind::Map(MapPicture::Difference) => {
+            let name = format!("Difference of {}", quantity.label().to_lowercase());
+            layered(&name, state.view.display.mapped.layer)
+        }
+        FieldKind::Map(MapPicture::Distance) => {
+            let unit = state.document.unit_suffix().trim();
+            [MapPicture::Distance.label(), unit].join(if unit.is_empty() { "" } else { ", " })
+        }
+        FieldKind::Forming(_) => layered(kind.label(), state.view.display.mapped.layer),
+        _ => kind.label().to_owned(),
+    }
 }
 
 fn is_measured(kind: FieldKind) -> bool {
@@ -77,7 +105,7 @@ fn slim(
     can_open: bool,
     commands: &mut Vec<Command>,
 ) {
-    let name = RichText::new(kind.label()).size(11.0);
+    let name = RichText::new(title(over, kind)).size(11.0);
     ui.add(egui::Label::new(name).wrap());
     let is_length = !matches!(kind, FieldKind::Forming(_));
     let unit = over.frame.state.document.unit_suffix();

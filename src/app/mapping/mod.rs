@@ -1,16 +1,24 @@
-//! Carrying the forming results onto the crash part: what was chosen, what came out.
+//! Carrying the forming results onto the crash part: what was chosen, what came out, and how it is
+//! looked at.
+
+mod picture;
+mod probe;
+
+pub use picture::{MapDisplay, MapPicture};
+pub use probe::ProbeReport;
 
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::follow_up::FollowUp;
 use super::work::Work;
 use super::{AppState, ColorBy, Document, Effect, NoticeLevel, Reason, Shared};
 use crate::geometry::Point3;
 use crate::jobs::{JobKey, JobKind, MapInput, Stamp};
 use crate::mapping::{Quantities, Status};
 use crate::pipeline::forming_values::{FormingValue, has_forming_value, nominal_thickness};
-use crate::pipeline::map::{MapRecipe, MapRecord, MapRun, PlacedPart, map_record};
-use crate::role::{PerRole, Role};
+use crate::pipeline::map::{MapRecipe, MapRecord, MapRun};
+use crate::role::Role;
 use crate::text::{counted, percent};
 
 /// Elements without values that are listed.
@@ -23,6 +31,8 @@ pub struct Mapping {
     pub recipe: MapRecipe,
     /// The last mapping.
     pub result: Option<MapResult>,
+    /// The element that is looked at closely, by its place in the run.
+    pub probe: Option<usize>,
 }
 
 /// A mapping with the state it was made at.
@@ -45,6 +55,8 @@ pub enum MapCommand {
     SetRecipe(Box<MapRecipe>),
     /// Map, or give the running mapping up.
     MapOrCancel,
+    /// Look at an element of the current mapping closely, or no longer.
+    Probe(Option<usize>),
 }
 
 /// An element of the crash part that carries no values.
@@ -218,6 +230,10 @@ impl AppState {
 
     /// Why no loaded part has what a choice of colours asks for; `None` if one has it.
     pub fn missing_for(&self, by: ColorBy) -> Option<&'static str> {
+        if by.map_picture().is_some() {
+            let has_mapping = self.document.current_mapping().is_some();
+            return (!has_mapping).then_some("nothing is mapped at this pose yet");
+        }
         let value = by.forming()?;
         let flat = self.flat_thickness();
         let mut reason = Some("no part is loaded");
@@ -244,6 +260,13 @@ pub(super) fn apply(work: &mut Work<'_>, command: MapCommand) -> Vec<Effect> {
             return work.cancel(JobKey::Map);
         }
         MapCommand::MapOrCancel => return start(work),
+        MapCommand::Probe(element) => {
+            if work.document.mapping.probe != element {
+                work.commit("Probe an element", |document| {
+                    document.mapping.probe = element;
+                });
+            }
+        }
     }
     Vec::new()
 }
@@ -270,16 +293,12 @@ fn start(work: &mut Work<'_>) -> Vec<Effect> {
 }
 
 /// Takes a mapping over as one undo step.
-pub(super) fn take_mapped(work: &mut Work<'_>, run: Arc<MapRun>, took: Duration) {
-    let Some(both) = work.document.both() else {
-        return;
-    };
-    let parts: PerRole<_> = both.map(|part| part.loaded.to_arc());
-    let placed = PlacedPart {
-        part: &parts.stamped,
-        crash_from_stamped: run.poses[0],
-    };
-    let record = map_record(&run, &parts.crash, &[placed], None, None);
+pub(super) fn take_mapped(
+    work: &mut Work<'_>,
+    run: Arc<MapRun>,
+    record: Arc<MapRecord>,
+    took: Duration,
+) {
     let text = format!(
         "{} of the area of {} mapped",
         percent(record.mapped_area),
@@ -291,11 +310,18 @@ pub(super) fn take_mapped(work: &mut Work<'_>, run: Arc<MapRun>, took: Duration)
     work.log_step("map", None, text, Some(took));
     let stamp = work.document.stamp();
     work.commit("Map forming results", |document| {
-        document.mapping.result = Some(MapResult {
+        let mapping = &mut document.mapping;
+        let before = mapping.result.as_ref();
+        // The probe stays where the same elements were mapped anew.
+        if before.is_none_or(|before| before.run.shells != run.shells) {
+            mapping.probe = None;
+        }
+        mapping.result = Some(MapResult {
             run: run.into(),
-            record: Arc::new(record).into(),
+            record: record.into(),
             stamp,
-            asked: document.mapping.recipe.clone(),
+            asked: mapping.recipe.clone(),
         });
     });
+    work.follow(FollowUp::Mapped);
 }

@@ -1,0 +1,228 @@
+//! Which picture of a mapping is shown: values, difference, distance, confidence, status; of which
+//! quantity and which layer.
+
+use serde::{Deserialize, Serialize};
+
+use super::MapResult;
+use crate::app::{AppState, ColorBy, Display, FreeWindow};
+use crate::mapping::Status;
+use crate::pipeline::forming_values::{FormingValue, LayerChoice};
+use crate::pipeline::map::{CheckPicture, ShownValue};
+
+/// Pictures of a mapping on the crash part beside the mapped values themselves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MapPicture {
+    /// Mapped less the stamped element.
+    Difference,
+    /// Signed distance of the stamped sheet along the crash element's normal.
+    Distance,
+    /// How far an element can be trusted, 0 to 1.
+    Confidence,
+    /// What became of the elements.
+    Status,
+}
+
+impl MapPicture {
+    /// All, in the order of the choice.
+    pub const ALL: [Self; 4] = [
+        Self::Difference,
+        Self::Distance,
+        Self::Confidence,
+        Self::Status,
+    ];
+
+    /// Name of the picture in section 4.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Difference => "Difference",
+            Self::Distance => "Distance",
+            Self::Confidence => "Confidence",
+            Self::Status => "Status",
+        }
+    }
+
+    /// The choice of colours it is.
+    pub fn color_by(self) -> ColorBy {
+        match self {
+            Self::Difference => ColorBy::MapDifference,
+            Self::Distance => ColorBy::MapDistance,
+            Self::Confidence => ColorBy::MapConfidence,
+            Self::Status => ColorBy::MapStatus,
+        }
+    }
+}
+
+/// Of what the pictures of a mapping speak.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct MapDisplay {
+    /// Quantity whose values and differences are shown.
+    pub quantity: ColorBy,
+    /// The layers; `None` for what is usual of the quantity.
+    pub layer: Option<LayerChoice>,
+}
+
+impl Default for MapDisplay {
+    fn default() -> Self {
+        Self {
+            quantity: ColorBy::Thickness,
+            layer: None,
+        }
+    }
+}
+
+/// Quantities that a mapping can be looked at in.
+const QUANTITIES: [ColorBy; 7] = [
+    ColorBy::Thickness,
+    ColorBy::Thinning,
+    ColorBy::PlasticStrain,
+    ColorBy::MajorStrain,
+    ColorBy::MinorStrain,
+    ColorBy::VonMises,
+    ColorBy::MajorStress,
+];
+
+impl AppState {
+    /// The quantities the current mapping holds.
+    pub fn mapped_quantities(&self) -> Vec<ColorBy> {
+        let has = |by: &ColorBy| self.mapped_for(*by).is_some();
+        QUANTITIES.into_iter().filter(has).collect()
+    }
+
+    /// The quantity the pictures of the mapping speak of; the first there is if the chosen one was not
+    /// mapped.
+    pub fn map_quantity(&self) -> ColorBy {
+        let chosen = self.view.display.mapped.quantity;
+        let all = self.mapped_quantities();
+        if all.contains(&chosen) {
+            return chosen;
+        }
+        all.first().copied().unwrap_or(chosen)
+    }
+
+    /// What is looked at when a quantity is shown.
+    pub fn shown_value(&self, by: ColorBy) -> ShownValue {
+        ShownValue {
+            value: by.forming(),
+            layer: self.view.display.mapped.layer,
+            flat: self.flat_thickness(),
+        }
+    }
+
+    /// True if the colours show the current mapping.
+    pub fn is_mapping_shown(&self) -> bool {
+        let by = self.view.display.color_by;
+        self.document.current_mapping().is_some()
+            && (by.map_picture().is_some() || self.mapped_for(by).is_some())
+    }
+
+    /// True if the left window shows the mapped crash part alone and the right one the stamped part at
+    /// its pose.
+    pub fn is_mapping_apart(&self) -> bool {
+        self.free_window() == Some(FreeWindow::Stamped)
+    }
+
+    /// The layers that are shown of a quantity; `None` where it has none.
+    pub fn shown_layer(&self, by: ColorBy) -> Option<LayerChoice> {
+        let value = by.forming().filter(|value| value.has_layers())?;
+        let chosen = self.view.display.mapped.layer;
+        Some(chosen.unwrap_or(LayerChoice::usual(value)))
+    }
+
+    /// The layer of the stamped part that lies where a layer of the crash part does.
+    pub fn stamped_layer(&self) -> Option<LayerChoice> {
+        let layer = self.view.display.mapped.layer?;
+        let run = self.document.current_mapping().map(|result| &result.run);
+        let is_flipped = run.is_some_and(|run| run.mapped.senses.first() == Some(&Some(true)));
+        Some(if is_flipped {
+            layer.turned_over()
+        } else {
+            layer
+        })
+    }
+
+    /// The colours with another picture of the mapping; `None` for the mapped values.
+    pub fn with_map_picture(&self, picture: Option<MapPicture>) -> Display {
+        let mut display = self.view.display.clone();
+        display.mapped.quantity = self.map_quantity();
+        display.color_by = picture.map_or(display.mapped.quantity, MapPicture::color_by);
+        display
+    }
+
+    /// The colours with another quantity, in the same kind of picture.
+    pub fn with_map_quantity(&self, quantity: ColorBy) -> Display {
+        let mut display = self.view.display.clone();
+        display.mapped.quantity = quantity;
+        if display.color_by != ColorBy::MapDifference {
+            display.color_by = quantity;
+        }
+        display
+    }
+
+    /// The colours with the next quantity of the mapping.
+    pub fn with_next_map_quantity(&self) -> Display {
+        let all = self.mapped_quantities();
+        let now = self.map_quantity();
+        let at = all.iter().position(|by| *by == now);
+        let next = at.map_or(now, |at| all[(at + 1) % all.len()]);
+        self.with_map_quantity(next)
+    }
+
+    /// The colours with the next layer; the usual ones come after the last.
+    pub fn with_next_layer(&self) -> Display {
+        let mut display = self.view.display.clone();
+        let all = LayerChoice::ALL;
+        let layer = &mut display.mapped.layer;
+        *layer = match layer {
+            None => Some(all[0]),
+            Some(now) => {
+                let at = all.iter().position(|layer| layer == now);
+                at.and_then(|at| all.get(at + 1)).copied()
+            }
+        };
+        display
+    }
+
+    /// The colours in which a check is seen.
+    pub fn with_check(&self, picture: CheckPicture) -> Display {
+        let mut display = self.view.display.clone();
+        let mut difference = |quantity| {
+            display.mapped.quantity = quantity;
+            ColorBy::MapDifference
+        };
+        display.color_by = match picture {
+            CheckPicture::Status => ColorBy::MapStatus,
+            CheckPicture::Distance => ColorBy::MapDistance,
+            CheckPicture::Confidence => ColorBy::MapConfidence,
+            CheckPicture::Thickness => difference(ColorBy::Thickness),
+            CheckPicture::PlasticStrain => difference(ColorBy::PlasticStrain),
+        };
+        display
+    }
+
+    /// Elements and area of each status that occurs in the current mapping, with the first element of
+    /// it.
+    pub fn map_statuses(&self) -> Vec<(Status, usize, f64, usize)> {
+        let Some(result) = self.document.current_mapping() else {
+            return Vec::new();
+        };
+        let elements = &result.run.mapped.elements;
+        let row = |status: Status| elements.iter().position(|report| report.status == status);
+        let statuses = result.record.statuses.iter();
+        statuses
+            .filter_map(|of| Some((of.status, of.n_elements, of.area_share, row(of.status)?)))
+            .collect()
+    }
+}
+
+impl MapResult {
+    /// Number of an element in the crash deck, by its place in the run.
+    pub fn element_id(&self, crash: &crate::pipeline::load::LoadedPart, element: usize) -> u64 {
+        crash.model.shells[self.run.shells[element] as usize].id
+    }
+}
+
+/// True if a quantity is told by layers.
+pub(super) fn layered(by: ColorBy) -> Option<FormingValue> {
+    by.forming().filter(|value| value.has_layers())
+}

@@ -1,0 +1,242 @@
+//! The checks of a mapping: what was found, what is asked for, and where to look.
+
+use serde::Serialize;
+
+use super::record::{MapRecord, PairRecord};
+use super::{MapRun, ShownValue};
+use crate::mapping::Status;
+use crate::pipeline::forming_values::FormingValue;
+use crate::text::{counted, fixed, length, percent};
+
+/// Share of the area that is to carry values.
+const LEAST_AREA: f64 = 0.95;
+/// A mean may change by this fraction.
+const MEAN_CHANGE: f64 = 0.005;
+/// The largest value may change by this fraction: less where the crash elements are larger.
+const PEAK_CHANGE: [f64; 2] = [-0.10, 0.05];
+/// Confidence below which an element is doubtful, and the share of the area that may be.
+const DOUBTFUL: f64 = 0.5;
+const DOUBTFUL_AREA: f64 = 0.05;
+
+/// The picture in which a check is seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CheckPicture {
+    /// Status of the elements.
+    Status,
+    /// Distance between the sheets.
+    Distance,
+    /// How far each element can be trusted.
+    Confidence,
+    /// Difference of the thickness.
+    Thickness,
+    /// Difference of the plastic strain.
+    PlasticStrain,
+}
+
+/// One check.
+#[derive(Debug, Clone, Serialize)]
+pub struct CheckRecord {
+    /// What is checked.
+    pub name: String,
+    /// What was found, with its unit.
+    pub found: String,
+    /// What is asked for.
+    pub limit: String,
+    /// Whether it is met; `None` for what is told and not judged.
+    pub is_met: Option<bool>,
+    /// Where it is seen.
+    pub picture: CheckPicture,
+    /// The element of the run that is farthest off, if one stands out.
+    pub worst: Option<usize>,
+}
+
+pub(super) fn checks_of(run: &MapRun, record: &MapRecord) -> Vec<CheckRecord> {
+    let mut checks = vec![area(run, record)];
+    checks.extend(doubled(run));
+    checks.push(distance(run));
+    checks.push(confidence(run));
+    let plastic = Some(FormingValue::PlasticStrain);
+    for (name, pair, picture, value) in [
+        (
+            "Mean thickness",
+            &record.thickness,
+            CheckPicture::Thickness,
+            None,
+        ),
+        (
+            "Mean plastic strain",
+            &record.plastic_strain,
+            CheckPicture::PlasticStrain,
+            plastic,
+        ),
+    ] {
+        checks.extend(
+            pair.as_ref()
+                .map(|pair| mean(run, name, pair, (picture, value))),
+        );
+    }
+    if let Some(pair) = &record.plastic_strain {
+        let change = pair.crash.max / pair.stamped.max - 1.0;
+        checks.push(CheckRecord {
+            name: "Largest plastic strain".to_owned(),
+            found: signed_percent(change),
+            limit: "−10 % to +5 %".to_owned(),
+            is_met: Some((PEAK_CHANGE[0]..=PEAK_CHANGE[1]).contains(&change)),
+            picture: CheckPicture::PlasticStrain,
+            worst: largest(run, |element| run.plastic_strain(element)),
+        });
+    }
+    if let Some(back) = &record.map_back {
+        for (name, p95, range, picture, value) in [
+            (
+                "Thickness there and back",
+                back.thickness_p95,
+                back.thickness_range,
+                CheckPicture::Thickness,
+                None,
+            ),
+            (
+                "Plastic strain there and back",
+                back.plastic_p95,
+                back.plastic_range,
+                CheckPicture::PlasticStrain,
+                plastic,
+            ),
+        ] {
+            if range > 0.0 {
+                checks.push(CheckRecord {
+                    name: name.to_owned(),
+                    // What the crash elements are too large for comes back smoothed, however it is
+                    // mapped, so this is no verdict.
+                    found: percent(p95 / range),
+                    limit: "of the range, p95".to_owned(),
+                    is_met: None,
+                    picture,
+                    worst: worst_difference(run, value),
+                });
+            }
+        }
+    }
+    checks
+}
+
+fn area(run: &MapRun, record: &MapRecord) -> CheckRecord {
+    let elements = &run.mapped.elements;
+    CheckRecord {
+        name: "Area with values".to_owned(),
+        found: percent(record.mapped_area),
+        limit: format!("at least {}", percent(LEAST_AREA)),
+        is_met: Some(record.mapped_area >= LEAST_AREA),
+        picture: CheckPicture::Status,
+        worst: elements
+            .iter()
+            .position(|report| !report.status.has_values()),
+    }
+}
+
+/// Elements that lie near two sheets or on two parts, if there are any.
+fn doubled(run: &MapRun) -> Option<CheckRecord> {
+    let is_doubled = |status: Status| matches!(status, Status::TwoLayers | Status::Conflict);
+    let elements = &run.mapped.elements;
+    let n = elements.iter().filter(|e| is_doubled(e.status)).count();
+    (n > 0).then(|| CheckRecord {
+        name: "Near two sheets".to_owned(),
+        found: counted(n, "element"),
+        limit: "none".to_owned(),
+        is_met: Some(false),
+        picture: CheckPicture::Status,
+        worst: elements.iter().position(|e| is_doubled(e.status)),
+    })
+}
+
+fn distance(run: &MapRun) -> CheckRecord {
+    let mapped = &run.mapped;
+    let apart = |element: usize| {
+        let report = &mapped.elements[element];
+        let distance = (report.normal_distance - mapped.median_offset).abs();
+        if report.partner.is_some() {
+            distance
+        } else {
+            f64::NAN
+        }
+    };
+    let worst = largest(run, apart);
+    CheckRecord {
+        name: "Distance of the sheets".to_owned(),
+        found: worst.map_or_else(|| "–".to_owned(), |worst| length(apart(worst))),
+        limit: "half the limit".to_owned(),
+        is_met: Some(mapped.n_distant == 0),
+        picture: CheckPicture::Distance,
+        worst,
+    }
+}
+
+fn confidence(run: &MapRun) -> CheckRecord {
+    let of = |element: usize| {
+        let report = &run.mapped.elements[element];
+        if report.partner.is_some() {
+            report.confidence
+        } else {
+            f64::NAN
+        }
+    };
+    let areas = run.target.mesh.areas();
+    let all = (0..areas.len()).filter(|&element| of(element).is_finite());
+    let (mut doubtful, mut area) = (0.0, 0.0);
+    for element in all {
+        area += areas[element];
+        if of(element) < DOUBTFUL {
+            doubtful += areas[element];
+        }
+    }
+    let share = if area > 0.0 { doubtful / area } else { 0.0 };
+    CheckRecord {
+        name: format!("Confidence below {}", fixed(DOUBTFUL, 1)),
+        found: percent(share),
+        limit: format!("at most {}", percent(DOUBTFUL_AREA)),
+        is_met: Some(share <= DOUBTFUL_AREA),
+        picture: CheckPicture::Confidence,
+        worst: largest(run, |element| -of(element)),
+    }
+}
+
+fn mean(
+    run: &MapRun,
+    name: &str,
+    pair: &PairRecord,
+    (picture, value): (CheckPicture, Option<FormingValue>),
+) -> CheckRecord {
+    let change = pair.crash.mean / pair.stamped.mean - 1.0;
+    CheckRecord {
+        name: name.to_owned(),
+        found: signed_percent(change),
+        limit: "±0.5 %".to_owned(),
+        is_met: Some(change.abs() <= MEAN_CHANGE),
+        picture,
+        worst: worst_difference(run, value),
+    }
+}
+
+fn worst_difference(run: &MapRun, value: Option<FormingValue>) -> Option<usize> {
+    let shown = ShownValue {
+        value,
+        layer: None,
+        flat: None,
+    };
+    largest(run, |element| run.difference(element, &shown).abs())
+}
+
+/// The element with the largest number; none if no number is finite.
+fn largest(run: &MapRun, number: impl Fn(usize) -> f64) -> Option<usize> {
+    let numbers = (0..run.shells.len()).map(|element| (element, number(element)));
+    let finite = numbers.filter(|(_, number)| number.is_finite());
+    let first = |best: (usize, f64), next: (usize, f64)| if next.1 > best.1 { next } else { best };
+    finite.reduce(first).map(|(element, _)| element)
+}
+
+fn signed_percent(fraction: f64) -> String {
+    let text = fixed(100.0 * fraction, 2).replace('-', "−");
+    let sign = if fraction > 0.0 { "+" } else { "" };
+    format!("{sign}{text} %")
+}

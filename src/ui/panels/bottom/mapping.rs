@@ -1,0 +1,347 @@
+//! The mapping looked at closely: its checks, the distribution of a quantity on both sides, and one
+//! element with its profile through the thickness.
+
+use egui::{Align, Layout, RichText, Sense, Ui, vec2};
+use egui_extras::{Column, TableBuilder};
+use egui_plot::{Line, MarkerShape, Plot, PlotPoints, Points};
+
+use super::charts;
+use crate::app::{
+    Action, AppState, ColorBy, Command, InspectCommand, MapResult, ProbeReport, ViewCommand,
+};
+use crate::pipeline::map::{CheckRecord, DistributionRecord, PairRecord};
+use crate::role::Role;
+use crate::ui::theme::{Palette, ROW};
+use crate::ui::widgets::{Look, action_button, caption, length, nothing_yet, percent, signed};
+
+/// Height of a row.
+const LINE: f32 = 19.0;
+
+/// Checks, distributions, probe, side by side.
+pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(result) = state.document.current_mapping() else {
+        let hint = "Map the forming results in section 4, and their checks stand here";
+        nothing_yet(ui, "Nothing is mapped at this pose", hint);
+        return;
+    };
+    let scroll = &mut ui.spacing_mut().scroll;
+    scroll.floating_allocated_width = scroll.bar_width;
+    let (width, height) = (ui.available_width(), ui.available_height());
+    let widths = [0.34 * width, 0.32 * width, 0.34 * width - 44.0];
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 20.0;
+        for (column, width) in widths.into_iter().enumerate() {
+            ui.allocate_ui_with_layout(vec2(width, height), Layout::top_down(Align::Min), |ui| {
+                ui.set_width(width);
+                ui.spacing_mut().item_spacing.x = 8.0;
+                match column {
+                    0 => checks_ui(ui, state, result, commands),
+                    1 => distributions_ui(ui, state, result),
+                    _ => probe_ui(ui, state, commands),
+                }
+            });
+        }
+    });
+}
+
+/// One row for each check; a click shows the picture in which it is seen and flies to the worst place.
+fn checks_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut Vec<Command>) {
+    let checks = &result.record.checks;
+    let (n_met, n_asked) = result.record.n_met();
+    let title = format!("Checks: {n_met} of {n_asked} met (click to see)");
+    caption(ui, title);
+    ui.spacing_mut().item_spacing.y = 0.0;
+    TableBuilder::new(ui)
+        .id_salt("mapping checks")
+        .sense(Sense::click())
+        .min_scrolled_height(0.0)
+        .auto_shrink([false, false])
+        .cell_layout(Layout::left_to_right(Align::Center))
+        .column(Column::exact(14.0))
+        .column(Column::remainder().clip(true))
+        .column(Column::exact(64.0).clip(true))
+        .column(Column::exact(92.0).clip(true))
+        .body(|body| {
+            body.rows(LINE, checks.len(), |mut row| {
+                let check = &checks[row.index()];
+                let palette = row_palette(&mut row, check);
+                row.col(|ui| {
+                    ui.add(egui::Label::new(&check.name).truncate());
+                });
+                row.col(|ui| {
+                    ui.add(egui::Label::new(&check.found).truncate());
+                });
+                row.col(|ui| {
+                    let text = RichText::new(&check.limit).small().color(palette);
+                    ui.add(egui::Label::new(text).truncate());
+                });
+                let response = row.response();
+                response.widget_info(|| {
+                    let met = match check.is_met {
+                        Some(true) => ", met",
+                        Some(false) => ", not met",
+                        None => "",
+                    };
+                    let name = format!("{}: {}{met}", check.name, check.found);
+                    egui::WidgetInfo::labeled(egui::Role::Button, true, name)
+                });
+                if response.clicked() {
+                    show_check(state, result, check, commands);
+                }
+            });
+        });
+}
+
+/// The mark of a check; the quiet colour of its table.
+fn row_palette(row: &mut egui_extras::TableRow<'_, '_>, check: &CheckRecord) -> egui::Color32 {
+    let mut quiet = egui::Color32::GRAY;
+    row.col(|ui| {
+        let palette = Palette::of(ui);
+        quiet = palette.secondary;
+        let (sign, color) = match check.is_met {
+            Some(true) => ("✔", palette.good),
+            Some(false) => ("✖", palette.poor),
+            None => ("·", palette.secondary),
+        };
+        ui.label(RichText::new(sign).small().color(color));
+    });
+    quiet
+}
+
+fn show_check(
+    state: &AppState,
+    result: &MapResult,
+    check: &CheckRecord,
+    commands: &mut Vec<Command>,
+) {
+    let display = state.with_check(check.picture);
+    commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
+    if let Some(worst) = check.worst {
+        let look = InspectCommand::LookAt {
+            role: Role::Crash,
+            point: result.run.target.mesh.centroids()[worst],
+            text: check.name.clone(),
+        };
+        commands.push(look.into());
+    }
+}
+
+/// The statistics of a quantity, where they were made.
+fn pair_of(result: &MapResult, by: ColorBy) -> Option<&PairRecord> {
+    let record = &result.record;
+    match by {
+        ColorBy::Thickness => record.thickness.as_ref(),
+        ColorBy::PlasticStrain => record.plastic_strain.as_ref(),
+        ColorBy::VonMises => record.von_mises.as_ref(),
+        _ => None,
+    }
+}
+
+/// Percentiles and overlaid histograms of both sides.
+fn distributions_ui(ui: &mut Ui, state: &AppState, result: &MapResult) {
+    let by = state.map_quantity();
+    let Some(pair) = pair_of(result, by) else {
+        caption(
+            ui,
+            format!("{}: no statistics of this quantity", by.label()),
+        );
+        return;
+    };
+    let of_layers = match by {
+        ColorBy::PlasticStrain => ", mean of the layers",
+        ColorBy::VonMises => ", largest of the layers",
+        _ => "",
+    };
+    caption(ui, format!("{}{of_layers}, by area", by.label()));
+    percentiles_ui(ui, pair);
+    let size = vec2(ui.available_width(), ui.available_height().max(40.0));
+    histogram_ui(ui, pair, size);
+}
+
+fn percentiles_ui(ui: &mut Ui, pair: &PairRecord) {
+    let palette = Palette::of(ui);
+    let titles = ["mean", "5 %", "50 %", "95 %", "99 %", "max"];
+    let numbers =
+        |of: &DistributionRecord| [of.mean, of.p5, of.p50, of.p95, of.p99, of.max].map(length);
+    let rows = [
+        ("▲", numbers(&pair.stamped), palette.stamped),
+        ("■", numbers(&pair.crash), palette.crash),
+    ];
+    let quiet = |text: &str| RichText::new(text).small().color(palette.secondary);
+    egui::Grid::new("mapping percentiles")
+        .num_columns(titles.len() + 1)
+        .spacing(vec2(6.0, 0.0))
+        .min_row_height(15.0)
+        .show(ui, |ui| {
+            ui.label("");
+            for title in titles {
+                ui.label(quiet(title));
+            }
+            ui.end_row();
+            for (name, numbers, color) in rows {
+                ui.label(RichText::new(name).small().color(color));
+                for number in numbers {
+                    ui.label(RichText::new(number).small());
+                }
+                ui.end_row();
+            }
+        });
+}
+
+/// Share of the area over the value, as two stepped lines.
+fn histogram_ui(ui: &mut Ui, pair: &PairRecord, size: egui::Vec2) {
+    let palette = Palette::of(ui);
+    let low = pair.stamped.min.min(pair.crash.min);
+    let high = pair.stamped.max.max(pair.crash.max);
+    let steps = |shares: &[f64]| -> PlotPoints<'static> {
+        let width = (high - low) / shares.len().max(1) as f64;
+        let at = |bin: usize| low + width * bin as f64;
+        let corners = shares.iter().enumerate();
+        let corners = corners.flat_map(|(bin, share)| [[at(bin), *share], [at(bin + 1), *share]]);
+        corners.collect::<Vec<_>>().into()
+    };
+    still(Plot::new("mapping histogram"), size, palette.line)
+        .include_y(0.0)
+        .y_axis_min_width(36.0)
+        .y_axis_formatter(|mark, _| percent(mark.value))
+        .show(ui, |plot| {
+            let [stamped, crash] = &pair.histograms;
+            let line = Line::new("▲ stamped", steps(stamped)).fill(0.0);
+            plot.line(line.color(palette.stamped).width(1.5).fill_alpha(0.15));
+            let line = Line::new("■ crash, mapped", steps(crash)).fill(0.0);
+            plot.line(line.color(palette.crash).width(1.5).fill_alpha(0.15));
+        });
+}
+
+/// A chart that shows and does not move.
+fn still(plot: Plot<'_>, size: egui::Vec2, grid: egui::Color32) -> Plot<'_> {
+    plot.width(size.x)
+        .height(size.y)
+        .show_background(false)
+        .allow_scroll(false)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .grid_color(grid)
+}
+
+/// One element: where its values come from, both sides in numbers and through the thickness.
+fn probe_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(probe) = state.probe() else {
+        caption(ui, "Probe");
+        caption(ui, "Click an element of either part to see its values here");
+        return;
+    };
+    ui.horizontal(|ui| {
+        ui.set_min_height(ROW);
+        let title = format!("Element {}", probe.id);
+        let go = ui.button(title).on_hover_text("Look there");
+        if go.clicked() {
+            let look = InspectCommand::LookAt {
+                role: Role::Crash,
+                point: probe.center,
+                text: format!("element {}", probe.id),
+            };
+            commands.push(look.into());
+        }
+        ui.label(RichText::new(probe.status.label()).color(Palette::of(ui).secondary));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let end = ("×", Look::Plain, vec2(ROW, ROW));
+            let button = action_button(ui, state, Action::EndProbe, end, commands);
+            button.accessible_name(Action::EndProbe.row().label);
+        });
+    });
+    let text = RichText::new(facts(state, &probe)).small();
+    let text = text.color(Palette::of(ui).secondary);
+    ui.add(egui::Label::new(text).wrap());
+    let width = ui.available_width();
+    let height = ui.available_height();
+    ui.horizontal_top(|ui| {
+        let table = vec2(0.48 * width, height);
+        ui.allocate_ui_with_layout(table, Layout::top_down(Align::Min), |ui| {
+            values_ui(ui, &probe);
+        });
+        profile_ui(ui, &probe, vec2(ui.available_width(), height));
+    });
+}
+
+/// Where the values come from, in a line.
+fn facts(state: &AppState, probe: &ProbeReport) -> String {
+    let [distance, angle, coverage, confidence] = probe.facts;
+    let Some(stamped) = probe.stamped_id else {
+        return "no stamped element gave it values".to_owned();
+    };
+    format!(
+        "from ▲ {stamped} · {}{} · {angle:.0}° · {} covered · confidence {confidence:.2}",
+        signed(distance),
+        state.document.unit_suffix(),
+        percent(coverage),
+    )
+}
+
+fn values_ui(ui: &mut Ui, probe: &ProbeReport) {
+    let palette = Palette::of(ui);
+    let number = |value: f64| {
+        if value.is_finite() {
+            length(value)
+        } else {
+            "–".to_owned()
+        }
+    };
+    egui::ScrollArea::vertical()
+        .id_salt("probe values")
+        .auto_shrink([false, false])
+        .show(ui, |ui| {
+            egui::Grid::new("probe values")
+                .num_columns(3)
+                .spacing(vec2(10.0, 1.0))
+                .show(ui, |ui| {
+                    ui.label("");
+                    ui.label(RichText::new("▲").small().color(palette.stamped));
+                    ui.label(RichText::new("■").small().color(palette.crash));
+                    ui.end_row();
+                    for (by, [stamped, crash]) in &probe.values {
+                        ui.label(RichText::new(by.label()).small().color(palette.secondary));
+                        ui.label(RichText::new(number(*stamped)).small());
+                        ui.label(RichText::new(number(*crash)).small());
+                        ui.end_row();
+                    }
+                });
+        });
+}
+
+/// Value over T: bottom −1, top +1; points are the layers.
+fn profile_ui(ui: &mut Ui, probe: &ProbeReport, size: egui::Vec2) {
+    let Some(by) = probe.profile_of else {
+        caption(ui, "no quantity with layers was mapped");
+        return;
+    };
+    let palette = Palette::of(ui);
+    let upright = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        points.iter().map(|[t, value]| [*value, *t]).collect()
+    };
+    let stamped = upright(&probe.profile.stamped);
+    let crash = upright(&probe.profile.crash);
+    let values = stamped.iter().chain(&crash).map(|point| point[0]);
+    let range = charts::margined(values);
+    let mut plot = still(Plot::new("profile"), size, palette.line)
+        .include_y(-1.1)
+        .include_y(1.1)
+        .x_axis_label(by.label())
+        .y_axis_label("T")
+        .y_axis_min_width(26.0);
+    if let Some([low, high]) = range {
+        plot = plot.include_x(low).include_x(high);
+    }
+    plot.show(ui, |plot| {
+        let line = Line::new("▲ stamped", stamped.clone());
+        plot.line(line.color(palette.stamped).width(1.5));
+        let points = Points::new("▲ stamped", stamped).shape(MarkerShape::Up);
+        plot.points(points.color(palette.stamped).radius(4.0));
+        let line = Line::new("■ crash", crash.clone());
+        plot.line(line.color(palette.crash).width(1.5));
+        let points = Points::new("■ crash", crash).shape(MarkerShape::Square);
+        plot.points(points.color(palette.crash).radius(3.5));
+    });
+}
