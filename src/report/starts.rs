@@ -43,6 +43,60 @@ pub fn start_kind_words(kind: StartKind) -> String {
     }
 }
 
+/// How many starts there were and of which kinds: "22 starts (18 by surface normals, 4 by the wide search)".
+pub fn start_counts(starts: &[StartRecord]) -> String {
+    let mut counts: Vec<(&str, usize)> = Vec::new();
+    for start in starts {
+        let kind = match start.kind {
+            StartKind::SurfaceNormal { .. } | StartKind::Patch { .. } => "by surface normals",
+            StartKind::PrincipalFrame { .. } => "by principal axes",
+            StartKind::Covering { .. } => "by rotations",
+            StartKind::Wide { .. } => "by the wide search",
+            StartKind::CurrentPose => "from the present pose",
+            StartKind::Given { .. } => "given",
+            StartKind::Alike { .. } | StartKind::Twin { .. } => "rivals of the best",
+        };
+        match counts.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, n)) => *n += 1,
+            None => counts.push((kind, 1)),
+        }
+    }
+    let parts: Vec<String> = counts
+        .iter()
+        .map(|(kind, n)| format!("{n} {kind}"))
+        .collect();
+    match starts.len() {
+        1 => format!("1 start ({})", counts.first().map_or("", |(kind, _)| *kind)),
+        n => format!("{n} starts ({})", parts.join(", ")),
+    }
+}
+
+/// Fewer agreeing starts than this are explained.
+const FEW: usize = 3;
+
+/// Why few agreeing starts say nothing against a result: most others were given up early, because
+/// better ones were ahead. `None` where enough agree.
+pub fn few_agree_words(starts: &[StartRecord], n_same: usize) -> Option<String> {
+    if n_same >= FEW || starts.len() <= n_same {
+        return None;
+    }
+    let was_dropped =
+        |start: &&StartRecord| matches!(start.outcome, Some(StartOutcome::Dropped { .. }));
+    let n_dropped = starts.iter().filter(was_dropped).count();
+    let n_others = starts.len() - n_same;
+    if n_dropped == 0 {
+        return Some(format!(
+            "the other {n_others} ended elsewhere, with larger errors"
+        ));
+    }
+    let n_left = n_others.saturating_sub(n_dropped);
+    let mut words = format!("{n_dropped} were stopped early because better ones were ahead");
+    if n_left > 0 {
+        words += &format!(", {n_left} ended elsewhere");
+    }
+    Some(words)
+}
+
 /// What became of a start, in words.
 pub fn outcome_words(outcome: StartOutcome) -> String {
     match outcome {

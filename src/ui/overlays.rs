@@ -11,6 +11,7 @@ use crate::app::{
     AppState, Command, Dialog, ExportCommand, Menu, MouseScheme, Notice, NoticeCommand,
     NoticeLevel, Settings, Theme, ViewCommand, clock_text,
 };
+use crate::colormap::ColorMap;
 
 /// Draws the open dialog, if any.
 pub fn overlays_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Command>) {
@@ -175,11 +176,47 @@ fn key_row(ui: &mut Ui, what: &str, keys: &str) {
 }
 
 fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    ui.set_width(440.0);
+    ui.set_width(560.0_f32.min(ui.ctx().content_rect().width() - 96.0));
     title(ui, "Preferences", Some(commands));
     let mut settings: Settings = state.settings.clone();
-    let label = 120.0;
-    form_row(ui, "Theme", label, |ui| {
+    let room = ui.ctx().content_rect().height() - 200.0;
+    ScrollArea::vertical().max_height(room).show(ui, |ui| {
+        group_title(ui, "Display");
+        display_ui(ui, &mut settings);
+        coloring_ui(ui, state, commands);
+        group_title(ui, "Mouse");
+        form_row(ui, "Mouse controls", LABEL, |ui| {
+            mouse_choice(ui, &mut settings);
+        });
+        ui.horizontal(|ui| {
+            ui.add_space(LABEL + UNIT);
+            paragraph(ui, settings.mouse.help());
+        });
+        group_title(ui, "Messages");
+        messages_choice(ui, &mut settings);
+        group_title(ui, "Files");
+        form_row(ui, "Read limit", LABEL, |ui| {
+            let field = DragValue::new(&mut settings.read_limit)
+                .range(Settings::READ_LIMITS)
+                .speed(0.1)
+                .suffix(" GiB");
+            ui.add(field).on_hover_text(
+                "Largest file that is read, unpacked and with all its included files. Reload a file \
+                 after raising it.",
+            );
+        });
+    });
+    if settings != state.settings {
+        commands.push(Command::Settings(Box::new(settings)));
+    }
+}
+
+/// Width of the labels of the preferences.
+const LABEL: f32 = 120.0;
+
+/// Colours and sizes of the window.
+fn display_ui(ui: &mut Ui, settings: &mut Settings) {
+    form_row(ui, "Theme", LABEL, |ui| {
         for (theme, name) in [
             (Theme::System, "System"),
             (Theme::Dark, "Dark"),
@@ -190,7 +227,9 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
         }
     });
-    form_row(ui, "UI scale", label, |ui| {
+    form_row(ui, "UI scale", LABEL, |ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.spacing_mut().button_padding.x = 6.0;
         for scale in [0.75_f32, 1.0, 1.25, 1.5, 2.0, 2.5] {
             let is_on = (settings.ui_scale - scale).abs() < 1e-3;
             if chip(ui, &format!("{:.0} %", scale * 100.0), is_on).clicked() {
@@ -198,37 +237,47 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
         }
     });
-    form_row(ui, "Mouse controls", label, |ui| {
-        mouse_choice(ui, &mut settings);
+    form_row(ui, "Motion", LABEL, |ui| {
+        ui.checkbox(&mut settings.reduce_motion, "Reduce motion");
     });
-    ui.horizontal(|ui| {
-        ui.add_space(label + UNIT);
-        paragraph(ui, settings.mouse.help());
+    form_row(ui, "Log", LABEL, |ui| {
+        ui.checkbox(&mut settings.is_log_wide, "Full-width log");
     });
-    form_row(ui, "Notifications", label, |ui| {
+}
+
+/// The colours of signed values.
+fn coloring_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut display = state.view.display.clone();
+    form_row(ui, "Deviation colours", LABEL, |ui| {
+        let map = &mut display.coloring.signed_map;
+        egui::ComboBox::from_id_salt("deviation colours")
+            .selected_text(map.label())
+            .width(200.0)
+            .show_ui(ui, |ui| {
+                for choice in ColorMap::ALL {
+                    ui.selectable_value(map, choice, choice.label());
+                }
+            });
+    });
+    if display != state.view.display {
+        commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
+    }
+}
+
+/// Which messages come up over the windows.
+fn messages_choice(ui: &mut Ui, settings: &mut Settings) {
+    form_row(ui, "Notifications", LABEL, |ui| {
         for level in NoticeLevel::TOLD {
-            let is_shown = !settings.muted.contains(&level);
-            if chip(ui, level.label(), is_shown).clicked() && !settings.muted.remove(&level) {
-                settings.muted.insert(level);
+            let mut is_shown = !settings.muted.contains(&level);
+            if ui.checkbox(&mut is_shown, level.label()).changed() {
+                if is_shown {
+                    settings.muted.remove(&level);
+                } else {
+                    settings.muted.insert(level);
+                }
             }
         }
     });
-    form_row(ui, "Read limit", label, |ui| {
-        let field = DragValue::new(&mut settings.read_limit)
-            .range(Settings::READ_LIMITS)
-            .speed(0.1)
-            .suffix(" GiB");
-        ui.add(field).on_hover_text(
-            "Largest file that is read, unpacked and with all its included files. Reload a file \
-             after raising it.",
-        );
-    });
-    ui.add_space(UNIT);
-    ui.checkbox(&mut settings.reduce_motion, "Reduce motion");
-    ui.checkbox(&mut settings.is_log_wide, "Full-width log");
-    if settings != state.settings {
-        commands.push(Command::Settings(Box::new(settings)));
-    }
 }
 
 /// A menu of mouse habits.

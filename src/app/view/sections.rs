@@ -76,6 +76,32 @@ impl Sections {
         }
         shown
     }
+
+    /// Which sections stay unfolded once the user works in the column: none is folded for want of room
+    /// any more, so that nothing moves away from under the pointer, and a new one is shown where it
+    /// fits below or was asked for.
+    pub fn kept(&self, bodies: [f32; 4], room: f32, before: [bool; 4]) -> [bool; 4] {
+        let mut shown = before;
+        for (index, shown) in shown.iter_mut().enumerate() {
+            *shown &= self.is_open[index];
+        }
+        let in_use = self.in_use().index();
+        shown[in_use] |= self.is_open[in_use];
+        let mut left = room;
+        for index in 0..shown.len() {
+            if shown[index] {
+                left -= bodies[index];
+            }
+        }
+        for index in in_use + 1..shown.len() {
+            let fits = bodies[index] + SLACK <= left;
+            if self.is_open[index] && !shown[index] && fits {
+                shown[index] = true;
+                left -= bodies[index];
+            }
+        }
+        shown
+    }
 }
 
 #[cfg(test)]
@@ -133,5 +159,27 @@ mod tests {
         assert!(sections.shown(bodies, 710.0, [true; 4])[0]);
         assert!(!sections.shown(bodies, 710.0, [false, true, true, false])[0]);
         assert!(sections.shown(bodies, 740.0, [false, true, true, false])[0]);
+    }
+
+    #[test]
+    fn nothing_folds_by_itself_once_the_column_is_used() {
+        let mut sections = Sections::default();
+        sections.touch(Section::Match);
+        let all = [true, true, true, false];
+        // The match grows beyond the room: the column scrolls instead.
+        assert_eq!(sections.kept([200.0, 240.0, 900.0, 0.0], 600.0, all), all);
+        // What the user folds goes, and comes back on request alone.
+        sections.set_open(Section::Reduce, false);
+        let kept = sections.kept(BODIES, 9e9, all);
+        assert_eq!(kept, [true, false, true, false]);
+        sections.set_open(Section::Reduce, true);
+        assert_eq!(sections.kept(BODIES, 100.0, kept), all);
+        // One below that opens by itself needs room; one above would push the work away.
+        sections.touch(Section::Match);
+        sections.unfold(Section::Map);
+        assert_eq!(sections.kept(BODIES, 500.0, all), all);
+        assert_eq!(sections.kept(BODIES, 1300.0, all), [true; 4]);
+        let below = [false, true, true, false];
+        assert!(!sections.kept(BODIES, 9e9, below)[0]);
     }
 }

@@ -1,13 +1,13 @@
 //! Every setting of a match behind the gear, as the table of settings has them.
 
-use egui::{ComboBox, DragValue, Ui, Vec2};
+use egui::{ComboBox, DragValue, Rect, Sense, Stroke, Ui, Vec2, pos2};
 
 use crate::app::AppState;
 use crate::registration::{Floor, MatchSettings, Method};
 use crate::settings::{ChoiceWords, Domain, Group, MatchRecipe, SETTINGS, Setting, Value};
 use crate::text::Lengths;
-use crate::ui::theme::{ROW, UNIT};
-use crate::ui::widgets::{caption, card, form_row, tight};
+use crate::ui::theme::{Palette, ROW, UNIT};
+use crate::ui::widgets::{caption, card, form_row, segments, tight};
 
 /// Width of the column of labels.
 const LABEL: f32 = 112.0;
@@ -56,40 +56,115 @@ pub fn recipe_ui(ui: &mut Ui, state: &AppState, recipe: &mut MatchRecipe) {
         return;
     }
     card(ui, |ui| {
-        for group in [Group::Starts, Group::Correspondences, Group::Search] {
+        presets_ui(ui, recipe);
+        for (group, title) in [
+            (Group::Starts, "Starts"),
+            (Group::Correspondences, "Pairs"),
+            (Group::Search, "Search and stop"),
+        ] {
+            ui.add_space(UNIT / 2.0);
+            ui.label(title);
             // Method and start stand above the form.
             for setting in SETTINGS.iter().filter(|row| row.group == group) {
                 setting_ui(ui, state, setting, recipe);
             }
-            ui.separator();
-        }
-        ui.add_space(UNIT / 2.0);
-        if ui.button("Method defaults").clicked() {
-            *recipe = MatchRecipe {
-                settings: MatchSettings::of(recipe.settings.method),
-                max_triangles: None,
-            };
         }
     });
 }
 
-/// One setting, where the others leave a place for it.
+/// Whole sets of settings: quick on reduced meshes, the default, and as in the paper.
+fn presets_ui(ui: &mut Ui, recipe: &mut MatchRecipe) {
+    let preset = |method, max_triangles| {
+        let mut settings = recipe.settings.clone();
+        set_method(&mut settings, method);
+        settings.starts.angle_segment_deg = MatchSettings::of(method).starts.angle_segment_deg;
+        MatchRecipe {
+            settings,
+            max_triangles,
+        }
+    };
+    let presets = [
+        ("Fast", preset(Method::Fractional, Some(USUAL_LEVEL))),
+        ("Default", preset(Method::Fractional, None)),
+        ("Paper", preset(Method::Paper, Some(USUAL_LEVEL))),
+    ];
+    let is_on = |index: usize| presets[index].1 == *recipe;
+    let labels = [0, 1, 2].map(|index| (presets[index].0, is_on(index), true));
+    if let Some(index) = segments(ui, &labels, ui.available_width()) {
+        *recipe = presets[index].1.clone();
+    }
+}
+
+/// Room at the end of a row for its help and for the way back to the usual value.
+const BESIDE: f32 = 40.0;
+
+/// One setting, where the others leave a place for it, with its help and the way back.
 fn setting_ui(ui: &mut Ui, state: &AppState, setting: &Setting, recipe: &mut MatchRecipe) {
     let Some(value) = setting.get(recipe) else {
         return;
     };
     let unused = setting.unused(recipe);
     let mut new = value.clone();
-    let response = ui.add_enabled_ui(unused.is_none(), |ui| {
-        value_ui(ui, state, setting, &mut new);
+    let room = ui.available_width();
+    let row = ui.scope(|ui| {
+        ui.set_max_width(room - BESIDE);
+        let response = ui.add_enabled_ui(unused.is_none(), |ui| {
+            value_ui(ui, state, setting, &mut new);
+        });
+        if let Some(reason) = unused {
+            let tip = format!("{}\n{reason}", setting.help);
+            response.response.on_disabled_hover_text(tip);
+        }
     });
-    if let Some(reason) = unused {
-        let tip = format!("{}\n{reason}", setting.help);
-        response.response.on_disabled_hover_text(tip);
+    let row = row.response.rect;
+    if row.height() > 1.0 {
+        let usual = MatchRecipe {
+            settings: MatchSettings::of(recipe.settings.method),
+            max_triangles: None,
+        };
+        let usual = setting.get(&usual).filter(|usual| *usual != value);
+        let right = row.left() + room;
+        let at =
+            |x: f32| Rect::from_center_size(pos2(right - x, row.center().y), Vec2::splat(18.0));
+        help_ui(ui, at(30.0), setting);
+        if let Some(usual) = usual.filter(|_| unused.is_none())
+            && back_ui(ui, at(10.0), setting)
+        {
+            new = usual;
+        }
     }
     if new != value {
         setting.set(recipe, &new);
     }
+}
+
+/// A question mark that tells what a setting does.
+fn help_ui(ui: &Ui, at: Rect, setting: &Setting) {
+    let id = ui.scope_id().with(("help", setting.option));
+    let response = ui.interact(at, id, Sense::hover());
+    let palette = Palette::of(ui);
+    let color = if response.hovered() {
+        palette.text
+    } else {
+        palette.secondary
+    };
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let middle = egui::Align2::CENTER_CENTER;
+    ui.painter().text(at.center(), middle, "?", font, color);
+    ui.painter()
+        .circle_stroke(at.center(), 7.0, Stroke::new(1.0, color));
+    response.on_hover_text(setting.help);
+}
+
+/// The way back to the usual value of a setting that was changed; true if it was taken.
+fn back_ui(ui: &mut Ui, at: Rect, setting: &Setting) -> bool {
+    let button = egui::Button::new("⟲").frame_when_inactive(false);
+    let response = tight(ui, |ui| ui.put(at, button));
+    let name = format!("Reset {}", setting.label);
+    response
+        .on_hover_text("Back to the value of the method")
+        .accessible_name(name)
+        .clicked()
 }
 
 fn value_ui(ui: &mut Ui, state: &AppState, setting: &Setting, value: &mut Value) {
@@ -180,7 +255,7 @@ fn limit_ui(ui: &mut Ui, state: &AppState, setting: &Setting, limit: &mut Option
     }
     let mut is_on = limit.is_some();
     ui.horizontal(|ui| {
-        ui.checkbox(&mut is_on, "Reduce for the search to")
+        ui.checkbox(&mut is_on, "Reduce search to")
             .on_hover_text(setting.help);
         if is_on != limit.is_some() {
             *limit = is_on.then_some(USUAL_LEVEL);

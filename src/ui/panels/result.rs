@@ -6,9 +6,9 @@ use super::explain;
 use crate::app::{Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, Section};
 use crate::assess::{Coverage, OneSided, Verdict};
 use crate::registration::group_starts;
-use crate::report::{PoseRecord, number};
+use crate::report::{PoseRecord, few_agree_words, number, start_counts};
 use crate::role::PerRole;
-use crate::text::{fixed, sentence, vector, whole_percent};
+use crate::text::{capital, fixed, sentence, vector, whole_percent};
 use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
@@ -149,6 +149,10 @@ fn figures_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
             "Converged starts",
             &format!("{n_same} of {}", outcome.starts.len()),
         );
+        caption(ui, capital(&start_counts(&outcome.starts)));
+        if let Some(words) = few_agree_words(&outcome.starts, n_same) {
+            caption(ui, capital(&words));
+        }
         let PerRole { crash, stamped } = result.run.n_triangles;
         let on = format!(
             "■ {} ▲ {}",

@@ -61,6 +61,9 @@ struct Fold {
     shown: [bool; 4],
     /// The parts that were there in the frame before; a body that grows with a new part was not unfolded by anyone.
     parts: PerRole<u64>,
+    /// The height the column had, and whether the user pressed something in it since it has that.
+    height: f32,
+    is_used: bool,
 }
 
 impl Fold {
@@ -74,6 +77,8 @@ impl Fold {
             bodies: [0.0; 4],
             shown: [true, true, true, false],
             parts: PerRole::default(),
+            height: 0.0,
+            is_used: false,
         })
     }
 
@@ -86,17 +91,40 @@ impl Fold {
 pub fn drawn_ui(ui: &Ui, state: &AppState) {
     let parts = state.document.stamp().parts;
     let fold = Fold::read(ui);
-    if fold.parts != parts {
-        Fold { parts, ..fold }.write(ui);
+    let is_pressed = ui.input(|input| input.pointer.any_pressed());
+    let is_used = fold.is_used || (is_pressed && ui.rect_contains_pointer(ui.clip_rect()));
+    if fold.parts != parts || fold.is_used != is_used {
+        // With new parts the bodies have other heights: they are arranged anew.
+        let is_used = is_used && fold.parts == parts;
+        Fold {
+            parts,
+            is_used,
+            ..fold
+        }
+        .write(ui);
     }
 }
 
-/// Decides which sections are unfolded in a column of this height; before the sections are drawn.
+/// Decides which sections are unfolded in a column of this height; before the sections are drawn. They
+/// fold for want of room only until the user works in the column, and again when its height changes.
 pub fn fold_ui(ui: &Ui, state: &AppState, height: f32) {
     let before = Fold::read(ui);
     let room = height - TALL * Section::ALL.len() as f32;
-    let shown = state.view.sections.shown(before.bodies, room, before.shown);
-    Fold { shown, ..before }.write(ui);
+    let is_resized = (height - before.height).abs() > 0.5;
+    let is_used = before.is_used && !is_resized;
+    let sections = &state.view.sections;
+    let shown = if is_used {
+        sections.kept(before.bodies, room, before.shown)
+    } else {
+        sections.shown(before.bodies, room, before.shown)
+    };
+    Fold {
+        shown,
+        height,
+        is_used,
+        ..before
+    }
+    .write(ui);
     if shown != before.shown {
         ui.ctx().request_repaint();
     }

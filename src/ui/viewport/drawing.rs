@@ -222,9 +222,9 @@ impl Drawing<'_> {
 
     /// The outlines with what is measured between them.
     fn plot(&self, ui: &mut Ui, size: Vec2, choices: &mut Choices) -> Seen {
-        // Another direction of the plane is another picture.
-        let n = self.plane.normal;
-        let view = format!("{:.2} {:.2} {:.2}", n.x, n.y, n.z);
+        // Another direction of the plane is another picture, and so is another place.
+        let (n, is_high) = (self.plane.normal, size.y > size.x);
+        let view = format!("{:.2} {:.2} {:.2} {is_high}", n.x, n.y, n.z);
         let has_worst = self.gaps.is_some_and(|gaps| gaps.found.worst.is_some());
         if has_worst && choices.zoomed.as_ref() != Some(&view) {
             choices.zoom = choices.zoom.or(Some(Zoom::WorstGap));

@@ -21,6 +21,9 @@ const GAP: f32 = 8.0;
 /// In a pane narrower than this the time of day is left to the tooltip.
 const NARROW: f32 = 420.0;
 
+/// The step whose text is the outcome.
+const RESULT: &str = "result";
+
 /// Rows that show their whole text, by their index.
 type Opened = BTreeSet<usize>;
 
@@ -57,7 +60,7 @@ fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
     let heights: Vec<f32> = rows
         .iter()
         .enumerate()
-        .map(|(index, row)| row_height(ui, row, opened.contains(&index), room))
+        .map(|(index, row)| row_height(ui, row, is_whole(row, index, &opened), room))
         .collect();
     let mut clicked = None;
     ui.spacing_mut().item_spacing = egui::vec2(GAP, 0.0);
@@ -81,7 +84,8 @@ fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
         .body(|body| {
             body.heterogeneous_rows(heights.into_iter(), |mut table_row| {
                 let index = table_row.index();
-                let (row, is_opened) = (&rows[index], opened.contains(&index));
+                let row = &rows[index];
+                let is_opened = is_whole(row, index, &opened);
                 row_ui(&mut table_row, row, is_narrow, is_opened);
                 let response = table_row.response();
                 if response.clicked() {
@@ -96,6 +100,11 @@ fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
         }
         ui.data_mut(|data| data.insert_temp(id, opened));
     }
+}
+
+/// True for a row that shows its whole text: what came out of a match always does.
+fn is_whole(row: &LogRow, index: usize, opened: &Opened) -> bool {
+    row.step == RESULT || opened.contains(&index)
 }
 
 /// One line, or as many as the whole text needs.
