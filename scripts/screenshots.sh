@@ -30,11 +30,26 @@ until [ -s "$folder/display" ]; do sleep 0.1; done
 DISPLAY=:$(cat "$folder/display")
 export DISPLAY
 
-"$SHAPEMATCH" >"$folder/log" 2>&1 &
-program=$!
-pids+=("$program")
-window=$(timeout 60 xdotool search --sync --onlyvisible --name shapematch | head -n 1)
-xdotool windowmove "$window" 0 0 windowsize "$window" 1400 900 windowfocus "$window"
+# open_window WIDTH HEIGHT ARGS…: starts the program anew.
+program=
+open_window() {
+    local width=$1 height=$2 window
+    shift 2
+    if [ -n "$program" ]; then
+        kill "$program" 2>/dev/null || true
+        wait "$program" 2>/dev/null || true
+    fi
+    "$SHAPEMATCH" "$@" >>"$folder/log" 2>&1 &
+    program=$!
+    pids+=("$program")
+    window=$(timeout 60 xdotool search --sync --onlyvisible --pid "$program" | tail -n 1)
+    xdotool windowmove "$window" 0 0 windowsize "$window" "$width" "$height" windowfocus "$window"
+}
+# prefer JSON: preferences of the windows to come.
+prefer() {
+    mkdir -p "$XDG_CONFIG_HOME/shapematch"
+    printf '{"settings":%s}' "$1" >"$XDG_CONFIG_HOME/shapematch/settings.json"
+}
 
 shot() { scrot -o "$1"; }
 # settle: waits until the picture stands still; an idle window draws nothing.
@@ -57,7 +72,9 @@ press() { xdotool key "$@"; sleep 0.3; }
 # drag X Y DX DY: with the left button, in steps as a hand does.
 drag() {
     local i
-    xdotool mousemove "$1" "$2" mousedown 1
+    xdotool mousemove "$1" "$2"
+    sleep 0.3
+    xdotool mousedown 1
     for i in $(seq 10); do xdotool mousemove_relative --sync -- $(($3 / 10)) $(($4 / 10)); sleep 0.03; done
     xdotool mouseup 1
     sleep 0.5
@@ -75,6 +92,7 @@ choose() {
 }
 
 mkdir -p screenshots
+open_window 1400 900
 rest
 keep start
 choose "open the example pair"
@@ -111,18 +129,96 @@ press s
 rest
 keep section
 press s
+
+# More room for tables and curves.
+prefer '{"theme":"Dark","is_mouse_asked":true,"pane_sizes":[null,385]}'
+open_window 1400 900 --example
+await_rest 2
+press ctrl+Return
+await_rest 2
+press m
+settle
+click 492 530 # Starts
+rest
+keep starts
+click 653 530 # Sweep
+click 414 560 # Run the sweep
+await_rest 15
+rest
+keep sweep
+
+# The forming results on the crash part.
+prefer '{"theme":"Dark","is_mouse_asked":true}'
+open_window 1400 900 --example
+await_rest 2
+press ctrl+Return
+await_rest 2
 press ctrl+m
 await_rest 3
 press shift+c
 click 560 300 # an element, which is probed
 rest
 keep mapped
-drag 1100 701 0 -200 # more room for tables and curves
-click 492 515 # Starts
+
+# The other pose of a part that is nearly symmetric.
+"$SHAPEMATCH" -q sample --part bracket --variant missing-flanges "$folder/bracket" >/dev/null
+open_window 1400 900 "$folder/bracket/crash.k" "$folder/bracket/stamped.dynain"
+await_rest 2
+press ctrl+Return
+await_rest 2
+press m
+settle
+press v
 rest
-keep starts
-click 653 515 # Sweep
-click 414 545 # Run the sweep
+keep alternative
+
+# The light theme, and a small screen at 200 %.
+prefer '{"theme":"Light","is_mouse_asked":true}'
+open_window 1400 900 --example
+await_rest 2
+press ctrl+Return
+await_rest 2
+press m
+settle
+press shift+d
+rest
+keep light
+prefer '{"theme":"Dark","is_mouse_asked":true,"ui_scale":2.0}'
+open_window 1280 720 --example
+await_rest 2
+press ctrl+Return
+await_rest 2
+press m
+rest
+keep large-text
+
+# A deck of a million triangles beside one of half as many.
+# wave FILE COLUMNS ROWS PITCH: a wavy sheet of quads.
+wave() {
+    awk -v w="$2" -v h="$3" -v d="$4" 'BEGIN {
+        print "*KEYWORD\n*PART\nwavy sheet\n         1         1         1\n*SECTION_SHELL\n         1         2"
+        print "       1.0       1.0       1.0       1.0\n*NODE"
+        for (j = 0; j <= h; j++) for (i = 0; i <= w; i++) {
+            x = i * d; y = j * d
+            z = 40 * sin(x / 170) * cos(y / 130) + x * x / 9000 + 12 * sin(x / 41 + y / 67)
+            printf "%8d%16.6f%16.6f%16.6f\n", j * (w + 1) + i + 1, x, y, z
+        }
+        print "*ELEMENT_SHELL"
+        for (j = 0; j < h; j++) for (i = 0; i < w; i++) {
+            a = j * (w + 1) + i + 1
+            printf "%8d%8d%8d%8d%8d%8d\n", ++n, 1, a, a + 1, a + w + 2, a + w + 1
+        }
+        print "*END"
+    }' >"$1"
+}
+wave "$folder/large_crash.k" 1000 500 2
+wave "$folder/large_stamped.k" 710 355 2.816
+prefer '{"theme":"Dark","is_mouse_asked":true}'
+open_window 1400 900 "$folder/large_crash.k" "$folder/large_stamped.k"
+await_rest 12
+press ctrl+Return
 await_rest 15
+press m
+await_rest 3
 rest
-keep sweep
+keep large

@@ -12,7 +12,9 @@ use crate::app::{
 use crate::pipeline::map::{CheckRecord, DistributionRecord, PairRecord};
 use crate::role::Role;
 use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::{Look, action_button, caption, length, nothing_yet, percent, signed};
+use crate::ui::widgets::{
+    Look, action_button, caption, length, nothing_yet, percent, segments, signed,
+};
 
 /// Height of a row.
 const LINE: f32 = 19.0;
@@ -26,22 +28,64 @@ pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     let scroll = &mut ui.spacing_mut().scroll;
     scroll.floating_allocated_width = scroll.bar_width;
+    if ui.available_width() < NARROW {
+        return one_by_one_ui(ui, state, result, commands);
+    }
     let (width, height) = (ui.available_width(), ui.available_height());
     let widths = [0.34 * width, 0.32 * width, 0.34 * width - 44.0];
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 20.0;
-        for (column, width) in widths.into_iter().enumerate() {
+        for (view, width) in View::ALL.into_iter().zip(widths) {
             ui.allocate_ui_with_layout(vec2(width, height), Layout::top_down(Align::Min), |ui| {
                 ui.set_width(width);
                 ui.spacing_mut().item_spacing.x = 8.0;
-                match column {
-                    0 => checks_ui(ui, state, result, commands),
-                    1 => distributions_ui(ui, state, result),
-                    _ => probe_ui(ui, state, commands),
-                }
+                view.show(ui, state, result, commands);
             });
         }
     });
+}
+
+/// In a pane narrower than this only one of the three is shown at a time.
+const NARROW: f32 = 860.0;
+
+/// What the tab shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum View {
+    Checks,
+    Distribution,
+    Probe,
+}
+
+impl View {
+    const ALL: [Self; 3] = [Self::Checks, Self::Distribution, Self::Probe];
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Checks => "Checks",
+            Self::Distribution => "Distribution",
+            Self::Probe => "Probe",
+        }
+    }
+
+    fn show(self, ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut Vec<Command>) {
+        match self {
+            Self::Checks => checks_ui(ui, state, result, commands),
+            Self::Distribution => distributions_ui(ui, state, result),
+            Self::Probe => probe_ui(ui, state, commands),
+        }
+    }
+}
+
+/// One of the three below a choice between them.
+fn one_by_one_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut Vec<Command>) {
+    let id = ui.scope_id().with("mapping view");
+    let now = ui.data(|data| data.get_temp(id)).unwrap_or(View::Checks);
+    let labels = View::ALL.map(|view| (view.label(), view == now, true));
+    let width = 300.0_f32.min(ui.available_width());
+    if let Some(index) = segments(ui, &labels, width) {
+        ui.data_mut(|data| data.insert_temp(id, View::ALL[index]));
+    }
+    now.show(ui, state, result, commands);
 }
 
 /// One row for each check; a click shows the picture in which it is seen and flies to the worst place.

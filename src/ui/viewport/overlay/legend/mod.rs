@@ -11,7 +11,7 @@ use egui::{
     UiBuilder, Vec2, vec2,
 };
 
-use super::{MARGIN, Overlay};
+use super::{MARGIN, Overlay, header};
 use crate::app::{Command, MapPicture};
 use crate::colormap::ColorScale;
 use crate::pipeline::forming_values::LayerChoice;
@@ -32,7 +32,13 @@ const FULL_HEIGHT: f32 = 440.0;
 /// The legend at the right edge, below the buttons of the camera; returns where it lies.
 pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) -> Option<Rect> {
     let window = over.frame.rect();
-    let is_low = window.height() < LEAST_HEIGHT || window.width() < 4.0 * SLIM;
+    // The names of the parts stand beside it.
+    let n_wide = if header::height(over).is_some() {
+        6.0
+    } else {
+        4.0
+    };
+    let is_low = window.height() < LEAST_HEIGHT || window.width() < n_wide * SLIM;
     if is_low || !over.frame.picture.has_colored() {
         return None;
     }
