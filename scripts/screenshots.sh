@@ -80,7 +80,7 @@ drag() {
     sleep 0.5
 }
 # Where nothing reacts to the pointer.
-rest() { xdotool mousemove 1000 890; }
+rest() { xdotool mousemove 700 12; }
 # choose WORDS: a command by its name in the search over all commands, as Ctrl+K opens it.
 choose() {
     press ctrl+k
@@ -142,7 +142,8 @@ click 492 530 # Starts
 rest
 keep starts
 click 653 530 # Sweep
-click 414 560 # Run the sweep
+settle
+click 400 558 # Run the sweep
 await_rest 15
 rest
 keep sweep
