@@ -79,6 +79,12 @@ drag() {
     xdotool mouseup 1
     sleep 0.5
 }
+# matched: reads the files and matches.
+matched() {
+    await_rest 2
+    press ctrl+Return
+    await_rest 2
+}
 # Where nothing reacts to the pointer.
 rest() { xdotool mousemove 700 12; }
 # choose WORDS: a command by its name in the search over all commands, as Ctrl+K opens it.
@@ -133,9 +139,7 @@ press s
 # More room for tables and curves.
 prefer '{"theme":"Dark","is_mouse_asked":true,"pane_sizes":[null,385]}'
 open_window 1400 900 --example
-await_rest 2
-press ctrl+Return
-await_rest 2
+matched
 press m
 settle
 click 492 530 # Starts
@@ -151,9 +155,7 @@ keep sweep
 # The forming results on the crash part.
 prefer '{"theme":"Dark","is_mouse_asked":true}'
 open_window 1400 900 --example
-await_rest 2
-press ctrl+Return
-await_rest 2
+matched
 press ctrl+m
 await_rest 3
 press shift+c
@@ -164,9 +166,7 @@ keep mapped
 # The other pose of a part that is nearly symmetric.
 "$SHAPEMATCH" -q sample --part bracket --variant missing-flanges "$folder/bracket" >/dev/null
 open_window 1400 900 "$folder/bracket/crash.k" "$folder/bracket/stamped.dynain"
-await_rest 2
-press ctrl+Return
-await_rest 2
+matched
 press m
 settle
 press v
@@ -176,9 +176,7 @@ keep alternative
 # The light theme, and a small screen at 200 %.
 prefer '{"theme":"Light","is_mouse_asked":true}'
 open_window 1400 900 --example
-await_rest 2
-press ctrl+Return
-await_rest 2
+matched
 press m
 settle
 press shift+d
@@ -186,9 +184,7 @@ rest
 keep light
 prefer '{"theme":"Dark","is_mouse_asked":true,"ui_scale":2.0}'
 open_window 1280 720 --example
-await_rest 2
-press ctrl+Return
-await_rest 2
+matched
 press m
 rest
 keep large-text

@@ -1,4 +1,4 @@
-//! Charts with logarithmic axes.
+//! Charts that stand still, and those with logarithmic axes.
 
 use std::ops::RangeInclusive;
 
@@ -7,9 +7,8 @@ use egui_plot::{GridMark, Plot};
 
 use crate::ui::theme::Palette;
 
-/// A chart of logarithms that shows and does not move: no zoom, no drag, quiet grid, and the numbers
-/// themselves along the axes.
-pub fn log_chart(ui: &Ui, name: &str, size: Vec2) -> Plot<'static> {
+/// A chart that shows and does not move: no zoom, no drag, quiet grid.
+pub fn still_chart(ui: &Ui, name: &str, size: Vec2) -> Plot<'static> {
     Plot::new(name)
         .width(size.x)
         .height(size.y)
@@ -20,6 +19,11 @@ pub fn log_chart(ui: &Ui, name: &str, size: Vec2) -> Plot<'static> {
         .allow_boxed_zoom(false)
         .allow_axis_zoom_drag(false)
         .grid_color(Palette::of(ui).line)
+}
+
+/// A still chart of logarithms, with the numbers themselves along the axes.
+pub fn log_chart(ui: &Ui, name: &str, size: Vec2) -> Plot<'static> {
+    still_chart(ui, name, size)
         .y_axis_label(name.to_owned())
         .y_axis_min_width(44.0)
         .x_axis_formatter(|mark, _| decade_text(mark.value))

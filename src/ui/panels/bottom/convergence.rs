@@ -2,8 +2,9 @@
 //! start shows the pose of that iteration, a click or the arrow keys keep it.
 
 use egui::{Button, ComboBox, Key, Modifiers, Ui, vec2};
-use egui_plot::{GridMark, Line, Plot, PlotPoints, VLine};
+use egui_plot::{GridMark, Line, PlotPoints, VLine};
 
+use super::charts;
 use crate::app::{AppState, Command, Preview, PreviewCommand};
 use crate::registration::{IterationRecord, StartRecord};
 use crate::report::start_name;
@@ -258,16 +259,7 @@ impl Chart {
         } else {
             self.name.to_owned()
         };
-        let shown = Plot::new(self.name)
-            .width(size.x)
-            .height(size.y)
-            .show_background(false)
-            .allow_scroll(false)
-            .allow_drag(false)
-            .allow_zoom(false)
-            .allow_boxed_zoom(false)
-            .allow_axis_zoom_drag(false)
-            .grid_color(palette.line)
+        let shown = charts::still_chart(ui, self.name, size)
             .x_axis_label("iteration")
             .y_axis_label(label)
             .y_axis_min_width(48.0)

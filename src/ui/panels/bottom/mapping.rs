@@ -3,7 +3,7 @@
 
 use egui::{Align, Layout, RichText, Sense, Ui, vec2};
 use egui_extras::{Column, TableBuilder};
-use egui_plot::{Line, MarkerShape, Plot, PlotPoints, Points};
+use egui_plot::{Line, MarkerShape, PlotPoints, Points};
 
 use super::charts;
 use crate::app::{
@@ -244,7 +244,7 @@ fn histogram_ui(ui: &mut Ui, pair: &PairRecord, size: egui::Vec2) {
         let corners = corners.flat_map(|(bin, share)| [[at(bin), *share], [at(bin + 1), *share]]);
         corners.collect::<Vec<_>>().into()
     };
-    still(Plot::new("mapping histogram"), size, palette.line)
+    charts::still_chart(ui, "mapping histogram", size)
         .include_y(0.0)
         .y_axis_min_width(36.0)
         .y_axis_formatter(|mark, _| percent(mark.value))
@@ -255,19 +255,6 @@ fn histogram_ui(ui: &mut Ui, pair: &PairRecord, size: egui::Vec2) {
             let line = Line::new("■ crash, mapped", steps(crash)).fill(0.0);
             plot.line(line.color(palette.crash).width(1.5).fill_alpha(0.15));
         });
-}
-
-/// A chart that shows and does not move.
-fn still(plot: Plot<'_>, size: egui::Vec2, grid: egui::Color32) -> Plot<'_> {
-    plot.width(size.x)
-        .height(size.y)
-        .show_background(false)
-        .allow_scroll(false)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .grid_color(grid)
 }
 
 /// One element: where its values come from, both sides in numbers and through the thickness.
@@ -369,7 +356,7 @@ fn profile_ui(ui: &mut Ui, probe: &ProbeReport, size: egui::Vec2) {
     let crash = upright(&probe.profile.crash);
     let values = stamped.iter().chain(&crash).map(|point| point[0]);
     let range = charts::margined(values);
-    let mut plot = still(Plot::new("profile"), size, palette.line)
+    let mut plot = charts::still_chart(ui, "profile", size)
         .include_y(-1.1)
         .include_y(1.1)
         .x_axis_label(by.label())

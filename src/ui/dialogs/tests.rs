@@ -1,0 +1,82 @@
+//! Questions before files are replaced and folders are made, and the keys they have for themselves.
+
+use super::*;
+use crate::ui::keyboard::{KeyOwner, Keyboard};
+
+#[test]
+fn a_file_is_replaced_only_after_a_question() {
+    let folder = tempfile::tempdir().unwrap();
+    let taken = folder.path().join("a.txt");
+    std::fs::write(&taken, "old").unwrap();
+    let ctx = egui::Context::default();
+    let mut dialogs = Dialogs::default();
+    let question = || Question::Save {
+        kind: Output::Log,
+        name: "log.txt".to_owned(),
+    };
+    let mut answer = |typed: &str| {
+        dialogs.check(question(), folder.path().join(typed), false, &ctx);
+        for _ in 0..500 {
+            let commands = dialogs.answers(&ctx);
+            if !commands.is_empty() || dialogs.overwrite.is_some() {
+                return (
+                    commands.len(),
+                    dialogs.overwrite.take().map(|(_, path)| path),
+                );
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        panic!("no answer");
+    };
+    assert_eq!(answer("b"), (1, None));
+    // The ending is added before the question, not after it.
+    assert_eq!(answer("a"), (0, Some(taken)));
+}
+
+/// Waits for the answer of a thread and gives the commands that follow.
+fn wait(dialogs: &mut Dialogs, ctx: &egui::Context) -> Vec<Command> {
+    for _ in 0..500 {
+        let commands = dialogs.answers(ctx);
+        if !commands.is_empty() || dialogs.is_open() {
+            return commands;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    panic!("no answer");
+}
+
+#[test]
+fn a_folder_is_made_only_when_that_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let ctx = egui::Context::default();
+    let mut dialogs = Dialogs::default();
+    let question = Question::SaveProject(PathBuf::new());
+    let path = folder.path().join("new/deep/work");
+    dialogs.check(question.clone(), path.clone(), false, &ctx);
+    assert!(wait(&mut dialogs, &ctx).is_empty());
+    let prompt = dialogs.prompt.take().unwrap();
+    assert_eq!(prompt.missing, Some(folder.path().join("new/deep")));
+    assert!(prompt.note.unwrap().ends_with("does not exist."));
+    assert!(!folder.path().join("new").exists());
+    dialogs.check(question, path.clone(), true, &ctx);
+    let [command] = wait(&mut dialogs, &ctx).try_into().unwrap();
+    let written = path.with_extension(EXTENSION);
+    let is_meant = matches!(command, Command::Project(ProjectCommand::Write(at)) if at == written);
+    assert!(is_meant);
+    assert!(folder.path().join("new/deep").is_dir());
+    // What is to be read has to be there.
+    let none = folder.path().join("none.k");
+    dialogs.check(Question::Open(Role::Crash), none, false, &ctx);
+    assert!(wait(&mut dialogs, &ctx).is_empty());
+    assert_eq!(dialogs.prompt.unwrap().missing, None);
+}
+
+#[test]
+fn a_question_has_the_keys_for_itself() {
+    let ctx = egui::Context::default();
+    let mut dialogs = Dialogs::default();
+    let keyboard = Keyboard::default();
+    assert_eq!(keyboard.owner(&ctx, dialogs.is_open()), KeyOwner::Window);
+    dialogs.prompt = Some(Prompt::new(Question::OpenProject, String::new()));
+    assert_eq!(keyboard.owner(&ctx, dialogs.is_open()), KeyOwner::Question);
+}
