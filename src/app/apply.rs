@@ -99,6 +99,7 @@ impl AppState {
         }
         effects.extend(topics.moving.keep_measuring_overlap(&mut work));
         effects.extend(topics.matching.keep_measuring_alternative(&mut work));
+        effects.extend(topics.matching.keep_judging(&mut work));
         effects
     }
 

@@ -56,7 +56,7 @@ impl AppState {
             JobKey::MeasureLevel(_) => true,
             // A number for a pose that has moved on is the one before the next.
             JobKey::Overlap => now.parts == stamp.parts,
-            JobKey::Align | JobKey::Match | JobKey::Sweep | JobKey::Compare => {
+            JobKey::Align | JobKey::Match | JobKey::Verdict | JobKey::Sweep | JobKey::Compare => {
                 now.parts == stamp.parts
             }
             JobKey::Measure | JobKey::Map => now == stamp,
@@ -113,6 +113,7 @@ impl AppState {
             }
             JobOutput::Matched(run) => return topics.matching.take_matched(work, run, took),
             JobOutput::Aligned(poses) => topics.matching.take_aligned(work, poses, took),
+            JobOutput::Judged(run) => topics.matching.take_judged(work, &run, took),
             JobOutput::Measured(measurement) => {
                 let matching = topics.matching;
                 matching.take_measured(work, measurement, stamp, took);
@@ -195,6 +196,7 @@ fn step_of(key: JobKey) -> (&'static str, Option<Role>) {
         JobKey::MeasureLevel(role) => ("measure", Some(role)),
         JobKey::Align => ("align", None),
         JobKey::Match => ("match", None),
+        JobKey::Verdict => ("judge", None),
         JobKey::Measure | JobKey::Overlap => ("measure", None),
         JobKey::Compare => ("compare", None),
         JobKey::Map => ("map", None),

@@ -34,6 +34,8 @@ pub enum JobKey {
     Align,
     /// Match of the two parts.
     Match,
+    /// The verdict of a match with another tolerance.
+    Verdict,
     /// Distances and overlap at a pose.
     Measure,
     /// Deviation of every node.
@@ -62,6 +64,7 @@ impl JobKey {
             Self::MeasureLevel(_) => "Measuring the reduction",
             Self::Align => "Aligning surface normals",
             Self::Match => "Matching",
+            Self::Verdict => "Judging the match",
             Self::Measure => "Measuring distances",
             Self::Compare => "Measuring the deviation",
             Self::Map => "Mapping the forming results",
@@ -158,6 +161,17 @@ pub struct SweepInput {
     pub rows: SweepRows,
 }
 
+/// Input of a new verdict.
+#[derive(Debug, Clone)]
+pub struct VerdictInput {
+    /// The two parts.
+    pub parts: PerRole<Arc<LoadedPart>>,
+    /// The match that is judged.
+    pub run: Arc<MatchRun>,
+    /// The tolerance, in length units of the crash part; 0 for the automatic one.
+    pub shape_tolerance: f64,
+}
+
 /// Input of a measurement.
 #[derive(Debug, Clone)]
 pub struct MeasureInput {
@@ -218,6 +232,8 @@ pub enum JobKind {
     Align(MatchInput),
     /// Matches the two parts.
     Match(MatchInput),
+    /// Judges a match with another tolerance.
+    Verdict(VerdictInput),
     /// Distances and overlap at a pose.
     Measure(MeasureInput),
     /// Deviation of every node.
@@ -244,6 +260,7 @@ impl JobKind {
             Self::MeasureLevel(input) => JobKey::MeasureLevel(input.role),
             Self::Align(_) => JobKey::Align,
             Self::Match(_) => JobKey::Match,
+            Self::Verdict(_) => JobKey::Verdict,
             Self::Measure(_) => JobKey::Measure,
             Self::Compare(_) => JobKey::Compare,
             Self::Map(_) => JobKey::Map,
@@ -291,6 +308,8 @@ pub enum JobOutput {
     Aligned(Arc<Vec<Start>>),
     /// The match ended, by itself or stopped.
     Matched(Arc<MatchRun>),
+    /// The match with its new verdict.
+    Judged(Arc<MatchRun>),
     /// Distances and overlap.
     Measured(Arc<Coverage>),
     /// Deviation of every node.

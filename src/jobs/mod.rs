@@ -19,7 +19,7 @@ pub use export::{Destination, ExportRequest, Exported};
 pub use facts::PartFacts;
 pub use job::{
     CompareInput, JobId, JobKey, JobKind, JobOutput, MapInput, MatchInput, MeasureInput,
-    MeasureLevelInput, MeasuredLevel, Recording, ReduceInput, Stamp, SweepInput,
+    MeasureLevelInput, MeasuredLevel, Recording, ReduceInput, Stamp, SweepInput, VerdictInput,
 };
 pub use live::{Live, LiveIteration, LiveSlot};
 pub use project::{OpenedPart, OpenedProject};

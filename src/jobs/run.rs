@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::export::export;
 use super::project::open_project;
-use super::{CompareInput, MapInput, MatchInput, MeasureInput, SweepInput};
+use super::{CompareInput, MapInput, MatchInput, MeasureInput, SweepInput, VerdictInput};
 use super::{
     JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource, Recording,
     ReduceInput,
@@ -103,6 +103,7 @@ impl Runner for PipelineRunner {
             JobKind::MeasureLevel(input) => measure_level(input, monitor),
             JobKind::Align(input) => align(&input, monitor),
             JobKind::Match(input) => run_match(&input, match_monitor),
+            JobKind::Verdict(input) => judge(&input, monitor),
             JobKind::Measure(input) => measure(&input, monitor),
             JobKind::Compare(input) => compare(&input, monitor),
             JobKind::Map(input) => map(&input, monitor),
@@ -203,6 +204,12 @@ fn run_match(input: &MatchInput, monitor: MatchMonitor<'_>) -> Result<JobOutput,
         monitor,
     )?;
     Ok(JobOutput::Matched(Arc::new(run)))
+}
+
+fn judge(input: &VerdictInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
+    let parts = input.parts.as_deref();
+    let run = match_parts::judged_anew(&input.run, input.shape_tolerance, parts, monitor)?;
+    Ok(JobOutput::Judged(Arc::new(run)))
 }
 
 fn measure(input: &MeasureInput, monitor: &Monitor) -> Result<JobOutput, JobError> {

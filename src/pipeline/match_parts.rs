@@ -132,7 +132,12 @@ pub fn match_parts<'a>(
     monitor.progress("match", 0, None);
     let mut outcome = registration::match_surfaces(&input, &settings, match_monitor)?;
     let check = assess_settings(parts, &settings);
-    settle(&mut outcome, source, target, &settings, &check);
+    // The tolerance of the verdict moves no pose: one that is judged anew is that of a new match.
+    let placing = AssessSettings {
+        shape_tolerance: None,
+        ..check
+    };
+    settle(&mut outcome, source, target, &settings, &placing);
     times.align_ms = prepare_ms + outcome.timings.align.as_secs_f64() * 1e3;
     times.match_ms = (outcome.timings.total - outcome.timings.align).as_secs_f64() * 1e3;
     let verify = Instant::now();
@@ -187,6 +192,26 @@ pub fn with_alternative(
         outcome: Arc::new(outcome),
         assessment: Arc::new(assessment),
         alternative: Some(alternative),
+        ..run.clone()
+    })
+}
+
+/// The run judged anew with another shape tolerance (crash length units, 0 for the automatic one) on the
+/// full meshes. Nothing is searched: a match with that tolerance finds the same pose.
+pub fn judged_anew(
+    run: &MatchRun,
+    shape_tolerance: f64,
+    parts: PerRole<&LoadedPart>,
+    monitor: &Monitor,
+) -> Result<MatchRun, PipelineError> {
+    let mut recipe = run.recipe.clone();
+    recipe.settings.shape_tolerance = shape_tolerance;
+    let (target, source) = (&parts.crash.surface, &parts.stamped.surface);
+    let check = assess_settings(parts, &recipe.settings);
+    let assessment = assess::assess(source, target, &run.outcome, &check, monitor)?;
+    Ok(MatchRun {
+        recipe,
+        assessment: Arc::new(assessment),
         ..run.clone()
     })
 }

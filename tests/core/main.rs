@@ -18,6 +18,7 @@ mod files_doc;
 mod foreign_files;
 mod inspect;
 mod jobs;
+mod judging;
 mod keyword;
 mod keyword_faults;
 mod keyword_large;

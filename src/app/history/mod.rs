@@ -4,6 +4,7 @@ mod apply;
 mod command;
 
 use std::cmp::Ordering;
+use std::sync::Arc;
 use std::time::Duration;
 
 pub use command::HistoryCommand;
@@ -59,7 +60,11 @@ impl StepKind {
                 _ => true,
             })
         };
-        let run = |document: &Document| document.result.as_ref().map(|r| r.run.clone());
+        // A match that was only judged anew is the same match.
+        let run = |document: &Document| {
+            let result = document.result.as_ref();
+            result.map(|result| Arc::as_ptr(&result.run.outcome))
+        };
         if differs(|old, new| old.source != new.source) {
             Self::Files
         } else if after.result.is_some() && run(before) != run(after) {

@@ -227,12 +227,18 @@ impl AppState {
                 "At 95 % of the area the surfaces differ by up to {}, more than the tolerance.",
                 self.document.length_text(by)
             ),
-            remedy: self.retry(
-                &format!("Allow {}", self.document.length_text(by)),
-                |recipe| {
-                    recipe.settings.allowance = by;
-                },
-            ),
+            remedy: Some(self.allow(by)),
         })
+    }
+
+    /// A shape tolerance that accepts a difference; the match is judged with it at once.
+    fn allow(&self, by: f64) -> (String, Vec<Command>) {
+        let digit = 10f64.powf(by.log10().floor() - 1.0);
+        let tolerance = (by / digit).ceil() * digit;
+        let mut recipe = self.document.recipe.clone();
+        recipe.settings.shape_tolerance = tolerance;
+        let label = format!("Allow {}", self.document.length_text(tolerance));
+        let command = MatchCommand::SetRecipe(Box::new(recipe));
+        (label, vec![command.into()])
     }
 }

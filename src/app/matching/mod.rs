@@ -3,6 +3,7 @@
 mod command;
 mod explain;
 mod first_poses;
+mod judge;
 mod measure;
 mod preview;
 mod result;
@@ -35,6 +36,8 @@ pub struct MatchState {
     measurement: Option<(Stamp, Shared<Coverage>)>,
     /// The state of the alternative that was measured last without being asked for.
     alternative_asked: Option<Stamp>,
+    /// The state and the shape tolerance of the verdict that was asked for last.
+    judging_asked: Option<(Stamp, f64)>,
     /// The tables of the last sweep.
     sweep: Option<Shared<Sweep>>,
     /// The rows of the running sweep, and where the next ones come from.

@@ -40,13 +40,14 @@ pub fn gear_ui(ui: &mut Ui) {
     }
 }
 
-/// Another method brings its own settings; start, rotation step, hand and allowance stay.
+/// Another method brings its own settings; start, rotation step, hand and tolerances stay.
 pub fn set_method(settings: &mut MatchSettings, method: Method) {
     let mut new = MatchSettings::of(method);
     new.starts.method = settings.starts.method;
     new.starts.angle_segment_deg = settings.starts.angle_segment_deg;
     new.hand = settings.hand;
     new.allowance = settings.allowance;
+    new.shape_tolerance = settings.shape_tolerance;
     *settings = new;
 }
 

@@ -1,13 +1,14 @@
 //! The verdict card and the matrix.
 
-use egui::{Button, Color32, RichText, Ui, vec2};
+use egui::{Button, Color32, DragValue, RichText, Ui, vec2};
 
 use super::explain;
 use crate::app::{Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, Section};
 use crate::assess::{Coverage, OneSided, Verdict};
-use crate::registration::group_starts;
+use crate::registration::{group_starts, limits};
 use crate::report::{PoseRecord, few_agree_words, number, start_counts};
 use crate::role::PerRole;
+use crate::settings::setting;
 use crate::text::{capital, fixed, sentence, vector, whole_percent};
 use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
@@ -30,7 +31,7 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let top = ui.cursor().top();
     card(ui, |ui| {
         if state.document.current_result().is_some() {
-            verdict_ui(ui, state, result);
+            verdict_ui(ui, state, result, commands);
             figures_ui(ui, state, result);
             alternatives_ui(ui, state, result, commands);
             explain::causes_ui(ui, state.causes(), commands);
@@ -84,7 +85,7 @@ fn verdict_color(palette: &Palette, verdict: Verdict) -> Color32 {
     }
 }
 
-fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
+fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mut Vec<Command>) {
     let palette = Palette::of(ui);
     let assessment = &result.run.assessment;
     let lengths = state.document.lengths();
@@ -103,6 +104,11 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
         ui.ctx().accesskit_node_builder(label.id, |node| {
             node.set_live(egui::accesskit::Live::Polite);
         });
+        // An alternative is told from the best pose, whatever the tolerance.
+        if result.alternative.is_none() {
+            let right = egui::Layout::right_to_left(egui::Align::Center);
+            ui.with_layout(right, |ui| tolerance_ui(ui, state, result, commands));
+        }
     });
     if let Some(score_ratio) = score_ratio(result) {
         let text = format!(
@@ -118,6 +124,59 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
     for statement in assessment.statements(lengths) {
         paragraph(ui, sentence(&statement));
     }
+}
+
+/// The tolerance the verdict was judged with; another one judges the match anew. From right to left.
+fn tolerance_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mut Vec<Command>) {
+    let (Some(setting), Some(shape)) = (
+        setting("shape-tolerance"),
+        result.run.assessment.shape.as_ref(),
+    ) else {
+        return;
+    };
+    let mut recipe = state.document.recipe.clone();
+    let tolerance = &mut recipe.settings.shape_tolerance;
+    let is_automatic = *tolerance == 0.0;
+    let usual = shape.tolerance.remainder;
+    let mut shown = if is_automatic { usual } else { *tolerance };
+    let is_free = state.jobs.locking_job().is_none();
+    ui.add_enabled_ui(is_free, |ui| {
+        let auto = chip(ui, "auto", is_automatic);
+        let auto = auto.on_hover_text("The larger of 1 mm and the thickness of the sheet");
+        if auto.clicked() {
+            *tolerance = 0.0;
+        }
+        ui.name_inputs(setting.label, |ui| {
+            let field = DragValue::new(&mut shown)
+                .range(limits::LENGTH)
+                .speed(0.01 * usual)
+                .max_decimals(4)
+                .suffix(state.document.lengths().suffix())
+                .update_while_editing(false)
+                .custom_parser(length_or_nothing);
+            let field = ui.add(field).on_hover_text(
+                "Shape tolerance: how far the shapes may differ besides springback. The verdict follows \
+                 at once; the pose stays. An empty field takes the automatic tolerance",
+            );
+            if field.changed() {
+                *tolerance = shown;
+            }
+        });
+        caption(ui, "within");
+    });
+    if recipe != state.document.recipe {
+        commands.push(MatchCommand::SetRecipe(Box::new(recipe)).into());
+    }
+}
+
+/// A typed length without its unit; nothing stands for 0.
+fn length_or_nothing(text: &str) -> Option<f64> {
+    let is_digit = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | 'e');
+    let number = text.trim().trim_end_matches(|c| !is_digit(c));
+    if number.is_empty() {
+        return Some(0.0);
+    }
+    number.parse().ok()
 }
 
 /// How much worse the shown alternative is than the best pose, 1 = equally good.
