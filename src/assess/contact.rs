@@ -125,6 +125,13 @@ impl Contacts {
         })
     }
 
+    /// Root mean square distance of the surfaces where they meet.
+    pub(super) fn typical_gap(&self) -> f64 {
+        let weight: f64 = self.list.iter().map(|c| c.weight).sum();
+        let gaps = self.list.iter().map(|c| c.weight * c.gap * c.gap);
+        (gaps.sum::<f64>() / weight).sqrt()
+    }
+
     /// How a small motion moves a place along a direction, turns in lengths at `radius`.
     pub(super) fn row(&self, point: &Point3, n: &Vector3) -> Six {
         let lever = ((point - self.center) / self.radius).cross(n);

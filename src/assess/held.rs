@@ -6,7 +6,9 @@ use rayon::prelude::*;
 use super::contact::Contacts;
 use super::rims::Rims;
 use super::settle::{settled, settled_within};
-use super::{AssessSettings, free_motions, overlap_limit, tolerance_of};
+use super::slide::slid;
+use super::sliding::{FreeMotion, FreeMotionKind, weak_motion};
+use super::{AssessSettings, overlap_limit, tolerance_of};
 use crate::geometry::Similarity;
 use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
 
@@ -14,10 +16,29 @@ use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
 const NEAR_SHARE: f64 = 0.03;
 /// Poses whose rims are compared at most.
 const MOST_POSES: usize = 64;
-/// Of these so many, with the best rims, are moved until they fit.
-const MOST_SETTLED: usize = 6;
-/// Another pose takes the place of the result if its rims lie apart by less than this share.
-const BETTER: f64 = 0.7;
+/// Poses that the search along the free motion adds.
+const MOST_SLID: usize = 8;
+/// Of all these so many, with the best rims, are moved until they fit.
+const MOST_SETTLED: usize = 8;
+/// Poses turned over or turned round, from which the search along the free motion begins as well.
+const MOST_ROOTS: usize = 3;
+/// Poses looked at for that.
+const MOST_ROOTS_TRIED: usize = 8;
+/// Alternatives that are told, unless the match found more.
+const MOST_ALTERNATIVES: usize = 5;
+/// Turns between poses of one family: cosine of 10°.
+const SAME_WAY: f64 = 0.985;
+/// Another pose takes the place of the result if so much more of the rims lies where it belongs, as a
+/// share of them.
+const MORE_HELD: f64 = 0.005;
+/// So much less of the rims where they belong makes a pose count as twice as bad.
+const TWICE_AS_BAD: f64 = 0.05;
+/// Distances of surfaces up to this share of the tolerance mean nothing.
+const NO_GAP: f64 = 0.1;
+/// Shares of the rims that differ by less than this do not tell hands apart.
+const SAME_SHARE: f64 = 0.02;
+/// Scores of the opposite hand above this many times the result's need no other opinion.
+const OPPOSITE_IS_CLEAR: f64 = 1.3;
 /// Its surfaces may lie apart by so many times as much.
 const AS_CLOSE: f64 = 1.5;
 /// It must meet this share of what the result meets.
@@ -42,10 +63,10 @@ pub fn held_by_rims(
     outcome: &MatchOutcome,
     settings: &AssessSettings,
 ) -> Option<HeldPose> {
-    let limit = overlap_limit(source, target, settings.allowance);
-    let found = &outcome.target_from_source;
-    free_motions(source, target, found, limit).motion?;
     let pair = Pair::new(source, target, settings);
+    let found = &outcome.target_from_source;
+    let limit = overlap_limit(source, target, settings.allowance).max(pair.springback);
+    let free = weak_motion(source, target, found, limit)?;
     let result = pair.settle(found)?;
     let tried = outcome
         .starts
@@ -58,22 +79,76 @@ pub fn held_by_rims(
         .chain(tried)
         .take(MOST_POSES)
         .collect();
-    let mut by_rims: Vec<(f64, Similarity)> = others
+    let roots = pair.roots(&result, &others, &free);
+    let slid = roots
+        .iter()
+        .flat_map(|(root, free)| slid(source, target, root, free, MOST_SLID));
+    let poses: Vec<Similarity> = slid.chain(others.iter().copied()).collect();
+    let mut by_rims: Vec<(f64, Similarity)> = poses
         .par_iter()
         .map(|pose| (pair.rims_apart(pose), *pose))
         .collect();
     by_rims.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let best = by_rims
-        .iter()
+    let by_rims = pair.apart_from_each_other(by_rims);
+    let rivals: Vec<Settled> = by_rims
+        .par_iter()
         .take(MOST_SETTLED)
-        .filter_map(|(_, pose)| pair.settle(pose))
-        .filter(|other| other.apart < BETTER * result.apart && other.is_as_close_as(&result, &pair))
-        .min_by(|a, b| a.apart.total_cmp(&b.apart));
-    let winner = best.unwrap_or(result);
+        .filter_map(|pose| pair.settle(pose))
+        .filter(|other| other.is_as_close_as(&result, &pair))
+        .collect();
+    let best = rivals
+        .iter()
+        .filter(|other| other.held > result.held + MORE_HELD)
+        .max_by(|a, b| a.held.total_cmp(&b.held));
+    let winner = best.copied().unwrap_or(result);
     Some(HeldPose {
         target_from_source: winner.pose,
-        alternatives: pair.alternatives(&winner, &result, outcome),
+        alternatives: pair.alternatives(&winner, &result, &rivals, outcome),
     })
+}
+
+/// Score of the opposite hand over that of the result, where the surfaces fit both: a hole on one side
+/// tells the left part from the right one. `None` where the surfaces decide, or the opposite hand found
+/// no pose.
+pub fn hand_by_rims(
+    source: &Surface,
+    target: &Surface,
+    outcome: &MatchOutcome,
+    settings: &AssessSettings,
+) -> Option<f64> {
+    let check = &outcome.mirror_check;
+    let mirrored = check.target_from_source.as_ref()?;
+    check
+        .score_ratio
+        .filter(|ratio| *ratio < OPPOSITE_IS_CLEAR)?;
+    let pair = Pair::new(source, target, settings);
+    let result = pair.measured(outcome.target_from_source)?;
+    let limit = overlap_limit(source, target, settings.allowance).max(pair.springback);
+    let free = weak_motion(source, target, &outcome.target_from_source, limit);
+    let slid = free.map_or_else(Vec::new, |free| {
+        slid(source, target, mirrored, &free, MOST_SLID)
+    });
+    let poses: Vec<Similarity> = slid.into_iter().chain([*mirrored]).collect();
+    let opposite = poses
+        .par_iter()
+        .filter_map(|pose| pair.settle(pose))
+        .filter(|other| other.is_as_close_as(&result, &pair))
+        .max_by(|a, b| a.held.total_cmp(&b.held))?;
+    let fits_as_well = result.gap <= AS_CLOSE * opposite.gap;
+    let behind = result.held - opposite.held;
+    // Nodes along the rims differ, so that two poses of one quality never hold quite the same share.
+    let behind = behind.signum() * (behind.abs() - SAME_SHARE).max(0.0);
+    fits_as_well.then(|| ratio_by_rims(behind, 0.0))
+}
+
+/// How much worse the second of two poses is by the share of the rims that lies where it belongs.
+fn ratio_by_rims(best: f64, other: f64) -> f64 {
+    let behind = (best - other) / TWICE_AS_BAD;
+    if behind >= 0.0 {
+        1.0 + behind
+    } else {
+        1.0 / (1.0 - behind)
+    }
 }
 
 /// What poses of two parts are compared by.
@@ -84,14 +159,17 @@ struct Pair<'a> {
     near: f64,
     /// Distance of surfaces that springback explains.
     springback: f64,
+    /// What may remain of the distance of rims.
+    remainder: f64,
 }
 
 /// A pose after its last step.
 #[derive(Clone, Copy)]
 struct Settled {
     pose: Similarity,
-    /// How far rims lie apart.
-    apart: f64,
+    /// Share of the smaller part's rims that lies where it belongs, less that of holes where the other
+    /// part is solid.
+    held: f64,
     /// Share of the smaller part that meets the other.
     met: f64,
     /// How far the surfaces lie apart there, root mean square.
@@ -106,12 +184,14 @@ impl Settled {
 
 impl<'a> Pair<'a> {
     fn new(source: &'a Surface, target: &'a Surface, settings: &'a AssessSettings) -> Self {
+        let tolerance = tolerance_of(target, settings);
         Self {
             source,
             target,
             settings,
             near: NEAR_SHARE * target.measures().diagonal,
-            springback: tolerance_of(target, settings).springback,
+            springback: tolerance.springback,
+            remainder: tolerance.remainder,
         }
     }
 
@@ -120,15 +200,66 @@ impl<'a> Pair<'a> {
         let roughly = settled_within(source, target, pose, self.settings, self.near);
         let pose = roughly.unwrap_or(*pose);
         let pose = settled(source, target, &pose, self.settings).unwrap_or(pose);
+        self.measured(pose)
+    }
+
+    /// The first of poses that would settle as one.
+    fn apart_from_each_other(&self, sorted: Vec<(f64, Similarity)>) -> Vec<Similarity> {
+        let corners = self.source.mesh().aabb().corners();
+        let mut kept: Vec<Similarity> = Vec::new();
+        for (_, pose) in sorted {
+            let is_near =
+                |other: &Similarity| pose.max_displacement(other, &corners) < 0.5 * self.near;
+            if kept.len() < MOST_SETTLED && !kept.iter().any(is_near) {
+                kept.push(pose);
+            }
+        }
+        kept
+    }
+
+    /// How well a pose fits.
+    fn measured(&self, pose: Similarity) -> Option<Settled> {
         let contacts = Contacts::find(self.source, self.target, &pose, self.near)?;
-        let weight: f64 = contacts.list.iter().map(|c| c.weight).sum();
-        let gaps = contacts.list.iter().map(|c| c.weight * c.gap * c.gap);
         Some(Settled {
             pose,
-            apart: self.rims_apart(&pose),
+            held: self.rims_held(&pose),
             met: contacts.share,
-            gap: (gaps.sum::<f64>() / weight).sqrt(),
+            gap: contacts.typical_gap(),
         })
+    }
+
+    /// The result and poses of other families whose surfaces lie as close: turned over, or turned round;
+    /// each with the motion that is free from there.
+    fn roots(
+        &self,
+        result: &Settled,
+        others: &[Similarity],
+        free: &FreeMotion,
+    ) -> Vec<(Similarity, FreeMotion)> {
+        let mut roots = vec![(result.pose, *free)];
+        let mut n_tried = 0;
+        for other in others {
+            let is_known = |(root, free): &(Similarity, FreeMotion)| {
+                let turn = other.rotation * root.rotation.transpose();
+                match free.kind {
+                    FreeMotionKind::Extruded => 0.5 * (turn.trace() - 1.0) > SAME_WAY,
+                    _ => free.direction.dot(&(turn * free.direction)) > SAME_WAY,
+                }
+            };
+            if roots.len() > MOST_ROOTS || n_tried == MOST_ROOTS_TRIED || roots.iter().any(is_known)
+            {
+                continue;
+            }
+            n_tried += 1;
+            let is_close = self
+                .measured(*other)
+                .is_some_and(|other| other.is_as_close_as(result, self));
+            if is_close {
+                // Axes and planes of the target stay where they are.
+                roots.push((*other, *free));
+            }
+        }
+        roots
     }
 
     /// Root mean square distance of the smaller part's rims from those of the other, at most `near`;
@@ -147,15 +278,34 @@ impl<'a> Pair<'a> {
         (share * mean_sq + alone * self.near * self.near).sqrt()
     }
 
+    /// Share of the smaller part's rims that lies within the tolerance of a rim of the other part, less
+    /// for what lies farther from it; holes where the other part is solid count against the pose.
+    fn rims_held(&self, pose: &Similarity) -> f64 {
+        let rims = Rims::find(self.source, self.target, pose, self.near);
+        let within = 2.0 * (self.remainder + rims.unremarkable());
+        let (mut held, mut paired) = (0.0, 0.0);
+        for pair in rims.pairs() {
+            let ratio = pair.gap / within;
+            held += pair.weight * (1.0 - ratio * ratio).max(0.0);
+            paired += pair.weight;
+        }
+        let share = if paired > 0.0 {
+            rims.share().min(1.0) * held / paired
+        } else {
+            0.0
+        };
+        share - rims.missing_share()
+    }
+
     /// The other poses with what their rims say of them.
     fn alternatives(
         &self,
         winner: &Settled,
         result: &Settled,
+        rivals: &[Settled],
         outcome: &MatchOutcome,
     ) -> Vec<Alternative> {
         let part = self.source.measures().into();
-        let facets = Rims::find(self.source, self.target, &winner.pose, self.near).unremarkable();
         let before = Alternative {
             target_from_source: outcome.target_from_source,
             score_ratio: 1.0,
@@ -163,23 +313,37 @@ impl<'a> Pair<'a> {
         };
         let is_other =
             |other: &Alternative| !same_pose(&other.target_from_source, &winner.pose, &part);
-        let is_replaced = winner.apart < result.apart;
+        let is_replaced = winner.held > result.held;
         let with_rims = |other: &Alternative| {
-            let apart = self.rims_apart(&other.target_from_source);
+            let ratio = ratio_by_rims(winner.held, self.rims_held(&other.target_from_source));
             Alternative {
-                score_ratio: other
-                    .score_ratio
-                    .max((apart + facets) / (winner.apart + facets)),
+                score_ratio: other.score_ratio.max(ratio),
                 ..*other
             }
         };
-        let others = outcome.alternatives.iter();
+        let little = NO_GAP * self.remainder;
+        let slid = rivals.iter().map(|rival| Alternative {
+            target_from_source: rival.pose,
+            score_ratio: ((rival.gap + little) / (winner.gap + little)).max(1.0),
+            ..before
+        });
+        let known = outcome.alternatives.iter().copied();
+        let others = known.chain(is_replaced.then_some(before)).chain(slid);
         let mut alternatives: Vec<Alternative> = others
-            .chain(is_replaced.then_some(&before))
             .filter(|other| is_other(other))
-            .map(with_rims)
+            .map(|other| with_rims(&other))
             .collect();
         alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
-        alternatives
+        let mut distinct: Vec<Alternative> = Vec::new();
+        for other in alternatives {
+            let is_known = |a: &Alternative| {
+                same_pose(&a.target_from_source, &other.target_from_source, &part)
+            };
+            if !distinct.iter().any(is_known) {
+                distinct.push(other);
+            }
+        }
+        distinct.truncate(MOST_ALTERNATIVES.max(outcome.alternatives.len()));
+        distinct
     }
 }

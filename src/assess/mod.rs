@@ -10,6 +10,7 @@ mod reason;
 mod rims;
 mod settle;
 mod shape;
+mod slide;
 mod sliding;
 mod uncertainty;
 mod verdict;
@@ -17,7 +18,7 @@ mod words;
 
 pub use ambiguity::{Ambiguity, Clarity, Twin, TwinAxis};
 pub use coverage::{Coverage, OneSided, coverage, overlap_limit, quick_overlap};
-pub use held::{HeldPose, held_by_rims};
+pub use held::{HeldPose, hand_by_rims, held_by_rims};
 pub use pose::{PoseKind, PoseStatement};
 pub use reason::Reason;
 pub use settle::settled;

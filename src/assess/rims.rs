@@ -288,10 +288,30 @@ fn pair(
 }
 
 /// A place along a rim.
-struct Place {
-    point: Point3,
-    tangent: Vector3,
-    normal: Vector3,
+pub(super) struct Place {
+    pub(super) point: Point3,
+    pub(super) tangent: Vector3,
+    /// Of the sheet.
+    pub(super) normal: Vector3,
+}
+
+/// About `n` places in the target's frame along those rims of a part that are wanted: of holes or of
+/// trims.
+pub(super) fn places(
+    (surface, target_from_surface): (&Surface, &Similarity),
+    n: usize,
+    is_wanted: impl Fn(bool) -> bool,
+) -> Vec<Place> {
+    let mut rims = rims_of(surface);
+    rims.retain(|rim| is_wanted(rim.is_hole));
+    let length: f64 = rims.iter().map(|rim| rim.length).sum();
+    if length <= 0.0 {
+        return Vec::new();
+    }
+    let found = along(&rims, length / n as f64).into_iter();
+    found
+        .map(|place| place.moved(target_from_surface))
+        .collect()
 }
 
 impl Place {

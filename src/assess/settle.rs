@@ -16,6 +16,8 @@ const RIM_SHARE: f64 = 0.015;
 const LEAST_PAIRED: f64 = 0.3;
 /// The misfit of the rims must shrink at least to this share.
 const BETTER: f64 = 0.7;
+/// The surfaces may come to lie apart by so many times as much, besides what may remain.
+const AS_CLOSE: f64 = 1.5;
 
 /// The pose moved so that surfaces, borders and holes fit together; `None` where that would move it by
 /// no more than the rims are cut into facets, where the rims do not say where the part belongs (parts
@@ -45,7 +47,7 @@ pub(super) fn settled_within(
     let chordal = |surface: &Surface| surface.measures().chordal_error;
     let noise = chordal(source).max(chordal(target)) + settings.allowance;
     let mut moved = *pose;
-    let mut first_misfit = None;
+    let (mut first_misfit, mut first_gap) = (None, None);
     for step in 0..=STEPS {
         let contacts = Contacts::find(source, target, &moved, reach)?;
         let rims = Rims::find(source, target, &moved, near);
@@ -55,8 +57,10 @@ pub(super) fn settled_within(
         let facets = rims.unremarkable();
         let misfit = misfit(&rims);
         let first = *first_misfit.get_or_insert(misfit);
+        let gap = contacts.typical_gap();
+        let most = AS_CLOSE * *first_gap.get_or_insert(gap) + noise + tolerance.remainder;
         if step == STEPS {
-            let fits = misfit < tolerance.remainder + facets;
+            let fits = misfit < tolerance.remainder + facets && gap < most;
             return (fits && misfit < BETTER * first).then_some(moved);
         }
         let evidence = ShapeEvidence {

@@ -12,6 +12,8 @@ use crate::search::ClosestPoint;
 /// Shapes that are exactly flat, cylindrical or extruded measure below 1e-5 on real meshes, an
 /// extrusion with one shallow bead above 1e-3.
 const FREE_BELOW: f64 = 1e-4;
+/// A motion is weak if it meets less than this fraction.
+const WEAK_BELOW: f64 = 3e-3;
 
 /// Nodes that are looked at; more do not change the eigenvalues by a percent.
 const MAX_NODES: usize = 4000;
@@ -68,6 +70,27 @@ pub fn free_motions(
     target_from_source: &Similarity,
     limit: f64,
 ) -> Freedom {
+    motions_below(FREE_BELOW, source, target, target_from_source, limit)
+}
+
+/// The motion that the overlap resists so little that noise, springback or facets may hide where it ends.
+pub(super) fn weak_motion(
+    source: &Surface,
+    target: &Surface,
+    target_from_source: &Similarity,
+    limit: f64,
+) -> Option<FreeMotion> {
+    motions_below(WEAK_BELOW, source, target, target_from_source, limit).motion
+}
+
+/// The motions that meet less than this fraction of the resistance of the stiffest one.
+fn motions_below(
+    below: f64,
+    source: &Surface,
+    target: &Surface,
+    target_from_source: &Similarity,
+    limit: f64,
+) -> Freedom {
     let held = held_points(source, target, target_from_source, limit);
     let total: f64 = held.iter().map(|(_, _, weight)| weight).sum();
     let nothing = Freedom {
@@ -104,11 +127,11 @@ pub fn free_motions(
         return nothing;
     }
     let free: Vec<SMatrix<f64, 6, 1>> = (0..6)
-        .filter(|&k| eigen.eigenvalues[k] < FREE_BELOW * stiffest)
+        .filter(|&k| eigen.eigenvalues[k] < below * stiffest)
         .map(|k| eigen.eigenvectors.column(k).into())
         .collect();
     Freedom {
-        motion: classify(&free, &normals, stiffest, center, radius),
+        motion: classify(&free, &normals, below * stiffest, center, radius),
         n_free: free.len(),
         weakest: (eigen.eigenvalues.min() / stiffest).max(0.0),
     }
@@ -138,7 +161,7 @@ fn held_points(
 fn classify(
     free: &[SMatrix<f64, 6, 1>],
     normals: &Matrix3,
-    stiffest: f64,
+    free_below: f64,
     center: Point3,
     radius: f64,
 ) -> Option<FreeMotion> {
@@ -147,7 +170,7 @@ fn classify(
     }
     // Shifts are free along directions that no normal has a part in.
     let eigen = SymmetricEigen::new(*normals);
-    let is_free = |k: usize| eigen.eigenvalues[k] < FREE_BELOW * stiffest;
+    let is_free = |k: usize| eigen.eigenvalues[k] < free_below;
     let n_shifts = (0..3).filter(|&k| is_free(k)).count();
     let along: Vector3 = eigen.eigenvectors.column(eigen.eigenvalues.imin()).into();
     let across: Vector3 = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into();

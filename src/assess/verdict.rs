@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Assessment, Clarity, PoseKind, PoseStatement, Reason, ShapeStatement};
+use super::{Assessment, Clarity, FreeMotionKind, PoseKind, PoseStatement, Reason, ShapeStatement};
 use crate::registration::{MatchOutcome, Termination};
 
 /// Whether the pose can be used.
@@ -39,7 +39,7 @@ pub(super) fn decide(
 ) {
     let of_pose = [
         ending(outcome),
-        sliding(assessment, shape),
+        sliding(assessment, shape, outcome.rivals_sought),
         ambiguity(assessment),
         uncertainty(assessment),
     ];
@@ -115,12 +115,21 @@ fn overlap(assessment: &Assessment, shape: &ShapeStatement) -> Option<Reason> {
     })
 }
 
-/// A motion that the surfaces do not resist, unless holes hold the part. Borders alone do not: those of
-/// a plate fit after half a turn.
-fn sliding(assessment: &Assessment, shape: &ShapeStatement) -> Option<Reason> {
+/// A motion that the surfaces do not resist, unless holes hold the part, or borders that were compared
+/// with those of all other poses along it: the borders of a plate fit after half a turn.
+fn sliding(assessment: &Assessment, shape: &ShapeStatement, rivals_sought: bool) -> Option<Reason> {
     let motion = assessment.freedom.motion?;
     let is_firm = assessment.pose.as_ref().is_some_and(PoseStatement::is_firm);
-    let is_held = is_firm && shape.rims.n_holes >= HOLES_THAT_HOLD;
+    let was_searched = !matches!(
+        motion.kind,
+        FreeMotionKind::Spherical | FreeMotionKind::Other
+    );
+    let is_clear = rivals_sought && was_searched && assessment.ambiguity.clarity == Clarity::Clear;
+    let rims = &shape.rims;
+    let borders_fit = rims
+        .offset
+        .is_some_and(|apart| apart <= shape.tolerance.remainder);
+    let is_held = is_firm && (rims.n_holes >= HOLES_THAT_HOLD || is_clear && borders_fit);
     (!is_held).then_some(Reason::Sliding { motion })
 }
 

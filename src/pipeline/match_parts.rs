@@ -256,6 +256,9 @@ pub(super) fn settle(
     } else if let Some(pose) = assess::settled(source, target, &outcome.target_from_source, check) {
         outcome.target_from_source = pose;
     }
+    if let Some(ratio) = assess::hand_by_rims(source, target, outcome, check) {
+        outcome.mirror_check.score_ratio = Some(ratio);
+    }
 }
 
 /// The first poses of "Align surface normals": centroids and mean normals aligned, both signs,

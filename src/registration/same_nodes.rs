@@ -75,6 +75,7 @@ pub(super) fn match_same_nodes(
         mirror_check: MirrorCheck {
             mirrored_rmse: fit.mirrored_rmse,
             score_ratio: None,
+            target_from_source: None,
         },
         timings: MatchTimings {
             total: begin.elapsed(),

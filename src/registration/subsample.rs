@@ -1,5 +1,7 @@
 //! Points of a surface that stand for its area: all nodes, or an even choice of them.
 
+use rayon::prelude::*;
+
 use super::icp::Sample;
 use super::surface::Surface;
 use crate::geometry::{Aabb, Point3};
@@ -60,7 +62,8 @@ pub(crate) fn morton_order(points: &[Point3]) -> Vec<u32> {
             (code, i as u32)
         })
         .collect();
-    keyed.sort_unstable();
+    // No two are equal, so the order does not depend on the threads.
+    keyed.par_sort_unstable();
     keyed.into_iter().map(|(_, i)| i).collect()
 }
 

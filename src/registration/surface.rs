@@ -5,10 +5,10 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::SymmetricEigen;
 
 use super::RegistrationError;
-use crate::geometry::chunks::for_chunks;
+use crate::geometry::chunks::{for_chunks, map_chunks};
 use crate::geometry::{
     Border, CleanMesh, CornerNormals, Matrix3, Point3, Similarity, Topology, TriMesh, Vector3,
-    VertexFans, corner_normals, face_normals, vertex_normals,
+    VertexFans, corner_normals, vertex_normals,
 };
 use crate::monitor::{Cancelled, Monitor};
 use crate::search::{Bvh, Feature, PointTree, SurfaceHit};
@@ -84,7 +84,10 @@ impl Surface {
         monitor: &Monitor,
     ) -> Result<Self, RegistrationError> {
         let CleanMesh { mesh, topology, .. } = clean;
-        let area = mesh.area();
+        let vectors = map_chunks(mesh.n_triangles(), Vector3::zeros(), monitor, |t| {
+            mesh.area_vector(t)
+        })?;
+        let area: f64 = vectors.iter().map(Vector3::norm).sum();
         if area <= 0.0 || !area.is_finite() {
             return Err(RegistrationError::EmptyMesh { side });
         }
@@ -93,8 +96,8 @@ impl Surface {
             || Bvh::build_for(mesh.clone(), monitor),
             || {
                 rayon::join(
-                    || Normals::of(&mesh, monitor),
-                    || measures(&mesh, &topology, area, monitor),
+                    || Normals::of(&mesh, &vectors, monitor),
+                    || measures(&mesh, &topology, (&vectors, area), monitor),
                 )
             },
         );
@@ -105,7 +108,7 @@ impl Surface {
             nodes: OnceLock::new(),
             vertex_of: (0..mesh.n_vertices() as u32).collect(),
             vertex_normals: normals.of_vertices,
-            vertex_areas: mesh.vertex_areas(),
+            vertex_areas: normals.areas,
             corner_normals: normals.of_corners,
             border_edges,
             border_vertices,
@@ -245,16 +248,24 @@ impl std::fmt::Debug for Surface {
 struct Normals {
     of_vertices: Vec<Vector3>,
     of_corners: CornerNormals,
+    /// A third of the area around each vertex.
+    areas: Vec<f64>,
 }
 
 impl Normals {
-    fn of(mesh: &TriMesh, monitor: &Monitor) -> Result<Self, Cancelled> {
-        let faces = face_normals(mesh, monitor)?;
+    fn of(mesh: &TriMesh, vectors: &[Vector3], monitor: &Monitor) -> Result<Self, Cancelled> {
+        let faces = map_chunks(vectors.len(), Vector3::zeros(), monitor, |t| {
+            vectors[t].try_normalize(0.0).unwrap_or_default()
+        })?;
         let fans = VertexFans::of(mesh, monitor)?;
         let sharp = SHARP_EDGE_DEG.to_radians();
         Ok(Self {
             of_vertices: vertex_normals(mesh, &faces, &fans, monitor)?,
             of_corners: corner_normals(mesh, &faces, &fans, sharp, monitor)?,
+            areas: map_chunks(mesh.n_vertices(), 0.0, monitor, |vertex| {
+                let around = fans.around(vertex).iter();
+                around.map(|&c| vectors[c as usize / 3].norm() / 3.0).sum()
+            })?,
         })
     }
 }
@@ -282,18 +293,18 @@ fn borders(mesh: &TriMesh, topology: &Topology) -> (Vec<u8>, Vec<bool>) {
 fn measures(
     mesh: &TriMesh,
     topology: &Topology,
-    area: f64,
+    (vectors, area): (&[Vector3], f64),
     monitor: &Monitor,
 ) -> Result<Measures, Cancelled> {
     let (of_triangles, chordal_error) = rayon::join(
         || {
             let centroid = mesh.centroid();
             monitor.check()?;
-            let frame = principal_frame(mesh, &centroid, area);
+            let frame = principal_frame(mesh, vectors, &centroid, area);
             monitor.check()?;
-            Ok((centroid, frame, mesh.mean_normal()))
+            Ok((centroid, frame, vectors.iter().sum::<Vector3>() / area))
         },
-        || chordal_error(mesh, topology, monitor),
+        || chordal_error(mesh, topology, vectors, monitor),
     );
     let (centroid, (principal_axes, principal_spread), mean_normal) = of_triangles?;
     monitor.check()?;
@@ -311,14 +322,19 @@ fn measures(
 
 /// Eigenvectors and square roots of the eigenvalues of the surface's covariance, exact over each
 /// triangle.
-fn principal_frame(mesh: &TriMesh, centroid: &Point3, area: f64) -> (Matrix3, Vector3) {
+fn principal_frame(
+    mesh: &TriMesh,
+    vectors: &[Vector3],
+    centroid: &Point3,
+    area: f64,
+) -> (Matrix3, Vector3) {
     let mut covariance = Matrix3::zeros();
-    for t in 0..mesh.n_triangles() {
+    for (t, vector) in vectors.iter().enumerate() {
         let [a, b, c] = mesh.corners(t).map(|p| p - centroid);
         let sum = a + b + c;
         let moment =
             a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose();
-        covariance += moment * (mesh.triangle_area(t) / 12.0);
+        covariance += moment * (vector.norm() / 12.0);
     }
     let eigen = SymmetricEigen::new(covariance / area);
     let mut order = [0, 1, 2];
@@ -332,7 +348,12 @@ fn principal_frame(mesh: &TriMesh, centroid: &Point3, area: f64) -> (Matrix3, Ve
 
 /// Over every smooth interior edge the sagitta h·φ/8 of an arc of span h (mean height of both
 /// triangles) that turns by the dihedral angle φ; half its square, averaged over the area.
-fn chordal_error(mesh: &TriMesh, topology: &Topology, monitor: &Monitor) -> Result<f64, Cancelled> {
+fn chordal_error(
+    mesh: &TriMesh,
+    topology: &Topology,
+    vectors: &[Vector3],
+    monitor: &Monitor,
+) -> Result<f64, Cancelled> {
     let (mut sum, mut share_sum) = (0.0, 0.0);
     for_chunks(topology.edges.len(), monitor, |range| {
         for edge in range {
@@ -341,7 +362,7 @@ fn chordal_error(mesh: &TriMesh, topology: &Topology, monitor: &Monitor) -> Resu
             };
             let [u, v] = topology.edges[edge].map(|v| mesh.positions()[v as usize]);
             let length = (v - u).norm();
-            let (a, b) = (mesh.area_vector(s as usize), mesh.area_vector(t as usize));
+            let (a, b) = (vectors[s as usize], vectors[t as usize]);
             let share = a.norm() + b.norm();
             let angle = a.cross(&b).norm().atan2(a.dot(&b));
             if length > 0.0 && angle < SHARP_EDGE_DEG.to_radians() {

@@ -163,6 +163,16 @@ impl Window {
         window
     }
 
+    /// Both parts, and a match that compares its pose with no others: a bent strip, which its ends alone
+    /// keep from sliding, then has a weak result.
+    pub fn with_both_and_no_rivals() -> Self {
+        let mut window = Self::with_both();
+        let mut recipe = window.state.document.recipe.clone();
+        recipe.settings.starts.wide_search = false;
+        window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
+        window
+    }
+
     pub fn open(&mut self, name: &str, role: Role) {
         self.apply(FileCommand::Open {
             paths: vec![PathBuf::from(name)],
@@ -376,7 +386,7 @@ fn a_deck_of_several_parts_asks_which_of_them_is_matched() {
 
 #[test]
 fn a_result_is_a_toast_only_where_its_card_is_not_seen() {
-    let mut window = Window::with_both();
+    let mut window = Window::with_both_and_no_rivals();
     window.act(Action::MatchOrStop);
     assert!(window.state.log.latest("result").is_some());
     assert_eq!(window.state.log.notices.toasts().count(), 0);

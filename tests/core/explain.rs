@@ -47,7 +47,7 @@ fn a_drag_is_measured_when_it_ends() {
 
 #[test]
 fn a_weak_match_has_causes_whose_remedies_do_something() {
-    let mut window = Window::with_both();
+    let mut window = Window::with_both_and_no_rivals();
     assert!(window.state.causes().is_empty());
     window.act(Action::MatchOrStop);
     let result = window.state.document.current_result().unwrap();
@@ -75,7 +75,7 @@ fn a_weak_match_has_causes_whose_remedies_do_something() {
 
 #[test]
 fn shapes_that_differ_are_explained_from_the_reason_not_from_its_words() {
-    let mut window = Window::with_both();
+    let mut window = Window::with_both_and_no_rivals();
     window.act(Action::MatchOrStop);
     let mut result = window.state.document.result.clone().unwrap();
     let mut run = (*result.run).clone();

@@ -23,7 +23,7 @@ use crate::registration::input::MatchInput;
 use crate::registration::observer::MatchMonitor;
 use crate::registration::result::{Side, StartOutcome};
 use crate::registration::settings::{DataSide, MatchSettings, Search};
-use crate::registration::subsample::all_nodes;
+use crate::registration::subsample::subsample;
 use crate::registration::surface::Surface;
 
 /// Distinct poses that are refined and compared.
@@ -45,6 +45,9 @@ const OVERHANG: f64 = 0.9;
 /// Where the wide search brings the poses near, exact partners are looked for within this share of the
 /// smaller part's diagonal, which bounds the time of a question.
 const REACH: f64 = 0.1;
+/// Nodes that the winner is refined on, all where there are no more: the mean of so many has an error far
+/// below what the meshes know.
+const N_FULL_POINTS: usize = 150_000;
 /// Poses of the opposite hand that are looked at, of those that survive the wide search.
 const N_OPPOSITE: usize = 3;
 
@@ -333,16 +336,16 @@ impl<'a> MultiStart<'a> {
         }
     }
 
-    /// Score of the opposite hand over that of `winner`: a part that is nearly its own mirror image fits
+    /// Score of the opposite hand over that of `winner`, and its pose: a part that is nearly its own mirror image fits
     /// well with the wrong hand, and only the comparison tells. The hand is looked for where the mirror
     /// images of the winner lie and, unless the winner `is_confident`, by the wide search. `None` if it
     /// found no pose.
-    pub(crate) fn mirror_ratio(
+    pub(crate) fn opposite_hand(
         &self,
         winner: &RankedCandidate,
         is_confident: bool,
         monitor: &MatchMonitor<'_>,
-    ) -> Result<Option<f64>, Cancelled> {
+    ) -> Result<Option<(f64, Similarity)>, Cancelled> {
         let (choice, candidates) = &self.choices[winner.choice];
         let mut starts = mirror_images(choice, &candidates[winner.candidate]);
         if let Some(wide) = self.wide.as_ref().filter(|_| !is_confident) {
@@ -352,17 +355,17 @@ impl<'a> MultiStart<'a> {
         let candidate = |start: &Start| Candidate::new(choice, *start, 0);
         let mut images: Vec<Candidate> = starts.iter().map(candidate).collect();
         run_coarse(choice, &mut images, &self.settings, monitor)?;
-        let best_ratio = |images: &[Candidate]| {
+        let best = |images: &[Candidate]| {
             let best = *ranking(images).first()?;
-            let (_, scores) = self.score(choice, &images[best]);
-            Some(scores.score() / winner.scores.score())
+            let (pose, scores) = self.score(choice, &images[best]);
+            Some((scores.score() / winner.scores.score(), pose))
         };
-        let coarse = best_ratio(&images);
-        if coarse.is_none_or(|ratio| ratio > CLEARLY_WORSE) {
+        let coarse = best(&images);
+        if coarse.is_none_or(|(ratio, _)| ratio > CLEARLY_WORSE) {
             return Ok(coarse);
         }
         refine(choice, &mut images, 1, &self.settings, monitor)?;
-        Ok(best_ratio(&images))
+        Ok(best(&images))
     }
 
     /// The pose of a candidate and its scores.
@@ -394,7 +397,7 @@ impl<'a> MultiStart<'a> {
         found
     }
 
-    /// Runs the winner on all points of the full meshes, if the settings ask for it.
+    /// Runs the winner on the nodes of the full meshes, if the settings ask for it.
     pub(crate) fn refine_winner(
         &mut self,
         winner: &RankedCandidate,
@@ -424,7 +427,7 @@ impl<'a> MultiStart<'a> {
             pairing
         };
         let rules = choice.rules(Stage::Full, &self.settings, pairing);
-        let mut points = Data::new(all_nodes(pairing.data, true));
+        let mut points = Data::new(subsample(pairing.data, N_FULL_POINTS));
         if flipped {
             points = points.flipped();
         }

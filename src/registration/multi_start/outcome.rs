@@ -34,12 +34,12 @@ pub(crate) fn decide(
     let refined = searches[best].refine_winner(&winner, monitor)?;
     let full = begin.elapsed();
     let hand_is_known = settings.hand == Hand::Either || searches[best].sizes_incompatible();
-    let mirror_ratio = if hand_is_known || monitor.stop_requested() {
+    let opposite = if hand_is_known || monitor.stop_requested() {
         None
     } else {
         // Starts of the other hand are no starts of this match, so nobody hears of them.
         let unobserved = monitor.monitor.without_observer();
-        searches[best].mirror_ratio(&winner, is_confident, &MatchMonitor::from(&unobserved))?
+        searches[best].opposite_hand(&winner, is_confident, &MatchMonitor::from(&unobserved))?
     };
     let Refined {
         target_from_source,
@@ -76,7 +76,8 @@ pub(crate) fn decide(
         scale_check: ScaleCheck::new(input.source, input.target, pair_scale),
         mirror_check: MirrorCheck {
             mirrored_rmse: pairs.map_or(run.rmse, |fit| fit.mirrored_rmse),
-            score_ratio: mirror_ratio,
+            score_ratio: opposite.map(|(ratio, _)| ratio),
+            target_from_source: opposite.map(|(_, pose)| pose),
         },
         timings,
     })

@@ -1,0 +1,504 @@
+//! The search along the motions that surfaces leave free: a plate, a rail or a cup lies on its counterpart
+//! at many places, and only borders and holes tell them apart.
+
+use nalgebra::{SMatrix, SVector};
+use rayon::prelude::*;
+
+use super::contact::solve;
+use super::rims::{Place, places};
+use super::sliding::{FreeMotion, FreeMotionKind};
+use crate::geometry::{Aabb, Point3, Rotation, Similarity, Vector3};
+use crate::registration::Surface;
+use crate::search::{FeatureGrid, GridSettings};
+
+/// Places along the rims of the smaller part, of which half lie on holes where there are any.
+const N_PLACES: usize = 128;
+/// Of these so many, spread over all rims, sort the poses of the lattice.
+const N_FIRST: usize = 48;
+/// Places along the rims of the larger part.
+const N_MODEL_PLACES: usize = 12_000;
+/// Distance beyond which rims have nothing to do with each other, as a share of the larger part's
+/// diagonal; the lattice is as fine.
+const CUT: f64 = 0.02;
+/// Shares of it in the rounds after the first.
+const CUTS: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
+/// Steps of each round.
+const N_STEPS: usize = 3;
+/// Share of the smaller part that may lie beside the other one.
+const BESIDE: f64 = 0.3;
+/// Poses of the lattice that go on.
+const MOST_REFINED: usize = 600;
+/// Largest number of poses of the lattice; it is made coarser where it would have more.
+const MOST_POSES: f64 = 400_000.0;
+/// Rims that run in directions farther apart than this are not the same: cosine of 37°.
+const PARALLEL: f32 = 0.8;
+/// The grid that finds the nearest rim.
+const GRID: GridSettings = GridSettings {
+    n_cells: 112,
+    margin: 0.1,
+};
+
+/// One direction of the family of poses.
+#[derive(Clone, Copy)]
+enum Generator {
+    /// A shift along a unit vector.
+    Shift(Vector3),
+    /// A turn about the unit direction of an axis through a point.
+    Turn(Vector3, Point3),
+}
+
+impl Generator {
+    fn motion(self, amount: f64) -> Similarity {
+        match self {
+            Self::Shift(direction) => Similarity {
+                translation: direction * amount,
+                ..Similarity::identity()
+            },
+            Self::Turn(axis, point) => {
+                let turn = Rotation::from_scaled_axis(axis * amount);
+                let rotation = *turn.to_rotation_matrix().matrix();
+                Similarity {
+                    rotation,
+                    translation: point.coords - rotation * point.coords,
+                    scale: 1.0,
+                }
+            }
+        }
+    }
+
+    /// Velocity of a point.
+    fn velocity(self, at: &Point3) -> Vector3 {
+        match self {
+            Self::Shift(direction) => direction,
+            Self::Turn(axis, point) => axis.cross(&(at - point)),
+        }
+    }
+}
+
+/// Amounts of one generator that are tried.
+struct Axis {
+    generator: Generator,
+    amounts: Vec<f64>,
+}
+
+/// Poses of the source along `free` from `pose`, those whose rims fit best first, at most `n` of them and
+/// no two near each other. Empty where a part has no rims or the motion is of no known kind.
+/// O(poses of the lattice).
+pub(super) fn slid(
+    source: &Surface,
+    target: &Surface,
+    pose: &Similarity,
+    free: &FreeMotion,
+    n: usize,
+) -> Vec<Similarity> {
+    let area = source.measures().area * pose.scale * pose.scale;
+    let moves_source = area <= 1.02 * target.measures().area;
+    let still = Similarity::identity();
+    let (data, model) = if moves_source {
+        ((source, pose), (target, &still))
+    } else {
+        ((target, &still), (source, pose))
+    };
+    let Some(search) = RimSearch::new(data, model) else {
+        return Vec::new();
+    };
+    let axes = axes(free, [box_of(data), box_of(model)], search.cut);
+    if axes.is_empty() {
+        return Vec::new();
+    }
+    let found = search.run(&axes, n);
+    let posed = found.into_iter().map(|motion| {
+        if moves_source {
+            motion.after(pose)
+        } else {
+            motion.inverse().after(pose)
+        }
+    });
+    posed.collect()
+}
+
+fn box_of((surface, pose): (&Surface, &Similarity)) -> Aabb {
+    let points = surface.mesh().positions().iter().map(|p| pose.apply(p));
+    let points: Vec<Point3> = points.collect();
+    Aabb::of_points(&points)
+}
+
+/// The lattice of motions of a family: shifts as far as most of the smaller part stays beside the larger
+/// one, turns all around.
+fn axes(free: &FreeMotion, [data, model]: [Aabb; 2], cut: f64) -> Vec<Axis> {
+    let direction = free.direction;
+    let [own, other] = [&data, &model].map(|aabb| 0.5 * aabb.diagonal());
+    let off = model.center() - data.center();
+    let room = (other - own).max(0.0) + BESIDE * own;
+    let other_axis = if direction.x.abs() < 0.7 {
+        Vector3::x()
+    } else {
+        Vector3::y()
+    };
+    let u = direction.cross(&other_axis).normalize();
+    let v = direction.cross(&u);
+    let (center, on_axis) = (data.center(), free.point);
+    let radius = |axis: &Vector3, at: &Point3| {
+        let arm = |p: Point3| axis.cross(&(p - at)).norm();
+        data.corners().into_iter().map(arm).fold(0.0, f64::max)
+    };
+    let kinds: Vec<(Generator, f64)> = match free.kind {
+        FreeMotionKind::Extruded => vec![(Generator::Shift(direction), 0.0)],
+        FreeMotionKind::Revolved => {
+            let r = radius(&direction, &on_axis);
+            vec![(Generator::Turn(direction, on_axis), r)]
+        }
+        FreeMotionKind::Cylindrical => {
+            let r = radius(&direction, &on_axis);
+            vec![
+                (Generator::Turn(direction, on_axis), r),
+                (Generator::Shift(direction), 0.0),
+            ]
+        }
+        FreeMotionKind::Flat => vec![
+            (
+                Generator::Turn(direction, center),
+                radius(&direction, &center),
+            ),
+            (Generator::Shift(u), 0.0),
+            (Generator::Shift(v), 0.0),
+        ],
+        FreeMotionKind::Spherical | FreeMotionKind::Other => Vec::new(),
+    };
+    let lattice = |step: f64| -> Vec<Axis> {
+        let axis = |&(generator, radius): &(Generator, f64)| {
+            let amounts = match generator {
+                Generator::Shift(along) => spread(off.dot(&along), room, step),
+                Generator::Turn(..) => {
+                    let turn = std::f64::consts::PI;
+                    let n = (2.0 * turn * radius / (2.0 * step))
+                        .ceil()
+                        .clamp(24.0, 720.0);
+                    (0..n as usize).map(|k| 2.0 * turn * k as f64 / n).collect()
+                }
+            };
+            Axis { generator, amounts }
+        };
+        kinds.iter().map(axis).collect()
+    };
+    let mut step = cut;
+    loop {
+        let found = lattice(step);
+        let count: f64 = found.iter().map(|axis| axis.amounts.len() as f64).product();
+        if count <= MOST_POSES || step > 8.0 * cut {
+            return found;
+        }
+        step *= 1.2;
+    }
+}
+
+/// Amounts `step` apart from `middle - room` to `middle + room`; 0 is among them where it lies within.
+fn spread(middle: f64, room: f64, step: f64) -> Vec<f64> {
+    let (low, high) = (
+        ((middle - room) / step).ceil(),
+        ((middle + room) / step).floor(),
+    );
+    (0..=(high - low).max(0.0) as usize)
+        .map(|k| (low + k as f64) * step)
+        .collect()
+}
+
+/// A motion of the smaller part, and how badly its rims fit.
+#[derive(Clone, Copy)]
+struct Candidate {
+    motion: Similarity,
+    loss: f64,
+}
+
+/// A place in the frame of the grid.
+#[derive(Clone, Copy)]
+struct Local {
+    point: Vector3,
+    tangent: Vector3,
+    across: Vector3,
+    weight: f64,
+}
+
+/// Rims of both parts in the frame of a grid over those of the larger one.
+struct RimSearch {
+    grid: FeatureGrid,
+    data: Vec<Local>,
+    model: Vec<Local>,
+    /// In the target's unit.
+    cut: f64,
+    extent: f64,
+}
+
+impl RimSearch {
+    fn new(data: (&Surface, &Similarity), model: (&Surface, &Similarity)) -> Option<Self> {
+        let model_places: Vec<Place> = places(model, N_MODEL_PLACES, |_| true);
+        let samples: Vec<(Point3, Vector3)> = model_places
+            .iter()
+            .map(|place| (place.point, place.tangent))
+            .collect();
+        let grid = FeatureGrid::build(&samples, &GRID)?;
+        let holes = places(data, N_PLACES / 2, |is_hole| is_hole);
+        let n_trims = if holes.is_empty() {
+            N_PLACES
+        } else {
+            N_PLACES / 2
+        };
+        let trims = places(data, n_trims, |is_hole| !is_hole);
+        let local = |place: &Place, weight: f64| Local {
+            point: (place.point - grid.origin()) * grid.scale(),
+            tangent: place.tangent,
+            across: place.tangent.cross(&place.normal),
+            weight,
+        };
+        let mut own: Vec<Local> = Vec::new();
+        for kind in [&holes, &trims] {
+            let weight = 1.0 / kind.len().max(1) as f64;
+            own.extend(kind.iter().map(|place| local(place, weight)));
+        }
+        if own.is_empty() {
+            return None;
+        }
+        Some(Self {
+            data: scattered(&own),
+            model: model_places.iter().map(|place| local(place, 1.0)).collect(),
+            cut: CUT * model.0.measures().diagonal * model.1.scale,
+            extent: data.0.measures().diagonal * data.1.scale,
+            grid,
+        })
+    }
+
+    fn run(&self, axes: &[Axis], n: usize) -> Vec<Similarity> {
+        let count: usize = axes.iter().map(|axis| axis.amounts.len()).product();
+        let first = &self.data[..N_FIRST.min(self.data.len())];
+        let mut field: Vec<(f64, u32)> = (0..count)
+            .into_par_iter()
+            .with_min_len(256)
+            .map(|index| {
+                let motion = motion(axes, &amounts(axes, index));
+                (self.loss(first, &motion, self.cut), index as u32)
+            })
+            .collect();
+        let by_loss = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        if field.len() > MOST_REFINED {
+            field.select_nth_unstable_by(MOST_REFINED, by_loss);
+            field.truncate(MOST_REFINED);
+        }
+        field.sort_unstable_by(by_loss);
+        let mut refined: Vec<Candidate> = field
+            .par_iter()
+            .map(|&(_, index)| self.refined(axes, amounts(axes, index as usize)))
+            .collect();
+        refined.sort_by(|a, b| a.loss.total_cmp(&b.loss));
+        let mut distinct: Vec<Similarity> = Vec::new();
+        for candidate in refined {
+            if distinct.len() == n {
+                break;
+            }
+            let is_near = |other: &Similarity| {
+                let places = self.data.iter().step_by(8);
+                let moved = places.map(|place| {
+                    let point = self.outer(&place.point);
+                    (candidate.motion.apply(&point) - other.apply(&point)).norm()
+                });
+                moved.fold(0.0, f64::max) < 0.5 * self.cut.max(0.01 * self.extent)
+            };
+            if !distinct.iter().any(is_near) {
+                distinct.push(candidate.motion);
+            }
+        }
+        distinct
+    }
+
+    fn refined(&self, axes: &[Axis], mut amounts: [f64; 3]) -> Candidate {
+        for share in CUTS {
+            for _ in 0..N_STEPS {
+                let step = self.step(axes, &amounts, share * self.cut);
+                for (amount, more) in amounts.iter_mut().zip(step) {
+                    *amount += more;
+                }
+            }
+        }
+        let motion = motion(axes, &amounts);
+        Candidate {
+            loss: self.loss(&self.data, &motion, CUTS[2] * self.cut),
+            motion,
+        }
+    }
+
+    fn outer(&self, local: &Vector3) -> Point3 {
+        self.grid.origin() + local / self.grid.scale()
+    }
+
+    /// The motion in the frame of the grid.
+    fn in_grid(&self, motion: &Similarity) -> Similarity {
+        let origin = self.grid.origin();
+        Similarity {
+            translation: (motion.apply(origin) - origin) * self.grid.scale(),
+            ..*motion
+        }
+    }
+
+    /// The rim of the larger part nearest to a place that was moved, with their distance along it.
+    fn beside(&self, point: &Vector3, tangent: &Vector3) -> Option<&Local> {
+        let at = [point.x as f32, point.y as f32, point.z as f32];
+        let found = &self.model[self.grid.nearest_index(at) as usize];
+        (found.tangent.dot(tangent).abs() as f32 > PARALLEL).then_some(found)
+    }
+
+    /// Mean over the places of the truncated squared distance across the nearest rim, as a share of the
+    /// square of the cut.
+    fn loss(&self, places: &[Local], motion: &Similarity, cut: f64) -> f64 {
+        let motion = self.in_grid(motion);
+        let per_cut = 1.0 / (cut * self.grid.scale());
+        let (mut sum, mut total) = (0.0, 0.0);
+        for place in places {
+            let point = motion.rotation * place.point + motion.translation;
+            let tangent = motion.rotation * place.tangent;
+            let away = self.beside(&point, &tangent).map_or(1.0, |rim| {
+                let off = point - rim.point;
+                let across = off.dot(&rim.across) * per_cut;
+                // Past the end of a rim the distance along it counts as well.
+                let apart = (off.norm() * per_cut - 1.0).max(0.0);
+                (across * across + apart * apart).min(1.0)
+            });
+            sum += place.weight * away;
+            total += place.weight;
+        }
+        sum / total
+    }
+
+    /// The Gauss–Newton step of the amounts, pairs farther apart than `cut` left out.
+    fn step(&self, axes: &[Axis], amounts: &[f64; 3], cut: f64) -> [f64; 3] {
+        let motion = motion(axes, amounts);
+        let local = self.in_grid(&motion);
+        let (mut matrix, mut right) = (SMatrix::<f64, 3, 3>::zeros(), SVector::<f64, 3>::zeros());
+        for place in &self.data {
+            let point = local.rotation * place.point + local.translation;
+            let tangent = local.rotation * place.tangent;
+            let Some(rim) = self.beside(&point, &tangent) else {
+                continue;
+            };
+            let gap = (point - rim.point).dot(&rim.across) / self.grid.scale();
+            let ratio = gap / cut;
+            let away = (point - rim.point).norm() / self.grid.scale();
+            if ratio.abs() >= 1.0 || away > 2.0 * cut {
+                continue;
+            }
+            let weight = place.weight * (1.0 - ratio * ratio).powi(2);
+            let at = self.outer(&point);
+            let mut row = SVector::<f64, 3>::zeros();
+            for (k, axis) in axes.iter().enumerate() {
+                let moving = frame(axes, amounts, k, axis.generator);
+                row[k] = moving.velocity(&at).dot(&rim.across);
+            }
+            matrix += row * row.transpose() * weight;
+            right -= row * (weight * gap);
+        }
+        let step = solve(&matrix, &right);
+        std::array::from_fn(|k| match axes.get(k).map(|axis| axis.generator) {
+            Some(Generator::Shift(_)) => step[k].clamp(-cut, cut),
+            Some(Generator::Turn(..)) => step[k].clamp(-0.1, 0.1),
+            None => 0.0,
+        })
+    }
+}
+
+/// Places in an order whose every beginning is spread over all of them.
+fn scattered(places: &[Local]) -> Vec<Local> {
+    let n = places.len();
+    // A step near the golden section of the count that shares no factor with it.
+    let mut step = (0.618 * n as f64) as usize;
+    let divisor = |mut a: usize, mut b: usize| {
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    while step > 1 && divisor(step, n) != 1 {
+        step -= 1;
+    }
+    (0..n).map(|k| places[k * step.max(1) % n]).collect()
+}
+
+/// The generator where the ones after it have moved the part: the first of the axes moves it first.
+fn frame(axes: &[Axis], amounts: &[f64; 3], k: usize, generator: Generator) -> Generator {
+    let Generator::Turn(axis, point) = generator else {
+        return generator;
+    };
+    let mut at = point;
+    for (later, amount) in axes.iter().zip(amounts).skip(k + 1) {
+        at = later.generator.motion(*amount).apply(&at);
+    }
+    Generator::Turn(axis, at)
+}
+
+fn amounts(axes: &[Axis], mut index: usize) -> [f64; 3] {
+    let mut found = [0.0; 3];
+    for (amount, axis) in found.iter_mut().zip(axes) {
+        *amount = axis.amounts[index % axis.amounts.len()];
+        index /= axis.amounts.len();
+    }
+    found
+}
+
+fn motion(axes: &[Axis], amounts: &[f64; 3]) -> Similarity {
+    let each = axes.iter().zip(amounts);
+    each.fold(Similarity::identity(), |done, (axis, amount)| {
+        axis.generator.motion(*amount).after(&done)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::TriMesh;
+
+    /// A flat sheet of 60 by 40 cells of 2 mm with three holes, of which the columns from `first` on are
+    /// there.
+    fn plate(first: usize) -> Surface {
+        let (columns, rows) = (60, 40);
+        let point = |i: usize| {
+            let (x, y) = (i % (columns + 1), i / (columns + 1));
+            Point3::new(2.0 * x as f64, 2.0 * y as f64, 0.0)
+        };
+        let holes = [(40, 6, 4), (50, 28, 6), (12, 20, 5)];
+        let is_solid = |(x, y): (usize, usize)| {
+            let within = |&(left, low, size): &(usize, usize, usize)| {
+                (left..left + size).contains(&x) && (low..low + size).contains(&y)
+            };
+            x >= first && !holes.iter().any(within)
+        };
+        let cells = (0..columns * rows).map(|i| (i % columns, i / columns));
+        let triangles = cells.filter(|&cell| is_solid(cell)).flat_map(|(x, y)| {
+            let a = (y * (columns + 1) + x) as u32;
+            let up = a + columns as u32 + 1;
+            [[a, a + 1, up + 1], [a, up + 1, up]]
+        });
+        let points = (0..(columns + 1) * (rows + 1)).map(point);
+        let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
+        Surface::new(&mesh, "source").unwrap()
+    }
+
+    #[test]
+    fn a_piece_of_a_plate_is_found_by_its_holes_whichever_side_it_is_on() {
+        let (whole, piece) = (plate(0), plate(35));
+        let free = FreeMotion {
+            kind: FreeMotionKind::Flat,
+            direction: Vector3::z(),
+            point: Point3::origin(),
+        };
+        let turn = Generator::Turn(Vector3::z(), Point3::new(90.0, 40.0, 0.0)).motion(2.0);
+        let shift = Generator::Shift(Vector3::new(-31.0, 12.0, 0.0)).motion(1.0);
+        let start = shift.after(&turn);
+        let off = |surface: &Surface, pose: &Similarity| {
+            let points = surface.mesh().positions().iter();
+            let moved = points.map(|p| (pose.apply(p) - p).norm());
+            moved.fold(0.0, f64::max)
+        };
+        assert!(off(&piece, &start) > 50.0);
+        for (source, target) in [(&piece, &whole), (&whole, &piece)] {
+            let found = slid(source, target, &start, &free, 4);
+            assert!(off(source, &found[0]) < 0.5, "{}", off(source, &found[0]));
+        }
+    }
+}
