@@ -76,10 +76,22 @@ fn describe(bench: &MapBench) -> String {
     };
     let [from, to] = speed.n_elements;
     let megabytes = speed.n_bytes as f64 / 1e6;
+    let more = [
+        speed
+            .cpu_ms
+            .map(|ms| format!(" ({ms:.0} ms of processor time)")),
+        speed.peak_bytes.map(|bytes| {
+            format!(
+                ", {:.0} MB more at the peak of the mapping",
+                bytes as f64 / 1e6
+            )
+        }),
+    ];
+    let [cpu, peak] = more.map(Option::unwrap_or_default);
     let _ = writeln!(
         text,
-        "\n{} → {} elements, {} layers, all quantities, {} threads: mapped in {:.0} ms; {:.0} MB of states \
-         written in {:.0} ms ({:.0} MB/s); results of both sides {:.0} MB",
+        "\n{} → {} elements, {} layers, all quantities, {} threads: mapped in {:.0} ms{cpu}; {:.0} MB of states \
+         written in {:.0} ms ({:.0} MB/s); results of both sides {:.0} MB{peak}",
         grouped(from),
         grouped(to),
         speed.n_layers,

@@ -16,32 +16,30 @@ pub fn rotated(tensor: &Tensor, rotation: &Matrix3) -> Tensor {
 pub struct Turn([[f64; 6]; 6]);
 
 impl Turn {
-    /// R·σ·Rᵀ is linear in σ: row by row what each component takes from all six.
+    /// R·σ·Rᵀ is linear in σ: column by column what each component gives to all six.
     pub fn new(rotation: &Matrix3) -> Self {
         const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
         let r = |i: usize, k: usize| rotation[(i, k)];
-        let mut rows = [[0.0; 6]; 6];
-        for (row, (i, j)) in rows.iter_mut().zip(ENTRIES) {
-            for (entry, (k, l)) in row.iter_mut().zip(ENTRIES) {
+        let mut columns = [[0.0; 6]; 6];
+        for (column, (k, l)) in columns.iter_mut().zip(ENTRIES) {
+            for (entry, (i, j)) in column.iter_mut().zip(ENTRIES) {
                 *entry = r(i, k) * r(j, l);
                 if k != l {
                     *entry += r(i, l) * r(j, k);
                 }
             }
         }
-        Self(rows)
+        Self(columns)
     }
 
     /// The tensor in the turned axes: R·σ·Rᵀ.
     #[inline]
     pub fn apply(&self, tensor: &Tensor) -> Tensor {
-        let mut turned = [0.0; 6];
-        for (sum, row) in turned.iter_mut().zip(&self.0) {
-            let lower = row[0] * tensor[0] + row[1] * tensor[1] + row[2] * tensor[2];
-            let upper = row[3] * tensor[3] + row[4] * tensor[4] + row[5] * tensor[5];
-            *sum = lower + upper;
-        }
-        turned
+        let [a, b, c, d, e, f] = &self.0;
+        let [xx, yy, zz, xy, yz, zx] = *tensor;
+        std::array::from_fn(|i| {
+            (a[i] * xx + b[i] * yy + c[i] * zz) + (d[i] * xy + e[i] * yz + f[i] * zx)
+        })
     }
 }
 
@@ -100,8 +98,21 @@ pub fn smallest_rotation(from: &Vector3, to: &Vector3) -> Option<Matrix3> {
     if axis.norm_squared() < 1e-30 || cos <= -1.0 + 1e-12 {
         return None;
     }
-    let cross = axis.cross_matrix();
-    Some(Matrix3::identity() + cross + cross * cross / (1.0 + cos))
+    let [x, y, z] = [axis.x, axis.y, axis.z];
+    let h = 1.0 / (1.0 + cos);
+    let (xx, yy, zz) = (h * x * x, h * y * y, h * z * z);
+    let (xy, yz, zx) = (h * x * y, h * y * z, h * z * x);
+    Some(Matrix3::new(
+        1.0 - yy - zz,
+        xy - z,
+        zx + y,
+        xy + z,
+        1.0 - xx - zz,
+        yz - x,
+        zx - y,
+        yz + x,
+        1.0 - xx - yy,
+    ))
 }
 
 #[cfg(test)]

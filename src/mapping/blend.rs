@@ -1,37 +1,91 @@
 //! The values of a target element from those of its partners.
 
 use super::element::Context;
-use super::field::Field;
+use super::field::{Field, Fields, from_local, tensor_of};
 use super::gather::Group;
-use crate::geometry::Vector3;
-use crate::geometry::tensor::{Tensor, Turn, normal_component, smallest_rotation};
+use super::source::PreparedSource;
+use crate::geometry::tensor::{Turn, normal_component, smallest_rotation};
+use crate::geometry::{Matrix3, Vector3};
 
 /// A stress component along the normal below this share of the stress is rounding.
 const NORMAL_STRESS_ROUNDING: f64 = 1e-9;
+/// A component below this share of the largest is rounding.
+const DUST: f64 = 4e-15;
 /// Part of an element's area that must have partners, and of these that must have a quantity, for it
 /// to carry their mean.
 pub(super) const LEAST_COVERAGE: f64 = 0.5;
 
-impl Context<'_> {
+/// What one source element gives to a target element.
+struct Share<'a> {
+    group: &'a Group,
+    fields: &'a Fields,
+    /// Its place in the patch of the fields.
+    slot: usize,
+    /// Area-weighted sum of places in its tangent plane.
+    offset: [f64; 2],
+    /// From the source element's frame into the target element's plane, in the target's axes.
+    turn: Turn,
+}
+
+/// The weighted mean of the partners' values, turned into the element's tangent plane.
+pub(super) struct Blend<'a> {
+    context: &'a Context<'a>,
+    element: usize,
+    is_copy: bool,
+    shares: Vec<Share<'a>>,
+}
+
+impl<'a> Blend<'a> {
+    /// `fields_of` gives the fields of a source at the element's layers. A copy is turned by the pose
+    /// alone.
+    pub fn new(
+        context: &'a Context<'a>,
+        element: usize,
+        groups: &'a [Group],
+        is_copy: bool,
+        fields_of: impl Fn(u32) -> &'a Fields,
+    ) -> Self {
+        let shares = groups.iter().filter_map(|group| {
+            let fields = fields_of(group.source);
+            let slot = fields.patch.slot(group.element)?;
+            let source = &context.sources[group.source as usize];
+            let out_of_frame = Matrix3::from_columns(fields.patch.frame(slot));
+            Some(Share {
+                group,
+                fields,
+                slot,
+                offset: fields
+                    .patch
+                    .in_plane(slot, &source.in_source(&group.offset)),
+                turn: Turn::new(&(turn(context, element, group) * out_of_frame)),
+            })
+        });
+        Self {
+            context,
+            element,
+            is_copy,
+            shares: shares.collect(),
+        }
+    }
+
     /// Area mean of the thickness; NaN if less than half of the area has one.
-    pub(super) fn thickness(&self, groups: &[Group]) -> f64 {
+    pub fn thickness(&self) -> f64 {
         let (mut sum, mut known, mut all) = (0.0, 0.0, 0.0);
         let mut range = (f64::INFINITY, f64::NEG_INFINITY);
-        for group in groups {
+        for share in &self.shares {
+            let group = share.group;
             all += group.area;
-            let source = &self.sources[group.source as usize];
-            let Some(field) = &source.thickness else {
+            let field = share.fields.thickness.as_ref();
+            let Some(field) = field.filter(|field| field.has(share.slot)) else {
                 continue;
             };
-            if !field.layers.is_present[group.element as usize] {
-                continue;
-            }
             known += group.area;
             sum += if group.uneven_thickness.is_finite() {
                 group.uneven_thickness
             } else {
-                field.weighted(group.element as usize, 0, group.area, &group.offset)[0]
+                field.weighted(share.slot, 0, group.area, &share.offset)[0]
             };
+            let source = &self.context.sources[group.source as usize];
             range = (
                 range.0.min(source.thickness_range.0),
                 range.1.max(source.thickness_range.1),
@@ -40,130 +94,150 @@ impl Context<'_> {
         if known <= LEAST_COVERAGE * all {
             return f64::NAN;
         }
-        (sum / known).clamp(range.0, range.1) * self.options.thickness_scale
+        (sum / known).clamp(range.0, range.1) * self.context.options.thickness_scale
     }
-}
 
-/// The weighted mean of the partners' layer values, turned into the element's tangent plane.
-pub(super) struct Blend<'a> {
-    pub context: &'a Context<'a>,
-    pub element: usize,
-    pub groups: &'a [Group],
-    pub is_copy: bool,
-}
-
-impl Blend<'_> {
-    pub(super) fn states(&self, n_layers: usize) -> Vec<[f64; 7]> {
-        let rule = self.context.target.rule_of[self.element] as usize;
+    /// Appends stress and plastic strain of each layer, inside a layer plane point by plane point;
+    /// nothing if less than half of the area has them.
+    pub fn states(&self, n_layers: usize, out: &mut Vec<[f64; 7]>) {
         let normal = self.context.target.mesh.normals()[self.element];
-        let mut values = self.blend(
-            n_layers,
-            self.context.target.planes(self.element),
-            |group| {
-                let field = self.context.sources[group.source as usize]
-                    .states
-                    .get(rule)?;
-                field.layers.is_present[group.element as usize].then_some(field)
-            },
-        );
-        for value in &mut values {
+        let rule = self.context.target.rule_of[self.element] as usize;
+        let n_plane = self.context.target.planes(self.element);
+        let first = out.len();
+        if self.is_copy {
+            self.copy(n_plane, out, |source, element| {
+                source.states_of(rule, element)
+            });
+        } else {
+            self.blend(n_layers, n_plane, |fields| fields.states.as_ref(), out);
+        }
+        for value in &mut out[first..] {
             value[6] = value[6].max(0.0);
             drop_rounding_along(value, &normal);
         }
-        values
     }
 
-    pub(super) fn strains(&self, n_layers: usize) -> Vec<[f64; 6]> {
-        let rule = if self.context.strains_at_surfaces {
-            0
+    /// Appends the strains of each layer; nothing if less than half of the area has them.
+    pub fn strains(&self, n_layers: usize, out: &mut Vec<[f64; 6]>) {
+        if self.is_copy {
+            let rule = self.context.strain_rule(self.element);
+            self.copy(1, out, |source, element| source.strains_of(rule, element));
         } else {
-            self.context.target.rule_of[self.element] as usize
-        };
-        self.blend(n_layers, 1, |group| {
-            let field = self.context.sources[group.source as usize]
-                .strains
-                .get(rule)?;
-            field.layers.is_present[group.element as usize].then_some(field)
-        })
+            self.blend(n_layers, 1, |fields| fields.strains.as_ref(), out);
+        }
     }
 
-    /// Layer by layer, inside a layer plane point by plane point. Empty if less than half of the area
-    /// has the quantity.
-    fn blend<'f, const N: usize>(
+    /// The values of the one partner as they are, turned by the pose.
+    fn copy<const N: usize>(
+        &self,
+        n_plane: usize,
+        out: &mut Vec<[f64; N]>,
+        values_of: impl Fn(&PreparedSource<'_>, usize) -> Option<Vec<[f64; N]>>,
+    ) {
+        let Some(share) = self.shares.first() else {
+            return;
+        };
+        let source = &self.context.sources[share.group.source as usize];
+        let Some(mut values) = values_of(source, share.group.element as usize) else {
+            return;
+        };
+        if share.group.is_flipped {
+            values.reverse();
+        }
+        let pose = source.pose.rotation;
+        if pose != Matrix3::identity() {
+            let turn = Turn::new(&pose);
+            for value in &mut values {
+                let turned = turn.apply(&tensor_of(value));
+                value[..6].copy_from_slice(&turned);
+            }
+        }
+        let of_layer = |value| std::iter::repeat_n(value, n_plane);
+        out.extend(values.into_iter().flat_map(of_layer));
+    }
+
+    fn blend<const N: usize>(
         &self,
         n_layers: usize,
         n_plane: usize,
-        field_of: impl Fn(&Group) -> Option<&'f Field<N>>,
-    ) -> Vec<[f64; N]> {
-        let all: f64 = self.groups.iter().map(|group| group.area).sum();
-        let present = self
-            .groups
-            .iter()
-            .filter_map(|group| Some((group, field_of(group)?)));
-        let present: Vec<_> = present
-            .map(|(group, field)| (group, field, self.turn(group)))
-            .collect();
-        let known: f64 = present.iter().map(|(group, ..)| group.area).sum();
+        field_of: impl Fn(&'a Fields) -> Option<&'a Field<N>>,
+        out: &mut Vec<[f64; N]>,
+    ) {
+        let all: f64 = self.shares.iter().map(|share| share.group.area).sum();
+        let present = || {
+            self.shares.iter().filter_map(|share| {
+                let field = field_of(share.fields)?;
+                field.has(share.slot).then_some((share, field))
+            })
+        };
+        let known: f64 = present().map(|(share, _)| share.group.area).sum();
         if known <= LEAST_COVERAGE * all {
-            return Vec::new();
+            return;
         }
-        let mut values = vec![[0.0; N]; n_layers * n_plane];
+        let first = out.len();
+        out.resize(first + n_layers * n_plane, [0.0; N]);
+        let values = &mut out[first..];
         for plane in 0..n_plane {
             let is_here = |group: &Group| {
-                n_plane == 1
-                    || group
-                        .quadrant
-                        .is_none_or(|quadrant| quadrant as usize == plane)
+                let quadrant = group.quadrant;
+                n_plane == 1 || quadrant.is_none_or(|quadrant| quadrant as usize == plane)
             };
-            let area: f64 = present
-                .iter()
-                .filter(|p| is_here(p.0))
-                .map(|p| p.0.area)
-                .sum();
+            let here = present().filter(|(share, _)| is_here(share.group));
+            let area: f64 = here.map(|(share, _)| share.group.area).sum();
             // A quadrant without partners takes the mean of the element.
             let area_or_all = if area > 0.0 { area } else { known };
-            for (group, field, turn) in &present {
+            for (share, field) in present() {
+                let group = share.group;
                 if area > 0.0 && !is_here(group) {
                     continue;
                 }
+                let weight = group.area / area_or_all;
+                let offset = share.offset.map(|x| x / area_or_all);
                 for layer in 0..n_layers {
                     let from = if group.is_flipped {
                         n_layers - 1 - layer
                     } else {
                         layer
                     };
-                    let element = group.element as usize;
-                    let mut value = field.weighted(element, from, group.area, &group.offset);
-                    if let Some(turn) = turn {
-                        let tensor: Tensor = std::array::from_fn(|i| value[i]);
-                        value[..6].copy_from_slice(&turn.apply(&tensor));
-                    }
+                    let mut value = field.weighted(share.slot, from, weight, &offset);
+                    let turned = from_local(&tensor_of(&value), &share.turn);
+                    value[..6].copy_from_slice(&turned);
                     let sum = &mut values[layer * n_plane + plane];
                     for (sum, value) in sum.iter_mut().zip(value) {
-                        *sum += value / area_or_all;
+                        *sum += value;
                     }
                 }
             }
         }
-        values
+        values.iter_mut().for_each(drop_dust);
     }
+}
 
-    /// The smallest rotation from the source element's tangent plane into this element's.
-    fn turn(&self, group: &Group) -> Option<Turn> {
-        if self.is_copy {
-            return None;
+/// The pose's rotation and after it the smallest one from the source element's tangent plane into the
+/// target element's.
+fn turn(context: &Context<'_>, element: usize, group: &Group) -> Matrix3 {
+    let source = &context.sources[group.source as usize];
+    let normal = source.mesh.normals()[group.element as usize];
+    let side = if group.is_flipped { -normal } else { normal };
+    let into_plane = smallest_rotation(&side, &context.target.mesh.normals()[element]);
+    let pose = source.pose.rotation;
+    into_plane.map_or(pose, |into_plane| into_plane * pose)
+}
+
+/// Sets components of the tensor to zero that turning it there and back has left.
+fn drop_dust<const N: usize>(value: &mut [f64; N]) {
+    let tensor = &mut value[..6];
+    let largest = tensor.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    for component in tensor {
+        if component.abs() <= DUST * largest {
+            *component = 0.0;
         }
-        let source = &self.context.sources[group.source as usize];
-        let normal = source.mesh.normals()[group.element as usize];
-        let side = if group.is_flipped { -normal } else { normal };
-        let normal = &self.context.target.mesh.normals()[self.element];
-        smallest_rotation(&side, normal).map(|turn| Turn::new(&turn))
     }
 }
 
 /// Sets a normal stress to zero that is rounding only; a larger one shows a wrong frame and stays.
 fn drop_rounding_along(value: &mut [f64; 7], normal: &Vector3) {
-    let tensor: Tensor = std::array::from_fn(|i| value[i]);
+    let tensor = tensor_of(value);
     let along = normal_component(&tensor, normal);
     let size = tensor.iter().map(|x| x * x).sum::<f64>().sqrt();
     if along == 0.0 || along.abs() > NORMAL_STRESS_ROUNDING * size {

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::field::Layered;
 use super::history::SourceHistory;
+use super::layered::Layered;
 use super::options::{MapOptions, Quantities};
 use super::source::SourcePart;
 use super::target::{Mapped, TargetPart};

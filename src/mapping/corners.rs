@@ -1,21 +1,50 @@
 //! Thickness at the corners of the target elements from the thickness of the elements.
 
-use super::field::Stencils;
-use super::source::thickness_field;
+use rayon::prelude::*;
+
+use super::field::{Field, FieldKind, Fields};
+use super::layered::PerElement;
+use super::patch::Patch;
 use super::target::TargetPart;
+
+/// Elements that one thread takes at a time.
+const CHUNK: usize = 1024;
 
 /// The linear field around each element at its corners, limited so that no corner leaves the range of
 /// the elements around; the mean of the corners is the element's value. NaN where it has none.
 pub(super) fn corner_thickness(thickness: &[f64], target: &TargetPart) -> Vec<[f64; 4]> {
     let mesh = &target.mesh;
-    let stencils = Stencils::new(mesh, &mesh.neighbours(), thickness);
-    let field = thickness_field(thickness, mesh, &stencils);
-    let of_element = |element: usize| {
-        let centre = mesh.centroids()[element];
-        mesh.corner_points(element).map(|corner| {
-            let offset = stencils.in_plane(element, &(corner - centre));
-            field.weighted(element, 0, 1.0, &offset)[0]
-        })
+    let neighbours = mesh.neighbours();
+    let of_chunk = |chunk: usize| -> Vec<[f64; 4]> {
+        let elements = chunk * CHUNK..((chunk + 1) * CHUNK).min(mesh.len());
+        let mut patch = Patch::default();
+        let numbers = elements.clone().map(|element| element as u32);
+        patch.load(numbers, mesh, &neighbours, thickness);
+        let mut field = Field::new(FieldKind::Scalars);
+        field.load(&PerElement(thickness), &patch);
+        let mut fields = Fields {
+            patch,
+            thickness: Some(field),
+            states: None,
+            strains: None,
+        };
+        fields.fit();
+        let Fields {
+            patch, thickness, ..
+        } = fields;
+        let at_corners = |slot: usize| {
+            let field = thickness.as_ref()?;
+            let corners = patch.corners(slot);
+            Some(corners.map(|offset| field.weighted(slot, 0, 1.0, &offset)[0]))
+        };
+        let slots = 0..elements.len();
+        slots
+            .map(|slot| at_corners(slot).unwrap_or([f64::NAN; 4]))
+            .collect()
     };
-    (0..mesh.len()).map(of_element).collect()
+    let chunks: Vec<Vec<[f64; 4]>> = (0..mesh.len().div_ceil(CHUNK))
+        .into_par_iter()
+        .map(of_chunk)
+        .collect();
+    chunks.concat()
 }

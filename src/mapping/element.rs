@@ -1,7 +1,10 @@
 //! One target element: its points, their partners, and the values they give.
 
+use std::ops::Range;
+
 use super::blend::Blend;
-use super::gather::{Centre, Group, gauge_of};
+use super::field::Fields;
+use super::gather::{Centre, Group, Search, Trail, gauge_of};
 use super::options::{MapMethod, MapOptions, Status};
 use super::points::PointRules;
 use super::source::{PartnerFilter, PreparedSource};
@@ -13,7 +16,7 @@ const SAME_CORNER: f64 = 1e-6;
 
 /// What all elements of a mapping share.
 pub(super) struct Context<'a> {
-    pub sources: &'a [PreparedSource],
+    pub sources: &'a [PreparedSource<'a>],
     pub target: &'a TargetPart,
     pub options: &'a MapOptions,
     pub senses: &'a [Option<bool>],
@@ -44,13 +47,126 @@ pub(super) struct Limits {
     pub uniqueness: f64,
 }
 
+/// Elements whose partners are known and whose values are not yet made.
+#[derive(Default)]
+struct Partners {
+    groups: Vec<Group>,
+    /// Of each element, where its groups end.
+    ends: Vec<usize>,
+    /// Of each element, whether it is the source's own.
+    is_copy: Vec<bool>,
+}
+
+/// Room that the chunks of one thread share.
+#[derive(Default)]
+pub(super) struct Scratch {
+    search: Search,
+    partners: Partners,
+    /// For each source and each rule of the target.
+    fields: Vec<Option<Fields>>,
+}
+
 impl Context<'_> {
-    /// Maps one element and appends what it found.
-    pub fn map_element(&self, element: usize, hints: &mut [Option<u32>], out: &mut Buffers) {
+    /// Maps elements that follow each other: first all partners, then the fields around these, then
+    /// the values.
+    pub fn map_elements(&self, elements: Range<usize>, scratch: &mut Scratch) -> Buffers {
+        let mut out = Buffers::default();
+        let Scratch {
+            search,
+            partners,
+            fields,
+        } = scratch;
+        partners.groups.clear();
+        partners.ends.clear();
+        partners.is_copy.clear();
+        search.trails.clear();
+        search
+            .trails
+            .resize_with(self.sources.len(), Trail::default);
+        for element in elements.clone() {
+            self.find_partners(element, search, partners, &mut out);
+        }
+        self.load_fields(elements.clone(), partners, fields);
+        let mut first = 0;
+        for (at, element) in elements.enumerate() {
+            let groups = &partners.groups[first..partners.ends[at]];
+            first = partners.ends[at];
+            if out.reports[at].status.has_values() {
+                let rule = self.target.rule_of[element] as usize;
+                let fields_of = |source: u32| -> &Fields {
+                    let of_source = &fields[self.field_index(source as usize, rule)];
+                    of_source.as_ref().expect("loaded for every group")
+                };
+                let blend = Blend::new(self, element, groups, partners.is_copy[at], fields_of);
+                if self.push_values(element, &blend, &mut out) {
+                    continue;
+                }
+                let report = &mut out.reports[at];
+                report.status = Status::NoData;
+                report.partner = None;
+            }
+            out.thickness.push(f64::NAN);
+            out.n_states.push(0);
+            out.n_strains.push(0);
+        }
+        out
+    }
+
+    /// Number of the rule at whose layers the strains of an element stand.
+    pub(super) fn strain_rule(&self, element: usize) -> usize {
+        if self.strains_at_surfaces {
+            0
+        } else {
+            self.target.rule_of[element] as usize
+        }
+    }
+
+    fn field_index(&self, source: usize, rule: usize) -> usize {
+        source * self.target.rules.len() + rule
+    }
+
+    /// Fits the fields that the elements need, each once.
+    fn load_fields(
+        &self,
+        elements: Range<usize>,
+        partners: &Partners,
+        fields: &mut Vec<Option<Fields>>,
+    ) {
+        let n_rules = self.target.rules.len();
+        fields.resize_with(self.sources.len() * n_rules, || None);
+        let rule_of = &self.target.rule_of[elements];
+        let mut rules: Vec<usize> = rule_of.iter().map(|&rule| rule as usize).collect();
+        rules.sort_unstable();
+        rules.dedup();
+        for (source, prepared) in self.sources.iter().enumerate() {
+            for &rule in &rules {
+                let strain_rule = if self.strains_at_surfaces { 0 } else { rule };
+                let own = (0..rule_of.len()).filter(|&at| rule_of[at] as usize == rule);
+                let groups = own.flat_map(|at| {
+                    let first = at.checked_sub(1).map_or(0, |before| partners.ends[before]);
+                    &partners.groups[first..partners.ends[at]]
+                });
+                let groups = groups.filter(|group| group.source as usize == source);
+                let of_rule = fields[self.field_index(source, rule)]
+                    .get_or_insert_with(|| prepared.fields(rule, strain_rule));
+                let wanted = groups.map(|group| group.element);
+                prepared.load(of_rule, wanted, (rule, strain_rule));
+            }
+        }
+    }
+
+    /// Finds the partners of one element and appends its report.
+    fn find_partners(
+        &self,
+        element: usize,
+        search: &mut Search,
+        partners: &mut Partners,
+        out: &mut Buffers,
+    ) {
         let mesh = &self.target.mesh;
         let centre_point = mesh.centroids()[element];
         let normal = mesh.normals()[element];
-        let centre = self.partner_of_centre(element, hints);
+        let centre = self.partner_of_centre(element, &mut search.trails);
         let reach = self.reach(element, centre.as_ref());
         let copied = centre.filter(|centre| self.is_same_element(element, centre));
         let found = match (copied, self.options.method, centre) {
@@ -60,23 +176,22 @@ impl Context<'_> {
             {
                 self.one_group(element, &near)
             }
-            _ => self.gather(element, reach, centre.as_ref(), hints),
+            _ => self.gather(element, reach, centre.as_ref(), search),
         };
         let owner = found.owner(self.sources);
-        let groups: Vec<Group> = match owner {
-            Some(owner) => {
-                let is_owned = |group: &&Group| gauge_of(self.sources, group) == owner;
-                found.groups.iter().filter(is_owned).copied().collect()
-            }
-            None => Vec::new(),
-        };
+        let first = partners.groups.len();
+        if let Some(owner) = owner {
+            let is_owned = |group: &&Group| gauge_of(self.sources, group) == owner;
+            partners.groups.extend(found.groups.iter().filter(is_owned));
+        }
+        let groups = &partners.groups[first..];
         let coverage = if found.area > 0.0 {
             found.covered / found.area
         } else {
             0.0
         };
         let mut status = found.status(coverage);
-        let partner = self.partner(centre.as_ref(), owner, &groups, copied.is_some());
+        let partner = self.partner(centre.as_ref(), owner, groups, copied.is_some());
         let uniqueness = match (&centre, status) {
             (Some(centre), Status::Mapped | Status::Partly) => {
                 self.uniqueness(element, centre, reach)
@@ -88,12 +203,11 @@ impl Context<'_> {
         } else if status.has_values() && uniqueness < 2.0 * (1.0 - AMBIGUOUS_RATIO) {
             status = Status::TwoLayers;
         }
-        if status.has_values() && !self.push_values(element, &groups, copied.is_some(), out) {
-            status = Status::NoData;
-        }
         if !status.has_values() {
-            self.push_nothing(out);
+            partners.groups.truncate(first);
         }
+        partners.ends.push(partners.groups.len());
+        partners.is_copy.push(copied.is_some());
         let apart = centre.map(|centre| centre.point.point - centre_point);
         let normal_distance = apart.map_or(f64::NAN, |apart| apart.dot(&normal));
         out.limits.push(Limits {
@@ -124,7 +238,7 @@ impl Context<'_> {
     }
 
     /// The nearest compatible point of all sources to the centre, within twice the largest distance.
-    fn partner_of_centre(&self, element: usize, hints: &mut [Option<u32>]) -> Option<Centre> {
+    fn partner_of_centre(&self, element: usize, trails: &mut [Trail]) -> Option<Centre> {
         let query = self.target.mesh.centroids()[element];
         let size = self.target.mesh.size(element);
         let mut best: Option<Centre> = None;
@@ -132,11 +246,13 @@ impl Context<'_> {
             let own = size.max(self.source_sizes[source]);
             let reach = 2.0 * self.options.max_distance.unwrap_or(own);
             let filter = self.filter(element, source);
-            let found = prepared.closest(&query, &filter, reach, hints[source]);
+            let trail = &mut trails[source];
+            let found = prepared.closest(&query, &filter, reach, trail.hint);
+            trail.distance = found.map(|(_, point)| point.distance_sq.sqrt());
             let Some((triangle, point)) = found else {
                 continue;
             };
-            hints[source] = Some(triangle);
+            trail.hint = Some(triangle);
             if best.is_none_or(|best| point.distance_sq < best.point.distance_sq) {
                 let source = source as u32;
                 best = Some(Centre { source, point });
@@ -206,45 +322,31 @@ impl Context<'_> {
         })
     }
 
-    fn push_nothing(&self, out: &mut Buffers) {
-        out.thickness.push(f64::NAN);
-        out.n_states.push(0);
-        out.n_strains.push(0);
-    }
-
     /// Appends the element's values; false, and nothing appended, if its partners have none.
-    fn push_values(
-        &self,
-        element: usize,
-        groups: &[Group],
-        is_copy: bool,
-        out: &mut Buffers,
-    ) -> bool {
-        let thickness = self.thickness(groups);
+    fn push_values(&self, element: usize, blend: &Blend<'_>, out: &mut Buffers) -> bool {
+        let thickness = blend.thickness();
         let layers = self.target.rules[self.target.rule_of[element] as usize].len();
-        let blend = Blend {
-            context: self,
-            element,
-            groups,
-            is_copy,
-        };
-        let mut states = blend.states(layers);
-        if !self.options.quantities.stress {
-            states.iter_mut().for_each(|value| value[..6].fill(0.0));
-        }
-        if !self.options.quantities.plastic_strain {
-            states.iter_mut().for_each(|value| value[6] = 0.0);
+        let (first_state, first_strain) = (out.states.len(), out.strains.len());
+        blend.states(layers, &mut out.states);
+        let quantities = self.options.quantities;
+        for value in &mut out.states[first_state..] {
+            if !quantities.stress {
+                value[..6].fill(0.0);
+            }
+            if !quantities.plastic_strain {
+                value[6] = 0.0;
+            }
         }
         let strain_layers = if self.strains_at_surfaces { 2 } else { layers };
-        let strains = blend.strains(strain_layers);
-        if thickness.is_nan() && states.is_empty() && strains.is_empty() {
+        blend.strains(strain_layers, &mut out.strains);
+        let n_states = out.states.len() - first_state;
+        let n_strains = out.strains.len() - first_strain;
+        if thickness.is_nan() && n_states == 0 && n_strains == 0 {
             return false;
         }
         out.thickness.push(thickness);
-        out.n_states.push(states.len() as u32);
-        out.states.extend_from_slice(&states);
-        out.n_strains.push(strains.len() as u32);
-        out.strains.extend_from_slice(&strains);
+        out.n_states.push(n_states as u32);
+        out.n_strains.push(n_strains as u32);
         true
     }
 }

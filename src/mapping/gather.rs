@@ -4,12 +4,16 @@ use super::blend::LEAST_COVERAGE;
 use super::element::Context;
 use super::options::{Overlap, Status};
 use super::points::{ElementPoint, MAX_ORDER};
-use super::source::{PreparedSource, SourcePoint};
+use super::source::{Around, PreparedSource, SourcePoint};
 use crate::geometry::{Point3, Vector3};
 
 /// A point beyond the border of the source by more than this share of the element's size is
 /// outside the sheet.
 const BORDER_REACH: f64 = 0.25;
+
+/// Elements with more points than this cover so many source elements that each point had better walk
+/// through the tree by itself.
+const MOST_COLLECTED: usize = 9;
 
 /// Points of one target element that take their values from one source element.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +25,7 @@ pub(super) struct Group {
     pub quadrant: Option<u8>,
     pub area: f64,
     /// Area-weighted sum of the partners' places relative to the source element's centroid.
-    pub offset: [f64; 2],
+    pub offset: Vector3,
     pub uneven_thickness: f64,
 }
 
@@ -37,6 +41,24 @@ pub(super) struct Found {
     pub outside: f64,
     /// A second source has a partner too.
     pub in_conflict: bool,
+}
+
+/// What earlier questions leave to later ones.
+#[derive(Default)]
+pub(super) struct Search {
+    pub trails: Vec<Trail>,
+    points: Vec<ElementPoint>,
+}
+
+/// The same for one source.
+#[derive(Default)]
+pub(super) struct Trail {
+    /// The last triangle found.
+    pub hint: Option<u32>,
+    /// Distance of the element's centre, if it has a partner.
+    pub distance: Option<f64>,
+    around: Around,
+    is_collected: bool,
 }
 
 /// The partner of the element's centre with its source.
@@ -56,7 +78,7 @@ impl Context<'_> {
             is_flipped: centre.point.is_flipped,
             quadrant: None,
             area: 1.0,
-            offset: [0.0; 2],
+            offset: Vector3::zeros(),
             uneven_thickness: f64::NAN,
         };
         debug_assert!((group.element as usize) < source.mesh.len());
@@ -75,20 +97,38 @@ impl Context<'_> {
         element: usize,
         reach: f64,
         centre: Option<&Centre>,
-        hints: &mut [Option<u32>],
+        search: &mut Search,
     ) -> Found {
         let mut found = Found::default();
         let mesh = &self.target.mesh;
         let corners = mesh.corner_points(element);
         let order = self.order(element, centre);
+        let Search { trails, points } = search;
+        points.clear();
         if mesh.is_triangle(element) {
-            for point in self.points.triangle(&corners, order) {
-                self.ask(element, reach, &point, hints, &mut found);
-            }
+            points.extend(self.points.triangle(&corners, order));
         } else {
-            for point in self.points.quad(&corners, order) {
-                self.ask(element, reach, &point, hints, &mut found);
-            }
+            points.extend(self.points.quad(&corners, order));
+        }
+        let centre = mesh.centroids()[element];
+        let radius_sq = points.iter().fold(0.0, |radius_sq: f64, point| {
+            radius_sq.max((point.position - centre).norm_squared())
+        });
+        for (source, trail) in trails.iter_mut().enumerate() {
+            let filter = self.filter(element, source);
+            trail.is_collected = trail.distance.is_some_and(|distance| {
+                let of_centre = (&centre, distance);
+                points.len() <= MOST_COLLECTED
+                    && self.sources[source].collect(
+                        of_centre,
+                        radius_sq.sqrt(),
+                        &filter,
+                        &mut trail.around,
+                    )
+            });
+        }
+        for point in points.iter() {
+            self.ask(element, reach, point, trails, &mut found);
         }
         found
     }
@@ -117,7 +157,7 @@ impl Context<'_> {
         element: usize,
         reach: f64,
         point: &ElementPoint,
-        hints: &mut [Option<u32>],
+        trails: &mut [Trail],
         found: &mut Found,
     ) {
         found.area += point.area;
@@ -127,11 +167,16 @@ impl Context<'_> {
         let mut is_far = false;
         for (source, prepared) in self.sources.iter().enumerate() {
             let filter = self.filter(element, source);
-            let nearest = prepared.closest(&point.position, &filter, 2.0 * reach, hints[source]);
+            let trail = &mut trails[source];
+            let nearest = if trail.is_collected {
+                prepared.closest_of(&trail.around, &point.position, &filter, 2.0 * reach)
+            } else {
+                prepared.closest(&point.position, &filter, 2.0 * reach, trail.hint)
+            };
             let Some((triangle, partner)) = nearest else {
                 continue;
             };
-            hints[source] = Some(triangle);
+            trail.hint = Some(triangle);
             if self.is_outside(element, &point.position, &partner) {
                 is_beyond_border = true;
             } else if partner.distance_sq > reach * reach {
@@ -192,8 +237,8 @@ impl Context<'_> {
             Overlap::Nearest => candidate.point.distance_sq < best.point.distance_sq,
             Overlap::Thicker => {
                 let thickness = |of: &Centre| {
-                    let corners = &self.sources[of.source as usize].corner_thickness;
-                    let corners = corners.get(of.point.element as usize);
+                    let source = &self.sources[of.source as usize];
+                    let corners = source.corner_thickness(of.point.element as usize);
                     corners.map_or(0.0, |corners| corners.iter().sum::<f64>())
                 };
                 thickness(candidate) > thickness(best)
@@ -204,10 +249,7 @@ impl Context<'_> {
     fn add_to_group(&self, partner: &Centre, point: &ElementPoint, groups: &mut Vec<Group>) {
         let source = &self.sources[partner.source as usize];
         let at = &partner.point;
-        let centroid = source.mesh.centroids()[at.element as usize];
-        let offset = source
-            .stencils
-            .in_plane(at.element as usize, &(at.point - centroid));
+        let offset = (at.point - source.mesh.centroids()[at.element as usize]) * point.area;
         let quadrant = Some(point.quadrant);
         let is_same = |group: &&mut Group| {
             group.source == partner.source
@@ -218,8 +260,7 @@ impl Context<'_> {
         let thickness = at.uneven_thickness * point.area;
         if let Some(group) = groups.iter_mut().find(is_same) {
             group.area += point.area;
-            group.offset[0] += offset[0] * point.area;
-            group.offset[1] += offset[1] * point.area;
+            group.offset += offset;
             group.uneven_thickness += thickness;
         } else {
             groups.push(Group {
@@ -228,7 +269,7 @@ impl Context<'_> {
                 is_flipped: at.is_flipped,
                 quadrant,
                 area: point.area,
-                offset: offset.map(|x| x * point.area),
+                offset,
                 uneven_thickness: thickness,
             });
         }
@@ -243,7 +284,12 @@ impl Context<'_> {
 
 impl Found {
     /// The sheet of one gauge that owns most of the covered area; of equal ones the first.
-    pub(super) fn owner(&self, sources: &[PreparedSource]) -> Option<(u32, u32)> {
+    pub(super) fn owner(&self, sources: &[PreparedSource<'_>]) -> Option<(u32, u32)> {
+        let first = gauge_of(sources, self.groups.first()?);
+        let mut others = self.groups.iter();
+        if others.all(|group| gauge_of(sources, group) == first) {
+            return Some(first);
+        }
         let mut areas: Vec<((u32, u32), f64)> = Vec::new();
         for group in &self.groups {
             let gauge = gauge_of(sources, group);
@@ -276,7 +322,7 @@ impl Found {
     }
 }
 
-pub(super) fn gauge_of(sources: &[PreparedSource], group: &Group) -> (u32, u32) {
+pub(super) fn gauge_of(sources: &[PreparedSource<'_>], group: &Group) -> (u32, u32) {
     let source = &sources[group.source as usize];
     (group.source, source.gauge[group.element as usize])
 }

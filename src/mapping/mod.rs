@@ -18,8 +18,11 @@ mod field;
 mod fill;
 mod gather;
 mod history;
+mod layered;
 mod layers;
+mod links;
 mod options;
+mod patch;
 mod points;
 mod rule;
 mod shells;
@@ -29,12 +32,13 @@ mod uniqueness;
 
 pub use checks::{Distribution, Histogram, MapBack, distribution, histogram_distance, map_back};
 pub use error::MappingError;
-pub use field::Layered;
 pub use history::{LawGap, LayerHistory, MappedHistory, SourceHistory};
+pub use layered::Layered;
 pub use layers::{LayerBalance, LayerMatrix};
+pub use links::{Links, Neighbours};
 pub use options::{MapMethod, MapOptions, NormalSense, Overlap, Quantities, Status};
 pub use rule::{LayerRule, RuleKind};
-pub use shells::{Neighbours, ShellMesh};
+pub use shells::ShellMesh;
 pub use source::SourcePart;
 pub use target::{ElementReport, Mapped, MappedLayers, Partner, TargetPart};
 
@@ -42,7 +46,7 @@ use rayon::prelude::*;
 
 use crate::geometry::Similarity;
 use crate::monitor::Monitor;
-use element::{Buffers, Context};
+use element::{Buffers, Context, Scratch};
 use points::PointRules;
 use source::{PartnerFilter, PreparedSource};
 
@@ -174,7 +178,7 @@ fn usual_size(mesh: &ShellMesh) -> f64 {
 
 /// Which side the normals agree on, by area, if they do.
 fn sense(
-    source: &PreparedSource,
+    source: &PreparedSource<'_>,
     target: &TargetPart,
     options: &MapOptions,
     source_size: f64,
@@ -222,13 +226,10 @@ fn map_chunks(context: &Context<'_>, monitor: &Monitor) -> Result<Vec<Buffers>, 
     let done = std::sync::atomic::AtomicU64::new(0);
     (0..n_chunks)
         .into_par_iter()
-        .map(|chunk| {
+        .map_init(Scratch::default, |scratch, chunk| {
             monitor.check()?;
-            let mut buffers = Buffers::default();
-            let mut hints = vec![None; context.sources.len()];
-            for element in chunk * CHUNK..((chunk + 1) * CHUNK).min(n_elements) {
-                context.map_element(element, &mut hints, &mut buffers);
-            }
+            let elements = chunk * CHUNK..((chunk + 1) * CHUNK).min(n_elements);
+            let buffers = context.map_elements(elements, scratch);
             let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
             monitor.progress("map elements", done * CHUNK as u64, Some(n_elements as u64));
             Ok(buffers)

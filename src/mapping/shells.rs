@@ -1,7 +1,8 @@
 //! Shell elements as the mapping needs them: corners, normals, sizes, neighbours, and the same
 //! sheet as triangles.
 
-use crate::geometry::{MeshError, Point3, Similarity, Topology, TriMesh, Vector3, Welded, weld};
+use super::links::{Links, Neighbours};
+use crate::geometry::{MeshError, Point3, Similarity, TriMesh, Vector3, Welded, weld};
 use crate::monitor::Monitor;
 
 /// Shells of one sheet, three or four corners each; a triangle repeats its third corner.
@@ -189,119 +190,18 @@ impl ShellMesh {
 
     /// The elements that share at least one merged node with each element, without itself.
     pub fn neighbours(&self) -> Neighbours {
-        let merged = self.merged_nodes();
-        let n_merged = merged.iter().filter(|&&v| v != u32::MAX).max();
-        let n_merged = n_merged.map_or(0, |&v| v as usize + 1);
-        let around_node = Lists::group(n_merged, || {
-            self.corners
-                .iter()
-                .enumerate()
-                .flat_map(|(element, corners)| {
-                    let distinct = if corners[2] == corners[3] { 3 } else { 4 };
-                    let nodes = corners[..distinct]
-                        .iter()
-                        .map(|&node| merged[node as usize]);
-                    nodes.map(move |node| (node as usize, element as u32))
-                })
-        });
-        let mut start = vec![0_u32];
-        let mut items = Vec::with_capacity(8 * self.len());
-        let mut found = Vec::new();
-        for (element, corners) in self.corners.iter().enumerate() {
-            found.clear();
-            for &node in corners {
-                let around = around_node.of(merged[node as usize] as usize);
-                found.extend(around.iter().filter(|&&other| other as usize != element));
-            }
-            found.sort_unstable();
-            found.dedup();
-            items.extend_from_slice(&found);
-            start.push(items.len() as u32);
-        }
-        Neighbours(Lists { start, items })
+        self.links().neighbours
     }
 
-    /// For each triangle of [`ShellMesh::triangles`], which of its edges (bit i: corner i to
-    /// i + 1) lie on the border of the sheet, and in bits 3 to 5 which of its corners do.
-    pub fn border_bits(&self, triangles: &TriMesh) -> Vec<u8> {
-        let welded = merged(triangles.clone());
-        let topology = Topology::of(&welded.mesh);
-        let mut is_border_node = vec![false; welded.mesh.n_vertices()];
-        let mut borders: Vec<[u32; 2]> = Vec::new();
-        for edge in topology.border_edges() {
-            let ends = topology.edges[edge];
-            borders.push(ends);
-            for end in ends {
-                is_border_node[end as usize] = true;
-            }
-        }
-        // Edges are listed in rising order.
-        let bits = |corners: &[u32; 3]| {
-            let at = corners.map(|v| welded.vertex_of[v as usize]);
-            let mut bits = 0;
-            for i in 0..3 {
-                let (u, v) = (at[i], at[(i + 1) % 3]);
-                if borders.binary_search(&[u.min(v), u.max(v)]).is_ok() {
-                    bits |= 1 << i;
-                }
-                if is_border_node
-                    .get(at[i] as usize)
-                    .is_some_and(|&border| border)
-                {
-                    bits |= 8 << i;
-                }
-            }
-            bits
-        };
-        triangles.triangles().iter().map(bits).collect()
+    /// Neighbours and border of the sheet, through doubled nodes.
+    pub fn links(&self) -> Links {
+        Links::of(self)
     }
 }
 
 /// The mesh with nodes at equal positions merged.
 fn merged(mesh: TriMesh) -> Welded {
     weld(mesh, &Monitor::silent()).expect("a silent monitor is never cancelled")
-}
-
-/// The elements around each element.
-#[derive(Debug, Clone)]
-pub struct Neighbours(Lists);
-
-impl Neighbours {
-    /// Elements that share a node with `element`, in rising order.
-    pub fn of(&self, element: usize) -> &[u32] {
-        self.0.of(element)
-    }
-}
-
-/// Lists of different lengths stored one after another.
-#[derive(Debug, Clone, Default)]
-struct Lists {
-    start: Vec<u32>,
-    items: Vec<u32>,
-}
-
-impl Lists {
-    /// Groups (list, item) pairs by list, items in the order they come.
-    fn group<I: Iterator<Item = (usize, u32)>>(n_lists: usize, pairs: impl Fn() -> I) -> Self {
-        let mut start = vec![0_u32; n_lists + 1];
-        for (list, _) in pairs() {
-            start[list + 1] += 1;
-        }
-        for list in 0..n_lists {
-            start[list + 1] += start[list];
-        }
-        let mut next = start.clone();
-        let mut items = vec![0; start[n_lists] as usize];
-        for (list, item) in pairs() {
-            items[next[list] as usize] = item;
-            next[list] += 1;
-        }
-        Self { start, items }
-    }
-
-    fn of(&self, list: usize) -> &[u32] {
-        &self.items[self.start[list] as usize..self.start[list + 1] as usize]
-    }
 }
 
 #[cfg(test)]
@@ -341,18 +241,21 @@ mod tests {
     #[test]
     fn neighbours_and_borders_look_through_doubled_nodes() {
         let mesh = strip();
-        let neighbours = mesh.neighbours();
-        assert_eq!(neighbours.of(0), [1]);
-        assert_eq!(neighbours.of(1), [0, 2]);
-        let (triangles, elements) = mesh.triangles();
-        let bits = mesh.border_bits(&triangles);
+        let links = mesh.links();
+        assert_eq!(links.neighbours.of(0), [1]);
+        assert_eq!(links.neighbours.of(1), [0, 2]);
         // The left square has three free edges, the middle one two, the triangle two.
-        let count = |element: u32| -> u32 {
-            let own = bits.iter().zip(&elements).filter(|(_, e)| **e == element);
-            own.map(|(bits, _)| (bits & 7).count_ones()).sum()
+        let count = |element: usize| {
+            let corners = mesh.corners()[element];
+            let n = if mesh.is_triangle(element) { 3 } else { 4 };
+            let ends = (0..n).map(|i| [corners[i], corners[(i + 1) % n]]);
+            ends.filter(|&ends| links.is_border_edge(element, &corners, ends))
+                .count()
         };
         assert_eq!([count(0), count(1), count(2)], [3, 2, 2]);
-        assert!(bits.iter().all(|bits| bits & 56 == 56));
+        let [a, _, c, _] = mesh.corners()[0];
+        assert!(!links.is_border_edge(0, &mesh.corners()[0], [a, c]));
+        assert!((0..9).all(|node| links.is_border_node(node)));
     }
 
     #[test]

@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
-
-use super::field::{Field, FieldKind, LayerValues, Layered, Stencils, is_weld_line};
+use super::field::{Field, FieldKind, Fields};
 use super::history::SourceHistory;
+use super::layered::{AtLayers, Layered, Numbers, PerElement};
 use super::layers::{LayerBalance, LayerMatrix};
+use super::links::{Links, Neighbours};
 use super::options::MapOptions;
+use super::patch::{Patch, is_weld_line};
 use super::rule::LayerRule;
-use super::shells::{Neighbours, ShellMesh};
-use crate::geometry::tensor::Turn;
-use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
-use crate::search::{Bvh, ClosestPoint, Feature, NormalFilter, SurfaceHit};
+use super::shells::ShellMesh;
+use crate::geometry::{Point3, Similarity, Vector3};
+use crate::search::{Bvh, ClosestPoint, Feature, Nearby, NormalFilter, SurfaceHit};
 
 /// Gauges smaller than this share of the sheet belong to their surroundings.
 const SMALLEST_GAUGE: f64 = 0.01;
@@ -74,30 +74,32 @@ pub(super) struct SourcePoint {
 }
 
 /// A source in the frame of the target, ready to be asked.
-pub(super) struct PreparedSource {
+pub(super) struct PreparedSource<'a> {
+    part: &'a SourcePart,
+    /// Fields stay in the source's frame until they reach an element of the target.
+    pub pose: Similarity,
     pub mesh: ShellMesh,
     bvh: Bvh,
     triangle_element: Vec<u32>,
-    border_bits: Vec<u8>,
+    links: Links,
     /// Which sheet of one gauge each element belongs to.
     pub gauge: Vec<u32>,
-    pub corner_thickness: Vec<[f64; 4]>,
     is_uneven: Vec<bool>,
-    pub thickness: Option<Field<1>>,
+    /// Mean thickness of each element, NaN where it is not known; empty if there is none.
+    thickness: Vec<f64>,
+    wants_thickness: bool,
     /// Smallest and largest thickness that occurs.
     pub thickness_range: (f64, f64),
     /// One for each layer rule of the target.
-    pub states: Vec<Field<7>>,
-    pub strains: Vec<Field<6>>,
-    pub stencils: Stencils,
-    pub neighbours: Neighbours,
+    states: Vec<AtLayers<'a, 7>>,
+    strains: Vec<AtLayers<'a, 6>>,
 }
 
-impl PreparedSource {
-    /// Moves, resamples and fits. `rules` are those of the target, `strain_rules` where it wants its
-    /// strains. O(elements · layers).
+impl<'a> PreparedSource<'a> {
+    /// Moves the sheet and makes it ready for questions. `rules` are those of the target,
+    /// `strain_rules` where it wants its strains. O(elements).
     pub fn new(
-        part: &SourcePart,
+        part: &'a SourcePart,
         target_from_source: &Similarity,
         rules: &[LayerRule],
         strain_rules: &[LayerRule],
@@ -105,31 +107,28 @@ impl PreparedSource {
     ) -> Self {
         let mesh = part.mesh.moved(target_from_source);
         let (triangles, triangle_element) = mesh.triangles();
-        let (bvh, (border_bits, neighbours)) = rayon::join(
-            || Bvh::build(triangles.clone()),
-            || (mesh.border_bits(&triangles), mesh.neighbours()),
-        );
         let thickness: Vec<f64> = part.thickness.iter().map(mean_thickness).collect();
-        let stencils = Stencils::new(&mesh, &neighbours, &thickness);
-        let gauge = gauges(&mesh, &neighbours, &thickness);
-        let turned = |field: LayerValues<7>| turn_all(field, FieldKind::Stress, target_from_source);
+        let (bvh, (links, gauge)) = rayon::join(
+            || Bvh::build(triangles),
+            || {
+                let links = mesh.links();
+                let gauge = gauges(&mesh, &links.neighbours, &thickness);
+                (links, gauge)
+            },
+        );
         let states = if options.quantities.needs_states() && part.states.n_present() > 0 {
-            let at = |rule: &LayerRule| turned(states_at(part, rule, options.stress_balance()));
-            let fit = |rule| Field::new(FieldKind::Stress, at(rule), &mesh, &stencils);
-            rules.iter().map(fit).collect()
+            let at = |rule| states_at(part, rule, options.stress_balance());
+            rules.iter().map(at).collect()
         } else {
             Vec::new()
         };
         let strains = if options.quantities.strain && part.strains.n_present() > 0 {
             let at = |rule: &LayerRule| {
                 let linear = |from: &LayerRule| LayerMatrix::new(from, rule, LayerBalance::Linear);
-                let values = part
-                    .strains
-                    .at_layers(rule, |from| std::array::from_fn(|_| linear(from)));
-                turn_all(values, FieldKind::Strain, target_from_source)
+                let matrices = |from: &LayerRule| std::array::from_fn(|_| linear(from));
+                part.strains.at_layers(rule, matrices)
             };
-            let fit = |rule| Field::new(FieldKind::Strain, at(rule), &mesh, &stencils);
-            strain_rules.iter().map(fit).collect()
+            strain_rules.iter().map(at).collect()
         } else {
             Vec::new()
         };
@@ -140,22 +139,82 @@ impl PreparedSource {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| {
                 (low.min(*t), high.max(*t))
             });
-        let is_wanted = options.quantities.thickness && thickness_range.0.is_finite();
         Self {
-            thickness: is_wanted.then(|| thickness_field(&thickness, &mesh, &stencils)),
+            part,
+            pose: *target_from_source,
+            wants_thickness: options.quantities.thickness && thickness_range.0.is_finite(),
             is_uneven: part.thickness.iter().map(is_uneven).collect(),
-            corner_thickness: part.thickness.clone(),
+            thickness,
             bvh,
             triangle_element,
-            border_bits,
+            links,
             gauge,
             thickness_range,
             states,
             strains,
-            stencils,
-            neighbours,
             mesh,
         }
+    }
+
+    /// Room for the fields at a layer rule of the target; strains are those of `strain_rule`.
+    pub fn fields(&self, rule: usize, strain_rule: usize) -> Fields {
+        Fields {
+            patch: Patch::default(),
+            thickness: self.wants_thickness.then(|| Field::new(FieldKind::Scalars)),
+            states: self.states.get(rule).map(|_| Field::new(FieldKind::Stress)),
+            strains: self
+                .strains
+                .get(strain_rule)
+                .map(|_| Field::new(FieldKind::Strain)),
+        }
+    }
+
+    /// Fits the fields anew around `elements`. O(elements · layers).
+    pub fn load(
+        &self,
+        fields: &mut Fields,
+        elements: impl Iterator<Item = u32>,
+        (rule, strain_rule): (usize, usize),
+    ) {
+        let patch = &mut fields.patch;
+        patch.load(
+            elements,
+            &self.part.mesh,
+            &self.links.neighbours,
+            &self.thickness,
+        );
+        if let Some(field) = &mut fields.thickness {
+            field.load(&PerElement(&self.thickness), patch);
+        }
+        if let Some(field) = &mut fields.states {
+            field.load(&self.states[rule], patch);
+            // Extrapolated plastic strains may be negative.
+            field.change(|value| value[6] = value[6].max(0.0));
+        }
+        if let Some(field) = &mut fields.strains {
+            field.load(&self.strains[strain_rule], patch);
+        }
+        fields.fit();
+    }
+
+    /// The layer values of an element as they are, in the source's frame; `None` if it has none.
+    pub fn states_of(&self, rule: usize, element: usize) -> Option<Vec<[f64; 7]>> {
+        self.states.get(rule).and_then(|at| copied(at, element))
+    }
+
+    /// The same for strains.
+    pub fn strains_of(&self, rule: usize, element: usize) -> Option<Vec<[f64; 6]>> {
+        self.strains.get(rule).and_then(|at| copied(at, element))
+    }
+
+    /// A displacement in the target's frame as it is in the source's.
+    pub fn in_source(&self, displacement: &Vector3) -> Vector3 {
+        self.pose.rotation.tr_mul(displacement) / self.pose.scale
+    }
+
+    /// The elements around each element.
+    pub fn neighbours(&self) -> &Neighbours {
+        &self.links.neighbours
     }
 
     /// The closest point within `max_distance` whose element's normal is within the angle of
@@ -167,31 +226,77 @@ impl PreparedSource {
         max_distance: f64,
         hint: Option<u32>,
     ) -> Option<(u32, SourcePoint)> {
-        let ask = |is_flipped: bool, reach: f64| {
-            let direction = if is_flipped {
-                -filter.normal
-            } else {
-                filter.normal
-            };
-            let cone = NormalFilter {
-                direction,
-                min_cos: filter.min_cos,
-            };
-            let hit = self.bvh.closest(query, reach, hint, Some(&cone))?;
-            Some((hit, is_flipped))
-        };
-        let found = match filter.sense {
-            Some(is_flipped) => ask(is_flipped, max_distance),
-            None => {
-                let same = ask(false, max_distance);
-                let reach = same.map_or(max_distance, |(hit, _)| hit.distance_sq.sqrt());
-                let other = ask(true, reach).filter(|(other, _)| {
-                    same.is_none_or(|(same, _)| other.distance_sq < same.distance_sq)
-                });
-                other.or(same)
+        self.nearer(filter, max_distance, |is_flipped, reach| {
+            let cone = filter.cone(is_flipped);
+            self.bvh.closest(query, reach, hint, Some(&cone))
+        })
+    }
+
+    /// Collects what can be closest to points within `radius` of `center`, whose own closest point is
+    /// at `distance`. False if it is too much to be worth it.
+    pub fn collect(
+        &self,
+        (center, distance): (&Point3, f64),
+        radius: f64,
+        filter: &PartnerFilter,
+        around: &mut Around,
+    ) -> bool {
+        around.distance = distance;
+        around.center = *center;
+        around.rounding = 1e-9 * radius;
+        let reach = (distance + 2.0 * radius) * (1.0 + 1e-6);
+        distance <= radius
+            && [false, true].into_iter().all(|is_flipped| {
+                let nearby = &mut around.nearby[usize::from(is_flipped)];
+                !filter.takes(is_flipped)
+                    || self
+                        .bvh
+                        .collect(center, reach, &filter.cone(is_flipped), nearby)
+            })
+    }
+
+    /// The same answer as [`Self::closest`] from what was collected.
+    pub fn closest_of(
+        &self,
+        around: &Around,
+        query: &Point3,
+        filter: &PartnerFilter,
+        max_distance: f64,
+    ) -> Option<(u32, SourcePoint)> {
+        // The closest point of the centre is a candidate for every point.
+        let known = around.distance + (query - around.center).norm() + around.rounding;
+        self.nearer(filter, max_distance.min(known), |is_flipped, reach| {
+            let nearby = &around.nearby[usize::from(is_flipped)];
+            self.bvh.closest_of(nearby, query, reach)
+        })
+    }
+
+    /// The nearer of the senses that count; of equal ones the one that is not flipped.
+    fn nearer(
+        &self,
+        filter: &PartnerFilter,
+        max_distance: f64,
+        ask: impl Fn(bool, f64) -> Option<SurfaceHit>,
+    ) -> Option<(u32, SourcePoint)> {
+        let mut best: Option<(SurfaceHit, bool)> = None;
+        for is_flipped in [false, true] {
+            if !filter.takes(is_flipped) {
+                continue;
             }
-        };
-        found.map(|(hit, is_flipped)| (hit.triangle, self.source_point(&hit, is_flipped)))
+            let reach = best.map_or(max_distance, |(hit, _)| hit.distance_sq.sqrt());
+            let hit = ask(is_flipped, reach);
+            let is_nearer =
+                |hit: &SurfaceHit| best.is_none_or(|(best, _)| hit.distance_sq < best.distance_sq);
+            if let Some(hit) = hit.filter(is_nearer) {
+                best = Some((hit, is_flipped));
+            }
+        }
+        best.map(|(hit, is_flipped)| (hit.triangle, self.source_point(&hit, is_flipped)))
+    }
+
+    /// Corner thicknesses of an element, as the part gives them.
+    pub fn corner_thickness(&self, element: usize) -> Option<&[f64; 4]> {
+        self.part.thickness.get(element)
     }
 
     /// Distance to the sheet whatever its normal, if within `max_distance`.
@@ -209,11 +314,15 @@ impl PreparedSource {
     fn source_point(&self, hit: &SurfaceHit, is_flipped: bool) -> SourcePoint {
         let triangle = hit.triangle as usize;
         let element = self.triangle_element[triangle];
-        let bits = self.border_bits[triangle];
+        let nodes = &self.bvh.mesh().triangles()[triangle];
+        let corners = self.mesh.corners()[element as usize];
         let is_on_border = match hit.feature {
             Feature::Face => false,
-            Feature::Edge(edge) => bits & (1 << edge) != 0,
-            Feature::Vertex(corner) => bits & (8 << corner) != 0,
+            Feature::Edge(edge) => {
+                let ends = [nodes[edge as usize], nodes[(edge as usize + 1) % 3]];
+                self.links.is_border_edge(element as usize, &corners, ends)
+            }
+            Feature::Vertex(corner) => self.links.is_border_node(nodes[corner as usize]),
         };
         let is_uneven = self
             .is_uneven
@@ -237,7 +346,7 @@ impl PreparedSource {
     fn interpolated_thickness(&self, hit: &SurfaceHit, element: u32) -> f64 {
         let nodes = self.bvh.mesh().triangles()[hit.triangle as usize];
         let corners = self.mesh.corners()[element as usize];
-        let values = self.corner_thickness[element as usize];
+        let values = self.part.thickness[element as usize];
         let at = |node: u32| {
             let corner = corners.iter().position(|&c| c == node);
             corner.map_or(f64::NAN, |corner| values[corner])
@@ -256,27 +365,49 @@ pub(super) struct PartnerFilter {
     pub sense: Option<bool>,
 }
 
+impl PartnerFilter {
+    fn takes(&self, is_flipped: bool) -> bool {
+        self.sense.is_none_or(|sense| sense == is_flipped)
+    }
+
+    fn cone(&self, is_flipped: bool) -> NormalFilter {
+        NormalFilter {
+            direction: if is_flipped {
+                -self.normal
+            } else {
+                self.normal
+            },
+            min_cos: self.min_cos,
+        }
+    }
+}
+
+/// The triangles of a source around the centre of a target element, for its points.
+#[derive(Default)]
+pub(super) struct Around {
+    /// Normals on the same side, on the opposite side.
+    nearby: [Nearby; 2],
+    center: Point3,
+    /// Distance of the centre.
+    distance: f64,
+    /// Generously, for sums of distances.
+    rounding: f64,
+}
+
 fn is_uneven(corners: &[f64; 4]) -> bool {
     let mean = mean_thickness(corners);
     mean.is_finite() && corners.iter().any(|t| (t - mean).abs() > 1e-9 * mean)
 }
 
-pub(super) fn thickness_field(
-    thickness: &[f64],
-    mesh: &ShellMesh,
-    stencils: &Stencils,
-) -> Field<1> {
-    let values = LayerValues {
-        n_layers: 1,
-        values: thickness.iter().map(|&t| [t]).collect(),
-        is_present: thickness.iter().map(|t| t.is_finite()).collect(),
-    };
-    Field::new(FieldKind::Scalars, values, mesh, stencils)
+fn copied<const N: usize>(at: &AtLayers<'_, N>, element: usize) -> Option<Vec<[f64; N]>> {
+    let mut values = Vec::with_capacity(at.n_layers());
+    at.has(element).then(|| at.push(element, &mut values))?;
+    Some(values)
 }
 
-/// Stresses by the chosen balance, plastic strains always linear and never negative.
-fn states_at(part: &SourcePart, rule: &LayerRule, balance: LayerBalance) -> LayerValues<7> {
-    let mut values = part.states.at_layers(rule, |from| {
+/// Stresses by the chosen balance, plastic strains always linear.
+fn states_at<'a>(part: &'a SourcePart, rule: &LayerRule, balance: LayerBalance) -> AtLayers<'a, 7> {
+    part.states.at_layers(rule, |from| {
         let stress = LayerMatrix::new(from, rule, balance);
         let plastic = LayerMatrix::new(from, rule, LayerBalance::Linear);
         std::array::from_fn(|i| {
@@ -286,24 +417,7 @@ fn states_at(part: &SourcePart, rule: &LayerRule, balance: LayerBalance) -> Laye
                 plastic.clone()
             }
         })
-    });
-    for value in &mut values.values {
-        value[6] = value[6].max(0.0);
-    }
-    values
-}
-
-fn turn_all<const N: usize>(
-    mut values: LayerValues<N>,
-    kind: FieldKind,
-    target_from_source: &Similarity,
-) -> LayerValues<N> {
-    if target_from_source.rotation != Matrix3::identity() {
-        let turn = Turn::new(&target_from_source.rotation);
-        let all = values.values.par_iter_mut().with_min_len(1024);
-        all.for_each(|value| *value = kind.turned(value, &turn));
-    }
-    values
+    })
 }
 
 /// Numbers the sheets of one gauge: elements that are linked by smooth neighbours. Small islands

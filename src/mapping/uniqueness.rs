@@ -53,7 +53,7 @@ impl Context<'_> {
     }
 }
 
-impl PreparedSource {
+impl PreparedSource<'_> {
     /// True if two elements are linked by elements that all lie within `radius` of the first.
     fn is_near_along_sheet(&self, first: u32, second: u32, radius: f64) -> bool {
         let centre = self.mesh.centroids()[first as usize];
@@ -64,7 +64,7 @@ impl PreparedSource {
             if element == second {
                 return true;
             }
-            for &other in self.neighbours.of(element as usize) {
+            for &other in self.neighbours().of(element as usize) {
                 let is_near = (self.mesh.centroids()[other as usize] - centre).norm() <= radius;
                 if is_near && !seen.contains(&other) {
                     seen.push(other);

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::load::{LoadSettings, LoadedPart, load_from};
 use super::map::{MapRecipe, MapRun, PlacedPart, map_parts};
+use super::process::{self, resident_bytes, with_peak};
 use super::{PipelineError, millis_since};
 use crate::formats::Memory;
 use crate::formats::keyword::card::Layout;
@@ -84,12 +85,17 @@ pub struct SpeedRow {
     pub n_threads: usize,
     /// Smallest time of the mapping, milliseconds.
     pub map_ms: f64,
+    /// Smallest processor time of it, all threads together, milliseconds; `None` where it is not known.
+    pub cpu_ms: Option<f64>,
     /// Smallest time of making the text of the states, milliseconds.
     pub write_ms: f64,
     /// Its size in bytes.
     pub n_bytes: usize,
     /// Bytes of the results of both sides.
     pub result_bytes: usize,
+    /// Memory that the mapping took at its peak, with its result, beside meshes and results of the
+    /// stamped part, bytes; `None` where it is not known.
+    pub peak_bytes: Option<usize>,
 }
 
 /// Tables of `bench --mapping`.
@@ -370,11 +376,20 @@ fn speed(monitor: &Monitor) -> Result<SpeedRow, PipelineError> {
         ..MapOptions::default()
     };
     let (mut map_ms, mut write_ms, mut n_bytes) = (f64::INFINITY, f64::INFINITY, 0);
+    let (mut cpu_ms, mut peak_bytes) = (None, None);
     let mut result_bytes = 0;
+    let before = resident_bytes();
     for _ in 0..N_RUNS {
-        let start = Instant::now();
-        let mapped = map(&[placed], &target, &options, monitor)?;
+        let (start, cpu) = (Instant::now(), process::cpu_ms());
+        let (mapped, peak) = with_peak(|| map(&[placed], &target, &options, monitor));
+        let mapped = mapped?;
         map_ms = map_ms.min(millis_since(start));
+        let used = process::cpu_ms().zip(cpu).map(|(now, then)| now - then);
+        cpu_ms = [cpu_ms, used].into_iter().flatten().reduce(f64::min);
+        let more = peak
+            .zip(before)
+            .map(|(peak, before)| peak.saturating_sub(before));
+        peak_bytes = peak_bytes.max(more);
         let start = Instant::now();
         n_bytes = states_text(&mapped, &rule, monitor)?.len();
         write_ms = write_ms.min(millis_since(start));
@@ -385,9 +400,11 @@ fn speed(monitor: &Monitor) -> Result<SpeedRow, PipelineError> {
         n_layers: N_LAYERS,
         n_threads: rayon::current_num_threads(),
         map_ms,
+        cpu_ms,
         write_ms,
         n_bytes,
         result_bytes,
+        peak_bytes,
     })
 }
 

@@ -14,6 +14,7 @@ pub mod map_bench;
 pub mod match_parts;
 pub mod outputs;
 pub mod preferences;
+mod process;
 pub mod project;
 pub mod reduce;
 pub mod robustness;

@@ -51,7 +51,7 @@ impl Bvh {
     }
 
     /// The exact answer for one triangle, if it counts.
-    fn exact(
+    pub(super) fn exact(
         &self,
         query: &Point3,
         max_distance: f64,
@@ -85,7 +85,7 @@ impl Bvh {
     }
 
     /// Of the marked triangles of a leaf, those that a filter lets through.
-    fn admitted(&self, filter: &NormalFilter, pack: &TrianglePack, marked: u32) -> u32 {
+    pub(super) fn admitted(&self, filter: &NormalFilter, pack: &TrianglePack, marked: u32) -> u32 {
         let cos = pack.normal_cos(&Query::at(&filter.direction)).to_array();
         let needles = pack.needles();
         let mut admitted = marked;

@@ -26,6 +26,11 @@ fn slack(local: &Vector3) -> f32 {
     16.0 * f32::EPSILON * (2.0 + local.amax() as f32)
 }
 
+/// A distance in local units from `local`, with all that `f32` may have lost to both sides.
+pub(super) fn reach_of(local: &Vector3, distance: f32) -> f32 {
+    (distance + 2.0 * slack(local)) * (1.0 + 4.0 * f32::EPSILON)
+}
+
 /// The winner of a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Nearest<T> {
@@ -110,6 +115,18 @@ where
         self.best
     }
 
+    /// The winner among the marked items of some leaves.
+    pub(super) fn run_over(
+        mut self,
+        leaves: impl Iterator<Item = (usize, u32)>,
+    ) -> Option<Nearest<T>> {
+        for (leaf, marked) in leaves {
+            self.visit(leaf, marked);
+        }
+        self.decide();
+        self.best
+    }
+
     /// Depth first, the nearest child first. Stack entries are the distance's bits above the link's,
     /// so that they sort as numbers: for positive floats, order of bits is order of values.
     fn descend(&mut self, root: Link, stack: &mut [u64]) {
@@ -117,7 +134,7 @@ where
         let mut link = root;
         loop {
             match link.leaf() {
-                Ok(leaf) => self.visit_leaf(leaf),
+                Ok(leaf) => self.visit(leaf, u32::MAX),
                 Err(node) => {
                     let [nearest, others @ ..] = self.children_by_distance(node);
                     if self.within_reach(nearest) {
@@ -166,10 +183,10 @@ where
     }
 
     #[inline]
-    fn visit_leaf(&mut self, leaf: usize) {
+    fn visit(&mut self, leaf: usize, marked: u32) {
         let pack = &self.tree.packs[leaf];
         let distances = pack.distance_sq(&self.query);
-        let within = distances.cmple(glam::Vec4::splat(self.bound_sq)).bitmask();
+        let within = marked & distances.cmple(glam::Vec4::splat(self.bound_sq)).bitmask();
         if within == 0 {
             return;
         }

@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::geometry::Point3;
+use crate::mapping::layered::{Layered, PerElement};
+use crate::mapping::shells::ShellMesh;
 
 /// n × n unit squares in the plane z = 0, their inner nodes moved a little.
 fn sheet(n: u32) -> ShellMesh {
@@ -28,51 +30,74 @@ fn sheet(n: u32) -> ShellMesh {
     ShellMesh::new(positions, corners, parts).unwrap()
 }
 
-fn scalars(mesh: &ShellMesh, f: impl Fn(&Point3) -> f64) -> LayerValues<1> {
-    LayerValues {
-        n_layers: 1,
-        values: mesh.centroids().iter().map(|c| [f(c)]).collect(),
-        is_present: vec![true; mesh.len()],
+fn scalars(mesh: &ShellMesh, f: impl Fn(&Point3) -> f64) -> Vec<f64> {
+    mesh.centroids().iter().map(f).collect()
+}
+
+/// The field of one number around every element; slots are element numbers.
+fn fitted(mesh: &ShellMesh, numbers: &[f64], gauge: &[f64]) -> Fields {
+    let mut patch = Patch::default();
+    patch.load(0..mesh.len() as u32, mesh, &mesh.neighbours(), gauge);
+    let mut field = Field::new(FieldKind::Scalars);
+    field.load(&PerElement(numbers), &patch);
+    let mut fields = Fields {
+        patch,
+        thickness: Some(field),
+        states: None,
+        strains: None,
+    };
+    fields.fit();
+    fields
+}
+
+/// The number as the first of six, which are not limited.
+struct First<'a>(&'a [f64]);
+
+impl Numbers<6> for First<'_> {
+    fn n_layers(&self) -> usize {
+        1
+    }
+
+    fn has(&self, _element: usize) -> bool {
+        true
+    }
+
+    fn push(&self, element: usize, out: &mut Vec<[f64; 6]>) {
+        out.push([self.0[element], 0.0, 0.0, 0.0, 0.0, 0.0]);
     }
 }
 
 #[test]
 fn a_linear_field_has_its_gradient() {
     let mesh = sheet(6);
-    let stencils = Stencils::new(&mesh, &mesh.neighbours(), &[]);
     let f = |p: &Point3| 3.0 + 2.0 * p.x - 0.7 * p.y;
-    let field = Field::new(FieldKind::Strain, pad(scalars(&mesh, f)), &mesh, &stencils);
-    for element in 0..mesh.len() {
-        let at = mesh.corner_points(element)[1];
-        let offset = stencils.in_plane(element, &(at - mesh.centroids()[element]));
-        let value = field.weighted(element, 0, 1.0, &offset)[0];
-        assert!((value - f(&at)).abs() < 1e-12, "{element}: {value}");
-    }
-}
-
-/// The number as the first of six, which are not limited; turning does nothing in a plane.
-fn pad(values: LayerValues<1>) -> LayerValues<6> {
-    LayerValues {
-        n_layers: 1,
-        values: values
-            .values
-            .iter()
-            .map(|v| [v[0], 0.0, 0.0, 0.0, 0.0, 0.0])
-            .collect(),
-        is_present: values.is_present,
+    let numbers = scalars(&mesh, f);
+    let mut fields = fitted(&mesh, &numbers, &[]);
+    let mut field = Field::new(FieldKind::Strain);
+    field.load(&First(&numbers), &fields.patch);
+    fields.strains = Some(field);
+    fields.fit();
+    let field = fields.strains.unwrap();
+    for slot in 0..mesh.len() {
+        let at = mesh.corner_points(slot)[1];
+        let offset = fields.patch.corners(slot)[1];
+        let axes = fields.patch.frame(slot);
+        let out_of_frame = Turn::new(&Matrix3::from_columns(axes));
+        let value = from_local(&field.weighted(slot, 0, 1.0, &offset), &out_of_frame);
+        assert!((value[0] - f(&at)).abs() < 1e-12, "{slot}: {value:?}");
+        assert!(value[1..].iter().all(|x| x.abs() < 1e-12), "{value:?}");
     }
 }
 
 #[test]
 fn a_limited_field_stays_within_its_neighbours() {
     let mesh = sheet(8);
-    let stencils = Stencils::new(&mesh, &mesh.neighbours(), &[]);
     let step = |p: &Point3| if p.x > 4.0 { 2.0 } else { 1.0 };
-    let field = Field::new(FieldKind::Scalars, scalars(&mesh, step), &mesh, &stencils);
-    for element in 0..mesh.len() {
-        for corner in mesh.corner_points(element) {
-            let offset = stencils.in_plane(element, &(corner - mesh.centroids()[element]));
-            let value = field.weighted(element, 0, 1.0, &offset)[0];
+    let fields = fitted(&mesh, &scalars(&mesh, step), &[]);
+    let field = fields.thickness.unwrap();
+    for slot in 0..mesh.len() {
+        for offset in fields.patch.corners(slot) {
+            let value = field.weighted(slot, 0, 1.0, offset)[0];
             assert!((1.0 - 1e-12..=2.0 + 1e-12).contains(&value), "{value}");
         }
     }
@@ -81,14 +106,9 @@ fn a_limited_field_stays_within_its_neighbours() {
 #[test]
 fn a_weld_line_is_no_slope() {
     let mesh = sheet(8);
-    let gauge: Vec<f64> = mesh
-        .centroids()
-        .iter()
-        .map(|c| if c.x > 4.0 { 2.0 } else { 1.0 })
-        .collect();
-    let stencils = Stencils::new(&mesh, &mesh.neighbours(), &gauge);
-    let values = scalars(&mesh, |p| if p.x > 4.0 { 2.0 } else { 1.0 });
-    let field = Field::new(FieldKind::Scalars, values, &mesh, &stencils);
+    let step = |p: &Point3| if p.x > 4.0 { 2.0 } else { 1.0 };
+    let gauge = scalars(&mesh, step);
+    let field = fitted(&mesh, &gauge, &gauge).thickness.unwrap();
     assert!(
         field
             .gradients
@@ -116,4 +136,35 @@ fn points_of_a_layer_are_averaged_and_layers_sorted() {
     assert_eq!(values, [[2.0], [5.0]]);
     assert_eq!(rule.weights(), [1.0, 1.0]);
     assert_eq!(layered.n_present(), 1);
+}
+
+#[test]
+fn a_spin_within_the_plane_is_the_smallest_rotation_between_planes() {
+    use crate::geometry::tensor::{smallest_rotation, von_mises_sq as global_mises_sq};
+    let mut mesh = sheet(3);
+    let bend = |p: &Point3| Point3::new(p.x, p.y, 0.2 * p.x * p.x - 0.1 * p.x * p.y);
+    let positions = mesh.positions().iter().map(bend).collect();
+    mesh = ShellMesh::new(positions, mesh.corners().to_vec(), mesh.parts().to_vec()).unwrap();
+    let mut patch = Patch::default();
+    patch.load(0..mesh.len() as u32, &mesh, &mesh.neighbours(), &[]);
+    let tensor = [120.0, -35.0, 4.0, 22.0, -7.0, 13.0];
+    let mut n_links = 0;
+    for slot in 0..mesh.len() {
+        for link in patch.links(slot) {
+            let other = link.slot as usize;
+            let into = patch.frame(other).map(|axis| axis.transpose());
+            let local = into_local(&tensor, &Turn::new(&Matrix3::from_rows(&into)));
+            let out = Turn::new(&Matrix3::from_columns(patch.frame(slot)));
+            let found = from_local(&spun(local, link.spin), &out);
+            let turn = smallest_rotation(&mesh.normals()[other], &mesh.normals()[slot]).unwrap();
+            let expected = Turn::new(&turn).apply(&tensor);
+            for (a, b) in found.iter().zip(expected) {
+                assert!((a - b).abs() < 1e-12 * 120.0, "{found:?} {expected:?}");
+            }
+            let squares = [von_mises_sq(&local), global_mises_sq(&tensor)];
+            assert!((squares[0] - squares[1]).abs() < 1e-12 * squares[1]);
+            n_links += 1;
+        }
+    }
+    assert!(n_links > 20);
 }

@@ -1,0 +1,180 @@
+//! Values of elements through their layers, as the source has them and at the layers of a target.
+
+use super::layers::LayerMatrix;
+use super::rule::LayerRule;
+
+/// Places that belong to one layer: points of a layer share their T but for rounding.
+const SAME_LAYER: f64 = 1e-4;
+/// `N` numbers at points through the thickness of each element; elements may differ in their layers
+/// or have none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layered<const N: usize> {
+    /// For each element its first value and its rule; `NO_RULE` where it has none.
+    records: Vec<(u32, u16)>,
+    rules: Vec<LayerRule>,
+    values: Vec<[f64; N]>,
+}
+
+const NO_RULE: u16 = u16::MAX;
+
+impl<const N: usize> Layered<N> {
+    /// No values for `n_elements` elements.
+    pub fn new(n_elements: usize) -> Self {
+        Self {
+            records: vec![(0, NO_RULE); n_elements],
+            rules: Vec::new(),
+            values: Vec::new(),
+        }
+    }
+
+    /// Sets the values of an element from its integration points (T, values) in any order: points of
+    /// one layer are averaged, layers sorted by T. Nothing is set without points, with a value that is
+    /// not finite, or beyond 65,534 different rules.
+    pub fn set(&mut self, element: usize, points: impl Iterator<Item = (f64, [f64; N])>) {
+        let mut points: Vec<(f64, [f64; N])> = points.collect();
+        let finite = |(t, values): &(f64, [f64; N])| {
+            t.is_finite() && values.iter().all(|value| value.is_finite())
+        };
+        if points.is_empty() || !points.iter().all(finite) {
+            return;
+        }
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut places = Vec::new();
+        let first = self.values.len();
+        let mut rest = &points[..];
+        while let Some(&(t, _)) = rest.first() {
+            let n = rest
+                .iter()
+                .take_while(|(other, _)| other - t < SAME_LAYER)
+                .count();
+            let mut mean = [0.0; N];
+            for (_, values) in &rest[..n] {
+                for (sum, value) in mean.iter_mut().zip(values) {
+                    *sum += value;
+                }
+            }
+            places.push(t);
+            self.values.push(if n == 1 {
+                rest[0].1
+            } else {
+                mean.map(|sum| sum / n as f64)
+            });
+            rest = &rest[n..];
+        }
+        let known = self.rules.iter().position(|rule| rule.has_places(&places));
+        let rule = known.unwrap_or_else(|| {
+            self.rules.push(LayerRule::from_places(places));
+            self.rules.len() - 1
+        });
+        if rule < NO_RULE as usize {
+            self.records[element] = (first as u32, rule as u16);
+        }
+    }
+
+    /// Number of elements, with and without values.
+    pub fn n_elements(&self) -> usize {
+        self.records.len()
+    }
+
+    /// Number of elements that have values.
+    pub fn n_present(&self) -> usize {
+        self.records
+            .iter()
+            .filter(|record| record.1 != NO_RULE)
+            .count()
+    }
+
+    /// The different rules that occur.
+    pub fn rules(&self) -> &[LayerRule] {
+        &self.rules
+    }
+
+    /// Rule and layer values of an element, rising in T; `None` if it has none.
+    pub fn of(&self, element: usize) -> Option<(&LayerRule, &[[f64; N]])> {
+        let (first, rule) = self.records[element];
+        let rule = self.rules.get(rule as usize)?;
+        Some((rule, &self.values[first as usize..][..rule.len()]))
+    }
+
+    /// The values at the layers of `target`; `matrices` makes, for one source rule, the matrix of each
+    /// of the `N` numbers.
+    pub(super) fn at_layers(
+        &self,
+        target: &LayerRule,
+        matrices: impl Fn(&LayerRule) -> [LayerMatrix; N],
+    ) -> AtLayers<'_, N> {
+        AtLayers {
+            from: self,
+            matrices: self.rules.iter().map(matrices).collect(),
+            n_layers: target.len(),
+        }
+    }
+}
+
+/// Numbers that fields are fitted to, the same layers for all elements.
+pub(super) trait Numbers<const N: usize> {
+    /// Layers of each element.
+    fn n_layers(&self) -> usize;
+    /// True if an element has values.
+    fn has(&self, element: usize) -> bool;
+    /// Appends the values of an element, one for each layer; zeros if it has none.
+    fn push(&self, element: usize, out: &mut Vec<[f64; N]>);
+}
+
+/// Values at the layers of a target, made where they are asked for: most elements are asked for few
+/// times, and all of them at once would take several times the memory of the results.
+pub(super) struct AtLayers<'a, const N: usize> {
+    from: &'a Layered<N>,
+    /// For each rule of the source the matrix of each number.
+    matrices: Vec<[LayerMatrix; N]>,
+    n_layers: usize,
+}
+
+impl<const N: usize> Numbers<N> for AtLayers<'_, N> {
+    fn n_layers(&self) -> usize {
+        self.n_layers
+    }
+
+    fn has(&self, element: usize) -> bool {
+        self.from.records[element].1 != NO_RULE
+    }
+
+    fn push(&self, element: usize, out: &mut Vec<[f64; N]>) {
+        let first = out.len();
+        let (at, rule) = self.from.records[element];
+        let Some(matrices) = self.matrices.get(rule as usize) else {
+            out.resize(first + self.n_layers, [0.0; N]);
+            return;
+        };
+        let n_source = self.from.rules[rule as usize].len();
+        let given = &self.from.values[at as usize..][..n_source];
+        if matrices[0].is_identity() {
+            out.extend_from_slice(given);
+            return;
+        }
+        out.resize(first + self.n_layers, [0.0; N]);
+        for (number, matrix) in matrices.iter().enumerate() {
+            for (layer, row) in matrix.rows().enumerate() {
+                let terms = row.iter().zip(given).map(|(w, v)| w * v[number]);
+                out[first + layer][number] = terms.sum();
+            }
+        }
+    }
+}
+
+/// One number for each element; NaN where there is none.
+pub(super) struct PerElement<'a>(pub &'a [f64]);
+
+impl Numbers<1> for PerElement<'_> {
+    fn n_layers(&self) -> usize {
+        1
+    }
+
+    fn has(&self, element: usize) -> bool {
+        self.0[element].is_finite()
+    }
+
+    fn push(&self, element: usize, out: &mut Vec<[f64; 1]>) {
+        out.push([self.0[element]]);
+    }
+}

@@ -1,0 +1,212 @@
+//! Which elements of a sheet lie beside each other, and where it ends.
+
+use rayon::prelude::*;
+
+use super::shells::ShellMesh;
+
+/// Elements that one thread takes at a time.
+const CHUNK: usize = 4096;
+
+/// Neighbours and border of a sheet.
+#[derive(Debug, Clone)]
+pub struct Links {
+    /// The elements around each element.
+    pub neighbours: Neighbours,
+    /// Bit i of an element: the edge from corner i to the next lies on the border.
+    border_edges: Vec<u8>,
+    /// For each node whether it lies on the border.
+    is_border_node: Vec<bool>,
+}
+
+impl Links {
+    /// O(elements).
+    pub(super) fn of(mesh: &ShellMesh) -> Self {
+        let merged = mesh.merged_nodes();
+        let n_merged = merged.iter().filter(|&&v| v != u32::MAX).max();
+        let n_merged = n_merged.map_or(0, |&v| v as usize + 1);
+        let corners_of: Vec<[u32; 4]> = mesh
+            .corners()
+            .iter()
+            .map(|corners| corners.map(|node| merged[node as usize]))
+            .collect();
+        let around_node = Lists::group(n_merged, || {
+            corners_of
+                .iter()
+                .enumerate()
+                .flat_map(|(element, corners)| {
+                    let distinct = if corners[2] == corners[3] { 3 } else { 4 };
+                    // A node that only collapsed elements name has no number.
+                    let nodes = corners.iter().take(distinct);
+                    let nodes = nodes.filter(|&&node| node != u32::MAX);
+                    nodes.map(move |&node| (node as usize, element as u32))
+                })
+        });
+        let has_area = |element: u32| mesh.areas()[element as usize] > 0.0;
+        let chunks: Vec<Chunk> = corners_of
+            .par_chunks(CHUNK)
+            .enumerate()
+            .map(|(chunk, corners)| {
+                Chunk::of(chunk * CHUNK, corners, &around_node, &corners_of, has_area)
+            })
+            .collect();
+        let mut links = Self {
+            neighbours: Neighbours(Lists {
+                start: Vec::with_capacity(mesh.len() + 1),
+                items: Vec::with_capacity(chunks.iter().map(|chunk| chunk.items.len()).sum()),
+            }),
+            border_edges: Vec::with_capacity(mesh.len()),
+            is_border_node: Vec::new(),
+        };
+        let Neighbours(Lists { start, items }) = &mut links.neighbours;
+        start.push(0);
+        for chunk in chunks {
+            let first = items.len() as u32;
+            start.extend(chunk.ends.iter().map(|end| first + end));
+            items.extend_from_slice(&chunk.items);
+            links.border_edges.extend_from_slice(&chunk.border_edges);
+        }
+        let mut is_border = vec![false; n_merged];
+        for (corners, &bits) in corners_of.iter().zip(&links.border_edges) {
+            for [i, j] in edges(corners) {
+                if bits & (1 << i) != 0 {
+                    for end in [corners[i], corners[j]] {
+                        if let Some(border) = is_border.get_mut(end as usize) {
+                            *border = true;
+                        }
+                    }
+                }
+            }
+        }
+        let of_node = |node: &u32| is_border.get(*node as usize).is_some_and(|&border| border);
+        links.is_border_node = merged.iter().map(of_node).collect();
+        links
+    }
+
+    /// True if the edge of an element between two of its nodes lies on the border; a diagonal never
+    /// does.
+    pub(super) fn is_border_edge(
+        &self,
+        element: usize,
+        corners: &[u32; 4],
+        ends: [u32; 2],
+    ) -> bool {
+        let bits = self.border_edges[element];
+        bits != 0
+            && edges(corners).any(|[i, j]| {
+                let own = [corners[i], corners[j]];
+                bits & (1 << i) != 0 && (own == ends || own == [ends[1], ends[0]])
+            })
+    }
+
+    /// True if a node lies on the border.
+    pub(super) fn is_border_node(&self, node: u32) -> bool {
+        self.is_border_node[node as usize]
+    }
+}
+
+/// The edges of an element by the places of their corners; a triangle has three.
+fn edges(corners: &[u32; 4]) -> impl Iterator<Item = [usize; 2]> + use<> {
+    let n = if corners[2] == corners[3] { 3 } else { 4 };
+    (0..n).map(move |i| [i, (i + 1) % n])
+}
+
+/// Links of some elements that follow each other.
+struct Chunk {
+    ends: Vec<u32>,
+    items: Vec<u32>,
+    border_edges: Vec<u8>,
+}
+
+impl Chunk {
+    fn of(
+        first: usize,
+        chunk: &[[u32; 4]],
+        around_node: &Lists,
+        corners_of: &[[u32; 4]],
+        has_area: impl Fn(u32) -> bool,
+    ) -> Self {
+        let mut links = Self {
+            ends: Vec::with_capacity(chunk.len()),
+            items: Vec::with_capacity(8 * chunk.len()),
+            border_edges: Vec::with_capacity(chunk.len()),
+        };
+        let mut found = Vec::new();
+        for (element, corners) in (first..).zip(chunk) {
+            let element = element as u32;
+            found.clear();
+            for &node in corners {
+                let around = around_node.of(node as usize);
+                found.extend(around.iter().filter(|&&other| other != element));
+            }
+            found.sort_unstable();
+            found.dedup();
+            links.items.extend_from_slice(&found);
+            links.ends.push(links.items.len() as u32);
+            let mut bits = 0;
+            for [i, j] in edges(corners) {
+                let ends = [corners[i], corners[j]];
+                // An edge of no length is none.
+                let is_shared = ends[0] == ends[1]
+                    || around_node.of(ends[0] as usize).iter().any(|&other| {
+                        other != element
+                            && has_area(other)
+                            && has_edge(&corners_of[other as usize], ends)
+                    });
+                bits |= u8::from(!is_shared) << i;
+            }
+            links.border_edges.push(bits);
+        }
+        links
+    }
+}
+
+fn has_edge(corners: &[u32; 4], ends: [u32; 2]) -> bool {
+    edges(corners).any(|[i, j]| {
+        let own = [corners[i], corners[j]];
+        own == ends || own == [ends[1], ends[0]]
+    })
+}
+
+/// The elements around each element.
+#[derive(Debug, Clone)]
+pub struct Neighbours(Lists);
+
+impl Neighbours {
+    /// Elements that share a node with `element`, in rising order.
+    pub fn of(&self, element: usize) -> &[u32] {
+        self.0.of(element)
+    }
+}
+
+/// Lists of different lengths stored one after another.
+#[derive(Debug, Clone, Default)]
+struct Lists {
+    start: Vec<u32>,
+    items: Vec<u32>,
+}
+
+impl Lists {
+    /// Groups (list, item) pairs by list, items in the order they come.
+    fn group<I: Iterator<Item = (usize, u32)>>(n_lists: usize, pairs: impl Fn() -> I) -> Self {
+        let mut start = vec![0_u32; n_lists + 1];
+        for (list, _) in pairs() {
+            start[list + 1] += 1;
+        }
+        for list in 0..n_lists {
+            start[list + 1] += start[list];
+        }
+        let mut next = start.clone();
+        let mut items = vec![0; start[n_lists] as usize];
+        for (list, item) in pairs() {
+            items[next[list] as usize] = item;
+            next[list] += 1;
+        }
+        Self { start, items }
+    }
+
+    /// The items of a list; none of one that is not there.
+    fn of(&self, list: usize) -> &[u32] {
+        let range = self.start.get(list..list.saturating_add(2));
+        range.map_or(&[], |ends| &self.items[ends[0] as usize..ends[1] as usize])
+    }
+}

@@ -1,0 +1,225 @@
+//! The elements of a source that a chunk of the target takes its values from, with the neighbours and
+//! the weights that make gradients of their values.
+
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+
+use super::links::Neighbours;
+use super::shells::ShellMesh;
+use crate::geometry::Vector3;
+
+/// Neighbours whose normals differ by more than this are beyond an edge of the sheet.
+const MAX_DIHEDRAL_COS: f64 = 0.766_044_443_118_978; // cos 40°
+/// A jump in thickness by more than this fraction is a weld line between two gauges.
+const WELD_LINE_JUMP: f64 = 0.05;
+
+/// A neighbour in the fit of an element.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Link {
+    /// Its slot in the patch.
+    pub slot: u32,
+    /// What its difference adds to the two derivatives.
+    pub weight: [f64; 2],
+    /// Cosine and sine of the angle by which its frame, laid into the tangent plane by the smallest
+    /// rotation, is turned there.
+    pub spin: [f64; 2],
+}
+
+/// Elements numbered by slots: first those around which fields are fitted, then their neighbours.
+#[derive(Default)]
+pub(super) struct Patch {
+    slots: HashMap<u32, u32, BuildHasherDefault<Scatter>>,
+    elements: Vec<u32>,
+    starts: Vec<u32>,
+    links: Vec<Link>,
+    /// Of every slot: two directions that span the tangent plane, and the normal.
+    frames: Vec<[Vector3; 3]>,
+    corners: Vec<[[f64; 2]; 4]>,
+}
+
+impl Patch {
+    /// Begins anew, with fields around `elements`; each counts once. The gradient of any quantity is a
+    /// least squares fit to the neighbours, weighted by the inverse squared distance, in the tangent
+    /// plane of the element. Neighbours across another part, an edge of the sheet or a weld line are
+    /// left out; with fewer than three, or all in one line, the gradient is zero. `thickness` may be
+    /// empty.
+    pub fn load(
+        &mut self,
+        elements: impl Iterator<Item = u32>,
+        mesh: &ShellMesh,
+        neighbours: &Neighbours,
+        thickness: &[f64],
+    ) {
+        self.slots.clear();
+        self.elements.clear();
+        self.frames.clear();
+        for element in elements {
+            self.slot_or_new(element, mesh);
+        }
+        self.starts.clear();
+        self.starts.push(0);
+        self.links.clear();
+        self.corners.clear();
+        for slot in 0..self.elements.len() {
+            let element = self.elements[slot] as usize;
+            let centre = mesh.centroids()[element];
+            let corners = mesh.corner_points(element);
+            let in_plane = |corner| self.in_plane(slot, &(corner - centre));
+            let corners = corners.map(in_plane);
+            self.corners.push(corners);
+            self.add_links(element, slot, (mesh, neighbours, thickness));
+            self.starts.push(self.links.len() as u32);
+        }
+    }
+
+    fn slot_or_new(&mut self, element: u32, mesh: &ShellMesh) -> u32 {
+        let next = self.elements.len() as u32;
+        let slot = *self.slots.entry(element).or_insert(next);
+        if slot == next {
+            self.elements.push(element);
+            self.frames.push(frame(mesh, element as usize));
+        }
+        slot
+    }
+
+    fn add_links(
+        &mut self,
+        element: usize,
+        own: usize,
+        (mesh, neighbours, thickness): (&ShellMesh, &Neighbours, &[f64]),
+    ) {
+        let first = self.links.len();
+        let normal = mesh.normals()[element];
+        let centre = mesh.centroids()[element];
+        let [mut xx, mut xy, mut yy] = [0.0; 3];
+        for &other in neighbours.of(element) {
+            let n = other as usize;
+            if normal.dot(&mesh.normals()[n]) < MAX_DIHEDRAL_COS
+                || is_weld_line(mesh, thickness, element, n)
+            {
+                continue;
+            }
+            let away = mesh.centroids()[n] - centre;
+            let [x, y] = self.in_plane(own, &away);
+            // Unfolded into the tangent plane: the distance along a bent sheet is kept.
+            let flat_sq = x * x + y * y;
+            let length_sq = away.norm_squared();
+            let weight = 1.0 / length_sq;
+            if !(flat_sq > 0.0 && weight.is_finite()) {
+                self.links.truncate(first);
+                return;
+            }
+            let stretch = (length_sq / flat_sq).sqrt();
+            let [x, y] = [x * stretch, y * stretch];
+            xx += weight * x * x;
+            xy += weight * x * y;
+            yy += weight * y * y;
+            let slot = self.slot_or_new(other, mesh);
+            self.links.push(Link {
+                slot,
+                weight: [weight * x, weight * y],
+                spin: spin(&self.frames[slot as usize], &self.frames[own]),
+            });
+        }
+        let determinant = xx * yy - xy * xy;
+        let n_links = self.links.len() - first;
+        if n_links < 3 || determinant <= 1e-6 * (xx + yy) * (xx + yy) {
+            self.links.truncate(first);
+            return;
+        }
+        for link in &mut self.links[first..] {
+            let [x, y] = link.weight;
+            link.weight = [
+                (yy * x - xy * y) / determinant,
+                (xx * y - xy * x) / determinant,
+            ];
+        }
+    }
+
+    /// Elements by slot.
+    pub fn elements(&self) -> &[u32] {
+        &self.elements
+    }
+
+    /// Number of slots around which fields are fitted.
+    pub fn n_fitted(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// The slot of an element that fields are fitted around.
+    pub fn slot(&self, element: u32) -> Option<usize> {
+        let slot = *self.slots.get(&element)? as usize;
+        (slot < self.n_fitted()).then_some(slot)
+    }
+
+    /// What makes the gradient of a slot; empty where it is zero.
+    pub fn links(&self, slot: usize) -> &[Link] {
+        &self.links[self.starts[slot] as usize..self.starts[slot + 1] as usize]
+    }
+
+    /// Places of the corners in the tangent plane, from the centroid.
+    pub fn corners(&self, slot: usize) -> &[[f64; 2]; 4] {
+        &self.corners[slot]
+    }
+
+    /// Coordinates of a displacement in the tangent plane of a slot.
+    pub fn in_plane(&self, slot: usize, displacement: &Vector3) -> [f64; 2] {
+        let [x, y, _] = &self.frames[slot];
+        [x.dot(displacement), y.dot(displacement)]
+    }
+
+    /// Two directions that span the tangent plane of a slot, and its normal.
+    pub fn frame(&self, slot: usize) -> &[Vector3; 3] {
+        &self.frames[slot]
+    }
+}
+
+/// Spreads element numbers over a hash table; nobody chooses them to collide.
+#[derive(Default)]
+pub(super) struct Scatter(u64);
+
+impl Hasher for Scatter {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.write_u32(u32::from(byte));
+        }
+    }
+
+    fn write_u32(&mut self, number: u32) {
+        // Fibonacci hashing: both ends of the word are well mixed.
+        let mixed = (self.0 ^ u64::from(number)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self.0 = mixed ^ (mixed >> 32);
+    }
+}
+
+/// Two unit directions that span the tangent plane, and the normal.
+fn frame(mesh: &ShellMesh, element: usize) -> [Vector3; 3] {
+    let normal = mesh.normals()[element];
+    let x = mesh.corner_points(element);
+    let along = x[2] - x[0];
+    let along = (along - normal * along.dot(&normal))
+        .try_normalize(0.0)
+        .unwrap_or_default();
+    [along, normal.cross(&along), normal]
+}
+
+/// Where the first direction of `from` lies in the plane of `to` after the smallest rotation that takes
+/// normal to normal: u − (n₂ · u) / (1 + n₁ · n₂) · (n₁ + n₂) for any u across n₁.
+fn spin(from: &[Vector3; 3], to: &[Vector3; 3]) -> [f64; 2] {
+    let ([u, _, n1], [x, y, n2]) = (from, to);
+    let fold = n2.dot(u) / (1.0 + n1.dot(n2));
+    [x.dot(u) - fold * x.dot(n1), y.dot(u) - fold * y.dot(n1)]
+}
+
+/// True if the gauge of the sheet changes between two neighbours, or the part.
+pub(super) fn is_weld_line(mesh: &ShellMesh, thickness: &[f64], a: usize, b: usize) -> bool {
+    let is_jump = match (thickness.get(a), thickness.get(b)) {
+        (Some(a), Some(b)) => (a - b).abs() > WELD_LINE_JUMP * a.min(*b),
+        _ => false,
+    };
+    is_jump || mesh.parts()[a] != mesh.parts()[b]
+}
