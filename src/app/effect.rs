@@ -23,6 +23,8 @@ pub enum Effect {
     AskOpenProject,
     /// Ask for a file of a project; answer with `ProjectCommand::Locate`.
     AskLocate(Role),
+    /// Ask for another mapper's result; answer with `MapCommand::CompareWith`.
+    AskOtherMapping,
     /// Ask where to write the project, beginning there; answer with `ProjectCommand::Write`.
     AskSaveProject(PathBuf),
     /// Write a project; answer with `ProjectCommand::Written` and the document.

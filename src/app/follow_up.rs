@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use super::{
-    AppState, BottomTab, Effect, FreeWindow, NoticeLevel, Part, Section, Showing, ShownGeometry,
+    AppState, BottomTab, Effect, FreeWindow, MapPicture, NoticeLevel, Part, Section, Showing,
+    ShownGeometry,
 };
 use crate::geometry::Point3;
 use crate::jobs::ProjectRequest;
@@ -35,6 +36,8 @@ pub(super) enum FollowUp {
     },
     /// A mapping was taken over.
     Mapped,
+    /// Another mapper's result stands beside the mapping.
+    MappingCompared,
     /// A sweep began.
     SweepBegun,
     /// A sweep ended with its tables.
@@ -92,6 +95,10 @@ impl AppState {
                 if !self.is_mapping_shown() {
                     self.view.display = self.with_map_picture(None);
                 }
+                self.view.tab = BottomTab::Mapping;
+            }
+            FollowUp::MappingCompared => {
+                self.view.display = self.with_map_picture(Some(MapPicture::Other));
                 self.view.tab = BottomTab::Mapping;
             }
             FollowUp::SweepBegun => self.view.tab = BottomTab::Sweep,

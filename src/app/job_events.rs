@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::mapping::take_mapped;
+use super::mapping::{take_compared, take_mapped};
 use super::parts::NewPart;
 use super::reduce::take_level_measured;
 use super::{AppState, Effect, NoticeLevel};
@@ -59,7 +59,7 @@ impl AppState {
             JobKey::Align | JobKey::Match | JobKey::Verdict | JobKey::Sweep | JobKey::Compare => {
                 now.parts == stamp.parts
             }
-            JobKey::Measure | JobKey::Map => now == stamp,
+            JobKey::Measure | JobKey::Map | JobKey::CompareMapping => now == stamp,
         }
     }
 
@@ -118,7 +118,10 @@ impl AppState {
                 let matching = topics.matching;
                 matching.take_measured(work, measurement, stamp, took);
             }
-            JobOutput::Mapped { run, record } => take_mapped(work, run, record, took),
+            JobOutput::Mapped { run, record } => return take_mapped(work, run, record, took),
+            JobOutput::MappingCompared { run, other, record } => {
+                take_compared(work, &run, other, *record, took);
+            }
             JobOutput::Compared(comparison) => topics.inspect.take_compared(comparison, stamp),
             JobOutput::Overlapped { overlap, limit } => {
                 topics.moving.take_overlap(overlap, limit, stamp);
@@ -199,7 +202,7 @@ fn step_of(key: JobKey) -> (&'static str, Option<Role>) {
         JobKey::Verdict => ("judge", None),
         JobKey::Measure | JobKey::Overlap => ("measure", None),
         JobKey::Compare => ("compare", None),
-        JobKey::Map => ("map", None),
+        JobKey::Map | JobKey::CompareMapping => ("map", None),
         JobKey::Sweep => ("sweep", None),
         JobKey::OpenProject => ("project", None),
         JobKey::Export => ("export", None),

@@ -55,6 +55,7 @@ pub use log::{
 };
 pub use mapping::{
     MapCommand, MapDisplay, MapPicture, MapResult, Mapping, ProbeReport, Quantity, UnmappedElement,
+    file_names,
 };
 pub use matching::{
     Cause, LiveStarts, MatchCommand, MatchState, Preview, PreviewCommand, Previews, Starts,

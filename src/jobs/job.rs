@@ -1,5 +1,6 @@
 //! The kinds of jobs, what they are given and what they give.
 
+use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
 use super::{ExportRequest, Exported, OpenedProject, PartFacts, PartSource, SweepRows};
@@ -7,7 +8,7 @@ use crate::assess::Coverage;
 use crate::geometry::{Similarity, TriMesh};
 use crate::pipeline::inspect::Comparison;
 use crate::pipeline::load::{LoadSettings, LoadedPart};
-use crate::pipeline::map::{MapRecipe, MapRecord, MapRun};
+use crate::pipeline::map::{ComparisonRecord, MapRecipe, MapRecord, MapRun, OtherResult};
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
 use crate::pipeline::project::ProjectRequest;
 use crate::pipeline::reduce::{Deviation, Level, Levels};
@@ -42,6 +43,8 @@ pub enum JobKey {
     Compare,
     /// Forming results onto the crash part.
     Map,
+    /// Another mapper's result beside the mapping.
+    CompareMapping,
     /// The overlap at a pose, from few points.
     Overlap,
     /// The paper's tables.
@@ -68,6 +71,7 @@ impl JobKey {
             Self::Measure => "Measuring distances",
             Self::Compare => "Measuring the deviation",
             Self::Map => "Mapping the forming results",
+            Self::CompareMapping => "Comparing with the other result",
             Self::Overlap => "Measuring the overlap",
             Self::Sweep => "Running the sweep",
             Self::OpenProject => "Opening the project",
@@ -203,6 +207,17 @@ pub struct MapInput {
     pub crash_from_stamped: Similarity,
 }
 
+/// Input of a comparison of a mapping with another mapper's result.
+#[derive(Debug, Clone)]
+pub struct CompareMappingInput {
+    /// The mapping.
+    pub run: Arc<MapRun>,
+    /// The part it was mapped onto.
+    pub crash: Arc<LoadedPart>,
+    /// The other result.
+    pub file: PathBuf,
+}
+
 /// Everything the worker can do. A closed list, so that jobs can be listed, logged and tested.
 #[derive(Debug, Clone)]
 pub enum JobKind {
@@ -240,6 +255,8 @@ pub enum JobKind {
     Compare(CompareInput),
     /// Forming results onto the crash part.
     Map(MapInput),
+    /// Another mapper's result beside the mapping.
+    CompareMapping(CompareMappingInput),
     /// The overlap at a pose, from few points.
     Overlap(MeasureInput),
     /// Levels × match.
@@ -264,6 +281,7 @@ impl JobKind {
             Self::Measure(_) => JobKey::Measure,
             Self::Compare(_) => JobKey::Compare,
             Self::Map(_) => JobKey::Map,
+            Self::CompareMapping(_) => JobKey::CompareMapping,
             Self::Overlap(_) => JobKey::Overlap,
             Self::Sweep(_) => JobKey::Sweep,
             Self::OpenProject(_) => JobKey::OpenProject,
@@ -320,6 +338,15 @@ pub enum JobOutput {
         run: Arc<MapRun>,
         /// The same in figures.
         record: Arc<MapRecord>,
+    },
+    /// Another mapper's result was read.
+    MappingCompared {
+        /// The mapping it was compared with.
+        run: Arc<MapRun>,
+        /// Its values.
+        other: Arc<OtherResult>,
+        /// The differences in figures.
+        record: Box<ComparisonRecord>,
     },
     /// The overlap from few points.
     Overlapped {

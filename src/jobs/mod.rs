@@ -18,8 +18,9 @@ pub use event::{JobEvent, JobStage};
 pub use export::{Destination, ExportRequest, Exported};
 pub use facts::PartFacts;
 pub use job::{
-    CompareInput, JobId, JobKey, JobKind, JobOutput, MapInput, MatchInput, MeasureInput,
-    MeasureLevelInput, MeasuredLevel, Recording, ReduceInput, Stamp, SweepInput, VerdictInput,
+    CompareInput, CompareMappingInput, JobId, JobKey, JobKind, JobOutput, MapInput, MatchInput,
+    MeasureInput, MeasureLevelInput, MeasuredLevel, Recording, ReduceInput, Stamp, SweepInput,
+    VerdictInput,
 };
 pub use live::{Live, LiveIteration, LiveSlot};
 pub use project::{OpenedPart, OpenedProject};

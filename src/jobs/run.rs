@@ -4,7 +4,9 @@ use std::sync::{Arc, OnceLock};
 
 use super::export::export;
 use super::project::open_project;
-use super::{CompareInput, MapInput, MatchInput, MeasureInput, SweepInput, VerdictInput};
+use super::{
+    CompareInput, CompareMappingInput, MapInput, MatchInput, MeasureInput, SweepInput, VerdictInput,
+};
 use super::{
     JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource, Recording,
     ReduceInput,
@@ -14,7 +16,7 @@ use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::PipelineError;
 use crate::pipeline::inspect::compare_parts;
 use crate::pipeline::load::{self, LoadedPart};
-use crate::pipeline::map::{PlacedPart, map_parts, map_record};
+use crate::pipeline::map::{OtherResult, PlacedPart, compare_with, map_parts, map_record};
 use crate::pipeline::match_parts::{self, match_parts};
 use crate::pipeline::reduce::Levels;
 use crate::pipeline::sweep::sweep;
@@ -107,6 +109,7 @@ impl Runner for PipelineRunner {
             JobKind::Measure(input) => measure(&input, monitor),
             JobKind::Compare(input) => compare(&input, monitor),
             JobKind::Map(input) => map(&input, monitor),
+            JobKind::CompareMapping(input) => compare_mapping(input, monitor),
             JobKind::Overlap(input) => overlap(&input),
             JobKind::Sweep(input) => run_sweep(&input, monitor),
             JobKind::OpenProject(request) => {
@@ -239,6 +242,17 @@ fn map(input: &MapInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
     Ok(JobOutput::Mapped {
         run: Arc::new(run),
         record: Arc::new(record),
+    })
+}
+
+fn compare_mapping(input: CompareMappingInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
+    let CompareMappingInput { run, crash, file } = input;
+    let other = OtherResult::read(&[file], &run, &crash, monitor)?;
+    let record = compare_with(&run, &crash, &other);
+    Ok(JobOutput::MappingCompared {
+        run,
+        other: Arc::new(other),
+        record: Box::new(record),
     })
 }
 

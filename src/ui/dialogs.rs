@@ -10,7 +10,7 @@ use super::background::run_once;
 use super::path_prompt::{self, Completion, plain_words};
 use super::theme::{Palette, UNIT};
 use super::widgets::{caption, large_button, paragraph};
-use crate::app::{Command, ExportCommand, FileCommand, PictureChoice, ProjectCommand};
+use crate::app::{Command, ExportCommand, FileCommand, MapCommand, PictureChoice, ProjectCommand};
 use crate::formats::Format;
 use crate::jobs::{Located, ProjectRequest};
 use crate::pipeline::outputs::Output;
@@ -27,6 +27,8 @@ enum Question {
     OpenProject,
     /// A file of a project.
     Locate(Role),
+    /// Another mapper's result.
+    OtherMapping,
     /// Where to write the project, beginning there.
     SaveProject(PathBuf),
     Save {
@@ -179,6 +181,11 @@ impl Dialogs {
     /// Asks for a file of a project.
     pub fn ask_locate(&mut self, role: Role, ctx: &egui::Context) {
         self.ask(Question::Locate(role), ctx);
+    }
+
+    /// Asks for another mapper's result.
+    pub fn ask_other_mapping(&mut self, ctx: &egui::Context) {
+        self.ask(Question::OtherMapping, ctx);
     }
 
     /// Asks where to write the project.
@@ -467,6 +474,7 @@ fn answered(question: &Question, path: PathBuf) -> Command {
             ProjectCommand::Open(request).into()
         }
         Question::Locate(role) => ProjectCommand::Locate(role, Located::At(path)).into(),
+        Question::OtherMapping => MapCommand::CompareWith(path).into(),
         Question::SaveProject(_) => ProjectCommand::Write(path).into(),
         Question::Save { kind, .. } => ExportCommand::Write { kind, path }.into(),
         Question::Picture { choice, .. } => ExportCommand::WritePicture { choice, path }.into(),
@@ -476,15 +484,18 @@ fn answered(question: &Question, path: PathBuf) -> Command {
 impl Question {
     /// True if a file is to be read.
     fn is_open(&self) -> bool {
-        matches!(self, Self::Open(_) | Self::OpenProject | Self::Locate(_))
+        !matches!(
+            self,
+            Self::SaveProject(_) | Self::Save { .. } | Self::Picture { .. }
+        )
     }
 
     /// A name to start from.
     fn suggestion(&self) -> String {
         match self {
-            Self::Open(_) | Self::OpenProject | Self::Locate(_) => String::new(),
             Self::SaveProject(path) => path.display().to_string(),
             Self::Save { name, .. } | Self::Picture { name, .. } => name.clone(),
+            _ => String::new(),
         }
     }
 
@@ -494,7 +505,7 @@ impl Question {
             Self::Save { kind, .. } => return kind.with_extension(path),
             Self::SaveProject(_) => EXTENSION,
             Self::Picture { .. } => "png",
-            Self::Open(_) | Self::OpenProject | Self::Locate(_) => return path,
+            _ => return path,
         };
         if path.extension().is_some() {
             path
@@ -520,6 +531,7 @@ fn titles(question: &Question) -> (&'static str, &'static str) {
         Question::SaveProject(_) => ("Save the project", "Save"),
         Question::Open(Role::Crash) => ("Open the crash model", "Open"),
         Question::Open(Role::Stamped) => ("Open the stamped part", "Open"),
+        Question::OtherMapping => ("Compare the mapping with another result", "Compare"),
         Question::Save { .. } => ("Write to a file", "Write"),
         Question::Picture { .. } => ("Write a picture", "Write"),
     }
@@ -545,6 +557,11 @@ fn file_dialog(
             if let Some(folder) = path.parent().filter(|folder| folder.is_dir()) {
                 dialog = dialog.set_directory(folder);
             }
+        }
+        Question::OtherMapping => {
+            let keyword = Format::Keyword;
+            dialog = dialog.add_filter(keyword.label(), keyword.extensions());
+            dialog = dialog.add_filter("All files", &["*"]);
         }
         Question::Open(_) | Question::Locate(_) => {
             let all: Vec<&str> = Format::ALL

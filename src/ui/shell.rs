@@ -193,6 +193,7 @@ impl Shell {
             Effect::AskSave { kind, name } => self.dialogs.ask_save(kind, name, ctx),
             Effect::AskOpenProject => self.dialogs.ask_open_project(ctx),
             Effect::AskLocate(role) => self.dialogs.ask_locate(role, ctx),
+            Effect::AskOtherMapping => self.dialogs.ask_other_mapping(ctx),
             Effect::AskSaveProject(path) => self.dialogs.ask_save_project(path, ctx),
             Effect::WriteProject {
                 path,

@@ -1,6 +1,6 @@
 //! The menu *Match*: reduction, first poses, the match and its result.
 
-use super::conditions::{has_starts, is_reduced, require};
+use super::conditions::{has_mapping, has_starts, is_reduced, require};
 use super::row::keys::{ctrl, function, key, shift};
 use super::row::some;
 use super::{Action, ActionRow, Key, Keys, MenuGroup, Reason, Shortcut};
@@ -16,15 +16,26 @@ pub(super) const GROUPS: &[MenuGroup] = &[
     MenuGroup::plain(MAP),
 ];
 
-const MAP: &[ActionRow] = &[ActionRow {
-    action: Action::MapOrCancel,
-    label: "Map",
-    tooltip: "Carry thickness, strain and stress of the stamped part onto the crash part; while it runs, \
-              give it up",
-    keys: Keys::press(&[ctrl('M')]),
-    enabled: AppState::can_map,
-    command: |_| some(MapCommand::MapOrCancel),
-}];
+const MAP: &[ActionRow] = &[
+    ActionRow {
+        action: Action::MapOrCancel,
+        label: "Map",
+        tooltip: "Carry thickness, strain and stress of the stamped part onto the crash part; while it \
+                  runs, give it up",
+        keys: Keys::press(&[ctrl('M')]),
+        enabled: AppState::can_map,
+        command: |_| some(MapCommand::MapOrCancel),
+    },
+    ActionRow {
+        action: Action::CompareMapping,
+        label: "Compare mapping…",
+        tooltip: "Show the difference to the result of another mapper or the solver's own file (dyna.inc), \
+                  element by element; while it runs, give it up",
+        keys: Keys::NONE,
+        enabled: has_mapping,
+        command: |_| some(MapCommand::AskOther),
+    },
+];
 
 const REDUCE: &[ActionRow] = &[
     ActionRow {

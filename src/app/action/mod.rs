@@ -118,6 +118,8 @@ actions! {
     SaveMappedDeck,
     /// Write the crash part with the mapped results.
     SaveMappedPart,
+    /// Compare the mapping with another mapper's result, or give the running comparison up.
+    CompareMapping,
     /// Write the report of the mapping.
     SaveMapReport,
     /// Write the table of mapped elements.
@@ -188,6 +190,8 @@ actions! {
     ShowMapConfidence,
     /// What became of the mapped elements.
     ShowMapStatus,
+    /// Colours of mapped less another mapper's result.
+    ShowMapOther,
     /// Another quantity of the mapping.
     NextMapQuantity,
     /// Another layer of the sheet.

@@ -191,6 +191,18 @@ const MAPPING: &[ActionRow] = &[
         command: |state| mapping_picture(state, Some(MapPicture::Status)),
     },
     ActionRow {
+        action: Action::ShowMapOther,
+        label: "Mapping against other result",
+        tooltip: "Colour the crash part by the mapped value less that of the file it was compared with",
+        keys: Keys::NONE,
+        enabled: |state| {
+            has_mapping(state)?;
+            let is_missing = state.missing_for(ColorBy::MapOther).is_some();
+            require(!is_missing, "Compare the mapping with another file first.")
+        },
+        command: |state| mapping_picture(state, Some(MapPicture::Other)),
+    },
+    ActionRow {
         action: Action::NextMapQuantity,
         label: "Next mapped quantity",
         tooltip: "Show the next quantity of the mapping",

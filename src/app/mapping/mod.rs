@@ -7,6 +7,7 @@ mod probe;
 pub use picture::{MapDisplay, MapPicture};
 pub use probe::ProbeReport;
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -14,10 +15,10 @@ use super::follow_up::FollowUp;
 use super::work::Work;
 use super::{AppState, ColorBy, Document, Effect, NoticeLevel, Reason, Shared};
 use crate::geometry::Point3;
-use crate::jobs::{JobKey, JobKind, MapInput, Stamp};
+use crate::jobs::{CompareMappingInput, JobKey, JobKind, MapInput, Stamp};
 use crate::mapping::{Quantities, Status};
 use crate::pipeline::forming_values::{FormingValue, has_forming_value, nominal_thickness};
-use crate::pipeline::map::{MapRecipe, MapRecord, MapRun};
+use crate::pipeline::map::{ComparisonRecord, MapRecipe, MapRecord, MapRun, OtherResult};
 use crate::role::Role;
 use crate::text::{counted, percent};
 
@@ -46,6 +47,8 @@ pub struct MapResult {
     pub stamp: Stamp,
     /// What was chosen when it was made.
     pub asked: MapRecipe,
+    /// Another mapper's result for the same elements.
+    pub other: Option<Shared<OtherResult>>,
 }
 
 /// Commands of section 4.
@@ -57,6 +60,10 @@ pub enum MapCommand {
     MapOrCancel,
     /// Look at an element of the current mapping closely, or no longer.
     Probe(Option<usize>),
+    /// Ask for another mapper's result, or give the running comparison up.
+    AskOther,
+    /// Compare the current mapping with another mapper's result.
+    CompareWith(PathBuf),
 }
 
 /// An element of the crash part that carries no values.
@@ -230,6 +237,11 @@ impl AppState {
 
     /// Why no loaded part has what a choice of colours asks for; `None` if one has it.
     pub fn missing_for(&self, by: ColorBy) -> Option<&'static str> {
+        if by == ColorBy::MapOther {
+            let result = self.document.current_mapping();
+            let has_other = result.is_some_and(|result| result.other.is_some());
+            return (!has_other).then_some("the mapping was compared with no other file yet");
+        }
         if by.map_picture().is_some() {
             let has_mapping = self.document.current_mapping().is_some();
             return (!has_mapping).then_some("nothing is mapped at this pose yet");
@@ -260,6 +272,11 @@ pub(super) fn apply(work: &mut Work<'_>, command: MapCommand) -> Vec<Effect> {
             return work.cancel(JobKey::Map);
         }
         MapCommand::MapOrCancel => return start(work),
+        MapCommand::AskOther if work.jobs.is_active(JobKey::CompareMapping) => {
+            return work.cancel(JobKey::CompareMapping);
+        }
+        MapCommand::AskOther => return vec![Effect::AskOtherMapping],
+        MapCommand::CompareWith(file) => return compare_with(work, file).into_iter().collect(),
         MapCommand::Probe(element) => {
             if work.document.mapping.probe != element {
                 work.commit("Probe an element", |document| {
@@ -292,13 +309,63 @@ fn start(work: &mut Work<'_>) -> Vec<Effect> {
     vec![work.start(JobKind::Map(input))]
 }
 
-/// Takes a mapping over as one undo step.
+fn compare_with(work: &mut Work<'_>, file: PathBuf) -> Option<Effect> {
+    let run = work.document.current_mapping()?.run.to_arc();
+    let crash = work.document.part(Role::Crash)?.loaded.to_arc();
+    let input = CompareMappingInput { run, crash, file };
+    Some(work.start(JobKind::CompareMapping(input)))
+}
+
+/// Takes another mapper's result over as one undo step.
+pub(super) fn take_compared(
+    work: &mut Work<'_>,
+    run: &Arc<MapRun>,
+    other: Arc<OtherResult>,
+    comparison: ComparisonRecord,
+    took: Duration,
+) {
+    let current = work.document.current_mapping();
+    // Mapped anew meanwhile: the comparison that follows from it is on its way.
+    if current.is_none_or(|result| !Arc::ptr_eq(&result.run.to_arc(), run)) {
+        return;
+    }
+    let text = format!(
+        "compared with {}: {} have values in both, {} only here, {} only there",
+        file_names(&comparison.files),
+        counted(comparison.n_both, "element"),
+        counted(comparison.n_only_here, "element"),
+        counted(comparison.n_only_other, "element"),
+    );
+    work.log_step("map", None, text, Some(took));
+    work.commit("Compare with another mapping", |document| {
+        if let Some(result) = &mut document.mapping.result {
+            let mut record = MapRecord::clone(&result.record);
+            record.comparison = Some(comparison);
+            result.record = Arc::new(record).into();
+            result.other = Some(other.into());
+        }
+    });
+    work.follow(FollowUp::MappingCompared);
+}
+
+/// Names of files without their folders.
+pub fn file_names(paths: &[String]) -> String {
+    let name = |path: &String| {
+        let name = Path::new(path).file_name();
+        name.map_or_else(|| path.clone(), |name| name.to_string_lossy().into_owned())
+    };
+    paths.iter().map(name).collect::<Vec<_>>().join(", ")
+}
+
+/// Takes a mapping over as one undo step, and compares it with what the one before was compared with.
 pub(super) fn take_mapped(
     work: &mut Work<'_>,
     run: Arc<MapRun>,
     record: Arc<MapRecord>,
     took: Duration,
-) {
+) -> Vec<Effect> {
+    let other = work.document.mapping.result.as_ref();
+    let other = other.and_then(|result| result.other.as_ref()?.files.first().cloned());
     let text = format!(
         "{} of the area of {} mapped",
         percent(record.mapped_area),
@@ -321,7 +388,10 @@ pub(super) fn take_mapped(
             record: record.into(),
             stamp,
             asked: mapping.recipe.clone(),
+            other: None,
         });
     });
     work.follow(FollowUp::Mapped);
+    let compared = other.and_then(|file| compare_with(work, file));
+    compared.into_iter().collect()
 }

@@ -20,15 +20,18 @@ pub enum MapPicture {
     Confidence,
     /// What became of the elements.
     Status,
+    /// Mapped less what another mapper's result has.
+    Other,
 }
 
 impl MapPicture {
     /// All, in the order of the choice.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Difference,
         Self::Distance,
         Self::Confidence,
         Self::Status,
+        Self::Other,
     ];
 
     /// Name of the picture in section 4.
@@ -38,6 +41,7 @@ impl MapPicture {
             Self::Distance => "Distance",
             Self::Confidence => "Confidence",
             Self::Status => "Status",
+            Self::Other => "Other result",
         }
     }
 
@@ -48,6 +52,7 @@ impl MapPicture {
             Self::Distance => ColorBy::MapDistance,
             Self::Confidence => ColorBy::MapConfidence,
             Self::Status => ColorBy::MapStatus,
+            Self::Other => ColorBy::MapOther,
         }
     }
 }
@@ -153,7 +158,7 @@ impl AppState {
     pub fn with_map_quantity(&self, quantity: ColorBy) -> Display {
         let mut display = self.view.display.clone();
         display.mapped.quantity = quantity;
-        if display.color_by != ColorBy::MapDifference {
+        if !display.color_by.speaks_of_quantity() {
             display.color_by = quantity;
         }
         display

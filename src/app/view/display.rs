@@ -54,6 +54,8 @@ pub enum ColorBy {
     MapConfidence,
     /// What became of the elements of the mapping.
     MapStatus,
+    /// Mapped less what another mapper's result has.
+    MapOther,
 }
 
 impl From<FormingValue> for ColorBy {
@@ -71,7 +73,7 @@ impl From<FormingValue> for ColorBy {
 
 impl ColorBy {
     /// All, in the order of the menu.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Role,
         Self::Part,
         Self::Thickness,
@@ -88,12 +90,18 @@ impl ColorBy {
         Self::MapDistance,
         Self::MapConfidence,
         Self::MapStatus,
+        Self::MapOther,
     ];
 
     /// The picture of a mapping, if it is one.
     pub fn map_picture(self) -> Option<MapPicture> {
         let is_it = |picture: &MapPicture| picture.color_by() == self;
         MapPicture::ALL.into_iter().find(is_it)
+    }
+
+    /// True for pictures of a mapping that are made of one of its quantities.
+    pub fn speaks_of_quantity(self) -> bool {
+        matches!(self, Self::MapDifference | Self::MapOther)
     }
 
     /// The forming result that is shown, if it is one.
@@ -128,6 +136,7 @@ impl ColorBy {
             Self::MapDistance => "Mapping: distance",
             Self::MapConfidence => "Mapping: confidence",
             Self::MapStatus => "Mapping: status",
+            Self::MapOther => "Mapping: other result",
         }
     }
 }

@@ -21,7 +21,7 @@ pub struct OtherResult {
     pub files: Vec<PathBuf>,
     /// Thickness in the crash model's unit of lengths; NaN where no file has one.
     pub thickness: Vec<f64>,
-    states: Layered<7>,
+    pub(super) states: Layered<7>,
 }
 
 impl OtherResult {
@@ -177,12 +177,8 @@ pub struct ComparisonRecord {
     pub von_mises: Option<DifferenceRecord>,
 }
 
-/// Compares a mapping with another result.
-pub(super) fn compare_with(
-    run: &MapRun,
-    crash: &LoadedPart,
-    other: &OtherResult,
-) -> ComparisonRecord {
+/// Compares a mapping with another result. O(elements · log elements).
+pub fn compare_with(run: &MapRun, crash: &LoadedPart, other: &OtherResult) -> ComparisonRecord {
     let (mut n_both, mut n_only_here, mut n_only_other) = (0, 0, 0);
     for (element, report) in run.mapped.elements.iter().enumerate() {
         match (report.status.has_values(), other.has_values(element)) {

@@ -3,6 +3,7 @@
 mod compare;
 mod convert;
 mod output;
+mod peak;
 mod ready;
 mod record;
 mod report;
@@ -15,14 +16,14 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-pub use compare::{ComparisonRecord, DifferenceRecord, OtherResult};
+pub use compare::{ComparisonRecord, DifferenceRecord, OtherResult, compare_with};
 pub use convert::TargetLayers;
 pub use output::{MapFiles, MapOutput, WriteKind, elements_path, write_mapping};
 pub use record::{DistributionRecord, MapRecord, PairRecord, element_table, map_record};
 pub use report::map_report;
 pub use unmapped::unmapped_sets;
 pub use values::{Profile, ShownValue};
-pub use verdict::{CheckPicture, CheckRecord};
+pub use verdict::{CheckPicture, CheckReason, CheckRecord};
 
 use super::load::LoadedPart;
 use super::{PipelineError, millis_since};

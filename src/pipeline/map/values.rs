@@ -1,7 +1,7 @@
 //! One number for each element of a mapping: a mapped quantity, what the stamped element has of it, and
 //! their difference.
 
-use super::MapRun;
+use super::{MapRun, OtherResult};
 use crate::mapping::{LayerRule, Layered, Partner};
 use crate::pipeline::forming_values::{FormingValue, LayerChoice};
 
@@ -65,6 +65,22 @@ impl MapRun {
     /// What an element carries less what the stamped element has; NaN where either has nothing.
     pub fn difference(&self, element: usize, shown: &ShownValue) -> f64 {
         self.shown(element, shown) - self.shown_at_partner(element, shown)
+    }
+
+    /// What an element carries less what another result has; NaN where either has nothing.
+    pub fn difference_to(&self, other: &OtherResult, element: usize, shown: &ShownValue) -> f64 {
+        let thickness = other.thickness[element];
+        let theirs = match shown.value {
+            None => thickness,
+            Some(FormingValue::Thinning) => 1.0 - thickness / shown.flat.unwrap_or(f64::NAN),
+            // Strains of other results are not read.
+            Some(value) if value.is_strain() => f64::NAN,
+            Some(value) => {
+                let layers = of_source(&other.states, element, |state| value.of_state(state));
+                shown.layer_of(value).pick(&layers, value)
+            }
+        };
+        self.shown(element, shown) - theirs
     }
 
     /// A quantity through the thickness of an element and of its partner.

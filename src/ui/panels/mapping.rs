@@ -4,8 +4,8 @@ use egui::{Ui, vec2};
 
 use super::section::section_ui;
 use crate::app::{
-    Action, AppState, BottomTab, ColorBy, Command, InspectCommand, MapCommand, MapPicture,
-    MapResult, Quantity, Section, ViewCommand,
+    Action, AppState, BottomTab, Command, InspectCommand, MapCommand, MapPicture, MapResult,
+    Quantity, Section, ViewCommand,
 };
 use crate::jobs::JobKey;
 use crate::pipeline::forming_values::LayerChoice;
@@ -112,6 +112,15 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
     checks_ui(ui, record, commands);
     picture_ui(ui, state, commands);
     unmapped_ui(ui, state, commands);
+    caption(ui, "Another result");
+    let is_comparing = state.jobs.is_active(JobKey::CompareMapping);
+    let label = if is_comparing {
+        "Cancel"
+    } else {
+        "Compare with…"
+    };
+    let look = (label, Look::Plain, vec2(110.0, ROW));
+    action_button(ui, state, Action::CompareMapping, look, commands);
     caption(ui, "Write");
     ui.horizontal_wrapped(|ui| {
         for (action, label) in [
@@ -156,7 +165,7 @@ fn picture_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     caption(ui, "Quantity");
     ui.horizontal_wrapped(|ui| {
         for by in state.mapped_quantities() {
-            let is_told = matches!(shown.color_by, ColorBy::MapDifference) || shown.color_by == by;
+            let is_told = shown.color_by.speaks_of_quantity() || shown.color_by == by;
             if chip(ui, by.label(), is_shown && is_told && by == quantity).clicked() {
                 chosen = Some(state.with_map_quantity(by));
             }
@@ -168,14 +177,15 @@ fn picture_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if chip(ui, "Values", is_values).clicked() {
             chosen = Some(state.with_map_picture(None));
         }
-        for picture in MapPicture::ALL {
+        let is_there = |picture: &MapPicture| state.missing_for(picture.color_by()).is_none();
+        for picture in MapPicture::ALL.into_iter().filter(is_there) {
             let is_on = is_shown && shown.color_by == picture.color_by();
             if chip(ui, picture.label(), is_on).clicked() {
                 chosen = Some(state.with_map_picture(Some(picture)));
             }
         }
     });
-    let speaks_of_it = shown.color_by == quantity || shown.color_by == ColorBy::MapDifference;
+    let speaks_of_it = shown.color_by == quantity || shown.color_by.speaks_of_quantity();
     if let Some(layer) = state.shown_layer(quantity).filter(|_| speaks_of_it) {
         caption(ui, "Layers");
         ui.horizontal(|ui| {

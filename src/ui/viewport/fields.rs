@@ -10,7 +10,7 @@ use crate::colormap::{ColorMap, ColorScale};
 use crate::geometry::{Point3, TriMesh};
 use crate::monitor::Monitor;
 use crate::pipeline::forming_values::{FormingValue, forming_values, has_forming_value};
-use crate::pipeline::map::{MapRun, ShownValue};
+use crate::pipeline::map::{MapRun, OtherResult, ShownValue};
 use crate::render::FieldLook;
 use crate::role::{PerRole, Role};
 use crate::search::{Bvh, SearchLimits, closest_many};
@@ -76,6 +76,9 @@ struct FieldKey {
     shown: Option<ShownValue>,
 }
 
+/// A mapping, and what it is compared with.
+type Results = (Option<Arc<MapRun>>, Option<Arc<OtherResult>>);
+
 /// A finished field.
 struct Field {
     values: Arc<[f32]>,
@@ -83,7 +86,7 @@ struct Field {
     /// What the colours should span.
     range: [f64; 2],
     /// Keeps what the key names by its address.
-    _key: (Arc<ShownMesh>, Option<Arc<TriMesh>>, Option<Arc<MapRun>>),
+    _key: (Arc<ShownMesh>, Option<Arc<TriMesh>>, Results),
 }
 
 /// The fields of both windows.
@@ -207,6 +210,9 @@ pub(super) fn is_wanted(state: &AppState, window: Role, role: Role) -> bool {
     match FieldKind::of(state.color_by(window)) {
         Some(FieldKind::Deviation) => *display.coloring.on.get(role) && has_both(state),
         Some(FieldKind::Overlap) => has_both(state),
+        Some(FieldKind::Map(MapPicture::Other)) => {
+            role == Role::Crash && state.missing_for(ColorBy::MapOther).is_none()
+        }
         Some(FieldKind::Map(_)) => {
             role == Role::Crash && state.document.current_mapping().is_some()
         }
@@ -260,6 +266,8 @@ struct Order {
     other: Option<Arc<TriMesh>>,
     /// The mapping whose values the crash part carries instead of its own.
     mapped: Option<Arc<MapRun>>,
+    /// What the mapping is compared with.
+    compared: Option<Arc<OtherResult>>,
 }
 
 impl Order {
@@ -291,7 +299,17 @@ impl Order {
             },
             ..state.shown_value(by)
         });
+        let compared = match kind {
+            FieldKind::Map(MapPicture::Other) => {
+                let result = state.document.current_mapping();
+                result.and_then(|result| Some(result.other.as_ref()?.to_arc()))
+            }
+            _ => None,
+        };
         let run = mapped.as_ref().map_or(0, |run| Arc::as_ptr(run).addr());
+        let run = compared
+            .as_ref()
+            .map_or(run, |other| Arc::as_ptr(other).addr());
         let key = FieldKey {
             kind,
             mesh: mesh.key(),
@@ -303,6 +321,7 @@ impl Order {
             mesh: Arc::clone(mesh),
             other,
             mapped,
+            compared,
         })
     }
 
@@ -330,7 +349,7 @@ impl Order {
             range: robust_range(&values),
             is_by_corner: matches!(self.key.kind, FieldKind::Map(_)),
             values: values.into(),
-            _key: (self.mesh, self.other, self.mapped),
+            _key: (self.mesh, self.other, (self.mapped, self.compared)),
         }
     }
 
@@ -340,7 +359,8 @@ impl Order {
         };
         match (&self.mapped, self.key.kind) {
             (Some(run), FieldKind::Map(picture)) => {
-                map_fields::at_corners(&self.mesh, run, picture, shown)
+                let results = (run.as_ref(), self.compared.as_deref());
+                map_fields::at_corners(&self.mesh, results, picture, shown)
             }
             (Some(run), _) => mapped(&self.mesh, run, |e| run.shown(e, shown)),
             (None, FieldKind::Forming(value)) => forming(&self.mesh, value, shown),

@@ -8,9 +8,11 @@ use egui_plot::{Line, MarkerShape, PlotPoints, Points};
 use super::charts;
 use crate::app::{
     Action, AppState, ColorBy, Command, InspectCommand, MapResult, ProbeReport, ViewCommand,
+    file_names,
 };
-use crate::pipeline::map::{CheckRecord, DistributionRecord, PairRecord};
+use crate::pipeline::map::{CheckRecord, ComparisonRecord, DistributionRecord, PairRecord};
 use crate::role::Role;
+use crate::text::grouped;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{
     Look, action_button, caption, length, nothing_yet, percent, segments, signed,
@@ -70,7 +72,7 @@ impl View {
     fn show(self, ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut Vec<Command>) {
         match self {
             Self::Checks => checks_ui(ui, state, result, commands),
-            Self::Distribution => distributions_ui(ui, state, result),
+            Self::Distribution => distributions_ui(ui, state, result, commands),
             Self::Probe => probe_ui(ui, state, commands),
         }
     }
@@ -132,6 +134,9 @@ fn checks_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
                 if response.clicked() {
                     show_check(state, result, check, commands);
                 }
+                if let Some(reason) = check.reason {
+                    response.on_hover_text(reason.label());
+                }
             });
         });
 }
@@ -182,8 +187,18 @@ fn pair_of(result: &MapResult, by: ColorBy) -> Option<&PairRecord> {
 }
 
 /// Percentiles and overlaid histograms of both sides.
-fn distributions_ui(ui: &mut Ui, state: &AppState, result: &MapResult) {
+fn distributions_ui(
+    ui: &mut Ui,
+    state: &AppState,
+    result: &MapResult,
+    commands: &mut Vec<Command>,
+) {
     let by = state.map_quantity();
+    if let Some(comparison) = &result.record.comparison
+        && state.view.display.color_by == ColorBy::MapOther
+    {
+        return compared_ui(ui, state, (result, comparison), commands);
+    }
     let Some(pair) = pair_of(result, by) else {
         caption(
             ui,
@@ -197,20 +212,98 @@ fn distributions_ui(ui: &mut Ui, state: &AppState, result: &MapResult) {
         _ => "",
     };
     caption(ui, format!("{}{of_layers}, by area", by.label()));
-    percentiles_ui(ui, pair);
+    let palette = Palette::of(ui);
+    let rows = [
+        ("▲", &pair.stamped, palette.stamped),
+        ("■", &pair.crash, palette.crash),
+    ];
+    percentiles_ui(ui, &rows);
     let size = vec2(ui.available_width(), ui.available_height().max(40.0));
     histogram_ui(ui, pair, size);
 }
 
-fn percentiles_ui(ui: &mut Ui, pair: &PairRecord) {
+/// The mapping against another result: both sides by area, the differences, and the way to the largest.
+fn compared_ui(
+    ui: &mut Ui,
+    state: &AppState,
+    (result, comparison): (&MapResult, &ComparisonRecord),
+    commands: &mut Vec<Command>,
+) {
+    let by = state.map_quantity();
+    let files = file_names(&comparison.files);
+    caption(ui, format!("{} against {files}, by area", by.label()));
+    let record = match by {
+        ColorBy::Thickness => comparison.thickness.as_ref(),
+        ColorBy::PlasticStrain => comparison.plastic_strain.as_ref(),
+        ColorBy::VonMises => comparison.von_mises.as_ref(),
+        _ => None,
+    };
+    let Some(record) = record else {
+        let hint =
+            "no statistics of this quantity; thickness, plastic strain and von Mises have some";
+        caption(ui, hint);
+        return;
+    };
+    let palette = Palette::of(ui);
+    let rows = [
+        ("here", &record.here, palette.crash),
+        ("there", &record.other, palette.secondary),
+    ];
+    percentiles_ui(ui, &rows);
+    ui.add_space(4.0);
+    let numbers = [
+        ("mean difference", signed(record.mean)),
+        ("RMS", length(record.rms)),
+        ("95 % below", length(record.p95)),
+    ];
+    for (name, number) in numbers {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(name).small().color(palette.secondary));
+            ui.label(RichText::new(number).small());
+        });
+    }
+    let worst = format!(
+        "largest {} at element {}",
+        length(record.max),
+        record.element
+    );
+    let go = ui.button(RichText::new(worst).small());
+    if go.on_hover_text("Look there").clicked() {
+        look_at_element(state, result, record.element, commands);
+    }
+    let text = format!(
+        "{} in both, {} only here, {} only there; {} compared",
+        grouped(comparison.n_both),
+        grouped(comparison.n_only_here),
+        grouped(comparison.n_only_other),
+        grouped(record.n_elements)
+    );
+    let text = RichText::new(text).small().color(palette.secondary);
+    ui.add(egui::Label::new(text).wrap());
+}
+
+fn look_at_element(state: &AppState, result: &MapResult, id: u64, commands: &mut Vec<Command>) {
+    let Some(crash) = state.document.part(Role::Crash) else {
+        return;
+    };
+    let mut all = 0..result.run.shells.len();
+    let Some(element) = all.find(|&element| result.element_id(&crash.loaded, element) == id) else {
+        return;
+    };
+    let look = InspectCommand::LookAt {
+        role: Role::Crash,
+        point: result.run.target.mesh.centroids()[element],
+        text: format!("element {id}"),
+    };
+    commands.push(look.into());
+}
+
+/// One row for each side: its sign, its numbers, its colour.
+fn percentiles_ui(ui: &mut Ui, rows: &[(&str, &DistributionRecord, egui::Color32)]) {
     let palette = Palette::of(ui);
     let titles = ["mean", "5 %", "50 %", "95 %", "99 %", "max"];
     let numbers =
         |of: &DistributionRecord| [of.mean, of.p5, of.p50, of.p95, of.p99, of.max].map(length);
-    let rows = [
-        ("▲", numbers(&pair.stamped), palette.stamped),
-        ("■", numbers(&pair.crash), palette.crash),
-    ];
     let quiet = |text: &str| RichText::new(text).small().color(palette.secondary);
     egui::Grid::new("mapping percentiles")
         .num_columns(titles.len() + 1)
@@ -222,9 +315,9 @@ fn percentiles_ui(ui: &mut Ui, pair: &PairRecord) {
                 ui.label(quiet(title));
             }
             ui.end_row();
-            for (name, numbers, color) in rows {
-                ui.label(RichText::new(name).small().color(color));
-                for number in numbers {
+            for (name, of, color) in rows {
+                ui.label(RichText::new(*name).small().color(*color));
+                for number in numbers(of) {
                     ui.label(RichText::new(number).small());
                 }
                 ui.end_row();

@@ -190,7 +190,7 @@ fn map_text(state: &AppState, picture: MapPicture, value: Option<f64>) -> Option
     };
     let by = state.map_quantity();
     Some(match picture {
-        MapPicture::Difference => {
+        MapPicture::Difference | MapPicture::Other => {
             let unit = match by {
                 ColorBy::Thickness => state.document.unit_suffix(),
                 _ => "",

@@ -12,7 +12,7 @@ use egui::{
 };
 
 use super::{MARGIN, Overlay, header};
-use crate::app::{Command, MapPicture};
+use crate::app::{Command, MapPicture, file_names};
 use crate::colormap::ColorScale;
 use crate::pipeline::forming_values::LayerChoice;
 use crate::ui::viewport::fields::FieldKind;
@@ -88,6 +88,13 @@ fn title(over: &Overlay<'_>, kind: FieldKind) -> String {
     match kind {
         FieldKind::Map(MapPicture::Difference) => {
             let name = format!("Difference of {}", quantity.label().to_lowercase());
+            layered(&name, state.view.display.mapped.layer)
+        }
+        FieldKind::Map(MapPicture::Other) => {
+            let compared = state.document.current_mapping();
+            let compared = compared.and_then(|result| result.record.comparison.as_ref());
+            let files = compared.map_or_else(String::new, |record| file_names(&record.files));
+            let name = format!("{}, less {files}", quantity.label());
             layered(&name, state.view.display.mapped.layer)
         }
         FieldKind::Map(MapPicture::Distance) => {
