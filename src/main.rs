@@ -46,6 +46,7 @@ fn open_window(cli: &Cli) -> anyhow::Result<ExitCode> {
         crash: files.next(),
         stamped: files.next(),
         example: cli.example,
+        realistic: cli.realistic,
         forget_settings: false,
     })
 }

@@ -1,7 +1,7 @@
 //! What the log says about the results of the pipeline, in one line each.
 
 use super::NoticeLevel;
-use crate::assess::{Coverage, Verdict};
+use crate::assess::{Ambiguity, Coverage, Verdict};
 use crate::formats::{Diagnostic, Severity};
 use crate::geometry::Similarity;
 use crate::jobs::{MeasuredLevel, PartFacts};
@@ -11,9 +11,6 @@ use crate::role::PerRole;
 use crate::text::{Lengths, length, percent};
 pub(super) use crate::text::{counted, grouped};
 use std::time::Duration;
-
-/// A pose this much worse than the best is worth a key: above it, it is simply another pose.
-const NEARLY_AS_GOOD: f64 = 1.3;
 
 /// "41,208 triangles, 3 parts".
 pub(super) fn load_line(part: &LoadedPart, facts: &PartFacts) -> String {
@@ -101,10 +98,7 @@ pub(super) fn match_pose(run: &MatchRun, alternative: Option<usize>) -> Option<S
 
 /// Alternatives that fit nearly as well as the best; they come first in the list.
 pub(super) fn n_alternatives(run: &MatchRun) -> usize {
-    let alternatives = run.outcome.alternatives.iter();
-    alternatives
-        .take_while(|alternative| alternative.score_ratio < NEARLY_AS_GOOD)
-        .count()
+    Ambiguity::near(&run.outcome.alternatives).len()
 }
 
 /// "GOOD: overlap 87.0 %, RMS 0.380, p95 0.900 mm; the reason".

@@ -208,6 +208,8 @@ pub struct StartupOptions {
     pub stamped: Option<PathBuf>,
     /// Open the example pair.
     pub example: bool,
+    /// Open the realistic example pair.
+    pub realistic: bool,
     /// Neither read nor write preferences.
     pub forget_settings: bool,
 }

@@ -87,6 +87,12 @@ impl Twin {
 }
 
 impl Ambiguity {
+    /// The alternatives, sorted by their error over that of the best pose, that fit nearly as well.
+    pub fn near(alternatives: &[Alternative]) -> &[Alternative] {
+        let n = alternatives.partition_point(|other| other.score_ratio < VERIFY_BELOW);
+        &alternatives[..n]
+    }
+
     /// Assesses alternatives sorted by their error over that of the best pose.
     pub fn of(alternatives: &[Alternative]) -> Self {
         let ratio = alternatives.first().map(|a| a.score_ratio);

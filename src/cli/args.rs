@@ -31,6 +31,10 @@ pub struct Cli {
     #[arg(long, conflicts_with = "files")]
     pub example: bool,
 
+    /// Open the window with a pair that differs as real pairs do: springback, trim, skin, noise.
+    #[arg(long, conflicts_with_all = ["files", "example"])]
+    pub realistic: bool,
+
     /// Number of threads, at most 1024; 0 uses one per core.
     #[arg(long, global = true, value_name = "N", default_value_t = 0, value_parser = threads())]
     pub threads: usize,
@@ -220,6 +224,9 @@ pub struct SampleArgs {
     /// Write the bundled pair instead.
     #[arg(long, conflicts_with_all = ["part", "variant", "seed"])]
     pub bundled: bool,
+    /// Write the realistic pair instead: springback, trim, skin against mid-surface, noise.
+    #[arg(long, conflicts_with_all = ["part", "variant", "seed", "bundled"])]
+    pub realistic: bool,
     /// List parts and variants.
     #[arg(long)]
     pub list: bool,
@@ -228,6 +235,7 @@ pub struct SampleArgs {
 /// `shapematch bench`.
 #[derive(Debug, Args)]
 #[command(group = clap::ArgGroup::new("table").args(["robustness", "mapping"]))]
+#[command(group = clap::ArgGroup::new("page").args(["robustness", "growth"]))]
 pub struct BenchArgs {
     /// The crash part; the generated car floor if no files are given.
     #[arg(requires = "stamped")]
@@ -245,6 +253,17 @@ pub struct BenchArgs {
     /// and sizes.
     #[arg(long, conflicts_with_all = ["crash", "robustness"])]
     pub mapping: bool,
+    /// Measure instead how the times of preparing and matching grow from 1,000 to 2,000,000 triangles.
+    #[arg(long, conflicts_with_all = ["crash", "robustness", "mapping"])]
+    pub growth: bool,
+    /// Largest pair of meshes that is measured, in triangles of both.
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 2_000_000,
+        requires = "growth"
+    )]
+    pub largest: usize,
     /// Seed of shapes, placements and disturbances.
     #[arg(long, default_value_t = 1, requires = "robustness")]
     pub seed: u64,
@@ -256,7 +275,7 @@ pub struct BenchArgs {
     #[arg(long, value_name = "NAMES", requires = "table")]
     pub only: Option<String>,
     /// Write the table with plots as a page.
-    #[arg(long, value_name = "FILE", requires = "robustness")]
+    #[arg(long, value_name = "FILE", requires = "page")]
     pub html: Option<PathBuf>,
 }
 

@@ -5,6 +5,7 @@
 
 mod args;
 mod bench;
+mod growth;
 mod info;
 mod map;
 mod map_bench;
@@ -48,6 +49,7 @@ pub fn run(task: &Task, quiet: bool) -> anyhow::Result<ExitCode> {
         Task::Reduce(args) => reduce::run(args, quiet),
         Task::Info(args) => info::run(args, quiet),
         Task::Sample(args) => sample::run(args),
+        Task::Bench(args) if args.growth => growth::run(args, quiet),
         Task::Bench(args) if args.robustness => robustness::run(args, quiet),
         Task::Bench(args) if args.mapping => map_bench::run(args, quiet),
         Task::Bench(args) => bench::run(args, quiet),

@@ -128,7 +128,11 @@ fn describe(project: &Project, path: &Path) -> String {
 
 fn describe_part(entry: &PartEntry, project: &Path) -> String {
     let Some(file) = &entry.file else {
-        return "the example that comes with the program".to_owned();
+        return if entry.is_realistic_example {
+            "the realistic example that comes with the program".to_owned()
+        } else {
+            "the example that comes with the program".to_owned()
+        };
     };
     let mut text = format!(
         "{}, {}",

@@ -18,6 +18,8 @@ pub fn run(args: &SampleArgs) -> anyhow::Result<ExitCode> {
     let folder = args.folder.as_deref().context("no folder was given")?;
     let files = if args.bundled {
         samples::bundled()
+    } else if args.realistic {
+        samples::realistic()
     } else {
         samples::files(&pair(args)?)
     };

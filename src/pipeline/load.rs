@@ -19,7 +19,7 @@ use crate::monitor::Monitor;
 use crate::registration::Surface;
 use crate::report::command_line::CommandSide;
 use crate::role::Role;
-use crate::samples;
+use crate::samples::{self, SampleFile};
 use crate::units::{self, KnownUnits, UnitOrigin, Units};
 
 /// What lengths may be multiplied by: wider than any two units of length lie apart.
@@ -106,6 +106,8 @@ pub enum PartSource {
     File(PathBuf),
     /// The example pair, generated.
     Example,
+    /// The realistic example pair, generated.
+    RealisticExample,
 }
 
 impl PartSource {
@@ -118,7 +120,8 @@ impl PartSource {
     ) -> Result<LoadedPart, PipelineError> {
         match self {
             Self::File(path) => load(path, settings, monitor),
-            Self::Example => load_bundled(role, settings, monitor),
+            Self::Example => load_bundled(samples::bundled(), role, settings, monitor),
+            Self::RealisticExample => load_bundled(samples::realistic(), role, settings, monitor),
         }
     }
 }
@@ -264,13 +267,13 @@ pub fn load_from(
     Ok(part)
 }
 
-/// One part of the pair that comes with the program: the file whose name begins with its role.
-pub fn load_bundled(
+/// One part of a pair that comes with the program: the file whose name begins with its role.
+fn load_bundled(
+    files: Vec<SampleFile>,
     role: Role,
     settings: &LoadSettings,
     monitor: &Monitor,
 ) -> Result<LoadedPart, PipelineError> {
-    let files = samples::bundled();
     let file = files
         .into_iter()
         .find(|file| file.name.starts_with(role.word()));

@@ -5,6 +5,8 @@
 
 pub mod autosave;
 pub mod forming_values;
+pub mod growth;
+pub mod growth_page;
 pub mod id_map;
 pub mod inspect;
 pub mod likeness;

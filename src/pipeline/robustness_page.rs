@@ -11,7 +11,8 @@ fn escaped(text: &str) -> String {
     maud::html! { (text) }.into_string()
 }
 
-const STYLE: &str = "\
+/// How such pages look.
+pub(super) const STYLE: &str = "\
 :root{--text:#1c2127;--soft:#55606c;--line:#d9dee4;--page:#fff;--good:#1a7f37;--check:#b26b00;--poor:#c11f2b;\
 --right:#0072b2;color-scheme:light dark}\
 @media(prefers-color-scheme:dark){:root{--text:#e7eaee;--soft:#a4adb8;--line:#353b43;--page:#15181c;\
@@ -103,21 +104,21 @@ fn verdict_bars(rows: &[RobustnessRow]) -> String {
 }
 
 /// A logarithmic axis.
-struct Axis {
-    low: f64,
-    high: f64,
-    from: f64,
-    to: f64,
+pub(super) struct Axis {
+    pub low: f64,
+    pub high: f64,
+    pub from: f64,
+    pub to: f64,
 }
 
 impl Axis {
-    fn at(&self, value: f64) -> f64 {
+    pub fn at(&self, value: f64) -> f64 {
         let share = (value.max(self.low) / self.low).ln() / (self.high / self.low).ln();
         self.from + share.min(1.0) * (self.to - self.from)
     }
 
     /// Powers of ten within the axis.
-    fn ticks(&self) -> impl Iterator<Item = f64> {
+    pub fn ticks(&self) -> impl Iterator<Item = f64> {
         let first = self.low.log10().ceil() as i32;
         let last = self.high.log10().floor() as i32;
         (first..=last).map(|power| 10f64.powi(power))

@@ -8,7 +8,8 @@ use crate::geometry::Point3;
 use crate::role::Role;
 
 /// The head of a table of node deviations.
-pub const DEVIATION_COLUMNS: &str = "part,node,x,y,z,distance,class,nearest_element";
+pub const DEVIATION_COLUMNS: &str =
+    "part,node,x,y,z,distance,class,nearest_element,pose_uncertainty";
 
 /// One node seen from the other part.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +27,8 @@ pub struct NodeDeviation {
     pub class: OverlapClass,
     /// Id of the element of the other part that is nearest.
     pub nearest_element: Option<u64>,
+    /// How far the pose may be off at this node; of stamped nodes at the pose of a match.
+    pub pose_uncertainty: Option<f64>,
 }
 
 /// A word for machines.
@@ -58,11 +61,12 @@ pub fn deviation_table(comments: &[String], rows: &[NodeDeviation]) -> String {
         let element = row
             .nearest_element
             .map_or_else(String::new, |id| id.to_string());
+        let uncertainty = row.pose_uncertainty.map_or_else(String::new, number);
         let (part, node, class) = (row.role.word(), row.node, class_word(row.class));
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{part},{node},{x},{y},{z},{distance},{class},{element}"
+            "{part},{node},{x},{y},{z},{distance},{class},{element},{uncertainty}"
         );
     }
     text
@@ -81,11 +85,13 @@ mod tests {
             distance: -1.0 / 3.0,
             class: OverlapClass::Matched,
             nearest_element: Some(7),
+            pose_uncertainty: Some(0.1),
         };
         let far = NodeDeviation {
             distance: f64::INFINITY,
             class: OverlapClass::OnlyHere,
             nearest_element: None,
+            pose_uncertainty: None,
             ..near
         };
         let text = deviation_table(&["a\nb".to_owned()], &[near, far]);
@@ -94,6 +100,7 @@ mod tests {
         let cells: Vec<&str> = lines[3].split(',').collect();
         let numbers = [2, 3, 4, 5].map(|i| cells[i].parse::<f64>().unwrap());
         assert_eq!(numbers, [near.at.x, near.at.y, near.at.z, near.distance]);
-        assert_eq!(&lines[4][lines[4].len() - 12..], ",,only_here,");
+        assert_eq!(cells[8], "0.1");
+        assert_eq!(&lines[4][lines[4].len() - 13..], ",,only_here,,");
     }
 }

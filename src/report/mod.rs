@@ -20,4 +20,6 @@ pub use record::{
     AlternativeRecord, DIRECTION, FileRecord, IncludedFile, Machine, MatchRecord, Metrics, OneWay,
     OverlapRecord, Parameters, RecordContext, TimingsRecord, UnitsRecord, build_id, role_of,
 };
-pub use starts::{few_agree_words, outcome_words, start_counts, start_kind_words, start_name};
+pub use starts::{
+    few_agree_words, outcome_words, start_counts, start_kind_help, start_kind_words, start_name,
+};

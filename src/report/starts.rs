@@ -43,6 +43,36 @@ pub fn start_kind_words(kind: StartKind) -> String {
     }
 }
 
+/// What a kind of start does, as a sentence.
+pub fn start_kind_help(kind: StartKind) -> &'static str {
+    match kind {
+        StartKind::SurfaceNormal { .. } => {
+            "Align surface normals: centroids and mean normals on each other, rotated about the normal."
+        }
+        StartKind::Patch { .. } => {
+            "Align surface normals in its local form: the mean normal around the middle of the smaller \
+             part is aligned to that of a patch as large of the larger part, the middles on each other, \
+             rotated about the normal. So a piece finds its place without the mean of the whole part."
+        }
+        StartKind::PrincipalFrame { .. } => {
+            "Principal axes on each other, with one choice of signs."
+        }
+        StartKind::Covering { .. } => "One of rotations spread evenly, centroids on each other.",
+        StartKind::Wide { .. } => {
+            "A survivor of the wide search, which tries all rotations, both normal directions and, where \
+             sizes differ, all places."
+        }
+        StartKind::CurrentPose => "Where the part lay before the match.",
+        StartKind::Given { .. } => "A pose that was given.",
+        StartKind::Alike { .. } => {
+            "A rival: a place of the larger part that is shaped like the one of the best pose."
+        }
+        StartKind::Twin { .. } => {
+            "A rival: the best pose after half a turn about an axis of the part."
+        }
+    }
+}
+
 /// How many starts there were and of which kinds: "22 starts (18 by surface normals, 4 by the wide search)".
 pub fn start_counts(starts: &[StartRecord]) -> String {
     let mut counts: Vec<(&str, usize)> = Vec::new();

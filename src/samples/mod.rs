@@ -20,7 +20,7 @@ pub mod scenario;
 mod sheet;
 mod variation;
 
-pub use bundle::{bundled, bundled_settings};
+pub use bundle::{bundled, bundled_settings, realistic, realistic_pair};
 pub use decks::{SampleFile, files, write_crash_deck, write_stamped_deck, write_truth};
 pub use forming::{FormingLayer, ShellForming};
 pub use pair::{SampleMesh, SamplePair, crash_means, generate, stamped_means};

@@ -45,7 +45,8 @@ choices! { Method:
 
 choices! { StartMethod:
     SurfaceNormals => "surface-normal", "Align surface normals",
-        "Aligns centroids and mean normals, then rotates in steps about the normal";
+        "Aligns centroids and mean normals, then rotates in steps about the normal; where one part is \
+         a piece of the other, the wide search does the same patch by patch";
     CurrentPose => "current", "Current pose",
         "Starts from the current pose, for example one set by hand";
     GivenPoses => "given", "Given poses",

@@ -177,6 +177,9 @@ impl Shell {
                 commands.push(FileCommand::Open { paths, role }.into());
             }
             (None, None) if options.example => commands.push(FileCommand::OpenExample.into()),
+            (None, None) if options.realistic => {
+                commands.push(FileCommand::OpenRealisticExample.into());
+            }
             (None, None) => {}
         }
         self.run_commands(commands, ctx);

@@ -103,7 +103,11 @@ fn the_bundled_pair_is_matched_and_everything_is_written() {
     let page = std::fs::read_to_string(&page).unwrap();
     assert!(page.ends_with("</html>\n") && page.contains("GOOD"));
     let nodes = std::fs::read_to_string(&nodes).unwrap();
-    assert!(nodes.contains("\npart,node,x,y,z,distance,class,nearest_element\nstamped,"));
+    assert!(
+        nodes.contains(
+            "\npart,node,x,y,z,distance,class,nearest_element,pose_uncertainty\nstamped,"
+        )
+    );
 
     // The moved deck lies where the matrix puts the stamped one, node by node.
     let there = mesh(&moved);

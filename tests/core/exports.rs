@@ -205,10 +205,11 @@ fn node_deviations_read_back_to_the_same_bits() {
     let Matched { parts, run } = matched();
     let pose = &run.crash_from_stamped;
     let silent = Monitor::silent();
-    let (rows, _) = node_deviations(parts.as_deref(), pose, &silent).unwrap();
+    let stated = run.assessment.uncertainty();
+    let (rows, _) = node_deviations(parts.as_deref(), pose, stated, &silent).unwrap();
     let n_nodes = |part: &LoadedPart| part.ids.nodes().len();
     assert_eq!(rows.len(), n_nodes(&parts.crash) + n_nodes(&parts.stamped));
-    let text = node_table(parts.as_deref(), pose, &silent).unwrap();
+    let text = node_table(parts.as_deref(), pose, stated, &silent).unwrap();
     assert!(text.contains("\n# lengths in mm\n"), "no unit in the head");
     let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
     assert_eq!(lines.len(), rows.len() + 1);
@@ -218,7 +219,12 @@ fn node_deviations_read_back_to_the_same_bits() {
         assert_eq!((cells[0], number(1)), (row.role.word(), row.node as f64));
         assert_eq!(Point3::new(number(2), number(3), number(4)), row.at);
         assert_eq!(number(5), row.distance);
+        assert_eq!(cells[8].is_empty(), row.role == Role::Crash);
     }
+    // The largest of the nodes is what the result states.
+    let of_nodes = rows.iter().filter_map(|row| row.pose_uncertainty);
+    let largest = of_nodes.fold(0.0, f64::max);
+    assert!((largest - stated.unwrap().largest).abs() < 1e-9 * largest);
     // The nearest element is as far as the distance says, where the other part is there.
     let row = rows
         .iter()

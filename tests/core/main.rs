@@ -35,6 +35,7 @@ mod outputs;
 mod pairs;
 mod pan;
 mod project;
+mod realistic;
 mod registration;
 mod robustness;
 mod samples;

@@ -3,6 +3,8 @@
 
 use shapematch::assess::Verdict;
 use shapematch::monitor::Monitor;
+use shapematch::pipeline::growth::growth;
+use shapematch::pipeline::growth_page::growth_page;
 use shapematch::pipeline::robustness::{Ending, RobustnessSettings, robustness};
 use shapematch::pipeline::robustness_page::page;
 use shapematch::pipeline::robustness_table::RobustnessTable;
@@ -63,4 +65,21 @@ fn borders_and_holes_place_parts_that_slide() {
         assert_ne!(run.verdict, Verdict::Poor, "{run:?}");
         assert!(run.node_error.is_some_and(|error| error < 1.0), "{run:?}");
     }
+}
+
+/// Times are not judged here; that the poses stay right while the meshes grow, and that all is told, is.
+#[test]
+fn growth_tells_times_and_exponents_of_right_poses() {
+    let mut n_told = 0;
+    let table = growth(12_000, &Monitor::silent(), |_| n_told += 1).unwrap();
+    assert_eq!([table.rows.len(), n_told], [3, 3]);
+    for pair in table.rows.windows(2) {
+        let ratio = pair[1].triangles as f64 / pair[0].triangles as f64;
+        assert!((1.5..8.0).contains(&ratio), "{table:?}");
+        assert!(pair[1].node_error < 5.0, "{table:?}");
+    }
+    assert!(table.match_exponent.is_some() && table.prepare_exponent.is_some());
+    let page = growth_page(&table);
+    assert_eq!(page.matches("<circle").count(), 6);
+    assert_eq!(page.matches("<tr>").count(), 4);
 }

@@ -39,6 +39,15 @@ const OPEN: &[ActionRow] = &[
         enabled: |state| state.jobs.is_unlocked(),
         command: |_| some(FileCommand::OpenExample),
     },
+    ActionRow {
+        action: Action::OpenRealisticExample,
+        label: "Open the realistic example",
+        tooltip: "Load a generated pair that differs as real pairs do: springback, trim, skin against \
+                  mid-surface, noise",
+        keys: Keys::NONE,
+        enabled: |state| state.jobs.is_unlocked(),
+        command: |_| some(FileCommand::OpenRealisticExample),
+    },
 ];
 
 const PROJECT: &[ActionRow] = &[

@@ -86,7 +86,9 @@ const STARTS: &[ActionRow] = &[
     ActionRow {
         action: Action::Align,
         label: "Align surface normals",
-        tooltip: "Make first poses by aligning the mean surface normals",
+        tooltip: "Make first poses by aligning the mean surface normals. For a piece of a part the wide \
+                  search of the match does it locally: the mean normal of the piece on that of every \
+                  patch as large",
         keys: Keys::press(&[key('A')]),
         enabled: AppState::can_match,
         command: |_| some(MatchCommand::Align),

@@ -94,6 +94,8 @@ actions! {
     OpenStamped,
     /// Open the example pair.
     OpenExample,
+    /// Load the realistic example pair.
+    OpenRealisticExample,
     /// Choose a project.
     OpenProject,
     /// Write the project to its file.
@@ -178,6 +180,8 @@ actions! {
     ToggleDeviation,
     /// Colours of the overlap.
     ToggleOverlap,
+    /// Colours of the uncertainty of the pose.
+    ToggleUncertainty,
     /// Measure the deviation again.
     UpdateDeviation,
     /// Colours of the mapped values.

@@ -140,6 +140,14 @@ const INSPECT: &[ActionRow] = &[
         command: |state| shown_with(state, |display| toggle_color(display, ColorBy::Overlap)),
     },
     ActionRow {
+        action: Action::ToggleUncertainty,
+        label: "Uncertainty map",
+        tooltip: "Colour the stamped part by how far the pose may be off there",
+        keys: Keys::press(&[key('U')]),
+        enabled: AppState::has_uncertainty,
+        command: |state| shown_with(state, |display| toggle_color(display, ColorBy::Uncertainty)),
+    },
+    ActionRow {
         action: Action::UpdateDeviation,
         label: "Update the deviation",
         tooltip: "Measure the deviation again at the shown pose and levels",

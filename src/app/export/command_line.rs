@@ -8,8 +8,15 @@ use crate::registration::StartMethod;
 use crate::report::command_line::{CommandLine, CommandSide};
 use crate::role::PerRole;
 
-/// Where the line puts the example pair, which is in no file.
-const EXAMPLE_FOLDER: &str = "shapematch-example";
+/// Where the line puts the example pairs, which are in no file, and the option that writes them.
+const EXAMPLES: [(PartSource, &str, &str); 2] = [
+    (PartSource::Example, "shapematch-example", "--bundled"),
+    (
+        PartSource::RealisticExample,
+        "shapematch-realistic-example",
+        "--realistic",
+    ),
+];
 
 impl Document {
     /// `Ok` if a line can give the pose that is shown: not where it was moved by hand after a match,
@@ -59,21 +66,20 @@ impl Document {
             current: self.crash_from_stamped(),
             alternative: self.current_result().and_then(|result| result.alternative),
         };
-        let is_example = [crash, stamped]
-            .iter()
-            .any(|part| part.source == PartSource::Example);
-        let before = if is_example {
-            format!("shapematch sample {EXAMPLE_FOLDER} --bundled && ")
-        } else {
-            String::new()
-        };
+        let mut before = String::new();
+        for (source, folder, option) in EXAMPLES {
+            if [crash, stamped].iter().any(|part| part.source == source) {
+                before += &format!("shapematch sample {folder} {option} && ");
+            }
+        }
         Some(before + &line.line())
     }
 }
 
 fn path(part: &Part) -> PathBuf {
-    match part.source {
-        PartSource::File(_) => part.loaded.path.clone(),
-        PartSource::Example => Path::new(EXAMPLE_FOLDER).join(&part.loaded.path),
+    let example = EXAMPLES.iter().find(|(source, ..)| *source == part.source);
+    match example {
+        Some((_, folder, _)) => Path::new(folder).join(&part.loaded.path),
+        None => part.loaded.path.clone(),
     }
 }

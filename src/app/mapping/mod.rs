@@ -246,6 +246,9 @@ impl AppState {
             let has_mapping = self.document.current_mapping().is_some();
             return (!has_mapping).then_some("nothing is mapped at this pose yet");
         }
+        if by == ColorBy::Uncertainty {
+            return self.has_uncertainty().err().map(|reason| reason.0);
+        }
         let value = by.forming()?;
         let flat = self.flat_thickness();
         let mut reason = Some("no part is loaded");

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use super::MatchState;
 use crate::app::work::Work;
-use crate::app::{AppState, Document, Effect, facts};
-use crate::assess::Coverage;
+use crate::app::{AppState, Document, Effect, Reason, facts};
+use crate::assess::{Assessment, Coverage};
 use crate::jobs::{JobKey, JobKind, MeasureInput, Stamp};
 
 impl AppState {
@@ -17,6 +17,26 @@ impl AppState {
         match result.alternative {
             None => Some(&result.run.assessment.coverage),
             Some(_) => self.matching.current_measurement(&self.document),
+        }
+    }
+}
+
+impl AppState {
+    /// The assessment whose uncertainty is that of the shown pose: of the match's best pose only.
+    pub fn uncertain_assessment(&self) -> Option<&Arc<Assessment>> {
+        let result = self.document.current_result()?;
+        let assessment = &result.run.assessment;
+        let is_stated = result.alternative.is_none() && assessment.uncertainty().is_some();
+        is_stated.then_some(assessment)
+    }
+
+    /// `Ok` if it is known how far the shown pose may be off.
+    pub fn has_uncertainty(&self) -> Result<(), Reason> {
+        match self.uncertain_assessment() {
+            Some(_) => Ok(()),
+            None => Err(Reason(
+                "Only the best pose of a match has an uncertainty; match first.",
+            )),
         }
     }
 }

@@ -21,6 +21,8 @@ pub enum FileCommand {
     },
     /// Open the example pair.
     OpenExample,
+    /// Load the realistic example pair.
+    OpenRealisticExample,
     /// Read a part again.
     Reload(Role),
     /// Read all loaded parts again.
@@ -89,6 +91,7 @@ impl FileCommand {
                 role: Some(role),
             },
             PartSource::Example => Self::OpenExample,
+            PartSource::RealisticExample => Self::OpenRealisticExample,
         }
     }
 }

@@ -38,7 +38,10 @@ impl PartsState {
         match command {
             FileCommand::AskOpen(role) => vec![Effect::AskOpen(role)],
             FileCommand::Open { paths, role } => self.open(work, paths, role),
-            FileCommand::OpenExample => self.open_example(work),
+            FileCommand::OpenExample => self.open_example(work, &PartSource::Example),
+            FileCommand::OpenRealisticExample => {
+                self.open_example(work, &PartSource::RealisticExample)
+            }
             FileCommand::Reload(role) => self.reload(work, role),
             FileCommand::ReloadAll => Role::ALL
                 .into_iter()
@@ -108,13 +111,11 @@ impl PartsState {
         }
     }
 
-    fn open_example(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
+    fn open_example(&mut self, work: &mut Work<'_>, source: &PartSource) -> Vec<Effect> {
         self.guess = Guess::default();
-        let example = |role| (role, PartSource::Example);
         Role::ALL
-            .map(example)
             .into_iter()
-            .flat_map(|(role, source)| self.load(work, role, source, LoadSettings::default()))
+            .flat_map(|role| self.load(work, role, source.clone(), LoadSettings::default()))
             .collect()
     }
 

@@ -161,9 +161,10 @@ impl AppState {
 fn part_entry(part: &Part) -> PartEntry {
     let file = match &part.source {
         PartSource::File(path) => Some(std::path::absolute(path).unwrap_or_else(|_| path.clone())),
-        PartSource::Example => None,
+        PartSource::Example | PartSource::RealisticExample => None,
     };
     PartEntry {
+        is_realistic_example: part.source == PartSource::RealisticExample,
         max_triangles: part.wanted_level,
         hidden: part.hidden.clone(),
         colors: part.colors.clone(),

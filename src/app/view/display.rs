@@ -34,6 +34,8 @@ pub enum ColorBy {
     Deviation,
     /// Where the other part is, is off, or is missing.
     Overlap,
+    /// How far the pose may be off at each place of the stamped part.
+    Uncertainty,
     /// 1 − thickness over that of the flat sheet.
     Thinning,
     /// Effective plastic strain, mean over the layers.
@@ -73,13 +75,14 @@ impl From<FormingValue> for ColorBy {
 
 impl ColorBy {
     /// All, in the order of the menu.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Role,
         Self::Part,
         Self::Thickness,
         Self::ReductionError,
         Self::Deviation,
         Self::Overlap,
+        Self::Uncertainty,
         Self::Thinning,
         Self::PlasticStrain,
         Self::MajorStrain,
@@ -126,6 +129,7 @@ impl ColorBy {
             Self::ReductionError => "Reduction error",
             Self::Deviation => "Deviation",
             Self::Overlap => "Overlap",
+            Self::Uncertainty => "Uncertainty of the pose",
             Self::Thinning => FormingValue::Thinning.label(),
             Self::PlasticStrain => FormingValue::PlasticStrain.label(),
             Self::MajorStrain => FormingValue::MajorStrain.label(),

@@ -334,7 +334,10 @@ impl Output {
             }
             Self::Deviations => {
                 let parts = input.both().ok_or(PipelineError::Lacks("both parts"))?;
-                let table = node_table::node_table(parts, pose, monitor)?;
+                // An alternative has none of its own.
+                let run = input.run.as_ref().filter(|_| input.alternative.is_none());
+                let stated = run.and_then(|run| run.assessment.uncertainty());
+                let table = node_table::node_table(parts, pose, stated, monitor)?;
                 (table, Vec::new())
             }
             Self::Cards(form) => {

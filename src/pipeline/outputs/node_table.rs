@@ -1,5 +1,6 @@
 //! How far every node of both parts lies from the other part, as a table.
 
+use crate::assess::PoseUncertainty;
 use crate::assess::deviation::{
     DeviationField, DeviationSettings, source_on_target, target_on_source,
 };
@@ -16,10 +17,12 @@ use crate::role::{PerRole, Role};
 use crate::search::{SearchLimits, SurfaceHit, closest_many};
 
 /// Measures both directions: first the nodes of the stamped part, then those of the crash part, in
-/// the order of their files. O(n · log n) in the nodes of both.
+/// the order of their files. `uncertainty` is that of the pose, where it is known. O(n · log n) in the
+/// nodes of both.
 pub fn node_deviations(
     parts: PerRole<&LoadedPart>,
     crash_from_stamped: &Similarity,
+    uncertainty: Option<&PoseUncertainty>,
     monitor: &Monitor,
 ) -> Result<(Vec<NodeDeviation>, DeviationField), PipelineError> {
     let PerRole { crash, stamped } = parts;
@@ -40,13 +43,16 @@ pub fn node_deviations(
         rows.extend(own.ids.nodes().iter().map(|&NodeVertex { node, vertex }| {
             let vertex = vertex as usize;
             let hit = hits.get(vertex).and_then(Option::as_ref);
+            let at = world_from_own.apply(&own.mesh.positions()[vertex]);
+            let stated = uncertainty.filter(|_| role == Role::Stamped);
             NodeDeviation {
                 role,
                 node: own.model.nodes.ids()[node as usize],
-                at: world_from_own.apply(&own.mesh.positions()[vertex]),
+                at,
                 distance: field.signed[vertex],
                 class: field.class[vertex],
                 nearest_element: hit.and_then(|hit| other_part.element_id(hit.triangle)),
+                pose_uncertainty: stated.map(|stated| stated.at(&at)),
             }
         }));
     }
@@ -80,9 +86,10 @@ fn nearest(
 pub fn node_table(
     parts: PerRole<&LoadedPart>,
     crash_from_stamped: &Similarity,
+    uncertainty: Option<&PoseUncertainty>,
     monitor: &Monitor,
 ) -> Result<String, PipelineError> {
-    let (rows, field) = node_deviations(parts, crash_from_stamped, monitor)?;
+    let (rows, field) = node_deviations(parts, crash_from_stamped, uncertainty, monitor)?;
     let sign = if field.is_signed {
         "positive where the stamped part lies in front of the crash part (side of its normals)"
     } else {
@@ -108,6 +115,9 @@ pub fn node_table(
             "class: matched within {}, off by more, only_here where the other part ends",
             field.limit
         ),
+        "pose_uncertainty: how far the pose of the match may be off at this stamped node; empty where it \
+         is not known"
+            .to_owned(),
         build_id(),
     ]);
     Ok(deviation_table(&comments, &rows))

@@ -4,14 +4,15 @@ use super::cards::cards;
 use super::record::match_record;
 use super::report_figures::FigureRenderer;
 use crate::assess::deviation::{Deviation, DeviationSettings, compare};
+use crate::assess::{Ambiguity, PoseUncertainty, Twin, error_beside};
 use crate::colormap::{ColorMap, ColorScale};
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::MatchRun;
-use crate::registration::{Extent, StartGroup, group_starts};
+use crate::registration::{Extent, StartGroup, Surface, group_starts};
 use crate::report::CardForm;
-use crate::report::html::{CardsInfo, Figures, Report};
+use crate::report::html::{CardsInfo, Figure, Figures, Report};
 use crate::role::PerRole;
 use crate::text::Lengths;
 
@@ -49,7 +50,13 @@ pub fn report(
         .collect();
     let lengths = Lengths::new(record.units.length);
     let renderer = FigureRenderer::new(parts, *pose, &deviation, scale, lengths);
-    let figures = draw(&renderer, run, &groups, monitor)?;
+    let mut figures = draw(&renderer, run, &groups, monitor)?;
+    figures.rivals = rivals(&renderer, run, source, lengths, monitor)?;
+    let stated = run.assessment.uncertainty();
+    let uncertainty_scale = stated.map(uncertainty_scale);
+    if let (Some(stated), Some(scale)) = (stated, uncertainty_scale) {
+        figures.uncertainty = renderer.uncertainty(stated, &scale);
+    }
     let cards = cards_of(run, parts);
     let report = Report {
         record: &record,
@@ -58,10 +65,37 @@ pub fn report(
         group_distances: &distances,
         deviation: &deviation,
         scale,
+        uncertainty_scale,
         figures: &figures,
         cards: &cards,
     };
     Ok(report.write())
+}
+
+/// Colours from nothing to the largest uncertainty.
+fn uncertainty_scale(stated: &PoseUncertainty) -> ColorScale {
+    let most = Some(stated.largest).filter(|most| most.is_finite() && *most > 0.0);
+    ColorScale::new(ColorMap::Viridis, 0.0, most.unwrap_or(1.0))
+}
+
+/// Both parts at each pose that fits nearly as well, with how it differs.
+fn rivals(
+    renderer: &FigureRenderer<'_>,
+    run: &MatchRun,
+    source: &Surface,
+    lengths: Lengths,
+    monitor: &Monitor,
+) -> Result<Vec<Figure>, PipelineError> {
+    let mut figures = Vec::new();
+    for other in Ambiguity::near(&run.outcome.alternatives) {
+        monitor.check()?;
+        let pose = &other.target_from_source;
+        let twin = Twin::of(source, &run.crash_from_stamped, pose);
+        let title = format!("{}: {}", figures.len() + 2, twin.words(lengths));
+        let caption = format!("({}).", error_beside(other.score_ratio));
+        figures.push(renderer.rival(pose, title, caption));
+    }
+    Ok(figures)
 }
 
 /// Colours from − to + the limit that holds nearly all distances, the faceting neutral.

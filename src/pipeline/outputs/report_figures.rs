@@ -1,5 +1,6 @@
 //! The pictures of the report, drawn without a graphics card.
 
+use crate::assess::PoseUncertainty;
 use crate::assess::deviation::Deviation;
 use crate::colormap::{ColorScale, Rgb, UNMATCHED};
 use crate::geometry::{Camera, Matrix3, Point3, Rotation, Similarity, Vector3};
@@ -212,6 +213,33 @@ impl<'a> FigureRenderer<'a> {
             }
         };
         spots.enumerate().map(figure).collect()
+    }
+
+    /// The stamped part in the colours of how far the pose may be off.
+    pub(super) fn uncertainty(&self, stated: &PoseUncertainty, scale: &ColorScale) -> Vec<Figure> {
+        let positions = self.parts.stamped.mesh.positions();
+        let values = stated.field(positions, &self.pose);
+        let colors: Vec<Rgb> = values.iter().map(|&value| scale.color(value)).collect();
+        let mesh = PictureMesh {
+            paint: Paint::PerVertex(&colors),
+            ..self.map_mesh()
+        };
+        let camera = fitted(self.front, positions, &self.pose, SIZE);
+        let largest = self.lengths.of(stated.largest);
+        vec![self.figure(
+            &picture(SIZE, &camera, None, &[mesh]),
+            "▲ Stamped part,".to_owned(),
+            format!("how far each node may be off, at most ± {largest}."),
+            format!("Map of the uncertainty of the pose, at most {largest}"),
+        )]
+    }
+
+    /// Both parts at another pose.
+    pub(super) fn rival(&self, pose: &Similarity, title: String, caption: String) -> Figure {
+        let drawn = self.both(self.front, pose, SPOT_SIZE);
+        let drawn = drawn.stamped.chequered(&drawn.crash, SPOT_SIZE[1] / 12);
+        let alt = format!("Both parts at pose {title}");
+        self.figure(&drawn, title, caption, alt)
     }
 
     /// Where a start ended.

@@ -57,6 +57,8 @@ pub struct PartEntry {
     pub include_folders: Vec<PathBuf>,
     /// Limit on what is read, in GiB.
     pub read_limit: f64,
+    /// Which example it is a side of, where it has no file.
+    pub is_realistic_example: bool,
     /// The ceiling it was reduced to; `None` for the full mesh.
     pub max_triangles: Option<usize>,
     /// Ids of hidden parts of the deck.
@@ -76,6 +78,7 @@ impl Default for PartEntry {
             units: None,
             include_folders: Vec::new(),
             read_limit: ReadOptions::USUAL_LIMIT,
+            is_realistic_example: false,
             max_triangles: None,
             hidden: BTreeSet::new(),
             colors: BTreeMap::new(),

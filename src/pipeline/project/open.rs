@@ -102,7 +102,11 @@ fn source(
     match (located, &entry.file) {
         (Located::Without, _) => Ok(None),
         (Located::At(path), _) => Ok(Some(PartSource::File(path.clone()))),
-        (Located::AsStored, None) => Ok(Some(PartSource::Example)),
+        (Located::AsStored, None) => Ok(Some(if entry.is_realistic_example {
+            PartSource::RealisticExample
+        } else {
+            PartSource::Example
+        })),
         (Located::AsStored, Some(file)) => match entry.locate(project) {
             Some(path) => Ok(Some(PartSource::File(path))),
             None => Err(file.clone()),

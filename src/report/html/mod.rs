@@ -4,6 +4,7 @@
 mod charts;
 mod map_page;
 mod page;
+mod pose_section;
 mod sections;
 mod tables;
 
@@ -42,6 +43,10 @@ pub struct Figures {
     pub parts: Vec<Figure>,
     /// Both parts at the pose.
     pub overlays: Vec<Figure>,
+    /// How far the pose may be off, on the stamped part.
+    pub uncertainty: Vec<Figure>,
+    /// Both parts at each pose that fits nearly as well.
+    pub rivals: Vec<Figure>,
     /// The deviation of the stamped part.
     pub maps: Vec<Figure>,
     /// The worst places from near.
@@ -75,6 +80,8 @@ pub struct Report<'a> {
     pub deviation: &'a Deviation,
     /// The colours of the map.
     pub scale: ColorScale,
+    /// The colours of the uncertainty, where there is one.
+    pub uncertainty_scale: Option<ColorScale>,
     /// Pictures of the page.
     pub figures: &'a Figures,
     /// LS-DYNA cards.

@@ -11,8 +11,9 @@ use crate::role::PerRole;
 use crate::text::{fixed, minus, percent, sentence, vector};
 
 /// The sections with the words of their links.
-const LINKS: [(&str, &str); 8] = [
+const LINKS: [(&str, &str); 9] = [
     ("pictures", "Pictures"),
+    ("pose", "Pose"),
     ("deviation", "Deviation"),
     ("transformation", "Transformation"),
     ("starts", "Starts"),
@@ -77,7 +78,8 @@ impl Report<'_> {
                 (key_figure("Starts that agree", &agreement, ""))
                 @match next {
                     Some(other) => (key_figure("Next best pose", &format!("× {:.2}", other.score_ratio), "worse score")),
-                    None => (key_figure("Next best pose", "none near", "")),
+                    None if self.outcome.rivals_sought => (key_figure("Next best pose", "none near", "")),
+                    None => (key_figure("Next best pose", "–", "not looked for everywhere")),
                 }
             }
         }
@@ -89,6 +91,7 @@ impl Report<'_> {
         };
         html! {
             (section("pictures", "Pictures", &self.pictures()))
+            (section("pose", "Pose", &self.pose_section()))
             (section("deviation", "Deviation", &self.deviation_section()))
             (section("transformation", "Transformation", &self.transformation()))
             (section("starts", "Starts", &self.starts_section()))

@@ -302,6 +302,11 @@ fn invitation_ui(
         };
         let example = (name, Look::Plain, vec2(width, TALL));
         action_button(ui, state, Action::OpenExample, example, commands);
+        let has_room = ui.clip_rect().height() > 340.0;
+        if !is_narrow && has_room {
+            let realistic = ("A realistic pair", Look::Plain, vec2(width, TALL));
+            action_button(ui, state, Action::OpenRealisticExample, realistic, commands);
+        }
     }
     recent_ui(ui, role, state, commands);
     let has_room = ui.available_width() > 240.0;

@@ -4,7 +4,7 @@ use egui::{Button, Color32, DragValue, RichText, Ui, vec2};
 
 use super::explain;
 use crate::app::{Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, Section};
-use crate::assess::{Coverage, OneSided, Verdict};
+use crate::assess::{Ambiguity, Coverage, OneSided, Verdict};
 use crate::registration::{group_starts, limits};
 use crate::report::{PoseRecord, few_agree_words, number, start_counts};
 use crate::role::PerRole;
@@ -253,8 +253,8 @@ fn alternatives_ui(
         if chip(ui, "1 best", result.alternative.is_none()).clicked() {
             commands.push(MatchCommand::ShowAlternative(None).into());
         }
-        let alternatives = result.run.outcome.alternatives.iter().take(4);
-        for (index, alternative) in alternatives.enumerate() {
+        let alternatives = Ambiguity::near(&result.run.outcome.alternatives);
+        for (index, alternative) in alternatives.iter().enumerate() {
             let worse = whole_percent(alternative.score_ratio - 1.0);
             let label = format!("{} (+{worse})", index + 2);
             let is_on = result.alternative == Some(index);

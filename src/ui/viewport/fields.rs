@@ -6,8 +6,9 @@ use std::sync::Arc;
 use super::map_fields;
 use super::meshes::{MeshKey, ShownMesh};
 use crate::app::{AppState, ColorBy, MapPicture};
+use crate::assess::Assessment;
 use crate::colormap::{ColorMap, ColorScale};
-use crate::geometry::{Point3, TriMesh};
+use crate::geometry::{Point3, Similarity, TriMesh};
 use crate::monitor::Monitor;
 use crate::pipeline::forming_values::{FormingValue, forming_values, has_forming_value};
 use crate::pipeline::map::{MapRun, OtherResult, ShownValue};
@@ -28,6 +29,7 @@ pub(super) enum FieldKind {
     ReductionError,
     Deviation,
     Overlap,
+    Uncertainty,
     Forming(FormingValue),
     Map(MapPicture),
 }
@@ -40,6 +42,7 @@ impl FieldKind {
             ColorBy::ReductionError => Some(Self::ReductionError),
             ColorBy::Deviation => Some(Self::Deviation),
             ColorBy::Overlap => Some(Self::Overlap),
+            ColorBy::Uncertainty => Some(Self::Uncertainty),
             other => {
                 let picture = other.map_picture().map(Self::Map);
                 picture.or(other.forming().map(Self::Forming))
@@ -59,6 +62,7 @@ impl FieldKind {
             Self::ReductionError => "Distance reduced to full",
             Self::Deviation => "Deviation",
             Self::Overlap => "Overlap",
+            Self::Uncertainty => "The pose may be off by",
             Self::Forming(value) => value.label(),
             Self::Map(picture) => picture.label(),
         }
@@ -87,6 +91,7 @@ struct Field {
     range: [f64; 2],
     /// Keeps what the key names by its address.
     _key: (Arc<ShownMesh>, Option<Arc<TriMesh>>, Results),
+    _stated: Option<Stated>,
 }
 
 /// The fields of both windows.
@@ -173,6 +178,7 @@ impl FieldStore {
             }
             FieldKind::Thickness
             | FieldKind::ReductionError
+            | FieldKind::Uncertainty
             | FieldKind::Forming(_)
             | FieldKind::Map(_) => {}
         }
@@ -183,7 +189,7 @@ impl FieldStore {
             return Some(coloring.on_signed_scale(low.abs().max(high.abs())));
         }
         let low = match kind {
-            FieldKind::ReductionError => 0.0,
+            FieldKind::ReductionError | FieldKind::Uncertainty => 0.0,
             // From nothing upwards, where nothing is below.
             FieldKind::Forming(_) if low > 0.0 => 0.0,
             _ => low,
@@ -213,6 +219,7 @@ pub(super) fn is_wanted(state: &AppState, window: Role, role: Role) -> bool {
         Some(FieldKind::Map(MapPicture::Other)) => {
             role == Role::Crash && state.missing_for(ColorBy::MapOther).is_none()
         }
+        Some(FieldKind::Uncertainty) => role == Role::Stamped && state.has_uncertainty().is_ok(),
         Some(FieldKind::Map(_)) => {
             role == Role::Crash && state.document.current_mapping().is_some()
         }
@@ -268,7 +275,12 @@ struct Order {
     mapped: Option<Arc<MapRun>>,
     /// What the mapping is compared with.
     compared: Option<Arc<OtherResult>>,
+    /// The uncertainty of the pose.
+    stated: Option<Stated>,
 }
+
+/// An assessment with the pose it speaks of.
+type Stated = (Arc<Assessment>, Similarity);
 
 impl Order {
     fn new(kind: FieldKind, state: &AppState, role: Role, mesh: &Arc<ShownMesh>) -> Option<Self> {
@@ -292,6 +304,14 @@ impl Order {
         if mapped.is_none() && matches!(kind, FieldKind::Map(_)) {
             return None;
         }
+        let stated = match kind {
+            FieldKind::Uncertainty if role == Role::Stamped => {
+                let assessment = Arc::clone(state.uncertain_assessment()?);
+                Some((assessment, *state.document.crash_from_stamped()))
+            }
+            FieldKind::Uncertainty => return None,
+            _ => None,
+        };
         let shown = by.map(|by| ShownValue {
             layer: match role {
                 Role::Crash => state.view.display.mapped.layer,
@@ -310,6 +330,9 @@ impl Order {
         let run = compared
             .as_ref()
             .map_or(run, |other| Arc::as_ptr(other).addr());
+        let run = stated
+            .as_ref()
+            .map_or(run, |(assessment, _)| Arc::as_ptr(assessment).addr());
         let key = FieldKey {
             kind,
             mesh: mesh.key(),
@@ -322,6 +345,7 @@ impl Order {
             other,
             mapped,
             compared,
+            stated,
         })
     }
 
@@ -350,10 +374,14 @@ impl Order {
             is_by_corner: matches!(self.key.kind, FieldKind::Map(_)),
             values: values.into(),
             _key: (self.mesh, self.other, (self.mapped, self.compared)),
+            _stated: self.stated,
         }
     }
 
     fn results(&self) -> Vec<f32> {
+        if let Some((assessment, pose)) = &self.stated {
+            return uncertainties(assessment, self.mesh.mesh().positions(), pose);
+        }
         let Some(shown) = &self.key.shown else {
             return Vec::new();
         };
@@ -367,6 +395,13 @@ impl Order {
             (None, _) => thickness(&self.mesh),
         }
     }
+}
+
+/// How far the pose may be off at points of the stamped part.
+fn uncertainties(assessment: &Assessment, points: &[Point3], pose: &Similarity) -> Vec<f32> {
+    let stated = assessment.uncertainty();
+    let values = stated.map_or_else(Vec::new, |stated| stated.field(points, pose));
+    values.into_iter().map(|value| value as f32).collect()
 }
 
 /// Distances of points from a surface.

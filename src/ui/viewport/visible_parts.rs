@@ -85,6 +85,13 @@ pub(super) fn visible_parts(state: &AppState, view: &ViewFrame) -> Vec<PartInsta
             instance.opacity = instance.opacity.min(GHOST);
         }
     }
+    if is_shared && state.color_by(view.window) == ColorBy::Uncertainty {
+        // Only the stamped part has one; the crash part would hide half of it.
+        for instance in parts.iter_mut().filter(|part| part.role == Role::Crash) {
+            instance.is_ghost = true;
+            instance.opacity = instance.opacity.min(GHOST);
+        }
+    }
     match divider(state, view) {
         Some(Divider::Wipe(_)) => {
             for instance in &mut parts {

@@ -8,7 +8,7 @@ use super::thumbnails::Thumbnails;
 use crate::app::{AppState, Command, MatchCommand, Preview, PreviewCommand, duration_text};
 use crate::geometry::Similarity;
 use crate::registration::{StartGroup, StartOutcome, StartRecord, group_starts};
-use crate::report::{outcome_words, start_name};
+use crate::report::{outcome_words, start_kind_help, start_name};
 use crate::ui::theme::Palette;
 use crate::ui::widgets::{caption, length, nothing_yet, percent, tight};
 
@@ -217,6 +217,7 @@ fn name_ui(ui: &mut Ui, table: &Table<'_>, line: &Line<'_>, commands: &mut Vec<C
     let response = tight(ui, |ui| ui.add_enabled(can, button));
     let name = format!("Use the pose of start {}", index + 1);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, can, &name));
+    let response = response.on_hover_text(start_kind_help(line.start.kind));
     if response.clicked() {
         commands.push(MatchCommand::UseMatchStart(index).into());
     }

@@ -177,6 +177,9 @@ fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
             };
             state.comparison().map(|_| class.label().to_owned())
         }
+        (FieldKind::Uncertainty, Some(value)) => {
+            Some(format!("± {}", state.document.length_text(value)))
+        }
         (FieldKind::Forming(value), Some(number)) => Some(forming_text(state, value, number)),
         (FieldKind::Map(picture), value) => map_text(state, picture, value),
         (_, value) => value.map(|value| state.document.length_text(value)),
