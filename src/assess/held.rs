@@ -37,10 +37,16 @@ const TWICE_AS_BAD: f64 = 0.05;
 const NO_GAP: f64 = 0.1;
 /// Shares of the rims that differ by less than this do not tell hands apart.
 const SAME_SHARE: f64 = 0.02;
+/// The opposite hand is told by its rims if so much of them lies where it belongs; with less its score counts
+/// as at least this many times the result's.
+const SURELY_HELD: f64 = 0.9;
+const HINT: f64 = 0.9;
 /// Scores of the opposite hand above this many times the result's need no other opinion.
 const OPPOSITE_IS_CLEAR: f64 = 1.3;
-/// Its surfaces may lie apart by so many times as much.
+/// Its surfaces may lie apart by so many times as much …
 const AS_CLOSE: f64 = 1.5;
+/// … and so many tolerances more.
+const LITTLE_GAP: f64 = 0.25;
 /// It must meet this share of what the result meets.
 const AS_MUCH: f64 = 0.9;
 
@@ -138,7 +144,14 @@ pub fn hand_by_rims(
     let behind = result.held - opposite.held;
     // Nodes along the rims differ, so that two poses of one quality never hold quite the same share.
     let behind = behind.signum() * (behind.abs() - SAME_SHARE).max(0.0);
-    fits_as_well.then(|| ratio_by_rims(behind, 0.0))
+    let ratio = ratio_by_rims(behind, 0.0);
+    // Rims that fit neither hand are a hint and no more.
+    let least = if opposite.held < SURELY_HELD {
+        HINT
+    } else {
+        0.0
+    };
+    fits_as_well.then(|| ratio.max(least))
 }
 
 /// How much worse the second of two poses is by the share of the rims that lies where it belongs.
@@ -178,7 +191,8 @@ struct Settled {
 
 impl Settled {
     fn is_as_close_as(&self, other: &Self, pair: &Pair<'_>) -> bool {
-        self.met >= AS_MUCH * other.met && self.gap <= (AS_CLOSE * other.gap).max(pair.springback)
+        let most = AS_CLOSE * other.gap + LITTLE_GAP * pair.remainder;
+        self.met >= AS_MUCH * other.met && self.gap <= most
     }
 }
 
@@ -251,9 +265,11 @@ impl<'a> Pair<'a> {
                 continue;
             }
             n_tried += 1;
+            // Not refined yet, so that the surfaces may lie apart by what springback explains.
+            let most = (AS_CLOSE * result.gap).max(self.springback);
             let is_close = self
                 .measured(*other)
-                .is_some_and(|other| other.is_as_close_as(result, self));
+                .is_some_and(|other| other.met >= AS_MUCH * result.met && other.gap <= most);
             if is_close {
                 // Axes and planes of the target stay where they are.
                 roots.push((*other, *free));

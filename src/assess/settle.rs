@@ -16,8 +16,10 @@ const RIM_SHARE: f64 = 0.015;
 const LEAST_PAIRED: f64 = 0.3;
 /// The misfit of the rims must shrink at least to this share.
 const BETTER: f64 = 0.7;
-/// The surfaces may come to lie apart by so many times as much, besides what may remain.
+/// The surfaces may come to lie apart by so many times as much …
 const AS_CLOSE: f64 = 1.5;
+/// … and this share of what may remain.
+const LITTLE_GAP: f64 = 0.5;
 
 /// The pose moved so that surfaces, borders and holes fit together; `None` where that would move it by
 /// no more than the rims are cut into facets, where the rims do not say where the part belongs (parts
@@ -58,7 +60,8 @@ pub(super) fn settled_within(
         let misfit = misfit(&rims);
         let first = *first_misfit.get_or_insert(misfit);
         let gap = contacts.typical_gap();
-        let most = AS_CLOSE * *first_gap.get_or_insert(gap) + noise + tolerance.remainder;
+        let most =
+            AS_CLOSE * *first_gap.get_or_insert(gap) + noise + LITTLE_GAP * tolerance.remainder;
         if step == STEPS {
             let fits = misfit < tolerance.remainder + facets && gap < most;
             return (fits && misfit < BETTER * first).then_some(moved);

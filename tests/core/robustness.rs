@@ -83,3 +83,34 @@ fn growth_tells_times_and_exponents_of_right_poses() {
     assert_eq!(page.matches("<circle").count(), 6);
     assert_eq!(page.matches("<tr>").count(), 4);
 }
+
+/// Where a piece of a sliding part belongs is found along all of the part, and with an addendum around it
+/// rims that have no counterpart do not pull surfaces apart.
+#[test]
+fn pieces_of_parts_that_slide_are_found_along_all_of_the_part() {
+    let run = |seed, part, scenario| {
+        let settings = RobustnessSettings {
+            seed,
+            parts: vec![part],
+            scenarios: vec![scenario],
+            ..RobustnessSettings::default()
+        };
+        let runs = robustness(&settings, &Monitor::silent(), |_| ()).unwrap();
+        runs.into_iter().next().unwrap()
+    };
+    for (seed, part, scenario) in [
+        (21, SamplePart::Plate, Scenario::Cut(0.2)),
+        (21, SamplePart::Channel, Scenario::Cut(0.2)),
+        (21, SamplePart::Channel, Scenario::Coarse),
+        (31, SamplePart::Fender, Scenario::Addendum),
+        (31, SamplePart::Sill, Scenario::Addendum),
+    ] {
+        let run = run(seed, part, scenario);
+        assert_eq!(run.ending, Ending::Right, "{run:?}");
+        assert_ne!(run.verdict, Verdict::Poor, "{run:?}");
+        assert!(run.node_error.is_some_and(|error| error < 1.0), "{run:?}");
+    }
+    // The parts of both sides differ by one hole.
+    let other = run(21, SamplePart::Crossmember, Scenario::OtherHand);
+    assert_eq!(other.verdict, Verdict::Poor, "{other:?}");
+}
