@@ -27,6 +27,9 @@ pub struct Progress {
 pub trait Observer: Send + Sync {
     /// A phase began or moved on.
     fn progress(&self, _progress: Progress) {}
+
+    /// Places spread over the shape that is being prepared, for a first picture.
+    fn shape(&self, _points: Vec<[f64; 3]>) {}
 }
 
 #[derive(Debug, Default)]
@@ -102,6 +105,13 @@ impl Monitor {
     pub fn progress(&self, phase: &'static str, done: u64, total: Option<u64>) {
         if let Some(observer) = &self.observer {
             observer.progress(Progress { phase, done, total });
+        }
+    }
+
+    /// Shows places spread over the shape that is being prepared, worked out only if anybody looks.
+    pub fn shape(&self, points: impl FnOnce() -> Vec<[f64; 3]>) {
+        if let Some(observer) = &self.observer {
+            observer.shape(points());
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Which jobs wait and run.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use crate::jobs::{JobEvent, JobId, JobKey, JobKind, JobStage, Live, LiveIteration, PartSource};
@@ -19,6 +20,8 @@ pub struct RunningJob {
     pub since: Duration,
     /// Phase and count.
     pub progress: Option<Progress>,
+    /// Places spread over the part that it prepares.
+    pub shape: Option<Arc<[[f64; 3]]>>,
     /// The latest iteration.
     pub latest: Option<LiveIteration>,
     /// It was asked to end early.
@@ -105,6 +108,7 @@ impl JobBoard {
                 file: self.remove_waiting(event.key),
                 since: now,
                 progress: None,
+                shape: None,
                 latest: None,
                 is_stopping: false,
                 is_cancelling: false,
@@ -120,6 +124,7 @@ impl JobBoard {
         let is_ours = |job: &&mut RunningJob| live.job == Some(job.id);
         if let Some(job) = self.running.as_mut().filter(is_ours) {
             job.progress = live.progress;
+            job.shape.clone_from(&live.shape);
             job.latest = live.latest;
         }
     }

@@ -1,6 +1,6 @@
 //! The latest progress and pose of the running job.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::{JobId, Waker};
@@ -30,6 +30,8 @@ pub struct Live {
     pub job: Option<JobId>,
     /// The latest phase and count.
     pub progress: Option<Progress>,
+    /// Places spread over the part that is being prepared, in the crash model's unit.
+    pub shape: Option<Arc<[[f64; 3]]>>,
     /// The best iteration of the current phase so far, for the preview of its pose.
     pub best: Option<IterationRecord>,
     /// The latest iteration, for the status line.
@@ -114,6 +116,13 @@ impl Observer for LiveSlot {
             new_phase
         });
     }
+
+    fn shape(&self, points: Vec<[f64; 3]>) {
+        self.update(|live| {
+            live.shape = Some(points.into());
+            true
+        });
+    }
 }
 
 impl registration::Observer for LiveSlot {
@@ -151,7 +160,6 @@ mod tests {
     use super::*;
     use crate::geometry::Similarity;
     use crate::registration::{Observer as _, Stage};
-    use std::sync::Arc;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     fn iterate(slot: &LiveSlot, number: usize, objective: f64) {

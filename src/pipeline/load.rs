@@ -24,6 +24,8 @@ use crate::units::{self, KnownUnits, UnitOrigin, Units};
 
 /// What lengths may be multiplied by: wider than any two units of length lie apart.
 const UNIT_FACTORS: RangeInclusive<f64> = 1e-9..=1e9;
+/// Places shown of a part before its picture is there.
+const N_SHAPE: usize = 3000;
 /// Parts that are named where one was asked for that does not exist.
 const N_NEAR_PARTS: usize = 5;
 
@@ -262,9 +264,21 @@ pub fn load_from(
         };
     });
     let read_ms = millis_since(start);
+    monitor.shape(|| shape(&model, settings.length_factor));
     let mut part = prepare(path, Arc::new(model), settings, monitor)?;
     part.report.read_ms = read_ms;
     Ok(part)
+}
+
+/// Corners of elements spread over a model, in the crash model's unit.
+fn shape(model: &Model, factor: f64) -> Vec<[f64; 3]> {
+    let n = model.shells.len() + model.solids.len();
+    let shells = model.shells.iter().map(|shell| shell.nodes[0]);
+    let solids = model.solids.iter().map(|solid| solid.nodes[0]);
+    let nodes = shells.chain(solids).step_by(n.div_ceil(N_SHAPE).max(1));
+    let positions = model.nodes.positions();
+    let place = |node: u32| positions.get(node as usize).map(|p| (p * factor).into());
+    nodes.filter_map(place).collect()
 }
 
 /// One part of a pair that comes with the program: the file whose name begins with its role.

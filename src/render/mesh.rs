@@ -1,9 +1,11 @@
 //! A mesh prepared for drawing.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::coarse::coarse;
 use super::mesh_build::{self, EdgeClasses};
 use crate::geometry::{Aabb, Point3, Topology, TriMesh, VertexFans, corner_normals, face_normals};
 use crate::monitor::Monitor;
@@ -52,6 +54,10 @@ pub struct RenderMesh {
     pub(super) corners: Vec<Corner>,
     /// Vertex of each corner in the mesh this was made of.
     pub(super) corner_vertices: Vec<u32>,
+    /// Corner of that mesh that each corner stands for; empty where they are the same.
+    pub(super) source_corners: Vec<u32>,
+    /// What is drawn of a large mesh while the view moves.
+    coarse: Option<Arc<RenderMesh>>,
     /// Pairs of corners.
     pub(super) edge_corners: Vec<[u32; 2]>,
     pub(super) wide_edges: Vec<WideEdge>,
@@ -92,8 +98,15 @@ pub(super) struct Node {
 pub(super) const BORDER_BIT: u32 = 1 << 31;
 
 impl RenderMesh {
-    /// Prepares a mesh. O(triangles).
+    /// Prepares a mesh, a large one with its coarse picture. O(triangles).
     pub fn new(input: MeshInput<'_>) -> Self {
+        let mut whole = Self::whole(input);
+        whole.coarse = coarse(&whole, input);
+        whole
+    }
+
+    /// Without a coarse picture.
+    pub(super) fn whole(input: MeshInput<'_>) -> Self {
         let mesh = input.mesh;
         let bounds = mesh.aabb();
         let origin = bounds.center();
@@ -144,8 +157,27 @@ impl RenderMesh {
             nodes: nodes_of(mesh, near, part),
             mean_edge_length: mesh_build::mean_length(mesh, &topology, &classes.elements),
             corner_vertices,
+            source_corners: Vec::new(),
+            coarse: None,
             bounds,
         }
+    }
+
+    /// What stands for the mesh while the view moves; `None` for a mesh that is drawn at once.
+    pub fn coarse(&self) -> Option<&Arc<Self>> {
+        self.coarse.as_ref()
+    }
+
+    /// Takes the origin and the box of another mesh, so that its lines fit.
+    pub(super) fn place_about(&mut self, other: &Self) {
+        let shift = (self.origin - other.origin).map(|x| x as f32);
+        for corner in &mut self.corners {
+            corner.position = std::array::from_fn(|i| corner.position[i] + shift[i]);
+        }
+        for node in &mut self.nodes {
+            node.position = std::array::from_fn(|i| node.position[i] + shift[i]);
+        }
+        (self.origin, self.bounds) = (other.origin, other.bounds);
     }
 
     /// Box around the mesh in its own coordinates.

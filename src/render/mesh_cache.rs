@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::sync::{Arc, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 use wgpu::util::DeviceExt as _;
 
@@ -73,10 +73,10 @@ impl GpuMesh {
 /// because shaders may assume that NaN does not happen.
 fn field_at_corners(mesh: &RenderMesh, field: &FieldLook) -> Vec<f32> {
     let value = |(corner, &vertex): (usize, &u32)| {
-        let at = if field.is_by_corner {
-            corner
-        } else {
-            vertex as usize
+        let at = match mesh.source_corners.get(corner) {
+            _ if !field.is_by_corner => vertex as usize,
+            Some(&source) => source as usize,
+            None => corner,
         };
         let value = field.values.get(at).copied().unwrap_or(f32::NAN);
         if value.is_finite() { value } else { f32::MAX }
@@ -98,6 +98,60 @@ pub(super) struct MeshCache {
     meshes: HashMap<usize, Kept<RenderMesh, GpuMesh>>,
     /// By address of mesh and values.
     fields: HashMap<(usize, usize), Kept<[f32], wgpu::Buffer>>,
+    uploads: Uploads,
+}
+
+/// Uploads of large meshes and their fields, made off the frame.
+#[derive(Debug, Default)]
+struct Uploads {
+    under_way: Vec<(usize, usize)>,
+    done: Arc<Mutex<Vec<Upload>>>,
+}
+
+/// One of them; `None` where there is nothing to draw.
+#[derive(Debug)]
+enum Upload {
+    Mesh(Arc<RenderMesh>, GpuMesh),
+    Field(Arc<RenderMesh>, Arc<[f32]>, Option<wgpu::Buffer>),
+}
+
+impl Upload {
+    /// Addresses of mesh and values; no values are at zero.
+    fn key(&self) -> (usize, usize) {
+        match self {
+            Self::Mesh(mesh, _) => (address(mesh), 0),
+            Self::Field(mesh, values, _) => (address(mesh), address(values)),
+        }
+    }
+}
+
+impl Uploads {
+    fn lock(&self) -> MutexGuard<'_, Vec<Upload>> {
+        // Only whole entries are added and taken.
+        self.done.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Makes one on a thread of its own unless it is under way; without a thread at once.
+    fn start(
+        &mut self,
+        key: (usize, usize),
+        make: impl FnOnce() -> Upload + Send + Clone + 'static,
+    ) {
+        if self.under_way.contains(&key) {
+            return;
+        }
+        self.under_way.push(key);
+        let (done, work) = (Arc::clone(&self.done), make.clone());
+        let thread = std::thread::Builder::new().name("upload".to_owned());
+        let started = thread.spawn(move || {
+            let upload = work();
+            let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
+            done.push(upload);
+        });
+        if started.is_err() {
+            self.lock().push(make());
+        }
+    }
 }
 
 fn address<T: ?Sized>(shared: &Arc<T>) -> usize {
@@ -132,6 +186,60 @@ impl MeshCache {
                     value: Arc::new(counted.buffer),
                 });
                 Some(Arc::clone(&kept.value))
+            }
+        }
+    }
+
+    /// True if the mesh and its field can be drawn without an upload; else the upload is under way and
+    /// the answer is to be asked for again.
+    pub(super) fn is_ready(
+        &mut self,
+        device: &wgpu::Device,
+        mesh: &Arc<RenderMesh>,
+        field: Option<&FieldLook>,
+    ) -> bool {
+        self.take_uploads();
+        if !self.meshes.contains_key(&address(mesh)) {
+            let (device, mesh) = (device.clone(), Arc::clone(mesh));
+            self.uploads.start((address(&mesh), 0), move || {
+                let made = GpuMesh::upload(&device, &mesh);
+                Upload::Mesh(mesh, made)
+            });
+            return false;
+        }
+        let Some(field) = field else { return true };
+        let key = (address(mesh), address(&field.values));
+        if !self.fields.contains_key(&key) && !mesh.corner_vertices.is_empty() {
+            let (device, mesh, field) = (device.clone(), Arc::clone(mesh), field.clone());
+            self.uploads.start(key, move || {
+                let values = field_at_corners(&mesh, &field);
+                let made = Counted::new(&device, &values, wgpu::BufferUsages::VERTEX);
+                Upload::Field(mesh, field.values, made.map(|made| made.buffer))
+            });
+            return false;
+        }
+        true
+    }
+
+    fn take_uploads(&mut self) {
+        let done = std::mem::take(&mut *self.uploads.lock());
+        for upload in done {
+            let key = upload.key();
+            self.uploads.under_way.retain(|other| *other != key);
+            match upload {
+                Upload::Mesh(mesh, value) => {
+                    self.meshes.entry(key.0).or_insert_with(|| Kept {
+                        key: Arc::downgrade(&mesh),
+                        value: Arc::new(value),
+                    });
+                }
+                Upload::Field(_, values, Some(buffer)) => {
+                    self.fields.entry(key).or_insert_with(|| Kept {
+                        key: Arc::downgrade(&values),
+                        value: Arc::new(buffer),
+                    });
+                }
+                Upload::Field(_, _, None) => {}
             }
         }
     }

@@ -3,10 +3,12 @@
 //!
 //! A mesh is prepared once on the CPU ([`RenderMesh`], in a job), uploaded once ([`Renderer`] keeps
 //! it as long as someone holds it), and drawn into the multisampled textures of one viewport
-//! ([`ViewTarget`]), again only if something changed. Depth is a 32-bit float, 1 near and 0 far.
+//! ([`ViewTarget`]), again only if something changed. Where that would take long, the window asks for
+//! it in steps ([`Renderer::draw_step`]): a coarse picture while the view moves, the exact one at rest. Depth is a 32-bit float, 1 near and 0 far.
 //! Colours are blended in sRGB, which is what the target holds. Nothing beyond the default limits
 //! and features of wgpu is used, so that software drivers and OpenGL draw the same picture.
 
+mod coarse;
 mod context;
 mod frame;
 mod mesh;
@@ -21,6 +23,8 @@ mod readback;
 mod renderer;
 mod scene;
 mod sheets;
+mod slice;
+mod steps;
 mod target;
 mod texture;
 mod uniforms;
@@ -34,4 +38,5 @@ pub use scene::{
     Background, DepthMode, Drawable, FieldLook, Fill, LineLook, Marker, MarkerShape, Overlay,
     PartLook, Polyline, Rgba, Scene, Section, Shading, Sheet, Style, WipeSide,
 };
+pub use steps::Drawn;
 pub use target::ViewTarget;

@@ -4,7 +4,7 @@ use super::context::Context;
 use super::frame::Frame;
 use super::mesh_cache::MeshCache;
 use super::pipeline::{DEPTH_FORMAT, Gpu, PICK_FORMAT};
-use super::prepare::Prepared;
+use super::prepare::{Detail, Prepared};
 use super::readback::{Download, ReadbackError};
 use super::texture::{attachment, texture, view};
 use super::uniforms::Region;
@@ -44,7 +44,13 @@ impl PickRequest {
             origin: corner,
             size: [f64::from(SIDE); 2],
         };
-        let prepared = Prepared::new(gpu, cache, frame, region, context.no_sheets.views());
+        let prepared = Prepared::new(
+            gpu,
+            cache,
+            (frame, Detail::Exact),
+            region,
+            context.no_sheets.views(),
+        );
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let copied = usage | wgpu::TextureUsages::COPY_SRC;
         let ids = texture(gpu.device, [SIDE; 2], PICK_FORMAT, 1, copied);

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use wgpu::util::DeviceExt as _;
 
 use super::frame::Frame;
+use super::mesh::RenderMesh;
 use super::mesh_cache::{GpuMesh, MeshCache};
 use super::pipeline::Gpu;
 use super::prepare_overlay::PreparedOverlay;
@@ -16,6 +17,24 @@ use crate::colormap::{ColorScale, Pattern};
 const PARTS_PER_ROW: usize = 256;
 /// Colours of a field's table; mirrors `FIELD_STEPS` of `surface.wgsl`.
 const FIELD_STEPS: usize = 1024;
+
+/// Which picture of large meshes is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Detail {
+    /// The meshes themselves.
+    Exact,
+    /// What stands for them while the view moves.
+    Coarse,
+}
+
+impl Detail {
+    fn of(self, mesh: &Arc<RenderMesh>) -> &Arc<RenderMesh> {
+        match self {
+            Self::Exact => mesh,
+            Self::Coarse => mesh.coarse().unwrap_or(mesh),
+        }
+    }
+}
 
 /// One frame on the graphics card.
 #[derive(Debug)]
@@ -47,7 +66,7 @@ impl Prepared {
     pub(super) fn new(
         gpu: Gpu<'_>,
         cache: &mut MeshCache,
-        frame: &Frame<'_>,
+        (frame, detail): (&Frame<'_>, Detail),
         region: Region,
         sheets: [&wgpu::TextureView; 2],
     ) -> Self {
@@ -60,7 +79,7 @@ impl Prepared {
             if drawable.opacity <= 0.0 {
                 continue;
             }
-            let prepared = prepare_drawable(gpu, cache, frame, index);
+            let prepared = prepare_drawable(gpu, cache, (frame, detail), index);
             if drawable.opacity >= 1.0 {
                 let push = drawable.push_back_length + f64::from(drawable.push_back) * pixel;
                 solid.push((push, prepared));
@@ -125,7 +144,7 @@ fn frame_group(
 fn prepare_drawable(
     gpu: Gpu<'_>,
     cache: &mut MeshCache,
-    frame: &Frame<'_>,
+    (frame, detail): (&Frame<'_>, Detail),
     index: usize,
 ) -> PreparedDrawable {
     let drawable = &frame.scene.drawables[index];
@@ -154,10 +173,11 @@ fn prepare_drawable(
             },
         ],
     });
+    let mesh = detail.of(&drawable.mesh);
     let field = drawable.field.as_ref();
     PreparedDrawable {
-        mesh: cache.mesh(gpu.device, &drawable.mesh),
-        field: field.and_then(|field| cache.field(gpu.device, &drawable.mesh, field)),
+        mesh: cache.mesh(gpu.device, mesh),
+        field: field.and_then(|field| cache.field(gpu.device, mesh, field)),
         group,
         style: drawable.style,
         sheet: both.map(|(sheet, _)| sheet),

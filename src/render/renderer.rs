@@ -6,6 +6,7 @@ use super::mesh_cache::MeshCache;
 use super::pick::PickRequest;
 use super::pipeline::Gpu;
 use super::readback::{Download, ReadbackError, unpremultiply};
+use super::steps::Drawn;
 use super::target::ViewTarget;
 
 /// Draws scenes on one device. Keeps the pipelines and the uploaded meshes; any number of
@@ -55,6 +56,24 @@ impl Renderer {
         drawn
     }
 
+    /// [`Renderer::draw`] for a window that must not stand still: large meshes are drawn coarsely while
+    /// the view moves and exactly, in slices, once it rests; they are uploaded off the frame.
+    pub fn draw_step(
+        &mut self,
+        target: &mut ViewTarget,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &Frame<'_>,
+    ) -> Drawn {
+        let gpu = Gpu {
+            device: &self.device,
+            queue: &self.queue,
+            layouts: &self.context.layouts,
+        };
+        let drawn = target.draw_step(gpu, &self.context, &mut self.cache, encoder, frame);
+        self.cache.sweep();
+        drawn
+    }
+
     /// Lays the viewport's picture over the whole of the pass's viewport; nothing before the first
     /// [`Renderer::draw`]. The pass must have the window format, one sample and no depth.
     pub fn paint(&self, target: &ViewTarget, pass: &mut wgpu::RenderPass<'_>) {
@@ -72,6 +91,15 @@ impl Renderer {
                 label: Some("picture"),
             });
         self.draw(&mut target, &mut encoder, frame);
+        self.read(&target, encoder)
+    }
+
+    /// What a viewport shows after the recorded commands: waits for them. Opacity is not premultiplied.
+    pub fn read(
+        &self,
+        target: &ViewTarget,
+        mut encoder: wgpu::CommandEncoder,
+    ) -> Result<image::RgbaImage, ReadbackError> {
         let picture = target.picture().ok_or(ReadbackError::Device)?;
         let mut download = Download::record(&self.device, &mut encoder, picture);
         self.queue.submit([encoder.finish()]);

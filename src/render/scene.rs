@@ -52,6 +52,15 @@ impl Scene {
         bounds
     }
 
+    /// True if everything lies as in another scene: only looks may differ.
+    pub(super) fn lies_as(&self, other: &Self) -> bool {
+        let pairs = self.drawables.iter().zip(&other.drawables);
+        self.drawables.len() == other.drawables.len()
+            && self.wipe == other.wipe
+            && self.section == other.section
+            && pairs.into_iter().all(|(a, b)| a.lies_as(b))
+    }
+
     /// The exposure, one if it was not given.
     pub(super) fn exposure(&self) -> f32 {
         if self.exposure > 0.0 {
@@ -190,6 +199,9 @@ pub enum Sheet {
 }
 
 impl Sheet {
+    /// Both.
+    pub(super) const ALL: [Self; 2] = [Self::First, Self::Second];
+
     /// The other one.
     pub(super) fn other(self) -> Self {
         match self {
@@ -268,6 +280,14 @@ impl Drawable {
             .corners()
             .map(|corner| self.world_from_mesh.apply(&corner) + self.offset);
         Aabb::of_points(&corners)
+    }
+
+    /// True if it is the same mesh at the same place, whatever it looks like.
+    fn lies_as(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.mesh, &other.mesh)
+            && self.world_from_mesh == other.world_from_mesh
+            && self.offset == other.offset
+            && self.style.surface == other.style.surface
     }
 
     /// True if it hides what lies behind it and belongs to a sheet.

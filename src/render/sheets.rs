@@ -5,6 +5,7 @@ use super::pass::surface::Surface;
 use super::pipeline::{DEPTH_FORMAT, SHEET_FORMAT};
 use super::prepare::Prepared;
 use super::scene::Sheet;
+use super::slice::Slice;
 use super::texture::{attachment, texture, view};
 
 /// A depth picture of each sheet, one sample per pixel, with the depth buffer they share.
@@ -32,37 +33,42 @@ impl Sheets {
         [&self.first, &self.second]
     }
 
-    /// Records the drawing of both; `frame` is the frame's group without them.
+    /// Records the drawing of one of them, or of a slice; `frame` is the frame's group without them.
     pub(super) fn draw(
         &self,
-        surface: &Surface,
+        (surface, sheet): (&Surface, Sheet),
         frame: &wgpu::BindGroup,
         encoder: &mut wgpu::CommandEncoder,
         prepared: &Prepared,
+        slice: &mut Slice,
     ) {
-        for (sheet, target) in [(Sheet::First, &self.first), (Sheet::Second, &self.second)] {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("sheet depth"),
-                color_attachments: &[Some(attachment(
-                    target,
-                    None,
-                    wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                ))],
-                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                    view: &self.depth,
-                    depth_ops: Some(wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(0.0),
-                        store: wgpu::StoreOp::Discard,
-                    }),
-                    stencil_ops: None,
+        let target = match sheet {
+            Sheet::First => &self.first,
+            Sheet::Second => &self.second,
+        };
+        let (color, depth) = if slice.is_first() {
+            let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+            (clear, wgpu::LoadOp::Clear(0.0))
+        } else {
+            (wgpu::LoadOp::Load, wgpu::LoadOp::Load)
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("sheet depth"),
+            color_attachments: &[Some(attachment(target, None, color))],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: depth,
+                    store: wgpu::StoreOp::Store,
                 }),
-                ..Default::default()
-            });
-            pass.set_bind_group(0, frame, &[]);
-            let of_sheet = prepared.solid.iter().filter(|d| d.sheet == Some(sheet));
-            for drawable in of_sheet {
-                surface.draw_depth(&mut pass, drawable);
-            }
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_bind_group(0, frame, &[]);
+        let of_sheet = prepared.solid.iter().filter(|d| d.sheet == Some(sheet));
+        for drawable in of_sheet {
+            surface.draw_depth(&mut pass, drawable, slice);
         }
     }
 }

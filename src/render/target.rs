@@ -4,9 +4,11 @@ use super::context::Context;
 use super::frame::Frame;
 use super::mesh_cache::MeshCache;
 use super::pipeline::{COLOR_FORMAT, DEPTH_FORMAT, Gpu, MASK_FORMAT, SAMPLES};
-use super::prepare::Prepared;
-use super::scene::Scene;
+use super::prepare::{Detail, Prepared};
+use super::scene::{Scene, Sheet};
 use super::sheets::Sheets;
+use super::slice::Slice;
+use super::steps::Steps;
 use super::texture::{attachment, texture, view};
 use super::uniforms::Region;
 use crate::geometry::Camera;
@@ -14,13 +16,14 @@ use crate::geometry::Camera;
 /// The textures of one viewport and what was last drawn into them.
 #[derive(Debug, Default)]
 pub struct ViewTarget {
-    textures: Option<Textures>,
-    drawn: Option<(Scene, Camera)>,
+    pub(super) textures: Option<Textures>,
+    pub(super) drawn: Option<(Scene, Camera)>,
+    pub(super) steps: Steps,
 }
 
 #[derive(Debug)]
-struct Textures {
-    size: [u32; 2],
+pub(super) struct Textures {
+    pub(super) size: [u32; 2],
     /// Multisampled colour and depth.
     color: wgpu::TextureView,
     depth: wgpu::TextureView,
@@ -30,7 +33,7 @@ struct Textures {
     /// For laying the picture on the window.
     composite: wgpu::BindGroup,
     /// Made when two sheets may coincide for the first time.
-    sheets: Option<Sheets>,
+    pub(super) sheets: Option<Sheets>,
     /// Made when something is selected for the first time.
     mask: Option<Mask>,
 }
@@ -67,6 +70,23 @@ impl ViewTarget {
         self.textures.as_ref().map(|textures| &textures.composite)
     }
 
+    /// Makes the textures for a size; true if they are new.
+    pub(super) fn resize(&mut self, gpu: Gpu<'_>, context: &Context, size: [u32; 2]) -> bool {
+        let is_new = self.size() != Some(size);
+        if is_new {
+            self.textures = Some(Textures::new(gpu.device, context, size));
+            self.drawn = None;
+        }
+        is_new
+    }
+
+    /// True if the picture shows this frame, exactly.
+    pub(super) fn shows(&self, frame: &Frame<'_>) -> bool {
+        let same =
+            |(scene, camera): &(Scene, Camera)| scene == frame.scene && camera == frame.camera;
+        self.drawn.as_ref().is_some_and(same)
+    }
+
     /// Records the drawing if anything changed; returns whether it did.
     pub(super) fn draw(
         &mut self,
@@ -76,31 +96,55 @@ impl ViewTarget {
         encoder: &mut wgpu::CommandEncoder,
         frame: &Frame<'_>,
     ) -> bool {
-        let limit = gpu.device.limits().max_texture_dimension_2d;
-        let size = frame.size.map(|pixels| pixels.clamp(1, limit));
-        if self.size() != Some(size) {
-            self.textures = Some(Textures::new(gpu.device, context, size));
-            self.drawn = None;
-        }
-        let same =
-            |(scene, camera): &(Scene, Camera)| scene == frame.scene && camera == frame.camera;
-        if self.drawn.as_ref().is_some_and(same) {
+        let frame = within_limit(gpu.device, frame);
+        self.resize(gpu, context, frame.size);
+        if self.shows(&frame) {
             return false;
         }
-        let frame = Frame { size, ..*frame };
-        if let Some(textures) = &mut self.textures {
-            let sheets = textures.sheets(gpu.device, &frame);
-            let views = sheets.unwrap_or(&context.no_sheets).views();
-            let prepared = Prepared::new(gpu, cache, &frame, Region::whole(size), views);
-            if let Some(sheets) = sheets {
-                // The frame's own group reads what is drawn here.
-                let group = prepared.frame_group(gpu, context.no_sheets.views());
-                sheets.draw(&context.passes.surface, &group, encoder, &prepared);
-            }
-            textures.draw(gpu, context, encoder, &prepared);
-        }
+        self.draw_now(gpu, context, cache, encoder, (&frame, Detail::Exact));
         self.drawn = Some((frame.scene.clone(), *frame.camera));
         true
+    }
+
+    /// Records the whole drawing, coarse or not, into textures that are there.
+    pub(super) fn draw_now(
+        &mut self,
+        gpu: Gpu<'_>,
+        context: &Context,
+        cache: &mut MeshCache,
+        encoder: &mut wgpu::CommandEncoder,
+        (frame, detail): (&Frame<'_>, Detail),
+    ) {
+        let Some(textures) = &mut self.textures else {
+            return;
+        };
+        let sheets = textures.sheets(gpu.device, frame);
+        let views = sheets.unwrap_or(&context.no_sheets).views();
+        let region = Region::whole(frame.size);
+        let prepared = Prepared::new(gpu, cache, (frame, detail), region, views);
+        if let Some(sheets) = sheets {
+            // The frame's own group reads what is drawn here.
+            let group = prepared.frame_group(gpu, context.no_sheets.views());
+            for sheet in Sheet::ALL {
+                let what = (&context.passes.surface, sheet);
+                sheets.draw(what, &group, encoder, &prepared, &mut Slice::all());
+            }
+        }
+        textures.draw(context, encoder, &prepared, &mut Slice::all());
+        textures.finish(encoder);
+        if prepared.has_selection {
+            textures.draw_mask(gpu, context, encoder, &prepared, &mut Slice::all());
+            textures.draw_outline(context, encoder, &prepared);
+        }
+    }
+}
+
+/// The frame, no larger than the device can draw.
+pub(super) fn within_limit<'a>(device: &wgpu::Device, frame: &Frame<'a>) -> Frame<'a> {
+    let limit = device.limits().max_texture_dimension_2d;
+    Frame {
+        size: frame.size.map(|pixels| pixels.clamp(1, limit)),
+        ..*frame
     }
 }
 
@@ -126,68 +170,84 @@ impl Textures {
     }
 
     /// Textures for the depths of the two sheets, if they may coincide.
-    fn sheets(&mut self, device: &wgpu::Device, frame: &Frame<'_>) -> Option<&Sheets> {
+    pub(super) fn sheets(&mut self, device: &wgpu::Device, frame: &Frame<'_>) -> Option<&Sheets> {
         frame.scene.coinciding()?;
         let size = self.size;
         Some(self.sheets.get_or_insert_with(|| Sheets::new(device, size)))
     }
 
-    fn draw(
-        &mut self,
-        gpu: Gpu<'_>,
+    /// Draws a slice of the multisampled picture.
+    pub(super) fn draw(
+        &self,
         context: &Context,
         encoder: &mut wgpu::CommandEncoder,
         prepared: &Prepared,
+        slice: &mut Slice,
     ) {
-        {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("picture"),
-                color_attachments: &[Some(attachment(
-                    &self.color,
-                    Some(&self.picture_view),
-                    wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                ))],
-                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                    view: &self.depth,
-                    depth_ops: Some(wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(0.0),
-                        store: wgpu::StoreOp::Discard,
-                    }),
-                    stencil_ops: None,
+        let (color, depth) = if slice.is_first() {
+            let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+            (clear, wgpu::LoadOp::Clear(0.0))
+        } else {
+            (wgpu::LoadOp::Load, wgpu::LoadOp::Load)
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("picture"),
+            color_attachments: &[Some(attachment(&self.color, None, color))],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.depth,
+                depth_ops: Some(wgpu::Operations {
+                    load: depth,
+                    store: wgpu::StoreOp::Store,
                 }),
-                ..Default::default()
-            });
-            context.passes.draw(&mut pass, prepared);
-        }
-        if prepared.has_selection {
-            self.draw_selection(gpu, context, encoder, prepared);
-        }
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        context.passes.draw(&mut pass, prepared, slice);
     }
 
-    fn draw_selection(
+    /// Shows what was drawn.
+    pub(super) fn finish(&self, encoder: &mut wgpu::CommandEncoder) {
+        resolve(encoder, &self.color, &self.picture_view);
+    }
+
+    /// Draws a slice of the selected area.
+    pub(super) fn draw_mask(
         &mut self,
         gpu: Gpu<'_>,
         context: &Context,
         encoder: &mut wgpu::CommandEncoder,
         prepared: &Prepared,
+        slice: &mut Slice,
     ) {
         let size = self.size;
         let mask = self.mask.get_or_insert_with(|| Mask::new(gpu, size));
-        {
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("selection mask"),
-                color_attachments: &[Some(attachment(
-                    &mask.color,
-                    Some(&mask.resolved),
-                    wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                ))],
-                ..Default::default()
-            });
-            pass.set_bind_group(0, &prepared.frame, &[]);
-            for drawable in prepared.all() {
-                context.passes.surface.draw_selected(&mut pass, drawable);
-            }
+        let load = if slice.is_first() {
+            wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)
+        } else {
+            wgpu::LoadOp::Load
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("selection mask"),
+            color_attachments: &[Some(attachment(&mask.color, None, load))],
+            ..Default::default()
+        });
+        pass.set_bind_group(0, &prepared.frame, &[]);
+        for drawable in prepared.all() {
+            let surface = &context.passes.surface;
+            surface.draw_selected(&mut pass, drawable, slice);
         }
+    }
+
+    /// Draws the line around the selected area over the picture.
+    pub(super) fn draw_outline(
+        &self,
+        context: &Context,
+        encoder: &mut wgpu::CommandEncoder,
+        prepared: &Prepared,
+    ) {
+        let Some(mask) = &self.mask else { return };
+        resolve(encoder, &mask.color, &mask.resolved);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("selection outline"),
             color_attachments: &[Some(attachment(
@@ -200,6 +260,20 @@ impl Textures {
         pass.set_bind_group(0, &prepared.frame, &[]);
         context.passes.outline.draw(&mut pass, &mask.group);
     }
+}
+
+/// One sample for each pixel out of four.
+fn resolve(
+    encoder: &mut wgpu::CommandEncoder,
+    samples: &wgpu::TextureView,
+    to: &wgpu::TextureView,
+) {
+    let load = wgpu::LoadOp::Load;
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("resolve"),
+        color_attachments: &[Some(attachment(samples, Some(to), load))],
+        ..Default::default()
+    });
 }
 
 impl Mask {

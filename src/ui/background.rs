@@ -123,16 +123,29 @@ impl<K, T> Drop for Background<K, T> {
     }
 }
 
-fn serve<K: Copy + PartialEq, T>(shared: &Shared<K, T>, wake: &egui::Context) {
+fn serve<K: Copy + PartialEq, T: Send>(shared: &Shared<K, T>, wake: &egui::Context) {
+    let pool = own_threads();
     while let Some(task) = next(shared) {
+        let work = || match &pool {
+            Some(pool) => pool.install(task.work),
+            None => (task.work)(),
+        };
         // What half-made data the work leaves behind is dropped with it.
-        let made = catch_unwind(AssertUnwindSafe(task.work)).ok();
+        let made = catch_unwind(AssertUnwindSafe(work)).ok();
         let mut queue = shared.lock();
         queue.making = None;
         queue.made.push((task.key, made));
         drop(queue);
         wake.request_repaint();
     }
+}
+
+/// Threads that no job keeps busy: the picture of one file does not wait until the next one is read. `None`
+/// if the system has no threads left.
+fn own_threads() -> Option<rayon::ThreadPool> {
+    let n_cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(n_cores.div_ceil(2).min(8));
+    builder.build().ok()
 }
 
 /// Waits for a task; `None` when the window is gone.

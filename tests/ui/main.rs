@@ -5,8 +5,10 @@
 mod exports;
 mod inspect;
 mod keyboard;
+mod large;
 mod layout;
 mod mapping;
+mod monkey;
 mod no_window;
 mod pairs;
 mod panels;

@@ -17,7 +17,7 @@ const BLUE: [u8; 3] = [0x56, 0xB4, 0xE9];
 const ORANGE: [u8; 3] = [0xE6, 0x9F, 0x00];
 
 /// A renderer of its own on the device that all tests share; making a device is slower than any test.
-fn new_renderer() -> Renderer {
+pub(super) fn new_renderer() -> Renderer {
     static STATE: OnceLock<RenderState> = OnceLock::new();
     let state = STATE.get_or_init(|| {
         egui_kittest::wgpu::create_render_state(

@@ -4,6 +4,7 @@ use super::surface::CORNER_LAYOUT;
 use crate::render::mesh::WideEdge;
 use crate::render::pipeline::{Depth, Layouts, OVER, PipelineSpec, shader};
 use crate::render::prepare::PreparedDrawable;
+use crate::render::slice::Slice;
 
 /// Element edges, creases and borders.
 #[derive(Debug)]
@@ -47,16 +48,24 @@ impl Edges {
         }
     }
 
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &PreparedDrawable) {
+    pub(super) fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        drawable: &PreparedDrawable,
+        slice: &mut Slice,
+    ) {
         let (mesh, style) = (&drawable.mesh, drawable.style);
         pass.set_bind_group(1, &drawable.group, &[]);
         if let (true, Some(corners), Some(edges)) =
             (style.element_edges, &mesh.corners, &mesh.edges)
         {
-            pass.set_pipeline(&self.thin);
-            pass.set_vertex_buffer(0, corners.buffer.slice(..));
-            pass.set_index_buffer(edges.buffer.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..edges.count, 0, 0..1);
+            let lines = slice.take(edges.count / 2);
+            if !lines.is_empty() {
+                pass.set_pipeline(&self.thin);
+                pass.set_vertex_buffer(0, corners.buffer.slice(..));
+                pass.set_index_buffer(edges.buffer.slice(..), wgpu::IndexFormat::Uint32);
+                pass.draw_indexed(2 * lines.start..2 * lines.end, 0, 0..1);
+            }
         }
         // Creases come first in the buffer, borders after them.
         let first = if style.feature_edges {
@@ -70,10 +79,11 @@ impl Edges {
             } else {
                 mesh.n_features
             };
-            if first < end {
+            let lines = slice.take(end.saturating_sub(first));
+            if !lines.is_empty() {
                 pass.set_pipeline(&self.wide);
                 pass.set_vertex_buffer(0, wide.buffer.slice(..));
-                pass.draw(0..6, first..end);
+                pass.draw(0..6, first + lines.start..first + lines.end);
             }
         }
     }

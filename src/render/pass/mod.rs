@@ -11,6 +11,7 @@ pub(super) mod surface;
 
 use crate::render::pipeline::Layouts;
 use crate::render::prepare::{Prepared, PreparedDrawable};
+use crate::render::slice::Slice;
 
 /// The pipelines of all passes.
 #[derive(Debug)]
@@ -35,27 +36,40 @@ impl Passes {
         }
     }
 
-    /// Everything that goes into the multisampled picture.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, prepared: &Prepared) {
+    /// What of the multisampled picture belongs to a slice; the first has the background, the one that
+    /// is not used up has what lies over the parts.
+    pub(super) fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        prepared: &Prepared,
+        slice: &mut Slice,
+    ) {
         pass.set_bind_group(0, &prepared.frame, &[]);
-        if prepared.opaque_background {
+        if prepared.opaque_background && slice.is_first() {
             self.background.draw(pass);
         }
         // Lines leave no depth behind: drawn right after their own surface, those of a sheet that lies
         // behind another are covered by it, however steep both are.
         for drawable in &prepared.solid {
-            self.surface.draw_solid(pass, drawable);
-            self.draw_lines(pass, drawable);
+            self.surface.draw_solid(pass, drawable, slice);
+            self.draw_lines(pass, drawable, slice);
         }
         for drawable in &prepared.clear {
-            self.surface.draw_clear(pass, drawable);
-            self.draw_lines(pass, drawable);
+            self.surface.draw_clear(pass, drawable, slice);
+            self.draw_lines(pass, drawable, slice);
         }
-        self.overlay.draw(pass, &prepared.overlay);
+        if slice.left() > 0 {
+            self.overlay.draw(pass, &prepared.overlay);
+        }
     }
 
-    fn draw_lines(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &PreparedDrawable) {
-        self.edges.draw(pass, drawable);
-        self.points.draw(pass, drawable);
+    fn draw_lines(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        drawable: &PreparedDrawable,
+        slice: &mut Slice,
+    ) {
+        self.edges.draw(pass, drawable, slice);
+        self.points.draw(pass, drawable, slice);
     }
 }

@@ -3,6 +3,7 @@
 use crate::render::mesh::Node;
 use crate::render::pipeline::{Depth, Layouts, OVER, PipelineSpec, shader};
 use crate::render::prepare::PreparedDrawable;
+use crate::render::slice::Slice;
 
 /// Nodes as dots.
 #[derive(Debug)]
@@ -31,13 +32,21 @@ impl Points {
     }
 
     /// Draws the nodes if they are wanted, or if there is nothing else to see of the mesh.
-    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &PreparedDrawable) {
+    pub(super) fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        drawable: &PreparedDrawable,
+        slice: &mut Slice,
+    ) {
         let wanted = drawable.style.points || drawable.mesh.corners.is_none();
         if let (true, Some(nodes)) = (wanted, &drawable.mesh.nodes) {
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(1, &drawable.group, &[]);
-            pass.set_vertex_buffer(0, nodes.buffer.slice(..));
-            pass.draw(0..6, 0..nodes.count);
+            let now = slice.take(nodes.count);
+            if !now.is_empty() {
+                pass.set_pipeline(&self.pipeline);
+                pass.set_bind_group(1, &drawable.group, &[]);
+                pass.set_vertex_buffer(0, nodes.buffer.slice(..));
+                pass.draw(0..6, now);
+            }
         }
     }
 }

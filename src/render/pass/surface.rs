@@ -5,6 +5,7 @@ use crate::render::pipeline::{
     Depth, Layouts, MASK_FORMAT, OVER, PICK_FORMAT, PipelineSpec, SAMPLES, SHEET_FORMAT, shader,
 };
 use crate::render::prepare::PreparedDrawable;
+use crate::render::slice::Slice;
 
 /// Triangles: lit and solid, as glass, as the mask of the selection, as depths of a sheet, as indices
 /// for picking.
@@ -78,30 +79,42 @@ impl Surface {
         }
     }
 
-    pub(super) fn draw_solid(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &PreparedDrawable) {
-        draw_with(&self.solid, pass, drawable);
+    pub(super) fn draw_solid(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        drawable: &PreparedDrawable,
+        slice: &mut Slice,
+    ) {
+        draw_with(&self.solid, pass, drawable, slice);
     }
 
     /// Back sides first, so that a part seen through itself looks right without sorting triangles.
-    pub(super) fn draw_clear(&self, pass: &mut wgpu::RenderPass<'_>, drawable: &PreparedDrawable) {
-        draw_with(&self.clear_backs, pass, drawable);
-        draw_with(&self.clear_fronts, pass, drawable);
+    pub(super) fn draw_clear(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        drawable: &PreparedDrawable,
+        slice: &mut Slice,
+    ) {
+        draw_with(&self.clear_backs, pass, drawable, slice);
+        draw_with(&self.clear_fronts, pass, drawable, slice);
     }
 
     pub(in crate::render) fn draw_selected(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         drawable: &PreparedDrawable,
+        slice: &mut Slice,
     ) {
-        draw_with(&self.selected, pass, drawable);
+        draw_with(&self.selected, pass, drawable, slice);
     }
 
     pub(in crate::render) fn draw_depth(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         drawable: &PreparedDrawable,
+        slice: &mut Slice,
     ) {
-        draw_with(&self.depth, pass, drawable);
+        draw_with(&self.depth, pass, drawable, slice);
     }
 
     pub(in crate::render) fn draw_pick(
@@ -109,7 +122,7 @@ impl Surface {
         pass: &mut wgpu::RenderPass<'_>,
         drawable: &PreparedDrawable,
     ) {
-        draw_with(&self.pick, pass, drawable);
+        draw_with(&self.pick, pass, drawable, &mut Slice::all());
     }
 }
 
@@ -117,11 +130,16 @@ fn draw_with(
     pipeline: &wgpu::RenderPipeline,
     pass: &mut wgpu::RenderPass<'_>,
     drawable: &PreparedDrawable,
+    slice: &mut Slice,
 ) {
     let Some(corners) = &drawable.mesh.corners else {
         return;
     };
     if !drawable.style.surface {
+        return;
+    }
+    let triangles = slice.take(corners.count / 3);
+    if triangles.is_empty() {
         return;
     }
     pass.set_pipeline(pipeline);
@@ -130,5 +148,5 @@ fn draw_with(
     // Without a field the shader reads no values, but the slot wants a buffer that is long enough.
     let field = drawable.field.as_deref().unwrap_or(&corners.buffer);
     pass.set_vertex_buffer(1, field.slice(..));
-    pass.draw(0..corners.count, 0..1);
+    pass.draw(3 * triangles.start..3 * triangles.end, 0..1);
 }

@@ -11,7 +11,7 @@ use crate::role::Role;
 use crate::ui::overlays::mouse_choice;
 use crate::ui::theme::{Palette, ROW, TALL, UNIT};
 use crate::ui::viewport::Viewports;
-use crate::ui::viewport::free_choice;
+use crate::ui::viewport::{free_choice, read_points};
 use crate::ui::widgets::{Look, action_button, card, paragraph, role_mark, secondary};
 
 /// Where the windows lay in the last frame, for drops and toasts.
@@ -200,6 +200,11 @@ fn empty_ui(ui: &mut Ui, rect: Rect, role: Role, state: &AppState, commands: &mu
     ui.painter()
         .extend(Shape::dashed_line(&corners, stroke, 6.0, 6.0));
     let is_loading = state.jobs.is_active(JobKey::Load(role));
+    let running = state.jobs.running();
+    let shape = running.filter(|job| job.key == JobKey::Load(role) && is_loading);
+    if let Some(points) = shape.and_then(|job| job.shape.as_ref()) {
+        read_points(ui, frame.shrink(UNIT), role, points);
+    }
     let room = frame.shrink(8.0).size();
     let size = vec2(320.0_f32.min(room.x), 400.0_f32.min(room.y));
     // A low window keeps the words and the buttons and leaves the ornament.

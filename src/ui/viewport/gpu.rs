@@ -6,7 +6,7 @@ use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDes
 use egui::epaint::ViewportInPixels;
 
 use crate::geometry::Camera;
-use crate::render::{Frame, Renderer, Scene, ViewTarget};
+use crate::render::{Drawn, Frame, Renderer, Scene, ViewTarget};
 use crate::role::{PerRole, Role};
 
 /// What lives on the graphics card, kept among egui's own resources.
@@ -35,6 +35,8 @@ pub(super) struct ViewCallback {
     pub scene: Arc<Scene>,
     pub camera: Camera,
     pub rect: egui::Rect,
+    /// To be asked for the next step of a picture that takes several.
+    pub ctx: egui::Context,
 }
 
 impl ViewCallback {
@@ -69,7 +71,10 @@ impl CallbackTrait for ViewCallback {
             camera: &self.camera,
             size,
         };
-        renderer.draw(targets.get_mut(self.role), encoder, &frame);
+        let drawn = renderer.draw_step(targets.get_mut(self.role), encoder, &frame);
+        if let Drawn::Partly(next) = drawn {
+            self.ctx.request_repaint_after(next);
+        }
         Vec::new()
     }
 

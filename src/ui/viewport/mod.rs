@@ -14,6 +14,7 @@ mod picking;
 mod picture;
 mod pointing;
 mod sections;
+mod shape;
 mod snapshot;
 mod tools;
 mod visible_parts;
@@ -36,6 +37,7 @@ use motion::{Crossing, SmoothPose};
 pub use overlay::free_choice;
 use picture::{Layer, Picture};
 use sections::SectionStore;
+pub use shape::read_points;
 use snapshot::LastFrame;
 use window::{Following, Window};
 
@@ -285,6 +287,7 @@ impl Viewports {
             scene: Arc::clone(&frame.picture.scene),
             camera: frame.view.camera,
             rect,
+            ctx: ui.ctx().clone(),
         };
         let size = rect.size() * ui.pixels_per_point();
         self.windows.get_mut(role).last_frame = Some(LastFrame {

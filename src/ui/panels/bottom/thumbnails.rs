@@ -6,13 +6,10 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use egui::{Color32, ColorImage, Context, Rect, Sense, TextureHandle, TextureOptions, Ui, Vec2};
 
 use crate::app::{AppState, Part};
-use crate::geometry::{Camera, Similarity, TriMesh};
-use crate::monitor::Monitor;
+use crate::geometry::{Camera, MergedMesh, Similarity, TriMesh};
 use crate::pipeline::load::LoadedPart;
-use crate::pipeline::reduce::Levels;
 use crate::report::picture::{Paint, Picture, PictureMesh, picture};
 use crate::role::{PerRole, Role};
-use crate::simplify::SimplifySettings;
 use crate::ui::background::{Background, Task};
 use crate::ui::theme::Palette;
 
@@ -59,9 +56,8 @@ impl SmallMesh {
             if self.part.mesh.n_triangles() <= MAX_TRIANGLES {
                 return full();
             }
-            let settings = SimplifySettings::to_triangles(MAX_TRIANGLES);
-            let levels = Levels::record(&self.part, &settings, &Monitor::silent());
-            levels.map_or_else(|_| full(), |levels| levels.level(MAX_TRIANGLES).mesh)
+            let small = MergedMesh::of(&self.part.mesh, MAX_TRIANGLES);
+            small.map_or_else(full, |small| Arc::new(small.mesh))
         })
     }
 }

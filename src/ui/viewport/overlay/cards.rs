@@ -3,9 +3,22 @@
 use egui::{Align2, FontId, Ui, vec2};
 
 use super::Overlay;
+use crate::geometry::Similarity;
+use crate::role::Role;
+use crate::ui::viewport::shape::part_points;
 
 /// Three dots that take turns, slow enough to leave the processor to the work.
 pub(super) fn preparing(ui: &Ui, over: &Overlay<'_>) {
+    let view = over.frame.view;
+    let role = over.role();
+    if let Some(part) = over.frame.state.document.part(role) {
+        let pose = match role {
+            Role::Crash => Similarity::identity(),
+            Role::Stamped => view.pose,
+        };
+        let place = (over.frame.rect(), &view.camera);
+        part_points(ui, place, (role, &pose), part);
+    }
     let painter = over.painter(ui);
     let center = over.frame.rect().center();
     let text = "Building the 3D view…";
