@@ -47,6 +47,8 @@ const OPPOSITE_IS_CLEAR: f64 = 1.3;
 const AS_CLOSE: f64 = 1.5;
 /// … and so many tolerances more.
 const LITTLE_GAP: f64 = 0.25;
+/// A pose that meets so many times as much of the part may lie as far apart as springback explains.
+const MUCH_MORE: f64 = 1.3;
 /// It must meet this share of what the result meets.
 const AS_MUCH: f64 = 0.9;
 
@@ -191,7 +193,11 @@ struct Settled {
 
 impl Settled {
     fn is_as_close_as(&self, other: &Self, pair: &Pair<'_>) -> bool {
-        let most = AS_CLOSE * other.gap + LITTLE_GAP * pair.remainder;
+        let mut most = AS_CLOSE * other.gap + LITTLE_GAP * pair.remainder;
+        if self.met > MUCH_MORE * other.met {
+            // A bent part lies closer where only a piece of it meets the other.
+            most = most.max(pair.springback);
+        }
         self.met >= AS_MUCH * other.met && self.gap <= most
     }
 }
