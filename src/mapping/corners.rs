@@ -2,8 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::field::{Field, FieldKind, Fields};
-use super::layered::PerElement;
+use super::field::Fields;
 use super::patch::Patch;
 use super::target::TargetPart;
 
@@ -20,18 +19,9 @@ pub(super) fn corner_thickness(thickness: &[f64], target: &TargetPart) -> Vec<[f
         let mut patch = Patch::default();
         let numbers = elements.clone().map(|element| element as u32);
         patch.load(numbers, mesh, &neighbours, thickness);
-        let mut field = Field::new(FieldKind::Scalars);
-        field.load(&PerElement(thickness), &patch);
-        let mut fields = Fields {
-            patch,
-            thickness: Some(field),
-            states: None,
-            strains: None,
-        };
-        fields.fit();
         let Fields {
             patch, thickness, ..
-        } = fields;
+        } = Fields::of_thickness(patch, thickness);
         let at_corners = |slot: usize| {
             let field = thickness.as_ref()?;
             let corners = patch.corners(slot);

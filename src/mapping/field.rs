@@ -7,7 +7,7 @@
 //! the smallest rotation from one tangent plane into the next is a turn within the plane, which takes
 //! eight products instead of thirty-six.
 
-use super::layered::Numbers;
+use super::layered::{Numbers, PerElement};
 use super::patch::{Link, Patch};
 use crate::geometry::Matrix3;
 use crate::geometry::tensor::{Tensor, Turn};
@@ -235,6 +235,20 @@ pub(super) struct Fields {
 }
 
 impl Fields {
+    /// One number of each element, as thickness, fitted on a patch.
+    pub fn of_thickness(patch: Patch, numbers: &[f64]) -> Self {
+        let mut field = Field::new(FieldKind::Scalars);
+        field.load(&PerElement(numbers), &patch);
+        let mut fields = Self {
+            patch,
+            thickness: Some(field),
+            states: None,
+            strains: None,
+        };
+        fields.fit();
+        fields
+    }
+
     /// Fits all gradients of the patch.
     pub fn fit(&mut self) {
         let patch = &self.patch;

@@ -6,7 +6,7 @@ use super::pipeline::{DEPTH_FORMAT, SHEET_FORMAT};
 use super::prepare::Prepared;
 use super::scene::Sheet;
 use super::slice::Slice;
-use super::texture::{attachment, texture, view};
+use super::texture::{slice_pass, texture, view};
 
 /// A depth picture of each sheet, one sample per pixel, with the depth buffer they share.
 #[derive(Debug)]
@@ -46,25 +46,7 @@ impl Sheets {
             Sheet::First => &self.first,
             Sheet::Second => &self.second,
         };
-        let (color, depth) = if slice.is_first() {
-            let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
-            (clear, wgpu::LoadOp::Clear(0.0))
-        } else {
-            (wgpu::LoadOp::Load, wgpu::LoadOp::Load)
-        };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("sheet depth"),
-            color_attachments: &[Some(attachment(target, None, color))],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.depth,
-                depth_ops: Some(wgpu::Operations {
-                    load: depth,
-                    store: wgpu::StoreOp::Store,
-                }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        });
+        let mut pass = slice_pass(encoder, "sheet depth", [target, &self.depth], *slice);
         pass.set_bind_group(0, frame, &[]);
         let of_sheet = prepared.solid.iter().filter(|d| d.sheet == Some(sheet));
         for drawable in of_sheet {

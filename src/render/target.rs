@@ -9,7 +9,7 @@ use super::scene::{Scene, Sheet};
 use super::sheets::Sheets;
 use super::slice::Slice;
 use super::steps::Steps;
-use super::texture::{attachment, texture, view};
+use super::texture::{attachment, slice_pass, texture, view};
 use super::uniforms::Region;
 use crate::geometry::Camera;
 
@@ -184,25 +184,7 @@ impl Textures {
         prepared: &Prepared,
         slice: &mut Slice,
     ) {
-        let (color, depth) = if slice.is_first() {
-            let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
-            (clear, wgpu::LoadOp::Clear(0.0))
-        } else {
-            (wgpu::LoadOp::Load, wgpu::LoadOp::Load)
-        };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("picture"),
-            color_attachments: &[Some(attachment(&self.color, None, color))],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.depth,
-                depth_ops: Some(wgpu::Operations {
-                    load: depth,
-                    store: wgpu::StoreOp::Store,
-                }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        });
+        let mut pass = slice_pass(encoder, "picture", [&self.color, &self.depth], *slice);
         context.passes.draw(&mut pass, prepared, slice);
     }
 

@@ -1,5 +1,7 @@
 //! Textures that are drawn to.
 
+use super::slice::Slice;
+
 /// A colour attachment; with `resolve_target` only the resolved picture is kept.
 pub(super) fn attachment<'a>(
     view: &'a wgpu::TextureView,
@@ -18,6 +20,34 @@ pub(super) fn attachment<'a>(
         resolve_target,
         ops: wgpu::Operations { load, store },
     }
+}
+
+/// A pass that draws a slice of a picture with depth: the first slice clears both, the others go on.
+pub(super) fn slice_pass<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    label: &str,
+    [color, depth]: [&wgpu::TextureView; 2],
+    slice: Slice,
+) -> wgpu::RenderPass<'a> {
+    let (clear_color, clear_depth) = if slice.is_first() {
+        let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+        (clear, wgpu::LoadOp::Clear(0.0))
+    } else {
+        (wgpu::LoadOp::Load, wgpu::LoadOp::Load)
+    };
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(attachment(color, None, clear_color))],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: depth,
+            depth_ops: Some(wgpu::Operations {
+                load: clear_depth,
+                store: wgpu::StoreOp::Store,
+            }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
 }
 
 /// A texture of `size` pixels.

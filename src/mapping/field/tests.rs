@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::Point3;
-use crate::mapping::layered::{Layered, PerElement};
+use crate::mapping::layered::Layered;
 use crate::mapping::shells::ShellMesh;
 
 /// n × n unit squares in the plane z = 0, their inner nodes moved a little.
@@ -38,16 +38,7 @@ fn scalars(mesh: &ShellMesh, f: impl Fn(&Point3) -> f64) -> Vec<f64> {
 fn fitted(mesh: &ShellMesh, numbers: &[f64], gauge: &[f64]) -> Fields {
     let mut patch = Patch::default();
     patch.load(0..mesh.len() as u32, mesh, &mesh.neighbours(), gauge);
-    let mut field = Field::new(FieldKind::Scalars);
-    field.load(&PerElement(numbers), &patch);
-    let mut fields = Fields {
-        patch,
-        thickness: Some(field),
-        states: None,
-        strains: None,
-    };
-    fields.fit();
-    fields
+    Fields::of_thickness(patch, numbers)
 }
 
 /// The number as the first of six, which are not limited.
