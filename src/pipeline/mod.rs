@@ -4,6 +4,7 @@
 //! moves (source). Each stage returns what it did and how long it took; nothing here prints.
 
 pub mod autosave;
+pub mod file_watch;
 pub mod forming_values;
 pub mod growth;
 pub mod growth_page;

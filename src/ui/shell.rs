@@ -15,11 +15,12 @@ use crate::app::{
     AppState, Clock, Command, Document, Effect, FileCommand, NoticeCommand, NoticeLevel,
     PictureChoice, PictureSize, ProjectCommand, Settings, StartupOptions, Theme,
 };
-use crate::jobs::{JobEvent, JobStage, Live, PipelineRunner, Worker};
+use crate::jobs::{JobEvent, JobStage, Live, PartSource, PipelineRunner, Worker};
 use crate::pipeline::autosave::{Autosave, AutosaveEvent};
+use crate::pipeline::file_watch::{FileWatch, PAUSE};
 use crate::pipeline::preferences::PreferencesFile;
 use crate::report::picture::Picture;
-use crate::role::Role;
+use crate::role::{PerRole, Role};
 
 /// Least size of the window, in points.
 const MIN_SIZE: [f32; 2] = [800.0, 540.0];
@@ -73,6 +74,15 @@ fn window(preferences: &Preferences) -> egui::ViewportBuilder {
     }
 }
 
+/// How long a drop waits for the pointer to come back.
+const POINTER_BACK: Duration = Duration::from_millis(400);
+
+/// Files that were dropped, and when.
+struct PendingDrop {
+    paths: Vec<std::path::PathBuf>,
+    since: Instant,
+}
+
 /// The application as eframe sees it.
 pub struct Shell {
     state: AppState,
@@ -81,6 +91,11 @@ pub struct Shell {
     dialogs: Dialogs,
     preferences: PreferencesFile,
     autosave: Autosave<Box<Document>>,
+    watch: FileWatch,
+    /// The parts whose files are watched.
+    watched: PerRole<u64>,
+    /// Files that were dropped before it was known where.
+    drop: Option<PendingDrop>,
     place: Option<WindowPlace>,
     is_unsaved: bool,
     /// It was told that they cannot be saved; once is enough.
@@ -105,6 +120,8 @@ impl Shell {
         let ctx = cc.egui_ctx.clone();
         let waking = ctx.clone();
         let autosave = Autosave::start(files.sessions, move || waking.request_repaint())?;
+        let waking = cc.egui_ctx.clone();
+        let watch = FileWatch::start(PAUSE, move || waking.request_repaint())?;
         let worker = Worker::spawn(PipelineRunner, Arc::new(move || ctx.request_repaint()))?;
         let mut state = AppState::new(preferences.settings);
         state.log.clock = clock();
@@ -115,6 +132,9 @@ impl Shell {
             dialogs: Dialogs::default(),
             preferences: files.preferences,
             autosave,
+            watch,
+            watched: PerRole::default(),
+            drop: None,
             place: preferences.window,
             is_unsaved: false,
             has_told_unsaved: false,
@@ -240,8 +260,12 @@ impl Shell {
 
     fn apply_settings(&self, ctx: &egui::Context) {
         let Settings {
-            theme, ui_scale, ..
+            theme,
+            ui_scale,
+            reduce_motion,
+            ..
         } = self.state.settings;
+        theme::set_motion(ctx, !reduce_motion);
         ctx.set_theme(match theme {
             Theme::System => egui::ThemePreference::System,
             Theme::Dark => egui::ThemePreference::Dark,
@@ -278,23 +302,49 @@ impl Shell {
         }
     }
 
-    /// Files that were dropped; over one of the 3D windows they are meant for it.
-    fn dropped(&self, ctx: &egui::Context) -> Vec<Command> {
+    /// Files that were dropped. One over a 3D window is meant for it; where that was is told by the pointer,
+    /// which some desktops give back only after the drop.
+    fn dropped(&mut self, ctx: &egui::Context) -> Option<Command> {
         let files = ctx.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<_> = files
             .iter()
             .map(|file| file.path().to_owned())
             .filter(|path| !path.as_os_str().is_empty())
             .collect();
-        if paths.is_empty() {
-            return Vec::new();
+        if !paths.is_empty() {
+            self.drop = Some(PendingDrop {
+                paths,
+                since: Instant::now(),
+            });
         }
-        let role = if paths.len() == 1 {
-            panels::graphics::role_under_pointer(ctx)
-        } else {
-            None
+        let drop = self.drop.take()?;
+        let is_placed = drop.paths.len() > 1 || ctx.pointer_latest_pos().is_some();
+        if !is_placed && drop.since.elapsed() < POINTER_BACK {
+            ctx.request_repaint_after(POINTER_BACK / 4);
+            self.drop = Some(drop);
+            return None;
+        }
+        let role = match drop.paths.len() {
+            1 => panels::graphics::role_under_pointer(ctx),
+            _ => None,
         };
-        vec![FileCommand::Open { paths, role }.into()]
+        let paths = drop.paths;
+        Some(FileCommand::Open { paths, role }.into())
+    }
+
+    /// Keeps an eye on the files of the present parts; what was noticed about them.
+    fn changed_files(&mut self) -> Option<Command> {
+        let document = &self.state.document;
+        let parts = document.stamp().parts;
+        if parts != self.watched {
+            self.watched = parts;
+            let parts = document.parts.iter().filter_map(|(_, part)| part.as_ref());
+            let from_disk = parts.filter(|part| matches!(part.source, PartSource::File(_)));
+            let files = from_disk.flat_map(|part| part.loaded.model.files.clone());
+            self.watch.watch(files.collect());
+        }
+        let changed = self.watch.news()?;
+        Some(FileCommand::ChangedOnDisk(changed).into())
     }
 
     fn remember_place(&mut self, ctx: &egui::Context) {
@@ -388,6 +438,7 @@ impl eframe::App for Shell {
         commands.extend(self.autosave.events().flat_map(from_autosave));
         commands.extend(self.asked_to_close(ctx));
         commands.extend(self.dropped(ctx));
+        commands.extend(self.changed_files());
         self.run_commands(commands, ctx);
         if self.state.needs_autosave() {
             self.run_commands(vec![ProjectCommand::Autosave.into()], ctx);

@@ -102,7 +102,13 @@ fn toast_ui(
             ui.vertical(|ui| {
                 ui.set_width(width - BESIDE);
                 let job = text(ui, notice, width);
-                ui.add(egui::Label::new(job)).on_hover_text(&notice.text);
+                let label = ui.add(egui::Label::new(job)).on_hover_text(&notice.text);
+                ui.ctx().accesskit_node_builder(label.id, |node| {
+                    node.set_live(match notice.level {
+                        NoticeLevel::Error => egui::accesskit::Live::Assertive,
+                        _ => egui::accesskit::Live::Polite,
+                    });
+                });
                 if buttons(notice) {
                     ui.horizontal(|ui| buttons_ui(ui, notice, state, commands));
                 }
@@ -119,6 +125,7 @@ fn buttons_ui(ui: &mut Ui, notice: &Notice, state: &AppState, commands: &mut Vec
     if let Some(action) = notice.offer {
         let label = match action {
             Action::Swap => "Swap",
+            Action::ReloadChanged => "Reload",
             other => other.row().label,
         };
         let can = action.enabled(state).is_ok();

@@ -14,6 +14,7 @@ mod deviation;
 mod drawn_pan;
 mod explain;
 mod exports;
+mod file_watch;
 mod files_doc;
 mod foreign_files;
 mod inspect;

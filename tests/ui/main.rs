@@ -15,6 +15,7 @@ mod panels;
 mod parts;
 mod project;
 mod render;
+mod specification;
 mod starts;
 mod story;
 mod viewport;

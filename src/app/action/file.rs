@@ -1,6 +1,6 @@
 //! The menu *File*.
 
-use super::conditions::{always, any_part_unlocked, part_unlocked};
+use super::conditions::{always, any_changed_unlocked, any_part_unlocked, part_unlocked};
 use super::row::keys::{ctrl, ctrl_shift};
 use super::row::some;
 use super::{Action, ActionRow, Keys, MenuGroup, toggled_dialog};
@@ -85,6 +85,14 @@ const PARTS: &[ActionRow] = &[
         keys: Keys::NONE,
         enabled: any_part_unlocked,
         command: |_| some(FileCommand::ReloadAll),
+    },
+    ActionRow {
+        action: Action::ReloadChanged,
+        label: "Reload changed files",
+        tooltip: "Read those files again that have changed on disk; choices and pose are kept",
+        keys: Keys::NONE,
+        enabled: any_changed_unlocked,
+        command: |_| some(FileCommand::ReloadChanged),
     },
     ActionRow {
         action: Action::Swap,

@@ -104,6 +104,8 @@ actions! {
     SaveProjectAs,
     /// Read both parts again.
     ReloadAll,
+    /// Read those parts again whose files have changed on disk.
+    ReloadChanged,
     /// Exchange the two parts.
     Swap,
     /// Remove the crash part.

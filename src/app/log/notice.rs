@@ -163,6 +163,17 @@ impl Notices {
         }
     }
 
+    /// What an action was offered for is over.
+    pub fn withdraw(&mut self, action: Action) {
+        for notice in &mut self.items {
+            if notice.offer == Some(action) {
+                notice.is_toast = false;
+                notice.is_unread = false;
+                notice.offer = None;
+            }
+        }
+    }
+
     /// The bell was opened: all is read, and warnings no longer cover the view.
     pub fn mark_read(&mut self) {
         for notice in &mut self.items {

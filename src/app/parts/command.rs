@@ -1,5 +1,6 @@
 //! What can happen to files and the parts in them.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use super::{LikeWhat, PartRef};
@@ -27,6 +28,10 @@ pub enum FileCommand {
     Reload(Role),
     /// Read all loaded parts again.
     ReloadAll,
+    /// Read those parts again whose files have changed on disk.
+    ReloadChanged,
+    /// These files have another content now than was read from them; the shell tells when that changes.
+    ChangedOnDisk(BTreeSet<PathBuf>),
     /// Forget a part.
     Close(Role),
     /// Exchange the two parts without reading anything.

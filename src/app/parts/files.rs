@@ -32,6 +32,10 @@ impl PartsState {
         work: &mut Work<'_>,
         command: FileCommand,
     ) -> Vec<Effect> {
+        if let FileCommand::ChangedOnDisk(files) = command {
+            self.tell_changed(work, files);
+            return Vec::new();
+        }
         if work.is_unlocked().is_err() {
             return Vec::new();
         }
@@ -47,6 +51,15 @@ impl PartsState {
                 .into_iter()
                 .flat_map(|role| self.reload(work, role))
                 .collect(),
+            FileCommand::ReloadChanged => {
+                let changed = Role::ALL
+                    .into_iter()
+                    .filter(|&role| self.has_changed_on_disk(work.document, role));
+                let changed: Vec<Role> = changed.collect();
+                let reloads = changed.into_iter();
+                reloads.flat_map(|role| self.reload(work, role)).collect()
+            }
+            FileCommand::ChangedOnDisk(_) => Vec::new(),
             FileCommand::Close(role) => self.close(work, role),
             FileCommand::Swap => self.swap(work),
             FileCommand::SetLengthFactor { role, factor } => {
@@ -282,11 +295,13 @@ impl PartsState {
         effects
     }
 
-    /// A single file without a role whose content says stamped, and nothing stamped there yet.
+    /// A single file without a role whose content says stamped, and nothing stamped there yet, or both
+    /// parts, of which it takes the place of the one it is like.
     fn belongs_other_side(&self, work: &Work<'_>, role: Role, facts: &PartFacts) -> bool {
         let is_single = self.guess.n_pending == 1;
         let is_free = work.document.part(role.other()).is_none();
-        is_single && is_free && role == Role::Crash && facts.formed > 0
+        let may_replace = is_free || work.document.part(role).is_some();
+        is_single && may_replace && role == Role::Crash && facts.formed > 0
     }
 
     fn place(
@@ -298,6 +313,7 @@ impl PartsState {
         facts: Arc<PartFacts>,
     ) {
         let name = format!("Load {}", part.file_name());
+        self.was_read_again(work, &part.files());
         let (revision, pose_revision) =
             (work.history.next_revision(), work.history.next_revision());
         work.previews.drop_all();

@@ -1,5 +1,6 @@
 //! The two files and the parts in them: which are loaded, chosen, matched and alike, in which units.
 
+mod changed;
 mod choice;
 mod command;
 mod files;
@@ -10,6 +11,7 @@ mod unit_memory;
 mod units;
 
 use std::collections::BTreeSet;
+use std::path::PathBuf;
 
 pub use command::{FileCommand, PartCommand};
 pub(super) use files::NewPart;
@@ -47,6 +49,8 @@ pub struct PartsState {
     unit_hint_dismissed_for: Option<PerRole<u64>>,
     /// The undo step of a change of units that a new factor belongs to.
     unit_gesture: Option<GestureId>,
+    /// Files whose content on disk is another than the one that was read.
+    changed_on_disk: BTreeSet<PathBuf>,
 }
 
 /// Roles that were not said but have to be found out from the content.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::{BottomTab, ViewCommand, ViewRoom, ViewState};
 use crate::app::{AppState, Document, PartRef};
-use crate::geometry::{Aabb, Point3, Similarity, Vector3};
+use crate::geometry::{Aabb, Camera, Point3, Similarity, Vector3};
 use crate::role::Role;
 
 /// Nodes that a camera is fitted to at most; those between them lie within the margin.
@@ -27,6 +27,7 @@ impl ViewState {
         match command {
             ViewCommand::SetCamera(..)
             | ViewCommand::Standard(..)
+            | ViewCommand::LookFrom(..)
             | ViewCommand::PreviousCamera(_)
             | ViewCommand::ToggleProjection(_)
             | ViewCommand::FitAll(_)
@@ -62,15 +63,10 @@ impl ViewState {
         match *command {
             ViewCommand::SetCamera(role, camera) => self.set_camera(role, camera),
             ViewCommand::Standard(role, view) => {
-                self.remember_camera(role);
-                let is_fitted = self.is_fitted(role);
-                let mut camera = *self.cameras.get(role);
-                camera.set_standard_view(view);
-                self.set_camera(role, camera);
-                // What was seen whole is seen whole from there too.
-                if is_fitted {
-                    self.refit(role, scene);
-                }
+                self.turn_camera(role, scene, |camera| camera.set_standard_view(view));
+            }
+            ViewCommand::LookFrom(role, direction) => {
+                self.turn_camera(role, scene, |camera| camera.look_from(direction));
             }
             ViewCommand::PreviousCamera(role) => {
                 let previous = *self.previous_cameras.get(role);
@@ -89,6 +85,18 @@ impl ViewState {
             },
             ViewCommand::ToggleLink => self.toggle_link(),
             _ => {}
+        }
+    }
+
+    fn turn_camera(&mut self, role: Role, scene: &Scene<'_>, turn: impl FnOnce(&mut Camera)) {
+        self.remember_camera(role);
+        let is_fitted = self.is_fitted(role);
+        let mut camera = *self.cameras.get(role);
+        turn(&mut camera);
+        self.set_camera(role, camera);
+        // What was seen whole is seen whole from there too.
+        if is_fitted {
+            self.refit(role, scene);
         }
     }
 

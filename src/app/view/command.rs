@@ -12,6 +12,8 @@ pub enum ViewCommand {
     SetCamera(Role, Camera),
     /// A view with a key of its own.
     Standard(Role, StandardView),
+    /// From a direction, each component −1, 0 or 1.
+    LookFrom(Role, [i8; 3]),
     /// The camera before the last jump.
     PreviousCamera(Role),
     /// Orthographic or perspective.

@@ -153,8 +153,9 @@ impl ViewRoom {
                 right,
                 top,
                 bottom,
+                corner: [width, height],
             } = room.covered;
-            [room.aspect.ln(), left, right, top, bottom]
+            [room.aspect.ln(), left, right, top, bottom, width, height]
         };
         let pairs = sides(self).into_iter().zip(sides(other));
         pairs.into_iter().any(|(a, b)| (a - b).abs() > 0.01)

@@ -1,6 +1,6 @@
 //! Cameras that show a box whole.
 
-use super::{Camera, Projection};
+use super::{Camera, Projection, ScreenSize};
 use crate::geometry::{Aabb, Point3, Vector3};
 
 /// Air around a fitted scene, on each side, as a share of the picture.
@@ -19,6 +19,9 @@ pub struct Covered {
     pub top: f64,
     /// Share of the height at the bottom.
     pub bottom: f64,
+    /// Shares of the width and of the height of what lies in the lower left corner only. A scene that
+    /// leaves the corner alone anyway is fitted as if nothing were there.
+    pub corner: [f64; 2],
 }
 
 impl Covered {
@@ -29,7 +32,26 @@ impl Covered {
             right: self.right.max(other.right),
             top: self.top.max(other.top),
             bottom: self.bottom.max(other.bottom),
+            corner: [0, 1].map(|k| self.corner[k].max(other.corner[k])),
         }
+    }
+
+    /// Two ways to keep out of the corner: the whole strip beside it, or the one below it.
+    fn beside_corner(&self) -> [Self; 2] {
+        let [width, height] = self.corner;
+        let corner = [0.0; 2];
+        [
+            Self {
+                left: self.left.max(width),
+                corner,
+                ..*self
+            },
+            Self {
+                bottom: self.bottom.max(height),
+                corner,
+                ..*self
+            },
+        ]
     }
 
     /// The free rectangle in −1 … 1 from left to right and from bottom to top, never narrower than
@@ -79,6 +101,38 @@ impl Camera {
 
     /// As [`Camera::fit_to_points`], into the rectangle of the picture over which nothing lies. O(points).
     pub fn fit_to_points_within(&mut self, points: &[Point3], aspect: f64, covered: &Covered) {
+        self.fit_beside_edges(points, aspect, covered);
+        if !self.shows_any_in_corner(points, aspect, covered.corner) {
+            return;
+        }
+        let beside = covered.beside_corner().map(|covered| {
+            let mut camera = *self;
+            camera.fit_beside_edges(points, aspect, &covered);
+            camera
+        });
+        let [left, below] = beside;
+        *self = if left.height <= below.height {
+            left
+        } else {
+            below
+        };
+    }
+
+    /// True if a point is seen in the lower left corner of these shares of the picture.
+    fn shows_any_in_corner(&self, points: &[Point3], aspect: f64, corner: [f64; 2]) -> bool {
+        let [width, height] = corner;
+        let screen = ScreenSize {
+            width: aspect,
+            height: 1.0,
+        };
+        let is_in_corner = |point: &Point3| {
+            self.project(point, screen)
+                .is_some_and(|at| at.x < width * aspect && at.y > 1.0 - height)
+        };
+        width > 0.0 && height > 0.0 && points.iter().any(is_in_corner)
+    }
+
+    fn fit_beside_edges(&mut self, points: &[Point3], aspect: f64, covered: &Covered) {
         let Some(first) = points.first() else {
             return;
         };

@@ -63,6 +63,13 @@ impl StandardView {
         }
     }
 
+    /// The view from a direction, each component −1, 0 or 1, if it is one of these.
+    pub fn from_direction(direction: [i8; 3]) -> Option<Self> {
+        let direction = Vector3::from(direction.map(f64::from));
+        let is_it = |view: &Self| view.back_and_up().0 == direction;
+        Self::ALL.into_iter().find(is_it)
+    }
+
     /// The camera rotation of this view.
     pub fn world_from_view(self) -> Rotation {
         let (back, up) = self.back_and_up();
@@ -74,6 +81,26 @@ impl Camera {
     /// Turns to a standard view about the target.
     pub fn set_standard_view(&mut self, view: StandardView) {
         self.world_from_view = view.world_from_view();
+    }
+
+    /// Turns about the target to look from a direction, each component −1, 0 or 1, with z up. Three zeros
+    /// change nothing.
+    pub fn look_from(&mut self, direction: [i8; 3]) {
+        let back = Vector3::from(direction.map(f64::from));
+        if let Some(view) = StandardView::from_direction(direction) {
+            self.set_standard_view(view);
+        } else if back != Vector3::zeros() {
+            self.world_from_view = rotation_from(&back, &Vector3::z());
+        }
+    }
+
+    /// The standard view that this is, to a thousandth of a radian.
+    pub fn standard_view(&self) -> Option<StandardView> {
+        let is_it = |view: &StandardView| {
+            let rotation = view.world_from_view();
+            rotation.angle_to(&self.world_from_view) < 1e-3
+        };
+        StandardView::ALL.into_iter().find(is_it)
     }
 
     /// Looks along `direction` with the longest side of `points` horizontal. Of the two ways round,

@@ -189,6 +189,7 @@ fn fitting_keeps_clear_of_what_lies_over_the_picture() {
         right: 0.3,
         top: 0.15,
         bottom: 0.1,
+        corner: [0.0; 2],
     };
     let free = [
         0.0,
@@ -226,6 +227,61 @@ fn fitting_keeps_clear_of_what_lies_over_the_picture() {
         "{}",
         camera.height
     );
+}
+
+#[test]
+fn fitting_keeps_out_of_a_corner_and_is_no_smaller_where_nothing_is_there() {
+    let covered = Covered {
+        corner: [0.15, 0.2],
+        ..Covered::default()
+    };
+    let corners = scene().corners();
+    for mut camera in cameras() {
+        let mut n_untouched = 0;
+        for view in StandardView::ALL {
+            camera.set_standard_view(view);
+            let mut plain = camera;
+            plain.fit_to_points(&corners, SCREEN.aspect());
+            camera.fit_to_points_within(&corners, SCREEN.aspect(), &covered);
+            let seen = corners.map(|corner| camera.project(&corner, SCREEN).unwrap());
+            let is_in = |at: &ScreenPoint| {
+                at.x < 0.15 * SCREEN.width - 1e-6 && at.y > 0.8 * SCREEN.height + 1e-6
+            };
+            assert!(!seen.iter().any(is_in), "{view:?}: {seen:?}");
+            assert!(camera.height < 1.3 * plain.height, "{view:?}");
+            n_untouched += usize::from(camera == plain);
+        }
+        assert!((1..7).contains(&n_untouched), "{n_untouched}");
+    }
+}
+
+#[test]
+fn directions_of_the_cube_have_z_up_and_those_of_the_keys_are_the_same_views() {
+    for x in -1..=1_i8 {
+        for y in -1..=1_i8 {
+            for z in -1..=1_i8 {
+                let mut camera = Camera::default();
+                let before = camera;
+                camera.look_from([x, y, z]);
+                if [x, y, z] == [0; 3] {
+                    assert_eq!(camera, before);
+                    continue;
+                }
+                let back = Vector3::new(f64::from(x), f64::from(y), f64::from(z));
+                assert!(camera.forward().angle(&-back) < 1e-9);
+                if x != 0 || y != 0 {
+                    assert!(camera.up().z > 0.0 && camera.right().z.abs() < 1e-12);
+                }
+                let named = StandardView::from_direction([x, y, z]);
+                assert_eq!(camera.standard_view(), named);
+            }
+        }
+    }
+    for view in StandardView::ALL {
+        let mut camera = Camera::default();
+        camera.set_standard_view(view);
+        assert_eq!(camera.standard_view(), Some(view));
+    }
 }
 
 #[test]

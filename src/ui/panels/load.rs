@@ -29,6 +29,7 @@ pub fn load_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         |ui, commands| {
             for role in Role::ALL {
                 file_ui(ui, role, state, commands);
+                changed_ui(ui, role, state, commands);
             }
             units::unit_question_ui(ui, state, commands);
             part_question_ui(ui, state, commands);
@@ -70,6 +71,22 @@ fn file_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command
                     action_button(ui, state, action, (text, Look::Plain, size), commands);
                 }
             }
+        }
+    });
+}
+
+/// The file is another one now; what was read stays until the user wants the new content.
+fn changed_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
+    if !state.has_changed_on_disk(role) {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.colored_label(Palette::of(ui).check, "⚠ Changed on disk");
+        let can = state.jobs.is_unlocked().is_ok();
+        let reload = ui.add_enabled(can, egui::Button::new("Reload"));
+        let name = format!("Reload the {} file", role.word());
+        if reload.accessible_name(name).clicked() {
+            commands.push(FileCommand::Reload(role).into());
         }
     });
 }

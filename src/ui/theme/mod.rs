@@ -9,7 +9,7 @@ pub(in crate::ui) use views::{Look, ink};
 
 use egui::{
     Color32, CornerRadius, FontDefinitions, FontFamily, FontId, Margin, Shadow, Stroke, Style,
-    TextStyle, Visuals, vec2,
+    TextStyle, Visuals, style::ScrollAnimation, vec2,
 };
 
 use crate::colormap::Rgb;
@@ -24,6 +24,9 @@ pub const ROW: f32 = 24.0;
 pub const TALL: f32 = 32.0;
 /// Width of the label column of a form.
 pub const LABEL: f32 = 88.0;
+
+/// Seconds that menus and folds take to glide into place.
+const GLIDE: f32 = 0.1;
 
 /// The colours of one theme. Pairs of text and ground keep a contrast of at least 4.5.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -148,6 +151,18 @@ pub fn install(ctx: &egui::Context) {
     ctx.options_mut(|options| options.zoom_with_keyboard = false);
 }
 
+/// Whether menus, folds and lists glide into place or are there at once.
+pub fn set_motion(ctx: &egui::Context, moves: bool) {
+    ctx.all_styles_mut(|style| {
+        style.animation_time = if moves { GLIDE } else { 0.0 };
+        style.scroll_animation = if moves {
+            ScrollAnimation::default()
+        } else {
+            ScrollAnimation::none()
+        };
+    });
+}
+
 /// The default fonts; arrows and role marks, which the text face lacks, come from the mono face.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
@@ -160,7 +175,7 @@ fn fonts() -> FontDefinitions {
 fn style(palette: &Palette, is_dark: bool) -> Style {
     let mut style = Style {
         visuals: visuals(palette, is_dark),
-        animation_time: 0.1,
+        animation_time: GLIDE,
         ..Style::default()
     };
     let proportional = |size| FontId::new(size, FontFamily::Proportional);

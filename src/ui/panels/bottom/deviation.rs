@@ -20,6 +20,8 @@ use crate::ui::widgets::{
 
 /// Height of a row.
 const LINE: f32 = 20.0;
+/// Height of a row of numbers, so that the largest stand there without scrolling.
+const NUMBER: f32 = 16.0;
 
 /// Head line and three lists side by side.
 pub fn deviation_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -141,10 +143,10 @@ fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])>
         row(&inside, &|s| percent(s.share_inside(tolerance))),
         row("mean", &|s| signed(s.mean)),
         row("RMS", &|s| length(s.rms)),
-        row("standard deviation", &|s| length(s.std)),
         row("P95", &|s| length(s.p95)),
         row("Min", &|s| signed(s.min)),
         row("Max", &|s| signed(s.max)),
+        row("standard deviation", &|s| length(s.std)),
     ];
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
         let name = match class {
@@ -178,7 +180,7 @@ fn numbers_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison) {
         .cell_layout(Layout::left_to_right(Align::Center))
         .column(Column::remainder().clip(true))
         .columns(Column::exact(74.0), 2)
-        .header(LINE, |mut header| {
+        .header(NUMBER, |mut header| {
             header.col(|ui| {
                 if !unit.is_empty() {
                     caption(ui, format!("lengths in{unit}"));
@@ -196,7 +198,7 @@ fn numbers_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison) {
             }
         })
         .body(|body| {
-            body.rows(LINE - 2.0, rows.len(), |mut row| {
+            body.rows(NUMBER, rows.len(), |mut row| {
                 let (name, values) = &rows[row.index()];
                 row.col(|ui| {
                     let text = RichText::new(name).color(Palette::of(ui).secondary);

@@ -26,18 +26,22 @@ const LOW: f32 = 300.0;
 /// Height of a note.
 const NOTE: f32 = 17.0;
 
-/// Height of the names of the parts, without notes; `None` in a window with a header of its own.
+/// Height of the names of the parts with the notes that last; `None` in a window with a header of its own.
 pub(super) fn height(over: &Overlay<'_>) -> Option<f32> {
-    (!is_free(over)).then(|| block_height(over) * roles(over).len() as f32 + 3.0)
+    (!is_free(over)).then(|| names_height(over) + NOTE * lasting_notes(over).len() as f32)
+}
+
+fn names_height(over: &Overlay<'_>) -> f32 {
+    block_height(over) * roles(over).len() as f32 + 3.0
 }
 
 /// Role mark, name and facts of each part in the window, then what is shown instead of the real pose.
 pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
     let painter = over.painter(ui);
     frame(over, &painter, over.frame.look.role(over.role()));
-    let Some(names_height) = height(over) else {
+    if is_free(over) {
         return;
-    };
+    }
     let window = over.frame.rect();
     let beside = if has_buttons(over) {
         BUTTONS.x + 8.0
@@ -59,7 +63,7 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
             (role, title, small(facts(over, role), room - used))
         })
         .collect();
-    let notes = notes(over).into_iter();
+    let notes = passing_notes(over).into_iter().chain(lasting_notes(over));
     let notes: Vec<_> = notes.map(|text| small(text, room)).collect();
     let widths = blocks.iter().map(|(_, title, facts)| {
         let [title, facts] = [title_width(title), facts.size().x];
@@ -72,7 +76,7 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
     let widest = widths
         .chain(notes.iter().map(|note| note.size().x))
         .fold(0.0, f32::max);
-    let height = names_height + NOTE * notes.len() as f32;
+    let height = names_height(over) + NOTE * notes.len() as f32;
     let top = window.min + Vec2::splat(MARGIN);
     let plate = Rect::from_min_size(top, vec2(widest + 36.0, height));
     painter.rect_filled(plate, CornerRadius::same(6), over.frame.look.plate);
@@ -213,8 +217,8 @@ fn facts(over: &Overlay<'_>, role: Role) -> String {
     }
 }
 
-/// What the user should know about the picture, in the window with the stamped part.
-fn notes(over: &Overlay<'_>) -> Vec<String> {
+/// What is told for as long as something is done: the tool, a preview.
+fn passing_notes(over: &Overlay<'_>) -> Vec<String> {
     let state = over.frame.state;
     let is_left = over.role() == Role::Crash;
     let mut notes: Vec<String> = over.hint.clone().into_iter().collect();
@@ -225,7 +229,17 @@ fn notes(over: &Overlay<'_>) -> Vec<String> {
     }
     if is_left {
         notes.extend(preview(over));
-        notes.extend(overlap(over.frame.state));
+    }
+    notes
+}
+
+/// What the user should know about the picture as long as it is shown; in a small window in one line.
+fn lasting_notes(over: &Overlay<'_>) -> Vec<String> {
+    let state = over.frame.state;
+    let is_left = over.role() == Role::Crash;
+    let mut notes: Vec<String> = Vec::new();
+    if is_left {
+        notes.extend(overlap(state));
     }
     notes.extend(stripes(over));
     let separation = state.view.display.separation;
@@ -235,6 +249,9 @@ fn notes(over: &Overlay<'_>) -> Vec<String> {
             short_number(separation),
             state.document.unit_suffix()
         ));
+    }
+    if is_small(over) && notes.len() > 1 {
+        notes = vec![notes.join(" · ")];
     }
     notes
 }

@@ -1,8 +1,8 @@
-//! Axes, scale bar, readout, pivot.
+//! Scale bar, readout, pivot.
 
-use egui::{Align2, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
+use egui::{CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 
-use super::{MARGIN, Overlay};
+use super::{MARGIN, Overlay, cube};
 use crate::app::{AppState, ColorBy, MapPicture};
 use crate::assess::deviation::OverlapClass;
 use crate::geometry::Point3;
@@ -16,68 +16,18 @@ use crate::ui::viewport::navigation::{DragKind, pos_of, screen_of};
 use crate::ui::viewport::picture::Hit;
 use crate::ui::widgets::signed;
 
-/// Length of an axis of the triad.
-const AXIS: f32 = 26.0;
-/// Windows lower than this have no axes.
-const LOW: f32 = 300.0;
 /// Longest scale bar.
 const MAX_BAR: f64 = 150.0;
 
-/// Axes, scale bar, readout.
+/// Scale bar, readout.
 pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
     let painter = over.painter(ui);
     let display = &over.frame.state.view.display;
-    if has_triad(over) {
-        triad(&painter, over);
-    }
     let mut taken = over.frame.rect().left() + MARGIN;
     if display.has_scale_bar && !over.frame.picture.is_empty() {
         taken = bar(&painter, over);
     }
     readout(&painter, over, taken);
-}
-
-/// A low window has no room for the axes.
-fn has_triad(over: &Overlay<'_>) -> bool {
-    over.frame.state.view.display.has_axes && over.frame.rect().height() >= LOW
-}
-
-/// Axes with their letters, those that point away fainter and drawn first.
-fn triad(painter: &Painter, over: &Overlay<'_>) {
-    let corner = over.frame.rect().left_bottom();
-    let center = corner + vec2(MARGIN + 34.0, -MARGIN - 34.0);
-    let colors = over.frame.look.axes;
-    let axes = over.frame.view.camera.axes_in_view();
-    let mut order = [0, 1, 2];
-    order.sort_by(|&a, &b| axes[a].z.total_cmp(&axes[b].z));
-    painter.circle_filled(center, 36.0, over.frame.look.plate.gamma_multiply(0.55));
-    for axis in order {
-        let direction = vec2(axes[axis].x as f32, -axes[axis].y as f32);
-        let is_behind = axes[axis].z < -0.05;
-        let color = if is_behind {
-            colors[axis].gamma_multiply(0.6)
-        } else {
-            colors[axis]
-        };
-        let end = center + direction * AXIS;
-        painter.line_segment([center, end], Stroke::new(2.0, color));
-        // An axis that points at the viewer keeps its letter beside the middle.
-        let out = direction.normalized() * 9.0;
-        let letter = if direction.length() < 0.15 {
-            center + vec2(9.0, -9.0)
-        } else {
-            end + out
-        };
-        let text = ["X", "Y", "Z"][axis];
-        painter.text(
-            letter,
-            Align2::CENTER_CENTER,
-            text,
-            FontId::proportional(11.5),
-            colors[axis],
-        );
-    }
-    painter.circle_filled(center, 2.0, over.frame.look.weak);
 }
 
 /// The scale bar; returns where it ends.
@@ -88,7 +38,11 @@ fn bar(painter: &Painter, over: &Overlay<'_>) -> f32 {
     let Some(bar) = scale_bar(size, max_bar) else {
         return over.frame.rect().left() + MARGIN;
     };
-    let beside = if has_triad(over) { 84.0 } else { 8.0 };
+    let beside = if cube::is_shown(over) {
+        cube::SIZE + 14.0
+    } else {
+        8.0
+    };
     let left = over.frame.rect().left_bottom() + vec2(MARGIN + beside, -MARGIN - 8.0);
     let right = left + vec2(bar.pixels as f32, 0.0);
     let text = length_text(bar.length) + over.frame.state.document.unit_suffix();

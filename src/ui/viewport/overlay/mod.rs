@@ -3,6 +3,7 @@
 mod apart;
 mod banner;
 mod cards;
+mod cube;
 mod divider;
 mod free;
 mod freedom;
@@ -76,6 +77,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     labels::show(ui, over, commands);
     let legend = legend::show(ui, over, commands);
     marks::show(ui, over);
+    cube::show(ui, over, commands);
     header::show(ui, over);
     header::buttons(ui, over, commands);
     let banner = banner::show(ui, over, commands);

@@ -2,7 +2,7 @@
 
 use egui::Rect;
 
-use super::{MARGIN, Overlay, banner, free, header};
+use super::{MARGIN, Overlay, banner, cube, free, header};
 use crate::app::{Command, ViewCommand, ViewRoom};
 use crate::geometry::camera::Covered;
 
@@ -38,7 +38,14 @@ fn covered(over: &Overlay<'_>, legend: Option<Rect>, has_banner: bool) -> Covere
     } else {
         MARGIN + SCALE_BAR
     };
+    let corner = if cube::is_shown(over) {
+        let [width, height] = [MARGIN + cube::SIZE; 2];
+        [share(width, window.width()), share(height, window.height())]
+    } else {
+        [0.0; 2]
+    };
     let mut covered = Covered {
+        corner,
         top: share(MARGIN + head, window.height()),
         bottom: share(foot, window.height()),
         ..Covered::default()

@@ -117,7 +117,11 @@ pub(super) fn ticks(
     has_fields: bool,
 ) {
     let n_ticks = ((bar.height() / 26.0) as usize).clamp(3, 7);
-    let ticks = scale.ticks(n_ticks);
+    // One number alone says nothing of a scale.
+    let mut ticks = scale.ticks(n_ticks);
+    if ticks.len() < 2 {
+        ticks = scale.ticks(n_ticks + 2);
+    }
     let is_end = |tick: f64| (scale.position(tick) - 0.5).abs() > 0.46;
     for tick in ticks.iter().filter(|t| !(has_fields && is_end(**t))) {
         let at = Pos2::new(bar.right(), y_of(scale, bar, *tick));

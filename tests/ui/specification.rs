@@ -1,0 +1,324 @@
+//! What the specification asks of the whole window beside the panels: files that are dropped or change on
+//! disk, names and news for a screen reader, rest without motion.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::accesskit::{Live, Role as Kind};
+use egui::{Event, Key, Modifiers, Shape, pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use shapematch::app::{Action, Command, Settings};
+use shapematch::jobs::{JobKey, PartSource};
+use shapematch::role::Role;
+use shapematch::samples::{self, SamplePart, SampleSettings};
+use shapematch::ui::Shell;
+
+use super::story::{click, finish, window};
+
+type Window = Harness<'static, Shell>;
+
+/// A file as the desktop hands it over.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+/// The bracket's files: crash, stamped.
+fn files(folder: &Path) -> [PathBuf; 2] {
+    let pair = samples::generate(&SampleSettings {
+        part: SamplePart::Bracket,
+        ..SampleSettings::default()
+    });
+    for file in samples::files(&pair) {
+        std::fs::write(folder.join(file.name), file.bytes).unwrap();
+    }
+    ["crash.k", "stamped.dynain"].map(|name| folder.join(name))
+}
+
+fn drop_files(window: &mut Window, files: &[&PathBuf]) {
+    for file in files {
+        let dropped = Arc::new(Dropped((*file).clone()));
+        window.input_mut().dropped_files.push(dropped);
+    }
+    window.run_steps(2);
+}
+
+fn part_of(window: &Window, role: Role) -> Option<PartSource> {
+    let part = window.state().state().document.part(role);
+    part.map(|part| part.source.clone())
+}
+
+fn act(window: &mut Window, commands: Vec<Command>) {
+    let ctx = window.ctx.clone();
+    window.state_mut().run_commands(commands, &ctx);
+    window.run_steps(2);
+}
+
+/// Draws until `is_so`, for what happens on other threads.
+fn wait_until(window: &mut Window, what: &str, is_so: impl Fn(&Window) -> bool) {
+    let begin = Instant::now();
+    while !is_so(window) {
+        assert!(begin.elapsed() < Duration::from_secs(120), "not: {what}");
+        std::thread::sleep(Duration::from_millis(20));
+        window.run_steps(1);
+    }
+}
+
+#[test]
+fn two_files_dropped_the_wrong_way_round_find_their_places() {
+    let folder = tempfile::tempdir().unwrap();
+    let [crash, stamped] = files(folder.path());
+    let mut window = window();
+    drop_files(&mut window, &[&stamped, &crash]);
+    finish(&mut window);
+    let sources = [Role::Crash, Role::Stamped].map(|role| part_of(&window, role));
+    let expected = [&crash, &stamped].map(|path| Some(PartSource::File(path.clone())));
+    assert_eq!(sources, expected);
+    // The guess is told with the way out, which reads nothing again.
+    let swap = Action::Swap.command(window.state().state()).unwrap();
+    let ctx = window.ctx.clone();
+    window.state_mut().run_commands(vec![swap], &ctx);
+    for role in Role::ALL {
+        let key = JobKey::Load(role);
+        assert!(
+            !window.state().state().jobs.is_active(key),
+            "it is read again"
+        );
+    }
+    assert_eq!(part_of(&window, Role::Crash), expected[1]);
+}
+
+#[test]
+fn a_file_goes_to_the_window_it_is_dropped_on_whenever_the_pointer_comes_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let [crash, stamped] = files(folder.path());
+    let mut window = window();
+    // On the right window, with the pointer known.
+    window.event(Event::PointerMoved(pos2(1200.0, 300.0)));
+    window.run_steps(1);
+    drop_files(&mut window, &[&crash]);
+    finish(&mut window);
+    let right = Some(PartSource::File(crash.clone()));
+    assert_eq!(part_of(&window, Role::Stamped), right);
+    // A desktop that gives the pointer back only after the drop: on the left window.
+    window.event(Event::PointerGone);
+    window.run_steps(1);
+    drop_files(&mut window, &[&stamped]);
+    assert!(
+        !window
+            .state()
+            .state()
+            .jobs
+            .is_active(JobKey::Load(Role::Crash))
+    );
+    window.event(Event::PointerMoved(pos2(600.0, 300.0)));
+    window.run_steps(2);
+    finish(&mut window);
+    assert_eq!(
+        part_of(&window, Role::Crash),
+        Some(PartSource::File(stamped.clone()))
+    );
+    // One that never does: the content decides which of the two it replaces.
+    let swap = action(&window, Action::Swap);
+    act(&mut window, swap);
+    window.event(Event::PointerGone);
+    window.run_steps(1);
+    drop_files(&mut window, &[&stamped]);
+    wait_until(&mut window, "it is read", |window| {
+        window.state().state().jobs.is_busy() || !window.state().is_idle()
+    });
+    finish(&mut window);
+    assert_eq!(
+        part_of(&window, Role::Stamped),
+        Some(PartSource::File(stamped))
+    );
+    assert_eq!(part_of(&window, Role::Crash), right);
+}
+
+#[test]
+fn a_file_that_changes_on_disk_is_offered_to_be_read_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let [crash, stamped] = files(folder.path());
+    let mut window = window();
+    drop_files(&mut window, &[&crash, &stamped]);
+    finish(&mut window);
+    click(&mut window, "Match the parts");
+    finish(&mut window);
+    let has_changed = |window: &Window| window.state().state().has_changed_on_disk(Role::Stamped);
+    assert!(!has_changed(&window));
+    assert!(window.query_by_label("Reload the stamped file").is_none());
+    let content = |window: &Window| {
+        let part = window.state().state().document.part(Role::Stamped);
+        part.expect("loaded").loaded.hash()
+    };
+    let before = content(&window);
+
+    let text = std::fs::read_to_string(&stamped).unwrap();
+    std::fs::write(&stamped, format!("$ written anew\n{text}")).unwrap();
+    wait_until(&mut window, "the change is noticed", has_changed);
+    window.run_steps(2);
+    assert_eq!(content(&window), before, "nothing is read unasked");
+    let toasts = window.state().state().log.notices.toasts();
+    assert_eq!(
+        toasts
+            .filter(|toast| toast.offer == Some(Action::ReloadChanged))
+            .count(),
+        1
+    );
+    click(&mut window, "Reload the stamped file");
+    finish(&mut window);
+    assert_ne!(content(&window), before);
+    assert!(!has_changed(&window));
+    let state = window.state().state();
+    assert!(
+        state.document.result.is_some(),
+        "the result stays to be seen"
+    );
+    assert!(
+        state.document.current_result().is_none(),
+        "it is out of date"
+    );
+    let offers = |toast: &&shapematch::app::Notice| toast.offer == Some(Action::ReloadChanged);
+    assert_eq!(state.log.notices.toasts().filter(offers).count(), 0);
+    // The step back is the old content, which the file no longer has.
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    window.run_steps(2);
+    assert_eq!(content(&window), before);
+    wait_until(
+        &mut window,
+        "the old content is told from the new",
+        has_changed,
+    );
+}
+
+/// What a screen reader would tell as news: kind of news and text.
+fn news(window: &Window) -> Vec<(Live, String)> {
+    let mut found = Vec::new();
+    let mut queue = vec![window.root()];
+    while let Some(node) = queue.pop() {
+        queue.extend(node.children());
+        let inner = node.accesskit_node();
+        let live = inner.live();
+        if live != Live::Off {
+            let text = inner.label().or_else(|| inner.value());
+            found.push((live, text.unwrap_or_default()));
+        }
+    }
+    found
+}
+
+#[test]
+fn a_screen_reader_hears_what_is_shown_and_what_became_of_it() {
+    let mut window = window();
+    window.check_accessibility();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    let canvases = |window: &Window| {
+        let found = window.query_all_by(|node| node.role() == Kind::Canvas);
+        let labels = found.filter_map(|node| node.accesskit_node().label());
+        labels.collect::<Vec<_>>()
+    };
+    let shown = canvases(&window);
+    assert!(
+        shown.iter().any(|label| label.starts_with("Crash part, ")),
+        "{shown:?}"
+    );
+    assert!(
+        shown
+            .iter()
+            .any(|label| label.ends_with(", isometric view")),
+        "{shown:?}"
+    );
+    let commands = action(&window, Action::MatchOrStop);
+    act(&mut window, commands);
+    wait_until(
+        &mut window,
+        "the match tells its state or has ended",
+        |window| {
+            let is_told = news(window).iter().any(|(_, text)| !text.is_empty());
+            is_told || window.state().is_idle()
+        },
+    );
+    finish(&mut window);
+    let verdict = |(live, text): &(Live, String)| *live == Live::Polite && text.contains("GOOD");
+    let told = news(&window);
+    assert!(told.iter().any(verdict), "{told:?}");
+    window.check_accessibility();
+    // An error is told at once.
+    act(
+        &mut window,
+        vec![Command::Notice(shapematch::app::NoticeCommand::Tell(
+            shapematch::app::NoticeLevel::Error,
+            "the disk is full".to_owned(),
+        ))],
+    );
+    let told = news(&window);
+    let error =
+        |(live, text): &(Live, String)| *live == Live::Assertive && text.ends_with("disk is full");
+    assert!(told.iter().any(error), "{told:?}");
+    for over in [
+        Action::ToggleMoveOver,
+        Action::ToggleDeviation,
+        Action::MapOrCancel,
+    ] {
+        let commands = action(&window, over);
+        act(&mut window, commands);
+        finish(&mut window);
+        window.check_accessibility();
+    }
+    let shown = canvases(&window);
+    assert!(
+        shown
+            .iter()
+            .any(|label| label.contains("with the stamped part")),
+        "{shown:?}"
+    );
+}
+
+fn action(window: &Window, action: Action) -> Vec<Command> {
+    action.command(window.state().state()).into_iter().collect()
+}
+
+/// Places of everything that is painted.
+fn painted(window: &Window) -> Vec<[i32; 4]> {
+    let shapes = window.output().shapes.iter();
+    let rects = shapes.filter(|clipped| !matches!(clipped.shape, Shape::Callback(_)));
+    let rects = rects.map(|clipped| clipped.shape.visual_bounding_rect());
+    let ends = rects.map(|rect| [rect.min.x, rect.min.y, rect.max.x, rect.max.y]);
+    ends.map(|ends| ends.map(|x| x.round() as i32)).collect()
+}
+
+#[test]
+fn without_motion_everything_is_where_it_belongs_in_the_next_frame() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    window.run_steps(40);
+    let settings = Settings {
+        reduce_motion: true,
+        ..window.state().state().settings.clone()
+    };
+    act(&mut window, vec![Command::Settings(Box::new(settings))]);
+    let mut is_at_rest = |what: &str, step: &mut dyn FnMut(&mut Window)| {
+        step(&mut window);
+        window.run_steps(4);
+        let soon = painted(&window);
+        window.run_steps(60);
+        assert_eq!(soon, painted(&window), "{what} moves on");
+    };
+    is_at_rest("a view by key", &mut |window| window.key_press(Key::Num7));
+    is_at_rest("a fold", &mut |window| click(window, "2 Reduce"));
+    is_at_rest("a menu", &mut |window| click(window, "View"));
+    is_at_rest("its end", &mut |window| window.key_press(Key::Escape));
+    is_at_rest("moving over", &mut |window| window.key_press(Key::M));
+}
