@@ -2,13 +2,14 @@
 //! shape are computed from.
 
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
+use rayon::prelude::*;
 
 use crate::geometry::{Point3, Rotation, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::ClosestPoint;
 
 /// Nodes of the smaller part that are looked at; more change no figure by a percent.
-const MAX_NODES: usize = 8000;
+pub(super) const MAX_NODES: usize = 8000;
 /// Surfaces that turn away from each other by more than this do not lie on each other: cosine of 50°.
 const MIN_FACING: f64 = 0.64;
 /// Motions that meet less than this share of the resistance of the stiffest are left alone.
@@ -44,54 +45,78 @@ pub(super) struct Contacts {
 /// shift.
 pub(super) type Six = SVector<f64, 6>;
 
-impl Contacts {
-    /// Finds the places within `reach` of the other part. O(nodes · log triangles).
-    pub(super) fn find(
-        source: &Surface,
-        target: &Surface,
-        pose: &Similarity,
+/// The search for the places where two parts meet, under one pose after another.
+#[derive(Debug, Clone)]
+pub(super) struct ContactSearch<'a> {
+    source: &'a Surface,
+    target: &'a Surface,
+    /// Whether the source is the smaller part, whose nodes are looked at.
+    of_source: bool,
+    /// Distance in target units beyond which parts do not meet.
+    reach: f64,
+    stride: usize,
+    /// Of each node that is looked at, the triangle that was closest to it under the last pose.
+    closest: Vec<Option<u32>>,
+}
+
+impl<'a> ContactSearch<'a> {
+    /// Prepares for poses of this scale; about `max_nodes` nodes of the smaller part are looked at.
+    pub(super) fn new(
+        [source, target]: [&'a Surface; 2],
+        scale: f64,
         reach: f64,
-    ) -> Option<Self> {
-        let area_of_source = source.measures().area * pose.scale * pose.scale;
-        let of_source = area_of_source <= 1.02 * target.measures().area;
-        let back = pose.inverse();
-        let (data, model) = if of_source {
-            (source, target)
+        max_nodes: usize,
+    ) -> Self {
+        let of_source = source.measures().area * scale * scale <= 1.02 * target.measures().area;
+        let data = if of_source { source } else { target };
+        let n_nodes = data.mesh().positions().len();
+        let stride = n_nodes.div_ceil(max_nodes).max(1);
+        Self {
+            source,
+            target,
+            of_source,
+            reach,
+            stride,
+            closest: vec![None; n_nodes.div_ceil(stride)],
+        }
+    }
+
+    /// The places where the parts meet under a pose. O(nodes · log triangles), less for a pose near the
+    /// last one.
+    pub(super) fn at(&mut self, pose: &Similarity) -> Option<Contacts> {
+        let Self {
+            source,
+            target,
+            of_source,
+            ..
+        } = *self;
+        let (data, model, model_from_data, unit) = if of_source {
+            (source, target, *pose, 1.0)
         } else {
-            (target, source)
+            (target, source, pose.inverse(), pose.scale)
         };
-        let (model_from_data, unit) = if of_source {
-            (*pose, 1.0)
-        } else {
-            (back, pose.scale)
-        };
+        let (stride, reach) = (self.stride, self.reach / unit);
         let positions = data.mesh().positions();
-        let stride = positions.len().div_ceil(MAX_NODES).max(1);
-        let mut list = Vec::with_capacity(positions.len() / stride + 1);
-        let (mut met, mut total) = (0.0, 0.0);
-        for vertex in (0..positions.len()).step_by(stride) {
+        let meet = |vertex: usize, closest: &mut Option<u32>| {
             let weight = data.vertex_areas()[vertex];
             if weight <= 0.0 {
-                continue;
+                return None;
             }
-            total += weight;
             let moved = model_from_data.apply(&positions[vertex]);
             let own = model_from_data.rotate(&data.vertex_normals()[vertex]);
-            let Some(hit) = model.bvh().closest(&moved, reach / unit, None, None) else {
-                continue;
-            };
+            let hit = model.bvh().closest(&moved, reach, *closest, None)?;
+            *closest = Some(hit.triangle);
             let other = model.normal_at(&hit);
             let facing = own.dot(&other);
             let beside = (moved - hit.point) - other * (moved - hit.point).dot(&other);
             let is_off_the_rim =
                 model.is_on_border(&hit) && beside.norm() > 0.5 * (moved - hit.point).norm();
             if facing.abs() < MIN_FACING || is_off_the_rim {
-                continue;
+                return None;
             }
             let height = (moved - model.curved_point(&hit)).dot(&other);
             let facet = facet_error(model, hit.triangle as usize, &own) * unit;
-            met += weight;
-            list.push(if of_source {
+            Some(if of_source {
                 Contact {
                     point: moved,
                     normal: other,
@@ -109,8 +134,28 @@ impl Contacts {
                     weight,
                     facet,
                 }
-            });
-        }
+            })
+        };
+        let list = self.closest.par_iter_mut().enumerate();
+        let list = list.filter_map(|(k, closest)| meet(k * stride, closest));
+        let areas = data.vertex_areas().iter().step_by(stride);
+        Contacts::of(list.collect(), areas.sum())
+    }
+}
+
+impl Contacts {
+    /// Finds the places within `reach` of the other part. O(nodes · log triangles).
+    pub(super) fn find(
+        source: &Surface,
+        target: &Surface,
+        pose: &Similarity,
+        reach: f64,
+    ) -> Option<Self> {
+        ContactSearch::new([source, target], pose.scale, reach, MAX_NODES).at(pose)
+    }
+
+    /// Places where parts meet, of which the smaller has the area `total`.
+    fn of(list: Vec<Contact>, total: f64) -> Option<Self> {
         let sum: f64 = list.iter().map(|c| c.weight).sum();
         let origin = list.first()?.point;
         let mean: Vector3 = list.iter().map(|c| (c.point - origin) * c.weight).sum();
@@ -118,8 +163,8 @@ impl Contacts {
         let arm = |c: &Contact| (c.point - center).norm() * c.weight;
         let radius = list.iter().map(arm).sum::<f64>() / sum;
         (radius > 0.0).then_some(Self {
+            share: sum / total,
             list,
-            share: met / total,
             center,
             radius,
         })

@@ -3,9 +3,9 @@
 
 use rayon::prelude::*;
 
-use super::contact::Contacts;
-use super::rims::Rims;
-use super::settle::{settled, settled_within};
+use super::contact::{ContactSearch, MAX_NODES};
+use super::rims::RimComparison;
+use super::settle::Settling;
 use super::slide::slid;
 use super::sliding::{FreeMotion, FreeMotionKind, weak_motion};
 use super::{AssessSettings, overlap_limit, tolerance_of};
@@ -18,6 +18,8 @@ const NEAR_SHARE: f64 = 0.03;
 const MOST_POSES: usize = 64;
 /// Poses that the search along the free motion adds.
 const MOST_SLID: usize = 8;
+/// Nodes of the smaller part that poses are compared on; the winner is moved on all that are looked at.
+const N_NODES: usize = 2000;
 /// Of all these so many, with the best rims, are moved until they fit.
 const MOST_SETTLED: usize = 8;
 /// Poses turned over or turned round, from which the search along the free motion begins as well.
@@ -40,6 +42,10 @@ const SAME_SHARE: f64 = 0.02;
 /// The opposite hand is told by its rims if so much of them lies where it belongs; with less its score counts
 /// as at least this many times the result's.
 const SURELY_HELD: f64 = 0.9;
+/// With less than this the rims speak against a pose.
+const HARDLY_HELD: f64 = 0.5;
+/// Poses that are not refined yet may lie so many times as far apart as springback explains.
+const ROUGHLY: f64 = 2.0;
 const HINT: f64 = 0.9;
 /// Scores of the opposite hand above this many times the result's need no other opinion.
 const OPPOSITE_IS_CLEAR: f64 = 1.3;
@@ -71,10 +77,10 @@ pub fn held_by_rims(
     outcome: &MatchOutcome,
     settings: &AssessSettings,
 ) -> Option<HeldPose> {
-    let pair = Pair::new(source, target, settings);
     let found = &outcome.target_from_source;
-    let limit = overlap_limit(source, target, settings.allowance).max(pair.springback);
+    let limit = free_limit(source, target, settings);
     let free = weak_motion(source, target, found, limit)?;
+    let pair = Pair::new(source, target, found.scale, settings);
     let result = pair.settle(found)?;
     let tried = outcome
         .starts
@@ -100,7 +106,7 @@ pub fn held_by_rims(
     let by_rims = pair.apart_from_each_other(by_rims);
     let rivals: Vec<Settled> = by_rims
         .par_iter()
-        .take(MOST_SETTLED)
+        .filter(|pose| pair.lies_on(pose, &result))
         .filter_map(|pose| pair.settle(pose))
         .filter(|other| other.is_as_close_as(&result, &pair))
         .collect();
@@ -109,8 +115,9 @@ pub fn held_by_rims(
         .filter(|other| other.held > result.held + MORE_HELD)
         .max_by(|a, b| a.held.total_cmp(&b.held));
     let winner = best.copied().unwrap_or(result);
+    let exactly = Settling::new([source, target], found.scale, settings, MAX_NODES);
     Some(HeldPose {
-        target_from_source: winner.pose,
+        target_from_source: exactly.settled(&winner.pose).unwrap_or(winner.pose),
         alternatives: pair.alternatives(&winner, &result, &rivals, outcome),
     })
 }
@@ -129,9 +136,10 @@ pub fn hand_by_rims(
     check
         .score_ratio
         .filter(|ratio| *ratio < OPPOSITE_IS_CLEAR)?;
-    let pair = Pair::new(source, target, settings);
+    let scale = outcome.target_from_source.scale;
+    let pair = Pair::new(source, target, scale, settings);
     let result = pair.measured(outcome.target_from_source)?;
-    let limit = overlap_limit(source, target, settings.allowance).max(pair.springback);
+    let limit = free_limit(source, target, settings);
     let free = weak_motion(source, target, &outcome.target_from_source, limit);
     let slid = free.map_or_else(Vec::new, |free| {
         slid(source, target, mirrored, &free, MOST_SLID)
@@ -156,6 +164,12 @@ pub fn hand_by_rims(
     fits_as_well.then(|| ratio.max(least))
 }
 
+/// Distance within which surfaces leave a motion free: what overlaps, and what springback explains.
+fn free_limit(source: &Surface, target: &Surface, settings: &AssessSettings) -> f64 {
+    let springback = tolerance_of(target, settings).springback;
+    overlap_limit(source, target, settings.allowance).max(springback)
+}
+
 /// How much worse the second of two poses is by the share of the rims that lies where it belongs.
 fn ratio_by_rims(best: f64, other: f64) -> f64 {
     let behind = (best - other) / TWICE_AS_BAD;
@@ -170,7 +184,11 @@ fn ratio_by_rims(best: f64, other: f64) -> f64 {
 struct Pair<'a> {
     source: &'a Surface,
     target: &'a Surface,
-    settings: &'a AssessSettings,
+    /// Rims of both, looked for within `near`.
+    rims: RimComparison<'a>,
+    /// The last step of first poses, and of those that are nearly there.
+    roughly: Settling<'a>,
+    finely: Settling<'a>,
     near: f64,
     /// Distance of surfaces that springback explains.
     springback: f64,
@@ -198,28 +216,39 @@ impl Settled {
             // A bent part lies closer where only a piece of it meets the other.
             most = most.max(pair.springback);
         }
+        if self.held >= SURELY_HELD && other.held < HARDLY_HELD {
+            // A bent plate lies closer anywhere but where its holes belong.
+            most = most.max(ROUGHLY * pair.springback);
+        }
         self.met >= AS_MUCH * other.met && self.gap <= most
     }
 }
 
 impl<'a> Pair<'a> {
-    fn new(source: &'a Surface, target: &'a Surface, settings: &'a AssessSettings) -> Self {
+    fn new(
+        source: &'a Surface,
+        target: &'a Surface,
+        scale: f64,
+        settings: &AssessSettings,
+    ) -> Self {
         let tolerance = tolerance_of(target, settings);
+        let near = NEAR_SHARE * target.measures().diagonal;
+        let pair = [source, target];
         Self {
             source,
             target,
-            settings,
-            near: NEAR_SHARE * target.measures().diagonal,
+            rims: RimComparison::new(pair, scale, near),
+            roughly: Settling::within(pair, scale, settings, N_NODES, near),
+            finely: Settling::new(pair, scale, settings, N_NODES),
+            near,
             springback: tolerance.springback,
             remainder: tolerance.remainder,
         }
     }
 
     fn settle(&self, pose: &Similarity) -> Option<Settled> {
-        let (source, target) = (self.source, self.target);
-        let roughly = settled_within(source, target, pose, self.settings, self.near);
-        let pose = roughly.unwrap_or(*pose);
-        let pose = settled(source, target, &pose, self.settings).unwrap_or(pose);
+        let pose = self.roughly.settled(pose).unwrap_or(*pose);
+        let pose = self.finely.settled(&pose).unwrap_or(pose);
         self.measured(pose)
     }
 
@@ -239,13 +268,31 @@ impl<'a> Pair<'a> {
 
     /// How well a pose fits.
     fn measured(&self, pose: Similarity) -> Option<Settled> {
-        let contacts = Contacts::find(self.source, self.target, &pose, self.near)?;
+        let (met, gap) = self.surfaces_met(&pose)?;
         Some(Settled {
             pose,
             held: self.rims_held(&pose),
-            met: contacts.share,
-            gap: contacts.typical_gap(),
+            met,
+            gap,
         })
+    }
+
+    /// Whether the surfaces of a pose that is not refined yet lie about as close as those of the result.
+    fn lies_on(&self, pose: &Similarity, result: &Settled) -> bool {
+        let Some((met, gap)) = self.surfaces_met(pose) else {
+            return false;
+        };
+        // Springback and what is left to refine may hold them apart.
+        let most = (AS_CLOSE * result.gap).max(ROUGHLY * self.springback);
+        met >= AS_MUCH * result.met && gap <= most
+    }
+
+    /// Share of the smaller part that meets the other under a pose, and how far apart they lie there.
+    fn surfaces_met(&self, pose: &Similarity) -> Option<(f64, f64)> {
+        let pair = [self.source, self.target];
+        let mut contacts = ContactSearch::new(pair, pose.scale, self.near, N_NODES);
+        let contacts = contacts.at(pose)?;
+        Some((contacts.share, contacts.typical_gap()))
     }
 
     /// The result and poses of other families whose surfaces lie as close: turned over, or turned round;
@@ -271,12 +318,7 @@ impl<'a> Pair<'a> {
                 continue;
             }
             n_tried += 1;
-            // Not refined yet, so that the surfaces may lie apart by what springback explains.
-            let most = (AS_CLOSE * result.gap).max(self.springback);
-            let is_close = self
-                .measured(*other)
-                .is_some_and(|other| other.met >= AS_MUCH * result.met && other.gap <= most);
-            if is_close {
+            if self.lies_on(other, result) {
                 // Axes and planes of the target stay where they are.
                 roots.push((*other, *free));
             }
@@ -287,7 +329,7 @@ impl<'a> Pair<'a> {
     /// Root mean square distance of the smaller part's rims from those of the other, at most `near`;
     /// a hole without counterpart lies that far away too.
     fn rims_apart(&self, pose: &Similarity) -> f64 {
-        let rims = Rims::find(self.source, self.target, pose, self.near);
+        let rims = self.rims.at(pose);
         let share = rims.share().min(1.0);
         let paired: f64 = rims.pairs().iter().map(|p| p.weight).sum();
         let gaps = rims.pairs().iter().map(|p| p.weight * p.gap * p.gap);
@@ -303,7 +345,7 @@ impl<'a> Pair<'a> {
     /// Share of the smaller part's rims that lies within the tolerance of a rim of the other part, less
     /// for what lies farther from it; holes where the other part is solid count against the pose.
     fn rims_held(&self, pose: &Similarity) -> f64 {
-        let rims = Rims::find(self.source, self.target, pose, self.near);
+        let rims = self.rims.at(pose);
         let within = 2.0 * (self.remainder + rims.unremarkable());
         let (mut held, mut paired) = (0.0, 0.0);
         for pair in rims.pairs() {

@@ -72,6 +72,7 @@ pub(super) struct Rims {
 }
 
 /// One rim in its part's own frame.
+#[derive(Debug, Clone)]
 struct Rim {
     points: Vec<Point3>,
     normals: Vec<Vector3>,
@@ -81,40 +82,162 @@ struct Rim {
     is_hole: bool,
 }
 
+/// The rims of two parts, ready to be compared under one pose after another.
+#[derive(Debug, Clone)]
+pub(super) struct RimComparison<'a> {
+    /// Source and target.
+    surfaces: [&'a Surface; 2],
+    rims: [Vec<Rim>; 2],
+    /// Whether the source is the smaller part, along whose rims places are compared.
+    of_source: bool,
+    /// Distance in target units beyond which rims have nothing to do with each other.
+    near: f64,
+    /// What is the same under every pose.
+    still: Rims,
+    /// `None` where a part has no rims.
+    places: Option<RimPlaces>,
+}
+
+/// Places along the rims of both parts, each in the frame of its part.
+#[derive(Debug, Clone)]
+struct RimPlaces {
+    /// Along the smaller part, and how far apart.
+    own: Vec<Place>,
+    step: f64,
+    /// The same, as dense as those of the larger part.
+    own_tree: PointTree,
+    other: Vec<Place>,
+    other_tree: PointTree,
+    /// Distance of the dense places in target units.
+    spacing: f64,
+}
+
+impl<'a> RimComparison<'a> {
+    /// Prepares for poses of this scale. O(border edges).
+    pub(super) fn new(surfaces: [&'a Surface; 2], scale: f64, near: f64) -> Self {
+        let [source, target] = surfaces;
+        let rims = surfaces.map(rims_of);
+        let of_source = source.measures().area * scale * scale <= 1.02 * target.measures().area;
+        let edge = source.measures().mean_edge_length * scale;
+        let [own, other] = if of_source { [0, 1] } else { [1, 0] };
+        let units = [scale, 1.0];
+        let still = Rims {
+            edge: edge.max(target.measures().mean_edge_length),
+            ragged: ragged(&rims[0], scale).max(ragged(&rims[1], 1.0)),
+            length: units[own] * rims[own].iter().map(|rim| rim.length).sum::<f64>(),
+            ..Rims::default()
+        };
+        Self {
+            places: RimPlaces::new((&rims[own], units[own]), (&rims[other], units[other]), near),
+            surfaces,
+            rims,
+            of_source,
+            near,
+            still,
+        }
+    }
+
+    /// Compares the rims that lie near each other under a pose. O(border edges + near triangles).
+    pub(super) fn at(&self, pose: &Similarity) -> Rims {
+        let still = Similarity::identity();
+        let places = self.places.iter();
+        let mut pairs: Vec<RimPair> = if self.of_source {
+            places
+                .flat_map(|p| p.pairs(pose, &still, self.near))
+                .collect()
+        } else {
+            places
+                .flat_map(|p| p.pairs(&still, pose, self.near))
+                .collect()
+        };
+        for pair in &mut pairs {
+            pair.weight *= self.still.edge;
+            if !self.of_source {
+                pair.gap = -pair.gap;
+            }
+        }
+        let mut found = Rims {
+            pairs,
+            ..self.still.clone()
+        };
+        let rims = self.rims.each_ref().map(Vec::as_slice);
+        found.compare_holes(self.surfaces, rims, pose, self.near);
+        found
+    }
+}
+
+impl RimPlaces {
+    /// Of rims of the smaller and of the other part, each with its unit in target units.
+    fn new(
+        (own, unit): (&[Rim], f64),
+        (other, other_unit): (&[Rim], f64),
+        near: f64,
+    ) -> Option<Self> {
+        let length = |rims: &[Rim]| rims.iter().map(|rim| rim.length).sum::<f64>();
+        let (own_length, other_length) = (length(own), length(other));
+        if own_length <= 0.0 || other_length <= 0.0 {
+            return None;
+        }
+        let spacing = (0.1 * near / other_unit).max(other_length / N_DENSE);
+        let dense = along(other, spacing);
+        let spacing = spacing * other_unit;
+        let step = own_length / N_PLACES as f64;
+        let own_spacing = (spacing / unit).min(step).max(own_length / N_DENSE);
+        let tree = |places: &[Place]| {
+            PointTree::build(places.iter().map(|place| place.point).collect::<Vec<_>>())
+        };
+        Some(Self {
+            own: along(own, step),
+            step,
+            own_tree: tree(&along(own, own_spacing)),
+            other_tree: tree(&dense),
+            other: dense,
+            spacing,
+        })
+    }
+
+    /// Places along the smaller part's rims beside those of the other.
+    fn pairs(
+        &self,
+        target_from_own: &Similarity,
+        target_from_other: &Similarity,
+        near: f64,
+    ) -> Vec<RimPair> {
+        let other_from_own = target_from_other.inverse().after(target_from_own);
+        let own_from_other = other_from_own.inverse();
+        let (unit, other_unit) = (target_from_own.scale, target_from_other.scale);
+        let pair = |place: &Place| {
+            let query = other_from_own.apply(&place.point);
+            let found = self.other_tree.nearest(&query, near / other_unit, None)?;
+            let beside = &self.other[found.index as usize];
+            let away = found.distance_sq.sqrt() * other_unit;
+            let back = own_from_other.apply(&beside.point);
+            // A cut beside a border is not that border, which has a counterpart of its own.
+            let nearer = (MUTUAL * away - self.spacing) / unit;
+            let has_nearer = self.own_tree.nearest(&back, nearer, None).is_some();
+            let [place, beside] = [
+                place.moved(target_from_own),
+                beside.moved(target_from_other),
+            ];
+            if beside.tangent.dot(&place.tangent).abs() < PARALLEL || has_nearer {
+                return None;
+            }
+            let across = beside.tangent.cross(&beside.normal);
+            Some(RimPair {
+                gap: (place.point - beside.point).dot(&across),
+                point: beside.point,
+                across,
+                weight: self.step * unit,
+            })
+        };
+        self.own.iter().filter_map(pair).collect()
+    }
+}
+
 impl Rims {
     /// Compares the rims that lie within `near` of each other. O(border edges + near triangles).
     pub(super) fn find(source: &Surface, target: &Surface, pose: &Similarity, near: f64) -> Self {
-        let [of_source, of_target] = [source, target].map(rims_of);
-        let area = source.measures().area * pose.scale * pose.scale;
-        let from_source = area <= 1.02 * target.measures().area;
-        let still = Similarity::identity();
-        let edge = source.measures().mean_edge_length * pose.scale;
-        let edge = edge.max(target.measures().mean_edge_length);
-        let smaller = if from_source { &of_source } else { &of_target };
-        let unit = if from_source { pose.scale } else { 1.0 };
-        let length = unit * smaller.iter().map(|rim| rim.length).sum::<f64>();
-        let pairs = if from_source {
-            pair(&of_source, pose, &of_target, &still, near)
-        } else {
-            let mut pairs = pair(&of_target, &still, &of_source, pose, near);
-            for pair in &mut pairs {
-                pair.gap = -pair.gap;
-            }
-            pairs
-        };
-        let pairs = pairs.into_iter().map(|pair| RimPair {
-            weight: pair.weight * edge,
-            ..pair
-        });
-        let mut found = Self {
-            pairs: pairs.collect(),
-            edge,
-            ragged: ragged(&of_source, pose.scale).max(ragged(&of_target, 1.0)),
-            length,
-            ..Self::default()
-        };
-        found.compare_holes([source, target], [&of_source, &of_target], pose, near);
-        found
+        RimComparison::new([source, target], pose.scale, near).at(pose)
     }
 
     pub(super) fn pairs(&self) -> &[RimPair] {
@@ -238,56 +361,8 @@ fn hole(rim: &Rim, target_from_rim: &Similarity) -> RimHole {
     }
 }
 
-/// Places along the rims of `data` beside those of `model`.
-fn pair(
-    data: &[Rim],
-    target_from_data: &Similarity,
-    model: &[Rim],
-    target_from_model: &Similarity,
-    near: f64,
-) -> Vec<RimPair> {
-    let length = |rims: &[Rim]| rims.iter().map(|rim| rim.length).sum::<f64>();
-    let (own, other) = (length(data), length(model));
-    if own <= 0.0 || other <= 0.0 {
-        return Vec::new();
-    }
-    let unit = target_from_model.scale;
-    let spacing = (0.1 * near / unit).max(other / N_DENSE);
-    let dense: Vec<Place> = along(model, spacing)
-        .into_iter()
-        .map(|place| place.moved(target_from_model))
-        .collect();
-    let tree = PointTree::build(dense.iter().map(|place| place.point).collect::<Vec<_>>());
-    let step = own / N_PLACES as f64;
-    let own_points = along(data, spacing.min(step).max(own / N_DENSE));
-    let own_points = own_points.iter().map(|p| target_from_data.apply(&p.point));
-    let own_tree = PointTree::build(own_points.collect::<Vec<_>>());
-    let mut pairs = Vec::new();
-    for place in along(data, step) {
-        let place = place.moved(target_from_data);
-        let Some(found) = tree.nearest(&place.point, near, None) else {
-            continue;
-        };
-        let beside = &dense[found.index as usize];
-        let away = found.distance_sq.sqrt();
-        // A cut beside a border is not that border, which has a counterpart of its own.
-        let has_nearer = own_tree.nearest(&beside.point, MUTUAL * away - spacing, None);
-        if beside.tangent.dot(&place.tangent).abs() < PARALLEL || has_nearer.is_some() {
-            continue;
-        }
-        let across = beside.tangent.cross(&beside.normal);
-        let gap = (place.point - beside.point).dot(&across);
-        pairs.push(RimPair {
-            point: beside.point,
-            across,
-            gap,
-            weight: step * target_from_data.scale,
-        });
-    }
-    pairs
-}
-
 /// A place along a rim.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub(super) point: Point3,
     pub(super) tangent: Vector3,

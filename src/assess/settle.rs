@@ -1,15 +1,17 @@
 //! The last step of a pose: where surfaces alone leave it free to slide, borders and holes hold it, and an
 //! offset of the sheets does not push it aside.
 
-use super::contact::{Contacts, quantile};
-use super::rims::Rims;
-use super::shape::{Fit, ShapeEvidence};
+use super::contact::{ContactSearch, MAX_NODES, quantile};
+use super::rims::{RimComparison, Rims};
+use super::shape::{Fit, ShapeEvidence, ShapeTolerance};
 use super::{AssessSettings, REACH, tolerance_of};
 use crate::geometry::Similarity;
 use crate::registration::Surface;
 
 /// Steps that are made at most.
 const STEPS: usize = 6;
+/// The last step was made if it moves the part by less than this share of the facets of the rims.
+const STILL: f64 = 0.02;
 /// Rims are looked for within this share of the diagonal: a door slides so far.
 const RIM_SHARE: f64 = 0.015;
 /// Rims must lie beside each other along this share of the smaller part's.
@@ -30,55 +32,98 @@ pub fn settled(
     pose: &Similarity,
     settings: &AssessSettings,
 ) -> Option<Similarity> {
-    let near = RIM_SHARE * target.measures().diagonal;
-    settled_within(source, target, pose, settings, near)
+    let settling = Settling::new([source, target], pose.scale, settings, MAX_NODES);
+    settling.settled(pose)
 }
 
-/// [`settled`], with rims looked for within at least `near`.
-pub(super) fn settled_within(
-    source: &Surface,
-    target: &Surface,
-    pose: &Similarity,
-    settings: &AssessSettings,
-    near: f64,
-) -> Option<Similarity> {
-    let tolerance = tolerance_of(target, settings);
-    let diagonal = target.measures().diagonal;
-    let reach = (REACH * diagonal).max(3.0 * tolerance.springback);
-    let near = near.max(3.0 * tolerance.remainder);
-    let chordal = |surface: &Surface| surface.measures().chordal_error;
-    let noise = chordal(source).max(chordal(target)) + settings.allowance;
-    let mut moved = *pose;
-    let (mut first_misfit, mut first_gap) = (None, None);
-    for step in 0..=STEPS {
-        let contacts = Contacts::find(source, target, &moved, reach)?;
-        let rims = Rims::find(source, target, &moved, near);
-        if rims.share() < LEAST_PAIRED {
-            return None;
-        }
-        let facets = rims.unremarkable();
-        let misfit = misfit(&rims);
-        let first = *first_misfit.get_or_insert(misfit);
-        let gap = contacts.typical_gap();
-        let most =
-            AS_CLOSE * *first_gap.get_or_insert(gap) + noise + LITTLE_GAP * tolerance.remainder;
-        if step == STEPS {
-            let fits = misfit < tolerance.remainder + facets && gap < most;
-            return (fits && misfit < BETTER * first).then_some(moved);
-        }
-        let evidence = ShapeEvidence {
-            source,
-            pose: &moved,
-            contacts: &contacts,
-            rims: &rims,
-            noise,
-        };
-        moved = contacts.undo(&Fit::of(&evidence).rigid).after(&moved);
-        if step == 0 && largest_motion(source, pose, &moved) <= facets {
-            return None;
+/// What moving poses of a pair needs: both rims are prepared once for all of them.
+pub(super) struct Settling<'a> {
+    surfaces: [&'a Surface; 2],
+    rims: RimComparison<'a>,
+    tolerance: ShapeTolerance,
+    reach: f64,
+    /// Faceting of both meshes.
+    noise: f64,
+    max_nodes: usize,
+}
+
+impl<'a> Settling<'a> {
+    /// For poses of this scale; about `max_nodes` nodes of the smaller part are looked at.
+    pub(super) fn new(
+        surfaces: [&'a Surface; 2],
+        scale: f64,
+        settings: &AssessSettings,
+        max_nodes: usize,
+    ) -> Self {
+        let near = RIM_SHARE * surfaces[1].measures().diagonal;
+        Self::within(surfaces, scale, settings, max_nodes, near)
+    }
+
+    /// [`Settling::new`] with rims looked for within at least `near`.
+    pub(super) fn within(
+        surfaces: [&'a Surface; 2],
+        scale: f64,
+        settings: &AssessSettings,
+        max_nodes: usize,
+        near: f64,
+    ) -> Self {
+        let [source, target] = surfaces;
+        let tolerance = tolerance_of(target, settings);
+        let diagonal = target.measures().diagonal;
+        let near = near.max(3.0 * tolerance.remainder);
+        let chordal = |surface: &Surface| surface.measures().chordal_error;
+        Self {
+            surfaces,
+            rims: RimComparison::new(surfaces, scale, near),
+            tolerance,
+            reach: (REACH * diagonal).max(3.0 * tolerance.springback),
+            noise: chordal(source).max(chordal(target)) + settings.allowance,
+            max_nodes,
         }
     }
-    None
+
+    /// [`settled`].
+    pub(super) fn settled(&self, pose: &Similarity) -> Option<Similarity> {
+        let [source, _] = self.surfaces;
+        let corners = source.mesh().aabb().corners();
+        let mut contacts =
+            ContactSearch::new(self.surfaces, pose.scale, self.reach, self.max_nodes);
+        let mut moved = *pose;
+        let (mut first_misfit, mut first_gap) = (None, None);
+        let mut is_still = false;
+        for step in 0..=STEPS {
+            let contacts = contacts.at(&moved)?;
+            let rims = self.rims.at(&moved);
+            if rims.share() < LEAST_PAIRED {
+                return None;
+            }
+            let facets = rims.unremarkable();
+            let misfit = misfit(&rims);
+            let first = *first_misfit.get_or_insert(misfit);
+            let gap = contacts.typical_gap();
+            let first_gap = *first_gap.get_or_insert(gap);
+            if step == STEPS || is_still {
+                let most =
+                    AS_CLOSE * first_gap + self.noise + LITTLE_GAP * self.tolerance.remainder;
+                let fits = misfit < self.tolerance.remainder + facets && gap < most;
+                return (fits && misfit < BETTER * first).then_some(moved);
+            }
+            let evidence = ShapeEvidence {
+                source,
+                pose: &moved,
+                contacts: &contacts,
+                rims: &rims,
+                noise: self.noise,
+            };
+            let next = contacts.undo(&Fit::of(&evidence).rigid).after(&moved);
+            if step == 0 && largest_motion(source, pose, &next) <= facets {
+                return None;
+            }
+            is_still = next.max_displacement(&moved, &corners) < STILL * facets;
+            moved = next;
+        }
+        None
+    }
 }
 
 /// Distance across the rims that most of their length does not exceed.

@@ -13,8 +13,9 @@ use crate::search::{FeatureGrid, GridSettings};
 
 /// Places along the rims of the smaller part, of which half lie on holes where there are any.
 const N_PLACES: usize = 128;
-/// Of these so many, spread over all rims, sort the poses of the lattice.
-const N_FIRST: usize = 48;
+/// Of these so many, spread over all rims, sort the poses of the lattice, and then the best of them.
+const N_FIRST: usize = 16;
+const N_SECOND: usize = 48;
 /// Places along the rims of the larger part.
 const N_MODEL_PLACES: usize = 12_000;
 /// Distance beyond which rims have nothing to do with each other, as a share of the larger part's
@@ -26,8 +27,11 @@ const CUTS: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
 const N_STEPS: usize = 3;
 /// Share of the smaller part that may lie beside the other one.
 const BESIDE: f64 = 0.3;
-/// Poses of the lattice that go on.
+/// Poses of the lattice that are compared at more places, that are refined, and that are refined to the
+/// end.
+const MOST_SORTED: usize = 6000;
 const MOST_REFINED: usize = 600;
+const MOST_FINISHED: usize = 120;
 /// Largest number of poses of the lattice; it is made coarser where it would have more.
 const MOST_POSES: f64 = 400_000.0;
 /// Rims that run in directions farther apart than this are not the same: cosine of 37°.
@@ -269,24 +273,41 @@ impl RimSearch {
 
     fn run(&self, axes: &[Axis], n: usize) -> Vec<Similarity> {
         let count: usize = axes.iter().map(|axis| axis.amounts.len()).product();
-        let first = &self.data[..N_FIRST.min(self.data.len())];
-        let mut field: Vec<(f64, u32)> = (0..count)
-            .into_par_iter()
-            .with_min_len(256)
-            .map(|index| {
-                let motion = motion(axes, &amounts(axes, index));
-                (self.loss(first, &motion, self.cut), index as u32)
+        let all = (0..count as u32).into_par_iter().with_min_len(256);
+        let loss = |index: u32, n: usize| {
+            let motion = motion(axes, &amounts(axes, index as usize));
+            let places = &self.data[..n.min(self.data.len())];
+            (self.loss(places, &motion, self.cut), index)
+        };
+        let by_loss = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let mut field: Vec<(f64, u32)> = all.map(|index| loss(index, N_FIRST)).collect();
+        keep_first(&mut field, MOST_SORTED, by_loss);
+        let sorted = field.into_par_iter();
+        let mut field: Vec<(f64, u32)> = sorted.map(|(_, index)| loss(index, N_SECOND)).collect();
+        keep_first(&mut field, MOST_REFINED, by_loss);
+        let (first, then) = CUTS.split_at(1);
+        let mut begun: Vec<(f64, [f64; 3])> = field
+            .par_iter()
+            .map(|&(_, index)| {
+                let amounts = self.refined(axes, amounts(axes, index as usize), first);
+                (
+                    self.loss(&self.data, &motion(axes, &amounts), self.cut),
+                    amounts,
+                )
             })
             .collect();
-        let by_loss = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        if field.len() > MOST_REFINED {
-            field.select_nth_unstable_by(MOST_REFINED, by_loss);
-            field.truncate(MOST_REFINED);
-        }
-        field.sort_unstable_by(by_loss);
-        let mut refined: Vec<Candidate> = field
+        // A stable order: equal ones stay in that of the lattice.
+        begun.sort_by(|a, b| a.0.total_cmp(&b.0));
+        begun.truncate(MOST_FINISHED);
+        let mut refined: Vec<Candidate> = begun
             .par_iter()
-            .map(|&(_, index)| self.refined(axes, amounts(axes, index as usize)))
+            .map(|&(_, begun)| {
+                let motion = motion(axes, &self.refined(axes, begun, then));
+                Candidate {
+                    loss: self.loss(&self.data, &motion, CUTS[2] * self.cut),
+                    motion,
+                }
+            })
             .collect();
         refined.sort_by(|a, b| a.loss.total_cmp(&b.loss));
         let mut distinct: Vec<Similarity> = Vec::new();
@@ -309,8 +330,9 @@ impl RimSearch {
         distinct
     }
 
-    fn refined(&self, axes: &[Axis], mut amounts: [f64; 3]) -> Candidate {
-        for share in CUTS {
+    /// The amounts after the rounds of these shares of the cut.
+    fn refined(&self, axes: &[Axis], mut amounts: [f64; 3], shares: &[f64]) -> [f64; 3] {
+        for share in shares {
             for _ in 0..N_STEPS {
                 let step = self.step(axes, &amounts, share * self.cut);
                 for (amount, more) in amounts.iter_mut().zip(step) {
@@ -318,11 +340,7 @@ impl RimSearch {
                 }
             }
         }
-        let motion = motion(axes, &amounts);
-        Candidate {
-            loss: self.loss(&self.data, &motion, CUTS[2] * self.cut),
-            motion,
-        }
+        amounts
     }
 
     fn outer(&self, local: &Vector3) -> Point3 {
@@ -371,6 +389,9 @@ impl RimSearch {
     fn step(&self, axes: &[Axis], amounts: &[f64; 3], cut: f64) -> [f64; 3] {
         let motion = motion(axes, amounts);
         let local = self.in_grid(&motion);
+        let moving: Vec<Generator> = (0..axes.len())
+            .map(|k| frame(axes, amounts, k, axes[k].generator))
+            .collect();
         let (mut matrix, mut right) = (SMatrix::<f64, 3, 3>::zeros(), SVector::<f64, 3>::zeros());
         for place in &self.data {
             let point = local.rotation * place.point + local.translation;
@@ -387,9 +408,8 @@ impl RimSearch {
             let weight = place.weight * (1.0 - ratio * ratio).powi(2);
             let at = self.outer(&point);
             let mut row = SVector::<f64, 3>::zeros();
-            for (k, axis) in axes.iter().enumerate() {
-                let moving = frame(axes, amounts, k, axis.generator);
-                row[k] = moving.velocity(&at).dot(&rim.across);
+            for (entry, moving) in row.iter_mut().zip(&moving) {
+                *entry = moving.velocity(&at).dot(&rim.across);
             }
             matrix += row * row.transpose() * weight;
             right -= row * (weight * gap);
@@ -401,6 +421,15 @@ impl RimSearch {
             None => 0.0,
         })
     }
+}
+
+/// The `n` first of a list in an order, sorted.
+fn keep_first<T>(list: &mut Vec<T>, n: usize, order: impl Fn(&T, &T) -> std::cmp::Ordering) {
+    if list.len() > n {
+        list.select_nth_unstable_by(n, &order);
+        list.truncate(n);
+    }
+    list.sort_unstable_by(order);
 }
 
 /// Places in an order whose every beginning is spread over all of them.
