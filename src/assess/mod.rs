@@ -10,6 +10,7 @@ mod reason;
 mod rims;
 mod settle;
 mod shape;
+mod skin;
 mod slide;
 mod sliding;
 mod uncertainty;
@@ -23,6 +24,7 @@ pub use pose::{PoseKind, PoseStatement};
 pub use reason::Reason;
 pub use settle::settled;
 pub use shape::{RimFit, ShapeKind, ShapeReason, ShapeStatement, ShapeTolerance};
+pub use skin::without_offset;
 pub use sliding::{FreeMotion, FreeMotionKind, Freedom, free_motions};
 pub use uncertainty::{PartDirection, PoseUncertainty};
 pub use verdict::Verdict;
@@ -51,6 +53,8 @@ pub struct AssessSettings {
     /// How far shapes may differ besides springback; by default the larger of a millimetre and the
     /// thickness.
     pub shape_tolerance: Option<f64>,
+    /// The pose is that of the mid-surfaces: a separable offset was taken out of it.
+    pub remove_offset: bool,
     /// A millimetre in target length units; 1 if not known.
     pub millimetre: Option<f64>,
 }
@@ -172,7 +176,6 @@ fn statements(
     };
     let near = (RIM_REACH * tolerance.remainder).min(reach);
     let rims = Rims::find(source, target, pose, near);
-    let uncertainty = PoseUncertainty::of(source, pose, &contacts, &rims, noise);
     let evidence = ShapeEvidence {
         source,
         pose,
@@ -180,7 +183,10 @@ fn statements(
         rims: &rims,
         noise,
     };
-    (uncertainty, ShapeStatement::of(&evidence, tolerance))
+    let uncertainty = PoseUncertainty::of(source, pose, &contacts, &rims, noise);
+    let mut shape = ShapeStatement::of(&evidence, tolerance);
+    shape.is_offset_removed = settings.remove_offset && skin::is_removed(&evidence, &shape);
+    (uncertainty, shape)
 }
 
 fn tolerance_of(target: &Surface, settings: &AssessSettings) -> ShapeTolerance {

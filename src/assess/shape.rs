@@ -35,7 +35,7 @@ const MOSTLY_MET: f64 = 0.75;
 const DIFFERENT: f64 = 6.0;
 /// Distances up to so many times the faceting, or this share of the tolerance, are unremarkable at most of
 /// the area.
-const FACETING: f64 = 3.0;
+pub(super) const FACETING: f64 = 3.0;
 const UNREMARKABLE: f64 = 0.1;
 const SAME_SHARE: f64 = 0.8;
 /// Patches that are searched for the place of the largest difference: 2 to this power.
@@ -195,6 +195,9 @@ pub struct ShapeStatement {
     pub offset: Option<f64>,
     /// False where normals vary too little to tell an offset from a shift of the part.
     pub is_offset_separable: bool,
+    /// True if the pose was to be that of the mid-surfaces, without the offset.
+    #[serde(default)]
+    pub is_offset_removed: bool,
     /// Rims and holes.
     pub rims: RimFit,
     /// What speaks against one shape, the most severe first; empty within the tolerance.
@@ -230,6 +233,7 @@ impl ShapeStatement {
             remainder: at(0.95, &fit.left),
             offset: Some(fit.offset).filter(|o| o.abs() > FACETING * evidence.noise),
             is_offset_separable: fit.is_separable,
+            is_offset_removed: false,
             rims: rim_fit(evidence.rims, &fit),
             reasons: Vec::new(),
         };
@@ -248,6 +252,7 @@ impl ShapeStatement {
             remainder: f64::INFINITY,
             offset: None,
             is_offset_separable: false,
+            is_offset_removed: false,
             rims: RimFit::default(),
             reasons: vec![ShapeReason::HardlyMet { share: 0.0 }],
         }
@@ -389,6 +394,11 @@ pub(super) struct Fit {
 type Row = SVector<f64, N>;
 
 impl Fit {
+    /// The offset of the sheets, where it can be told from a shift.
+    pub(super) fn separate_offset(&self) -> Option<f64> {
+        self.is_separable.then_some(self.offset)
+    }
+
     /// Robust least squares over a rigid motion, an offset and the bends of a plate that keep lengths
     /// (second and third order). Rims take part, so that a slide of the pose along the part is no
     /// difference of the shape. O(places).

@@ -3,18 +3,22 @@
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
-use super::contact::{Contact, Contacts, Six, robust_weights, solve};
+use super::contact::{Contacts, Six, robust_weights, solve};
 use super::rims::Rims;
 use super::shape::LEAST_OWN;
 use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 use crate::registration::Surface;
+use crate::search::PointTree;
 
 /// Halvings of the part: 2⁴ patches are left out one after the other.
 const LEVELS: u32 = 4;
 
 /// Residuals that count as independent of each other in all.
 const INDEPENDENT: f64 = 64.0;
+
+/// The gaps are an offset of the sheets if, solved for, it leaves less than this share of their squares.
+const OFFSET_LEAVES: f64 = 0.25;
 
 /// A turn about the centre and a shift, in the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -145,103 +149,151 @@ fn along(source: &Surface, pose: &Similarity, direction: &Vector3) -> PartDirect
     found.map_or(PartDirection::Oblique, |k| names[k])
 }
 
+/// A small motion, and an offset of the sheets along their normals.
+type Seven = SVector<f64, 7>;
+
 /// Normal equations of the whole and of every patch.
+#[derive(Clone)]
 struct Evidence {
-    matrix: SMatrix<f64, 6, 6>,
-    right: Six,
+    matrix: SMatrix<f64, 7, 7>,
+    right: Seven,
+    /// Squares of the gaps.
+    squares: f64,
 }
 
 impl Evidence {
     fn none() -> Self {
         Self {
             matrix: SMatrix::zeros(),
-            right: Six::zeros(),
+            right: Seven::zeros(),
+            squares: 0.0,
         }
     }
 
-    fn add(&mut self, row: &Six, gap: f64, weight: f64) {
+    /// `offset` is what an offset of one does to the gap.
+    fn add(&mut self, six: &Six, offset: f64, gap: f64, weight: f64) {
+        let row = six.push(offset);
         self.matrix += row * row.transpose() * weight;
         self.right -= row * (gap * weight);
+        self.squares += weight * gap * gap;
+    }
+
+    fn without(&self, part: &Self) -> Self {
+        Self {
+            matrix: self.matrix - part.matrix,
+            right: self.right - part.right,
+            squares: self.squares - part.squares,
+        }
+    }
+
+    /// The evidence about the motion alone.
+    fn without_offset(mut self) -> Self {
+        self.matrix.row_mut(6).fill(0.0);
+        self.matrix.column_mut(6).fill(0.0);
+        self.right[6] = 0.0;
+        self
+    }
+
+    fn solved(&self) -> Seven {
+        solve(&self.matrix, &self.right)
+    }
+
+    /// Squares of what a solution leaves of the gaps.
+    fn left(&self, solution: &Seven) -> f64 {
+        self.squares - self.right.dot(solution)
+    }
+
+    /// Share of the offset that no motion does as well.
+    fn own_share(&self) -> f64 {
+        let whole = self.matrix[(6, 6)];
+        let mut mixed: Seven = self.matrix.column(6).into();
+        mixed[6] = 0.0;
+        let others = self.clone().without_offset();
+        let own = whole - mixed.dot(&solve(&others.matrix, &mixed));
+        own / whole.max(f64::MIN_POSITIVE)
     }
 }
 
 /// Motions whose squares sum to the square of the uncertainty: those of the jackknife, and the steps by
-/// which borders or an offset of the sheets would move the pose.
+/// which borders or an offset of the sheets would move the pose. Where an offset is what the gaps are, it
+/// is solved for with every motion.
 fn replicates(contacts: &Contacts, rims: &Rims, noise: f64) -> Vec<Six> {
     let gaps: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();
     let areas: Vec<f64> = contacts.list.iter().map(|c| c.weight).collect();
     let weights = robust_weights(&gaps, &areas, noise);
-    let patch_of = contacts.patches(LEVELS);
-    let n_patches = patch_of.iter().max().map_or(0, |last| last + 1);
-    let mut parts: Vec<Evidence> = (0..n_patches).map(|_| Evidence::none()).collect();
-    for ((contact, &weight), &patch) in contacts.list.iter().zip(&weights).zip(&patch_of) {
-        parts[patch].add(
-            &contacts.row(&contact.point, &contact.normal),
-            contact.gap,
-            weight,
-        );
-    }
-    for (pair, weight) in rims.pairs().iter().zip(rims.weights(noise)) {
-        // A border belongs to the patch of the place nearest to it, which is near in every sense.
-        let nearest = contacts.list.iter().enumerate().min_by(|a, b| {
-            let off = |c: &Contact| (c.point - pair.point).norm_squared();
-            off(a.1).total_cmp(&off(b.1))
-        });
-        let Some((place, _)) = nearest else { break };
-        let row = contacts.row(&pair.point, &pair.across);
-        parts[patch_of[place]].add(&row, pair.gap, weight);
-    }
+    let parts = evidence_of_patches(contacts, rims, &weights, noise);
     let mut all = Evidence::none();
     for part in &parts {
         all.matrix += part.matrix;
         all.right += part.right;
+        all.squares += part.squares;
     }
-    let whole = solve(&all.matrix, &all.right);
+    let motion_alone = all.clone().without_offset();
+    let (plain, with_offset) = (motion_alone.solved(), all.solved());
+    let has_offset = all.own_share() > LEAST_OWN && with_offset[6].abs() > 3.0 * noise;
+    let is_offset =
+        has_offset && all.left(&with_offset) < OFFSET_LEAVES * motion_alone.left(&plain);
+    let (whole, all, gaps) = if is_offset {
+        let left = gaps.iter().map(|gap| gap + with_offset[6]).collect();
+        (with_offset, all, left)
+    } else {
+        (plain, motion_alone, gaps)
+    };
+    let six = |seven: Seven| -> Six { seven.fixed_rows::<6>(0).into() };
     let n = parts.len() as f64;
     let mut motions: Vec<Six> = parts
-        .iter()
+        .into_iter()
         .map(|part| {
-            let without = solve(&(all.matrix - part.matrix), &(all.right - part.right));
-            (without - whole) * ((n - 1.0) / n).sqrt()
+            let part = if is_offset {
+                part
+            } else {
+                part.without_offset()
+            };
+            six((all.without(&part).solved() - whole) * ((n - 1.0) / n).sqrt())
         })
         .collect();
-    motions.push(whole);
-    motions.extend(offset_step(&all, &weights, contacts, noise).map(|with| with - whole));
-    motions.extend(weak_motions(&all, &weights, &gaps, contacts, noise));
+    motions.push(six(whole));
+    if has_offset && !is_offset {
+        // Nobody knows whether the offset is one, so that its step counts as well.
+        motions.push(six(with_offset - whole));
+    }
+    let matrix = all.matrix.fixed_view::<6, 6>(0, 0).into_owned();
+    motions.extend(weak_motions(&matrix, &weights, &gaps, contacts, noise));
     motions
 }
 
-/// The step of the pose with an offset of the sheets as a seventh unknown: in a part with walls on all
-/// sides an offset moves the best pose by several times itself. `None` where there is no offset, or where
-/// it cannot be told from a shift.
-fn offset_step(all: &Evidence, weights: &[f64], contacts: &Contacts, noise: f64) -> Option<Six> {
-    let mut matrix = SMatrix::<f64, 7, 7>::zeros();
-    let mut right = SVector::<f64, 7>::zeros();
-    let mut mixed = Six::zeros();
-    for (contact, &weight) in contacts.list.iter().zip(weights) {
-        mixed += contacts.row(&contact.point, &contact.normal) * weight;
-        right[6] -= weight * contact.gap;
-        matrix[(6, 6)] += weight;
+fn evidence_of_patches(
+    contacts: &Contacts,
+    rims: &Rims,
+    weights: &[f64],
+    noise: f64,
+) -> Vec<Evidence> {
+    let patch_of = contacts.patches(LEVELS);
+    let n_patches = patch_of.iter().max().map_or(0, |last| last + 1);
+    let mut parts: Vec<Evidence> = (0..n_patches).map(|_| Evidence::none()).collect();
+    for ((contact, &weight), &patch) in contacts.list.iter().zip(weights).zip(&patch_of) {
+        let row = contacts.row(&contact.point, &contact.normal);
+        parts[patch].add(&row, 1.0, contact.gap, weight);
     }
-    let own = matrix[(6, 6)] - mixed.dot(&solve(&all.matrix, &mixed));
-    if own <= LEAST_OWN * matrix[(6, 6)] {
-        return None;
+    let points: Vec<Point3> = contacts.list.iter().map(|c| c.point).collect();
+    let tree = PointTree::build(points);
+    for (pair, weight) in rims.pairs().iter().zip(rims.weights(noise)) {
+        // A border belongs to the patch of the place nearest to it, which is near in every sense.
+        let Some(nearest) = tree.nearest(&pair.point, f64::INFINITY, None) else {
+            break;
+        };
+        let place = nearest.index as usize;
+        let row = contacts.row(&pair.point, &pair.across);
+        parts[patch_of[place]].add(&row, 0.0, pair.gap, weight);
     }
-    matrix.fixed_view_mut::<6, 6>(0, 0).copy_from(&all.matrix);
-    matrix.fixed_view_mut::<6, 1>(0, 6).copy_from(&mixed);
-    matrix
-        .fixed_view_mut::<1, 6>(6, 0)
-        .copy_from(&mixed.transpose());
-    right.fixed_rows_mut::<6>(0).copy_from(&all.right);
-    let found = solve(&matrix, &right);
-    (found[6].abs() > 3.0 * noise).then(|| found.fixed_rows::<6>(0).into())
+    parts
 }
 
 /// What noise alone leaves open: the residuals counted as so many independent ones. It is small beside
 /// the jackknife except for motions that hardly anything resists, such as the turn of a cup, which a
 /// missing patch does not show.
 fn weak_motions(
-    all: &Evidence,
+    matrix: &SMatrix<f64, 6, 6>,
     weights: &[f64],
     gaps: &[f64],
     contacts: &Contacts,
@@ -253,7 +305,7 @@ fn weak_motions(
         .zip(weights)
         .map(|(gap, weight)| gap * gap * weight);
     let variance = (squares.sum::<f64>() / total.max(f64::MIN_POSITIVE)).max(noise * noise);
-    let eigen = SymmetricEigen::new(all.matrix);
+    let eigen = SymmetricEigen::new(*matrix);
     let most = contacts.radius * contacts.radius;
     (0..6)
         .map(|k| {

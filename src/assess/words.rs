@@ -235,7 +235,12 @@ impl ShapeStatement {
             return label.to_owned();
         }
         let offset = self.offset.map_or_else(String::new, |offset| {
-            format!(", offset of the sheets {}", lengths.of(offset))
+            let removed = if self.is_offset_removed {
+                ", taken out of the pose"
+            } else {
+                ""
+            };
+            format!(", offset of the sheets {}{removed}", lengths.of(offset))
         });
         format!(
             "{label}: bend and twist {}, remainder {}{offset} (tolerance {} and {})",

@@ -233,6 +233,7 @@ fn assess_settings(parts: PerRole<&LoadedPart>, settings: &MatchSettings) -> Ass
         thickness,
         shape_tolerance: Some(settings.shape_tolerance).filter(|t| *t > 0.0),
         millimetre,
+        remove_offset: settings.remove_offset,
         ..AssessSettings::default()
     }
 }
@@ -254,6 +255,12 @@ pub(super) fn settle(
         outcome.target_from_source = held.target_from_source;
         outcome.alternatives = held.alternatives;
     } else if let Some(pose) = assess::settled(source, target, &outcome.target_from_source, check) {
+        outcome.target_from_source = pose;
+    }
+    if check.remove_offset
+        && let Some(pose) =
+            assess::without_offset(source, target, &outcome.target_from_source, check)
+    {
         outcome.target_from_source = pose;
     }
     if let Some(ratio) = assess::hand_by_rims(source, target, outcome, check) {

@@ -100,6 +100,9 @@ pub struct MatchSettings {
     /// units; 0 takes the larger of a millimetre and the sheet's thickness. It decides nothing in the
     /// search.
     pub shape_tolerance: f64,
+    /// Take a separable offset of the sheets, as between skin and mid-surface, out of the pose.
+    #[serde(default)]
+    pub remove_offset: bool,
     /// Largest angle between normals of a pair in the later stages, degrees; 180 lets all through.
     pub max_normal_angle_deg: f64,
     /// Data points of the coarse stage.
@@ -129,6 +132,7 @@ impl Default for MatchSettings {
             data_side: DataSide::Auto,
             allowance: 0.0,
             shape_tolerance: 0.0,
+            remove_offset: false,
             max_normal_angle_deg: 60.0,
             n_coarse_points: 500,
             n_refine_points: 3000,

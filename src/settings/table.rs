@@ -41,7 +41,7 @@ macro_rules! of_selection {
 
 /// Every setting, in the order of help, form, record and report. A setting that decides which others
 /// there are comes before those.
-pub static SETTINGS: [Setting; 25] = [
+pub static SETTINGS: [Setting; 26] = [
     Setting {
         field: "settings.method",
         option: "method",
@@ -239,6 +239,17 @@ pub static SETTINGS: [Setting; 25] = [
         group: Group::Correspondences,
         domain: number(Unit::Length, limits::LENGTH, 0.05),
         access: at!(settings.shape_tolerance),
+    },
+    Setting {
+        field: "settings.remove_offset",
+        option: "remove-offset",
+        former: &[],
+        key: "remove_offset",
+        label: "Remove offset",
+        help: "Take an offset of the sheets along their normals, as between skin and mid-surface, out of the pose where it can be told from a shift",
+        group: Group::Correspondences,
+        domain: Domain::Switch,
+        access: at!(settings.remove_offset),
     },
     Setting {
         field: "settings.search",

@@ -43,6 +43,7 @@ mod samples;
 mod search;
 mod simplify;
 mod simplify_rules;
+mod skin;
 mod textbook_qem;
 mod tidy;
 mod tuning;

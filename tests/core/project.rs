@@ -382,6 +382,7 @@ fn any_recipe() -> impl Strategy<Value = MatchRecipe> {
                     },
                     allowance: x[3],
                     shape_tolerance: x[3],
+                    remove_offset: is[1],
                     max_normal_angle_deg: x[4],
                     n_coarse_points: n[0],
                     n_refine_points: n[1],

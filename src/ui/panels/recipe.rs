@@ -48,6 +48,7 @@ pub fn set_method(settings: &mut MatchSettings, method: Method) {
     new.hand = settings.hand;
     new.allowance = settings.allowance;
     new.shape_tolerance = settings.shape_tolerance;
+    new.remove_offset = settings.remove_offset;
     *settings = new;
 }
 
