@@ -20,8 +20,8 @@ use crate::mapping::{MapMethod, MapOptions, NormalSense, Overlap, Quantities, Ru
 use crate::monitor::Monitor;
 use crate::pipeline::load::{LoadSettings, LoadedPart, load, parse_selection};
 use crate::pipeline::map::{
-    MapFiles, MapOutput, MapRecipe, MapRecord, OtherResult, PlacedPart, WriteKind, element_table,
-    elements_path, map_parts, map_record, map_report, unmapped_sets, write_mapping,
+    MapFiles, MapOutput, MapRecipe, MapRecord, OtherResult, PlacedPart, WriteKind, deck_comments,
+    element_table, elements_path, map_parts, map_record, map_report, unmapped_sets, write_mapping,
 };
 use crate::pipeline::match_parts::{MatchRecipe, match_parts};
 use crate::pipeline::outputs::{Content, Target};
@@ -347,7 +347,7 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         path: path.clone(),
         is_large: args.output.large,
     });
-    let comments = comments(&crash, &placed);
+    let comments = deck_comments(&crash, &placed);
     let write = |output: &MapOutput| write_mapping(&run, &crash, output, &comments, &monitor);
     let files = output.as_ref().map(write).transpose()?;
     let compare = &args.output.compare;
@@ -368,7 +368,7 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         written.push((path.clone(), unmapped_sets(&run, &crash.model).into_bytes()));
     }
     if let Some(path) = &outputs.report {
-        let page = map_report(&run, &record, &crash, &monitor)?;
+        let page = map_report(&run, &record, &crash, other.as_ref(), &monitor)?;
         written.push((path.clone(), page.into_bytes()));
     }
     drop(monitor);
@@ -540,18 +540,4 @@ fn poses(
         poses.push(run.crash_from_stamped);
     }
     Ok((poses, is_poor))
-}
-
-fn comments(crash: &LoadedPart, placed: &[PlacedPart<'_>]) -> Vec<String> {
-    let mut lines = vec![format!("forming results mapped onto {}", crash.file_name())];
-    for placed in placed {
-        lines.push(format!(
-            "from {}, crash = c R stamped + t with rows:",
-            placed.part.file_name()
-        ));
-        for row in placed.crash_from_stamped.to_rows() {
-            lines.push(format!("  {} {} {} {}", row[0], row[1], row[2], row[3]));
-        }
-    }
-    lines
 }

@@ -1,6 +1,6 @@
 //! What `shapematch map` prints.
 
-use crate::pipeline::map::{ComparisonRecord, DifferenceRecord, MapFiles, MapRecord};
+use crate::pipeline::map::{CheckRecord, ComparisonRecord, DifferenceRecord, MapFiles, MapRecord};
 use crate::text::{grouped, length, millis};
 
 /// The result in a few lines.
@@ -58,6 +58,9 @@ pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>) -> String {
             ),
         );
     }
+    for (head, rest) in checked(record) {
+        line(head, rest);
+    }
     for (head, rest) in record.comparison.iter().flat_map(compared) {
         line(head, rest);
     }
@@ -83,6 +86,28 @@ pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>) -> String {
     text
 }
 
+/// How many checks are met, those that are not, and why one is judged as it is.
+fn checked(record: &MapRecord) -> Vec<(&'static str, String)> {
+    let (n_met, n_judged) = record.n_met();
+    let mut lines = vec![("Checks", format!("{n_met} of {n_judged} met"))];
+    let told = |check: &&CheckRecord| check.is_met == Some(false) || check.reason.is_some();
+    for check in record.checks.iter().filter(told) {
+        let met = match check.is_met {
+            Some(true) => "met",
+            _ => "not met",
+        };
+        let (name, found, limit) = (&check.name, &check.found, &check.limit);
+        let text = format!("{name}: {found}, asked for {limit}, {met}");
+        lines.push(("", text));
+        lines.extend(
+            check
+                .reason
+                .map(|reason| ("", format!("  {}", reason.label()))),
+        );
+    }
+    lines
+}
+
 /// The lines about another result.
 fn compared(other: &ComparisonRecord) -> Vec<(&'static str, String)> {
     let counts = format!(
@@ -92,16 +117,10 @@ fn compared(other: &ComparisonRecord) -> Vec<(&'static str, String)> {
         grouped(other.n_only_here),
         grouped(other.n_only_other)
     );
-    let rows = [
-        ("thickness", &other.thickness),
-        ("plastic strain", &other.plastic_strain),
-        ("von Mises stress", &other.von_mises),
-    ];
     let mut lines = vec![("Compared", counts)];
-    for (name, difference) in rows {
-        if let Some(found) = difference {
-            lines.push(("", format!("{name} {}", differing(found))));
-        }
+    for (name, found) in other.rows() {
+        let line = |found| ("", format!("{name}: {}", differing(found)));
+        lines.extend(found.map(line));
     }
     lines
 }

@@ -58,12 +58,15 @@ pub(super) fn export(request: ExportRequest, monitor: &Monitor) -> Result<Export
 }
 
 fn check(output: Output, path: PathBuf, input: &OutputInput) -> Result<(), JobError> {
-    let target = Target {
-        name: "the new file".to_owned(),
+    let beside = output.file_beside(&path);
+    let target = |name: &str, path| Target {
+        name: name.to_owned(),
         path,
         content: output.content(),
     };
-    let refusals = check_targets(&[target], &input.files());
+    let mut targets = vec![target("the new file", path)];
+    targets.extend(beside.map(|path| target("the file of elements beside it", path)));
+    let refusals = check_targets(&targets, &input.files());
     if refusals.is_empty() {
         return Ok(());
     }

@@ -1,11 +1,13 @@
 //! Questions for files: the desktop's dialog on a thread of its own, and a field to type a path
 //! into where the desktop has no dialog.
 
-use std::future::Future;
+mod desktop;
+
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
+use self::desktop::file_dialog;
 use super::background::run_once;
 use super::path_prompt::{self, Completion, plain_words};
 use super::theme::{Palette, UNIT};
@@ -67,8 +69,8 @@ enum Answer {
 enum Found {
     /// Nothing, in a folder that exists; or the file that is to be read.
     Free,
-    /// A file that would be replaced.
-    Taken,
+    /// A file that would be replaced: this one, or the one that is written beside it.
+    Taken(PathBuf),
     /// Nothing that could be read.
     NoFile,
     /// The folder is missing.
@@ -98,11 +100,9 @@ impl Found {
                 return Self::NotMade(plain_words(&error));
             }
         }
-        if path.exists() {
-            Self::Taken
-        } else {
-            Self::Free
-        }
+        let mut files = [Some(path.to_owned()), question.file_beside(path)];
+        let taken = files.iter_mut().flatten().find(|file| file.exists());
+        taken.map_or(Self::Free, |file| Self::Taken(std::mem::take(file)))
     }
 }
 
@@ -150,8 +150,8 @@ pub struct Dialogs {
     is_asking: bool,
     /// The field for those desktops that have none.
     prompt: Option<Prompt>,
-    /// A file that would be overwritten.
-    overwrite: Option<(Question, PathBuf)>,
+    /// Where a file would be overwritten, and which.
+    overwrite: Option<(Question, PathBuf, PathBuf)>,
 }
 
 impl Default for Dialogs {
@@ -244,8 +244,12 @@ impl Dialogs {
                 } => {
                     self.is_asking = false;
                     match path {
-                        // The dialog asked about the name as it was typed, not about this one.
-                        Some(path) if question.with_ending(path.clone()) != path => {
+                        // The dialog asked about the name as it was typed, not about this one, and of
+                        // no file beside it.
+                        Some(path)
+                            if question.with_ending(path.clone()) != path
+                                || question.file_beside(&path).is_some() =>
+                        {
                             self.check(question, path, false, ctx);
                         }
                         Some(path) => commands.push(answered(&question, path)),
@@ -278,8 +282,8 @@ impl Dialogs {
     fn checked(&mut self, question: Question, path: PathBuf, found: Found) -> Option<Command> {
         let note = match found {
             Found::Free => return Some(answered(&question, path)),
-            Found::Taken => {
-                self.overwrite = Some((question, path));
+            Found::Taken(file) => {
+                self.overwrite = Some((question, path, file));
                 return None;
             }
             Found::NoFile => format!("{} does not exist.", path.display()),
@@ -338,7 +342,7 @@ impl Dialogs {
 
     /// Asks before a file is replaced.
     fn overwrite_ui(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
-        let Some((question, path)) = self.overwrite.take() else {
+        let Some((question, path, file)) = self.overwrite.take() else {
             return;
         };
         let (mut is_taken, mut is_renamed, mut is_closed) = (false, false, false);
@@ -346,7 +350,7 @@ impl Dialogs {
             ui.set_width(480.0);
             ui.spacing_mut().item_spacing.y = UNIT;
             ui.heading("Replace the existing file?");
-            paragraph(ui, format!("{} already exists.", path.display()));
+            paragraph(ui, format!("{} already exists.", file.display()));
             ui.horizontal(|ui| {
                 is_taken = large_button(ui, "Replace", false).clicked();
                 is_renamed = large_button(ui, "Choose another name", true).clicked();
@@ -358,7 +362,7 @@ impl Dialogs {
         } else if is_renamed {
             self.prompt = Some(Prompt::new(question, path.display().to_string()));
         } else if !is_closed && !shown.should_close() {
-            self.overwrite = Some((question, path));
+            self.overwrite = Some((question, path, file));
         } else {
             commands.extend(closed(&question));
         }
@@ -490,6 +494,14 @@ impl Question {
         )
     }
 
+    /// The file that is written beside the one at a path.
+    fn file_beside(&self, path: &Path) -> Option<PathBuf> {
+        match self {
+            Self::Save { kind, .. } => kind.file_beside(path),
+            _ => None,
+        }
+    }
+
     /// A name to start from.
     fn suggestion(&self) -> String {
         match self {
@@ -540,60 +552,6 @@ fn titles(question: &Question) -> (&'static str, &'static str) {
 fn formats() -> String {
     let labels: Vec<&str> = Format::ALL.iter().map(|f| f.label()).collect();
     labels.join(", ")
-}
-
-fn file_dialog(
-    question: &Question,
-) -> impl Future<Output = Option<rfd::FileHandle>> + Send + use<> {
-    let (title, _) = titles(question);
-    let mut dialog = rfd::AsyncFileDialog::new().set_title(title);
-    match question {
-        Question::OpenProject => dialog = dialog.add_filter("Project", &[EXTENSION]),
-        Question::SaveProject(path) => {
-            dialog = dialog.add_filter("Project", &[EXTENSION]);
-            if let Some(name) = path.file_name() {
-                dialog = dialog.set_file_name(name.to_string_lossy());
-            }
-            if let Some(folder) = path.parent().filter(|folder| folder.is_dir()) {
-                dialog = dialog.set_directory(folder);
-            }
-        }
-        Question::OtherMapping => {
-            let keyword = Format::Keyword;
-            dialog = dialog.add_filter(keyword.label(), keyword.extensions());
-            dialog = dialog.add_filter("All files", &["*"]);
-        }
-        Question::Open(_) | Question::Locate(_) => {
-            let all: Vec<&str> = Format::ALL
-                .iter()
-                .flat_map(|f| f.extensions())
-                .copied()
-                .collect();
-            dialog = dialog.add_filter("All formats", &all);
-            for format in Format::ALL {
-                dialog = dialog.add_filter(format.label(), format.extensions());
-            }
-            dialog = dialog.add_filter("All files", &["*"]);
-        }
-        Question::Save { kind, .. } => {
-            for (label, ending) in kind.extensions() {
-                dialog = dialog.add_filter(*label, &[*ending]);
-            }
-            dialog = dialog.set_file_name(question.suggestion());
-        }
-        Question::Picture { .. } => {
-            dialog = dialog.add_filter("PNG", &["png"]);
-            dialog = dialog.set_file_name(question.suggestion());
-        }
-    }
-    let is_open = question.is_open();
-    async move {
-        if is_open {
-            dialog.pick_file().await
-        } else {
-            dialog.save_file().await
-        }
-    }
 }
 
 #[cfg(test)]

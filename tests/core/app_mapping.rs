@@ -1,7 +1,8 @@
 //! Section 4 of the window without a window: mapping, its colours, undo, and what is written.
 
 use shapematch::app::{
-    Action, ColorBy, Effect, FreeWindow, HistoryCommand, MapCommand, MoveCommand, Quantity,
+    Action, ColorBy, Effect, ExportCommand, FreeWindow, HistoryCommand, MapCommand, MoveCommand,
+    Quantity,
 };
 use shapematch::jobs::{JobKind, JobOutput, PipelineRunner, Runner as _};
 use shapematch::mapping::Status;
@@ -9,6 +10,7 @@ use shapematch::monitor::Monitor;
 use shapematch::pipeline::forming_values::LayerChoice;
 use shapematch::pipeline::map::{CheckReason, MapRun, WriteKind};
 use shapematch::pipeline::outputs::{Output, OutputInput};
+use shapematch::pipeline::project::Project;
 use shapematch::role::{PerRole, Role};
 use shapematch::samples::{self, SamplePart, SampleSettings};
 
@@ -373,14 +375,21 @@ fn checks_name_their_picture_and_add_up_with_the_mapping() {
     }
 }
 
+/// What the window's outputs are made from.
+fn output_input(window: &Window) -> OutputInput {
+    let document = &window.state.document;
+    let result = document.current_mapping().unwrap();
+    OutputInput {
+        parts: PerRole::from_fn(|role| document.part(role).map(|p| p.loaded.to_arc())),
+        mapping: Some(result.run.to_arc()),
+        other: result.other.as_ref().map(|other| other.to_arc()),
+        ..OutputInput::default()
+    }
+}
+
 /// The mapped deck as the window writes it, with every thickness larger by a tenth of a millimetre.
 fn thicker_deck(window: &Window) -> String {
-    let document = &window.state.document;
-    let input = OutputInput {
-        parts: PerRole::from_fn(|role| document.part(role).map(|p| p.loaded.to_arc())),
-        mapping: Some(document.current_mapping().unwrap().run.to_arc()),
-        ..OutputInput::default()
-    };
+    let input = output_input(window);
     let deck = Output::Mapped(WriteKind::Deck).make(&input, None, &Monitor::silent());
     let text = String::from_utf8(deck.unwrap().bytes).unwrap();
     let mut lines = Vec::new();
@@ -428,11 +437,11 @@ fn a_mapping_is_compared_with_another_result_element_by_element() {
     let n_mapped = result.run.mapped.elements.iter();
     let n_mapped = n_mapped.filter(|e| e.status.has_values()).count();
     assert_eq!((record.n_both, record.n_only_here), (n_mapped, 0));
-    let thickness = record.thickness.unwrap();
+    let thickness = record.thickness.as_ref().unwrap();
     assert!((thickness.mean + 0.1).abs() < 1e-8, "{thickness:?}");
     assert!((thickness.max - 0.1).abs() < 1e-8, "{thickness:?}");
-    assert!(record.plastic_strain.unwrap().max < 1e-9);
-    assert!(record.von_mises.unwrap().max < 1e-5);
+    assert!(record.plastic_strain.as_ref().unwrap().max < 1e-9);
+    assert!(record.von_mises.as_ref().unwrap().max < 1e-5);
     // The picture says the same, of each quantity that both have.
     assert_eq!(window.state.color_by(Role::Crash), ColorBy::MapOther);
     let other = result.other.as_ref().unwrap();
@@ -448,7 +457,25 @@ fn a_mapping_is_compared_with_another_result_element_by_element() {
     assert!((off(ColorBy::Thickness) + 0.1).abs() < 1e-8);
     assert!(off(ColorBy::PlasticStrain).abs() < 1e-9);
     assert!(off(ColorBy::MajorStress).abs() < 1e-5);
-    assert!(off(ColorBy::MajorStrain).is_nan());
+    for (by, record) in [
+        (ColorBy::MajorStrain, &record.major_strain),
+        (ColorBy::MinorStrain, &record.minor_strain),
+    ] {
+        assert!(off(by).abs() < 1e-8, "{by:?}");
+        let record = record.as_ref().unwrap();
+        assert!(record.max < 1e-8 && record.n_elements == n_mapped, "{by:?}");
+        let spread = record.here.max - record.here.min;
+        assert!(spread > 0.01, "{by:?} {spread}");
+    }
+    // The report tells of both results in pictures, the table of both thicknesses.
+    let input = output_input(&window);
+    let page = Output::MapReport.make(&input, None, &Monitor::silent());
+    let page = String::from_utf8(page.unwrap().bytes).unwrap();
+    assert!(page.contains("Beside another result"));
+    assert_eq!(page.matches("<b>■ The other result,</b>").count(), 5);
+    let table = Output::MapTable.make(&input, None, &Monitor::silent());
+    let table = String::from_utf8(table.unwrap().bytes).unwrap();
+    assert!(table.lines().next().unwrap().contains("other_thickness"));
     // One step back takes it away, and another mapping is compared with the same file.
     window.apply(HistoryCommand::Undo);
     assert!(Action::ShowMapOther.enabled(&window.state).is_err());
@@ -456,6 +483,63 @@ fn a_mapping_is_compared_with_another_result_element_by_element() {
     window.act(Action::MapOrCancel);
     let result = window.state.document.current_mapping().unwrap();
     assert!(result.record.comparison.is_some());
+}
+
+#[test]
+fn a_project_keeps_the_file_that_mappings_are_compared_with() {
+    let (mut window, folder) = mapped_in_full();
+    let file = folder.path().join("other.k");
+    std::fs::write(&file, thicker_deck(&window)).unwrap();
+    window.apply(MapCommand::CompareWith(file));
+    // Its path is seen from the folder of the project.
+    let project = window.state.to_project(0);
+    let at = folder.path().join("work.shapematch");
+    let text = project.to_text(&at);
+    assert!(text.contains(r#""mapping_compared_with": "other.k""#));
+    let (again, notes) = Project::parse(&text, &at).unwrap();
+    assert_eq!(notes, [""; 0]);
+    assert_eq!(again.mapping_compared_with, project.mapping_compared_with);
+    assert_eq!(
+        again.mapping_compared_with,
+        Some(folder.path().join("other.k"))
+    );
+    // It is compared no longer, as one step.
+    window.act(Action::EndMapComparison);
+    assert!(Action::EndMapComparison.enabled(&window.state).is_err());
+    assert!(Action::ShowMapOther.enabled(&window.state).is_err());
+    window.act(Action::MapOrCancel);
+    let result = window.state.document.current_mapping().unwrap();
+    assert!(result.record.comparison.is_none());
+    window.apply(HistoryCommand::Undo);
+    window.apply(HistoryCommand::Undo);
+    assert!(Action::ShowMapOther.enabled(&window.state).is_ok());
+}
+
+#[test]
+fn an_include_of_the_window_never_replaces_a_file_that_is_read() {
+    let (mut window, folder) = mapped_in_full();
+    // The file of the elements beside it would be the stamped one.
+    let beside = folder.path().join("stamped_elements.k");
+    std::fs::hard_link(folder.path().join("stamped.dynain"), &beside).unwrap();
+    let path = folder.path().join("stamped.k");
+    let kind = Output::Mapped(WriteKind::Include);
+    window.apply(ExportCommand::Write {
+        kind,
+        path: path.clone(),
+    });
+    assert!(!path.exists());
+    let toasts = window.state.log.notices.toasts();
+    let told: Vec<String> = toasts.map(|notice| notice.text.clone()).collect();
+    let told = told.join("\n").to_lowercase();
+    let words = "the file of elements beside it would overwrite";
+    assert!(told.contains(words), "{told}");
+    std::fs::remove_file(&beside).unwrap();
+    window.apply(ExportCommand::Write {
+        kind,
+        path: path.clone(),
+    });
+    assert!(path.exists() && beside.exists());
+    assert!(window.state.log.latest("export").is_some());
 }
 
 #[test]

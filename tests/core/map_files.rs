@@ -223,10 +223,17 @@ fn our_own_files_compare_as_equal_and_others_by_their_difference() {
         (&same["n_only_here"], &same["n_only_other"]),
         (&0.into(), &0.into())
     );
-    for name in ["thickness", "plastic_strain", "von_mises"] {
+    for name in [
+        "thickness",
+        "plastic_strain",
+        "von_mises",
+        "major_strain",
+        "minor_strain",
+    ] {
         let found = &same[name];
         let max = found["max"].as_f64().unwrap();
-        let size = found["here"]["max"].as_f64().unwrap();
+        let ends = ["min", "max"].map(|end| found["here"][end].as_f64().unwrap().abs());
+        let size = ends[0].max(ends[1]);
         // Nine digits of each component.
         assert!(max <= 1e-7 * size, "{name}: {max} of {size}");
         assert_eq!(found["n_elements"], same["n_both"]);
@@ -263,6 +270,16 @@ fn our_own_files_compare_as_equal_and_others_by_their_difference() {
     );
 }
 
+/// A page without its pictures, whose letters mean nothing.
+fn words_of(page: &str) -> String {
+    let mut pieces = page.split("data:image/png;base64,");
+    let mut words = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        words.push_str(piece.split_once('"').map_or("", |(_, rest)| rest));
+    }
+    words
+}
+
 #[test]
 fn the_report_holds_pictures_tables_and_the_comparison() {
     let bracket = Bracket::new();
@@ -272,19 +289,56 @@ fn the_report_holds_pictures_tables_and_the_comparison() {
     let output = bracket.map(&["--report", &page, "--compare", &out]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let page = std::fs::read_to_string(&page).unwrap();
-    // Before, after and difference of two quantities, and the statuses.
-    assert_eq!(page.matches("data:image/png;base64,").count(), 7);
+    // Before, after and difference of two quantities, the statuses, and plastic strain here, there and
+    // their difference.
+    assert_eq!(page.matches("data:image/png;base64,").count(), 10);
     for words in [
         "Thickness",
         "Effective plastic strain",
         "mapped less the stamped element",
         "What became of the elements",
         "Beside another result",
+        "this mapping less the other result.",
+        "What was found beside what is asked for",
         "the matrix by rows",
     ] {
         assert!(page.contains(words), "{words}");
     }
-    assert!(!page.contains("NaN"));
+    assert!(!words_of(&page).contains("NaN"));
+}
+
+#[test]
+fn a_peak_narrower_than_an_element_is_explained_wherever_checks_are_told() {
+    let bracket = Bracket::new();
+    let (json, page) = (bracket.path("map.json"), bracket.path("map.html"));
+    let output = bracket.map(&["--json", &json, "--report", &page]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let words = "The stamped peak is narrower than a crash element";
+    let told = text(&output.stdout);
+    let peak = told
+        .lines()
+        .position(|line| line.contains("Largest plastic strain"));
+    let after = peak.and_then(|at| told.lines().nth(at + 1));
+    assert!(after.is_some_and(|line| line.contains(words)), "{told}");
+    let record: Value = serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
+    let checks = record["checks"].as_array().unwrap();
+    let (mut n_met, mut n_judged) = (0, 0);
+    for check in checks {
+        let is_peak = check["name"] == "Largest plastic strain";
+        assert_eq!(check["reason"].is_object(), is_peak, "{check}");
+        if is_peak {
+            assert_eq!(check["reason"]["name"], "peak-narrower-than-element");
+            assert!(check["reason"]["text"].as_str().unwrap().starts_with(words));
+        }
+        n_met += usize::from(check["is_met"] == true);
+        n_judged += usize::from(check["is_met"].is_boolean());
+    }
+    let counted = format!("Checks   {n_met} of {n_judged} met");
+    assert!(told.contains(&counted), "{counted}: {told}");
+    let page = std::fs::read_to_string(&page).unwrap();
+    assert_eq!(page.matches(words).count(), 1);
+    assert_eq!(page.matches("✔ met").count(), n_met);
+    assert_eq!(page.matches("✖ not met").count(), n_judged - n_met);
 }
 
 #[test]
@@ -296,7 +350,7 @@ fn stresses_have_pictures_in_the_report_too() {
     let page = std::fs::read_to_string(&page).unwrap();
     assert_eq!(page.matches("data:image/png;base64,").count(), 10);
     assert!(page.contains("Largest von Mises stress of the layers"));
-    assert!(!page.contains("NaN"));
+    assert!(!words_of(&page).contains("NaN"));
 }
 
 #[test]

@@ -1,9 +1,15 @@
 //! Section 4 through the real window: map, look at each picture, follow a check, probe an element.
 
+use std::process::Command as Process;
+
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use shapematch::app::{BottomTab, ColorBy, MapCommand};
+use shapematch::app::{BottomTab, ColorBy, ExportCommand, FileCommand, MapCommand};
+use shapematch::pipeline::map::WriteKind;
+use shapematch::pipeline::outputs::Output;
+use shapematch::report::MatrixForm;
 use shapematch::role::Role;
+use shapematch::samples::{self, SamplePart, SampleSettings};
 use shapematch::ui::Shell;
 
 use super::layout::faults;
@@ -77,4 +83,68 @@ fn a_mapping_is_made_looked_at_and_followed_to_its_worst_place() {
     }
     click(&mut window, "End the probe");
     assert!(window.state().state().probe().is_none());
+}
+
+/// Runs a command as a click on its button does.
+fn run(window: &mut Harness<'static, Shell>, command: impl Into<shapematch::app::Command>) {
+    let ctx = window.ctx.clone();
+    window.state_mut().run_commands(vec![command.into()], &ctx);
+    finish(window);
+}
+
+#[test]
+fn what_the_window_writes_is_what_the_command_line_writes_byte_for_byte() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let pair = samples::generate(&SampleSettings {
+        part: SamplePart::Bracket,
+        ..SampleSettings::default()
+    });
+    for file in samples::files(&pair) {
+        std::fs::write(at(file.name), file.bytes).expect("a folder");
+    }
+    let mut window = window();
+    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
+        let (paths, role) = (vec![at(name)], Some(role));
+        run(&mut window, FileCommand::Open { paths, role });
+    }
+    click(&mut window, "Match the parts");
+    finish(&mut window);
+    click(&mut window, "Strain");
+    click(&mut window, "Stress");
+    click(&mut window, "Map");
+    finish(&mut window);
+    let pose = *window.state().state().document.crash_from_stamped();
+    std::fs::write(at("pose.txt"), MatrixForm::Rows.write(&pose)).expect("a folder");
+    // All three stand beside each other in section 4 and in the palette.
+    for name in ["Deck…", "Part…", "Include…"] {
+        assert!(window.query_by_label(name).is_some(), "no {name}");
+    }
+    for kind in WriteKind::ALL {
+        let of = |who: &str, end: &str| at(&format!("{who}/{}{end}", kind.name()));
+        for who in ["window", "line"] {
+            std::fs::create_dir_all(at(who)).expect("a folder");
+        }
+        let (here, there) = (of("window", ".k"), of("line", ".k"));
+        let (output, path) = (Output::Mapped(kind), here.clone());
+        run(&mut window, ExportCommand::Write { kind: output, path });
+        let status = Process::new(env!("CARGO_BIN_EXE_shapematch"))
+            .arg("map")
+            .args([at("crash.k"), at("stamped.dynain")])
+            .arg("--pose")
+            .arg(at("pose.txt"))
+            .args(["--quantities", "thickness,plastic,strain,stress"])
+            .args(["--write", kind.name(), "--out"])
+            .arg(&there)
+            .status();
+        assert!(status.is_ok_and(|status| status.success()), "{kind:?}");
+        let mut files = vec![(here, there)];
+        if kind == WriteKind::Include {
+            files.push((of("window", "_elements.k"), of("line", "_elements.k")));
+        }
+        for (here, there) in files {
+            let [a, b] = [&here, &there].map(|path| std::fs::read(path).expect("a file"));
+            assert!(a == b && a.len() > 1000, "{here:?} is not {there:?}");
+        }
+    }
 }

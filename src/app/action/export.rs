@@ -61,6 +61,15 @@ const MAPPED: &[ActionRow] = &[
         command: |_| save(Output::Mapped(WriteKind::Part)),
     },
     ActionRow {
+        action: Action::SaveMappedInclude,
+        label: "Save mapped include…",
+        tooltip: "Write the states as an include, and beside it the elements with their thickness, which take \
+                  the place of the crash deck's",
+        keys: Keys::NONE,
+        enabled: has_mapping,
+        command: |_| save(Output::Mapped(WriteKind::Include)),
+    },
+    ActionRow {
         action: Action::SaveMapReport,
         label: "Save mapping report…",
         tooltip: "Write statistics and pictures before and after as one HTML page",

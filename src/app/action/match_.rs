@@ -35,6 +35,19 @@ const MAP: &[ActionRow] = &[
         enabled: has_mapping,
         command: |_| some(MapCommand::AskOther),
     },
+    ActionRow {
+        action: Action::EndMapComparison,
+        label: "End the comparison",
+        tooltip: "Compare mappings with the other file no longer",
+        keys: Keys::NONE,
+        enabled: |state| {
+            require(
+                state.document.mapping.compare_with.is_some(),
+                "Mappings are compared with no file.",
+            )
+        },
+        command: |_| some(MapCommand::EndComparison),
+    },
 ];
 
 const REDUCE: &[ActionRow] = &[

@@ -122,8 +122,12 @@ actions! {
     SaveMappedDeck,
     /// Write the crash part with the mapped results.
     SaveMappedPart,
+    /// Write the mapped states, and the elements with their thickness beside them.
+    SaveMappedInclude,
     /// Compare the mapping with another mapper's result, or give the running comparison up.
     CompareMapping,
+    /// Compare mappings no longer.
+    EndMapComparison,
     /// Write the report of the mapping.
     SaveMapReport,
     /// Write the table of mapped elements.

@@ -150,6 +150,10 @@ impl Work<'_> {
                 .document
                 .current_mapping()
                 .map(|result| result.run.to_arc()),
+            other: self
+                .document
+                .current_mapping()
+                .and_then(|result| Some(result.other.as_ref()?.to_arc())),
             log: match output {
                 Output::Log => self.log.to_text(),
                 _ => String::new(),

@@ -30,6 +30,8 @@ const N_LISTED: usize = 40;
 pub struct Mapping {
     /// Quantities, method, limits.
     pub recipe: MapRecipe,
+    /// The other mapper's file that every mapping is compared with.
+    pub compare_with: Option<PathBuf>,
     /// The last mapping.
     pub result: Option<MapResult>,
     /// The element that is looked at closely, by its place in the run.
@@ -64,6 +66,8 @@ pub enum MapCommand {
     AskOther,
     /// Compare the current mapping with another mapper's result.
     CompareWith(PathBuf),
+    /// Compare no longer.
+    EndComparison,
 }
 
 /// An element of the crash part that carries no values.
@@ -280,6 +284,7 @@ pub(super) fn apply(work: &mut Work<'_>, command: MapCommand) -> Vec<Effect> {
         }
         MapCommand::AskOther => return vec![Effect::AskOtherMapping],
         MapCommand::CompareWith(file) => return compare_with(work, file).into_iter().collect(),
+        MapCommand::EndComparison => end_comparison(work),
         MapCommand::Probe(element) => {
             if work.document.mapping.probe != element {
                 work.commit("Probe an element", |document| {
@@ -319,6 +324,18 @@ fn compare_with(work: &mut Work<'_>, file: PathBuf) -> Option<Effect> {
     Some(work.start(JobKind::CompareMapping(input)))
 }
 
+fn end_comparison(work: &mut Work<'_>) {
+    work.commit("End the comparison", |document| {
+        document.mapping.compare_with = None;
+        if let Some(result) = &mut document.mapping.result {
+            let mut record = MapRecord::clone(&result.record);
+            record.comparison = None;
+            result.record = Arc::new(record).into();
+            result.other = None;
+        }
+    });
+}
+
 /// Takes another mapper's result over as one undo step.
 pub(super) fn take_compared(
     work: &mut Work<'_>,
@@ -340,7 +357,9 @@ pub(super) fn take_compared(
         counted(comparison.n_only_other, "element"),
     );
     work.log_step("map", None, text, Some(took));
+    let file = other.files.first().cloned();
     work.commit("Compare with another mapping", |document| {
+        document.mapping.compare_with = file;
         if let Some(result) = &mut document.mapping.result {
             let mut record = MapRecord::clone(&result.record);
             record.comparison = Some(comparison);
@@ -360,15 +379,14 @@ pub fn file_names(paths: &[String]) -> String {
     paths.iter().map(name).collect::<Vec<_>>().join(", ")
 }
 
-/// Takes a mapping over as one undo step, and compares it with what the one before was compared with.
+/// Takes a mapping over as one undo step, and compares it with the file that mappings are compared with.
 pub(super) fn take_mapped(
     work: &mut Work<'_>,
     run: Arc<MapRun>,
     record: Arc<MapRecord>,
     took: Duration,
 ) -> Vec<Effect> {
-    let other = work.document.mapping.result.as_ref();
-    let other = other.and_then(|result| result.other.as_ref()?.files.first().cloned());
+    let other = work.document.mapping.compare_with.clone();
     let text = format!(
         "{} of the area of {} mapped",
         percent(record.mapped_area),

@@ -5,13 +5,13 @@ mod command;
 mod open;
 mod window;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 pub use command::ProjectCommand;
 use serde_json::{Map, Value};
 
 use self::window::WindowEntry;
-use super::{AppState, Document, Effect, MatchResult, Part, age_text, clock_text};
+use super::{AppState, Document, Effect, Mapping, MatchResult, Part, age_text, clock_text};
 use crate::jobs::{PartSource, ProjectRequest};
 use crate::pipeline::autosave::RecoveredSession;
 use crate::pipeline::match_parts::MatchRecipe;
@@ -62,6 +62,7 @@ impl AppState {
             pose: *document.crash_from_stamped(),
             recipe: document.recipe.clone(),
             mapping: document.mapping.recipe.clone(),
+            mapping_compared_with: document.mapping.compare_with.as_deref().map(absolute),
             result: document.result.as_ref().map(|result| ResultEntry {
                 is_current: document.current_result().is_some(),
                 alternative: result.alternative,
@@ -95,6 +96,7 @@ impl AppState {
                 || !document.labels.is_empty()
                 || !document.pairs.pairs.is_empty()
                 || document.recipe != MatchRecipe::default()
+                || document.mapping != Mapping::default()
                 || self.matching.sweep().is_some())
     }
 
@@ -158,9 +160,13 @@ impl AppState {
     }
 }
 
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
 fn part_entry(part: &Part) -> PartEntry {
     let file = match &part.source {
-        PartSource::File(path) => Some(std::path::absolute(path).unwrap_or_else(|_| path.clone())),
+        PartSource::File(path) => Some(absolute(path)),
         PartSource::Example | PartSource::RealisticExample => None,
     };
     PartEntry {

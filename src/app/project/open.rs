@@ -82,6 +82,7 @@ impl AppState {
             recipe: project.recipe.clone(),
             mapping: Mapping {
                 recipe: project.mapping.clone(),
+                compare_with: project.mapping_compared_with.clone(),
                 result: None,
                 probe: None,
             },

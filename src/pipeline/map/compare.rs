@@ -6,12 +6,13 @@ use serde::Serialize;
 
 use super::convert::element_index;
 use super::record::{DistributionRecord, PairRecord, pair_of};
-use super::{MapRun, PipelineError};
+use super::{MapRun, PipelineError, ShownValue};
 use crate::formats::keyword::write::{WriteOptions, write};
 use crate::formats::{self, Disk, Memory, Model, ReadOptions};
 use crate::geometry::tensor::{Tensor, von_mises};
 use crate::mapping::{Layered, distribution};
 use crate::monitor::Monitor;
+use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
 
 /// What other files say of the elements of a mapping.
@@ -22,6 +23,7 @@ pub struct OtherResult {
     /// Thickness in the crash model's unit of lengths; NaN where no file has one.
     pub thickness: Vec<f64>,
     pub(super) states: Layered<7>,
+    pub(super) strains: Layered<6>,
 }
 
 impl OtherResult {
@@ -38,6 +40,7 @@ impl OtherResult {
         let factor = crash.settings.length_factor;
         let mut thickness = vec![f64::NAN; run.shells.len()];
         let mut states = Layered::new(run.shells.len());
+        let mut strains = Layered::new(run.shells.len());
         let mut n_found = 0_usize;
         for path in files {
             let model = read_other(path, crash, monitor)?;
@@ -62,6 +65,13 @@ impl OtherResult {
                     n_found += 1;
                 }
             }
+            for strain in model.forming.strains() {
+                if let Some(&element) = index.get(&strain.element_id) {
+                    let points = strain.points.iter().map(|point| (point.t, point.strain));
+                    strains.set(element, points);
+                    n_found += 1;
+                }
+            }
         }
         if n_found == 0 {
             return Err(PipelineError::NothingToCompare(files.to_vec()));
@@ -70,6 +80,7 @@ impl OtherResult {
             files: files.to_vec(),
             thickness,
             states,
+            strains,
         })
     }
 
@@ -81,14 +92,10 @@ impl OtherResult {
         })
     }
 
-    /// Largest von Mises stress of an element's layers; NaN if it has none.
-    pub fn von_mises(&self, element: usize) -> f64 {
-        let layers = self.states.of(element);
-        layers.map_or(f64::NAN, |(_, layers)| largest_von_mises(layers))
-    }
-
     fn has_values(&self, element: usize) -> bool {
-        self.thickness[element].is_finite() || self.states.of(element).is_some()
+        self.thickness[element].is_finite()
+            || self.states.of(element).is_some()
+            || self.strains.of(element).is_some()
     }
 }
 
@@ -136,7 +143,7 @@ pub(super) fn read_beside_nodes(
 }
 
 /// Our values less another's, over the elements that have both.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct DifferenceRecord {
     /// Elements with both values.
     pub n_elements: usize,
@@ -146,6 +153,9 @@ pub struct DifferenceRecord {
     pub other: DistributionRecord,
     /// Half the sum of the differences of both histograms, 0 to 1.
     pub histogram_distance: f64,
+    /// Shares of the area in fifty equal bins from the smallest to the largest value of both, ours and the
+    /// other's.
+    pub histograms: [Vec<f64>; 2],
     /// Area-weighted mean of ours less the other's.
     pub mean: f64,
     /// Root mean square difference, area-weighted.
@@ -175,6 +185,23 @@ pub struct ComparisonRecord {
     pub plastic_strain: Option<DifferenceRecord>,
     /// Largest von Mises stress of the layers, where stresses were mapped.
     pub von_mises: Option<DifferenceRecord>,
+    /// Largest principal strain of the layers, where strains were mapped.
+    pub major_strain: Option<DifferenceRecord>,
+    /// Smallest principal strain of the layers, where strains were mapped.
+    pub minor_strain: Option<DifferenceRecord>,
+}
+
+impl ComparisonRecord {
+    /// What was compared, by its name; `None` where either side has nothing of it.
+    pub fn rows(&self) -> [(&'static str, Option<&DifferenceRecord>); 5] {
+        [
+            ("Thickness", self.thickness.as_ref()),
+            ("Effective plastic strain", self.plastic_strain.as_ref()),
+            ("Largest von Mises stress", self.von_mises.as_ref()),
+            ("Largest major strain", self.major_strain.as_ref()),
+            ("Smallest minor strain", self.minor_strain.as_ref()),
+        ]
+    }
 }
 
 /// Compares a mapping with another result. O(elements · log elements).
@@ -191,8 +218,13 @@ pub fn compare_with(run: &MapRun, crash: &LoadedPart, other: &OtherResult) -> Co
     let difference = |here: &dyn Fn(usize) -> f64, there: &dyn Fn(usize) -> f64| {
         difference(run, crash, here, there)
     };
-    let stress = run.recipe.options.quantities.stress;
-    let mises = |element: usize| run.largest_von_mises(element);
+    let wanted = run.recipe.options.quantities;
+    let of_layers = |value: FormingValue| {
+        let shown = ShownValue::usual(Some(value));
+        let here = |element: usize| run.shown(element, &shown);
+        difference(&here, &|element| other.shown(element, &shown))
+    };
+    let if_mapped = |is_mapped: bool, value| is_mapped.then(|| of_layers(value)).flatten();
     ComparisonRecord {
         files: other
             .files
@@ -204,9 +236,9 @@ pub fn compare_with(run: &MapRun, crash: &LoadedPart, other: &OtherResult) -> Co
         n_only_other,
         thickness: difference(&|e| run.thickness(e), &|e| other.thickness[e]),
         plastic_strain: difference(&|e| run.plastic_strain(e), &|e| other.plastic_strain(e)),
-        von_mises: stress
-            .then(|| difference(&mises, &|e| other.von_mises(e)))
-            .flatten(),
+        von_mises: if_mapped(wanted.stress, FormingValue::VonMises),
+        major_strain: if_mapped(wanted.strain, FormingValue::MajorStrain),
+        minor_strain: if_mapped(wanted.strain, FormingValue::MinorStrain),
     }
 }
 
@@ -239,6 +271,7 @@ fn difference(
         here: pair.stamped,
         other: pair.crash,
         histogram_distance: pair.histogram_distance,
+        histograms: pair.histograms,
         mean: signed.mean,
         rms: squares.mean.sqrt(),
         p95: absolute.percentiles[2],

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 pub use compare::{ComparisonRecord, DifferenceRecord, OtherResult, compare_with};
 pub use convert::TargetLayers;
-pub use output::{MapFiles, MapOutput, WriteKind, elements_path, write_mapping};
+pub use output::{MapFiles, MapOutput, WriteKind, deck_comments, elements_path, write_mapping};
 pub use record::{DistributionRecord, MapRecord, PairRecord, element_table, map_record};
 pub use report::map_report;
 pub use unmapped::unmapped_sets;

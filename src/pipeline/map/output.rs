@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::compare::read_beside_nodes;
-use super::{MapRun, PipelineError};
+use super::{MapRun, PipelineError, PlacedPart};
 use crate::formats::keyword::card::Layout;
 use crate::formats::keyword::exchange::{Exchange, ExchangedDeck, exchange_thickness};
 use crate::formats::keyword::source_file::SourceFile;
@@ -155,6 +155,21 @@ pub fn write_mapping(
     };
     files.read_back_error = writer.read_back(&files)?;
     Ok(files)
+}
+
+/// What decks say of where their values come from: the files, and the pose of each stamped part.
+pub fn deck_comments(crash: &LoadedPart, placed: &[PlacedPart<'_>]) -> Vec<String> {
+    let mut lines = vec![format!("forming results mapped onto {}", crash.file_name())];
+    for placed in placed {
+        lines.push(format!(
+            "from {}, crash = c R stamped + t with rows:",
+            placed.part.file_name()
+        ));
+        for row in placed.crash_from_stamped.to_rows() {
+            lines.push(format!("  {} {} {} {}", row[0], row[1], row[2], row[3]));
+        }
+    }
+    lines
 }
 
 /// New corner thicknesses of the mapped elements in the deck's own unit, by element id.

@@ -1,15 +1,17 @@
 //! The report of a mapping: draws the pictures and collects what [`crate::report::html`] lays out.
 
 use super::record::{DistributionRecord, MapRecord, PairRecord, von_mises_of};
-use super::{DifferenceRecord, MapRun, PipelineError, ShownValue};
+use super::{
+    CheckReason, CheckRecord, DifferenceRecord, MapRun, OtherResult, PipelineError, ShownValue,
+};
 use crate::colormap::{ColorMap, ColorScale, Rgb, UNMATCHED};
 use crate::geometry::{Camera, Point3, Similarity, TriMesh};
-use crate::mapping::{Histogram, ShellMesh, SourcePart};
+use crate::mapping::{ShellMesh, SourcePart};
 use crate::monitor::Monitor;
 use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::outputs::report_figures::{From, fitted, view_of};
-use crate::report::html::{Figure, MapReport, NumberRow, QuantityReport, map_figure};
+use crate::report::html::{CheckReport, Figure, MapReport, NumberRow, QuantityReport, map_figure};
 use crate::report::picture::{Paint, PictureMesh, picture};
 use crate::report::{MatrixForm, number};
 use crate::text::{grouped, length, millis, percent};
@@ -21,44 +23,19 @@ const TAILS: usize = 1;
 
 /// Writes the report of a run as one HTML file with pictures of thickness, plastic strain and, where
 /// stresses were mapped, von Mises stress before and after, their difference, and the status of the
-/// elements. `record` is that of the run.
+/// elements. `record` is that of the run; where it holds a comparison, `other` is what was compared with, and
+/// both results stand in pictures too.
 pub fn map_report(
     run: &MapRun,
     record: &MapRecord,
     crash: &LoadedPart,
+    other: Option<&OtherResult>,
     monitor: &Monitor,
 ) -> Result<String, PipelineError> {
     let painter = Painter::new(run, crash);
-    let mut quantities = Vec::new();
-    monitor.progress("draw", 0, Some(3));
-    let scale = run.recipe.options.thickness_scale;
-    if let Some(pair) = &record.thickness {
-        let on_source = |part: &SourcePart, element: usize| scale * part.mean_thickness(element);
-        let on_target = |element: usize| run.thickness(element);
-        quantities.push(painter.quantity("Thickness", pair, &on_source, &on_target));
-    }
-    monitor.check()?;
-    monitor.progress("draw", 1, Some(3));
-    if let Some(pair) = &record.plastic_strain {
-        let on_source = |part: &SourcePart, element: usize| part.mean_plastic_strain(element);
-        let on_target = |element: usize| run.plastic_strain(element);
-        let name = "Effective plastic strain, mean over the layers";
-        quantities.push(painter.quantity(name, pair, &on_source, &on_target));
-    }
-    monitor.check()?;
-    if let Some(pair) = &record.von_mises {
-        let shown = ShownValue {
-            value: Some(FormingValue::VonMises),
-            layer: None,
-            flat: None,
-        };
-        let on_source = |part: &SourcePart, element: usize| von_mises_of(part, element);
-        let on_target = |element: usize| run.shown(element, &shown);
-        let name = "Largest von Mises stress of the layers";
-        quantities.push(painter.quantity(name, pair, &on_source, &on_target));
-    }
-    monitor.check()?;
+    let quantities = painter.quantities(record, monitor)?;
     monitor.progress("draw", 2, Some(3));
+    let compared = painter.compared(record, other, monitor)?;
     let present = record.statuses.iter().map(|row| row.status);
     let report = MapReport {
         build: record.build.clone(),
@@ -73,6 +50,7 @@ pub fn map_report(
         ],
         facts: facts(record),
         warnings: record.warnings.clone(),
+        checks: checks(record),
         statuses: record
             .statuses
             .iter()
@@ -95,6 +73,7 @@ pub fn map_report(
             .collect(),
         quantities,
         comparison: comparison_rows(record),
+        compared,
         compared_with: record
             .comparison
             .as_ref()
@@ -159,8 +138,8 @@ fn comparison_rows(record: &MapRecord) -> Vec<(String, [String; 6])> {
     let Some(other) = &record.comparison else {
         return Vec::new();
     };
-    let row = |name: &str, difference: &Option<DifferenceRecord>| {
-        let found = difference.as_ref()?;
+    let row = |(name, found): (&str, Option<&DifferenceRecord>)| {
+        let found = found?;
         let cells = [
             grouped(found.n_elements),
             number(found.mean),
@@ -171,12 +150,35 @@ fn comparison_rows(record: &MapRecord) -> Vec<(String, [String; 6])> {
         ];
         Some((name.to_owned(), cells))
     };
-    let rows = [
-        row("Thickness", &other.thickness),
-        row("Effective plastic strain", &other.plastic_strain),
-        row("Largest von Mises stress", &other.von_mises),
-    ];
-    rows.into_iter().flatten().collect()
+    other.rows().into_iter().filter_map(row).collect()
+}
+
+fn checks(record: &MapRecord) -> Vec<CheckReport> {
+    let check = |check: &CheckRecord| CheckReport {
+        cells: [&check.name, &check.found, &check.limit].map(Clone::clone),
+        is_met: check.is_met,
+        reason: check.reason.map(CheckReason::label),
+    };
+    record.checks.iter().map(check).collect()
+}
+
+/// Colours of values on two sides: 5 % to 99 % of the area of both.
+fn values_scale(a: &DistributionRecord, b: &DistributionRecord) -> ColorScale {
+    let (low, high) = (a.p5.min(b.p5), a.p99.max(b.p99));
+    ColorScale::new(ColorMap::Viridis, low, high.max(low + f64::MIN_POSITIVE))
+}
+
+fn color(scale: &ColorScale, value: f64) -> Rgb {
+    if value.is_finite() {
+        scale.color(value)
+    } else {
+        UNMATCHED
+    }
+}
+
+/// What the bins of two sides span.
+fn range_of(a: &DistributionRecord, b: &DistributionRecord) -> [f64; 2] {
+    [a.min.min(b.min), a.max.max(b.max)]
 }
 
 fn number_row(of: &DistributionRecord) -> NumberRow {
@@ -239,6 +241,41 @@ impl<'a> Painter<'a> {
         }
     }
 
+    /// Every quantity with statistics, before and after.
+    fn quantities(
+        &self,
+        record: &MapRecord,
+        monitor: &Monitor,
+    ) -> Result<Vec<QuantityReport>, PipelineError> {
+        let run = self.run;
+        let mut quantities = Vec::new();
+        monitor.progress("draw", 0, Some(3));
+        let scale = run.recipe.options.thickness_scale;
+        if let Some(pair) = &record.thickness {
+            let on_source = |part: &SourcePart, element| scale * part.mean_thickness(element);
+            let on_target = |element: usize| run.thickness(element);
+            quantities.push(self.quantity("Thickness", pair, &on_source, &on_target));
+        }
+        monitor.check()?;
+        monitor.progress("draw", 1, Some(3));
+        if let Some(pair) = &record.plastic_strain {
+            let on_source = |part: &SourcePart, element| part.mean_plastic_strain(element);
+            let on_target = |element: usize| run.plastic_strain(element);
+            let name = "Effective plastic strain, mean over the layers";
+            quantities.push(self.quantity(name, pair, &on_source, &on_target));
+        }
+        monitor.check()?;
+        if let Some(pair) = &record.von_mises {
+            let shown = ShownValue::usual(Some(FormingValue::VonMises));
+            let on_source = |part: &SourcePart, element| von_mises_of(part, element);
+            let on_target = |element: usize| run.shown(element, &shown);
+            let name = "Largest von Mises stress of the layers";
+            quantities.push(self.quantity(name, pair, &on_source, &on_target));
+        }
+        monitor.check()?;
+        Ok(quantities)
+    }
+
     /// Before, after and difference with tables and histograms.
     fn quantity(
         &self,
@@ -247,11 +284,102 @@ impl<'a> Painter<'a> {
         on_source: &dyn Fn(&SourcePart, usize) -> f64,
         on_target: &dyn Fn(usize) -> f64,
     ) -> QuantityReport {
-        let low = pair.stamped.p5.min(pair.crash.p5);
-        let high = pair.stamped.p99.max(pair.crash.p99);
-        let scale = ColorScale::new(ColorMap::Viridis, low, high.max(low + f64::MIN_POSITIVE));
-        let difference =
-            |element: usize| on_target(element) - self.run.at_partner(element, on_source);
+        let scale = values_scale(&pair.stamped, &pair.crash);
+        let before = self.draw_sources(|source, element| {
+            color(&scale, on_source(&self.run.sources[source], element))
+        });
+        let after = self.draw_target(|element| color(&scale, on_target(element)));
+        let (apart, signed) = self.draw_difference(&scale, |element| {
+            on_target(element) - self.run.at_partner(element, on_source)
+        });
+        let figure = |png, title, caption| map_figure(png, SIZE, title, caption);
+        QuantityReport {
+            name: name.to_owned(),
+            rows: vec![
+                ("▲ stamped, covered".to_owned(), number_row(&pair.stamped)),
+                ("■ crash, mapped".to_owned(), number_row(&pair.crash)),
+            ],
+            shares: pair.histograms.clone(),
+            range: range_of(&pair.stamped, &pair.crash),
+            histogram_distance: pair.histogram_distance,
+            figures: vec![
+                figure(before, "▲ Stamped part,", "before, moved by the pose."),
+                figure(after, "■ Crash part,", "mapped; grey has no value."),
+                figure(apart, "Difference,", "mapped less the stamped element."),
+            ],
+            scales: [scale, signed],
+            sides: ["▲ stamped, where it is covered", "■ crash, mapped"],
+            difference: "difference, mapped less stamped",
+        }
+    }
+
+    /// Every quantity that both this mapping and another result have.
+    fn compared(
+        &self,
+        record: &MapRecord,
+        other: Option<&OtherResult>,
+        monitor: &Monitor,
+    ) -> Result<Vec<QuantityReport>, PipelineError> {
+        let mut quantities = Vec::new();
+        let Some((comparison, other)) = record.comparison.as_ref().zip(other) else {
+            return Ok(quantities);
+        };
+        let values = [
+            None,
+            Some(FormingValue::PlasticStrain),
+            Some(FormingValue::VonMises),
+            Some(FormingValue::MajorStrain),
+            Some(FormingValue::MinorStrain),
+        ];
+        for ((name, found), value) in comparison.rows().into_iter().zip(values) {
+            monitor.check()?;
+            let shown = ShownValue::usual(value);
+            quantities.extend(found.map(|found| self.beside(name, found, other, &shown)));
+        }
+        Ok(quantities)
+    }
+
+    /// This mapping, another result, and their difference.
+    fn beside(
+        &self,
+        name: &str,
+        found: &DifferenceRecord,
+        other: &OtherResult,
+        shown: &ShownValue,
+    ) -> QuantityReport {
+        let scale = values_scale(&found.here, &found.other);
+        let here = self.draw_target(|element| color(&scale, self.run.shown(element, shown)));
+        let there = self.draw_target(|element| color(&scale, other.shown(element, shown)));
+        let (apart, signed) = self.draw_difference(&scale, |element| {
+            self.run.difference_to(other, element, shown)
+        });
+        let figure = |png, title, caption| map_figure(png, SIZE, title, caption);
+        QuantityReport {
+            name: name.to_owned(),
+            rows: vec![
+                ("this mapping".to_owned(), number_row(&found.here)),
+                ("the other result".to_owned(), number_row(&found.other)),
+            ],
+            shares: found.histograms.clone(),
+            range: range_of(&found.here, &found.other),
+            histogram_distance: found.histogram_distance,
+            figures: vec![
+                figure(here, "■ This mapping,", "grey has no value."),
+                figure(there, "■ The other result,", "grey has no value."),
+                figure(apart, "Difference,", "this mapping less the other result."),
+            ],
+            scales: [scale, signed],
+            sides: ["this mapping", "the other result"],
+            difference: "difference, this mapping less the other result",
+        }
+    }
+
+    /// The crash part in the colours of a difference, and these colours.
+    fn draw_difference(
+        &self,
+        values: &ColorScale,
+        difference: impl Fn(usize) -> f64,
+    ) -> (Vec<u8>, ColorScale) {
         let areas = self.run.target.mesh.areas();
         let all = (0..areas.len()).map(|e| (difference(e).abs(), areas[e]));
         let spread = crate::mapping::distribution(all);
@@ -259,65 +387,11 @@ impl<'a> Painter<'a> {
         let limit = if limit > 0.0 {
             limit
         } else {
-            1e-3 * high.abs().max(1e-9)
+            1e-3 * values.max.abs().max(1e-9)
         };
         let signed = ColorScale::symmetric(limit, 0.0);
-        let color = |scale: &ColorScale, value: f64| {
-            if value.is_finite() {
-                scale.color(value)
-            } else {
-                UNMATCHED
-            }
-        };
-        let before = self.draw_sources(|source, element| {
-            color(&scale, on_source(&self.run.sources[source], element))
-        });
-        let after = self.draw_target(|element| color(&scale, on_target(element)));
-        let apart = self.draw_target(|element| color(&signed, difference(element)));
-        let bins = |values: Vec<(f64, f64)>, range: [f64; 2]| {
-            Histogram::new(values.into_iter(), range[0], range[1]).shares
-        };
-        let range = [
-            pair.stamped.min.min(pair.crash.min),
-            pair.stamped.max.max(pair.crash.max),
-        ];
-        let first = &self.run.sources[0];
-        let covered = self
-            .run
-            .checks
-            .map_back
-            .as_ref()
-            .map(|back| &back.is_covered);
-        let is_covered = |e: &usize| covered.is_none_or(|covered| covered[*e]);
-        let stamped = (0..first.mesh.len()).filter(is_covered);
-        let stamped = stamped.map(|e| (on_source(first, e), first.mesh.areas()[e]));
-        let crash = (0..areas.len()).map(|e| (on_target(e), areas[e]));
-        QuantityReport {
-            name: name.to_owned(),
-            rows: vec![
-                ("▲ stamped, covered".to_owned(), number_row(&pair.stamped)),
-                ("■ crash, mapped".to_owned(), number_row(&pair.crash)),
-            ],
-            shares: [bins(stamped.collect(), range), bins(crash.collect(), range)],
-            range,
-            histogram_distance: pair.histogram_distance,
-            figures: vec![
-                map_figure(
-                    before,
-                    SIZE,
-                    "▲ Stamped part,",
-                    "before, moved by the pose.",
-                ),
-                map_figure(after, SIZE, "■ Crash part,", "mapped; grey has no value."),
-                map_figure(
-                    apart,
-                    SIZE,
-                    "Difference,",
-                    "mapped less the stamped element.",
-                ),
-            ],
-            scales: [scale, signed],
-        }
+        let png = self.draw_target(|element| color(&signed, difference(element)));
+        (png, signed)
     }
 
     fn statuses(&self) -> Figure {

@@ -17,6 +17,15 @@ pub struct ShownValue {
 }
 
 impl ShownValue {
+    /// A quantity of the layers that are usual for it; `None` is the thickness.
+    pub(super) fn usual(value: Option<FormingValue>) -> Self {
+        Self {
+            value,
+            layer: None,
+            flat: None,
+        }
+    }
+
     fn layer_of(&self, value: FormingValue) -> LayerChoice {
         self.layer.unwrap_or(LayerChoice::usual(value))
     }
@@ -69,18 +78,7 @@ impl MapRun {
 
     /// What an element carries less what another result has; NaN where either has nothing.
     pub fn difference_to(&self, other: &OtherResult, element: usize, shown: &ShownValue) -> f64 {
-        let thickness = other.thickness[element];
-        let theirs = match shown.value {
-            None => thickness,
-            Some(FormingValue::Thinning) => 1.0 - thickness / shown.flat.unwrap_or(f64::NAN),
-            // Strains of other results are not read.
-            Some(value) if value.is_strain() => f64::NAN,
-            Some(value) => {
-                let layers = of_source(&other.states, element, |state| value.of_state(state));
-                shown.layer_of(value).pick(&layers, value)
-            }
-        };
-        self.shown(element, shown) - theirs
+        self.shown(element, shown) - other.shown(element, shown)
     }
 
     /// A quantity through the thickness of an element and of its partner.
@@ -131,6 +129,25 @@ impl MapRun {
             layers.iter_mut().for_each(|layer| layer[0] = -layer[0]);
         }
         layers
+    }
+}
+
+impl OtherResult {
+    /// What an element has there; NaN where it has nothing.
+    pub fn shown(&self, element: usize, shown: &ShownValue) -> f64 {
+        let thickness = self.thickness[element];
+        match shown.value {
+            None => thickness,
+            Some(FormingValue::Thinning) => 1.0 - thickness / shown.flat.unwrap_or(f64::NAN),
+            Some(value) => {
+                let layers = if value.is_strain() {
+                    of_source(&self.strains, element, |strain| value.of_strain(strain))
+                } else {
+                    of_source(&self.states, element, |state| value.of_state(state))
+                };
+                shown.layer_of(value).pick(&layers, value)
+            }
+        }
     }
 }
 

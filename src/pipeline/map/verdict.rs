@@ -1,6 +1,6 @@
 //! The checks of a mapping: what was found, what is asked for, and where to look.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::peak::peak_at_best;
 use super::record::{MapRecord, PairRecord};
@@ -57,6 +57,19 @@ impl CheckReason {
     }
 }
 
+fn with_words<S: Serializer>(reason: &Option<CheckReason>, to: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Told {
+        name: CheckReason,
+        text: &'static str,
+    }
+    let told = reason.map(|name| Told {
+        name,
+        text: name.label(),
+    });
+    told.serialize(to)
+}
+
 /// One check.
 #[derive(Debug, Clone, Serialize)]
 pub struct CheckRecord {
@@ -68,7 +81,9 @@ pub struct CheckRecord {
     pub limit: String,
     /// Whether it is met; `None` for what is told and not judged.
     pub is_met: Option<bool>,
-    /// Why it is judged against something else than the stamped values as they are.
+    /// Why it is judged against something else than the stamped values as they are; in a record by its
+    /// name and in words.
+    #[serde(serialize_with = "with_words")]
     pub reason: Option<CheckReason>,
     /// Where it is seen.
     pub picture: CheckPicture,
@@ -262,11 +277,7 @@ fn peak(run: &MapRun, pair: &PairRecord) -> CheckRecord {
 }
 
 fn worst_difference(run: &MapRun, value: Option<FormingValue>) -> Option<usize> {
-    let shown = ShownValue {
-        value,
-        layer: None,
-        flat: None,
-    };
+    let shown = ShownValue::usual(value);
     largest(run, |element| run.difference(element, &shown).abs())
 }
 

@@ -1,11 +1,14 @@
 //! What leaves the window of a mapping: decks, report, table.
 
+use std::path::Path;
+
 use super::{Made, OutputInput};
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::map::{
-    MapOutput, MapRun, PlacedPart, WriteKind, element_table, map_record, map_report, write_mapping,
+    MapFiles, MapOutput, MapRun, OtherResult, PlacedPart, WriteKind, deck_comments, element_table,
+    map_record, map_report, write_mapping,
 };
 use crate::role::PerRole;
 use crate::text::grouped;
@@ -24,31 +27,48 @@ fn placed<'a>(run: &MapRun, parts: PerRole<&'a LoadedPart>) -> PlacedPart<'a> {
     }
 }
 
-/// The deck of a kind that is one file.
-pub(super) fn deck(
+/// The other result it was compared with.
+fn other(input: &OutputInput) -> Option<&OtherResult> {
+    input.other.as_deref()
+}
+
+/// The files of a deck of a kind, the first of which is to lie at `path`, byte for byte as the command line
+/// writes them.
+pub(super) fn deck_files(
     kind: WriteKind,
     input: &OutputInput,
+    path: &Path,
     monitor: &Monitor,
-) -> Result<Made, PipelineError> {
+) -> Result<MapFiles, PipelineError> {
     let (run, parts) = mapped(input)?;
     let output = MapOutput {
         kind,
-        path: "mapped.k".into(),
+        path: path.to_path_buf(),
         is_large: true,
     };
-    let comments = [format!(
-        "forming results of {} mapped onto {}",
-        parts.stamped.file_name(),
-        parts.crash.file_name()
-    )];
-    let files = write_mapping(run, parts.crash, &output, &comments, monitor)?;
-    let note = format!(
+    let comments = deck_comments(parts.crash, &[placed(run, parts)]);
+    write_mapping(run, parts.crash, &output, &comments, monitor)
+}
+
+/// What was found when they were read back.
+pub(super) fn note(files: &MapFiles) -> String {
+    format!(
         "{} thicknesses, {} stress and {} strain cards, read back within {:.1e}",
         grouped(files.n_thickness),
         grouped(files.n_stress),
         grouped(files.n_strain),
         files.read_back_error
-    );
+    )
+}
+
+/// The first of these files.
+pub(super) fn deck(
+    kind: WriteKind,
+    input: &OutputInput,
+    monitor: &Monitor,
+) -> Result<Made, PipelineError> {
+    let files = deck_files(kind, input, Path::new("mapped.k"), monitor)?;
+    let note = note(&files);
     let bytes = files.files.into_iter().next().map(|(_, bytes)| bytes);
     Ok(Made {
         bytes: bytes.ok_or(PipelineError::Lacks("a deck"))?,
@@ -58,11 +78,13 @@ pub(super) fn deck(
 
 pub(super) fn report(input: &OutputInput, monitor: &Monitor) -> Result<String, PipelineError> {
     let (run, parts) = mapped(input)?;
-    let record = map_record(run, parts.crash, &[placed(run, parts)], None, None);
-    map_report(run, &record, parts.crash, monitor)
+    let other = other(input);
+    let record = map_record(run, parts.crash, &[placed(run, parts)], None, other);
+    map_report(run, &record, parts.crash, other, monitor)
 }
 
 pub(super) fn table(input: &OutputInput) -> Result<String, PipelineError> {
     let (run, parts) = mapped(input)?;
-    Ok(element_table(run, parts.crash, &[placed(run, parts)], None))
+    let placed = placed(run, parts);
+    Ok(element_table(run, parts.crash, &[placed], other(input)))
 }

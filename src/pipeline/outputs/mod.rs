@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use super::PipelineError;
 use super::load::LoadedPart;
-use super::map::{MapRun, WriteKind};
+use super::map::{MapRun, OtherResult, WriteKind, elements_path};
 use super::match_parts::{MatchRun, with_alternative};
 use super::units::PairUnits;
 use super::write_file::write_file;
@@ -144,6 +144,8 @@ pub struct OutputInput {
     pub reduced: PerRole<Option<Arc<TriMesh>>>,
     /// The mapping of the forming results at this pose.
     pub mapping: Option<Arc<MapRun>>,
+    /// Another mapper's result that stands beside it.
+    pub other: Option<Arc<OtherResult>>,
     /// The text of the log.
     pub log: String,
 }
@@ -184,6 +186,7 @@ impl Output {
         Self::Cards(CardForm::IncludeTransform),
         Self::Mapped(WriteKind::Deck),
         Self::Mapped(WriteKind::Part),
+        Self::Mapped(WriteKind::Include),
         Self::MapReport,
         Self::MapTable,
         Self::Picture,
@@ -200,7 +203,8 @@ impl Output {
             Self::Cards(form) => form.label(),
             Self::Mesh(mesh) => mesh.label(),
             Self::Mapped(WriteKind::Deck) => "Crash deck with mapped results",
-            Self::Mapped(_) => "Crash part with mapped results",
+            Self::Mapped(WriteKind::Part) => "Crash part with mapped results",
+            Self::Mapped(WriteKind::Include) => "Mapped results as an include",
             Self::MapReport => "Mapping report as HTML",
             Self::MapTable => "Mapped elements as CSV",
             Self::Picture => "Picture",
@@ -264,6 +268,12 @@ impl Output {
         }
     }
 
+    /// The file that is written beside the one at `path`, where there may be one.
+    pub fn file_beside(self, path: &Path) -> Option<PathBuf> {
+        let has_one = self == Self::Mapped(WriteKind::Include);
+        has_one.then(|| elements_path(path))
+    }
+
     /// The path with the usual extension if it has none.
     pub fn with_extension(self, path: PathBuf) -> PathBuf {
         if path.extension().is_some() {
@@ -298,7 +308,8 @@ impl Output {
             Self::Mesh(MeshOutput::Crash) => "copy",
             Self::Mesh(MeshOutput::CrashReduced) => "reduced",
             Self::Mapped(WriteKind::Deck) => "mapped",
-            Self::Mapped(_) => "mapped_part",
+            Self::Mapped(WriteKind::Part) => "mapped_part",
+            Self::Mapped(WriteKind::Include) => "mapped_include",
             Self::MapReport => "mapping",
             Self::MapTable => "mapped_elements",
             Self::Picture => "picture",
@@ -365,7 +376,8 @@ impl Output {
         Ok(Made { bytes, notes })
     }
 
-    /// Makes it and writes it to a file, whole or not at all; returns what was found out.
+    /// Makes it and writes it to a file, whole or not at all; returns what was found out. An include of
+    /// mapped results has a second file beside it, [`Output::file_beside`].
     pub fn write(
         self,
         input: &OutputInput,
@@ -374,6 +386,17 @@ impl Output {
     ) -> Result<Vec<String>, PipelineError> {
         let format = match self {
             Self::Mesh(_) => Some(deck::format_of(path)?),
+            Self::Mapped(kind) => {
+                let made = mapped::deck_files(kind, input, path, monitor)?;
+                let mut notes = vec![mapped::note(&made)];
+                for (index, (path, bytes)) in made.files.iter().enumerate() {
+                    write_file(path, bytes)?;
+                    if index > 0 {
+                        notes.push(format!("written beside: {}", path.display()));
+                    }
+                }
+                return Ok(notes);
+            }
             _ => None,
         };
         let made = self.make(input, format, monitor)?;

@@ -157,6 +157,8 @@ pub struct Project {
     pub recipe: MatchRecipe,
     /// Every choice of the mapping.
     pub mapping: MapRecipe,
+    /// The other mapper's file that mappings are compared with.
+    pub mapping_compared_with: Option<PathBuf>,
     /// The last match.
     pub result: Option<ResultEntry>,
     /// The tables of the last sweep.
@@ -178,6 +180,8 @@ struct Written<'a> {
     pose: &'a Similarity,
     recipe: &'a MatchRecipe,
     mapping: &'a MapRecipe,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mapping_compared_with: Option<PathBuf>,
     window: &'a Option<Value>,
     #[serde(flatten)]
     others: &'a Map<String, Value>,
@@ -298,6 +302,7 @@ impl Project {
             saved_at: reader.take_or_tell("saved_at").unwrap_or_default(),
             recipe: reader.take_or_tell("recipe").unwrap_or_default(),
             mapping: reader.take_or_tell("mapping").unwrap_or_default(),
+            mapping_compared_with: reader.take_or_tell("mapping_compared_with"),
             result: reader.take_or_tell("result"),
             sweep: reader.take_or_tell("sweep"),
             window: reader
@@ -318,6 +323,9 @@ impl Project {
                 entry.make_absolute(folder_of(path));
             }
         }
+        if let Some(other) = &mut project.mapping_compared_with {
+            *other = absolute(other, folder_of(path));
+        }
         Ok((project, notes))
     }
 
@@ -337,6 +345,10 @@ impl Project {
             pose: &self.pose,
             recipe: &self.recipe,
             mapping: &self.mapping,
+            mapping_compared_with: self
+                .mapping_compared_with
+                .as_deref()
+                .map(|other| relative(other, folder_of(path))),
             window: &self.window,
             others: &self.others,
             result: &self.result,
@@ -396,7 +408,7 @@ impl PartEntry {
 
     fn make_absolute(&mut self, folder: &Path) {
         for path in self.paths() {
-            *path = crate::formats::source::tidy(&folder.join(&*path));
+            *path = absolute(path, folder);
         }
     }
 
@@ -410,6 +422,11 @@ impl PartEntry {
 /// The folder a project lies in, absolute where the system tells it.
 fn folder_of(project: &Path) -> &Path {
     project.parent().unwrap_or(Path::new(""))
+}
+
+/// A path as the project has it, from the folder of the project.
+fn absolute(path: &Path, folder: &Path) -> PathBuf {
+    crate::formats::source::tidy(&folder.join(path))
 }
 
 /// The path of a file as seen from a folder, with `/` between its pieces; as it is where there is

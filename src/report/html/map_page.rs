@@ -28,6 +28,21 @@ pub struct QuantityReport {
     pub figures: Vec<Figure>,
     /// Colours of the first two pictures, and of the difference.
     pub scales: [ColorScale; 2],
+    /// What the two histograms are of.
+    pub sides: [&'static str; 2],
+    /// What the difference is.
+    pub difference: &'static str,
+}
+
+/// A check: what is checked, found and asked for, whether it is met, and why it is judged as it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CheckReport {
+    /// Name, finding, limit.
+    pub cells: [String; 3],
+    /// Whether it is met; `None` for what is told and not judged.
+    pub is_met: Option<bool>,
+    /// Why it is judged against something else than the stamped values as they are.
+    pub reason: Option<&'static str>,
 }
 
 /// Everything the report of a mapping shows.
@@ -41,6 +56,8 @@ pub struct MapReport {
     pub facts: Vec<(String, String)>,
     /// What to look at.
     pub warnings: Vec<String>,
+    /// The checks, in their order.
+    pub checks: Vec<CheckReport>,
     /// Elements by status: words, count, share of the area.
     pub statuses: Vec<[String; 3]>,
     /// The elements in the colours of their status, with the colour of each.
@@ -51,6 +68,8 @@ pub struct MapReport {
     pub quantities: Vec<QuantityReport>,
     /// Another result: what each row is about, and elements, mean, RMS, 95 %, largest difference, element.
     pub comparison: Vec<(String, [String; 6])>,
+    /// Both results of each quantity that was compared.
+    pub compared: Vec<QuantityReport>,
     /// The files of the other result.
     pub compared_with: String,
     /// The matrix of each stamped part by rows.
@@ -108,6 +127,7 @@ impl MapReport {
 
     fn main(&self) -> Markup {
         html! {
+            (section("checks", "Checks", &self.check_table()))
             (section("elements", "Elements", &self.elements()))
             @for (i, quantity) in self.quantities.iter().enumerate() {
                 (section(&format!("quantity-{i}"), &quantity.name, &quantity.content()))
@@ -116,6 +136,32 @@ impl MapReport {
                 (section("comparison", "Beside another result", &self.other()))
             }
             (section("poses", "Poses", &self.pose_blocks()))
+        }
+    }
+
+    fn check_table(&self) -> Markup {
+        let row = |check: &CheckReport| {
+            let met = match check.is_met {
+                Some(true) => "✔ met",
+                Some(false) => "✖ not met",
+                None => "told, not judged",
+            };
+            let mut row: Vec<Markup> = check.cells.iter().map(cell).collect();
+            row.push(cell(met));
+            row
+        };
+        let rows: Vec<Vec<Markup>> = self.checks.iter().map(row).collect();
+        let columns = [
+            Column::text("Check"),
+            Column::number("Found"),
+            Column::text("Asked for"),
+            Column::text("Result"),
+        ];
+        let reasons = self.checks.iter();
+        let reasons = reasons.filter_map(|check| Some((&check.cells[0], check.reason?)));
+        html! {
+            (table("What was found beside what is asked for", &columns, &rows))
+            @for (name, reason) in reasons { p { b { (name) ": " } (reason) } }
         }
     }
 
@@ -155,6 +201,10 @@ impl MapReport {
         html! {
             p { "This mapping less " (printable(&self.compared_with)) ", element by element." }
             (table("Differences, weighted by area", &columns, &rows))
+            @for quantity in &self.compared {
+                h3 { (quantity.name) }
+                (quantity.content())
+            }
         }
     }
 
@@ -199,13 +249,12 @@ impl QuantityReport {
                 @for one in &self.figures { (super::sections::figure(one)) }
             }
             div.scale { (charts::plain_legend(&self.scales[0], &self.name)) }
-            div.scale { (charts::plain_legend(&self.scales[1], "difference, mapped less stamped")) }
+            div.scale { (charts::plain_legend(&self.scales[1], self.difference)) }
             (table("Distribution, weighted by area", &columns, &rows))
-            h3 { "Distribution" }
             (charts::two_histograms(&self.shares, self.range, &self.name))
             ul.legend {
-                li { i style="background:var(--stamped);opacity:.45" {} "▲ stamped, where it is covered" }
-                li { i.line style="border-color:var(--crash)" {} "■ crash, mapped" }
+                li { i style="background:var(--stamped);opacity:.45" {} (self.sides[0]) }
+                li { i.line style="border-color:var(--crash)" {} (self.sides[1]) }
             }
             (fact_table("Both histograms", &facts))
         }

@@ -10,7 +10,7 @@ mod tables;
 
 use maud::{PreEscaped, html};
 
-pub use map_page::{MapReport, NumberRow, QuantityReport, map_figure};
+pub use map_page::{CheckReport, MapReport, NumberRow, QuantityReport, map_figure};
 
 use self::page::printable;
 use super::MatchRecord;

@@ -21,7 +21,7 @@ fn a_file_is_replaced_only_after_a_question() {
             if !commands.is_empty() || dialogs.overwrite.is_some() {
                 return (
                     commands.len(),
-                    dialogs.overwrite.take().map(|(_, path)| path),
+                    dialogs.overwrite.take().map(|(_, path, _)| path),
                 );
             }
             std::thread::sleep(Duration::from_millis(10));

@@ -1,6 +1,6 @@
 //! Section 4: the forming results onto the crash part.
 
-use egui::{Ui, vec2};
+use egui::{Align, Layout, Ui, vec2};
 
 use super::section::section_ui;
 use crate::app::{
@@ -112,6 +112,24 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
     checks_ui(ui, record, commands);
     picture_ui(ui, state, commands);
     unmapped_ui(ui, state, commands);
+    other_ui(ui, state, commands);
+    caption(ui, "Write");
+    ui.horizontal_wrapped(|ui| {
+        for (action, label) in [
+            (Action::SaveMappedDeck, "Deck…"),
+            (Action::SaveMappedPart, "Part…"),
+            (Action::SaveMappedInclude, "Include…"),
+            (Action::SaveMapReport, "Report…"),
+            (Action::SaveMapTable, "Table…"),
+        ] {
+            let look = (label, Look::Plain, vec2(64.0, ROW));
+            action_button(ui, state, action, look, commands);
+        }
+    });
+}
+
+/// The file that mappings are compared with, and the way out of it.
+fn other_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     caption(ui, "Another result");
     let is_comparing = state.jobs.is_active(JobKey::CompareMapping);
     let label = if is_comparing {
@@ -120,18 +138,19 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
         "Compare with…"
     };
     let look = (label, Look::Plain, vec2(110.0, ROW));
-    action_button(ui, state, Action::CompareMapping, look, commands);
-    caption(ui, "Write");
-    ui.horizontal_wrapped(|ui| {
-        for (action, label) in [
-            (Action::SaveMappedDeck, "Deck…"),
-            (Action::SaveMappedPart, "Part…"),
-            (Action::SaveMapReport, "Report…"),
-            (Action::SaveMapTable, "Table…"),
-        ] {
-            let look = (label, Look::Plain, vec2(64.0, ROW));
-            action_button(ui, state, action, look, commands);
-        }
+    ui.horizontal(|ui| {
+        action_button(ui, state, Action::CompareMapping, look, commands);
+        let Some(file) = &state.document.mapping.compare_with else {
+            return;
+        };
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let end = ("×", Look::Plain, vec2(ROW, ROW));
+            let button = action_button(ui, state, Action::EndMapComparison, end, commands);
+            button.accessible_name(Action::EndMapComparison.row().label);
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            let name = egui::Label::new(name.as_ref()).truncate();
+            ui.add(name).on_hover_text(file.display().to_string());
+        });
     });
 }
 

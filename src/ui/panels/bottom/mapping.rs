@@ -236,11 +236,12 @@ fn compared_ui(
         ColorBy::Thickness => comparison.thickness.as_ref(),
         ColorBy::PlasticStrain => comparison.plastic_strain.as_ref(),
         ColorBy::VonMises => comparison.von_mises.as_ref(),
+        ColorBy::MajorStrain => comparison.major_strain.as_ref(),
+        ColorBy::MinorStrain => comparison.minor_strain.as_ref(),
         _ => None,
     };
     let Some(record) = record else {
-        let hint =
-            "no statistics of this quantity; thickness, plastic strain and von Mises have some";
+        let hint = "no statistics of this quantity, or the other file has nothing of it";
         caption(ui, hint);
         return;
     };
