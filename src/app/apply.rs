@@ -2,7 +2,8 @@
 //! other topics have to follow comes after it.
 
 use super::{
-    AppState, Command, Dialog, Effect, FreeWindow, NoticeCommand, Section, ViewCommand, mapping,
+    AppState, Command, Dialog, Effect, FreeWindow, MatchCommand, NoticeCommand, Section,
+    ViewCommand, mapping,
 };
 
 impl AppState {
@@ -28,6 +29,10 @@ impl AppState {
             Command::Move(_) => self.move_frame(),
             _ => None,
         };
+        let race = match &command {
+            Command::Match(MatchCommand::Run) => self.race_candidates(),
+            _ => None,
+        };
         let (mut work, topics) = self.split();
         let work = &mut work;
         if command.ends_move() {
@@ -42,7 +47,12 @@ impl AppState {
             Command::Part(command) => return topics.parts.apply_part(work, command),
             Command::Reduce(command) => return topics.reduce.apply(work, command),
             Command::Move(command) => topics.moving.apply(work, command, frame),
-            Command::Match(command) => return topics.matching.apply(work, command),
+            Command::Match(command) => {
+                return match race {
+                    Some(ids) => topics.matching.race(work, ids),
+                    None => topics.matching.apply(work, command),
+                };
+            }
             Command::Map(command) => return mapping::apply(work, command),
             Command::Preview(command) => {
                 let is_unlocked = work.is_unlocked().is_ok();

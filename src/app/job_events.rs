@@ -8,6 +8,7 @@ use super::reduce::take_level_measured;
 use super::{AppState, Effect, NoticeLevel};
 use crate::jobs::{JobEvent, JobKey, JobOutput, JobStage, Live, Stamp};
 use crate::role::Role;
+use crate::text::counted;
 
 impl AppState {
     pub(super) fn take_job_event(&mut self, event: JobEvent) -> Vec<Effect> {
@@ -112,6 +113,27 @@ impl AppState {
                 take_level_measured(work, role, &level, took);
             }
             JobOutput::Matched(run) => return topics.matching.take_matched(work, run, took),
+            JobOutput::Raced { winner, n_parts } => {
+                let tried = counted(n_parts, "crash part");
+                let told = match &winner {
+                    Some((_, facts)) => {
+                        let id = facts.used.first().copied().unwrap_or_default();
+                        format!("{tried} tried alone: {id} fits best")
+                    }
+                    None => format!("{tried} tried alone: none fits, so all are matched together"),
+                };
+                work.log_step("match", None, told, Some(took));
+                if let Some((part, facts)) = winner {
+                    let new = NewPart {
+                        role: Role::Crash,
+                        part,
+                        facts,
+                        took,
+                    };
+                    topics.parts.take_reselected(work, new);
+                }
+                return topics.matching.run_match(work);
+            }
             JobOutput::Aligned(poses) => topics.matching.take_aligned(work, poses, took),
             JobOutput::Judged(run) => topics.matching.take_judged(work, &run, took),
             JobOutput::Measured(measurement) => {

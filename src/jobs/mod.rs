@@ -19,8 +19,8 @@ pub use export::{Destination, ExportRequest, Exported};
 pub use facts::PartFacts;
 pub use job::{
     CompareInput, CompareMappingInput, JobId, JobKey, JobKind, JobOutput, MapInput, MatchInput,
-    MeasureInput, MeasureLevelInput, MeasuredLevel, Recording, ReduceInput, Stamp, SweepInput,
-    VerdictInput,
+    MeasureInput, MeasureLevelInput, MeasuredLevel, RaceInput, Recording, ReduceInput, Stamp,
+    SweepInput, VerdictInput,
 };
 pub use live::{Live, LiveIteration, LiveSlot};
 pub use project::{OpenedPart, OpenedProject};

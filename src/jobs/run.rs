@@ -8,8 +8,8 @@ use super::{
     CompareInput, CompareMappingInput, MapInput, MatchInput, MeasureInput, SweepInput, VerdictInput,
 };
 use super::{
-    JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource, Recording,
-    ReduceInput,
+    JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource, RaceInput,
+    Recording, ReduceInput,
 };
 use crate::assess::{coverage, overlap_limit, quick_overlap};
 use crate::monitor::{Cancelled, Monitor};
@@ -18,6 +18,7 @@ use crate::pipeline::inspect::compare_parts;
 use crate::pipeline::load::{self, LoadedPart};
 use crate::pipeline::map::{OtherResult, PlacedPart, compare_with, map_parts, map_record};
 use crate::pipeline::match_parts::{self, match_parts};
+use crate::pipeline::race::race;
 use crate::pipeline::reduce::Levels;
 use crate::pipeline::sweep::sweep;
 use crate::registration::MatchMonitor;
@@ -105,6 +106,7 @@ impl Runner for PipelineRunner {
             JobKind::MeasureLevel(input) => measure_level(input, monitor),
             JobKind::Align(input) => align(&input, monitor),
             JobKind::Match(input) => run_match(&input, match_monitor),
+            JobKind::Race(input) => run_race(&input, monitor),
             JobKind::Verdict(input) => judge(&input, monitor),
             JobKind::Measure(input) => measure(&input, monitor),
             JobKind::Compare(input) => compare(&input, monitor),
@@ -207,6 +209,20 @@ fn run_match(input: &MatchInput, monitor: MatchMonitor<'_>) -> Result<JobOutput,
         monitor,
     )?;
     Ok(JobOutput::Matched(Arc::new(run)))
+}
+
+fn run_race(race_input: &RaceInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
+    let RaceInput { input, ids } = race_input;
+    let parts = input.parts.as_deref();
+    let winner = race(parts, ids, &input.recipe, &input.current, monitor)?;
+    let winner = winner.map(|part| {
+        let facts = Arc::new(PartFacts::of(&part));
+        (Arc::new(part), facts)
+    });
+    Ok(JobOutput::Raced {
+        winner,
+        n_parts: ids.len(),
+    })
 }
 
 fn judge(input: &VerdictInput, monitor: &Monitor) -> Result<JobOutput, JobError> {

@@ -19,6 +19,7 @@ pub mod outputs;
 pub mod preferences;
 mod process;
 pub mod project;
+pub mod race;
 pub mod reduce;
 pub mod robustness;
 pub mod robustness_page;

@@ -5,9 +5,14 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
-use shapematch::app::{Action, ReduceCommand};
+use shapematch::app::{
+    Action, ColorBy, ExportCommand, FileCommand, InspectCommand, MatchCommand, ReduceCommand,
+    ViewCommand,
+};
 use shapematch::jobs::{JobError, JobKey, JobKind, JobOutput, PipelineRunner, Runner as _};
 use shapematch::monitor::{Monitor, Observer, Progress};
+use shapematch::pipeline::outputs::Output;
+use shapematch::pipeline::sweep::SweepSettings;
 use shapematch::role::{PerRole, Role};
 use shapematch::samples::{self, SamplePart, SampleSettings};
 
@@ -71,10 +76,31 @@ fn jobs(folder: &Path) -> Vec<JobKind> {
         roles: PerRole::both(true),
         max_triangles: 500,
     });
+    window.apply(MatchCommand::Align);
     for action in [Action::MatchOrStop, Action::MapOrCancel] {
         let command = action.command(&window.state).unwrap();
         window.apply(command);
     }
+    let mut display = window.state.view.display.clone();
+    display.color_by = ColorBy::Deviation;
+    window.apply(ViewCommand::SetDisplay(Box::new(display)));
+    window.apply(InspectCommand::Update);
+    window.apply(MatchCommand::Measure);
+    let mut recipe = window.state.document.recipe.clone();
+    recipe.settings.shape_tolerance = 3.0;
+    window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
+    window.apply(ExportCommand::Write {
+        kind: Output::Report,
+        path: folder.join("report.html"),
+    });
+    window.apply(MatchCommand::Sweep(Box::new(SweepSettings {
+        reduction: vec![500],
+        matching: vec![500],
+        n_repeats: 1,
+        ..SweepSettings::default()
+    })));
+    let (role, factor) = (Role::Stamped, 1.001);
+    window.apply(FileCommand::SetLengthFactor { role, factor });
     ASKED.take()
 }
 
@@ -109,8 +135,16 @@ fn a_cancel_at_any_point_ends_the_work() {
         JobKey::Load(Role::Crash),
         JobKey::Load(Role::Stamped),
         JobKey::Reduce(Role::Crash),
+        JobKey::MeasureLevel(Role::Crash),
+        JobKey::Align,
         JobKey::Match,
         JobKey::Map,
+        JobKey::Compare,
+        JobKey::Measure,
+        JobKey::Verdict,
+        JobKey::Export,
+        JobKey::Sweep,
+        JobKey::Reselect(Role::Stamped),
     ] {
         assert!(keys.contains(&key), "{key:?} was not asked for: {keys:?}");
     }

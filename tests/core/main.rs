@@ -36,6 +36,7 @@ mod outputs;
 mod pairs;
 mod pan;
 mod project;
+mod race;
 mod realistic;
 mod registration;
 mod robustness;

@@ -10,6 +10,9 @@ use crate::role::{PerRole, Role};
 /// A crash model of so many parts is sorted as soon as the stamped part is known.
 const MANY: usize = 20;
 
+/// Parts of a crash model that a match tries alone at most.
+const MOST_TRIED: usize = 5;
+
 /// Less alike parts are not taken for each other.
 const ALIKE: f64 = 0.5;
 
@@ -76,6 +79,20 @@ impl AppState {
         let result = self.document.result.as_ref();
         let is_matched = result.is_some_and(|result| result.stamp.parts == parts);
         self.more_alike().filter(|_| !is_answered && !is_matched)
+    }
+
+    /// The parts of the crash model that a match tries alone first, the likeliest first: while the user has
+    /// not said which are matched, and on full meshes only, which each of them has.
+    pub(in crate::app) fn race_candidates(&self) -> Option<Vec<u64>> {
+        self.part_question()?;
+        let both = self.document.both()?;
+        if both.crash.level.is_some() || both.stamped.level.is_some() {
+            return None;
+        }
+        let found = self.document.likeness_to(LikeWhat::Used(Role::Stamped))?;
+        let order = found.order.into_iter();
+        let used = order.filter(|id| both.crash.is_used(*id) && found.of_part.contains_key(id));
+        Some(used.take(MOST_TRIED).collect())
     }
 }
 

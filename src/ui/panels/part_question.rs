@@ -14,7 +14,10 @@ pub fn part_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
     card(ui, |ui| {
         let title = state.document.part_title(more.part);
         let n_used = more.n_used;
-        let text = format!("{n_used} crash parts are matched. Most like the stamped part: {title}");
+        let text = format!(
+            "{n_used} crash parts are chosen. Most like the stamped part: {title}. Match tries the most \
+             alike one by one."
+        );
         ui.add(Label::new(text).wrap());
         if ui.button("Match only this").clicked() {
             commands.push(PartCommand::UseOnly(more.part).into());

@@ -1,0 +1,47 @@
+//! A whole model beside one stamped part: the match finds the part by itself.
+
+use shapematch::app::Action;
+use shapematch::assess::Verdict;
+use shapematch::jobs::{JobKind, JobOutput, PipelineRunner, Runner as _};
+use shapematch::monitor::Monitor;
+use shapematch::role::Role;
+use shapematch::samples::{self, SamplePart, SampleSettings, SampleVariant};
+
+use super::app::Window;
+
+fn really(kind: JobKind) -> Result<JobOutput, String> {
+    let done = PipelineRunner.run(kind, &Monitor::silent());
+    done.map_err(|error| error.to_string())
+}
+
+#[test]
+fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let pair = samples::generate(&SampleSettings {
+        part: SamplePart::Bracket,
+        variant: SampleVariant::WholeModel,
+        ..SampleSettings::default()
+    });
+    for file in samples::files(&pair) {
+        std::fs::write(folder.path().join(file.name), file.bytes).unwrap();
+    }
+    let mut window = Window::new();
+    window.runner = Some(really);
+    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
+        window.open(folder.path().join(name).to_str().unwrap(), role);
+    }
+    let n_parts = window.part(Role::Crash).facts.used.len();
+    assert!(n_parts > 2, "{n_parts}");
+    let asked = window.state.part_question().map(|more| more.part.id);
+    window.act(Action::MatchOrStop);
+    let used = &window.part(Role::Crash).facts.used;
+    assert_eq!(used.iter().copied().collect::<Vec<_>>(), [asked.unwrap()]);
+    let result = window.state.document.current_result().expect("a result");
+    assert_eq!(result.run.assessment.verdict, Verdict::Good);
+    let rows = window.state.log.rows().iter();
+    assert!(rows.into_iter().any(|row| row.text.contains("tried alone")));
+    // Two steps back the whole model is there again.
+    window.act(Action::Undo);
+    window.act(Action::Undo);
+    assert_eq!(window.part(Role::Crash).facts.used.len(), n_parts);
+}
