@@ -1,12 +1,14 @@
 //! What the events of background jobs change.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::mapping::{take_compared, take_mapped};
 use super::parts::NewPart;
 use super::reduce::take_level_measured;
 use super::{AppState, Effect, NoticeLevel};
-use crate::jobs::{JobEvent, JobKey, JobOutput, JobStage, Live, Stamp};
+use crate::jobs::{JobEvent, JobKey, JobOutput, JobStage, Live, PartFacts, Stamp};
+use crate::pipeline::load::LoadedPart;
 use crate::role::Role;
 use crate::text::counted;
 
@@ -113,27 +115,7 @@ impl AppState {
                 take_level_measured(work, role, &level, took);
             }
             JobOutput::Matched(run) => return topics.matching.take_matched(work, run, took),
-            JobOutput::Raced { winner, n_parts } => {
-                let tried = counted(n_parts, "crash part");
-                let told = match &winner {
-                    Some((_, facts)) => {
-                        let id = facts.used.first().copied().unwrap_or_default();
-                        format!("{tried} tried alone: {id} fits best")
-                    }
-                    None => format!("{tried} tried alone: none fits, so all are matched together"),
-                };
-                work.log_step("match", None, told, Some(took));
-                if let Some((part, facts)) = winner {
-                    let new = NewPart {
-                        role: Role::Crash,
-                        part,
-                        facts,
-                        took,
-                    };
-                    topics.parts.take_reselected(work, new);
-                }
-                return topics.matching.run_match(work);
-            }
+            JobOutput::Raced { winner, n_parts } => return self.take_raced(winner, n_parts, took),
             JobOutput::Aligned(poses) => topics.matching.take_aligned(work, poses, took),
             JobOutput::Judged(run) => topics.matching.take_judged(work, &run, took),
             JobOutput::Measured(measurement) => {
@@ -152,6 +134,35 @@ impl AppState {
             JobOutput::Exported(exported) => return work.take_exported(exported, took),
         }
         Vec::new()
+    }
+
+    /// One of several crash parts was found, or none: the match follows.
+    fn take_raced(
+        &mut self,
+        winner: Option<(Arc<LoadedPart>, Arc<PartFacts>)>,
+        n_parts: usize,
+        took: Duration,
+    ) -> Vec<Effect> {
+        let (mut work, topics) = self.split();
+        let tried = counted(n_parts, "crash part");
+        let told = match &winner {
+            Some((_, facts)) => {
+                let id = facts.used.first().copied().unwrap_or_default();
+                format!("up to {tried} tried alone: {id} fits")
+            }
+            None => format!("{tried} tried alone: none fits, so all are matched together"),
+        };
+        work.log_step("match", None, told, Some(took));
+        if let Some((part, facts)) = winner {
+            let new = NewPart {
+                role: Role::Crash,
+                part,
+                facts,
+                took,
+            };
+            topics.parts.take_reselected(&mut work, new);
+        }
+        topics.matching.run_match(&mut work)
     }
 
     fn take_cancelled(&mut self, key: JobKey, elapsed: Duration) {

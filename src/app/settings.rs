@@ -92,6 +92,8 @@ pub struct Settings {
     pub reduce_motion: bool,
     /// Limit on each file with its includes, unpacked, in GiB.
     pub read_limit: f64,
+    /// The work is kept after each step, in case the program does not live to save it.
+    pub keeps_work: bool,
     /// Files opened last, newest first.
     pub recent: Vec<PathBuf>,
     /// Labels of the commands that were searched for last, newest first.
@@ -129,6 +131,7 @@ impl Default for Settings {
             is_mouse_asked: false,
             reduce_motion: false,
             read_limit: ReadOptions::USUAL_LIMIT,
+            keeps_work: true,
             recent: Vec::new(),
             recent_commands: Vec::new(),
             unit_memory: UnitMemory::default(),

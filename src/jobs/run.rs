@@ -228,6 +228,8 @@ fn run_race(race_input: &RaceInput, monitor: &Monitor) -> Result<JobOutput, JobE
 fn judge(input: &VerdictInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
     let parts = input.parts.as_deref();
     let run = match_parts::judged_anew(&input.run, input.shape_tolerance, parts, monitor)?;
+    // A verdict that no one waits for any more is none.
+    monitor.check()?;
     Ok(JobOutput::Judged(Arc::new(run)))
 }
 

@@ -14,8 +14,8 @@ use crate::role::PerRole;
 /// The crash part with the likeliest of its parts chosen, where one of them alone gives a better match than
 /// a poor one.
 ///
-/// `ids` are the parts to try, the likeliest first: of two that fit equally well, the first is taken. A stop
-/// request ends it with the best so far. Fails only when cancelled.
+/// `ids` are the parts to try, the likeliest first: the first good match ends the search, and of two that fit
+/// equally well the first is taken. A stop request ends it with the best so far. Fails only when cancelled.
 pub fn race(
     parts: PerRole<&LoadedPart>,
     ids: &[u64],
@@ -45,8 +45,10 @@ pub fn race(
             continue;
         };
         let is_better = best.as_ref().is_none_or(|(_, best)| is_before(&run, best));
-        if run.assessment.verdict != Verdict::Poor && is_better {
-            best = Some((alone, run));
+        match run.assessment.verdict {
+            Verdict::Good => return Ok(Some(alone)),
+            Verdict::Check if is_better => best = Some((alone, run)),
+            Verdict::Check | Verdict::Poor => {}
         }
     }
     Ok(best.map(|(part, _)| part))
@@ -61,8 +63,8 @@ fn unless_cancelled<T>(result: Result<T, PipelineError>) -> Result<Option<T>, Pi
     }
 }
 
-/// True if the first match is the better one: by verdict, then by distance.
+/// True if the first match lies closer.
 fn is_before(one: &MatchRun, other: &MatchRun) -> bool {
-    let [a, b] = [one, other].map(|run| (run.assessment.verdict, run.assessment.coverage.rmse()));
-    a.0 < b.0 || a.0 == b.0 && a.1 < b.1
+    let [one, other] = [one, other].map(|run| run.assessment.coverage.rmse());
+    one < other
 }

@@ -6,12 +6,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use shapematch::app::{
-    Action, ColorBy, ExportCommand, FileCommand, InspectCommand, MatchCommand, ReduceCommand,
-    ViewCommand,
+    Action, ColorBy, FileCommand, InspectCommand, MatchCommand, ReduceCommand, ViewCommand,
 };
 use shapematch::jobs::{JobError, JobKey, JobKind, JobOutput, PipelineRunner, Runner as _};
 use shapematch::monitor::{Monitor, Observer, Progress};
-use shapematch::pipeline::outputs::Output;
 use shapematch::pipeline::sweep::SweepSettings;
 use shapematch::role::{PerRole, Role};
 use shapematch::samples::{self, SamplePart, SampleSettings};
@@ -89,10 +87,6 @@ fn jobs(folder: &Path) -> Vec<JobKind> {
     let mut recipe = window.state.document.recipe.clone();
     recipe.settings.shape_tolerance = 3.0;
     window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
-    window.apply(ExportCommand::Write {
-        kind: Output::Report,
-        path: folder.join("report.html"),
-    });
     window.apply(MatchCommand::Sweep(Box::new(SweepSettings {
         reduction: vec![500],
         matching: vec![500],
@@ -142,7 +136,6 @@ fn a_cancel_at_any_point_ends_the_work() {
         JobKey::Compare,
         JobKey::Measure,
         JobKey::Verdict,
-        JobKey::Export,
         JobKey::Sweep,
         JobKey::Reselect(Role::Stamped),
     ] {

@@ -111,7 +111,8 @@ impl AppState {
         let is_known = |(kept, has_sweep): &(Document, bool)| {
             *kept == self.document && *has_sweep == self.matching.sweep().is_some()
         };
-        !is_moving && self.has_work() && !self.project.autosaved.as_ref().is_some_and(is_known)
+        let is_wanted = self.settings.keeps_work && !is_moving && self.has_work();
+        is_wanted && !self.project.autosaved.as_ref().is_some_and(is_known)
     }
 
     /// Keeps the session in case of a crash, if there is something new.

@@ -241,13 +241,13 @@ pub fn convergence(outcome: &MatchOutcome, lengths: Lengths) -> Option<Markup> {
     let ticks = scale.ticks(10);
     let ticks: Vec<_> = ticks.iter().map(|&v| (v, trimmed(v, DECIMALS))).collect();
     let content = html! {
-        (axes.left_axis(&decades(axes.y), &lengths.axis("RMS distance")))
+        (axes.left_axis(&decades(axes.y), &lengths.axis("Residual")))
         @for start in starts {
             path class=(class(start.outcome)) d=(curve(&axes, start)) {}
         }
         (axes.bottom_axis(&ticks, "iteration"))
     };
-    let description = format!("RMS distance over up to {n} iterations, logarithmic");
+    let description = format!("Residual over up to {n} iterations, logarithmic");
     Some(svg([WIDTH, 302.0], &description, &content))
 }
 

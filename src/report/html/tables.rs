@@ -101,7 +101,7 @@ impl Report<'_> {
             Column::picture("Picture"),
             Column::number("Starts"),
             Column::text("Found from"),
-            Column::number("RMS"),
+            Column::number("Residual"),
             Column::number("Kept"),
             Column::number("Iterations"),
             Column::number("Centre off by"),

@@ -215,7 +215,7 @@ fn status_ui(ui: &mut Ui, state: &AppState) {
     }
     if let Some(latest) = job.latest {
         text += &format!(
-            "start {}/{n_starts} · iteration {} · RMS {} · overlap {} · ",
+            "start {}/{n_starts} · iteration {} · residual {} · overlap {} · ",
             latest.start + 1,
             latest.number + 1,
             state.document.length_text(latest.record.rmse),

@@ -14,9 +14,15 @@ pub fn part_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
     card(ui, |ui| {
         let title = state.document.part_title(more.part);
         let n_used = more.n_used;
+        let mut parts = state.document.parts.iter();
+        let is_full = parts.all(|(_, part)| part.as_ref().is_none_or(|part| part.level.is_none()));
+        let what_now = if is_full {
+            ". Match tries the most alike one by one."
+        } else {
+            ""
+        };
         let text = format!(
-            "{n_used} crash parts are chosen. Most like the stamped part: {title}. Match tries the most \
-             alike one by one."
+            "{n_used} crash parts are chosen. Most like the stamped part: {title}{what_now}"
         );
         ui.add(Label::new(text).wrap());
         if ui.button("Match only this").clicked() {

@@ -182,7 +182,7 @@ fn figures_ui(ui: &mut Ui, curves: &Curves<'_>) {
     let n_steps = iterations.len();
     let words = |step: &IterationRecord| {
         format!(
-            "RMS {}{} · overlap {}",
+            "residual {}{} · overlap {}",
             length(step.rmse),
             curves.unit,
             percent(step.fraction)
@@ -214,7 +214,7 @@ struct Chart {
 }
 
 const RMS: Chart = Chart {
-    name: "RMS",
+    name: "residual",
     value: |iteration| iteration.rmse,
     is_length: true,
 };

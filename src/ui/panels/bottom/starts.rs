@@ -117,7 +117,7 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
         "start".to_owned(),
         "Outcome".to_owned(),
         "overlap".to_owned(),
-        format!("RMS{unit}"),
+        format!("Residual{unit}"),
         format!("p95{unit}"),
         "steps".to_owned(),
         "time".to_owned(),
@@ -136,7 +136,7 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
         .column(Column::exact(PICTURE + 8.0))
         .column(Column::remainder().at_least(170.0).clip(true))
         .column(Column::exact(190.0).clip(true));
-    for width in [62.0, 68.0, 68.0, 48.0, 64.0, 84.0] {
+    for width in [62.0, 84.0, 68.0, 48.0, 64.0, 84.0] {
         builder = builder.column(Column::exact(width));
     }
     builder
