@@ -5,8 +5,12 @@ use std::process::ExitCode;
 
 use anyhow::Context as _;
 use clap::builder::BoolishValueParser;
-use clap::{ArgAction, Args, ValueEnum};
+use clap::{ArgAction, Args};
 
+use super::map_choices::{
+    HandName, KindName, MethodName, MirrorName, OverlapName, Reach, RuleName, SenseName,
+    default_thickness, law, quantities, reach,
+};
 use super::map_text::summary;
 use super::recipe::pose;
 use super::{
@@ -14,14 +18,14 @@ use super::{
 };
 use crate::assess::Verdict;
 use crate::formats::ReadOptions;
-use crate::formats::keyword::materials::law_of as material_law;
 use crate::geometry::Similarity;
 use crate::mapping::{MapMethod, MapOptions, NormalSense, Overlap, Quantities, RuleKind};
 use crate::monitor::Monitor;
 use crate::pipeline::load::{LoadSettings, LoadedPart, load, parse_selection};
 use crate::pipeline::map::{
-    MapFiles, MapOutput, MapRecipe, MapRecord, OtherResult, PlacedPart, WriteKind, deck_comments,
-    element_table, elements_path, map_parts, map_record, map_report, unmapped_sets, write_mapping,
+    DefaultThickness, MapFiles, MapOutput, MapRecipe, MapRecord, OtherResult, PlacedPart,
+    deck_comments, element_table, elements_path, map_parts, map_record, map_report, unmapped_sets,
+    write_mapping,
 };
 use crate::pipeline::match_parts::{MatchRecipe, match_parts};
 use crate::pipeline::outputs::{Content, Target};
@@ -89,6 +93,10 @@ struct MapChoice {
     /// opposite one (left for right), or either. Tensors are mirrored with it.
     #[arg(long, value_enum, default_value = "same", conflicts_with_all = ["pose", "project", "identity"])]
     hand: HandName,
+    /// Mirror what the given pose puts down, at a coordinate plane of the crash model: the stamped part
+    /// of one side of the car for the other side. Tensors are mirrored with it.
+    #[arg(long, value_enum, default_value = "none")]
+    mirror: MirrorName,
 }
 
 /// Quantities and how they pass over.
@@ -112,9 +120,9 @@ struct MapValues {
     /// the solver does).
     #[arg(long, value_enum, default_value = "area")]
     method: MethodName,
-    /// Largest distance of a partner, in the crash model's unit; the element size if not given.
-    #[arg(long, value_name = "LENGTH")]
-    max_distance: Option<f64>,
+    /// Largest distance of a partner, in the crash model's unit; auto is the element size.
+    #[arg(long, value_name = "LENGTH|auto", default_value = "auto", value_parser = reach)]
+    max_distance: Reach,
     /// Largest angle between the normals, degrees.
     #[arg(long, value_name = "DEG", default_value_t = 60.0)]
     max_angle: f64,
@@ -153,9 +161,16 @@ struct MapOutputArgs {
     /// 16 columns a number instead of 10.
     #[arg(long, value_name = "YES|NO", default_value = "yes", action = ArgAction::Set, value_parser = BoolishValueParser::new())]
     large: bool,
+    /// Thickness of elements without values: that of their section, a length, or nearest for that of the
+    /// nearest element that has one.
+    #[arg(long, value_name = "section|LENGTH|nearest", default_value = "section", value_parser = default_thickness)]
+    default_thickness: DefaultThickness,
     /// Smallest share of the area that must be mapped, percent; below it the exit status is 1.
     #[arg(long, value_name = "PERCENT")]
     require: Option<f64>,
+    /// Write no deck where less is mapped than --require asks for.
+    #[arg(long, requires = "require")]
+    strict: bool,
     /// Status, distances and values of every crash element as CSV.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -186,99 +201,6 @@ Examples:
 Exit status: 0 mapped, 1 failed or less mapped than --require asks for, 2 wrong usage, 3 mapped with a
 pose that the match calls poor.";
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum RuleName {
-    Gauss,
-    Lobatto,
-    Equal,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum HandName {
-    Same,
-    Opposite,
-    Either,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum MethodName {
-    Area,
-    Nearest,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum SenseName {
-    Auto,
-    Yes,
-    No,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum OverlapName {
-    Nearest,
-    First,
-    Thicker,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum KindName {
-    Include,
-    Part,
-    Deck,
-}
-
-impl KindName {
-    fn kind(self) -> WriteKind {
-        match self {
-            Self::Include => WriteKind::Include,
-            Self::Part => WriteKind::Part,
-            Self::Deck => WriteKind::Deck,
-        }
-    }
-}
-
-/// `thickness,plastic` and the two presets.
-fn quantities(text: &str) -> Result<Quantities, String> {
-    match text {
-        "usual" => return Ok(Quantities::USUAL),
-        "full" => return Ok(Quantities::FULL),
-        _ => {}
-    }
-    let mut chosen = Quantities {
-        thickness: false,
-        plastic_strain: false,
-        strain: false,
-        stress: false,
-        history: false,
-    };
-    for word in text.split(',') {
-        match word.trim() {
-            "thickness" => chosen.thickness = true,
-            "plastic" => chosen.plastic_strain = true,
-            "strain" => chosen.strain = true,
-            "stress" => chosen.stress = true,
-            "history" => chosen.history = true,
-            other => {
-                return Err(format!(
-                    "{other:?} is none of thickness, plastic, strain, stress, history, usual, full"
-                ));
-            }
-        }
-    }
-    Ok(chosen)
-}
-
-/// A law as its number or its keyword, with or without `MAT_`.
-fn law(text: &str) -> Result<String, String> {
-    let name = text.trim().to_ascii_uppercase();
-    let name = name.trim_start_matches('*').trim_start_matches("MAT_");
-    let name = match name.parse::<u16>() {
-        Ok(number) => format!("{number:03}"),
-        Err(_) => name.to_owned(),
-    };
-    material_law(&format!("MAT_{name}")).ok_or_else(|| format!("{text:?} is no material law"))
-}
-
 impl MapValues {
     fn recipe(&self, choice: &MapChoice) -> MapRecipe {
         MapRecipe {
@@ -288,7 +210,7 @@ impl MapValues {
                     MethodName::Area => MapMethod::Area,
                     MethodName::Nearest => MapMethod::Nearest,
                 },
-                max_distance: self.max_distance,
+                max_distance: self.max_distance.0,
                 max_angle_deg: self.max_angle,
                 normal_sense: match self.signed {
                     SenseName::Auto => NormalSense::Auto,
@@ -331,7 +253,10 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     inputs.extend(crash.files());
     inputs.extend(stamped.iter().flat_map(LoadedPart::files));
     check_outputs(targets(&args.output), &inputs)?;
-    let (poses, is_poor) = poses(args, &crash, &stamped, &monitor)?;
+    let (mut poses, is_poor) = poses(args, &crash, &stamped, &monitor)?;
+    if let Some(mirror) = args.choice.mirror.motion() {
+        poses.iter_mut().for_each(|pose| *pose = mirror.after(pose));
+    }
     let placed: Vec<PlacedPart<'_>> = stamped
         .iter()
         .zip(poses)
@@ -346,6 +271,7 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         kind: args.output.write.kind(),
         path: path.clone(),
         is_large: args.output.large,
+        default_thickness: args.output.default_thickness,
     });
     let comments = deck_comments(&crash, &placed);
     let write = |output: &MapOutput| write_mapping(&run, &crash, output, &comments, &monitor);
@@ -355,6 +281,8 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         .then(|| OtherResult::read(compare, &run, &crash, &monitor))
         .transpose()?;
     let record = map_record(&run, &crash, &placed, files.as_ref(), other.as_ref());
+    let is_withheld = args.output.strict && is_short(&args.output, &record);
+    let files = files.filter(|_| !is_withheld);
     let mut written: Vec<(PathBuf, Vec<u8>)> = Vec::new();
     if let Some(files) = &files {
         written.extend(files.files.iter().cloned());
@@ -373,6 +301,13 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     }
     drop(monitor);
     finish(outputs, &record, files.as_ref(), &written, is_poor)
+}
+
+/// True if less of the area carries values than was required.
+fn is_short(outputs: &MapOutputArgs, record: &MapRecord) -> bool {
+    outputs
+        .require
+        .is_some_and(|required| 100.0 * record.mapped_area < required)
 }
 
 /// Writes the files, prints the summary, and says how it went.
@@ -403,8 +338,13 @@ fn finish(
         log::warn!("{warning}");
     }
     let share = 100.0 * record.mapped_area;
-    if let Some(required) = outputs.require.filter(|&required| share < required) {
-        log::error!("{share:.1} % of the area is mapped, {required} % are required");
+    if let Some(required) = outputs.require.filter(|_| is_short(outputs, record)) {
+        let withheld = if outputs.strict {
+            "; no deck is written"
+        } else {
+            ""
+        };
+        log::error!("{share:.1} % of the area is mapped, {required} % are required{withheld}");
         return Ok(ExitCode::from(EXIT_GATE));
     }
     if !is_complete {
@@ -432,6 +372,13 @@ fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
     if args.choice.project.is_some() && n_files != 1 {
         return refuse(format!(
             "a project holds the pose of one stamped part, but {n_files} are named"
+        ));
+    }
+    let has_pose = args.choice.identity || args.choice.project.is_some() || n_poses > 0;
+    if args.choice.mirror != MirrorName::None && !has_pose {
+        let what = "--mirror mirrors a given pose (--pose, --project, --identity)";
+        return refuse(format!(
+            "{what}; where the parts are matched first, --hand opposite finds it"
         ));
     }
     if args.values.n_plane.is_some_and(|n| n != 1 && n != 4) {

@@ -64,26 +64,36 @@ pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>) -> String {
     for (head, rest) in record.comparison.iter().flat_map(compared) {
         line(head, rest);
     }
-    if let Some(files) = files {
-        for (path, bytes) in &files.files {
-            let megabytes = bytes.len() as f64 / 1e6;
-            line("Wrote", format!("{} ({megabytes:.1} MB)", path.display()));
-        }
-        line(
-            "",
-            format!(
-                "{} thicknesses, {} stress and {} strain cards, read back within {:.1e}",
-                grouped(files.n_thickness),
-                grouped(files.n_stress),
-                grouped(files.n_strain),
-                files.read_back_error
-            ),
-        );
-        if let Some(replaced) = &files.replaces {
-            line("", format!("takes the place of {}", replaced.display()));
-        }
+    for (head, rest) in files.into_iter().flat_map(wrote) {
+        line(head, rest);
     }
     text
+}
+
+/// The files with what they hold.
+fn wrote(files: &MapFiles) -> Vec<(&'static str, String)> {
+    let mut lines = Vec::new();
+    for (path, bytes) in &files.files {
+        let megabytes = bytes.len() as f64 / 1e6;
+        let text = format!("{} ({megabytes:.1} MB)", path.display());
+        lines.push(("Wrote", text));
+    }
+    let counts = format!(
+        "{} thicknesses, {} stress and {} strain cards, read back within {:.1e}",
+        grouped(files.n_thickness),
+        grouped(files.n_stress),
+        grouped(files.n_strain),
+        files.read_back_error
+    );
+    lines.push(("", counts));
+    if files.n_default > 0 {
+        let n = grouped(files.n_default);
+        lines.push(("", format!("{n} of the thicknesses are the default one")));
+    }
+    if let Some(replaced) = &files.replaces {
+        lines.push(("", format!("takes the place of {}", replaced.display())));
+    }
+    lines
 }
 
 /// How many checks are met, those that are not, and why one is judged as it is.

@@ -9,6 +9,7 @@ mod growth;
 mod info;
 mod map;
 mod map_bench;
+mod map_choices;
 mod map_text;
 mod match_text;
 mod matching;

@@ -61,7 +61,13 @@ impl Similarity {
 
     /// The mirror x → −x.
     pub fn mirror_x() -> Self {
-        let rotation = Matrix3::from_diagonal(&Vector3::new(-1.0, 1.0, 1.0));
+        Self::mirror(0)
+    }
+
+    /// The mirror that turns the sign of a coordinate: 0 for x, 1 for y, 2 for z.
+    pub fn mirror(axis: usize) -> Self {
+        let mut rotation = Matrix3::identity();
+        rotation[(axis, axis)] = -1.0;
         Self {
             rotation,
             ..Self::identity()

@@ -26,6 +26,7 @@ mod keyword_large;
 mod layering;
 mod map_decks;
 mod map_files;
+mod map_options;
 mod mapping;
 mod mapping_checks;
 mod match_starts;

@@ -2,6 +2,7 @@
 
 mod compare;
 mod convert;
+mod default_thickness;
 mod output;
 mod peak;
 mod ready;
@@ -18,6 +19,7 @@ use serde::{Deserialize, Serialize};
 
 pub use compare::{ComparisonRecord, DifferenceRecord, OtherResult, compare_with};
 pub use convert::TargetLayers;
+pub use default_thickness::DefaultThickness;
 pub use output::{MapFiles, MapOutput, WriteKind, deck_comments, elements_path, write_mapping};
 pub use record::{DistributionRecord, MapRecord, PairRecord, element_table, map_record};
 pub use report::map_report;

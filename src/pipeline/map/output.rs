@@ -4,12 +4,12 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::compare::read_beside_nodes;
-use super::{MapRun, PipelineError, PlacedPart};
+use super::{DefaultThickness, MapRun, PipelineError, PlacedPart};
 use crate::formats::keyword::card::Layout;
 use crate::formats::keyword::exchange::{Exchange, ExchangedDeck, exchange_thickness};
 use crate::formats::keyword::source_file::SourceFile;
 use crate::formats::keyword::state_cards::{ShellState, StateFormat, write_states};
-use crate::formats::{self, Disk, Memory, Model, ReadOptions};
+use crate::formats::{self, Memory, Model, ReadOptions};
 use crate::mapping::Status;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
@@ -52,7 +52,7 @@ impl WriteKind {
 }
 
 /// How the mapped state is written.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MapOutput {
     /// Include, part or whole deck.
     pub kind: WriteKind,
@@ -60,6 +60,8 @@ pub struct MapOutput {
     pub path: PathBuf,
     /// 16 columns a number instead of 10.
     pub is_large: bool,
+    /// Thickness of the elements without values.
+    pub default_thickness: DefaultThickness,
 }
 
 /// What was written, read back and compared.
@@ -69,6 +71,8 @@ pub struct MapFiles {
     pub files: Vec<(PathBuf, Vec<u8>)>,
     /// Elements that got a thickness.
     pub n_thickness: usize,
+    /// Those of them that carry no values and got the default one.
+    pub n_default: usize,
     /// Elements with a stress card.
     pub n_stress: usize,
     /// Elements with a strain card.
@@ -92,11 +96,21 @@ pub fn write_mapping(
     comments: &[String],
     monitor: &Monitor,
 ) -> Result<MapFiles, PipelineError> {
+    let factor = crash.settings.length_factor;
+    let mut thickness = thickness_by_id(run, &crash.model, factor);
+    let n_mapped = thickness.len();
+    for (element, value) in output.default_thickness.of(run) {
+        if !is_composite(run, &crash.model, element) {
+            let id = crash.model.shells[run.shells[element] as usize].id;
+            thickness.insert(id, [value / factor; 4]);
+        }
+    }
+    let n_default = thickness.len() - n_mapped;
     let writer = MapWriter {
         run,
         model: &crash.model,
         is_large: output.is_large,
-        thickness: thickness_by_id(run, &crash.model, crash.settings.length_factor),
+        thickness,
         monitor,
     };
     let has_values = |element: &usize| run.mapped.elements[*element].status.has_values();
@@ -122,7 +136,7 @@ pub fn write_mapping(
         )));
     }
     let mut replaces = None;
-    let head = writer.head(comments);
+    let head = writer.head(comments, n_default);
     let files = match output.kind {
         WriteKind::Include => writer.include(&head, &decks, &output.path)?,
         WriteKind::Part => vec![(output.path.clone(), writer.part(&head, &decks)?)],
@@ -147,6 +161,7 @@ pub fn write_mapping(
     let mut files = MapFiles {
         files,
         n_thickness,
+        n_default,
         n_stress: writer.count(|state| !state.states.is_empty()),
         n_strain: writer.count(|state| !state.strains.is_empty()),
         n_composite,
@@ -231,8 +246,9 @@ impl MapWriter<'_> {
             }
         };
         let mut decks = Vec::new();
+        let from = crash.file_source();
         for file in &crash.model.files {
-            let bytes = formats::read_text(&Disk, &file.path, &crash.settings.read, self.monitor)?;
+            let bytes = formats::read_text(&*from, &file.path, &crash.settings.read, self.monitor)?;
             let source = SourceFile::new(&file.path, bytes);
             let deck = exchange_thickness(&source, &exchange, &states, self.monitor)?;
             decks.push((file.path.clone(), deck));
@@ -240,7 +256,7 @@ impl MapWriter<'_> {
         Ok(decks)
     }
 
-    fn head(&self, comments: &[String]) -> String {
+    fn head(&self, comments: &[String], n_default: usize) -> String {
         let mut head = String::new();
         for line in comments.iter().flat_map(|comment| comment.lines()) {
             head.push_str(&format!("$ {line}\n"));
@@ -253,11 +269,13 @@ impl MapWriter<'_> {
         let words: Vec<String> = words
             .map(|(status, n)| format!("{n} {}", status.label()))
             .collect();
-        head.push_str(&format!(
-            "$ elements: {}\n$ {}\n",
-            words.join(", "),
-            build_id()
-        ));
+        head.push_str(&format!("$ elements: {}\n", words.join(", ")));
+        if n_default > 0 {
+            head.push_str(&format!(
+                "$ {n_default} of them carry no values and have the default thickness\n"
+            ));
+        }
+        head.push_str(&format!("$ {}\n", build_id()));
         head
     }
 

@@ -7,8 +7,8 @@ use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::map::{
-    MapFiles, MapOutput, MapRun, OtherResult, PlacedPart, WriteKind, deck_comments, element_table,
-    map_record, map_report, write_mapping,
+    DefaultThickness, MapFiles, MapOutput, MapRun, OtherResult, PlacedPart, WriteKind,
+    deck_comments, element_table, map_record, map_report, write_mapping,
 };
 use crate::role::PerRole;
 use crate::text::grouped;
@@ -45,6 +45,7 @@ pub(super) fn deck_files(
         kind,
         path: path.to_path_buf(),
         is_large: true,
+        default_thickness: DefaultThickness::Section,
     };
     let comments = deck_comments(parts.crash, &[placed(run, parts)]);
     write_mapping(run, parts.crash, &output, &comments, monitor)

@@ -1,0 +1,147 @@
+//! The words and numbers that the options of `shapematch map` take.
+
+use clap::ValueEnum;
+
+use crate::formats::keyword::materials::law_of as material_law;
+use crate::geometry::Similarity;
+use crate::mapping::Quantities;
+use crate::pipeline::map::{DefaultThickness, WriteKind};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum RuleName {
+    Gauss,
+    Lobatto,
+    Equal,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum HandName {
+    Same,
+    Opposite,
+    Either,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum MethodName {
+    Area,
+    Nearest,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum SenseName {
+    Auto,
+    Yes,
+    No,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum OverlapName {
+    Nearest,
+    First,
+    Thicker,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum KindName {
+    Include,
+    Part,
+    Deck,
+}
+
+impl KindName {
+    pub(super) fn kind(self) -> WriteKind {
+        match self {
+            Self::Include => WriteKind::Include,
+            Self::Part => WriteKind::Part,
+            Self::Deck => WriteKind::Deck,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum MirrorName {
+    None,
+    Yz,
+    Zx,
+    Xy,
+}
+
+impl MirrorName {
+    /// The mirror at a plane through the origin.
+    pub(super) fn motion(self) -> Option<Similarity> {
+        match self {
+            Self::None => None,
+            Self::Yz => Some(Similarity::mirror(0)),
+            Self::Zx => Some(Similarity::mirror(1)),
+            Self::Xy => Some(Similarity::mirror(2)),
+        }
+    }
+}
+
+/// A largest distance; `None` is the size of the elements.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reach(pub Option<f64>);
+
+pub(super) fn reach(text: &str) -> Result<Reach, String> {
+    if text == "auto" {
+        return Ok(Reach(None));
+    }
+    let number = text.parse();
+    let number = number.map_err(|_| format!("{text:?} is neither a length nor auto"))?;
+    Ok(Reach(Some(number)))
+}
+
+pub(super) fn default_thickness(text: &str) -> Result<DefaultThickness, String> {
+    match text {
+        "section" => Ok(DefaultThickness::Section),
+        "nearest" => Ok(DefaultThickness::Nearest),
+        _ => match text.parse::<f64>() {
+            Ok(value) if value.is_finite() && value > 0.0 => Ok(DefaultThickness::Fixed(value)),
+            _ => Err(format!(
+                "{text:?} is none of section, nearest and a thickness"
+            )),
+        },
+    }
+}
+
+/// `thickness,plastic` and the two presets.
+pub(super) fn quantities(text: &str) -> Result<Quantities, String> {
+    match text {
+        "usual" => return Ok(Quantities::USUAL),
+        "full" => return Ok(Quantities::FULL),
+        _ => {}
+    }
+    let mut chosen = Quantities {
+        thickness: false,
+        plastic_strain: false,
+        strain: false,
+        stress: false,
+        history: false,
+    };
+    for word in text.split(',') {
+        match word.trim() {
+            "thickness" => chosen.thickness = true,
+            "plastic" => chosen.plastic_strain = true,
+            "strain" => chosen.strain = true,
+            "stress" => chosen.stress = true,
+            "history" => chosen.history = true,
+            other => {
+                return Err(format!(
+                    "{other:?} is none of thickness, plastic, strain, stress, history, usual, full"
+                ));
+            }
+        }
+    }
+    Ok(chosen)
+}
+
+/// A law as its number or its keyword, with or without `MAT_`.
+pub(super) fn law(text: &str) -> Result<String, String> {
+    let name = text.trim().to_ascii_uppercase();
+    let name = name.trim_start_matches('*').trim_start_matches("MAT_");
+    let name = match name.parse::<u16>() {
+        Ok(number) => format!("{number:03}"),
+        Err(_) => name.to_owned(),
+    };
+    material_law(&format!("MAT_{name}")).ok_or_else(|| format!("{text:?} is no material law"))
+}

@@ -1,0 +1,232 @@
+//! Options of `shapematch map` that decide what is written of elements without values, and where a mirrored
+//! part goes; and the examples written.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use shapematch::monitor::Monitor;
+use shapematch::pipeline::load::{LoadSettings, PartSource};
+use shapematch::pipeline::map::{
+    DefaultThickness, MapOutput, MapRecipe, PlacedPart, WriteKind, map_parts, write_mapping,
+};
+use shapematch::report::parse_matrix;
+use shapematch::role::Role;
+use shapematch::samples;
+
+/// Four squares of 10 on the crash side (ids from 101), the first two of them stamped (ids from 1).
+struct Strip {
+    folder: tempfile::TempDir,
+}
+
+/// Nodes and elements of a strip of `n` squares along x.
+fn squares(n: usize, first_id: usize, part: usize, thickness: Option<f64>) -> String {
+    let mut deck = "*NODE\n".to_owned();
+    for column in 0..=n {
+        for row in 0..2 {
+            let (id, x, y) = (2 * column + row + 1, 10 * column, 10 * row);
+            deck += &format!("{id:>8}{x:>16}{y:>16}{:>16}\n", 0);
+        }
+    }
+    deck += match thickness {
+        Some(_) => "*ELEMENT_SHELL_THICKNESS\n",
+        None => "*ELEMENT_SHELL\n",
+    };
+    for i in 0..n {
+        let (id, node) = (first_id + i, 2 * i + 1);
+        let corners = [node, node + 2, node + 3, node + 1];
+        let corners: String = corners.iter().map(|n| format!("{n:>8}")).collect();
+        deck += &format!("{id:>8}{part:>8}{corners}\n");
+        if let Some(thickness) = thickness {
+            deck += &format!("{thickness:>16}").repeat(4);
+            deck += "\n";
+        }
+    }
+    deck
+}
+
+impl Strip {
+    fn new() -> Self {
+        let section = "*PART\nsheet\n         7         7\n*SECTION_SHELL\n         7         2     0.833         2\n       1.0\n";
+        // The first stamped element alone has stresses, with a shear.
+        let mut results = "*INITIAL_STRESS_SHELL\n         1         1         2\n".to_owned();
+        for t in ["-.5773503", ".57735027"] {
+            results += &format!(
+                "{t:>10}     100.0      50.0       0.0      20.0       0.0       0.0       0.1\n"
+            );
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text);
+        let crash = squares(4, 101, 7, None);
+        write("crash.k", format!("*KEYWORD\n{section}{crash}*END\n")).unwrap();
+        let stamped = squares(2, 1, 1, Some(0.9));
+        write(
+            "stamped.dynain",
+            format!("*KEYWORD\n{stamped}{results}*END\n"),
+        )
+        .unwrap();
+        Self { folder }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn map(&self, options: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_shapematch"))
+            .current_dir(self.folder.path())
+            .args(["map", "crash.k", "stamped.dynain", "--out", "out.k"])
+            .args(options)
+            .output()
+            .unwrap()
+    }
+
+    /// Id and first corner thickness of the elements that were written.
+    fn thicknesses(&self) -> Vec<(u64, f64)> {
+        let text = std::fs::read_to_string(self.path("out_elements.k")).unwrap();
+        let lines = text.lines().filter(|line| !line.starts_with(['$', '*']));
+        let lines: Vec<&str> = lines.collect();
+        let element = |lines: &[&str]| {
+            let id = lines[0][..8].trim().parse().unwrap();
+            (id, lines[1][..16].trim().parse().unwrap())
+        };
+        lines.chunks(2).map(element).collect()
+    }
+}
+
+fn errors(output: &Output) -> &str {
+    std::str::from_utf8(&output.stderr).unwrap()
+}
+
+#[test]
+fn elements_without_values_get_the_default_thickness_that_was_chosen() {
+    let strip = Strip::new();
+    let written = |options: &[&str]| {
+        let output = strip.map(&[&["--identity"], options].concat());
+        assert!(output.status.success(), "{}", errors(&output));
+        strip.thicknesses()
+    };
+    let mapped = [(101, 0.9), (102, 0.9)];
+    assert_eq!(written(&[]), mapped);
+    assert_eq!(written(&["--default-thickness", "section"]), mapped);
+    let fixed = written(&["--default-thickness", "0.7"]);
+    assert_eq!(fixed, [(101, 0.9), (102, 0.9), (103, 0.7), (104, 0.7)]);
+    let head = std::fs::read_to_string(strip.path("out_elements.k")).unwrap();
+    assert!(head.contains("$ 2 of them carry no values and have the default thickness"));
+    let nearest = written(&["--default-thickness", "nearest"]);
+    assert_eq!(nearest, [(101, 0.9), (102, 0.9), (103, 0.9), (104, 0.9)]);
+    for wrong in ["0", "-1", "thick", "NaN"] {
+        let option = format!("--default-thickness={wrong}");
+        let refused = strip.map(&["--identity", &option]);
+        assert_eq!(refused.status.code(), Some(2), "{wrong}");
+    }
+}
+
+#[test]
+fn the_examples_that_come_with_the_program_are_mapped_and_written() {
+    let silent = Monitor::silent();
+    for (source, files) in [
+        (PartSource::Example, samples::bundled()),
+        (PartSource::RealisticExample, samples::realistic()),
+    ] {
+        let load = |role| {
+            source
+                .load(role, &LoadSettings::default(), &silent)
+                .unwrap()
+        };
+        let (crash, stamped) = (load(Role::Crash), load(Role::Stamped));
+        let truth = files
+            .iter()
+            .find(|file| file.name.ends_with("json"))
+            .unwrap();
+        let truth = String::from_utf8_lossy(&truth.bytes).replace("crash_from_stamped", "matrix");
+        let placed = PlacedPart {
+            part: &stamped,
+            crash_from_stamped: parse_matrix(&truth).unwrap().motion,
+        };
+        let run = map_parts(&crash, &[placed], &MapRecipe::default(), &silent).unwrap();
+        for kind in WriteKind::ALL {
+            let output = MapOutput {
+                kind,
+                path: "out.k".into(),
+                is_large: true,
+                default_thickness: DefaultThickness::Section,
+            };
+            let files = write_mapping(&run, &crash, &output, &[], &silent).unwrap();
+            assert!(files.n_thickness > 1000, "{source:?} {kind:?}");
+        }
+    }
+}
+
+#[test]
+fn strict_withholds_the_deck_where_too_little_is_mapped() {
+    let strip = Strip::new();
+    let gate = ["--identity", "--require", "95"];
+    let short = strip.map(&gate);
+    assert_eq!(short.status.code(), Some(1));
+    assert!(strip.path("out.k").exists());
+    std::fs::remove_file(strip.path("out.k")).unwrap();
+    std::fs::remove_file(strip.path("out_elements.k")).unwrap();
+    let strict = strip.map(&[&gate[..], &["--strict", "--csv", "table.csv"]].concat());
+    assert_eq!(strict.status.code(), Some(1));
+    assert!(errors(&strict).contains("no deck is written"));
+    // The table that says why is written all the same.
+    assert!(strip.path("table.csv").exists());
+    assert!(!strip.path("out.k").exists() && !strip.path("out_elements.k").exists());
+    let met = strip.map(&["--identity", "--require", "40", "--strict"]);
+    assert!(met.status.success() && strip.path("out.k").exists());
+    assert_eq!(
+        strip.map(&["--identity", "--strict"]).status.code(),
+        Some(2)
+    );
+}
+
+#[test]
+fn a_given_pose_is_mirrored_at_a_plane_of_the_crash_model() {
+    let strip = Strip::new();
+    // Moved by −20 along x, the stamped part lies beside the crash part, and its mirror image on it.
+    let pose = ["--pose", "1 0 0 -20 0 1 0 0 0 0 1 0 0 0 0 1"];
+    let beside = strip.map(&pose);
+    assert!(
+        !strip.path("out_elements.k").exists(),
+        "{}",
+        errors(&beside)
+    );
+    let options = ["--mirror", "yz", "--quantities", "thickness,plastic,stress"];
+    let output = strip.map(&[&pose[..], &options].concat());
+    assert!(output.status.success(), "{}", errors(&output));
+    assert_eq!(strip.thicknesses(), [(101, 0.9), (102, 0.9)]);
+    // The stamped element at the end comes to lie at the other one, its shear with the other sign.
+    let written = std::fs::read_to_string(strip.path("out.k")).unwrap();
+    let cards = written.lines().filter(|line| !line.starts_with(['$', '*']));
+    let cards: Vec<&str> = cards.collect();
+    assert_eq!(cards.len(), 5, "{written}");
+    assert_eq!(cards[0][..10].trim(), "102");
+    for layer in [1, 3] {
+        let rest = "  1.00000000E+02  5.00000000E+01  0.00000000E+00 -2.00000000E+01";
+        assert_eq!(&cards[layer][16..], rest);
+    }
+    // Where the parts are matched first there is no pose to mirror.
+    let refused = strip.map(&["--mirror", "yz"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        errors(&refused).contains("--hand opposite"),
+        "{}",
+        errors(&refused)
+    );
+}
+
+#[test]
+fn the_largest_distance_is_a_length_or_the_element_size() {
+    let strip = Strip::new();
+    let written = |distance: &str| {
+        let output = strip.map(&["--identity", "--max-distance", distance]);
+        (
+            output.status.code(),
+            std::fs::read(strip.path("out.k")).ok(),
+        )
+    };
+    let auto = written("auto");
+    assert_eq!(auto, written("10"));
+    assert_eq!(auto.0, Some(0));
+    assert_eq!(written("far").0, Some(2));
+}
