@@ -285,7 +285,8 @@ impl ShapeStatement {
 
     fn rim_reasons(&self, evidence: &ShapeEvidence<'_>, fit: &Fit) -> Vec<ShapeReason> {
         let rims = evidence.rims;
-        let limit = self.tolerance.remainder + rims.unremarkable();
+        // What facets and ragged trims do to a rim has nothing to do with how the parts differ.
+        let limit = self.tolerance.remainder.hypot(rims.unremarkable());
         let mut reasons = Vec::new();
         let holes = rims.holes.iter().zip(&fit.holes);
         let worst = holes.max_by(|a, b| a.1.total_cmp(b.1));
