@@ -1515,6 +1515,23 @@ fn a_muted_level_goes_to_the_bell_without_a_toast() {
 }
 
 #[test]
+fn the_work_is_kept_unless_the_user_does_not_want_it() {
+    let mut window = Window::with_both();
+    let part = PartRef {
+        role: Role::Crash,
+        id: 11,
+    };
+    window.apply(PartCommand::SetVisible(part, false));
+    assert!(window.state.needs_autosave());
+    let settings = Settings {
+        keeps_work: false,
+        ..window.state.settings.clone()
+    };
+    window.apply(Command::Settings(Box::new(settings)));
+    assert!(!window.state.needs_autosave());
+}
+
+#[test]
 fn the_sections_follow_the_work_and_many_parts_are_chosen_from_first() {
     let mut window = Window::with_both();
     let in_use = |window: &Window| window.state.view.sections.in_use();
