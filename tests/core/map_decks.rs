@@ -8,30 +8,35 @@ use shapematch::formats::{Model, ReadOptions, read};
 use shapematch::monitor::Monitor;
 
 /// A folder with a crash and a stamped deck.
-struct Pair {
+pub(crate) struct Pair {
     folder: tempfile::TempDir,
 }
 
 impl Pair {
-    fn new(crash: &str, stamped: &str) -> Self {
+    pub(crate) fn new(crash: &str, stamped: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("crash.k"), crash).unwrap();
         std::fs::write(folder.path().join("stamped.dynain"), stamped).unwrap();
         Self { folder }
     }
 
-    fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
+    }
+
+    /// Runs the program on both decks.
+    pub(crate) fn run(&self, options: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_shapematch"))
+            .current_dir(self.folder.path())
+            .args(["map", "crash.k", "stamped.dynain"])
+            .args(options)
+            .output()
+            .unwrap()
     }
 
     /// Runs the program on both decks as they lie.
     fn map(&self, options: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_shapematch"))
-            .current_dir(self.folder.path())
-            .args(["map", "crash.k", "stamped.dynain", "--identity"])
-            .args(options)
-            .output()
-            .unwrap()
+        self.run(&[&["--identity"], options].concat())
     }
 
     /// The file that a successful run writes.

@@ -2,7 +2,7 @@
 //! part goes; and the examples written.
 
 use std::path::PathBuf;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::load::{LoadSettings, PartSource};
@@ -13,10 +13,7 @@ use shapematch::report::parse_matrix;
 use shapematch::role::Role;
 use shapematch::samples;
 
-/// Four squares of 10 on the crash side (ids from 101), the first two of them stamped (ids from 1).
-struct Strip {
-    folder: tempfile::TempDir,
-}
+use super::map_decks::Pair;
 
 /// Nodes and elements of a strip of `n` squares along x.
 fn squares(n: usize, first_id: usize, part: usize, thickness: Option<f64>) -> String {
@@ -44,6 +41,9 @@ fn squares(n: usize, first_id: usize, part: usize, thickness: Option<f64>) -> St
     deck
 }
 
+/// Four squares of 10 on the crash side (ids from 101), the first two of them stamped (ids from 1).
+struct Strip(Pair);
+
 impl Strip {
     fn new() -> Self {
         let section = "*PART\nsheet\n         7         7\n*SECTION_SHELL\n         7         2     0.833         2\n       1.0\n";
@@ -54,30 +54,20 @@ impl Strip {
                 "{t:>10}     100.0      50.0       0.0      20.0       0.0       0.0       0.1\n"
             );
         }
-        let folder = tempfile::tempdir().unwrap();
-        let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text);
         let crash = squares(4, 101, 7, None);
-        write("crash.k", format!("*KEYWORD\n{section}{crash}*END\n")).unwrap();
         let stamped = squares(2, 1, 1, Some(0.9));
-        write(
-            "stamped.dynain",
-            format!("*KEYWORD\n{stamped}{results}*END\n"),
-        )
-        .unwrap();
-        Self { folder }
+        Self(Pair::new(
+            &format!("*KEYWORD\n{section}{crash}*END\n"),
+            &format!("*KEYWORD\n{stamped}{results}*END\n"),
+        ))
     }
 
     fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
+        self.0.path(name)
     }
 
     fn map(&self, options: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_shapematch"))
-            .current_dir(self.folder.path())
-            .args(["map", "crash.k", "stamped.dynain", "--out", "out.k"])
-            .args(options)
-            .output()
-            .unwrap()
+        self.0.run(&[&["--out", "out.k"], options].concat())
     }
 
     /// Id and first corner thickness of the elements that were written.

@@ -11,7 +11,7 @@ use shapematch::app::{
 use shapematch::geometry::Vector3;
 use shapematch::role::Role;
 
-use super::story::{click, finish, window};
+use super::story::{click, finish, matched};
 use super::viewport::{Desk, area, drag, harness, show};
 
 fn act(desk: &mut Desk, action: Action) {
@@ -290,11 +290,7 @@ fn spread(values: &[f64]) -> f64 {
 
 #[test]
 fn after_a_match_the_tab_tells_the_numbers_and_goes_to_the_worst_places() {
-    let mut window = window();
-    click(&mut window, "Open the example pair");
-    finish(&mut window);
-    click(&mut window, "Match the parts");
-    finish(&mut window);
+    let mut window = matched();
     click(&mut window, "Deviation");
     finish(&mut window);
     assert_eq!(window.state().state().view.tab, BottomTab::Deviation);

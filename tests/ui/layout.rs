@@ -11,7 +11,7 @@ use shapematch::role::Role;
 use shapematch::text::capital;
 use shapematch::ui::Shell;
 
-use super::story::{click, finish, window};
+use super::story::{click, finish, matched, window};
 
 pub(super) type Window = Harness<'static, Shell>;
 
@@ -205,11 +205,7 @@ fn nothing_is_cut_at_any_size_and_scale_in_any_theme() {
 
 #[test]
 fn a_fitted_part_lies_beside_what_lies_over_the_window() {
-    let mut window = window();
-    click(&mut window, "Open the example pair");
-    finish(&mut window);
-    click(&mut window, "Match the parts");
-    finish(&mut window);
+    let mut window = matched();
     click(&mut window, "Move over");
     finish(&mut window);
     wait_for(&mut window, "Unfold the legend (stamped)");
@@ -256,11 +252,7 @@ fn a_fitted_part_lies_beside_what_lies_over_the_window() {
 
 #[test]
 fn the_largest_deviations_are_seen_whole_without_scrolling() {
-    let mut window = window();
-    click(&mut window, "Open the example pair");
-    finish(&mut window);
-    click(&mut window, "Match the parts");
-    finish(&mut window);
+    let mut window = matched();
     click(&mut window, "Deviation");
     finish(&mut window);
     window.run_steps(4);

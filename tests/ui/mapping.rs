@@ -13,7 +13,7 @@ use shapematch::samples::{self, SamplePart, SampleSettings};
 use shapematch::ui::Shell;
 
 use super::layout::faults;
-use super::story::{click, finish, window};
+use super::story::{click, finish, matched, window};
 
 fn color_by(window: &Harness<'static, Shell>) -> ColorBy {
     window.state().state().color_by(Role::Crash)
@@ -21,11 +21,7 @@ fn color_by(window: &Harness<'static, Shell>) -> ColorBy {
 
 #[test]
 fn a_mapping_is_made_looked_at_and_followed_to_its_worst_place() {
-    let mut window = window();
-    click(&mut window, "Open the example pair");
-    finish(&mut window);
-    click(&mut window, "Match the parts");
-    finish(&mut window);
+    let mut window = matched();
     click(&mut window, "Map");
     finish(&mut window);
     let state = window.state().state();

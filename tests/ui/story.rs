@@ -27,6 +27,16 @@ pub(crate) fn window() -> Harness<'static, Shell> {
     window
 }
 
+/// The window with the example pair matched.
+pub(crate) fn matched() -> Harness<'static, Shell> {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    click(&mut window, "Match the parts");
+    finish(&mut window);
+    window
+}
+
 /// Draws until the worker has nothing to do and its news are taken.
 pub(crate) fn finish(window: &mut Harness<'static, Shell>) {
     let begin = Instant::now();
