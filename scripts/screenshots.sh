@@ -186,8 +186,11 @@ prefer '{"theme":"Dark","is_mouse_asked":true,"ui_scale":2.0}'
 open_window 1280 720 --example
 matched
 press m
-rest
-keep large-text
+# Its top line is full there; the strip of the folded sections is not.
+xdotool mousemove 40 500
+settle
+scrot -o -a 0,0,1280,720 screenshots/large-text.png
+say "screenshots/large-text.png"
 
 # A deck of a million triangles beside one of half as many.
 # wave FILE COLUMNS ROWS PITCH: a wavy sheet of quads.

@@ -19,7 +19,7 @@ use crate::ui::viewport::fields::FieldKind;
 
 /// Width of what is inside the plate, and of the folded one; air beside it.
 const WIDTH: f32 = 172.0;
-const SLIM: f32 = 48.0;
+const SLIM: f32 = 58.0;
 const AIR: f32 = 8.0;
 /// Room above the legend for the buttons of the camera, and below it for the scale bar.
 const ABOVE: f32 = 44.0;
