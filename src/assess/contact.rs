@@ -4,6 +4,7 @@
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 use rayon::prelude::*;
 
+use super::is_source_smaller;
 use crate::geometry::{Point3, Rotation, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::ClosestPoint;
@@ -67,7 +68,7 @@ impl<'a> ContactSearch<'a> {
         reach: f64,
         max_nodes: usize,
     ) -> Self {
-        let of_source = source.measures().area * scale * scale <= 1.02 * target.measures().area;
+        let of_source = is_source_smaller(source, target, scale);
         let data = if of_source { source } else { target };
         let n_nodes = data.mesh().positions().len();
         let stride = n_nodes.div_ceil(max_nodes).max(1);

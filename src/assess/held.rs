@@ -42,11 +42,11 @@ const SAME_SHARE: f64 = 0.02;
 /// The opposite hand is told by its rims if so much of them lies where it belongs; with less its score counts
 /// as at least this many times the result's.
 const SURELY_HELD: f64 = 0.9;
+const HINT: f64 = 0.9;
 /// With less than this the rims speak against a pose.
 const HARDLY_HELD: f64 = 0.5;
 /// Poses that are not refined yet may lie so many times as far apart as springback explains.
 const ROUGHLY: f64 = 2.0;
-const HINT: f64 = 0.9;
 /// Scores of the opposite hand above this many times the result's need no other opinion.
 const OPPOSITE_IS_CLEAR: f64 = 1.3;
 /// Its surfaces may lie apart by so many times as much …

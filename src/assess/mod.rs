@@ -86,10 +86,47 @@ pub struct Assessment {
     pub shape: Option<ShapeStatement>,
 }
 
-/// Distance within which the parts are compared, as a share of the target's diagonal, and rims, in
-/// tolerances.
+/// Distance within which the parts are compared, as a share of the target's diagonal and in tolerances of
+/// springback, and rims, in tolerances.
 const REACH: f64 = 0.03;
+const SPRINGBACK_REACH: f64 = 3.0;
 const RIM_REACH: f64 = 8.0;
+
+/// Sources up to so many times the area of the target count as the smaller part.
+const AS_LARGE: f64 = 1.02;
+
+/// What a pair is compared by, in target length units.
+#[derive(Debug, Clone, Copy)]
+struct Distances {
+    tolerance: ShapeTolerance,
+    /// Surfaces within it are compared,
+    reach: f64,
+    /// and rims within this.
+    near: f64,
+    /// Faceting of both meshes and the allowance: distances of this size mean nothing.
+    noise: f64,
+}
+
+impl Distances {
+    fn of(source: &Surface, target: &Surface, settings: &AssessSettings) -> Self {
+        let tolerance = tolerance_of(target, settings);
+        let diagonal = target.measures().diagonal;
+        let reach = (REACH * diagonal).max(SPRINGBACK_REACH * tolerance.springback);
+        let chordal = |surface: &Surface| surface.measures().chordal_error;
+        Self {
+            tolerance,
+            reach,
+            near: (RIM_REACH * tolerance.remainder).min(reach),
+            noise: chordal(source).max(chordal(target)) + settings.allowance,
+        }
+    }
+}
+
+/// Whether the source is the smaller part, by area, under a pose of this scale: the smaller part's nodes and
+/// rims are the ones that are followed.
+fn is_source_smaller(source: &Surface, target: &Surface, scale: f64) -> bool {
+    source.measures().area * scale * scale <= AS_LARGE * target.measures().area
+}
 
 /// Assesses the pose of `outcome` on the full meshes. O(vertices · log triangles).
 pub fn assess(
@@ -112,8 +149,7 @@ pub fn assess(
         let other = outcome.alternatives.first();
         ambiguity.twin = other.map(|a| Twin::of(source, pose, &a.target_from_source));
     }
-    let chordal = |surface: &Surface| surface.measures().chordal_error;
-    let noise = chordal(source).max(chordal(target)) + settings.allowance;
+    let Distances { noise, .. } = Distances::of(source, target, settings);
     let (uncertainty, shape) = statements(source, target, pose, noise, settings);
     let mut assessment = Assessment {
         verdict: Verdict::Good,
@@ -168,13 +204,15 @@ fn statements(
     noise: f64,
     settings: &AssessSettings,
 ) -> (Option<PoseUncertainty>, ShapeStatement) {
-    let tolerance = tolerance_of(target, settings);
-    let diagonal = target.measures().diagonal;
-    let reach = (REACH * diagonal).max(3.0 * tolerance.springback);
+    let Distances {
+        tolerance,
+        reach,
+        near,
+        ..
+    } = Distances::of(source, target, settings);
     let Some(contacts) = Contacts::find(source, target, pose, reach) else {
         return (None, ShapeStatement::nothing_met(tolerance));
     };
-    let near = (RIM_REACH * tolerance.remainder).min(reach);
     let rims = Rims::find(source, target, pose, near);
     let evidence = ShapeEvidence {
         source,

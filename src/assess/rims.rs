@@ -2,6 +2,7 @@
 //! percent longer than its counterpart fits its surface well and misses its rims.
 
 use super::contact::robust_weights;
+use super::is_source_smaller;
 use crate::geometry::{Border, Point3, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::{ClosestPoint, PointTree};
@@ -117,7 +118,7 @@ impl<'a> RimComparison<'a> {
     pub(super) fn new(surfaces: [&'a Surface; 2], scale: f64, near: f64) -> Self {
         let [source, target] = surfaces;
         let rims = surfaces.map(rims_of);
-        let of_source = source.measures().area * scale * scale <= 1.02 * target.measures().area;
+        let of_source = is_source_smaller(source, target, scale);
         let edge = source.measures().mean_edge_length * scale;
         let [own, other] = if of_source { [0, 1] } else { [1, 0] };
         let units = [scale, 1.0];

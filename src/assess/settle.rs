@@ -3,8 +3,8 @@
 
 use super::contact::{ContactSearch, MAX_NODES, quantile};
 use super::rims::{RimComparison, Rims};
-use super::shape::{Fit, ShapeEvidence, ShapeTolerance};
-use super::{AssessSettings, REACH, tolerance_of};
+use super::shape::{Fit, ShapeEvidence};
+use super::{AssessSettings, Distances};
 use crate::geometry::Similarity;
 use crate::registration::Surface;
 
@@ -40,10 +40,7 @@ pub fn settled(
 pub(super) struct Settling<'a> {
     surfaces: [&'a Surface; 2],
     rims: RimComparison<'a>,
-    tolerance: ShapeTolerance,
-    reach: f64,
-    /// Faceting of both meshes.
-    noise: f64,
+    distances: Distances,
     max_nodes: usize,
 }
 
@@ -68,16 +65,12 @@ impl<'a> Settling<'a> {
         near: f64,
     ) -> Self {
         let [source, target] = surfaces;
-        let tolerance = tolerance_of(target, settings);
-        let diagonal = target.measures().diagonal;
-        let near = near.max(3.0 * tolerance.remainder);
-        let chordal = |surface: &Surface| surface.measures().chordal_error;
+        let distances = Distances::of(source, target, settings);
+        let near = near.max(3.0 * distances.tolerance.remainder);
         Self {
             surfaces,
             rims: RimComparison::new(surfaces, scale, near),
-            tolerance,
-            reach: (REACH * diagonal).max(3.0 * tolerance.springback),
-            noise: chordal(source).max(chordal(target)) + settings.allowance,
+            distances,
             max_nodes,
         }
     }
@@ -85,9 +78,14 @@ impl<'a> Settling<'a> {
     /// [`settled`].
     pub(super) fn settled(&self, pose: &Similarity) -> Option<Similarity> {
         let [source, _] = self.surfaces;
+        let Distances {
+            tolerance,
+            reach,
+            noise,
+            ..
+        } = self.distances;
         let corners = source.mesh().aabb().corners();
-        let mut contacts =
-            ContactSearch::new(self.surfaces, pose.scale, self.reach, self.max_nodes);
+        let mut contacts = ContactSearch::new(self.surfaces, pose.scale, reach, self.max_nodes);
         let mut moved = *pose;
         let (mut first_misfit, mut first_gap) = (None, None);
         let mut is_still = false;
@@ -103,9 +101,8 @@ impl<'a> Settling<'a> {
             let gap = contacts.typical_gap();
             let first_gap = *first_gap.get_or_insert(gap);
             if step == STEPS || is_still {
-                let most =
-                    AS_CLOSE * first_gap + self.noise + LITTLE_GAP * self.tolerance.remainder;
-                let fits = misfit < self.tolerance.remainder + facets && gap < most;
+                let most = AS_CLOSE * first_gap + noise + LITTLE_GAP * tolerance.remainder;
+                let fits = misfit < tolerance.remainder + facets && gap < most;
                 return (fits && misfit < BETTER * first).then_some(moved);
             }
             let evidence = ShapeEvidence {
@@ -113,7 +110,7 @@ impl<'a> Settling<'a> {
                 pose: &moved,
                 contacts: &contacts,
                 rims: &rims,
-                noise: self.noise,
+                noise,
             };
             let next = contacts.undo(&Fit::of(&evidence).rigid).after(&moved);
             if step == 0 && largest_motion(source, pose, &next) <= facets {

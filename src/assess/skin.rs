@@ -3,7 +3,7 @@
 use super::contact::{ContactSearch, MAX_NODES};
 use super::rims::RimComparison;
 use super::shape::{FACETING, Fit, ShapeEvidence, ShapeStatement};
-use super::{AssessSettings, REACH, RIM_REACH, tolerance_of};
+use super::{AssessSettings, Distances};
 use crate::geometry::Similarity;
 use crate::registration::Surface;
 
@@ -24,11 +24,9 @@ pub fn without_offset(
     pose: &Similarity,
     settings: &AssessSettings,
 ) -> Option<Similarity> {
-    let tolerance = tolerance_of(target, settings);
-    let reach = (REACH * target.measures().diagonal).max(3.0 * tolerance.springback);
-    let near = (RIM_REACH * tolerance.remainder).min(reach);
-    let chordal = |surface: &Surface| surface.measures().chordal_error;
-    let noise = chordal(source).max(chordal(target)) + settings.allowance;
+    let Distances {
+        reach, near, noise, ..
+    } = Distances::of(source, target, settings);
     let corners = source.mesh().aabb().corners();
     let pair = [source, target];
     let mut contacts = ContactSearch::new(pair, pose.scale, reach, MAX_NODES);

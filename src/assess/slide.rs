@@ -5,6 +5,7 @@ use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
 use super::contact::solve;
+use super::is_source_smaller;
 use super::rims::{Place, places};
 use super::sliding::{FreeMotion, FreeMotionKind};
 use crate::geometry::{Aabb, Point3, Rotation, Similarity, Vector3};
@@ -95,8 +96,7 @@ pub(super) fn slid(
     free: &FreeMotion,
     n: usize,
 ) -> Vec<Similarity> {
-    let area = source.measures().area * pose.scale * pose.scale;
-    let moves_source = area <= 1.02 * target.measures().area;
+    let moves_source = is_source_smaller(source, target, pose.scale);
     let still = Similarity::identity();
     let (data, model) = if moves_source {
         ((source, pose), (target, &still))

@@ -395,9 +395,9 @@ impl ShellCard {
 /// A shell from a line of blanks and digits in fixed columns; `None` leaves it to the general way.
 #[inline]
 fn fixed_shell(line: &[u8], columns: &[usize; 11]) -> Option<ShellCard> {
-    let (line, beyond) = line.split_at(line.len().min(columns[10]));
-    // A comma or tab anywhere changes the meaning of the whole line.
-    if line.len() <= columns[4] || beyond.iter().any(|b| b",\t".contains(b)) {
+    // A comma or tab anywhere changes the meaning of the whole line; a tab beside a number would
+    // otherwise pass for a blank.
+    if line.len() <= columns[4] || memchr::memchr2(b',', b'\t', line).is_some() {
         return None;
     }
     let mut ids = [0; 10];
@@ -453,6 +453,12 @@ mod tests {
     use super::super::source_file::SourceFile;
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn a_tab_within_a_field_moves_the_fields_behind_it() {
+        let line = b"       1       1       1       2\t3";
+        assert_eq!(fixed_shell(line, &columns(TEN_BY_8, Layout::Standard)), None);
+    }
 
     #[test]
     fn repeated_corners_make_triangles_or_nothing() {
