@@ -7,6 +7,7 @@ use clap::builder::RangedU64ValueParser;
 use clap::{Args, Parser, Subcommand};
 
 use super::map::MapArgs;
+use super::map_car::MapCarArgs;
 use super::setting_args::SettingArgs;
 use super::words::{card_forms, units};
 use crate::report::CardForm;
@@ -51,6 +52,8 @@ pub enum Task {
     Match(Box<MatchArgs>),
     /// Carry thickness, plastic strain, strain and stress of stamped parts onto a crash part.
     Map(Box<MapArgs>),
+    /// Carry the results of many stamped parts onto a crash model; which parts they are is found.
+    MapCar(Box<MapCarArgs>),
     /// Reduce a mesh to a maximum number of triangles.
     Reduce(ReduceArgs),
     /// Show the contents of a file.

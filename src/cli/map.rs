@@ -1,7 +1,9 @@
 //! `shapematch map`: forming results onto the crash part.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use anyhow::Context as _;
 use clap::builder::BoolishValueParser;
@@ -17,16 +19,18 @@ use super::{
     UsageError, check_outputs, json_target, print, progress, takes_stdout, write_json, write_output,
 };
 use crate::assess::Verdict;
-use crate::formats::ReadOptions;
+use crate::formats::{ReadOptions, Selection};
 use crate::geometry::Similarity;
 use crate::mapping::{MapMethod, MapOptions, NormalSense, Overlap, Quantities, RuleKind};
 use crate::monitor::Monitor;
-use crate::pipeline::load::{LoadSettings, LoadedPart, load, parse_selection};
+use crate::pipeline::find_parts::find_parts;
+use crate::pipeline::load::{LoadSettings, LoadedPart, load, parse_selection, prepare};
 use crate::pipeline::map::{
     DefaultThickness, MapFiles, MapOutput, MapRecipe, MapRecord, OtherResult, PlacedPart,
     deck_comments, element_table, elements_path, map_parts, map_record, map_report, unmapped_sets,
     write_mapping,
 };
+use crate::pipeline::map_car::CarReason;
 use crate::pipeline::match_parts::{MatchRecipe, match_parts};
 use crate::pipeline::outputs::{Content, Target};
 use crate::pipeline::project::Project;
@@ -59,7 +63,7 @@ pub struct MapArgs {
 #[command(next_help_heading = "What is mapped")]
 struct MapChoice {
     /// Part of the crash model: an id, several ids (2001,2002), a title (also title:NAME), or set:ID,
-    /// shell-set:ID, node-set:ID.
+    /// shell-set:ID, node-set:ID. Where the parts are matched first, it is found if not given.
     #[arg(long, value_name = "PART")]
     crash_part: Option<String>,
     /// Part of the stamped files, written as for --crash-part.
@@ -94,7 +98,8 @@ struct MapChoice {
     #[arg(long, value_enum, default_value = "same", conflicts_with_all = ["pose", "project", "identity"])]
     hand: HandName,
     /// Mirror what the given pose puts down, at a coordinate plane of the crash model: the stamped part
-    /// of one side of the car for the other side. Tensors are mirrored with it.
+    /// of one side of the car for the other side. Where the parts are matched first, free finds the
+    /// plane, as --hand opposite does. Tensors are mirrored with it.
     #[arg(long, value_enum, default_value = "none")]
     mirror: MirrorName,
 }
@@ -102,7 +107,7 @@ struct MapChoice {
 /// Quantities and how they pass over.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Values")]
-struct MapValues {
+pub(super) struct MapValues {
     /// Quantities, separated by commas: thickness, plastic, strain, stress, history; or usual (thickness,
     /// plastic), or full.
     #[arg(long, value_name = "LIST", default_value = "usual", value_parser = quantities)]
@@ -116,8 +121,8 @@ struct MapValues {
     /// Points in the plane of each layer; from the element formulation if not given.
     #[arg(long, value_name = "1|4", value_parser = clap::value_parser!(u8).range(1..=4))]
     n_plane: Option<u8>,
-    /// How values pass over: area (mean over points of the element) or nearest (element by element, as
-    /// the solver does).
+    /// How values pass over: area (mean over points of the element), nearest (element by element, as the
+    /// solver does), or shape (means at the nodes, interpolated by shape functions).
     #[arg(long, value_enum, default_value = "area")]
     method: MethodName,
     /// Largest distance of a partner, in the crash model's unit; auto is the element size.
@@ -201,14 +206,33 @@ Examples:
 Exit status: 0 mapped, 1 failed or less mapped than --require asks for, 2 wrong usage, 3 mapped with a
 pose that the match calls poor.";
 
+impl MapChoice {
+    fn hand(&self) -> Hand {
+        if self.mirror == MirrorName::Free {
+            return Hand::Mirrored;
+        }
+        self.hand.hand()
+    }
+}
+
 impl MapValues {
-    fn recipe(&self, choice: &MapChoice) -> MapRecipe {
+    /// Refuses numbers between those that there are.
+    pub(super) fn check(&self) -> anyhow::Result<()> {
+        if self.n_plane.is_some_and(|n| n != 1 && n != 4) {
+            return Err(UsageError("--n-plane is 1 or 4".to_owned()).into());
+        }
+        Ok(())
+    }
+
+    /// The recipe with these values, without a factor on stresses and a stamped law.
+    pub(super) fn recipe(&self) -> MapRecipe {
         MapRecipe {
             options: MapOptions {
                 quantities: self.quantities,
                 method: match self.method {
                     MethodName::Area => MapMethod::Area,
                     MethodName::Nearest => MapMethod::Nearest,
+                    MethodName::Shape => MapMethod::Shape,
                 },
                 max_distance: self.max_distance.0,
                 max_angle_deg: self.max_angle,
@@ -234,8 +258,7 @@ impl MapValues {
                 RuleName::Equal => RuleKind::Equal,
             }),
             n_plane: self.n_plane,
-            stress_factor: choice.stress_factor,
-            stamped_law: choice.stamped_material.clone(),
+            ..MapRecipe::default()
         }
     }
 }
@@ -253,7 +276,11 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     inputs.extend(crash.files());
     inputs.extend(stamped.iter().flat_map(LoadedPart::files));
     check_outputs(targets(&args.output), &inputs)?;
-    let (mut poses, is_poor) = poses(args, &crash, &stamped, &monitor)?;
+    let Placed {
+        crash,
+        mut poses,
+        is_poor,
+    } = place(args, crash, &stamped, &monitor)?;
     if let Some(mirror) = args.choice.mirror.motion() {
         poses.iter_mut().for_each(|pose| *pose = mirror.after(pose));
     }
@@ -265,7 +292,11 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
             crash_from_stamped,
         })
         .collect();
-    let recipe = args.values.recipe(&args.choice);
+    let recipe = MapRecipe {
+        stress_factor: args.choice.stress_factor,
+        stamped_law: args.choice.stamped_material.clone(),
+        ..args.values.recipe()
+    };
     let run = map_parts(&crash, &placed, &recipe, &monitor)?;
     let output = args.output.out.as_ref().map(|path| MapOutput {
         kind: args.output.write.kind(),
@@ -375,16 +406,19 @@ fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
         ));
     }
     let has_pose = args.choice.identity || args.choice.project.is_some() || n_poses > 0;
-    if args.choice.mirror != MirrorName::None && !has_pose {
+    if args.choice.mirror == MirrorName::Free && has_pose {
+        return refuse(
+            "--mirror free is found by a match; a given pose is mirrored at yz, zx or xy"
+                .to_owned(),
+        );
+    }
+    if args.choice.mirror.motion().is_some() && !has_pose {
         let what = "--mirror mirrors a given pose (--pose, --project, --identity)";
         return refuse(format!(
-            "{what}; where the parts are matched first, --hand opposite finds it"
+            "{what}; where the parts are matched first, --hand opposite or --mirror free finds it"
         ));
     }
-    if args.values.n_plane.is_some_and(|n| n != 1 && n != 4) {
-        return refuse("--n-plane is 1 or 4".to_owned());
-    }
-    Ok(())
+    args.values.check()
 }
 
 /// Everything that will be written, for the check before the work.
@@ -442,38 +476,60 @@ fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Ve
     Ok((crash, stamped.collect::<Result<_, _>>()?))
 }
 
-/// The pose of each stamped part, and whether a match calls one of them poor.
-fn poses(
+/// Where the stamped parts lie.
+struct Placed {
+    /// The crash parts that they lie on.
+    crash: LoadedPart,
+    /// The pose of each.
+    poses: Vec<Similarity>,
+    /// A match calls one of them poor.
+    is_poor: bool,
+}
+
+/// The pose of each stamped part as it is given, or by a match on the crash parts that it belongs to.
+fn place(
     args: &MapArgs,
-    crash: &LoadedPart,
+    crash: LoadedPart,
     stamped: &[LoadedPart],
     monitor: &Monitor,
-) -> anyhow::Result<(Vec<Similarity>, bool)> {
+) -> anyhow::Result<Placed> {
+    let given = |crash, poses| {
+        Ok(Placed {
+            crash,
+            poses,
+            is_poor: false,
+        })
+    };
     if args.choice.identity {
-        return Ok((vec![Similarity::identity(); stamped.len()], false));
+        return given(crash, vec![Similarity::identity(); stamped.len()]);
     }
     if let Some(path) = &args.choice.project {
         let (project, notes) = Project::read(path)?;
         for note in notes {
             log::warn!("{}: {note}", path.display());
         }
-        return Ok((vec![project.pose], false));
+        return given(crash, vec![project.pose]);
     }
     if !args.choice.pose.is_empty() {
         let poses: anyhow::Result<Vec<Similarity>> =
             args.choice.pose.iter().map(|text| pose(text)).collect();
-        return Ok((poses?, false));
+        return given(crash, poses?);
+    }
+    let mut recipe = MatchRecipe::default();
+    recipe.settings.hand = args.choice.hand();
+    if args.choice.crash_part.is_none() && crash.chosen_part_ids().len() > 1 {
+        if let Some(placed) = on_found_parts(&crash, stamped, &recipe, monitor)? {
+            return Ok(placed);
+        }
+        log::warn!(
+            "no part of {} fits alone; --crash-part names it",
+            crash.path.display()
+        );
     }
     let mut poses = Vec::new();
     let mut is_poor = false;
-    let mut recipe = MatchRecipe::default();
-    recipe.settings.hand = match args.choice.hand {
-        HandName::Same => Hand::Same,
-        HandName::Opposite => Hand::Mirrored,
-        HandName::Either => Hand::Either,
-    };
     for part in stamped {
-        let parts = PerRole::new(crash, part);
+        let parts = PerRole::new(&crash, part);
         let start = Similarity::identity();
         let run = match_parts(parts, None, &recipe, &start, monitor)
             .with_context(|| format!("cannot match {}", part.path.display()))?;
@@ -486,5 +542,40 @@ fn poses(
         }
         poses.push(run.crash_from_stamped);
     }
-    Ok((poses, is_poor))
+    Ok(Placed {
+        crash,
+        poses,
+        is_poor,
+    })
+}
+
+/// The crash parts that the stamped parts belong to, and the poses on them; `None` if one of them fits no
+/// part of the crash model.
+fn on_found_parts(
+    crash: &LoadedPart,
+    stamped: &[LoadedPart],
+    recipe: &MatchRecipe,
+    monitor: &Monitor,
+) -> anyhow::Result<Option<Placed>> {
+    let mut ids = BTreeSet::new();
+    let mut poses = Vec::new();
+    for part in stamped {
+        let Some(found) = find_parts(PerRole::new(crash, part), recipe, monitor)? else {
+            return Ok(None);
+        };
+        if !found.rivals.is_empty() {
+            let reason = CarReason::Rivals(found.rivals);
+            log::warn!("{}: {}", part.path.display(), reason.text());
+        }
+        ids.extend(found.found.part.chosen_part_ids());
+        poses.push(found.found.run.crash_from_stamped);
+    }
+    let mut settings = crash.settings.clone();
+    settings.selection = Selection::Parts(ids.into_iter().collect());
+    let crash = prepare(&crash.path, Arc::clone(&crash.model), &settings, monitor)?;
+    Ok(Some(Placed {
+        crash,
+        poses,
+        is_poor: false,
+    }))
 }

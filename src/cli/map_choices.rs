@@ -6,6 +6,7 @@ use crate::formats::keyword::materials::law_of as material_law;
 use crate::geometry::Similarity;
 use crate::mapping::Quantities;
 use crate::pipeline::map::{DefaultThickness, WriteKind};
+use crate::registration::Hand;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum RuleName {
@@ -21,10 +22,21 @@ pub(super) enum HandName {
     Either,
 }
 
+impl HandName {
+    pub(super) fn hand(self) -> Hand {
+        match self {
+            Self::Same => Hand::Same,
+            Self::Opposite => Hand::Mirrored,
+            Self::Either => Hand::Either,
+        }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum MethodName {
     Area,
     Nearest,
+    Shape,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -64,13 +76,15 @@ pub(super) enum MirrorName {
     Yz,
     Zx,
     Xy,
+    /// At whatever plane the match finds.
+    Free,
 }
 
 impl MirrorName {
-    /// The mirror at a plane through the origin.
+    /// The mirror at a plane through the origin; `None` where there is none to be given.
     pub(super) fn motion(self) -> Option<Similarity> {
         match self {
-            Self::None => None,
+            Self::None | Self::Free => None,
             Self::Yz => Some(Similarity::mirror(0)),
             Self::Zx => Some(Similarity::mirror(1)),
             Self::Xy => Some(Similarity::mirror(2)),

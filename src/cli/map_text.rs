@@ -7,6 +7,8 @@ use crate::text::{grouped, length, millis};
 pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>) -> String {
     let mut text = String::new();
     let mut line = |head: &str, rest: String| text.push_str(&format!("{head:<9}{rest}\n"));
+    let ids: Vec<String> = record.crash_parts.iter().map(u64::to_string).collect();
+    line("Onto", format!("part {}", ids.join(", ")));
     line(
         "Mapped",
         format!(

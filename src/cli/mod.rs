@@ -9,6 +9,7 @@ mod growth;
 mod info;
 mod map;
 mod map_bench;
+mod map_car;
 mod map_choices;
 mod map_text;
 mod match_text;
@@ -47,6 +48,7 @@ pub fn run(task: &Task, quiet: bool) -> anyhow::Result<ExitCode> {
     match task {
         Task::Match(args) => matching::run(args, quiet),
         Task::Map(args) => map::run(args, quiet),
+        Task::MapCar(args) => map_car::run(args, quiet),
         Task::Reduce(args) => reduce::run(args, quiet),
         Task::Info(args) => info::run(args, quiet),
         Task::Sample(args) => sample::run(args),

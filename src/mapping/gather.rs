@@ -2,7 +2,8 @@
 
 use super::blend::LEAST_COVERAGE;
 use super::element::Context;
-use super::options::{Overlap, Status};
+use super::nodal::around_nodes;
+use super::options::{MapMethod, Overlap, Status};
 use super::points::{ElementPoint, MAX_ORDER};
 use super::source::{Around, PreparedSource, SourcePoint};
 use crate::geometry::{Point3, Vector3};
@@ -249,6 +250,21 @@ impl Context<'_> {
     fn add_to_group(&self, partner: &Centre, point: &ElementPoint, groups: &mut Vec<Group>) {
         let source = &self.sources[partner.source as usize];
         let at = &partner.point;
+        if self.options.method == MapMethod::Shape {
+            around_nodes(source, at, |element, is_flipped, weight| {
+                let area = weight * point.area;
+                groups.push(Group {
+                    source: partner.source,
+                    element,
+                    is_flipped,
+                    quadrant: Some(point.quadrant),
+                    area,
+                    offset: Vector3::zeros(),
+                    uneven_thickness: at.uneven_thickness * area,
+                });
+            });
+            return;
+        }
         let offset = (at.point - source.mesh.centroids()[at.element as usize]) * point.area;
         let quadrant = Some(point.quadrant);
         let is_same = |group: &&mut Group| {

@@ -21,6 +21,7 @@ mod history;
 mod layered;
 mod layers;
 mod links;
+mod nodal;
 mod options;
 mod patch;
 mod points;

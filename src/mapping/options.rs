@@ -58,6 +58,9 @@ pub enum MapMethod {
     Area,
     /// Value of the element nearest to the centre, as the solver and most tools do.
     Nearest,
+    /// Mean over points of the target element, each interpolated by the shape functions of its source
+    /// element between the means at the nodes. Second order, but ridges become lower.
+    Shape,
 }
 
 /// Whether target normals must point to the same side as the source's.

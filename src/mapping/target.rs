@@ -184,13 +184,22 @@ impl Mapped {
 
     /// Share of the target's area that has values.
     pub fn mapped_area(&self, target: &ShellMesh) -> f64 {
-        let (mut mapped, mut all) = (0.0, 0.0);
+        self.share(target, Status::has_values)
+    }
+
+    /// Share of the target's area whose elements have a status.
+    pub fn area_share(&self, status: Status, target: &ShellMesh) -> f64 {
+        self.share(target, |other| other == status)
+    }
+
+    fn share(&self, target: &ShellMesh, counts: impl Fn(Status) -> bool) -> f64 {
+        let (mut sum, mut all) = (0.0, 0.0);
         for (report, area) in self.elements.iter().zip(target.areas()) {
             all += area;
-            if report.status.has_values() {
-                mapped += area;
+            if counts(report.status) {
+                sum += area;
             }
         }
-        if all > 0.0 { mapped / all } else { 0.0 }
+        if all > 0.0 { sum / all } else { 0.0 }
     }
 }

@@ -150,7 +150,11 @@ pub fn error_rows(
     let load = |name: &str| load_from(&source, Path::new(name), &LoadSettings::default(), monitor);
     let (crash, stamped) = (load("crash.k")?, load("stamped.dynain")?);
     let mut rows = Vec::new();
-    for (method, name) in [(MapMethod::Area, "area"), (MapMethod::Nearest, "nearest")] {
+    for (method, name) in [
+        (MapMethod::Area, "area"),
+        (MapMethod::Nearest, "nearest"),
+        (MapMethod::Shape, "shape"),
+    ] {
         let recipe = MapRecipe {
             options: MapOptions {
                 quantities: Quantities::FULL,

@@ -5,6 +5,7 @@
 
 pub mod autosave;
 pub mod file_watch;
+pub mod find_parts;
 pub mod forming_values;
 pub mod growth;
 pub mod growth_page;
@@ -14,6 +15,7 @@ pub mod likeness;
 pub mod load;
 pub mod map;
 pub mod map_bench;
+pub mod map_car;
 pub mod match_parts;
 pub mod outputs;
 pub mod preferences;

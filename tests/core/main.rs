@@ -24,6 +24,7 @@ mod keyword;
 mod keyword_faults;
 mod keyword_large;
 mod layering;
+mod map_car;
 mod map_decks;
 mod map_files;
 mod map_options;

@@ -346,6 +346,39 @@ fn a_smooth_field_converges_with_second_order_and_nearest_does_not() {
         sine_error(2.5, MapMethod::Nearest),
     );
     assert!(5.0 * ours < theirs, "{ours:e} against {theirs:e}");
+    // Means at the nodes are smooth, and lower the peaks.
+    let shape = order(MapMethod::Shape);
+    assert!(shape >= 1.7, "order {shape}");
+    let shape = sine_error(2.5, MapMethod::Shape);
+    assert!(
+        ours < shape && 2.0 * shape < theirs,
+        "{ours:e} {shape:e} {theirs:e}"
+    );
+}
+
+#[test]
+fn constants_pass_through_the_nodes_as_they_are() {
+    let part = source(Blank::new(5.0).mesh(cylinder), 2, |_, _, _| {
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.25]
+    });
+    let inner = Blank {
+        length: 60.0,
+        width: 30.0,
+        size: 7.0,
+        jitter: 0.2,
+    };
+    let onto = target(inner.mesh(|u, v| cylinder(u + 15.0, v + 11.0)), 2);
+    let options = MapOptions {
+        method: MapMethod::Shape,
+        ..full()
+    };
+    let mapped = map_one(&part, Similarity::identity(), &onto, &options);
+    for element in 0..onto.mesh.len() {
+        assert!(mapped.elements[element].status.has_values());
+        for state in mapped.states.as_ref().unwrap().of(element) {
+            assert!((state[6] - 0.25).abs() < 1e-12, "{}", state[6]);
+        }
+    }
 }
 
 #[test]

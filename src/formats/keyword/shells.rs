@@ -457,7 +457,10 @@ mod tests {
     #[test]
     fn a_tab_within_a_field_moves_the_fields_behind_it() {
         let line = b"       1       1       1       2\t3";
-        assert_eq!(fixed_shell(line, &columns(TEN_BY_8, Layout::Standard)), None);
+        assert_eq!(
+            fixed_shell(line, &columns(TEN_BY_8, Layout::Standard)),
+            None
+        );
     }
 
     #[test]

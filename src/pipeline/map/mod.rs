@@ -25,6 +25,7 @@ pub use record::{DistributionRecord, MapRecord, PairRecord, element_table, map_r
 pub use report::map_report;
 pub use unmapped::unmapped_sets;
 pub use values::{Profile, ShownValue};
+pub(super) use verdict::LEAST_AREA;
 pub use verdict::{CheckPicture, CheckReason, CheckRecord};
 
 use super::load::LoadedPart;
@@ -36,6 +37,9 @@ use crate::mapping::{
 };
 use crate::monitor::Monitor;
 use convert::{PartShells, part_shells, source_part, target_part};
+
+/// Usual ratio of the mean thickness of a formed part to that of its section.
+const USUAL_THINNING: std::ops::RangeInclusive<f64> = 0.75..=1.1;
 
 /// What a mapping depends on besides the decks and the poses.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -128,6 +132,27 @@ impl MapRun {
             std::array::from_fn(mean)
         });
         compare::largest_von_mises(&means.collect::<Vec<[f64; 7]>>())
+    }
+
+    /// Mean thickness of the crash elements with values, over their area; NaN where none was mapped.
+    pub fn mean_thickness(&self) -> f64 {
+        let values = self.mapped.thickness.iter().zip(self.target.mesh.areas());
+        let known = values.filter(|(t, _)| t.is_finite());
+        let (sum, area) = known.fold((0.0, 0.0), |(sum, all), (t, area)| {
+            (sum + t * area, all + area)
+        });
+        sum / area
+    }
+
+    /// Mean thickness over that of the section where that is unusual: another gauge or another unit.
+    /// Known where one stamped part was mapped onto sections with a thickness.
+    pub fn unusual_thickness(&self) -> Option<f64> {
+        let (thickness, _) = self.checks.thickness.as_ref()?;
+        let nominal = self.target.nominal_thickness.iter().copied();
+        let known: Vec<f64> = nominal.filter(|t| t.is_finite() && *t > 0.0).collect();
+        let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
+        let ratio = thickness.mean / mean;
+        (mean > 0.0 && !USUAL_THINNING.contains(&ratio)).then_some(ratio)
     }
 
     /// A quantity of the source element that an element took its values from, given by part and

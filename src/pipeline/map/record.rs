@@ -15,8 +15,6 @@ use crate::report::{DIRECTION, build_id};
 
 /// Below this share of the area a mapping is to be looked at.
 const USUAL_COVERAGE: f64 = 0.95;
-/// Mapped thickness over section thickness outside this range is no thinning.
-const USUAL_THINNING: (f64, f64) = (0.75, 1.1);
 
 /// A mapping as it is kept and exchanged.
 #[derive(Debug, Clone, Serialize)]
@@ -29,6 +27,8 @@ pub struct MapRecord {
     pub direction: String,
     /// The crash deck.
     pub crash: String,
+    /// Ids of the crash parts.
+    pub crash_parts: Vec<u64>,
     /// The stamped decks with their poses (crash from stamped, rows).
     pub stamped: Vec<StampedRecord>,
     /// Elements of the crash part.
@@ -62,6 +62,12 @@ pub struct MapRecord {
 }
 
 impl MapRecord {
+    /// Share of the crash part's area whose elements have a status.
+    pub fn area_share(&self, status: Status) -> f64 {
+        let row = self.statuses.iter().find(|row| row.status == status);
+        row.map_or(0.0, |row| row.area_share)
+    }
+
     /// How many checks are met, of those that are judged.
     pub fn n_met(&self) -> (usize, usize) {
         let judged = self.checks.iter().filter_map(|check| check.is_met);
@@ -165,21 +171,12 @@ pub fn map_record(
     files: Option<&MapFiles>,
     other: Option<&OtherResult>,
 ) -> MapRecord {
-    let areas = run.target.mesh.areas();
-    let all: f64 = areas.iter().sum();
     let counts = run.mapped.counts();
     let statuses = Status::ALL.iter().zip(counts).filter(|(_, n)| *n > 0);
-    let statuses = statuses.map(|(&status, n_elements)| {
-        let own = run.mapped.elements.iter().zip(areas);
-        let area: f64 = own
-            .filter(|(e, _)| e.status == status)
-            .map(|(_, area)| area)
-            .sum();
-        StatusRecord {
-            status,
-            n_elements,
-            area_share: area / all,
-        }
+    let statuses = statuses.map(|(&status, n_elements)| StatusRecord {
+        status,
+        n_elements,
+        area_share: run.mapped.area_share(status, &run.target.mesh),
     });
     let checks = &run.checks;
     let mut record = MapRecord {
@@ -187,6 +184,7 @@ pub fn map_record(
         schema: 1,
         direction: DIRECTION.to_owned(),
         crash: crash.path.display().to_string(),
+        crash_parts: crash.chosen_part_ids(),
         stamped: stamped
             .iter()
             .map(|placed| StampedRecord {
@@ -346,20 +344,10 @@ fn warnings(run: &MapRun, files: Option<&MapFiles>) -> Vec<String> {
             mapped.n_distant
         ));
     }
-    if let Some((thickness, _)) = &run.checks.thickness {
-        let nominal = &run.target.nominal_thickness;
-        let known: Vec<f64> = nominal
-            .iter()
-            .copied()
-            .filter(|t| t.is_finite() && *t > 0.0)
-            .collect();
-        let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
-        let ratio = thickness.mean / mean;
-        if mean > 0.0 && !(USUAL_THINNING.0..=USUAL_THINNING.1).contains(&ratio) {
-            warnings.push(format!(
-                "the mapped thickness is {ratio:.2} times that of the section; another gauge or another unit?"
-            ));
-        }
+    if let Some(ratio) = run.unusual_thickness() {
+        warnings.push(format!(
+            "the mapped thickness is {ratio:.2} times that of the section; another gauge or another unit?"
+        ));
     }
     for gap in run.mapped.history.iter().flat_map(|h| &h.left_out) {
         let law = |law: &Option<String>| match law {

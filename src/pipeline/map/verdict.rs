@@ -10,7 +10,7 @@ use crate::pipeline::forming_values::FormingValue;
 use crate::text::{counted, fixed, length, percent};
 
 /// Share of the area that is to carry values.
-const LEAST_AREA: f64 = 0.95;
+pub(in crate::pipeline) const LEAST_AREA: f64 = 0.95;
 /// A mean may change by this fraction.
 const MEAN_CHANGE: f64 = 0.005;
 /// The largest value may change by this fraction: less where the crash elements are larger.

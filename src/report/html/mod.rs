@@ -1,6 +1,7 @@
 //! The report of a match as one file that needs nothing else: pictures, charts and tables inside it,
 //! for the screen in both themes, for narrow windows and for paper. Works without its script.
 
+mod car_page;
 mod charts;
 mod map_page;
 mod page;
@@ -10,6 +11,7 @@ mod tables;
 
 use maud::{PreEscaped, html};
 
+pub use car_page::CarReport;
 pub use map_page::{CheckReport, MapReport, NumberRow, QuantityReport, map_figure};
 
 use self::page::printable;

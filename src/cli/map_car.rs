@@ -1,0 +1,177 @@
+//! `shapematch map-car`: many stamped parts onto one crash model.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use clap::builder::BoolishValueParser;
+use clap::{ArgAction, Args};
+
+use super::map::MapValues;
+use super::map_choices::{HandName, default_thickness};
+use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
+use crate::formats::ReadOptions;
+use crate::pipeline::load::{LoadSettings, load};
+use crate::pipeline::map::{DefaultThickness, MapRecipe};
+use crate::pipeline::map_car::{
+    CAR_COLUMNS, CarRecipe, CarRecord, CarRow, CarState, StampedFile, car_files, map_car,
+};
+use crate::pipeline::match_parts::MatchRecipe;
+use crate::pipeline::outputs::{Content, Target};
+
+/// `shapematch map-car`.
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct MapCarArgs {
+    /// The crash model.
+    pub car: PathBuf,
+    /// The stamped parts with their forming results. The crash parts that each belongs to are found.
+    #[arg(required = true)]
+    pub stamped: Vec<PathBuf>,
+
+    /// Folder for the mapped states: a deck for each part, mapped.k that includes them all.
+    #[arg(long, short, value_name = "FOLDER")]
+    out: PathBuf,
+    /// Write pages too: report.html about all parts, and one with pictures about each mapping.
+    #[arg(long)]
+    report: bool,
+    /// The result as JSON, to a file or to standard output with "-".
+    #[arg(long, value_name = "FILE|-")]
+    json: Option<PathBuf>,
+    /// Whether stamped parts are the crash parts' own hand, the opposite one (left for right), or either.
+    #[arg(long, value_enum, default_value = "same")]
+    hand: HandName,
+    /// Factor on the stamped coordinates and thicknesses, for files in another length unit.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    stamped_length_factor: f64,
+    /// Factor on the stamped stresses, for files in another unit of stress.
+    #[arg(long, value_name = "FACTOR")]
+    stress_factor: Option<f64>,
+    /// A further folder for included files; may be given several times.
+    #[arg(long, value_name = "FOLDER")]
+    include_folder: Vec<PathBuf>,
+    /// 16 columns a number instead of 10.
+    #[arg(long, value_name = "YES|NO", default_value = "yes", action = ArgAction::Set, value_parser = BoolishValueParser::new())]
+    large: bool,
+    /// Thickness of elements without values: that of their section, a length, or nearest for that of the
+    /// nearest element that has one.
+    #[arg(long, value_name = "section|LENGTH|nearest", default_value = "section", value_parser = default_thickness)]
+    default_thickness: DefaultThickness,
+
+    #[command(flatten)]
+    values: MapValues,
+}
+
+const HELP: &str = "\
+Examples:
+  shapematch map-car car.k door.dynain sill.dynain --out mapped
+  shapematch map-car car.k *.dynain --out mapped --quantities full --report
+
+Exit status: 0 every stamped part is mapped, 1 failed or one of them is not, 2 wrong usage.";
+
+/// Reads, finds, maps, writes, and prints the table.
+pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
+    args.values.check()?;
+    let monitor = progress::monitor(quiet);
+    let read = ReadOptions {
+        include_folders: args.include_folder.clone(),
+        ..ReadOptions::default()
+    };
+    let settings = |length_factor| LoadSettings {
+        length_factor,
+        read: read.clone(),
+        ..LoadSettings::default()
+    };
+    let stamped: Vec<StampedFile> = args
+        .stamped
+        .iter()
+        .map(|path| StampedFile {
+            path: path.clone(),
+            settings: settings(args.stamped_length_factor),
+        })
+        .collect();
+    make_folder(&args.out)?;
+    let mut inputs = vec![args.car.clone()];
+    inputs.extend(args.stamped.iter().cloned());
+    check_outputs(targets(args, &stamped), &inputs)?;
+    let crash = load(&args.car, &settings(1.0), &monitor)?;
+    inputs.extend(crash.files());
+    check_outputs(targets(args, &stamped), &inputs)?;
+    let mut recipe = CarRecipe {
+        matching: MatchRecipe::default(),
+        map: MapRecipe {
+            stress_factor: args.stress_factor,
+            ..args.values.recipe()
+        },
+        is_large: args.large,
+        default_thickness: args.default_thickness,
+        folder: args.out.clone(),
+        has_pages: args.report,
+    };
+    recipe.matching.settings.hand = args.hand.hand();
+    let record = map_car(&crash, &stamped, &recipe, &monitor)?;
+    drop(monitor);
+    if let Some(path) = &args.json {
+        write_json(path, &record)?;
+    }
+    if !takes_stdout(args.json.as_deref()) {
+        print(&table(&record))?;
+    }
+    let is_mapped = |row: &CarRow| row.state != CarState::None;
+    Ok(if record.rows.iter().all(is_mapped) {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+/// Makes the folder if the one above it is there.
+fn make_folder(folder: &Path) -> anyhow::Result<()> {
+    if folder.is_dir() {
+        return Ok(());
+    }
+    std::fs::create_dir(folder)
+        .with_context(|| format!("the folder {} cannot be made", folder.display()))
+}
+
+/// Everything that will be written, for the check before the work.
+fn targets(args: &MapCarArgs, stamped: &[StampedFile]) -> Vec<Target> {
+    let files = car_files(stamped, &args.out, args.report);
+    let of_folder = files.into_iter().map(|path| Target {
+        name: "--out".to_owned(),
+        content: if path.extension().is_some_and(|e| e == "k") {
+            Content::Deck
+        } else {
+            Content::Text
+        },
+        path,
+    });
+    of_folder.chain(json_target(args.json.as_deref())).collect()
+}
+
+/// One line for each stamped part, its reasons beneath.
+fn table(record: &CarRecord) -> String {
+    let rows: Vec<[String; 8]> = record.rows.iter().map(CarRow::cells).collect();
+    let heads = CAR_COLUMNS.map(str::to_owned);
+    let all = || std::iter::once(&heads).chain(&rows);
+    let width = |column: usize| all().map(|row| row[column].chars().count()).max();
+    let widths: Vec<usize> = (0..7).map(|column| width(column).unwrap_or(0)).collect();
+    let mut text = String::new();
+    for row in all() {
+        let cells: Vec<String> = row
+            .iter()
+            .zip(&widths)
+            .map(|(cell, width)| format!("{cell:<width$}"))
+            .collect();
+        text.push_str(cells.join("  ").trim_end());
+        text.push('\n');
+        let is_head = std::ptr::eq(row, &heads);
+        for reason in row[7]
+            .split("; ")
+            .filter(|reason| !is_head && !reason.is_empty())
+        {
+            text.push_str(&format!("    {reason}\n"));
+        }
+    }
+    text
+}

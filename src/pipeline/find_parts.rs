@@ -1,0 +1,224 @@
+//! The parts of a crash model that a stamped part belongs to, found by likeness and by matches.
+
+use std::collections::BTreeMap;
+
+use super::PipelineError;
+use super::likeness::{Moments, moments_of_parts};
+use super::load::LoadedPart;
+use super::match_parts::MatchRecipe;
+use super::race::{Found, alone};
+use crate::assess::Verdict;
+use crate::formats::Selection;
+use crate::geometry::{Point3, Similarity, Vector3};
+use crate::monitor::Monitor;
+use crate::role::PerRole;
+use crate::search::ClosestPoint as _;
+
+/// Choices of crash parts that are matched at most, the most alike first.
+const MOST_TRIED: usize = 12;
+/// Less alike ones are not tried: their edges and areas are three times as long and large.
+const LEAST_LIKENESS: f64 = 0.1;
+/// Parts about as alike as the one that was found may fit as well.
+const AS_ALIKE: f64 = 0.97;
+/// They do if their surfaces lie at most so many times as far apart.
+const AS_CLOSE: f64 = 1.25;
+/// Where a match leaves something to look at, each part must lie on the other with at least this share.
+const LEAST_SHARE: f64 = 0.3;
+/// A stamped part of which this share lies on no crash part may belong to several.
+const UNCOVERED: f64 = 0.15;
+/// So much of a further part must lie there.
+const LIES_THERE: f64 = 0.5;
+/// Triangles of a part that are asked.
+const N_PLACES: usize = 400;
+
+/// What a stamped part belongs to.
+#[derive(Debug, Clone)]
+pub struct FoundParts {
+    /// The crash parts and the match on them.
+    pub found: Found,
+    /// Ids of other parts that the stamped part fits about as well: copies, or the other side of the car.
+    pub rivals: Vec<u64>,
+}
+
+/// The parts of the crash model that the stamped part belongs to; `None` if no match says so.
+///
+/// The chosen parts of `parts.crash` are compared by area, spread and thickness, one by one and all
+/// together, and the most alike of them matched, each alone, until one is good. Parts that are as alike as
+/// that one are matched too. Where much of the stamped part lies on nothing, parts that lie there are taken
+/// in and all matched together. Fails only when cancelled.
+pub fn find_parts(
+    parts: PerRole<&LoadedPart>,
+    recipe: &MatchRecipe,
+    monitor: &Monitor,
+) -> Result<Option<FoundParts>, PipelineError> {
+    let candidates = candidates(parts);
+    let current = Similarity::identity();
+    let mut best: Option<(f64, Found)> = None;
+    let mut others = Vec::new();
+    let n_tried = candidates.len().min(MOST_TRIED) as u64;
+    for (n_done, (likeness, ids)) in (0_u64..).zip(candidates).take(MOST_TRIED) {
+        let of_best = best.as_ref().map(|(likeness, found)| {
+            let is_good = found.run.assessment.verdict == Verdict::Good;
+            (*likeness, is_good)
+        });
+        if of_best.is_some_and(|(of_best, is_good)| is_good && likeness < AS_ALIKE * of_best) {
+            break;
+        }
+        monitor.progress("parts", n_done, Some(n_tried));
+        let is_one = ids.len() == 1;
+        let id = ids[0];
+        let Some(found) = alone(parts, Selection::Parts(ids), recipe, &current, monitor)? else {
+            continue;
+        };
+        let verdict = found.run.assessment.verdict;
+        if !is_convincing(&found) {
+            continue;
+        }
+        if is_one {
+            others.push((id, verdict, found.run.assessment.coverage.rmse()));
+        }
+        let is_good = verdict == Verdict::Good;
+        let is_better = best.as_ref().is_none_or(|(_, best)| {
+            let was_good = best.run.assessment.verdict == Verdict::Good;
+            (is_good && !was_good) || (is_good == was_good && found.is_before(best))
+        });
+        if is_better {
+            best = Some((likeness, found));
+        }
+    }
+    let Some((_, found)) = best else {
+        return Ok(None);
+    };
+    let rmse = found.run.assessment.coverage.rmse();
+    let own = found.part.chosen_part_ids();
+    let is_rival = |(id, verdict, of_other): &(u64, Verdict, f64)| {
+        let is_as_good = *verdict == found.run.assessment.verdict && *of_other <= AS_CLOSE * rmse;
+        (is_as_good && !own.contains(id)).then_some(*id)
+    };
+    let rivals = others.iter().filter_map(is_rival).collect();
+    let found = with_further_parts(parts, found, recipe, monitor)?;
+    Ok(Some(FoundParts { found, rivals }))
+}
+
+/// Whether a match that nobody looked at says that the parts belong together: a small flat piece lies
+/// somewhere on many parts.
+fn is_convincing(found: &Found) -> bool {
+    let assessment = &found.run.assessment;
+    let coverage = &assessment.coverage;
+    let shares = [coverage.source_on_target, coverage.target_on_source].map(|side| side.overlap);
+    match assessment.verdict {
+        Verdict::Good => true,
+        Verdict::Check => shares.iter().all(|share| *share >= LEAST_SHARE),
+        Verdict::Poor => false,
+    }
+}
+
+/// Every chosen part alone, and all together, with their likeness to the stamped part, the most alike first.
+fn candidates(parts: PerRole<&LoadedPart>) -> Vec<(f64, Vec<u64>)> {
+    let moments = parts.map(|part| moments_of_parts(&part.model, part.settings.length_factor));
+    let used = parts.map(|part| part.chosen_part_ids());
+    let all_of = |ids: &[u64], role: &BTreeMap<u64, Moments>| {
+        let of_parts = ids.iter().filter_map(|id| role.get(id));
+        of_parts.fold(Moments::default(), |sum, moments| sum.and(moments))
+    };
+    let stamped = all_of(&used.stamped, &moments.stamped);
+    let Some(stamped) = stamped.signature(parts.stamped.mean_thickness()) else {
+        return Vec::new();
+    };
+    let factor = parts.crash.settings.length_factor;
+    let summaries = parts.crash.model.part_summaries();
+    let mut found: Vec<(f64, Vec<u64>)> = Vec::new();
+    for row in summaries.iter().filter(|row| used.crash.contains(&row.id)) {
+        let thickness = row.thickness.map(|thickness| thickness * factor);
+        let own = moments.crash.get(&row.id);
+        if let Some(own) = own.and_then(|own| own.signature(thickness)) {
+            found.push((stamped.likeness(&own), vec![row.id]));
+        }
+    }
+    if used.crash.len() > 1 {
+        let together = all_of(&used.crash, &moments.crash);
+        if let Some(together) = together.signature(parts.crash.mean_thickness()) {
+            found.push((stamped.likeness(&together), used.crash));
+        }
+    }
+    found.retain(|(likeness, _)| *likeness >= LEAST_LIKENESS);
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    found
+}
+
+/// The match on more parts, where these lie on what the found ones leave of the stamped part.
+fn with_further_parts(
+    parts: PerRole<&LoadedPart>,
+    found: Found,
+    recipe: &MatchRecipe,
+    monitor: &Monitor,
+) -> Result<Found, PipelineError> {
+    let further = further_parts(parts, &found);
+    if further.is_empty() {
+        return Ok(found);
+    }
+    let mut ids = found.part.chosen_part_ids();
+    ids.extend(further);
+    let current = Similarity::identity();
+    let together = alone(parts, Selection::Parts(ids), recipe, &current, monitor)?;
+    Ok(together.filter(is_convincing).unwrap_or(found))
+}
+
+/// Parts of which more than half lies on what the found ones leave of the stamped part.
+fn further_parts(parts: PerRole<&LoadedPart>, found: &Found) -> Vec<u64> {
+    let pose = found.run.crash_from_stamped;
+    let (stamped, crash) = (&parts.stamped.surface, &found.part.surface);
+    let near =
+        (stamped.measures().mean_edge_length * pose.scale).max(crash.measures().mean_edge_length);
+    let mesh = stamped.mesh();
+    let (mut area, mut left) = (0.0, 0.0);
+    let mut is_left = vec![false; mesh.n_triangles()];
+    for (triangle, is_left) in is_left.iter_mut().enumerate() {
+        let centre = pose.apply(&middle(&mesh.corners(triangle)));
+        *is_left = crash.bvh().closest(&centre, near, None, None).is_none();
+        area += mesh.triangle_area(triangle);
+        left += if *is_left {
+            mesh.triangle_area(triangle)
+        } else {
+            0.0
+        };
+    }
+    if left <= UNCOVERED * area {
+        return Vec::new();
+    }
+    let all = parts.crash;
+    let stamped_from_crash = pose.inverse();
+    let own = found.part.chosen_part_ids();
+    let mut triangles_of = vec![Vec::new(); all.model.parts.len()];
+    for (triangle, &part) in all.ids.parts().iter().enumerate() {
+        triangles_of[part as usize].push(triangle);
+    }
+    let lies_there = |triangles: &[usize]| {
+        let step = triangles.len().div_ceil(N_PLACES).max(1);
+        let (mut area, mut there) = (0.0, 0.0);
+        for &triangle in triangles.iter().step_by(step) {
+            let own = all.mesh.triangle_area(triangle);
+            area += own;
+            let centre = stamped_from_crash.apply(&middle(&all.mesh.corners(triangle)));
+            let hit = stamped
+                .bvh()
+                .closest(&centre, near / pose.scale, None, None);
+            if hit.is_some_and(|hit| is_left[hit.triangle as usize]) {
+                there += own;
+            }
+        }
+        there > LIES_THERE * area
+    };
+    let named = all.model.parts.iter().zip(&triangles_of);
+    named
+        .filter(|(part, triangles)| {
+            !triangles.is_empty() && !own.contains(&part.id) && lies_there(triangles)
+        })
+        .map(|(part, _)| part.id)
+        .collect()
+}
+
+fn middle(corners: &[Point3; 3]) -> Point3 {
+    let sum: Vector3 = corners.iter().map(|corner| corner.coords).sum();
+    Point3::from(sum / 3.0)
+}

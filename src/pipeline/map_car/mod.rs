@@ -1,0 +1,398 @@
+//! Many stamped parts onto one crash model: each finds its crash parts, these are mapped part by part, and one
+//! deck includes all results.
+
+mod record;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+pub use record::{CAR_COLUMNS, CarReason, CarRecord, CarRow, CarState};
+
+use super::PipelineError;
+use super::find_parts::{FoundParts, find_parts};
+use super::load::{LoadSettings, LoadedPart, load, prepare};
+use super::map::{
+    DefaultThickness, LEAST_AREA, MapOutput, MapRecipe, MapRecord, PlacedPart, WriteKind,
+    deck_comments, elements_path, map_parts, map_record, map_report, write_mapping,
+};
+use super::match_parts::MatchRecipe;
+use super::write_file::write_file;
+use crate::assess::Verdict;
+use crate::formats::Selection;
+use crate::geometry::Similarity;
+use crate::mapping::Status;
+use crate::monitor::Monitor;
+use crate::report::html::CarReport;
+use crate::report::{DIRECTION, build_id};
+use crate::role::PerRole;
+
+/// Stamped parts that lie on the same elements by more than this share of the area are in conflict.
+const CONFLICT: f64 = 0.02;
+
+/// A stamped file and how it is read.
+#[derive(Debug, Clone)]
+pub struct StampedFile {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Parts, unit, folders of includes.
+    pub settings: LoadSettings,
+}
+
+/// How a car is mapped.
+#[derive(Debug, Clone)]
+pub struct CarRecipe {
+    /// The matches.
+    pub matching: MatchRecipe,
+    /// The mappings.
+    pub map: MapRecipe,
+    /// 16 columns a number instead of 10.
+    pub is_large: bool,
+    /// Thickness of elements without values.
+    pub default_thickness: DefaultThickness,
+    /// Where everything is written.
+    pub folder: PathBuf,
+    /// Whether a page with pictures is written for every mapping.
+    pub has_pages: bool,
+}
+
+/// Files that a car's mapping writes into its folder, for the check before the work.
+pub fn car_files(stamped: &[StampedFile], folder: &Path, has_pages: bool) -> Vec<PathBuf> {
+    let mut files = vec![folder.join(MASTER)];
+    if has_pages {
+        files.push(folder.join(REPORT));
+    }
+    for stem in stems(stamped) {
+        let deck = folder.join(format!("{stem}.k"));
+        files.push(elements_path(&deck));
+        files.push(deck);
+        if has_pages {
+            files.push(folder.join(format!("{stem}.html")));
+        }
+    }
+    files
+}
+
+/// The deck that includes the others.
+const MASTER: &str = "mapped.k";
+/// The page about all parts.
+const REPORT: &str = "report.html";
+
+/// A name for the files of each stamped part, no two the same.
+fn stems(stamped: &[StampedFile]) -> Vec<String> {
+    let reserved = [MASTER, REPORT].map(|name| stem_of(Path::new(name)));
+    let mut taken: BTreeSet<String> = reserved.into_iter().collect();
+    let mut name = |file: &StampedFile| {
+        let stem = stem_of(&file.path);
+        let mut numbered = (2..).map(|n| format!("{stem}_{n}"));
+        let mut free = stem.clone();
+        while taken.contains(&free.to_lowercase()) {
+            free = numbered.next().unwrap_or_default();
+        }
+        taken.insert(free.to_lowercase());
+        free
+    };
+    stamped.iter().map(&mut name).collect()
+}
+
+fn stem_of(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
+}
+
+/// A stamped part with its place on the car.
+struct Claim {
+    ids: Vec<u64>,
+    pose: Similarity,
+    is_good: bool,
+}
+
+/// What was made of the stamped parts of one group.
+struct Made {
+    record: MapRecord,
+    title: String,
+    /// Mean thickness of the crash elements with values; NaN where none was mapped.
+    thickness: f64,
+    /// Of each stamped part, whether it gave way to one that fits better.
+    is_displaced: Vec<bool>,
+    /// Mean thickness over that of the section, where that is unusual.
+    thickness_ratio: Option<f64>,
+    files: Vec<String>,
+    page: Option<String>,
+}
+
+/// Finds the crash parts of every stamped file, maps them and writes the results into `recipe.folder`: states
+/// and elements of each group of parts, a deck that includes all of them, and pages if these are wanted.
+///
+/// Stamped parts that claim the same crash part are mapped onto it together. A file that cannot be read or
+/// that fits nothing is a row of the record; an error is only what concerns all: a cancel request, or a
+/// folder that cannot be written.
+pub fn map_car(
+    crash: &LoadedPart,
+    stamped: &[StampedFile],
+    recipe: &CarRecipe,
+    monitor: &Monitor,
+) -> Result<CarRecord, PipelineError> {
+    let mut rows: Vec<CarRow> = stamped.iter().map(|file| CarRow::new(&file.path)).collect();
+    let mut claims: BTreeMap<usize, Claim> = BTreeMap::new();
+    for (at, (file, row)) in stamped.iter().zip(&mut rows).enumerate() {
+        monitor.check()?;
+        let found = load(&file.path, &file.settings, monitor).and_then(|part| {
+            let parts = PerRole::new(crash, &part);
+            find_parts(parts, &recipe.matching, monitor)
+        });
+        match unless_cancelled(found)? {
+            Ok(Some(found)) => {
+                claims.insert(at, claim(row, &found));
+            }
+            Ok(None) => row.reasons.push(CarReason::NoPart),
+            Err(error) => row.reasons.push(CarReason::Failed(error)),
+        }
+    }
+    let stems = stems(stamped);
+    let mut included = Vec::new();
+    for members in groups(&claims) {
+        monitor.check()?;
+        let is_good = |at: &&usize| claims[*at].is_good;
+        let first = members.iter().find(is_good).unwrap_or(&members[0]);
+        let group = Group {
+            crash,
+            members: members
+                .iter()
+                .map(|at| (&stamped[*at], &claims[at]))
+                .collect(),
+            stem: &stems[*first],
+        };
+        match unless_cancelled(group.map_and_write(recipe, monitor))? {
+            Ok(made) => {
+                for (&at, is_displaced) in members.iter().zip(&made.is_displaced) {
+                    if *is_displaced {
+                        rows[at].reasons.push(CarReason::Displaced);
+                    } else {
+                        take(&mut rows[at], &made);
+                    }
+                }
+                included.extend(made.files);
+            }
+            Err(error) => {
+                let failed = |at: &usize| {
+                    rows[*at].reasons.push(CarReason::Failed(error.clone()));
+                };
+                members.iter().for_each(failed);
+            }
+        }
+    }
+    let record = CarRecord {
+        build: build_id(),
+        schema: 1,
+        direction: DIRECTION.to_owned(),
+        crash: crash.path.display().to_string(),
+        rows,
+    };
+    let master = master(&record, crash, &included);
+    write_file(&recipe.folder.join(MASTER), master.as_bytes())?;
+    if recipe.has_pages {
+        let page = car_page(&record, crash);
+        write_file(&recipe.folder.join(REPORT), page.as_bytes())?;
+    }
+    Ok(record)
+}
+
+/// What failed as text, a cancel request as the error it is.
+fn unless_cancelled<T>(
+    result: Result<T, PipelineError>,
+) -> Result<Result<T, String>, PipelineError> {
+    match result {
+        Err(error) if error.is_cancelled() => Err(error),
+        other => Ok(other.map_err(|error| error.to_string())),
+    }
+}
+
+/// Puts what was found into the row.
+fn claim(row: &mut CarRow, found: &FoundParts) -> Claim {
+    let run = &found.found.run;
+    row.crash_parts = found.found.part.chosen_part_ids();
+    row.crash_from_stamped = Some(run.crash_from_stamped.to_rows());
+    row.verdict = Some(run.assessment.verdict);
+    row.rms = Some(run.assessment.coverage.rmse());
+    if run.assessment.verdict != Verdict::Good {
+        row.reasons.push(CarReason::Pose);
+    }
+    if !found.rivals.is_empty() {
+        row.reasons.push(CarReason::Rivals(found.rivals.clone()));
+    }
+    Claim {
+        ids: row.crash_parts.clone(),
+        pose: run.crash_from_stamped,
+        is_good: run.assessment.verdict == Verdict::Good,
+    }
+}
+
+/// Puts what was mapped into the row.
+fn take(row: &mut CarRow, made: &Made) {
+    let record = &made.record;
+    row.title.clone_from(&made.title);
+    row.mapped_area = Some(record.mapped_area);
+    row.thickness = Some(made.thickness).filter(|t| t.is_finite());
+    row.files.clone_from(&made.files);
+    row.page.clone_from(&made.page);
+    let conflict = record
+        .statuses
+        .iter()
+        .find(|row| row.status == Status::Conflict);
+    let conflict = conflict.map_or(0.0, |row| row.area_share);
+    if conflict > CONFLICT {
+        row.reasons.push(CarReason::Conflict(conflict));
+    }
+    if record.mapped_area < LEAST_AREA {
+        row.reasons.push(CarReason::Area(record.mapped_area));
+    }
+    if let Some(ratio) = made.thickness_ratio {
+        row.reasons.push(CarReason::Thickness(ratio));
+    }
+    row.state = if row.reasons.is_empty() {
+        CarState::Sure
+    } else {
+        CarState::Check
+    };
+}
+
+/// Stamped parts that share a crash part, in the order they were named.
+fn groups(claims: &BTreeMap<usize, Claim>) -> Vec<Vec<usize>> {
+    let mut groups: Vec<(BTreeSet<u64>, Vec<usize>)> = Vec::new();
+    for (&at, claim) in claims {
+        let mut ids: BTreeSet<u64> = claim.ids.iter().copied().collect();
+        let mut members = vec![at];
+        groups.retain_mut(|(of_group, others)| {
+            let is_apart = of_group.is_disjoint(&ids);
+            if !is_apart {
+                ids.append(of_group);
+                members.append(others);
+            }
+            is_apart
+        });
+        members.sort_unstable();
+        groups.push((ids, members));
+    }
+    groups.sort_by(|a, b| a.1.cmp(&b.1));
+    groups.into_iter().map(|(_, members)| members).collect()
+}
+
+/// Stamped parts that are mapped together.
+struct Group<'a> {
+    crash: &'a LoadedPart,
+    members: Vec<(&'a StampedFile, &'a Claim)>,
+    stem: &'a str,
+}
+
+impl Group<'_> {
+    fn map_and_write(&self, recipe: &CarRecipe, monitor: &Monitor) -> Result<Made, PipelineError> {
+        let crash = self.crash_parts(monitor)?;
+        let stamped = self.members.iter().map(|(file, _)| {
+            // Read again, so that never more than one group is held.
+            load(&file.path, &file.settings, monitor)
+        });
+        let stamped: Vec<LoadedPart> = stamped.collect::<Result<_, _>>()?;
+        let all = stamped.iter().zip(&self.members);
+        let mut placed: Vec<PlacedPart<'_>> = all
+            .map(|(part, (_, claim))| PlacedPart {
+                part,
+                crash_from_stamped: claim.pose,
+            })
+            .collect();
+        let mut run = map_parts(&crash, &placed, &recipe.map, monitor)?;
+        let is_good = || self.members.iter().map(|(_, claim)| claim.is_good);
+        let mut is_displaced = vec![false; placed.len()];
+        let differ = is_good().any(|good| good) && !is_good().all(|good| good);
+        if differ && run.mapped.area_share(Status::Conflict, &run.target.mesh) > CONFLICT {
+            // A part that lies where a better one lies would put its values over the right ones.
+            is_displaced = is_good().map(|good| !good).collect();
+            let mut good = is_good();
+            placed.retain(|_| good.next().unwrap_or(true));
+            run = map_parts(&crash, &placed, &recipe.map, monitor)?;
+        }
+        let output = MapOutput {
+            kind: WriteKind::Include,
+            path: recipe.folder.join(format!("{}.k", self.stem)),
+            is_large: recipe.is_large,
+            default_thickness: recipe.default_thickness,
+        };
+        let comments = deck_comments(&crash, &placed);
+        let files = write_mapping(&run, &crash, &output, &comments, monitor)?;
+        let record = map_record(&run, &crash, &placed, Some(&files), None);
+        for (path, bytes) in &files.files {
+            write_file(path, bytes)?;
+        }
+        let page = recipe.has_pages.then(|| format!("{}.html", self.stem));
+        if let Some(name) = &page {
+            let page = map_report(&run, &record, &crash, None, monitor)?;
+            write_file(&recipe.folder.join(name), page.as_bytes())?;
+        }
+        let ids = crash.chosen_part_ids();
+        let named = crash.model.parts.iter().find(|part| ids.contains(&part.id));
+        Ok(Made {
+            title: named.map_or_else(String::new, |part| part.title.clone()),
+            thickness: run.mean_thickness(),
+            thickness_ratio: run.unusual_thickness(),
+            is_displaced,
+            files: files.files.iter().map(|(path, _)| name_of(path)).collect(),
+            record,
+            page,
+        })
+    }
+
+    /// The crash model with the parts of all members chosen.
+    fn crash_parts(&self, monitor: &Monitor) -> Result<LoadedPart, PipelineError> {
+        let claimed = self.members.iter().flat_map(|(_, claim)| &claim.ids);
+        let ids: BTreeSet<u64> = claimed.copied().collect();
+        let mut settings = self.crash.settings.clone();
+        settings.selection = Selection::Parts(ids.into_iter().collect());
+        let model = Arc::clone(&self.crash.model);
+        prepare(&self.crash.path, model, &settings, monitor)
+    }
+}
+
+fn name_of(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
+}
+
+/// The deck that includes the results of all parts.
+fn master(record: &CarRecord, crash: &LoadedPart, included: &[String]) -> String {
+    let mut text = format!(
+        "*KEYWORD\n$ forming results mapped onto {}\n",
+        crash.file_name()
+    );
+    for row in &record.rows {
+        let [file, part, state, ..] = row.cells();
+        text.push_str(&format!("$ {file} on part {part}: {state}\n"));
+    }
+    text.push_str(&format!(
+        "$ Take the elements that the included files define out of the crash deck.\n$ {}\n",
+        record.build
+    ));
+    for name in included {
+        text.push_str(&format!("*INCLUDE\n{name}\n"));
+    }
+    text.push_str("*END\n");
+    text
+}
+
+fn car_page(record: &CarRecord, crash: &LoadedPart) -> String {
+    let n_of = |state| record.rows.iter().filter(|row| row.state == state).count();
+    let states = [CarState::Sure, CarState::Check, CarState::None];
+    let page = CarReport {
+        build: record.build.clone(),
+        crash: crash.file_name(),
+        facts: states
+            .map(|state| (state.label(), n_of(state).to_string()))
+            .to_vec(),
+        columns: CAR_COLUMNS,
+        rows: record
+            .rows
+            .iter()
+            .map(|row| (row.cells(), row.page.clone()))
+            .collect(),
+    };
+    page.write()
+}

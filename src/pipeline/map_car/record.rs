@@ -1,0 +1,174 @@
+//! What became of each stamped part of a car: rows for tables, pages and JSON.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::assess::Verdict;
+use crate::text::{length, percent};
+
+/// How certain it is that a stamped part lies where it belongs, with all its values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CarState {
+    /// One crash part fits, and it has values.
+    Sure,
+    /// Mapped; the reasons say what to look at.
+    Check,
+    /// Nothing was mapped from it.
+    None,
+}
+
+impl CarState {
+    /// The word for people.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Sure => "sure",
+            Self::Check => "check",
+            Self::None => "not mapped",
+        }
+    }
+}
+
+/// Why a stamped part is not sure.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CarReason {
+    /// It cannot be read or mapped.
+    Failed(String),
+    /// No crash part fits.
+    NoPart,
+    /// The verdict of the match is no better than CHECK.
+    Pose,
+    /// It fits these crash parts about as well.
+    Rivals(Vec<u64>),
+    /// Another stamped part lies on this share of the same area.
+    Conflict(f64),
+    /// Another stamped part lies in its place and fits better.
+    Displaced,
+    /// Only this share of the area has values.
+    Area(f64),
+    /// The mapped thickness is so many times the section's.
+    Thickness(f64),
+}
+
+impl CarReason {
+    /// The reason as words for people.
+    pub fn text(&self) -> String {
+        match self {
+            Self::Failed(error) => error.clone(),
+            Self::NoPart => "no part of the crash model fits".to_owned(),
+            Self::Pose => "the pose needs a look".to_owned(),
+            Self::Rivals(ids) => {
+                let ids: Vec<String> = ids.iter().map(u64::to_string).collect();
+                format!("fits part {} about as well", ids.join(", "))
+            }
+            Self::Conflict(share) => {
+                format!(
+                    "another stamped part lies on {} of the area too",
+                    percent(*share)
+                )
+            }
+            Self::Displaced => "another stamped part lies there and fits better".to_owned(),
+            Self::Area(share) => format!("{} of the area has values", percent(*share)),
+            Self::Thickness(ratio) => {
+                format!("the mapped thickness is {ratio:.2} times the section's")
+            }
+        }
+    }
+}
+
+/// What became of one stamped part.
+#[derive(Debug, Clone, Serialize)]
+pub struct CarRow {
+    /// The stamped file.
+    pub file: String,
+    /// Whether to look at it.
+    pub state: CarState,
+    /// Why.
+    pub reasons: Vec<CarReason>,
+    /// Ids of the crash parts it belongs to.
+    pub crash_parts: Vec<u64>,
+    /// Title of the first of them.
+    pub title: String,
+    /// Rows of the 4×4 matrix of its pose.
+    pub crash_from_stamped: Option<[[f64; 4]; 4]>,
+    /// The verdict of its match.
+    pub verdict: Option<Verdict>,
+    /// Root mean square distance of the surfaces.
+    pub rms: Option<f64>,
+    /// Share of the crash parts' area with values.
+    pub mapped_area: Option<f64>,
+    /// Mean thickness of the crash parts after the mapping.
+    pub thickness: Option<f64>,
+    /// Names of the files with its values.
+    pub files: Vec<String>,
+    /// Name of its page, if one was written.
+    pub page: Option<String>,
+}
+
+impl CarRow {
+    pub(super) fn new(file: &Path) -> Self {
+        Self {
+            file: file.display().to_string(),
+            state: CarState::None,
+            reasons: Vec::new(),
+            crash_parts: Vec::new(),
+            title: String::new(),
+            crash_from_stamped: None,
+            verdict: None,
+            rms: None,
+            mapped_area: None,
+            thickness: None,
+            files: Vec::new(),
+            page: None,
+        }
+    }
+
+    /// Cells of a table: file, crash part, state, verdict, RMS, mapped area, thickness, reasons.
+    pub fn cells(&self) -> [String; 8] {
+        let name = Path::new(&self.file).file_name().unwrap_or_default();
+        let ids: Vec<String> = self.crash_parts.iter().map(u64::to_string).collect();
+        let reasons: Vec<String> = self.reasons.iter().map(CarReason::text).collect();
+        let or_blank = |cell: Option<String>| cell.unwrap_or_default();
+        [
+            name.to_string_lossy().into_owned(),
+            format!("{} {}", ids.join(", "), self.title)
+                .trim()
+                .to_owned(),
+            self.state.label().to_owned(),
+            or_blank(self.verdict.map(|verdict| verdict.label().to_owned())),
+            or_blank(self.rms.map(length)),
+            or_blank(self.mapped_area.map(percent)),
+            or_blank(self.thickness.map(length)),
+            reasons.join("; "),
+        ]
+    }
+}
+
+/// Heads of [`CarRow::cells`].
+pub const CAR_COLUMNS: [&str; 8] = [
+    "Stamped part",
+    "Crash part",
+    "State",
+    "Pose",
+    "RMS",
+    "Area",
+    "Thickness",
+    "Look at",
+];
+
+/// The result for a whole car.
+#[derive(Debug, Clone, Serialize)]
+pub struct CarRecord {
+    /// Which program made it.
+    pub build: String,
+    /// Version of this layout.
+    pub schema: u32,
+    /// What the matrices mean.
+    pub direction: String,
+    /// The crash deck.
+    pub crash: String,
+    /// What became of each stamped part, in the order they were named.
+    pub rows: Vec<CarRow>,
+}

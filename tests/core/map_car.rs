@@ -1,0 +1,220 @@
+//! `shapematch map-car`, and `map` onto a whole model: which crash parts stamped parts belong to is found.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use shapematch::formats::{Model, ReadOptions, read};
+use shapematch::monitor::Monitor;
+
+/// A car of five parts, with the stamped parts of two of them, one that belongs to no part, and a file that is
+/// none.
+struct Car {
+    folder: tempfile::TempDir,
+}
+
+impl Car {
+    fn new() -> Self {
+        let car = Self {
+            folder: tempfile::tempdir().unwrap(),
+        };
+        let samples = [
+            ("bracket", "whole-model"),
+            ("rail", "plain"),
+            ("cup", "plain"),
+        ];
+        for (part, variant) in samples {
+            let made = car.run(&["sample", part, "--part", part, "--variant", variant]);
+            assert!(made.status.success(), "{}", errors(&made));
+        }
+        std::fs::write(car.path("broken.dynain"), "this is no deck\n").unwrap();
+        car
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn run(&self, args: &[&str]) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_shapematch"));
+        command.current_dir(self.folder.path()).args(args);
+        command.output().unwrap()
+    }
+}
+
+fn errors(output: &Output) -> &str {
+    std::str::from_utf8(&output.stderr).unwrap()
+}
+
+fn model(path: &Path) -> Model {
+    read(path, &ReadOptions::default(), &Monitor::silent()).unwrap()
+}
+
+const CRASH: &str = "bracket/crash.k";
+const STAMPED: [&str; 4] = [
+    "rail/stamped.dynain",
+    "bracket/stamped.dynain",
+    "cup/stamped.dynain",
+    "broken.dynain",
+];
+
+#[test]
+fn stamped_parts_find_their_crash_parts() {
+    let car = Car::new();
+    let options = ["--out", "mapped", "--report", "--json", "car.json"];
+    let done = car.run(&[&["map-car", CRASH], &STAMPED[..], &options].concat());
+    assert_eq!(done.status.code(), Some(1), "{}", errors(&done));
+    let text = std::fs::read_to_string(car.path("car.json")).unwrap();
+    let record: Value = serde_json::from_str(&text).unwrap();
+    let rows = record["rows"].as_array().unwrap();
+    let states: Vec<&str> = rows
+        .iter()
+        .map(|row| row["state"].as_str().unwrap())
+        .collect();
+    assert_eq!(states, ["sure", "sure", "none", "none"], "{text}");
+    let ids: Vec<&Value> = rows.iter().map(|row| &row["crash_parts"][0]).collect();
+    assert_eq!(ids[..2], [2_000_019, 2_000_040]);
+    assert_eq!(rows[2]["reasons"][0], "no-part");
+    // The pose is the one that the pair was made with.
+    let truth = std::fs::read_to_string(car.path("bracket/truth.json")).unwrap();
+    let truth: Value = serde_json::from_str(&truth).unwrap();
+    for (i, row) in truth["crash_from_stamped"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .enumerate()
+    {
+        for (j, expected) in row.as_array().unwrap().iter().enumerate() {
+            let found = rows[1]["crash_from_stamped"][i][j].as_f64().unwrap();
+            let expected = expected.as_f64().unwrap();
+            assert!((found - expected).abs() < 0.2, "{found} {expected}");
+        }
+    }
+
+    // The crash deck without the elements of both parts, and the deck of all results in their place.
+    let path = car.path(CRASH);
+    let crash = model(&path);
+    let (mut rest, mut is_shell) = (String::new(), false);
+    for line in std::fs::read_to_string(&path).unwrap().lines() {
+        if line.starts_with('*') {
+            is_shell = line.starts_with("*ELEMENT_SHELL");
+        }
+        let part = line.get(8..16).map(str::trim);
+        if line == "*END" {
+            rest += "*INCLUDE\n../mapped/mapped.k\n";
+        } else if !is_shell || !["2000019", "2000040"].contains(&part.unwrap_or_default()) {
+            rest += &format!("{line}\n");
+        }
+    }
+    std::fs::write(car.path("bracket/rest.k"), rest).unwrap();
+    let mapped = model(&car.path("bracket/rest.k"));
+    let n_of = |model: &Model, id: u64| {
+        let shells = model.shells.iter();
+        let own = shells.filter(|shell| model.parts[shell.part as usize].id == id);
+        own.count()
+    };
+    for id in [2_000_012, 2_000_019, 2_000_040] {
+        assert_eq!(n_of(&mapped, id), n_of(&crash, id), "{id}");
+    }
+    let n_mapped = n_of(&crash, 2_000_019) + n_of(&crash, 2_000_040);
+    assert_eq!(mapped.shell_extras.len(), n_mapped);
+    for page in ["report.html", "stamped.html", "stamped_2.html"] {
+        assert!(car.path("mapped").join(page).exists(), "{page}");
+    }
+    let page = std::fs::read_to_string(car.path("mapped/report.html")).unwrap();
+    assert!(page.contains("SEAT BRACKET") && page.contains("href=\"stamped_2.html\""));
+    assert!(page.contains("no part of the crash model fits"));
+}
+
+#[test]
+fn a_whole_model_is_mapped_where_the_stamped_part_belongs() {
+    let car = Car::new();
+    let options = ["map", CRASH, STAMPED[1], "--json", "-"];
+    let done = car.run(&options);
+    assert!(done.status.success(), "{}", errors(&done));
+    let record: Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert_eq!(record["crash_parts"], serde_json::json!([2_000_040]));
+    assert_eq!(record["mapped_area"], 1.0);
+}
+
+#[test]
+fn a_sheet_that_is_two_crash_parts_is_mapped_onto_both() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |args: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_shapematch"));
+        command
+            .current_dir(folder.path())
+            .args(args)
+            .output()
+            .unwrap()
+    };
+    assert!(run(&["sample", ".", "--part", "pillar"]).status.success());
+    let path = folder.path().join("crash.k");
+    let deck = std::fs::read_to_string(&path).unwrap();
+    let crash = model(&path);
+    // Elements above the middle become a part of their own, and far off lies one that has nothing to do with
+    // it.
+    let height = |shell: &shapematch::formats::model::Shell| {
+        let nodes = shell
+            .nodes
+            .map(|node| crash.nodes.positions()[node as usize]);
+        nodes.iter().map(|p| p.z).sum::<f64>()
+    };
+    let mut heights: Vec<f64> = crash.shells.iter().map(height).collect();
+    heights.sort_by(f64::total_cmp);
+    let middle = heights[heights.len() / 3];
+    let upper: std::collections::HashSet<u64> = crash
+        .shells
+        .iter()
+        .filter(|shell| height(shell) > middle)
+        .map(|shell| shell.id)
+        .collect();
+    let own = crash.parts[0].id;
+    let (mut split, mut is_shell) = (String::new(), false);
+    for line in deck.lines().filter(|line| !line.starts_with("*END")) {
+        if line.starts_with('*') {
+            is_shell = line.starts_with("*ELEMENT_SHELL");
+        }
+        let id = line.get(..8).and_then(|id| id.trim().parse::<u64>().ok());
+        let is_upper = is_shell && id.is_some_and(|id| upper.contains(&id));
+        if is_upper && line[8..16].trim() == own.to_string() {
+            split += &format!("{}{:>8}{}\n", &line[..8], own + 1, &line[16..]);
+        } else {
+            split += &format!("{line}\n");
+        }
+    }
+    let part = deck.split("*PART").nth(1).unwrap();
+    let part = part.split('*').next().unwrap();
+    split += &format!(
+        "*PART{}",
+        part.replacen(&own.to_string(), &(own + 1).to_string(), 1)
+    );
+    split += &format!(
+        "*NODE\n{}{}{}{}*PART\nFAR PLATE\n{:>10}\n*ELEMENT_SHELL\n{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}\n*END\n",
+        node(90_000_001, 9e3, 0.0),
+        node(90_000_002, 9.4e3, 0.0),
+        node(90_000_003, 9.4e3, 90.0),
+        node(90_000_004, 9e3, 90.0),
+        own + 2,
+        90_000_001,
+        own + 2,
+        90_000_001,
+        90_000_002,
+        90_000_003,
+        90_000_004
+    );
+    std::fs::write(&path, split).unwrap();
+    let done = run(&["map", "crash.k", "stamped.dynain", "--json", "-"]);
+    assert!(done.status.success(), "{}", errors(&done));
+    let record: Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert_eq!(
+        record["crash_parts"],
+        serde_json::json!([own, own + 1]),
+        "{record}"
+    );
+    assert!(record["mapped_area"].as_f64().unwrap() > 0.99);
+}
+
+fn node(id: u64, x: f64, y: f64) -> String {
+    format!("{id:>8}{x:>16.4}{y:>16.4}{:>16.4}\n", 0.0)
+}
