@@ -111,11 +111,27 @@ fn checked(record: &MapRecord) -> Vec<(&'static str, String)> {
         let (name, found, limit) = (&check.name, &check.found, &check.limit);
         let text = format!("{name}: {found}, asked for {limit}, {met}");
         lines.push(("", text));
-        lines.extend(
-            check
-                .reason
-                .map(|reason| ("", format!("  {}", reason.label()))),
-        );
+        let reason = check
+            .reason
+            .iter()
+            .flat_map(|reason| wrapped(reason.label()));
+        lines.extend(reason.map(|line| ("", format!("  {line}"))));
+    }
+    lines
+}
+
+/// A sentence in lines that fit a terminal behind the heads.
+fn wrapped(text: &str) -> Vec<String> {
+    const WIDTH: usize = 84;
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + word.chars().count() < WIDTH => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
     }
     lines
 }

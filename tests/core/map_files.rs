@@ -342,6 +342,56 @@ fn a_peak_narrower_than_an_element_is_explained_wherever_checks_are_told() {
 }
 
 #[test]
+fn volume_and_thickness_over_the_section_are_those_of_the_decks() {
+    let bracket = Bracket::new();
+    let (json, csv) = (bracket.path("map.json"), bracket.path("elements.csv"));
+    let output = bracket.map(&["--json", &json, "--csv", &csv]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let record: Value = serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
+    let check = |name: &str| {
+        let mut checks = record["checks"].as_array().unwrap().iter();
+        checks.find(|check| check["name"] == name).unwrap().clone()
+    };
+    let areas = |model: &Model| -> Vec<f64> {
+        let shells = model.shells.iter();
+        let area = |nodes: [u32; 4]| {
+            let [a, b, c, d] = nodes.map(|node| model.nodes.positions()[node as usize]);
+            (c - a).cross(&(d - b)).norm() / 2.0
+        };
+        shells.map(|shell| area(shell.nodes)).collect()
+    };
+    let crash = model(&bracket.path("crash.k"));
+    let table = std::fs::read_to_string(&csv).unwrap();
+    let thickness = table.lines().skip(1).map(|line| -> f64 {
+        let cell = line.split(',').nth(10).unwrap();
+        cell.parse().unwrap()
+    });
+    let thickness: Vec<f64> = thickness.collect();
+    let on_crash = thickness.iter().zip(areas(&crash));
+    let on_crash: f64 = on_crash.map(|(t, area)| t * area).sum();
+    let formed = model(&bracket.path("stamped.dynain"));
+    let of_stamped = areas(&formed);
+    let extras = formed.shell_extras.iter();
+    let on_stamped: f64 = extras
+        .map(|extra| extra.thickness[0] * of_stamped[extra.shell as usize])
+        .sum();
+    let volume = check("Volume of the sheet");
+    let found = volume["found"].as_str().unwrap().replace('−', "-");
+    let found: f64 = found.trim_end_matches(" %").parse().unwrap();
+    let expected = 100.0 * (on_crash / on_stamped - 1.0);
+    assert!((found - expected).abs() < 0.3, "{found} {expected}");
+    assert!(volume["is_met"].is_null());
+
+    // The section of the sample is 2.
+    let least = thickness.iter().copied().fold(f64::INFINITY, f64::min) / 2.0;
+    let ratio = check("Thickness over the section's");
+    let found = ratio["found"].as_str().unwrap();
+    let low: f64 = found.split(' ').next().unwrap().parse().unwrap();
+    assert!((low - least).abs() < 1e-3, "{found} {least}");
+    assert_eq!(ratio["is_met"], true);
+}
+
+#[test]
 fn stresses_have_pictures_in_the_report_too() {
     let bracket = Bracket::new();
     let page = bracket.path("map.html");

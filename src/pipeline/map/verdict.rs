@@ -17,6 +17,8 @@ const MEAN_CHANGE: f64 = 0.005;
 const PEAK_CHANGE: [f64; 2] = [-0.10, 0.05];
 /// A peak whose mean over a crash element is below this share of it is narrower than the element.
 const NARROW_PEAK: f64 = 0.98;
+/// A mapped thickness over that of the section beyond these is no forming.
+const POSSIBLE_THICKNESS: [f64; 2] = [0.2, 2.0];
 /// Confidence below which an element is doubtful, and the share of the area that may be.
 const DOUBTFUL: f64 = 0.5;
 const DOUBTFUL_AREA: f64 = 0.05;
@@ -116,6 +118,8 @@ pub(super) fn checks_of(run: &MapRun, record: &MapRecord) -> Vec<CheckRecord> {
                 .map(|pair| mean(run, name, pair, (picture, value))),
         );
     }
+    checks.extend(beside_section(run));
+    checks.extend(volume(run));
     if let Some(pair) = &record.plastic_strain {
         checks.push(peak(run, pair));
     }
@@ -200,7 +204,10 @@ fn distance(run: &MapRun) -> CheckRecord {
     CheckRecord {
         name: "Distance of the sheets".to_owned(),
         found: worst.map_or_else(|| "–".to_owned(), |worst| length(apart(worst))),
-        limit: "half the limit".to_owned(),
+        limit: match run.recipe.options.max_distance {
+            Some(reach) => format!("at most {}", length(reach / 2.0)),
+            None => "at most half the element size".to_owned(),
+        },
         is_met: Some(mapped.n_distant == 0),
         reason: None,
         picture: CheckPicture::Distance,
@@ -254,6 +261,47 @@ fn mean(
         picture,
         worst: worst_difference(run, value),
     }
+}
+
+/// The mapped thickness of each element over that of its section, where this is known.
+fn beside_section(run: &MapRun) -> Option<CheckRecord> {
+    let ratio = |element: usize| {
+        let ratio = run.thickness(element) / run.target.nominal_thickness[element];
+        // A section without thickness says nothing.
+        if ratio.is_finite() { ratio } else { f64::NAN }
+    };
+    let off = |element: usize| ratio(element).ln().abs();
+    let worst = largest(run, off)?;
+    let ratios = (0..run.shells.len()).map(ratio);
+    let (low, high) = ratios.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), ratio| {
+        (low.min(ratio), high.max(ratio))
+    });
+    let [least, most] = POSSIBLE_THICKNESS;
+    Some(CheckRecord {
+        name: "Thickness over the section's".to_owned(),
+        found: format!("{} to {}", length(low), length(high)),
+        limit: format!("{} to {}", fixed(least, 1), fixed(most, 0)),
+        is_met: Some(low >= least && high <= most),
+        reason: None,
+        picture: CheckPicture::Thickness,
+        worst: Some(worst),
+    })
+}
+
+/// Thickness times area of the crash elements with values beside that of the stamped elements they cover.
+/// Told and not judged: a finer mesh of a radius has more area.
+fn volume(run: &MapRun) -> Option<CheckRecord> {
+    let (stamped, crash) = run.checks.thickness.as_ref()?;
+    let change = crash.mean * crash.area / (stamped.mean * stamped.area) - 1.0;
+    change.is_finite().then(|| CheckRecord {
+        name: "Volume of the sheet".to_owned(),
+        found: signed_percent(change),
+        limit: "differs with the mesh of radii".to_owned(),
+        is_met: None,
+        reason: None,
+        picture: CheckPicture::Thickness,
+        worst: None,
+    })
 }
 
 /// The largest value against the stamped one, or against what the crash element there can carry of it.
