@@ -82,11 +82,15 @@ pub fn length(value: f64) -> String {
 
 /// A length with its sign, as window and report write it: +0.412, −1.35, 0.
 pub fn signed(value: f64) -> String {
-    let text = length(value);
-    if value > 0.0 && text != "0" {
+    with_sign(value, &length(value))
+}
+
+/// A number as written, with its sign; what reads as zero has none.
+fn with_sign(value: f64, text: &str) -> String {
+    if value > 0.0 && text.chars().any(|c| c.is_ascii_digit() && c != '0') {
         format!("+{text}")
     } else {
-        minus(&text)
+        minus(text)
     }
 }
 
@@ -137,22 +141,55 @@ pub fn sentence(text: &str) -> String {
     capital(text) + end
 }
 
-/// Lengths with their unit, where it is known.
+/// How lengths are written: their unit, where it is known, and their decimals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Lengths {
     /// The unit; `None` where nothing is known of it.
     pub unit: Option<LengthUnit>,
+    /// Decimals of a millimetre; `None` for three significant digits.
+    pub decimals: Option<u8>,
 }
 
 impl Lengths {
     /// Lengths in `unit`.
     pub fn new(unit: Option<LengthUnit>) -> Self {
-        Self { unit }
+        Self {
+            unit,
+            decimals: None,
+        }
     }
 
-    /// Three significant digits and the unit: `0.381 mm`.
+    /// The same lengths with so many decimals of a millimetre; other units get as many as show no less.
+    /// Where the unit is unknown, lengths keep three significant digits.
+    pub fn with_decimals(self, decimals: Option<u8>) -> Self {
+        Self { decimals, ..self }
+    }
+
+    /// The number alone: `0.381`.
+    pub fn number(self, value: f64) -> String {
+        match (self.decimals, self.unit) {
+            (Some(decimals), Some(unit)) => {
+                let in_mm = unit.factor_to(LengthUnit::Millimeter);
+                let more = in_mm.log10().ceil().max(0.0) as usize;
+                fixed(value, usize::from(decimals) + more)
+            }
+            _ => length(value),
+        }
+    }
+
+    /// The number with its sign: `+0.381`, `−1.35`.
+    pub fn signed(self, value: f64) -> String {
+        with_sign(value, &self.number(value))
+    }
+
+    /// The number and the unit: `0.381 mm`.
     pub fn of(self, value: f64) -> String {
-        length(value) + self.suffix()
+        self.number(value) + self.suffix()
+    }
+
+    /// The number with its sign and the unit: `+0.381 mm`.
+    pub fn signed_of(self, value: f64) -> String {
+        self.signed(value) + self.suffix()
     }
 
     /// What follows a number: `" mm"`, or nothing.
@@ -192,6 +229,24 @@ mod tests {
         assert_eq!(lengths.of(0.3806), "0.381 mm");
         assert_eq!(lengths.axis("distance"), "distance, mm");
         assert_eq!(Lengths::default().of(0.3806), "0.381");
+    }
+
+    #[test]
+    fn decimals_are_those_of_a_millimetre_in_every_unit() {
+        let written = |unit, decimals| {
+            let lengths = Lengths::new(unit).with_decimals(Some(decimals));
+            [0.380_64, -128.4, 0.0].map(|value| lengths.of(value))
+        };
+        let mm = Some(LengthUnit::Millimeter);
+        assert_eq!(written(mm, 2), ["0.38 mm", "-128.40 mm", "0.00 mm"]);
+        assert_eq!(written(mm, 4), ["0.3806 mm", "-128.4000 mm", "0.0000 mm"]);
+        // A hundredth of a millimetre is the fifth decimal of a metre.
+        assert_eq!(written(Some(LengthUnit::Meter), 2)[0], "0.38064 m");
+        assert_eq!(written(Some(LengthUnit::Inch), 2)[0], "0.3806 in");
+        assert_eq!(written(None, 2), ["0.381", "-128", "0"]);
+        let lengths = Lengths::new(mm).with_decimals(Some(2));
+        let read = [0.5, -0.5, 0.001, -0.001].map(|value| lengths.signed_of(value));
+        assert_eq!(read, ["+0.50 mm", "−0.50 mm", "0.00 mm", "0.00 mm"]);
     }
 
     #[test]

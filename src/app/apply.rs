@@ -2,7 +2,7 @@
 //! other topics have to follow comes after it.
 
 use super::{
-    AppState, Command, Dialog, Effect, FreeWindow, MatchCommand, NoticeCommand, Section,
+    AppState, Command, Dialog, Effect, FreeWindow, MatchCommand, NoticeCommand, Section, Settings,
     ViewCommand, mapping,
 };
 
@@ -72,13 +72,25 @@ impl AppState {
                 NoticeCommand::MarkRead => work.log.notices.mark_read(),
                 NoticeCommand::Tell(level, text) => work.log_at(level, "window", None, text, None),
             },
-            Command::Settings(settings) => return work.set_settings(*settings),
+            Command::Settings(settings) => return self.apply_settings(*settings),
             Command::Job(event) => return self.take_job_event(*event),
             Command::Live(live) => self.take_live(*live),
             Command::Escape => return self.escape(),
             Command::Quit => return self.quit(),
         }
         Vec::new()
+    }
+
+    /// New preferences hold at once; maps that are not touched stay as the legend chose them.
+    fn apply_settings(&mut self, settings: Settings) -> Vec<Effect> {
+        let maps = |settings: &Settings| (settings.signed_map, settings.plain_map);
+        let before = maps(&self.settings);
+        let effects = self.work().set_settings(settings);
+        if maps(&self.settings) != before {
+            let coloring = &mut self.view.display.coloring;
+            *coloring = coloring.with_maps_of(&self.settings);
+        }
+        effects
     }
 
     fn apply_view(&mut self, command: ViewCommand) {

@@ -8,7 +8,7 @@ use crate::jobs::{MeasuredLevel, PartFacts};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::MatchRun;
 use crate::role::PerRole;
-use crate::text::{Lengths, length, percent};
+use crate::text::{Lengths, percent};
 pub(super) use crate::text::{counted, grouped};
 use std::time::Duration;
 
@@ -78,8 +78,8 @@ pub(super) fn deviation_line(measured: &MeasuredLevel, lengths: Lengths) -> Stri
     measured.deviation.get().map_or_else(String::new, |d| {
         format!(
             "distance to the full mesh: RMS {}, max {}, at borders max {}",
-            length(d.rms),
-            length(d.max),
+            lengths.number(d.rms),
+            lengths.number(d.max),
             lengths.of(d.border_max)
         )
     })
@@ -108,7 +108,7 @@ pub(super) fn match_line(run: &MatchRun, lengths: Lengths) -> String {
         "{}: overlap {}, RMS {}, p95 {}",
         assessment.verdict.label(),
         percent(assessment.coverage.better_overlap()),
-        length(assessment.coverage.rmse()),
+        lengths.number(assessment.coverage.rmse()),
         lengths.of(assessment.coverage.p95()),
     );
     if let Some(reason) = assessment.reasons.first() {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::{NoticeLevel, PictureChoice, UnitMemory};
+use crate::colormap::ColorMap;
 use crate::formats::ReadOptions;
 use crate::jobs::PartSource;
 use crate::role::PerRole;
@@ -84,6 +85,12 @@ pub struct Settings {
     pub theme: Theme,
     /// Size of everything, 0.75 to 2.5.
     pub ui_scale: f32,
+    /// Decimals of a millimetre that lengths are shown with; `None` for three significant digits.
+    pub decimals: Option<u8>,
+    /// Colours of values with a sign that a new work begins with.
+    pub signed_map: ColorMap,
+    /// Colours of all other values that a new work begins with.
+    pub plain_map: ColorMap,
     /// Mouse habits.
     pub mouse: MouseScheme,
     /// True once the question about the mouse was answered or closed.
@@ -127,6 +134,9 @@ impl Default for Settings {
         Self {
             theme: Theme::default(),
             ui_scale: 1.0,
+            decimals: None,
+            signed_map: ColorMap::CoolWarm,
+            plain_map: ColorMap::Viridis,
             mouse: MouseScheme::default(),
             is_mouse_asked: false,
             reduce_motion: false,
@@ -155,6 +165,8 @@ impl Default for Settings {
 impl Settings {
     /// Smallest and largest size of the window's text.
     pub const UI_SCALES: std::ops::RangeInclusive<f32> = 0.75..=2.5;
+    /// Decimals of a millimetre that can be chosen.
+    pub const DECIMALS: std::ops::RangeInclusive<u8> = 1..=4;
     /// Read limits that can be chosen, in GiB.
     pub const READ_LIMITS: std::ops::RangeInclusive<f64> = 0.1..=1024.0;
 
@@ -192,6 +204,8 @@ impl Settings {
         } else {
             ReadOptions::USUAL_LIMIT
         };
+        let (low, high) = Self::DECIMALS.into_inner();
+        self.decimals = self.decimals.map(|n| n.clamp(low, high));
         self.marked_levels.retain(|&n| n > 0);
         self.marked_levels.sort_unstable_by(|a, b| b.cmp(a));
         self.marked_levels.dedup();

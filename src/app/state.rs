@@ -62,10 +62,11 @@ pub(super) struct Topics<'a> {
 impl AppState {
     /// A window without parts.
     pub fn new(settings: Settings) -> Self {
-        Self {
-            settings: settings.sanitized(),
-            ..Self::default()
-        }
+        let settings = settings.sanitized();
+        let mut state = Self::default();
+        state.view.display.coloring = state.view.display.coloring.with_maps_of(&settings);
+        state.settings = settings;
+        state
     }
 
     /// Tells how long the program runs; ends toasts whose time is over. To be called once a frame.

@@ -10,7 +10,7 @@ use super::{
 use crate::geometry::Similarity;
 use crate::jobs::{JobKey, JobKind};
 use crate::role::Role;
-use crate::text::without_error_number;
+use crate::text::{Lengths, without_error_number};
 
 /// The work itself: the document with its history, jobs, preferences and messages, and what is to
 /// happen in other topics afterwards. A topic gets this and its own state, and no other topic's.
@@ -140,6 +140,11 @@ impl Work<'_> {
         }
         *self.settings = settings;
         vec![Effect::SaveSettings]
+    }
+
+    /// How the window writes every length that it shows.
+    pub fn lengths(&self) -> Lengths {
+        self.document.lengths(self.settings.decimals)
     }
 
     /// `Ok` unless a match or sweep holds the inputs.

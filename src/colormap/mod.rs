@@ -25,6 +25,9 @@ pub enum ColorMap {
     CoolWarm,
     /// The old fringe colours. Their lightness goes up and down, so only for comparison with old pictures.
     Rainbow,
+    /// Light to dark grey; for prints and copies without colours. Values with a sign are the darker the
+    /// farther they are from zero, and a pattern tells their side.
+    Grey,
     /// Two colours, for two classes: a calm one below the middle, a loud one above.
     Classes,
     /// One colour for each status of a mapped element, in equal steps.
@@ -33,7 +36,13 @@ pub enum ColorMap {
 
 impl ColorMap {
     /// All maps to choose from, in menu order.
-    pub const ALL: [Self; 4] = [Self::Viridis, Self::Cividis, Self::CoolWarm, Self::Rainbow];
+    pub const ALL: [Self; 5] = [
+        Self::Viridis,
+        Self::Cividis,
+        Self::CoolWarm,
+        Self::Grey,
+        Self::Rainbow,
+    ];
 
     /// Name in menus.
     pub fn label(self) -> &'static str {
@@ -41,6 +50,7 @@ impl ColorMap {
             Self::Viridis => "Viridis",
             Self::Cividis => "Cividis",
             Self::CoolWarm => "Cool–warm",
+            Self::Grey => "Grey, for printing",
             Self::Rainbow => "Rainbow, like LS-PrePost",
             Self::Classes => "Two classes",
             Self::Statuses => "Statuses",
@@ -60,6 +70,7 @@ impl ColorMap {
             Self::Cividis => between_stops(tables::CIVIDIS, t),
             Self::CoolWarm => cool_warm::sample(t),
             Self::Rainbow => between_stops(tables::RAINBOW, t),
+            Self::Grey => [(235.0 - 185.0 * t).round() as u8; 3],
             Self::Classes if t < 0.5 => [0x9E, 0xC9, 0xE2],
             Self::Classes => [0xC9, 0x3B, 0x7F],
             Self::Statuses => {

@@ -110,12 +110,22 @@ impl ColorScale {
         if self.tolerance > 0.0 && value.abs() <= self.tolerance {
             return NEUTRAL;
         }
-        let mut t = self.position(value);
+        let mut t = if self.is_folded() {
+            value.abs() / self.max.abs().max(self.min.abs())
+        } else {
+            self.position(value)
+        };
         if let Some(n) = self.n_bands {
             let n = f64::from(n.clamp(2, 32));
             t = (t * n).floor().min(n - 1.0) / (n - 1.0);
         }
         self.map.sample(if self.reversed { 1.0 - t } else { t })
+    }
+
+    /// True where the map cannot tell the sign of values: it says how large they are, and the pattern
+    /// on which side.
+    fn is_folded(&self) -> bool {
+        self.map == ColorMap::Grey && self.min < 0.0 && self.max > 0.0
     }
 
     /// The pattern of a value.
@@ -131,7 +141,10 @@ impl ColorScale {
                 Pattern::Dots
             };
         }
-        if !self.has_pattern || value.is_nan() || value.abs() <= self.tolerance {
+        if !(self.has_pattern || self.is_folded())
+            || value.is_nan()
+            || value.abs() <= self.tolerance
+        {
             Pattern::Plain
         } else if value < 0.0 {
             Pattern::Lines
@@ -191,6 +204,28 @@ mod tests {
             ..scale
         };
         assert_eq!(turned.color(2.0), scale.color(-2.0));
+    }
+
+    /// A print without colours: equally far from zero equally dark, and the sign by the pattern.
+    #[test]
+    fn grey_tells_the_size_by_lightness_and_the_sign_by_pattern() {
+        let scale = ColorScale {
+            map: ColorMap::Grey,
+            ..ColorScale::symmetric(2.0, 0.1)
+        };
+        let darkness = |value: f64| 255 - scale.color(value)[0];
+        for value in [-2.0, -1.1, -0.3, 0.0, 0.05, 0.3, 1.1, 2.0] {
+            let [r, g, b] = scale.color(value);
+            assert!(r == g && g == b);
+            assert_eq!(darkness(value), darkness(-value));
+        }
+        assert!(darkness(0.3) < darkness(1.1) && darkness(1.1) < darkness(2.0));
+        let patterns = [-0.3, 0.05, 0.3].map(|value| scale.pattern(value));
+        assert_eq!(patterns, [Pattern::Lines, Pattern::Plain, Pattern::Dots]);
+        // One-sided values need no pattern.
+        let plain = ColorScale::new(ColorMap::Grey, 0.0, 2.0);
+        assert_eq!(plain.pattern(1.0), Pattern::Plain);
+        assert!(plain.color(0.1)[0] > plain.color(1.9)[0]);
     }
 
     #[test]

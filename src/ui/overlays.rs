@@ -183,7 +183,10 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ScrollArea::vertical().max_height(room).show(ui, |ui| {
         group_title(ui, "Display");
         display_ui(ui, &mut settings);
-        coloring_ui(ui, state, commands);
+        map_row(ui, "Deviation colours", &mut settings.signed_map);
+        map_row(ui, "Other colours", &mut settings.plain_map);
+        group_title(ui, "Numbers");
+        decimals_ui(ui, &mut settings);
         group_title(ui, "Mouse");
         form_row(ui, "Mouse controls", LABEL, |ui| {
             mouse_choice(ui, &mut settings);
@@ -249,12 +252,10 @@ fn display_ui(ui: &mut Ui, settings: &mut Settings) {
     });
 }
 
-/// The colours of signed values.
-fn coloring_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let mut display = state.view.display.clone();
-    form_row(ui, "Deviation colours", LABEL, |ui| {
-        let map = &mut display.coloring.signed_map;
-        egui::ComboBox::from_id_salt("deviation colours")
+/// The colours of one kind of values.
+fn map_row(ui: &mut Ui, name: &str, map: &mut ColorMap) {
+    form_row(ui, name, LABEL, |ui| {
+        let choice = egui::ComboBox::from_id_salt(name)
             .selected_text(map.label())
             .width(200.0)
             .show_ui(ui, |ui| {
@@ -262,10 +263,33 @@ fn coloring_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                     ui.selectable_value(map, choice, choice.label());
                 }
             });
+        let response = choice.response;
+        response
+            .on_hover_text("Holds at once and for new work; the legend can choose another map")
+            .accessible_name(name);
     });
-    if display != state.view.display {
-        commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
-    }
+}
+
+/// How lengths are written.
+fn decimals_ui(ui: &mut Ui, settings: &mut Settings) {
+    form_row(ui, "Lengths", LABEL, |ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let automatic = chip(ui, "Automatic", settings.decimals.is_none())
+            .on_hover_text("Three significant digits");
+        if automatic.clicked() {
+            settings.decimals = None;
+        }
+        for n in Settings::DECIMALS {
+            let example = crate::text::fixed(0.0, usize::from(n)) + " mm";
+            let one = chip(ui, &example, settings.decimals == Some(n)).on_hover_text(
+                "So many decimals of a millimetre; other units get as many as show no less. Exports and \
+                 typed numbers keep all digits.",
+            );
+            if one.clicked() {
+                settings.decimals = Some(n);
+            }
+        }
+    });
 }
 
 /// Which messages come up over the windows.

@@ -136,7 +136,11 @@ fn a_wrong_pair_is_named_and_picked_again() {
     );
     assert_eq!(window.state.next_pick(), Some((4, Role::Crash)));
     let fit = window.state.document.pair_fit().unwrap();
-    let doubt = window.state.document.pair_doubt_text(&fit).unwrap();
+    let doubt = window
+        .state
+        .document
+        .pair_doubt_text(&fit, window.state.lengths());
+    let doubt = doubt.unwrap();
     assert!(doubt.starts_with("Pair 2 lies 5"), "{doubt}");
 }
 

@@ -31,13 +31,13 @@ fn set(role: Role, units: impl Into<shapematch::units::Units>) -> FileCommand {
 fn unknown_units_are_said_to_be_unknown_and_can_be_set() {
     let mut window = Window::with_both();
     assert_eq!(words(&window, Role::Crash), "unknown");
-    assert_eq!(window.state.document.length_text(0.38), "0.380");
+    assert_eq!(window.state.lengths().of(0.38), "0.380");
     let before = window.state.document.clone();
     let n_done = window.state.history.n_done();
     window.apply(set(Role::Crash, UnitSystem::TonMmS));
     assert_eq!(words(&window, Role::Crash), "ton-mm-s, set by you");
     assert_eq!(words(&window, Role::Stamped), "mm, as the other part");
-    assert_eq!(window.state.document.length_text(0.38), "0.380 mm");
+    assert_eq!(window.state.lengths().of(0.38), "0.380 mm");
     // Only a word about the file has changed: what was measured stays valid.
     assert_eq!(window.state.document.stamp(), before.stamp());
     assert_eq!(window.state.history.n_done(), n_done + 1);
@@ -108,7 +108,7 @@ fn another_unit_of_the_crash_file_carries_the_stamped_file_along() {
     window.apply(set(Role::Stamped, LengthUnit::Meter));
     window.apply(set(Role::Crash, LengthUnit::Centimeter));
     assert_eq!(window.part(Role::Stamped).length_factor(), 100.0);
-    assert_eq!(window.state.document.length_text(2.0), "2.00 cm");
+    assert_eq!(window.state.lengths().of(2.0), "2.00 cm");
 }
 
 fn bundled(name: &str, settings: &LoadSettings) -> LoadedPart {

@@ -13,6 +13,7 @@ mod no_window;
 mod pairs;
 mod panels;
 mod parts;
+mod preferences;
 mod project;
 mod render;
 mod specification;

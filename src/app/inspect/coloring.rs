@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::app::Settings;
 use crate::colormap::{ColorMap, ColorScale};
 use crate::pipeline::inspect::Comparison;
 use crate::role::PerRole;
@@ -47,6 +48,15 @@ impl Default for Coloring {
 }
 
 impl Coloring {
+    /// The same choices in the maps of the preferences.
+    pub(in crate::app) fn with_maps_of(self, settings: &Settings) -> Self {
+        Self {
+            signed_map: settings.signed_map,
+            map: settings.plain_map,
+            ..self
+        }
+    }
+
     /// Puts the chosen map on a scale that is not that of the deviation.
     pub fn on_scale(&self, scale: ColorScale) -> ColorScale {
         ColorScale {

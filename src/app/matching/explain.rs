@@ -172,9 +172,7 @@ impl AppState {
         if ambiguity.clarity == Clarity::Clear {
             return None;
         }
-        let how = ambiguity
-            .twin
-            .map(|twin| twin.words(self.document.lengths()));
+        let how = ambiguity.twin.map(|twin| twin.words(self.lengths()));
         Some(Cause {
             title: "Ambiguous pose".to_owned(),
             evidence: format!(
@@ -203,7 +201,7 @@ impl AppState {
             evidence: format!(
                 "Only {} of the better covered part lies within {} of the other.",
                 whole_percent(overlap),
-                self.document.length_text(coverage.limit)
+                self.lengths().of(coverage.limit)
             ),
             remedy: self
                 .retry("Try all starts", |recipe| {
@@ -225,7 +223,7 @@ impl AppState {
             title: "Springback or another forming state".to_owned(),
             evidence: format!(
                 "At 95 % of the area the surfaces differ by up to {}, more than the tolerance.",
-                self.document.length_text(by)
+                self.lengths().of(by)
             ),
             remedy: Some(self.allow(by)),
         })
@@ -237,7 +235,7 @@ impl AppState {
         let tolerance = (by / digit).ceil() * digit;
         let mut recipe = self.document.recipe.clone();
         recipe.settings.shape_tolerance = tolerance;
-        let label = format!("Allow {}", self.document.length_text(tolerance));
+        let label = format!("Allow {}", self.lengths().of(tolerance));
         let command = MatchCommand::SetRecipe(Box::new(recipe));
         (label, vec![command.into()])
     }

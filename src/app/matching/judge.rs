@@ -59,7 +59,7 @@ impl MatchState {
         result.run = Arc::clone(run).into();
         // A drag gives many verdicts; those that say the same need no row.
         if run.assessment.verdict != before {
-            let line = facts::match_line(run, work.document.lengths());
+            let line = facts::match_line(run, work.lengths());
             work.log_step("judge", None, line, Some(took));
         }
     }

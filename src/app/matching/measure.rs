@@ -74,7 +74,7 @@ impl MatchState {
         stamp: Stamp,
         took: Duration,
     ) {
-        let line = facts::measure_line(&measurement, work.document.lengths());
+        let line = facts::measure_line(&measurement, work.lengths());
         work.log_step("measure", None, line, Some(took));
         self.measurement = Some((stamp, measurement.into()));
     }

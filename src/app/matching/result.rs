@@ -22,7 +22,7 @@ impl MatchState {
         took: Duration,
     ) -> Vec<Effect> {
         let (line, level) = (
-            facts::match_line(&run, work.document.lengths()),
+            facts::match_line(&run, work.lengths()),
             facts::match_level(&run),
         );
         for (step, text, took) in facts::match_steps(&run) {

@@ -88,10 +88,7 @@ fn fit_pairs(work: &mut Work<'_>) {
     }
     if let Ok(found) = work.document.pair_fit() {
         let n_pairs = found.residuals.len();
-        let text = format!(
-            "{n_pairs} pairs, RMS {}",
-            work.document.length_text(found.fit.rmse)
-        );
+        let text = format!("{n_pairs} pairs, RMS {}", work.lengths().of(found.fit.rmse));
         work.commit_pose(
             format!("Fit {n_pairs} pairs"),
             None,

@@ -13,6 +13,7 @@ use crate::registration::{
     PairDoubt, PointPairFit, RegistrationError, StartMethod, fit_point_pairs,
 };
 use crate::role::{PerRole, Role};
+use crate::text::Lengths;
 
 /// What a picked point is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -124,12 +125,12 @@ impl Document {
     }
 
     /// What is doubtful about the pairs, as a sentence.
-    pub fn pair_doubt_text(&self, fit: &PointPairFit) -> Option<String> {
+    pub fn pair_doubt_text(&self, fit: &PointPairFit, lengths: Lengths) -> Option<String> {
         Some(match fit.doubt? {
             PairDoubt::Far { pair, distance } => format!(
                 "Pair {} lies {} from where the others put it: pick it again or delete it.",
                 pair + 1,
-                self.length_text(distance)
+                lengths.of(distance)
             ),
             PairDoubt::Exchanged {
                 pairs: [a, b],
@@ -138,7 +139,7 @@ impl Document {
                 "The points of pairs {} and {} may be swapped: exchanged, all pairs fit within {}.",
                 a + 1,
                 b + 1,
-                self.length_text(rmse)
+                lengths.of(rmse)
             ),
             PairDoubt::Mirrored { .. } => {
                 "The pairs fit a mirrored part much better: is this the opposite hand?".to_owned()

@@ -85,17 +85,12 @@ impl Document {
 
     /// What follows a length: `" mm"`, or nothing where the unit is unknown.
     pub fn unit_suffix(&self) -> &'static str {
-        self.lengths().suffix()
+        Lengths::new(self.length_unit()).suffix()
     }
 
-    /// Lengths as the window writes them, with their unit.
-    pub fn lengths(&self) -> Lengths {
-        Lengths::new(self.length_unit())
-    }
-
-    /// A length as the window writes it: "0.380 mm", or "0.380" where the unit is unknown.
-    pub fn length_text(&self, value: f64) -> String {
-        self.lengths().of(value)
+    /// Lengths as the window writes them, with so many decimals of a millimetre.
+    pub(in crate::app) fn lengths(&self, decimals: Option<u8>) -> Lengths {
+        Lengths::new(self.length_unit()).with_decimals(decimals)
     }
 
     /// The factor that the stamped file's lengths need, where the user said its unit.
@@ -108,6 +103,11 @@ impl Document {
 }
 
 impl AppState {
+    /// How the window writes every length that it shows.
+    pub fn lengths(&self) -> Lengths {
+        self.document.lengths(self.settings.decimals)
+    }
+
     /// The hint about units, until it is answered.
     pub fn unit_hint(&self) -> Option<UnitHint> {
         self.parts.unit_hint(&self.document, &self.settings)

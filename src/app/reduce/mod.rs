@@ -201,6 +201,6 @@ pub(super) fn take_level_measured(
     level: &MeasuredLevel,
     took: Duration,
 ) {
-    let line = facts::deviation_line(level, work.document.lengths());
+    let line = facts::deviation_line(level, work.lengths());
     work.log_step("measure", Some(role), line, Some(took));
 }

@@ -163,7 +163,7 @@ fn detail(role: Role, part: &Part, state: &AppState) -> String {
         );
     }
     if let Some(thickness) = part.facts.thickness {
-        text += &format!(" · t {}", state.document.length_text(thickness));
+        text += &format!(" · t {}", state.lengths().of(thickness));
     }
     if part.length_factor() != 1.0 {
         text += &format!(" · lengths × {}", part.length_factor());

@@ -59,7 +59,7 @@ fn summary(state: &AppState) -> String {
             format!(
                 "{} · RMS {}",
                 assessment.verdict.label(),
-                state.document.length_text(assessment.coverage.rmse())
+                state.lengths().of(assessment.coverage.rmse())
             )
         }
         None if state.document.both().is_none() => String::new(),
@@ -218,7 +218,7 @@ fn status_ui(ui: &mut Ui, state: &AppState) {
             "start {}/{n_starts} · iteration {} · residual {} · overlap {} · ",
             latest.start + 1,
             latest.number + 1,
-            state.document.length_text(latest.record.rmse),
+            state.lengths().of(latest.record.rmse),
             whole_percent(latest.record.fraction)
         );
     } else if let Some(progress) = job.progress {

@@ -119,7 +119,7 @@ fn residual_ui(
         secondary(ui, "–");
         return;
     };
-    let text = state.document.length_text(*residual);
+    let text = state.lengths().of(*residual);
     if fit.and_then(PointPairFit::worst) == Some(index) {
         let color = Palette::of(ui).check;
         ui.label(RichText::new(format!("⚠ {text}")).color(color))
@@ -130,7 +130,7 @@ fn residual_ui(
 }
 
 fn doubt_ui(ui: &mut Ui, state: &AppState, fit: &PointPairFit) {
-    match state.document.pair_doubt_text(fit) {
+    match state.document.pair_doubt_text(fit, state.lengths()) {
         Some(doubt) => {
             let color = Palette::of(ui).check;
             let text = RichText::new(format!("⚠ {doubt}")).color(color);
@@ -138,7 +138,7 @@ fn doubt_ui(ui: &mut Ui, state: &AppState, fit: &PointPairFit) {
         }
         None => {
             let n_pairs = fit.residuals.len();
-            let rmse = state.document.length_text(fit.fit.rmse);
+            let rmse = state.lengths().of(fit.fit.rmse);
             caption(ui, format!("{n_pairs} pairs, RMS {rmse} after the fit"));
         }
     }

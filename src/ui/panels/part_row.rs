@@ -192,7 +192,7 @@ fn hover_text(row: &Row<'_>, state: &AppState) -> String {
         grouped(summary.n_triangles)
     );
     if let Some(thickness) = summary.thickness {
-        text += &format!(", thickness {}", state.document.length_text(thickness));
+        text += &format!(", thickness {}", state.lengths().of(thickness));
     }
     if let Some(likeness) = row.likeness {
         text += &format!("\nlikeness {}", whole_percent(likeness));

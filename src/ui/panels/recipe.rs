@@ -170,7 +170,7 @@ fn back_ui(ui: &mut Ui, at: Rect, setting: &Setting) -> bool {
 }
 
 fn value_ui(ui: &mut Ui, state: &AppState, setting: &Setting, value: &mut Value) {
-    let lengths = state.document.lengths();
+    let lengths = state.lengths();
     match (&setting.domain, value) {
         (Domain::Choice(words), Value::Choice(name)) => choice_ui(ui, setting, &words(), name),
         (Domain::Switch, Value::Switch(is_on)) => {

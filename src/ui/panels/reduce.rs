@@ -11,8 +11,8 @@ use crate::jobs::{JobKey, MeasuredLevel};
 use crate::role::{PerRole, Role};
 use crate::ui::theme::{LABEL, Palette, ROW, UNIT};
 use crate::ui::widgets::{
-    Look, action_button, caption, chip, form_row, grouped, icon_button, length, paragraph,
-    role_mark, short_count, square, tight,
+    Look, action_button, caption, chip, form_row, grouped, icon_button, paragraph, role_mark,
+    short_count, square, tight,
 };
 
 /// Draws section 2.
@@ -201,16 +201,13 @@ fn with_result(ui: &Ui, chip: Response, state: &AppState, level: Option<usize>) 
 fn result_text(state: &AppState, result: &LevelResult) -> String {
     let mut parts = Vec::new();
     if let Some(rmse) = result.rmse {
-        parts.push(format!("RMS {}", state.document.length_text(rmse)));
+        parts.push(format!("RMS {}", state.lengths().of(rmse)));
     }
     parts.push(duration_text(result.took));
     if result.max_triangles.is_some()
         && let Some(far) = state.distance_to_full(result)
     {
-        parts.push(format!(
-            "pose {} from full",
-            state.document.length_text(far)
-        ));
+        parts.push(format!("pose {} from full", state.lengths().of(far)));
     }
     parts.join(" · ")
 }
@@ -314,9 +311,9 @@ fn error_text(role: Role, level: &MeasuredLevel, state: &AppState) -> String {
     let mut text = match level.deviation.get() {
         Some(d) => format!(
             "RMS {} · max {} · border {}",
-            length(d.rms),
-            length(d.max),
-            state.document.length_text(d.border_max)
+            state.lengths().number(d.rms),
+            state.lengths().number(d.max),
+            state.lengths().of(d.border_max)
         ),
         None if state.jobs.is_active(JobKey::MeasureLevel(role)) => {
             "measuring the distance to the full mesh…".to_owned()

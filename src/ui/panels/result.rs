@@ -13,8 +13,8 @@ use crate::text::{capital, fixed, sentence, vector, whole_percent};
 use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
-    Look, action_button, caption, card, chip, figure, length, paragraph, percent, plain_action,
-    square, tight,
+    Look, action_button, caption, card, chip, figure, paragraph, percent, plain_action, square,
+    tight,
 };
 
 /// Verdict, figures, alternatives, matrix.
@@ -62,8 +62,8 @@ fn outdated_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &m
     let coverage = &result.run.assessment.coverage;
     let spread = format!(
         "{} · {}",
-        length(coverage.rmse()),
-        state.document.length_text(coverage.p95())
+        state.lengths().number(coverage.rmse()),
+        state.lengths().of(coverage.p95())
     );
     figure(ui, "RMS · P95 then", &spread);
     let is_same_pair = result.stamp.parts == state.document.stamp().parts;
@@ -88,7 +88,7 @@ fn verdict_color(palette: &Palette, verdict: Verdict) -> Color32 {
 fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mut Vec<Command>) {
     let palette = Palette::of(ui);
     let assessment = &result.run.assessment;
-    let lengths = state.document.lengths();
+    let lengths = state.lengths();
     // Where another pose fits better, an alternative is at best one to check.
     let verdict = match (result.alternative, assessment.verdict) {
         (Some(_), Verdict::Good) => Verdict::Check,
@@ -151,7 +151,7 @@ fn tolerance_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &
                 .range(limits::LENGTH)
                 .speed(0.01 * usual)
                 .max_decimals(4)
-                .suffix(state.document.lengths().suffix())
+                .suffix(state.lengths().suffix())
                 .update_while_editing(false)
                 .custom_parser(length_or_nothing);
             let field = ui.add(field).on_hover_text(
@@ -197,7 +197,10 @@ fn figures_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
         }
         if result.alternative.is_some() {
             let best = &result.run.assessment.coverage;
-            let (rms, p95) = (length(best.rmse()), state.document.length_text(best.p95()));
+            let (rms, p95) = (
+                state.lengths().number(best.rmse()),
+                state.lengths().of(best.p95()),
+            );
             figure(ui, "best pose: RMS · P95", &format!("{rms} · {p95}"));
         }
         let outcome = &result.run.outcome;
@@ -224,13 +227,13 @@ fn figures_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
 
 /// Overlap both ways and the spread of the distances, of the full meshes.
 fn coverage_ui(ui: &mut Ui, state: &AppState, coverage: &Coverage) {
-    let limit = state.document.length_text(coverage.limit);
+    let limit = state.lengths().of(coverage.limit);
     let over = |one: &OneSided| format!("{} within {limit}", percent(one.overlap));
     figure(ui, "stamped → crash", &over(&coverage.source_on_target));
     figure(ui, "crash → stamped", &over(&coverage.target_on_source));
     let (rms, p95) = (
-        length(coverage.rmse()),
-        state.document.length_text(coverage.p95()),
+        state.lengths().number(coverage.rmse()),
+        state.lengths().of(coverage.p95()),
     );
     figure(ui, "RMS · P95", &format!("{rms} · {p95}"));
 }
@@ -330,7 +333,7 @@ fn moved_ui(ui: &mut Ui, state: &AppState) {
     };
     let center = part.bounds().center();
     let record = PoseRecord::new(pose, part.loaded.sample_node(), &center);
-    let [x, y, z] = record.center_move.map(length);
+    let [x, y, z] = record.center_move.map(|x| state.lengths().number(x));
     let turn = record.rotation_axis_angle;
     let axis = vector(turn.axis, 3);
     paragraph(ui, format!("The centre moves by ({x}, {y}, {z})."));

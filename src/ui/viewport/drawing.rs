@@ -12,7 +12,7 @@ use crate::geometry::{Gap, Plane, Point3, SectionLine, Vector3, gap_at, nearest_
 use crate::role::{PerRole, Role};
 use crate::text::capital;
 use crate::ui::theme::{Look, UNIT};
-use crate::ui::widgets::{nothing_yet, paint_role_mark, segments, signed};
+use crate::ui::widgets::{nothing_yet, paint_role_mark, segments};
 
 /// Clicks this near to an outline take a point of it.
 const SNAP: f64 = 12.0;
@@ -432,23 +432,23 @@ impl Drawing<'_> {
 
     /// What was measured, the gap at the pointer, the worst one, or what one can do.
     fn foot(&self, ui: &mut Ui, seen: &Seen, picked: &[[f64; 2]]) {
-        let document = &self.state.document;
+        let lengths = self.state.lengths();
         let worst = self.gaps.and_then(|gaps| gaps.found.worst.as_ref());
         let (text, is_fact) = if let [a, b] = picked {
             let [du, dv] = [b[0] - a[0], b[1] - a[1]];
-            let whole = document.length_text(du.hypot(dv));
-            let parts = format!("{} across, {} up", signed(du), signed(dv));
+            let whole = lengths.of(du.hypot(dv));
+            let parts = format!("{} across, {} up", lengths.signed(du), lengths.signed(dv));
             (format!("distance {whole}   ({parts})"), true)
         } else if let Some(gap) = &seen.gap {
-            let flush = document.length_text(gap.flush);
-            let across = format!("{}{}", signed(gap.gap), document.unit_suffix());
+            let flush = lengths.of(gap.flush);
+            let across = lengths.signed_of(gap.gap);
             (format!("gap {across} · flush {flush}"), true)
         } else if seen.is_empty {
             ("the plane meets neither part".to_owned(), false)
         } else if picked.len() == 1 {
             ("click the second point".to_owned(), false)
         } else if let Some(worst) = worst {
-            let width = document.length_text(distance(&worst.from, &worst.to));
+            let width = lengths.of(distance(&worst.from, &worst.to));
             (
                 format!("widest gap {width} · click two points to measure"),
                 false,

@@ -8,9 +8,9 @@ use super::charts;
 use crate::app::{AppState, Command, Preview, PreviewCommand};
 use crate::registration::{IterationRecord, StartRecord};
 use crate::report::start_name;
-use crate::text::whole_percent;
+use crate::text::{Lengths, whole_percent};
 use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::{caption, icon_button, length, nothing_yet, percent};
+use crate::ui::widgets::{caption, icon_button, nothing_yet, percent};
 
 /// The curves of one frame.
 struct Curves<'a> {
@@ -20,7 +20,7 @@ struct Curves<'a> {
     /// The iteration that is shown.
     shown: Option<usize>,
     has_others: bool,
-    unit: &'static str,
+    lengths: Lengths,
 }
 
 impl Curves<'_> {
@@ -62,7 +62,7 @@ pub fn convergence_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
         leader,
         shown,
         has_others: has_others(ui),
-        unit: state.document.unit_suffix(),
+        lengths: state.lengths(),
     };
     let is_free = state.jobs.locking_job().is_none();
     head_ui(ui, state, &mut curves, commands);
@@ -182,9 +182,8 @@ fn figures_ui(ui: &mut Ui, curves: &Curves<'_>) {
     let n_steps = iterations.len();
     let words = |step: &IterationRecord| {
         format!(
-            "residual {}{} · overlap {}",
-            length(step.rmse),
-            curves.unit,
+            "residual {} · overlap {}",
+            curves.lengths.of(step.rmse),
             percent(step.fraction)
         )
     };
@@ -255,7 +254,7 @@ impl Chart {
             }
         };
         let label = if is_length {
-            format!("{}{}", self.name, curves.unit)
+            format!("{}{}", self.name, curves.lengths.suffix())
         } else {
             self.name.to_owned()
         };

@@ -14,8 +14,7 @@ use crate::pipeline::inspect::Comparison;
 use crate::role::Role;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{
-    Look, action_button, caption, chip, icon_button, length, nothing_yet, percent, role_mark,
-    signed,
+    Look, action_button, caption, chip, icon_button, nothing_yet, percent, role_mark, signed,
 };
 
 /// Height of a row.
@@ -138,23 +137,21 @@ fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])>
     let row = |name: &str, of: &dyn Fn(&crate::assess::deviation::DeviationStats) -> String| {
         (name.to_owned(), both.map(|way| of(&way.stats)))
     };
-    let inside = format!("within ±{}", state.document.length_text(tolerance));
+    let lengths = state.lengths();
+    let inside = format!("within ±{}", lengths.of(tolerance));
     let mut rows = vec![
         row(&inside, &|s| percent(s.share_inside(tolerance))),
-        row("mean", &|s| signed(s.mean)),
-        row("RMS", &|s| length(s.rms)),
-        row("P95", &|s| length(s.p95)),
-        row("Min", &|s| signed(s.min)),
-        row("Max", &|s| signed(s.max)),
-        row("standard deviation", &|s| length(s.std)),
+        row("mean", &|s| lengths.signed(s.mean)),
+        row("RMS", &|s| lengths.number(s.rms)),
+        row("P95", &|s| lengths.number(s.p95)),
+        row("Min", &|s| lengths.signed(s.min)),
+        row("Max", &|s| lengths.signed(s.max)),
+        row("standard deviation", &|s| lengths.number(s.std)),
     ];
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
         let name = match class {
             OverlapClass::Matched => {
-                format!(
-                    "matched, within {}",
-                    state.document.length_text(deviation.limit)
-                )
+                format!("matched, within {}", lengths.of(deviation.limit))
             }
             OverlapClass::OffByMore => "beyond the limit".to_owned(),
             OverlapClass::OnlyHere => "on this part only".to_owned(),
@@ -168,7 +165,7 @@ fn numbers_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison) {
     let rows = rows(state, comparison);
     ui.spacing_mut().item_spacing.y = 0.0;
     if let Some(offset) = &comparison.deviation.source_on_target.stats.offset {
-        let words = offset.words(|value| state.document.length_text(value));
+        let words = offset.words(|value| state.lengths().of(value));
         let text = RichText::new(format!("Constant offset: {words}"));
         ui.add(egui::Label::new(text).wrap());
     }
@@ -239,11 +236,7 @@ fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &m
                 let found = &spots[row.index()];
                 let role = found.role;
                 let place = found.spot.position;
-                let value = format!(
-                    "{}{}",
-                    signed(found.spot.value),
-                    state.document.unit_suffix()
-                );
+                let value = state.lengths().signed_of(found.spot.value);
                 let node = match found.node {
                     Some(node) => format!("node {node}"),
                     None => format!("vertex {}", found.spot.vertex),

@@ -398,9 +398,8 @@ fn facts(state: &AppState, probe: &ProbeReport) -> String {
         return "no stamped element gave it values".to_owned();
     };
     format!(
-        "from ▲ {stamped} · {}{} · {angle:.0}° · {} covered · confidence {confidence:.2}",
-        signed(distance),
-        state.document.unit_suffix(),
+        "from ▲ {stamped} · {} · {angle:.0}° · {} covered · confidence {confidence:.2}",
+        state.lengths().signed_of(distance),
         percent(coverage),
     )
 }

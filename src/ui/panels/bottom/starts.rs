@@ -9,8 +9,9 @@ use crate::app::{AppState, Command, MatchCommand, Preview, PreviewCommand, durat
 use crate::geometry::Similarity;
 use crate::registration::{StartGroup, StartOutcome, StartRecord, group_starts};
 use crate::report::{outcome_words, start_kind_help, start_name};
+use crate::text::Lengths;
 use crate::ui::theme::Palette;
-use crate::ui::widgets::{caption, length, nothing_yet, percent, tight};
+use crate::ui::widgets::{caption, nothing_yet, percent, tight};
 
 /// Height of a row with its picture.
 const HEIGHT: f32 = 44.0;
@@ -198,7 +199,7 @@ fn row_ui(
         };
         cell(ui, format!("{sign} {words}"), color);
     });
-    for text in figures(line) {
+    for text in figures(line, table.state.lengths()) {
         row.col(|ui| {
             let palette = Palette::of(ui);
             let color = if is_best { palette.good } else { palette.text };
@@ -264,12 +265,12 @@ fn outcome_text(start: &StartRecord, state: &AppState) -> [String; 2] {
     [sign.to_owned(), words]
 }
 
-fn figures(line: &Line<'_>) -> [String; 6] {
+fn figures(line: &Line<'_>, lengths: Lengths) -> [String; 6] {
     let dash = || "–".to_owned();
     let start = line.start;
     let has_ended = start.outcome.is_some();
     let last = start.iterations.last();
-    let number = |value: Option<f64>| value.map_or_else(dash, length);
+    let number = |value: Option<f64>| value.map_or_else(dash, |value| lengths.number(value));
     [
         last.map_or_else(dash, |step| percent(step.fraction)),
         number(last.map(|step| step.rmse)),

@@ -7,7 +7,6 @@ use super::Overlay;
 use crate::app::{Action, AppState, Command, PreviewCommand};
 use crate::assess::Coverage;
 use crate::role::Role;
-use crate::ui::widgets::length;
 
 /// Above the scale bar and the readout.
 const BOTTOM: f32 = 62.0;
@@ -91,10 +90,10 @@ fn poses(state: &AppState) -> Option<Banner> {
     let own = state.result_coverage().map(Coverage::rmse);
     match own {
         Some(own) if result.alternative.is_some() => {
-            let (own, best) = (length(own), state.document.length_text(best));
+            let (own, best) = (state.lengths().number(own), state.lengths().of(best));
             text += &format!(" · RMS {own} against {best}");
         }
-        Some(own) => text += &format!(" · RMS {}", state.document.length_text(own)),
+        Some(own) => text += &format!(" · RMS {}", state.lengths().of(own)),
         None => {}
     }
     let key = Action::NextAlternative.row().shortcut();

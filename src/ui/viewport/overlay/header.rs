@@ -274,7 +274,7 @@ fn overlap(state: &AppState) -> Option<String> {
     let mut text = format!(
         "overlap {} within {}",
         whole_percent(known.overlap),
-        state.document.length_text(known.limit)
+        state.lengths().of(known.limit)
     );
     // Less than half a percent is no change to speak of.
     if let Some(change) = known.change.filter(|change| change.abs() >= 0.005) {

@@ -12,7 +12,6 @@ use crate::app::{BottomTab, Command, InspectCommand, Label, ViewCommand};
 use crate::role::Role;
 use crate::ui::theme::color;
 use crate::ui::viewport::navigation::{pixel_of, pos_of, screen_of};
-use crate::ui::widgets::signed;
 
 /// Distances of a plate from its node, tried in turn.
 const REACHES: [f32; 4] = [34.0, 58.0, 90.0, 130.0];
@@ -115,11 +114,7 @@ fn taken(ui: &Ui, over: &Overlay<'_>) -> Vec<Rect> {
 fn texts(over: &Overlay<'_>, placed: &Placed<'_>) -> [String; 2] {
     let label = placed.label;
     let value = match over.frame.state.label_value(label) {
-        Some(value) => format!(
-            "{}{}",
-            signed(value),
-            over.frame.state.document.unit_suffix()
-        ),
+        Some(value) => over.frame.state.lengths().signed_of(value),
         None if over.frame.state.comparison().is_none() => "–".to_owned(),
         None => "no counterpart".to_owned(),
     };

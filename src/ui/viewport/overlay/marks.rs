@@ -118,9 +118,7 @@ fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
     let state = over.frame.state;
     let is_colored = |role| *state.view.display.coloring.on.get(role);
     match (over.kind?, hit.value) {
-        (FieldKind::Deviation, Some(value)) => {
-            Some(format!("{}{}", signed(value), state.document.unit_suffix()))
-        }
+        (FieldKind::Deviation, Some(value)) => Some(state.lengths().signed_of(value)),
         (FieldKind::Deviation, None) if is_colored(hit.role) => Some("no counterpart".to_owned()),
         (FieldKind::Deviation, None) => None,
         (FieldKind::Overlap, value) => {
@@ -131,12 +129,10 @@ fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
             };
             state.comparison().map(|_| class.label().to_owned())
         }
-        (FieldKind::Uncertainty, Some(value)) => {
-            Some(format!("± {}", state.document.length_text(value)))
-        }
+        (FieldKind::Uncertainty, Some(value)) => Some(format!("± {}", state.lengths().of(value))),
         (FieldKind::Forming(value), Some(number)) => Some(forming_text(state, value, number)),
         (FieldKind::Map(picture), value) => map_text(state, picture, value),
-        (_, value) => value.map(|value| state.document.length_text(value)),
+        (_, value) => value.map(|value| state.lengths().of(value)),
     }
 }
 
@@ -148,19 +144,13 @@ fn map_text(state: &AppState, picture: MapPicture, value: Option<f64>) -> Option
     let by = state.map_quantity();
     Some(match picture {
         MapPicture::Difference | MapPicture::Other => {
-            let unit = match by {
-                ColorBy::Thickness => state.document.unit_suffix(),
-                _ => "",
+            let text = match by {
+                ColorBy::Thickness => state.lengths().signed_of(number),
+                _ => signed(number),
             };
-            format!("difference {}{unit}", signed(number))
+            format!("difference {text}")
         }
-        MapPicture::Distance => {
-            format!(
-                "distance {}{}",
-                signed(number),
-                state.document.unit_suffix()
-            )
-        }
+        MapPicture::Distance => format!("distance {}", state.lengths().signed_of(number)),
         MapPicture::Confidence => format!("confidence {}", fixed(number, 2)),
         MapPicture::Status => Status::ALL.get(number.round() as usize)?.label().to_owned(),
     })

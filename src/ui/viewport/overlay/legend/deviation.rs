@@ -458,16 +458,16 @@ fn tolerance(
 /// Mean and spread, what is alone, and a constant offset in words.
 fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
     let small = |text: String| RichText::new(text).size(11.0).color(over.frame.look.weak);
-    let unit = over.frame.state.document.unit_suffix();
+    let lengths = over.frame.state.lengths();
     let mean = format!(
-        "mean {}{unit} · RMS {}{unit}",
-        signed(stats.mean),
-        length(stats.rms)
+        "mean {} · RMS {}",
+        lengths.signed_of(stats.mean),
+        lengths.of(stats.rms)
     );
     ui.label(small(mean));
-    let (least, most) = (signed(stats.min), signed(stats.max));
-    ui.label(small(format!("from {least} to {most}{unit}")));
-    ui.label(small(format!("P95 {}{unit}", length(stats.p95))));
+    let (least, most) = (lengths.signed(stats.min), lengths.signed_of(stats.max));
+    ui.label(small(format!("from {least} to {most}")));
+    ui.label(small(format!("P95 {}", lengths.of(stats.p95))));
     let alone = stats.class_shares[2];
     if alone > 5e-4 {
         ui.horizontal(|ui| {
@@ -478,7 +478,7 @@ fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
         });
     }
     if let Some(offset) = &stats.offset {
-        let words = offset.words(|value| over.frame.state.document.length_text(value));
+        let words = offset.words(|value| lengths.of(value));
         let text = RichText::new(format!("constant offset: {words}")).size(11.5);
         ui.add(egui::Label::new(text).wrap());
     }

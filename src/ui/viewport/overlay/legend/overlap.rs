@@ -37,11 +37,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     });
     deviation::freshness(ui, over, commands);
     ui.add_space(3.0);
-    let limit = over
-        .frame
-        .state
-        .document
-        .length_text(comparison.deviation.limit);
+    let limit = over.frame.state.lengths().of(comparison.deviation.limit);
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
         let words = match class {
             OverlapClass::Matched => "matched".to_owned(),
