@@ -15,10 +15,16 @@ pub const ROLES_ON_LIGHT: PerRole<Rgb> = PerRole {
     crash: [0x00, 0x72, 0xB2],
     stamped: [0xB2, 0x6B, 0x00],
 };
-/// Surfaces of the two parts on a light ground: shade darkens them to the colours above.
+/// Surfaces of the two parts on a dark ground: as the colours above, but also apart in lightness, so that
+/// they are told without colours.
+pub const SURFACES_ON_DARK: PerRole<Rgb> = PerRole {
+    crash: [0x3A, 0x97, 0xCF],
+    stamped: [0xF7, 0xBC, 0x45],
+};
+/// The same on a light ground; shade darkens them.
 pub const SURFACES_ON_LIGHT: PerRole<Rgb> = PerRole {
-    crash: [0x3D, 0x9A, 0xD1],
-    stamped: [0xDB, 0x98, 0x3A],
+    crash: [0x35, 0x91, 0xC8],
+    stamped: [0xF0, 0xB8, 0x66],
 };
 /// Top and bottom of the dark ground behind the parts.
 pub const DARK_GROUND: [Rgb; 2] = [[0x2B, 0x30, 0x37], [0x17, 0x1A, 0x1E]];
@@ -42,6 +48,28 @@ pub const PARTS: [Rgb; 10] = [
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// CIE lightness L* of a colour.
+    fn lightness(color: Rgb) -> f64 {
+        let linear = color.map(|byte| {
+            let c = f64::from(byte) / 255.0;
+            if c <= 0.04045 {
+                c / 12.92
+            } else {
+                ((c + 0.055) / 1.055).powf(2.4)
+            }
+        });
+        let luminance = 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
+        116.0 * luminance.cbrt() - 16.0
+    }
+
+    #[test]
+    fn the_two_parts_are_told_apart_in_grey() {
+        for surfaces in [SURFACES_ON_DARK, SURFACES_ON_LIGHT] {
+            let apart = lightness(surfaces.stamped) - lightness(surfaces.crash);
+            assert!(apart > 18.0, "{apart:.1} apart");
+        }
+    }
 
     /// The page of the report is a file of its own, which cannot read constants.
     #[test]

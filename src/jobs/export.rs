@@ -40,6 +40,8 @@ pub struct Exported {
 /// Makes and writes. A file that was read is never overwritten.
 pub(super) fn export(request: ExportRequest, monitor: &Monitor) -> Result<Exported, JobError> {
     let ExportRequest { to, output, input } = request;
+    monitor.progress("export", 0, None);
+    monitor.check()?;
     match &to {
         Destination::File(path) => {
             check(output, path.clone(), &input)?;
@@ -49,6 +51,7 @@ pub(super) fn export(request: ExportRequest, monitor: &Monitor) -> Result<Export
         }
         Destination::Clipboard(what) => {
             let made = output.make(&input, None, monitor)?;
+            monitor.check()?;
             let text = String::from_utf8(made.bytes);
             let text = text.map_err(|_| JobError::Failed(format!("{what} is not text")))?;
             let (text, notes) = (Some(text), made.notes);

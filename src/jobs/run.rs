@@ -84,6 +84,7 @@ impl Runner for PipelineRunner {
     ) -> Result<JobOutput, JobError> {
         let match_monitor = monitor.into();
         let monitor = match_monitor.monitor;
+        monitor.check()?;
         match kind {
             JobKind::Load {
                 role,
@@ -265,7 +266,9 @@ fn map(input: &MapInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
 
 fn compare_mapping(input: CompareMappingInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
     let CompareMappingInput { run, crash, file } = input;
+    monitor.progress("read", 0, None);
     let other = OtherResult::read(&[file], &run, &crash, monitor)?;
+    monitor.check()?;
     let record = compare_with(&run, &crash, &other);
     Ok(JobOutput::MappingCompared {
         run,

@@ -27,6 +27,8 @@ pub struct Level {
     pub triangle_of: Arc<Vec<u32>>,
     /// What the reduction did.
     pub report: SimplifyReport,
+    /// Triangles that face away from the one they descend from: folds.
+    pub n_flipped: usize,
 }
 
 /// Measured distance between a reduced mesh and the full one, in length units.
@@ -119,6 +121,7 @@ impl Levels {
     pub fn level(&self, max_triangles: usize) -> Level {
         let simplified = self.sequence.simplified(max_triangles);
         Level {
+            n_flipped: n_flipped(&self.full, &simplified.mesh, &simplified.triangle_of),
             mesh: Arc::new(simplified.mesh),
             triangle_of: Arc::new(simplified.triangle_of),
             report: simplified.report,
@@ -155,6 +158,16 @@ impl Levels {
             loops_after: ours.n_loops,
         })
     }
+}
+
+/// Triangles of `reduced` that face away from their forebears in `full`.
+fn n_flipped(full: &TriMesh, reduced: &TriMesh, triangle_of: &[u32]) -> usize {
+    let faces_away = |(triangle, forebear): (usize, &u32)| {
+        let before = full.area_vector(*forebear as usize);
+        reduced.area_vector(triangle).dot(&before) < 0.0
+    };
+    let pairs = triangle_of.iter().enumerate();
+    pairs.filter(|pair| faces_away(*pair)).count()
 }
 
 impl Trees {
@@ -319,6 +332,18 @@ mod tests {
         assert!((deviation.max - 0.25).abs() < 1e-12);
         assert!((deviation.border_max - 0.25).abs() < 1e-12);
         assert_eq!((deviation.loops_before, deviation.loops_after), (1, 1));
+    }
+
+    #[test]
+    fn triangles_that_turn_over_are_counted() {
+        let mesh = plate(6, 0.5);
+        let own: Vec<u32> = (0..mesh.n_triangles() as u32).collect();
+        assert_eq!(n_flipped(&mesh, &mesh, &own), 0);
+        let turned = (*mesh).clone().flipped();
+        assert_eq!(n_flipped(&mesh, &turned, &own), mesh.n_triangles());
+        let settings = SimplifySettings::to_triangles(20);
+        let levels = Levels::record_mesh(&mesh, &[], &settings, &Monitor::silent()).unwrap();
+        assert_eq!(levels.level(20).n_flipped, 0);
     }
 
     #[test]

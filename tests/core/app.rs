@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use shapematch::app::*;
 use shapematch::formats::Model;
+use shapematch::geometry::camera::StandardView;
 use shapematch::geometry::{Point3, Similarity, TriMesh, Vector3};
 use shapematch::jobs::*;
 use shapematch::monitor::Monitor;
@@ -555,6 +556,113 @@ fn a_drag_that_comes_back_leaves_no_step() {
     window.apply(MoveCommand::EndDrag);
     assert_eq!(window.state.document, before);
     assert_eq!(window.state.history.n_done(), n_done);
+}
+
+/// Everything that is only looked at, in between.
+fn look_around(window: &mut Window) {
+    let before = (window.state.document.clone(), window.state.history.n_done());
+    for command in [
+        ViewCommand::ToggleMoveOver,
+        ViewCommand::Standard(Role::Crash, StandardView::Top),
+        ViewCommand::ToggleLink,
+        ViewCommand::SetBlinking(true),
+        ViewCommand::SetBlinking(false),
+        ViewCommand::SetShown(ShownGeometry::Detailed),
+        ViewCommand::SetShown(ShownGeometry::Reduced),
+        ViewCommand::SetDisplay(Box::new(Display {
+            is_see_through: true,
+            separation: 5.0,
+            wipe: Some(0.4),
+            has_edges: true,
+            ..Display::default()
+        })),
+        ViewCommand::SetDisplay(Box::default()),
+        ViewCommand::SetTab(BottomTab::History),
+        ViewCommand::OpenSection(Section::Match, false),
+        ViewCommand::ToggleGraphicsOnly,
+        ViewCommand::ToggleGraphicsOnly,
+        ViewCommand::ToggleMoveOver,
+    ] {
+        window.apply(command);
+    }
+    let after = (window.state.document.clone(), window.state.history.n_done());
+    assert!(before == after, "looking is no step");
+}
+
+#[test]
+fn each_change_is_one_step_in_its_order_and_looking_is_none() {
+    let mut window = Window::with_both();
+    let crash = window.mesh(Role::Crash);
+    let bits = |mesh: &TriMesh| -> Vec<[u64; 3]> {
+        let positions = mesh.positions().iter();
+        positions
+            .map(|p| [p.x, p.y, p.z].map(f64::to_bits))
+            .collect()
+    };
+    let as_loaded = bits(&crash);
+    let id = *window.part(Role::Crash).facts.used.first().unwrap();
+    let part = PartRef {
+        role: Role::Crash,
+        id,
+    };
+    let one = |role| PerRole::from_fn(|other| other == role);
+    let paste = MatrixForm::Rows.write(&shifted(3.0));
+    let steps: Vec<Vec<Command>> = vec![
+        vec![
+            MoveCommand::Drag {
+                gesture: GestureId(7),
+                delta: shifted(0.5),
+                name: "Move 0.5 along X".to_owned(),
+            }
+            .into(),
+            MoveCommand::EndDrag.into(),
+        ],
+        vec![
+            MoveCommand::Translate {
+                axis: Axis::Y,
+                frame: AxisFrame::Global,
+                distance: 2.0,
+            }
+            .into(),
+        ],
+        vec![MoveCommand::Paste(paste).into()],
+        vec![
+            ReduceCommand::To {
+                roles: one(Role::Stamped),
+                max_triangles: 60,
+            }
+            .into(),
+        ],
+        vec![MatchCommand::Run.into()],
+        vec![PartCommand::SetVisible(part, false).into()],
+        vec![
+            FileCommand::SetLengthFactor {
+                role: Role::Stamped,
+                factor: 10.0,
+            }
+            .into(),
+        ],
+    ];
+    let mut documents = vec![window.state.document.clone()];
+    for (index, step) in steps.into_iter().enumerate() {
+        let n_done = window.state.history.n_done();
+        for command in step {
+            window.apply(command);
+        }
+        assert_eq!(window.state.history.n_done(), n_done + 1, "step {index}");
+        look_around(&mut window);
+        documents.push(window.state.document.clone());
+    }
+    for before in documents.iter().rev().skip(1) {
+        window.act(Action::Undo);
+        assert!(window.state.document == *before, "undone out of order");
+        look_around(&mut window);
+    }
+    for after in documents.iter().skip(1) {
+        window.act(Action::Redo);
+        assert!(window.state.document == *after, "redone out of order");
+    }
+    assert_eq!(bits(&window.mesh(Role::Crash)), as_loaded);
 }
 
 #[test]

@@ -6,13 +6,19 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use shapematch::app::{
-    Action, ColorBy, FileCommand, InspectCommand, MatchCommand, ReduceCommand, ViewCommand,
+    Action, ColorBy, Effect, ExportCommand, FileCommand, InspectCommand, MapCommand, MatchCommand,
+    ProjectCommand, ReduceCommand, ViewCommand,
 };
-use shapematch::jobs::{JobError, JobKey, JobKind, JobOutput, PipelineRunner, Runner as _};
+use shapematch::jobs::{
+    Destination, ExportRequest, JobError, JobKey, JobKind, JobOutput, PipelineRunner, Runner as _,
+};
 use shapematch::monitor::{Monitor, Observer, Progress};
+use shapematch::pipeline::map::WriteKind;
+use shapematch::pipeline::outputs::Output;
+use shapematch::pipeline::project::{Located, ProjectRequest};
 use shapematch::pipeline::sweep::SweepSettings;
 use shapematch::role::{PerRole, Role};
-use shapematch::samples::{self, SamplePart, SampleSettings};
+use shapematch::samples::{self, SamplePart, SampleSettings, SampleVariant};
 
 use super::app::Window;
 
@@ -93,9 +99,68 @@ fn jobs(folder: &Path) -> Vec<JobKind> {
         n_repeats: 1,
         ..SweepSettings::default()
     })));
+    let mut others = written(&mut window, folder);
     let (role, factor) = (Role::Stamped, 1.001);
     window.apply(FileCommand::SetLengthFactor { role, factor });
-    ASKED.take()
+    let mut asked = ASKED.take();
+    let measured = asked.iter().find_map(|kind| match kind {
+        JobKind::Measure(input) => Some(JobKind::Overlap(input.clone())),
+        _ => None,
+    });
+    others.extend(measured);
+    asked.extend(others);
+    asked
+}
+
+/// Saves the work and compares its mapping with what it wrote; asks for every output there is.
+fn written(window: &mut Window, folder: &Path) -> Vec<JobKind> {
+    let other = folder.join("other.k");
+    // The window makes its picture and its log by itself.
+    let is_job = |kind: &&Output| !matches!(kind, Output::Picture | Output::Log);
+    for (index, kind) in Output::ALL.iter().filter(is_job).enumerate() {
+        let name = format!("out{index}.{}", kind.extensions()[0].1);
+        let path = match kind {
+            Output::Mapped(WriteKind::Deck) => other.clone(),
+            _ => folder.join(name),
+        };
+        window.apply(ExportCommand::Write { kind: *kind, path });
+    }
+    window.apply(MapCommand::CompareWith(other));
+    let path = folder.join("work.shapematch");
+    window.apply(ProjectCommand::Write(path.clone()));
+    for effect in std::mem::take(&mut window.effects) {
+        if let Effect::WriteProject { path, project, .. } = effect {
+            project.write(&path).unwrap();
+        }
+    }
+    vec![JobKind::OpenProject(ProjectRequest {
+        path,
+        located: PerRole::both(Located::AsStored),
+        is_autosave: false,
+    })]
+}
+
+/// A match of a whole model, which tries its parts.
+fn race(folder: &Path) -> JobKind {
+    let pair = samples::generate(&SampleSettings {
+        part: SamplePart::Bracket,
+        variant: SampleVariant::WholeModel,
+        ..SampleSettings::default()
+    });
+    for file in samples::files(&pair) {
+        std::fs::write(folder.join(file.name), file.bytes).unwrap();
+    }
+    let mut window = Window::new();
+    window.runner = Some(remembered);
+    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
+        window.open(folder.join(name).to_str().unwrap(), role);
+    }
+    window.holds = true;
+    window.act(Action::MatchOrStop);
+    let race = window.held.pop().expect("a job").1;
+    assert!(matches!(race, JobKind::Race(_)), "{:?}", race.key());
+    ASKED.take();
+    race
 }
 
 /// Points of a job that are tried at most.
@@ -103,28 +168,80 @@ const MOST: usize = 12;
 /// Reports that threads may still send after a cancel.
 const LATE: usize = 16;
 
+/// What a job is, so that each kind is tried once.
+fn name(kind: &JobKind) -> String {
+    match kind {
+        JobKind::Race(_) => "Race".to_owned(),
+        JobKind::Export(request) => format!("Export {:?}", request.output),
+        other => format!("{:?}", other.key()),
+    }
+}
+
+/// The file a job is to write.
+fn file(kind: &JobKind) -> Option<&Path> {
+    match kind {
+        JobKind::Export(ExportRequest {
+            to: Destination::File(path),
+            ..
+        }) => Some(path),
+        _ => None,
+    }
+}
+
+/// Runs a job that is cancelled at a report. What is cancelled leaves no file.
+fn cancelled_at(kind: &JobKind, at: usize) -> (Result<(), JobError>, usize) {
+    // That another job reads: it stays as the whole run left it.
+    let kept = file(kind).map(|path| (path, std::fs::read(path).unwrap()));
+    if let Some((path, _)) = &kept {
+        std::fs::remove_file(path).unwrap();
+    }
+    let done = run(kind, at);
+    if let Some((path, bytes)) = kept {
+        let is_written = path.exists();
+        assert_eq!(is_written, done.0.is_ok(), "{}", name(kind));
+        std::fs::write(path, bytes).unwrap();
+    }
+    done
+}
+
+fn try_everywhere(kind: &JobKind, most: usize) {
+    let what = name(kind);
+    let (done, n_reports) = run(kind, usize::MAX);
+    assert_eq!(done, Ok(()), "{what}");
+    for at in (0..n_reports).step_by(n_reports.div_ceil(most).max(1)) {
+        let (done, n_seen) = cancelled_at(kind, at);
+        let place = format!("{what} at {at} of {n_reports}");
+        assert!(n_seen <= at + 1 + LATE, "{place}: went on to {n_seen}");
+        let was_last = at + 1 == n_reports;
+        let is_cancelled = matches!(done, Err(JobError::Cancelled(_)));
+        assert!(is_cancelled || was_last, "{place}: {done:?}");
+    }
+    // Before the first word of it.
+    let monitor = Monitor::silent();
+    monitor.request_cancel();
+    let done = PipelineRunner.run(kind.clone(), &monitor).map(|_| ());
+    let is_cancelled = matches!(done, Err(JobError::Cancelled(_)));
+    assert!(is_cancelled, "{what} before it began: {done:?}");
+}
+
 #[test]
 fn a_cancel_at_any_point_ends_the_work() {
     let folder = tempfile::tempdir().unwrap();
     let jobs = jobs(folder.path());
-    let mut keys = Vec::new();
+    let mut tried = Vec::new();
     for kind in &jobs {
-        let key = kind.key();
-        if keys.contains(&key) {
-            continue;
-        }
-        keys.push(key);
-        let (done, n_reports) = run(kind, usize::MAX);
-        assert_eq!(done, Ok(()), "{key:?}");
-        for at in (0..n_reports).step_by(n_reports.div_ceil(MOST).max(1)) {
-            let (done, n_seen) = run(kind, at);
-            let place = format!("{key:?} at {at} of {n_reports}");
-            assert!(n_seen <= at + 1 + LATE, "{place}: went on to {n_seen}");
-            let was_last = at + 1 == n_reports;
-            let is_cancelled = matches!(done, Err(JobError::Cancelled(_)));
-            assert!(is_cancelled || was_last, "{place}: {done:?}");
+        let what = name(kind);
+        if !tried.contains(&what) {
+            let is_output = matches!(kind, JobKind::Export(_));
+            try_everywhere(kind, if is_output { 3 } else { MOST });
+            tried.push(what);
         }
     }
+    let n_outputs = tried
+        .iter()
+        .filter(|what| what.starts_with("Export"))
+        .count();
+    assert!(n_outputs > 15, "{tried:?}");
     for key in [
         JobKey::Load(Role::Crash),
         JobKey::Load(Role::Stamped),
@@ -138,7 +255,16 @@ fn a_cancel_at_any_point_ends_the_work() {
         JobKey::Verdict,
         JobKey::Sweep,
         JobKey::Reselect(Role::Stamped),
+        JobKey::Overlap,
+        JobKey::CompareMapping,
+        JobKey::OpenProject,
     ] {
-        assert!(keys.contains(&key), "{key:?} was not asked for: {keys:?}");
+        assert!(tried.contains(&format!("{key:?}")), "{key:?}: {tried:?}");
     }
+}
+
+#[test]
+fn a_cancel_ends_the_choice_between_the_parts_of_a_model() {
+    let folder = tempfile::tempdir().unwrap();
+    try_everywhere(&race(folder.path()), 6);
 }

@@ -45,3 +45,41 @@ fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
     window.act(Action::Undo);
     assert_eq!(window.part(Role::Crash).facts.used.len(), n_parts);
 }
+
+#[test]
+fn one_thread_and_sixteen_give_the_same_match_and_verdict() {
+    let pair = samples::generate(&SampleSettings {
+        part: SamplePart::Bracket,
+        ..SampleSettings::default()
+    });
+    let folder = tempfile::tempdir().unwrap();
+    for file in samples::files(&pair) {
+        std::fs::write(folder.path().join(file.name), file.bytes).unwrap();
+    }
+    let run = |n_threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
+        pool.build().unwrap().install(|| {
+            let mut window = Window::new();
+            window.runner = Some(really);
+            for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
+                window.open(folder.path().join(name).to_str().unwrap(), role);
+            }
+            window.act(Action::MatchOrStop);
+            let result = window.state.document.current_result().expect("a result");
+            let assessment = &result.run.assessment;
+            let rows = result.run.crash_from_stamped.to_rows();
+            let numbers = [
+                assessment.coverage.rmse(),
+                assessment.coverage.p95(),
+                assessment.coverage.better_overlap(),
+            ];
+            (
+                rows.map(|row| row.map(f64::to_bits)),
+                numbers.map(f64::to_bits),
+                assessment.verdict,
+                assessment.reasons.clone(),
+            )
+        })
+    };
+    assert_eq!(run(1), run(16));
+}

@@ -476,6 +476,38 @@ fn move_over_draws_the_stamped_part_in_the_left_picture() {
     harness.render().unwrap();
 }
 
+/// Mean of the lightness L* of what a window shows of a part.
+fn lightness(harness: &mut Harness<'_, Desk>, role: Role) -> f64 {
+    let choice = PictureChoice {
+        is_transparent: true,
+        ..PictureChoice::default()
+    };
+    let viewports = &mut harness.state_mut().viewports;
+    let picture = viewports.window_picture(role, &choice, 1).unwrap();
+    let linear = |byte: u8| (f64::from(byte) / 255.0).powf(2.2);
+    let opaque = picture.pixels().filter(|pixel| pixel.0[3] == 255);
+    let luminances = opaque.map(|pixel| {
+        let [red, green, blue, _] = pixel.0.map(linear);
+        0.2126 * red + 0.7152 * green + 0.0722 * blue
+    });
+    let luminances: Vec<f64> = luminances.collect();
+    assert!(luminances.len() > 500, "{} pixels", luminances.len());
+    let mean = luminances.iter().sum::<f64>() / luminances.len() as f64;
+    116.0 * mean.cbrt() - 16.0
+}
+
+#[test]
+fn the_two_parts_are_told_apart_without_colours() {
+    let mut harness = drawn();
+    for theme in [egui::Theme::Dark, egui::Theme::Light] {
+        harness.ctx.set_theme(theme);
+        harness.run_steps(4);
+        // The same sheet from the same side in the same light.
+        let apart = lightness(&mut harness, Role::Stamped) - lightness(&mut harness, Role::Crash);
+        assert!(apart > 10.0, "{theme:?}: {apart:.1} apart");
+    }
+}
+
 #[test]
 fn before_a_map_the_other_part_is_a_grey_ghost() {
     let mut harness = drawn();

@@ -174,17 +174,24 @@ impl ReduceState {
             return Vec::new();
         };
         let revision = part.revision;
+        // Made again after another selection or unit, it belongs to that step.
+        let is_again = part.level.is_none() && part.wanted_level == Some(level.max_triangles);
         *self.recordings.get_mut(role) = Some((revision, Arc::clone(&recording)));
         work.log_step("reduce", Some(role), facts::reduce_line(&level), Some(took));
         let n_triangles = facts::grouped(level.level.mesh.n_triangles());
         let name = format!("Reduce the {} part to {n_triangles}", role.word());
         let measured = Arc::clone(&level);
-        work.commit(name, |document| {
+        let take = |document: &mut Document| {
             if let Some(part) = document.parts.get_mut(role) {
                 part.wanted_level = Some(measured.max_triangles);
                 part.level = Some(measured.into());
             }
-        });
+        };
+        if is_again {
+            take(work.document);
+        } else {
+            work.commit(name, take);
+        }
         work.follow(FollowUp::LevelMade);
         vec![work.start(JobKind::MeasureLevel(MeasureLevelInput {
             role,

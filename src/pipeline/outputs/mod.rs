@@ -389,6 +389,7 @@ impl Output {
             Self::Mapped(kind) => {
                 let made = mapped::deck_files(kind, input, path, monitor)?;
                 let mut notes = vec![mapped::note(&made)];
+                monitor.check()?;
                 for (index, (path, bytes)) in made.files.iter().enumerate() {
                     write_file(path, bytes)?;
                     if index > 0 {
@@ -400,6 +401,7 @@ impl Output {
             _ => None,
         };
         let made = self.make(input, format, monitor)?;
+        monitor.check()?;
         write_file(path, &made.bytes)?;
         Ok(made.notes)
     }

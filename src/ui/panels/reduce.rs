@@ -9,6 +9,7 @@ use crate::app::{
 };
 use crate::jobs::{JobKey, MeasuredLevel};
 use crate::role::{PerRole, Role};
+use crate::text::counted;
 use crate::ui::theme::{LABEL, Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, form_row, grouped, icon_button, paragraph, role_mark,
@@ -279,6 +280,7 @@ fn achieved_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState) {
         let lost = d.loops_before.abs_diff(d.loops_after);
         lines.push(format!("⚠ {lost} holes closed"));
     }
+    lines.extend(flipped_text(level.level.n_flipped));
     for text in lines.into_iter().filter(|text| !text.is_empty()) {
         ui.horizontal(|ui| {
             ui.add_space(12.0 + UNIT);
@@ -304,6 +306,12 @@ fn achieved(part: &Part) -> String {
             grouped(part.loaded.report.n_triangles)
         ),
     }
+}
+
+/// What is said about triangles that face the other way; nothing where there are none.
+fn flipped_text(n_flipped: usize) -> Option<String> {
+    let n = counted(n_flipped, "triangle");
+    (n_flipped > 0).then(|| format!("⚠ {n} turned over by the reduction"))
 }
 
 /// "RMS 0.061 · max 0.72 · border 0.42 mm · 28 ms".

@@ -5,7 +5,7 @@ use egui::Color32;
 use super::{color, rgb};
 use crate::app::{AppState, ColorBy};
 use crate::colormap::Rgb;
-use crate::palette::{PARTS, ROLES_ON_DARK, ROLES_ON_LIGHT, SURFACES_ON_LIGHT};
+use crate::palette::{PARTS, ROLES_ON_DARK, ROLES_ON_LIGHT, SURFACES_ON_DARK, SURFACES_ON_LIGHT};
 use crate::render::{Background, LineLook};
 use crate::role::{PerRole, Role};
 
@@ -44,7 +44,7 @@ pub fn part_color(ui: &egui::Ui, state: &AppState, index: usize) -> Option<Rgb> 
 impl Look {
     pub const DARK: Self = Self {
         roles: ROLES_ON_DARK,
-        surfaces: ROLES_ON_DARK,
+        surfaces: SURFACES_ON_DARK,
         background: Background::DARK,
         lines: LineLook::DARK,
         exposure: 1.0,
@@ -83,9 +83,9 @@ impl Look {
         color(*self.roles.get(role))
     }
 
-    /// The grey a role's colour is of.
+    /// The grey of a role's surface.
     pub fn ghost(&self, role: Role) -> Rgb {
-        let [red, green, blue] = self.roles.get(role).map(u16::from);
+        let [red, green, blue] = self.surfaces.get(role).map(u16::from);
         [((red + 2 * green + blue) / 4) as u8; 3]
     }
 

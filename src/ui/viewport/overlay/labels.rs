@@ -14,7 +14,13 @@ use crate::ui::theme::color;
 use crate::ui::viewport::navigation::{pixel_of, pos_of, screen_of};
 
 /// Distances of a plate from its node, tried in turn.
-const REACHES: [f32; 4] = [34.0, 58.0, 90.0, 130.0];
+const REACHES: [f32; 10] = [
+    34.0, 58.0, 90.0, 130.0, 180.0, 230.0, 290.0, 360.0, 440.0, 530.0,
+];
+/// So many of them are near enough for a plate that has to lie over the part.
+const N_NEAR: usize = 4;
+/// A plate is beside the part if none of so many points across and up lies on it.
+const PROBES: [usize; 2] = [5, 3];
 /// Directions tried at each distance, upwards first.
 const DIRECTIONS: [Vec2; 8] = [
     vec2(0.8, -0.8),
@@ -38,7 +44,8 @@ struct Placed<'a> {
 }
 
 /// Draws the labels of the parts in this window. Plates keep clear of each other and of what else
-/// lies over the picture; each stays on its side as long as there is room.
+/// lies over the picture, and lie beside the parts where there is room; each stays where it was as long
+/// as it can.
 pub(super) fn show(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
     let labels: Vec<Placed<'_>> = placed(over);
     if labels.is_empty() {
@@ -57,7 +64,9 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
         let texts = texts(over, placed);
         let size = plate_size(ui, over, &texts);
         let before = last.get(&placed.label.id).copied();
-        let (choice, plate) = place(over.frame.rect(), placed.anchor, size, before, &taken);
+        let is_beside = |plate: &Rect| is_beside_parts(over, plate);
+        let room = (over.frame.rect(), &taken[..]);
+        let (choice, plate) = place(room, placed.anchor, size, before, is_beside);
         now.insert(placed.label.id, choice);
         taken.push(plate);
         one(ui, over, (placed, &texts, plate), commands);
@@ -144,13 +153,28 @@ fn plate_size(ui: &Ui, over: &Overlay<'_>, texts: &[String; 2]) -> Vec2 {
     vec2(first.x.max(second.x) + 16.0, first.y + second.y + 7.0)
 }
 
-/// The first free place of a plate, its last one before all others; the last resort covers.
+/// True if nothing is drawn where the plate would be.
+fn is_beside_parts(over: &Overlay<'_>, plate: &Rect) -> bool {
+    let camera = &over.frame.view.camera;
+    let screen = screen_of(over.frame.rect());
+    let [n_across, n_up] = PROBES.map(|n| (n - 1) as f32);
+    let plate = plate.expand(4.0);
+    let places = (0..PROBES[0]).flat_map(|i| (0..PROBES[1]).map(move |j| (i as f32, j as f32)));
+    places.into_iter().all(|(i, j)| {
+        let at = plate.min + plate.size() * vec2(i / n_across, j / n_up);
+        let pixel = pixel_of(over.frame.rect(), at);
+        over.frame.picture.hit(camera, pixel, screen).is_none()
+    })
+}
+
+/// The nearest free place of a plate beside the parts, its last one before all others. Where the parts
+/// fill the window, the first free one over them; the last resort covers.
 fn place(
-    window: Rect,
+    (window, taken): (Rect, &[Rect]),
     anchor: Pos2,
     size: Vec2,
     before: Option<usize>,
-    taken: &[Rect],
+    is_beside: impl Fn(&Rect) -> bool,
 ) -> (usize, Rect) {
     let room = window.shrink(MARGIN / 2.0);
     let n = REACHES.len() * DIRECTIONS.len();
@@ -164,11 +188,15 @@ fn place(
     let is_free = |plate: &Rect| {
         room.contains_rect(*plate) && !taken.iter().any(|t| t.intersects(plate.expand(3.0)))
     };
-    let choices = before.into_iter().chain(0..n).filter(|choice| *choice < n);
-    let free = choices
-        .map(|choice| (choice, at(choice)))
-        .find(|(_, plate)| is_free(plate));
-    free.unwrap_or_else(|| (0, at(0)))
+    let choices = |n: usize| {
+        let choices = before.into_iter().chain(0..n);
+        choices
+            .filter(move |choice| *choice < n)
+            .map(|choice| (choice, at(choice)))
+    };
+    let beside = choices(n).find(|(_, plate)| is_free(plate) && is_beside(plate));
+    let near = || choices(N_NEAR * DIRECTIONS.len()).find(|(_, plate)| is_free(plate));
+    beside.or_else(near).unwrap_or_else(|| (0, at(0)))
 }
 
 /// Line, ring at the node, plate, texts; a click opens the list, the cross takes the label away.
@@ -296,13 +324,38 @@ mod tests {
         let mut choices = Vec::new();
         for i in 0..6 {
             let anchor = pos2(300.0 + 3.0 * i as f32, 200.0);
-            let (choice, plate) = place(window, anchor, size, None, &taken);
+            let (choice, plate) = place((window, &taken), anchor, size, None, |_| true);
             assert!(taken.iter().all(|t: &Rect| !t.intersects(plate)), "{i}");
             assert!(window.contains_rect(plate));
             taken.push(plate);
             choices.push(choice);
         }
-        let (choice, _) = place(window, pos2(310.0, 210.0), size, Some(choices[3]), &[]);
+        let (choice, _) = place(
+            (window, &[]),
+            pos2(310.0, 210.0),
+            size,
+            Some(choices[3]),
+            |_| true,
+        );
         assert_eq!(choice, choices[3]);
+    }
+
+    #[test]
+    fn plates_lie_beside_the_part_where_there_is_room() {
+        let size = vec2(70.0, 30.0);
+        let middle = pos2(400.0, 300.0);
+        let part = Rect::from_center_size(middle, vec2(300.0, 240.0));
+        let is_beside = |plate: &Rect| !plate.intersects(part);
+        let wide = Rect::from_min_size(Pos2::ZERO, vec2(800.0, 600.0));
+        let mut taken = Vec::new();
+        for anchor in [middle, part.left_top(), part.right_center(), middle] {
+            let (_, plate) = place((wide, &taken), anchor, size, None, is_beside);
+            assert!(is_beside(&plate) && wide.contains_rect(plate), "{plate:?}");
+            taken.push(plate);
+        }
+        // A part that fills the window: near its node, over the part.
+        let (_, plate) = place((part, &[]), middle, size, None, is_beside);
+        assert!(part.contains_rect(plate));
+        assert!(plate.distance_to_pos(middle) < 60.0, "{plate:?}");
     }
 }
