@@ -101,11 +101,11 @@ pub(super) fn n_alternatives(run: &MatchRun) -> usize {
     Ambiguity::near(&run.outcome.alternatives).len()
 }
 
-/// "GOOD: overlap 87.0 %, RMS 0.380, p95 0.900 mm; the reason".
+/// "GOOD: overlap 87.0 %, RMS 0.380, P95 0.900 mm; the reason".
 pub(super) fn match_line(run: &MatchRun, lengths: Lengths) -> String {
     let assessment = &run.assessment;
     let mut line = format!(
-        "{}: overlap {}, RMS {}, p95 {}",
+        "{}: overlap {}, RMS {}, P95 {}",
         assessment.verdict.label(),
         percent(assessment.coverage.better_overlap()),
         lengths.number(assessment.coverage.rmse()),

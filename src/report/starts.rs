@@ -133,7 +133,7 @@ pub fn outcome_words(outcome: StartOutcome) -> String {
         StartOutcome::Won => "best".into(),
         StartOutcome::RunnerUp => "close second".into(),
         StartOutcome::MergedInto { start } => format!("merged into start {}", start + 1),
-        StartOutcome::Dropped { after } => format!("dropped after {after} iterations"),
+        StartOutcome::Dropped { after } => format!("stopped after {after} iterations"),
         StartOutcome::Failed => "no fit".into(),
     }
 }

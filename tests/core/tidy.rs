@@ -188,6 +188,56 @@ fn words_of_the_glossary_are_used() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
+/// Texts that the window and the report said before, each with what they say now.
+const REPLACED_TEXTS: &[(&str, &str)] = &[
+    ("Not now: ", "what is missing, as a sentence"),
+    ("Nothing was done yet", "No steps yet"),
+    ("Mouse like", "Mouse controls"),
+    ("Preparing the picture", "Building the 3D view…"),
+    (
+        "waiting for the work before it",
+        "Waiting for the previous task",
+    ),
+    ("Align surface normal\"", "Align surface normals"),
+    ("starts that agree", "Converged starts"),
+    ("what became of it", "Outcome"),
+    ("dropped after", "stopped after"),
+    ("score ratio", "error … % higher"),
+    ("Nearly as good", "Alternatives (V)"),
+    ("part that fits twice", "Ambiguous pose"),
+    ("shape that slides on itself", "Sliding possible"),
+    ("The wrong place?", "Wrong location"),
+    ("Neither part contains", "Partial overlap only"),
+    ("95 % within\"", "P95"),
+    ("Worst places", "Largest deviations"),
+    ("Turn over", "Flip 180°"),
+    ("Centres together", "Align centres"),
+    ("Forget the pivot", "Clear pivot"),
+    ("Size of the text", "UI scale"),
+    ("Show toasts for", "Notifications"),
+    ("No command of that name", "No matching command"),
+    ("Own size", "Custom size"),
+    ("Settled below", "Convergence limit"),
+];
+
+#[test]
+fn window_and_report_keep_to_the_words_agreed_on() {
+    let places = ["ui", "app", "report", "assess", "settings"];
+    let is_shown = |name: &str| places.iter().any(|place| name.starts_with(place));
+    let mut found = Vec::new();
+    for (name, text) in sources().into_iter().filter(|(name, _)| is_shown(name)) {
+        for (number, line) in text.lines().enumerate() {
+            let is_comment = line.trim_start().starts_with("//");
+            for (old, new) in REPLACED_TEXTS.iter().filter(|_| !is_comment) {
+                if line.contains(old) {
+                    found.push(format!("{name}:{}: {old} → {new}", number + 1));
+                }
+            }
+        }
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
 /// True if the line holds the word, not as a part of a longer one.
 fn has_word(line: &str, word: &str) -> bool {
     let is_letter = |c: char| c.is_alphanumeric() || c == '_';

@@ -194,7 +194,7 @@ impl MapReport {
             Column::number("Elements in both"),
             Column::number("Mean difference"),
             Column::number("RMS"),
-            Column::number("95 % within"),
+            Column::number("P95"),
             Column::number("Largest"),
             Column::number("at element"),
         ];

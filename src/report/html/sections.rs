@@ -74,7 +74,7 @@ impl Report<'_> {
                 (key_figure("▲ stamped on ■ crash", &percent(metrics.overlap.stamped), &format!("within {limit}")))
                 (key_figure("■ crash on ▲ stamped", &percent(metrics.overlap.crash), &format!("within {limit}")))
                 (key_figure("RMS distance", &lengths.of(metrics.rmse), "of the overlap"))
-                (key_figure("95 % within", &lengths.of(metrics.p95), ""))
+                (key_figure("P95", &lengths.of(metrics.p95), ""))
                 (key_figure("Starts that agree", &agreement, ""))
                 @match next {
                     Some(other) => (key_figure("Next best pose", &format!("× {:.2}", other.score_ratio), "worse score")),

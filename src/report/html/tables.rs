@@ -54,7 +54,7 @@ impl Report<'_> {
             Column::number("No counterpart"),
             Column::number("Mean"),
             Column::number("RMS"),
-            Column::number("95 % within"),
+            Column::number("P95"),
             Column::number("Min"),
             Column::number("Max"),
         ];

@@ -365,7 +365,7 @@ fn csv(state: &AppState, comparison: &Comparison) -> String {
     line("mean", both.map(|s| s.mean));
     line("RMS", both.map(|s| s.rms));
     line("standard deviation", both.map(|s| s.std));
-    line("p95", both.map(|s| s.p95));
+    line("P95", both.map(|s| s.p95));
     line("Min", both.map(|s| s.min));
     line("Max", both.map(|s| s.max));
     for (index, name) in ["matched", "beyond the limit", "on this part only"]

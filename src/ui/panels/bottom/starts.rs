@@ -119,7 +119,7 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
         "Outcome".to_owned(),
         "overlap".to_owned(),
         format!("Residual{unit}"),
-        format!("p95{unit}"),
+        format!("P95{unit}"),
         "steps".to_owned(),
         "time".to_owned(),
         format!("Distance to best{unit}"),
