@@ -180,7 +180,10 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     title(ui, "Preferences", Some(commands));
     let mut settings: Settings = state.settings.clone();
     let room = ui.ctx().content_rect().height() - 200.0;
-    ScrollArea::vertical().max_height(room).show(ui, |ui| {
+    let sheet = ScrollArea::vertical()
+        .max_height(room)
+        .min_scrolled_height(room);
+    sheet.show(ui, |ui| {
         group_title(ui, "Display");
         display_ui(ui, &mut settings);
         map_row(ui, "Deviation colours", &mut settings.signed_map);

@@ -120,9 +120,9 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
         "overlap".to_owned(),
         format!("Residual{unit}"),
         format!("P95{unit}"),
-        "steps".to_owned(),
+        "Iterations".to_owned(),
         "time".to_owned(),
-        format!("Distance to best{unit}"),
+        format!("To best{unit}"),
     ];
     let mut hovered = None;
     let thumbnails = Thumbnails::of(ui.ctx());
@@ -137,7 +137,7 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
         .column(Column::exact(PICTURE + 8.0))
         .column(Column::remainder().at_least(170.0).clip(true))
         .column(Column::exact(190.0).clip(true));
-    for width in [62.0, 84.0, 68.0, 48.0, 64.0, 84.0] {
+    for width in [62.0, 84.0, 68.0, 60.0, 64.0, 72.0] {
         builder = builder.column(Column::exact(width));
     }
     builder
