@@ -30,6 +30,25 @@ pub(super) struct Group {
     pub uneven_thickness: f64,
 }
 
+impl Group {
+    /// Adds it to the group of the same element and quadrant, or to the list.
+    fn join(self, groups: &mut Vec<Self>) {
+        let is_same = |group: &&mut Self| {
+            group.source == self.source
+                && group.element == self.element
+                && group.is_flipped == self.is_flipped
+                && group.quadrant == self.quadrant
+        };
+        if let Some(group) = groups.iter_mut().find(is_same) {
+            group.area += self.area;
+            group.offset += self.offset;
+            group.uneven_thickness += self.uneven_thickness;
+        } else {
+            groups.push(self);
+        }
+    }
+}
+
 /// What the points of an element found together.
 #[derive(Default)]
 pub(super) struct Found {
@@ -250,45 +269,33 @@ impl Context<'_> {
     fn add_to_group(&self, partner: &Centre, point: &ElementPoint, groups: &mut Vec<Group>) {
         let source = &self.sources[partner.source as usize];
         let at = &partner.point;
+        let quadrant = Some(point.quadrant);
         if self.options.method == MapMethod::Shape {
             around_nodes(source, at, |element, is_flipped, weight| {
                 let area = weight * point.area;
-                groups.push(Group {
+                let of_element = Group {
                     source: partner.source,
                     element,
                     is_flipped,
-                    quadrant: Some(point.quadrant),
+                    quadrant,
                     area,
                     offset: Vector3::zeros(),
                     uneven_thickness: at.uneven_thickness * area,
-                });
+                };
+                of_element.join(groups);
             });
             return;
         }
-        let offset = (at.point - source.mesh.centroids()[at.element as usize]) * point.area;
-        let quadrant = Some(point.quadrant);
-        let is_same = |group: &&mut Group| {
-            group.source == partner.source
-                && group.element == at.element
-                && group.is_flipped == at.is_flipped
-                && group.quadrant == quadrant
+        let of_point = Group {
+            source: partner.source,
+            element: at.element,
+            is_flipped: at.is_flipped,
+            quadrant,
+            area: point.area,
+            offset: (at.point - source.mesh.centroids()[at.element as usize]) * point.area,
+            uneven_thickness: at.uneven_thickness * point.area,
         };
-        let thickness = at.uneven_thickness * point.area;
-        if let Some(group) = groups.iter_mut().find(is_same) {
-            group.area += point.area;
-            group.offset += offset;
-            group.uneven_thickness += thickness;
-        } else {
-            groups.push(Group {
-                source: partner.source,
-                element: at.element,
-                is_flipped: at.is_flipped,
-                quadrant,
-                area: point.area,
-                offset,
-                uneven_thickness: thickness,
-            });
-        }
+        of_point.join(groups);
     }
 
     /// Unit normal of a source element on the side that corresponds to the target's normal.
