@@ -27,7 +27,7 @@ pub struct Level {
     pub triangle_of: Arc<Vec<u32>>,
     /// What the reduction did.
     pub report: SimplifyReport,
-    /// Triangles that face away from the one they descend from: folds.
+    /// Triangles that face away from the full mesh's triangle they came from: folds.
     pub n_flipped: usize,
 }
 
@@ -160,10 +160,10 @@ impl Levels {
     }
 }
 
-/// Triangles of `reduced` that face away from their forebears in `full`.
+/// Triangles of `reduced` that face away from the triangles of `full` they came from.
 fn n_flipped(full: &TriMesh, reduced: &TriMesh, triangle_of: &[u32]) -> usize {
-    let faces_away = |(triangle, forebear): (usize, &u32)| {
-        let before = full.area_vector(*forebear as usize);
+    let faces_away = |(triangle, origin): (usize, &u32)| {
+        let before = full.area_vector(*origin as usize);
         reduced.area_vector(triangle).dot(&before) < 0.0
     };
     let pairs = triangle_of.iter().enumerate();

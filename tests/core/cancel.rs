@@ -62,10 +62,11 @@ fn run(kind: &JobKind, at: usize) -> (Result<(), JobError>, usize) {
     (done, observer.n_reports.load(Ordering::SeqCst))
 }
 
-/// Jobs of a whole piece of work: read, reduce, match, measure, map.
-fn jobs(folder: &Path) -> Vec<JobKind> {
+/// A window with the bracket of both sides, whose jobs are remembered.
+fn with_brackets(folder: &Path, variant: SampleVariant) -> Window {
     let pair = samples::generate(&SampleSettings {
         part: SamplePart::Bracket,
+        variant,
         ..SampleSettings::default()
     });
     for file in samples::files(&pair) {
@@ -76,6 +77,12 @@ fn jobs(folder: &Path) -> Vec<JobKind> {
     for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
         window.open(folder.join(name).to_str().unwrap(), role);
     }
+    window
+}
+
+/// Jobs of a whole piece of work: read, reduce, match, measure, map.
+fn jobs(folder: &Path) -> Vec<JobKind> {
+    let mut window = with_brackets(folder, SampleVariant::Plain);
     window.apply(ReduceCommand::To {
         roles: PerRole::both(true),
         max_triangles: 500,
@@ -142,19 +149,7 @@ fn written(window: &mut Window, folder: &Path) -> Vec<JobKind> {
 
 /// A match of a whole model, which tries its parts.
 fn race(folder: &Path) -> JobKind {
-    let pair = samples::generate(&SampleSettings {
-        part: SamplePart::Bracket,
-        variant: SampleVariant::WholeModel,
-        ..SampleSettings::default()
-    });
-    for file in samples::files(&pair) {
-        std::fs::write(folder.join(file.name), file.bytes).unwrap();
-    }
-    let mut window = Window::new();
-    window.runner = Some(remembered);
-    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
-        window.open(folder.join(name).to_str().unwrap(), role);
-    }
+    let mut window = with_brackets(folder, SampleVariant::WholeModel);
     window.holds = true;
     window.act(Action::MatchOrStop);
     let race = window.held.pop().expect("a job").1;

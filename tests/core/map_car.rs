@@ -138,6 +138,34 @@ fn a_whole_model_is_mapped_where_the_stamped_part_belongs() {
 }
 
 #[test]
+fn two_stamped_parts_in_one_place_are_told() {
+    let car = Car::new();
+    std::fs::copy(car.path(STAMPED[1]), car.path("again.dynain")).unwrap();
+    let options = ["--out", "mapped", "--json", "-"];
+    let done = car.run(
+        &[
+            &["map-car", CRASH, STAMPED[1], "again.dynain"],
+            &options[..],
+        ]
+        .concat(),
+    );
+    assert!(done.status.success(), "{}", errors(&done));
+    let record: Value = serde_json::from_slice(&done.stdout).unwrap();
+    for row in record["rows"].as_array().unwrap() {
+        assert_eq!(row["state"], "check");
+        let share = row["reasons"][0]["conflict"].as_f64().unwrap();
+        assert!(share > 0.95, "{row}");
+        assert_eq!(row["files"][0], "stamped.k");
+    }
+    // Nothing that is read is written over, and no folder is made below one that is not there.
+    let refused = car.run(&["map-car", CRASH, STAMPED[1], "--out", "no/folder"]);
+    assert_eq!(refused.status.code(), Some(1));
+    std::fs::copy(car.path(CRASH), car.path("mapped/stamped.k")).unwrap();
+    let refused = car.run(&["map-car", "mapped/stamped.k", STAMPED[1], "--out", "mapped"]);
+    assert_eq!(refused.status.code(), Some(2), "{}", errors(&refused));
+}
+
+#[test]
 fn a_sheet_that_is_two_crash_parts_is_mapped_onto_both() {
     let folder = tempfile::tempdir().unwrap();
     let run = |args: &[&str]| {

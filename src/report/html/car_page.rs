@@ -1,8 +1,8 @@
 //! The page about all stamped parts of a car.
 
-use maud::{PreEscaped, html};
+use maud::html;
 
-use super::page::{Column, cell, printable, section, table};
+use super::page::{Column, cell, document, printable, section, table};
 
 /// What the page about a car shows.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,30 +36,18 @@ impl CarReport {
             })
             .collect();
         let parts = table("Stamped parts", &columns, &rows);
-        let page = html! {
-            (PreEscaped("<!DOCTYPE html>\n"))
-            html lang="en" {
-                head {
-                    meta charset="utf-8";
-                    meta name="viewport" content="width=device-width, initial-scale=1";
-                    meta name="generator" content=(self.build);
-                    title { "Stamped parts mapped onto " (crash) }
-                    style { (PreEscaped(include_str!("style.css"))) }
-                }
-                body {
-                    header {
-                        p.kicker { "Mapping of forming results" }
-                        h1 { span.crash { "■ " (crash) } }
-                        dl.figures {
-                            @for (name, value) in &self.facts { div { dt { (name) } dd { (value) } } }
-                        }
-                    }
-                    main { (section("parts", "Stamped parts", &parts)) }
-                    footer { p { (self.build) } }
+        let body = html! {
+            header {
+                p.kicker { "Mapping of forming results" }
+                h1 { span.crash { "■ " (crash) } }
+                dl.figures {
+                    @for (name, value) in &self.facts { div { dt { (name) } dd { (value) } } }
                 }
             }
-            "\n"
+            main { (section("parts", "Stamped parts", &parts)) }
+            footer { p { (self.build) } }
         };
-        page.into_string()
+        let title = html! { "Stamped parts mapped onto " (crash) };
+        document(&title, &self.build, &body)
     }
 }

@@ -1,9 +1,9 @@
 //! The report of a mapping: what became of the elements, both sides of each quantity with pictures, and
 //! another result beside it.
 
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
-use super::page::{Column, block, cell, fact_table, printable, section, table};
+use super::page::{Column, block, cell, document, fact_table, printable, section, table};
 use super::sections::pictures;
 use super::{Figure, charts};
 use crate::colormap::ColorScale;
@@ -80,33 +80,23 @@ impl MapReport {
     /// The whole page as HTML.
     pub fn write(&self) -> String {
         let [crash, stamped] = self.names.each_ref().map(|name| printable(name));
-        let page = html! {
-            (PreEscaped("<!DOCTYPE html>\n"))
-            html lang="en" {
-                head {
-                    meta charset="utf-8";
-                    meta name="viewport" content="width=device-width, initial-scale=1";
-                    meta name="generator" content=(self.build);
-                    title { (stamped) " mapped onto " (crash) }
-                    style { (PreEscaped(include_str!("style.css"))) }
+        let body = html! {
+            header {
+                p.kicker { "Mapping of forming results" }
+                h1 {
+                    span.stamped { "▲ " (stamped) } span.joint { " onto " }
+                    span.crash { "■ " (crash) }
                 }
-                body {
-                    header {
-                        p.kicker { "Mapping of forming results" }
-                        h1 {
-                            span.stamped { "▲ " (stamped) } span.joint { " onto " }
-                            span.crash { "■ " (crash) }
-                        }
-                        (self.facts())
-                    }
-                    main { (self.main()) }
-                    footer { p { (self.build) } }
-                    script { (PreEscaped(include_str!("script.js"))) }
-                }
+                (self.facts())
             }
-            "\n"
+            main { (self.main()) }
+            footer { p { (self.build) } }
         };
-        page.into_string()
+        document(
+            &html! { (stamped) " mapped onto " (crash) },
+            &self.build,
+            &body,
+        )
     }
 
     fn facts(&self) -> Markup {

@@ -9,12 +9,12 @@ mod pose_section;
 mod sections;
 mod tables;
 
-use maud::{PreEscaped, html};
+use maud::html;
 
 pub use car_page::CarReport;
 pub use map_page::{CheckReport, MapReport, NumberRow, QuantityReport, map_figure};
 
-use self::page::printable;
+use self::page::{document, printable};
 use super::MatchRecord;
 use crate::assess::deviation::Deviation;
 use crate::colormap::ColorScale;
@@ -95,26 +95,13 @@ impl Report<'_> {
     pub fn write(&self) -> String {
         let record = self.record;
         let names = record.files.as_ref().map(|file| printable(&file.name));
-        let page = html! {
-            (PreEscaped("<!DOCTYPE html>\n"))
-            html lang="en" {
-                head {
-                    meta charset="utf-8";
-                    meta name="viewport" content="width=device-width, initial-scale=1";
-                    meta name="generator" content=(record.build);
-                    title { (names.stamped) " on " (names.crash) ": " (record.verdict.label()) }
-                    style { (PreEscaped(include_str!("style.css"))) }
-                }
-                body {
-                    (self.header())
-                    main { (self.main()) }
-                    (self.footer())
-                    script { (PreEscaped(include_str!("script.js"))) }
-                }
-            }
-            "\n"
+        let title = html! { (names.stamped) " on " (names.crash) ": " (record.verdict.label()) };
+        let body = html! {
+            (self.header())
+            main { (self.main()) }
+            (self.footer())
         };
-        page.into_string()
+        document(&title, &record.build, &body)
     }
 
     fn lengths(&self) -> Lengths {

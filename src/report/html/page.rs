@@ -2,7 +2,7 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 
 /// Text from outside without control characters, which HTML does not allow at all.
 pub fn printable(text: &str) -> String {
@@ -11,6 +11,28 @@ pub fn printable(text: &str) -> String {
     letters
         .map(|c| if is_allowed(c) { c } else { '\u{fffd}' })
         .collect()
+}
+
+/// A whole page: head with the style, what is inside the body, and the script that adds buttons to it.
+pub fn document(title: &Markup, build: &str, body: &Markup) -> String {
+    let page = html! {
+        (PreEscaped("<!DOCTYPE html>\n"))
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="generator" content=(build);
+                title { (title) }
+                style { (PreEscaped(include_str!("style.css"))) }
+            }
+            body {
+                (body)
+                script { (PreEscaped(include_str!("script.js"))) }
+            }
+        }
+        "\n"
+    };
+    page.into_string()
 }
 
 /// A PNG inside the page.
