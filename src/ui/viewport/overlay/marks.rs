@@ -16,18 +16,20 @@ use crate::ui::viewport::navigation::{DragKind, pos_of, screen_of};
 use crate::ui::viewport::picture::Hit;
 use crate::ui::widgets::signed;
 
+/// Height of the readout with the row above it that it may move to.
+const READOUT: f32 = 52.0;
 /// Longest scale bar.
 const MAX_BAR: f64 = 150.0;
 
-/// Scale bar, readout.
-pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
+/// Scale bar, and a readout that keeps off the legend.
+pub(super) fn show(ui: &Ui, over: &Overlay<'_>, legend: Option<Rect>) {
     let painter = over.painter(ui);
     let display = &over.frame.state.view.display;
     let mut taken = over.frame.rect().left() + MARGIN;
     if display.has_scale_bar && !over.frame.picture.is_empty() {
         taken = bar(&painter, over);
     }
-    readout(&painter, over, taken);
+    readout(&painter, over, taken, legend);
 }
 
 /// The scale bar; returns where it ends.
@@ -75,7 +77,7 @@ fn length_text(length: f64) -> String {
 }
 
 /// What lies under the cursor, bottom right, or above the scale bar where there is no room beside it.
-fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32) {
+fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rect>) {
     let Some(hit) = over.hit else {
         return;
     };
@@ -100,11 +102,18 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32) {
     }
     let font = FontId::monospace(11.0);
     let mut job = egui::text::LayoutJob::simple_singleline(text, font, over.frame.look.text);
-    let room = over.frame.rect().width() - 2.0 * MARGIN - 14.0;
+    let window = over.frame.rect();
+    let low = |legend: &Rect| {
+        legend.bottom() > window.bottom() - MARGIN - READOUT && legend.left() > window.center().x
+    };
+    let right = legend
+        .filter(low)
+        .map_or(window.right(), |legend| legend.left());
+    let room = right - window.left() - 2.0 * MARGIN - 14.0;
     job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(0.0));
     let galley = painter.layout_job(job);
     let size = galley.size() + vec2(14.0, 8.0);
-    let mut corner = over.frame.rect().right_bottom() - Vec2::splat(MARGIN) - size;
+    let mut corner = Pos2::new(right, window.bottom()) - Vec2::splat(MARGIN) - size;
     if corner.x < taken + 6.0 {
         corner.y -= 30.0;
     }

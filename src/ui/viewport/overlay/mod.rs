@@ -76,7 +76,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     section::handle(ui, over, commands);
     labels::show(ui, over, commands);
     let legend = legend::show(ui, over, commands);
-    marks::show(ui, over);
+    marks::show(ui, over, legend);
     cube::show(ui, over, commands);
     header::show(ui, over);
     header::buttons(ui, over, commands);
