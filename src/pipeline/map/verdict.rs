@@ -206,7 +206,7 @@ fn distance(run: &MapRun) -> CheckRecord {
         found: worst.map_or_else(|| "–".to_owned(), |worst| length(apart(worst))),
         limit: match run.recipe.options.max_distance {
             Some(reach) => format!("at most {}", length(reach / 2.0)),
-            None => "at most half the element size".to_owned(),
+            None => "half an element".to_owned(),
         },
         is_met: Some(mapped.n_distant == 0),
         reason: None,
@@ -278,8 +278,8 @@ fn beside_section(run: &MapRun) -> Option<CheckRecord> {
     });
     let [least, most] = POSSIBLE_THICKNESS;
     Some(CheckRecord {
-        name: "Thickness over the section's".to_owned(),
-        found: format!("{} to {}", length(low), length(high)),
+        name: "Thickness / section".to_owned(),
+        found: format!("{}–{}", fixed(low, 2), fixed(high, 2)),
         limit: format!("{} to {}", fixed(least, 1), fixed(most, 0)),
         is_met: Some(low >= least && high <= most),
         reason: None,
@@ -296,7 +296,7 @@ fn volume(run: &MapRun) -> Option<CheckRecord> {
     change.is_finite().then(|| CheckRecord {
         name: "Volume of the sheet".to_owned(),
         found: signed_percent(change),
-        limit: "differs with the mesh of radii".to_owned(),
+        limit: "for information".to_owned(),
         is_met: None,
         reason: None,
         picture: CheckPicture::Thickness,
