@@ -409,8 +409,8 @@ fn the_hand_decides_how_the_parts_are_matched_first() {
     let (crash, stamped) = (pillar.path("crash.k"), pillar.path("stamped.dynain"));
     let truth = std::fs::read_to_string(pillar.path("pose.txt")).unwrap();
     let truth: Vec<f64> = truth.split(' ').map(|x| x.parse().unwrap()).collect();
-    let run = |hand: &str| {
-        let output = shapematch(&["map", &crash, &stamped, "--hand", hand, "--json", "-"]);
+    let run = |hand: [&str; 2]| {
+        let output = shapematch(&["map", &crash, &stamped, hand[0], hand[1], "--json", "-"]);
         let record: Value = serde_json::from_slice(&output.stdout).unwrap();
         let rows = record["stamped"][0]["crash_from_stamped"]
             .as_array()
@@ -424,21 +424,26 @@ fn the_hand_decides_how_the_parts_are_matched_first() {
         row(0).dot(&row(1).cross(&row(2))) < 0.0
     };
     assert!(mirrors(&truth));
-    for hand in ["opposite", "either"] {
+    let mirrored = [
+        ["--hand", "opposite"],
+        ["--hand", "either"],
+        ["--mirror", "free"],
+    ];
+    for hand in mirrored {
         let (record, pose) = run(hand);
         for i in [0, 1, 2, 4, 5, 6, 8, 9, 10] {
             assert!(
                 (pose[i] - truth[i]).abs() < 1e-3,
-                "{hand}: {pose:?} {truth:?}"
+                "{hand:?}: {pose:?} {truth:?}"
             );
         }
-        assert!(record["mapped_area"].as_f64().unwrap() > 0.99, "{hand}");
+        assert!(record["mapped_area"].as_f64().unwrap() > 0.99, "{hand:?}");
         let pair = &record["plastic_strain"];
         let [from, to] = ["stamped", "crash"].map(|side| pair[side]["mean"].as_f64().unwrap());
-        assert!((to / from - 1.0).abs() < 0.01, "{hand}: {pair}");
+        assert!((to / from - 1.0).abs() < 0.01, "{hand:?}: {pair}");
     }
     // The same hand never mirrors, and then cannot lie on the part.
-    let (_, pose) = run("same");
+    let (_, pose) = run(["--hand", "same"]);
     assert!(!mirrors(&pose));
 }
 

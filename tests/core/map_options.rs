@@ -195,6 +195,10 @@ fn a_given_pose_is_mirrored_at_a_plane_of_the_crash_model() {
         let rest = "  1.00000000E+02  5.00000000E+01  0.00000000E+00 -2.00000000E+01";
         assert_eq!(&cards[layer][16..], rest);
     }
+    // A free plane is found by a match and cannot be laid on a given pose.
+    let free = strip.map(&[&pose[..], &["--mirror", "free"]].concat());
+    assert_eq!(free.status.code(), Some(2));
+    assert!(errors(&free).contains("yz, zx or xy"), "{}", errors(&free));
     // Where the parts are matched first there is no pose to mirror.
     let refused = strip.map(&["--mirror", "yz"]);
     assert_eq!(refused.status.code(), Some(2));
