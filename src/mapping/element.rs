@@ -168,8 +168,10 @@ impl Context<'_> {
         let normal = mesh.normals()[element];
         let centre = self.partner_of_centre(element, &mut search.trails);
         let reach = self.reach(element, centre.as_ref());
+        let (preferred, is_doubled) = self.preferred_centre(element, reach, &search.trails);
+        let centre = preferred.or(centre);
         let copied = centre.filter(|centre| self.is_same_element(element, centre));
-        let found = match (copied, self.options.method, centre) {
+        let mut found = match (copied, self.options.method, centre) {
             (Some(same), _, _) => self.one_group(element, &same),
             (None, MapMethod::Nearest, Some(near))
                 if self.is_valid(element, &near.point, reach) =>
@@ -178,6 +180,7 @@ impl Context<'_> {
             }
             _ => self.gather(element, reach, centre.as_ref(), search),
         };
+        found.in_conflict |= is_doubled;
         let owner = found.owner(self.sources);
         let first = partners.groups.len();
         if let Some(owner) = owner {
@@ -248,7 +251,7 @@ impl Context<'_> {
             let filter = self.filter(element, source);
             let trail = &mut trails[source];
             let found = prepared.closest(&query, &filter, reach, trail.hint);
-            trail.distance = found.map(|(_, point)| point.distance_sq.sqrt());
+            trail.centre = found.map(|(_, point)| point);
             let Some((triangle, point)) = found else {
                 continue;
             };
@@ -259,6 +262,32 @@ impl Context<'_> {
             }
         }
         best
+    }
+
+    /// Of several sources that have a partner of the centre the one that is to be taken, and whether more
+    /// than one lies there.
+    fn preferred_centre(
+        &self,
+        element: usize,
+        reach: f64,
+        trails: &[Trail],
+    ) -> (Option<Centre>, bool) {
+        if self.sources.len() < 2 {
+            return (None, false);
+        }
+        let mut best: Option<Centre> = None;
+        let mut n_inside = 0;
+        for (source, trail) in (0..).zip(trails) {
+            let Some(point) = trail.centre.filter(|p| self.is_valid(element, p, reach)) else {
+                continue;
+            };
+            n_inside += usize::from(!point.is_on_border);
+            let candidate = Centre { source, point };
+            if best.is_none_or(|best| self.is_preferred(&candidate, &best)) {
+                best = Some(candidate);
+            }
+        }
+        (best, n_inside > 1)
     }
 
     /// The largest distance of a partner.

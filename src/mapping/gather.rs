@@ -75,8 +75,8 @@ pub(super) struct Search {
 pub(super) struct Trail {
     /// The last triangle found.
     pub hint: Option<u32>,
-    /// Distance of the element's centre, if it has a partner.
-    pub distance: Option<f64>,
+    /// The partner of the element's centre, if it has one.
+    pub centre: Option<SourcePoint>,
     around: Around,
     is_collected: bool,
 }
@@ -136,8 +136,8 @@ impl Context<'_> {
         });
         for (source, trail) in trails.iter_mut().enumerate() {
             let filter = self.filter(element, source);
-            trail.is_collected = trail.distance.is_some_and(|distance| {
-                let of_centre = (&centre, distance);
+            trail.is_collected = trail.centre.is_some_and(|partner| {
+                let of_centre = (&centre, partner.distance_sq.sqrt());
                 points.len() <= MOST_COLLECTED
                     && self.sources[source].collect(
                         of_centre,
@@ -251,7 +251,7 @@ impl Context<'_> {
     }
 
     /// True if of two valid partners in different sources the first is taken.
-    fn is_preferred(&self, candidate: &Centre, best: &Centre) -> bool {
+    pub(super) fn is_preferred(&self, candidate: &Centre, best: &Centre) -> bool {
         match self.options.overlap {
             Overlap::First => false,
             Overlap::Nearest => candidate.point.distance_sq < best.point.distance_sq,

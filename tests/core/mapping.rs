@@ -699,6 +699,46 @@ fn two_stamped_parts_share_one_crash_part() {
 }
 
 #[test]
+fn a_source_with_the_target_s_own_mesh_does_not_hide_another() {
+    let mesh = Blank::new(4.0).mesh(flat);
+    let mut own = source(mesh.clone(), 2, uniform);
+    own.thickness.fill([1.0; 4]);
+    let mut formed = source(Blank::new(2.5).mesh(flat), 2, uniform);
+    formed.thickness.fill([0.9; 4]);
+    let onto = target(mesh, 2);
+    let place = |part| PlacedSource {
+        part,
+        target_from_source: Similarity::identity(),
+    };
+    let places = [place(&formed), place(&own)];
+    for (method, overlap, expected) in [
+        (MapMethod::Area, Overlap::First, 0.9),
+        (MapMethod::Area, Overlap::Thicker, 1.0),
+        (MapMethod::Nearest, Overlap::First, 0.9),
+        (MapMethod::Nearest, Overlap::Thicker, 1.0),
+    ] {
+        let options = MapOptions {
+            method,
+            overlap,
+            ..full()
+        };
+        let mapped = map(&places, &onto, &options, &Monitor::silent()).unwrap();
+        let inner = (0..onto.mesh.len()).filter(|&element| {
+            let centre = onto.mesh.centroids()[element];
+            (8.0..92.0).contains(&centre.x) && (8.0..52.0).contains(&centre.y)
+        });
+        for element in inner {
+            assert_eq!(mapped.elements[element].status, Status::Conflict);
+            let found = mapped.thickness[element];
+            assert!(
+                (found - expected).abs() < 1e-12,
+                "{method:?} {overlap:?} {found}"
+            );
+        }
+    }
+}
+
+#[test]
 fn mapping_back_returns_what_was_there() {
     let part = source(Blank::new(2.5).mesh(flat), 3, |e, _, mesh| {
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, sine(&mesh.centroids()[e])]

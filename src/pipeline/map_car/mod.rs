@@ -236,11 +236,7 @@ fn take(row: &mut CarRow, made: &Made) {
     row.thickness = Some(made.thickness).filter(|t| t.is_finite());
     row.files.clone_from(&made.files);
     row.page.clone_from(&made.page);
-    let conflict = record
-        .statuses
-        .iter()
-        .find(|row| row.status == Status::Conflict);
-    let conflict = conflict.map_or(0.0, |row| row.area_share);
+    let conflict = record.area_share(Status::Conflict);
     if conflict > CONFLICT {
         row.reasons.push(CarReason::Conflict(conflict));
     }
