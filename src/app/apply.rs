@@ -29,10 +29,8 @@ impl AppState {
             Command::Move(_) => self.move_frame(),
             _ => None,
         };
-        let race = match &command {
-            Command::Match(MatchCommand::Run) => self.race_candidates(),
-            _ => None,
-        };
+        let is_run = matches!(command, Command::Match(MatchCommand::Run));
+        let is_part_open = is_run && self.is_part_open();
         let (mut work, topics) = self.split();
         let work = &mut work;
         if command.ends_move() {
@@ -47,12 +45,8 @@ impl AppState {
             Command::Part(command) => return topics.parts.apply_part(work, command),
             Command::Reduce(command) => return topics.reduce.apply(work, command),
             Command::Move(command) => topics.moving.apply(work, command, frame),
-            Command::Match(command) => {
-                return match race {
-                    Some(ids) => topics.matching.race(work, ids),
-                    None => topics.matching.apply(work, command),
-                };
-            }
+            Command::Match(_) if is_part_open => return topics.matching.find_parts(work),
+            Command::Match(command) => return topics.matching.apply(work, command),
             Command::Map(command) => return mapping::apply(work, command),
             Command::Preview(command) => {
                 let is_unlocked = work.is_unlocked().is_ok();

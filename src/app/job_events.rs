@@ -1,16 +1,14 @@
 //! What the events of background jobs change.
 
-use std::sync::Arc;
 use std::time::Duration;
 
 use super::mapping::{take_compared, take_mapped};
 use super::parts::NewPart;
 use super::reduce::take_level_measured;
 use super::{AppState, Effect, NoticeLevel};
-use crate::jobs::{JobEvent, JobKey, JobOutput, JobStage, Live, PartFacts, Stamp};
-use crate::pipeline::load::LoadedPart;
+use crate::jobs::{FoundCrash, JobEvent, JobKey, JobOutput, JobStage, Live, Stamp};
+use crate::pipeline::find_parts::parts_by_id;
 use crate::role::Role;
-use crate::text::counted;
 
 impl AppState {
     pub(super) fn take_job_event(&mut self, event: JobEvent) -> Vec<Effect> {
@@ -115,7 +113,7 @@ impl AppState {
                 take_level_measured(work, role, &level, took);
             }
             JobOutput::Matched(run) => return topics.matching.take_matched(work, run, took),
-            JobOutput::Raced { winner, n_parts } => return self.take_raced(winner, n_parts, took),
+            JobOutput::PartsFound(found) => return self.take_found_parts(found, took),
             JobOutput::Aligned(poses) => topics.matching.take_aligned(work, poses, took),
             JobOutput::Judged(run) => topics.matching.take_judged(work, &run, took),
             JobOutput::Measured(measurement) => {
@@ -136,24 +134,30 @@ impl AppState {
         Vec::new()
     }
 
-    /// One of several crash parts was found, or none: the match follows.
-    fn take_raced(
-        &mut self,
-        winner: Option<(Arc<LoadedPart>, Arc<PartFacts>)>,
-        n_parts: usize,
-        took: Duration,
-    ) -> Vec<Effect> {
+    /// The crash parts that the stamped part belongs to, or none: the match follows.
+    fn take_found_parts(&mut self, found: Option<FoundCrash>, took: Duration) -> Vec<Effect> {
         let (mut work, topics) = self.split();
-        let tried = counted(n_parts, "crash part");
-        let told = match &winner {
-            Some((_, facts)) => {
-                let id = facts.used.first().copied().unwrap_or_default();
-                format!("up to {tried} tried alone: {id} fits")
+        let (level, text) = match &found {
+            Some(found) => {
+                let used: Vec<u64> = found.facts.used.iter().copied().collect();
+                let fits = format!("the stamped part fits {}", parts_by_id(&used));
+                if found.rivals.is_empty() {
+                    (NoticeLevel::Info, fits)
+                } else {
+                    let others = parts_by_id(&found.rivals);
+                    (
+                        NoticeLevel::Warning,
+                        format!("{fits}, and {others} about as well"),
+                    )
+                }
             }
-            None => format!("{tried} tried alone: none fits, so all are matched together"),
+            None => (
+                NoticeLevel::Info,
+                "the stamped part fits no crash part alone, so all are matched together".to_owned(),
+            ),
         };
-        work.log_step("match", None, told, Some(took));
-        if let Some((part, facts)) = winner {
+        work.log_at(level, "match", None, text, Some(took));
+        if let Some(FoundCrash { part, facts, .. }) = found {
             let new = NewPart {
                 role: Role::Crash,
                 part,

@@ -88,8 +88,8 @@ pub struct MatchArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Input")]
 pub struct InputArgs {
-    /// Part of the crash model: an id, several ids (2001,2002), a title (also title:NAME), or set:ID,
-    /// shell-set:ID, node-set:ID.
+    /// Part of the crash model: an id, several ids (2001,2002), a title (also title:NAME), set:ID,
+    /// shell-set:ID, node-set:ID, or all. Without it, the part of a whole model that fits is found.
     #[arg(long, value_name = "PART")]
     pub crash_part: Option<String>,
     /// Part of the stamped file, as for --crash-part.

@@ -560,7 +560,8 @@ fn on_found_parts(
     let mut ids = BTreeSet::new();
     let mut poses = Vec::new();
     for part in stamped {
-        let Some(found) = find_parts(PerRole::new(crash, part), recipe, monitor)? else {
+        let parts = PerRole::new(crash, part);
+        let Some(found) = find_parts(parts, recipe, &Similarity::identity(), monitor)? else {
             return Ok(None);
         };
         if !found.rivals.is_empty() {

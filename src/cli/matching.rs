@@ -15,6 +15,7 @@ use super::{
 use crate::assess::Verdict;
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
+use crate::pipeline::find_parts::{find_parts, is_part_open, parts_by_id};
 use crate::pipeline::load::{LoadedPart, load};
 use crate::pipeline::match_parts::{MatchRun, ReducedPair, match_parts, with_alternative};
 use crate::pipeline::outputs::record::match_record;
@@ -37,7 +38,10 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         Some(path) => {
             let asked = asked(args)?;
             asked.recipe.settings.check().map_err(PipelineError::from)?;
-            let parts = load_both(PerRole::new(&args.crash, path), &asked, monitor)?;
+            let mut parts = load_both(PerRole::new(&args.crash, path), &asked, monitor)?;
+            if args.input.crash_part.is_none() && is_part_open(parts.as_ref()) {
+                parts.crash = found_crash(parts.as_ref(), &asked, monitor)?;
+            }
             (asked, parts)
         }
         None if is_project(&args.crash) => project::open(&args.crash, monitor)?,
@@ -207,6 +211,29 @@ fn run_match(
         ),
         _ => Ok(with_alternative(&run, number - 2, parts, monitor.monitor)?),
     }
+}
+
+/// The crash model with the parts chosen that the stamped part belongs to.
+fn found_crash(
+    parts: PerRole<&LoadedPart>,
+    asked: &Asked,
+    monitor: &Monitor,
+) -> anyhow::Result<LoadedPart> {
+    let stamped = parts.stamped.path.display();
+    let Some(found) = find_parts(parts, &asked.recipe, &asked.current, monitor)? else {
+        log::warn!(
+            "{stamped} fits no part of the crash model alone, so all are matched together; --crash-part names \
+             the right one"
+        );
+        return Ok(parts.crash.clone());
+    };
+    if !found.rivals.is_empty() {
+        log::warn!(
+            "{stamped} fits {} about as well; --crash-part names the right one",
+            parts_by_id(&found.rivals)
+        );
+    }
+    Ok(found.found.part)
 }
 
 fn load_both(

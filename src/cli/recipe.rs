@@ -181,7 +181,7 @@ mod tests {
     fn typed(asked: &Asked) -> Vec<String> {
         let side = |path, load: &'static LoadSettings| CommandSide {
             path: Path::new(path),
-            selection: &load.selection,
+            selection: Some(&load.selection),
             length_factor: load.length_factor,
             units: load.units,
         };

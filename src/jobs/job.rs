@@ -154,15 +154,6 @@ pub struct MatchInput {
     pub current: Similarity,
 }
 
-/// Input of the choice between the parts of a crash model.
-#[derive(Debug, Clone)]
-pub struct RaceInput {
-    /// The match that is to be run with one of them.
-    pub input: MatchInput,
-    /// The parts to try, the likeliest first.
-    pub ids: Vec<u64>,
-}
-
 /// Input of a sweep.
 #[derive(Debug, Clone)]
 pub struct SweepInput {
@@ -256,8 +247,8 @@ pub enum JobKind {
     Align(MatchInput),
     /// Matches the two parts.
     Match(MatchInput),
-    /// Matches several parts of the crash model one by one, for the one that fits.
-    Race(RaceInput),
+    /// Finds the parts of the crash model that the stamped part belongs to.
+    FindParts(MatchInput),
     /// Judges a match with another tolerance.
     Verdict(VerdictInput),
     /// Distances and overlap at a pose.
@@ -287,7 +278,7 @@ impl JobKind {
             Self::Reduce(input) => JobKey::Reduce(input.role),
             Self::MeasureLevel(input) => JobKey::MeasureLevel(input.role),
             Self::Align(_) => JobKey::Align,
-            Self::Match(_) | Self::Race(_) => JobKey::Match,
+            Self::Match(_) | Self::FindParts(_) => JobKey::Match,
             Self::Verdict(_) => JobKey::Verdict,
             Self::Measure(_) => JobKey::Measure,
             Self::Compare(_) => JobKey::Compare,
@@ -299,6 +290,17 @@ impl JobKind {
             Self::Export(_) => JobKey::Export,
         }
     }
+}
+
+/// Parts of the crash model that the stamped part belongs to.
+#[derive(Debug, Clone)]
+pub struct FoundCrash {
+    /// The crash part with these chosen.
+    pub part: Arc<LoadedPart>,
+    /// What is told of it.
+    pub facts: Arc<PartFacts>,
+    /// Ids of others that fit about as well.
+    pub rivals: Vec<u64>,
 }
 
 /// What a finished job brings.
@@ -337,13 +339,8 @@ pub enum JobOutput {
     Aligned(Arc<Vec<Start>>),
     /// The match ended, by itself or stopped.
     Matched(Arc<MatchRun>),
-    /// Several parts of the crash model were tried one by one.
-    Raced {
-        /// The crash part with the one that fits, if one does.
-        winner: Option<(Arc<LoadedPart>, Arc<PartFacts>)>,
-        /// How many were to be tried.
-        n_parts: usize,
-    },
+    /// The parts of the crash model that the stamped part belongs to; none if no match says so.
+    PartsFound(Option<FoundCrash>),
     /// The match with its new verdict.
     Judged(Arc<MatchRun>),
     /// Distances and overlap.

@@ -18,8 +18,8 @@ pub use event::{JobEvent, JobStage};
 pub use export::{Destination, ExportRequest, Exported};
 pub use facts::PartFacts;
 pub use job::{
-    CompareInput, CompareMappingInput, JobId, JobKey, JobKind, JobOutput, MapInput, MatchInput,
-    MeasureInput, MeasureLevelInput, MeasuredLevel, RaceInput, Recording, ReduceInput, Stamp,
+    CompareInput, CompareMappingInput, FoundCrash, JobId, JobKey, JobKind, JobOutput, MapInput,
+    MatchInput, MeasureInput, MeasureLevelInput, MeasuredLevel, Recording, ReduceInput, Stamp,
     SweepInput, VerdictInput,
 };
 pub use live::{Live, LiveIteration, LiveSlot};

@@ -8,17 +8,17 @@ use super::{
     CompareInput, CompareMappingInput, MapInput, MatchInput, MeasureInput, SweepInput, VerdictInput,
 };
 use super::{
-    JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource, RaceInput,
+    FoundCrash, JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource,
     Recording, ReduceInput,
 };
 use crate::assess::{coverage, overlap_limit, quick_overlap};
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::PipelineError;
+use crate::pipeline::find_parts::find_parts;
 use crate::pipeline::inspect::compare_parts;
 use crate::pipeline::load::{self, LoadedPart};
 use crate::pipeline::map::{OtherResult, PlacedPart, compare_with, map_parts, map_record};
 use crate::pipeline::match_parts::{self, match_parts};
-use crate::pipeline::race::race;
 use crate::pipeline::reduce::Levels;
 use crate::pipeline::sweep::sweep;
 use crate::registration::MatchMonitor;
@@ -107,7 +107,7 @@ impl Runner for PipelineRunner {
             JobKind::MeasureLevel(input) => measure_level(input, monitor),
             JobKind::Align(input) => align(&input, monitor),
             JobKind::Match(input) => run_match(&input, match_monitor),
-            JobKind::Race(input) => run_race(&input, monitor),
+            JobKind::FindParts(input) => run_find_parts(&input, monitor),
             JobKind::Verdict(input) => judge(&input, monitor),
             JobKind::Measure(input) => measure(&input, monitor),
             JobKind::Compare(input) => compare(&input, monitor),
@@ -212,18 +212,17 @@ fn run_match(input: &MatchInput, monitor: MatchMonitor<'_>) -> Result<JobOutput,
     Ok(JobOutput::Matched(Arc::new(run)))
 }
 
-fn run_race(race_input: &RaceInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
-    let RaceInput { input, ids } = race_input;
+fn run_find_parts(input: &MatchInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
     let parts = input.parts.as_deref();
-    let winner = race(parts, ids, &input.recipe, &input.current, monitor)?;
-    let winner = winner.map(|part| {
-        let facts = Arc::new(PartFacts::of(&part));
-        (Arc::new(part), facts)
-    });
-    Ok(JobOutput::Raced {
-        winner,
-        n_parts: ids.len(),
-    })
+    let found = find_parts(parts, &input.recipe, &input.current, monitor)?;
+    Ok(JobOutput::PartsFound(found.map(|found| {
+        let part = found.found.part;
+        FoundCrash {
+            facts: Arc::new(PartFacts::of(&part)),
+            part: Arc::new(part),
+            rivals: found.rivals,
+        }
+    })))
 }
 
 fn judge(input: &VerdictInput, monitor: &Monitor) -> Result<JobOutput, JobError> {

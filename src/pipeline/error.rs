@@ -162,3 +162,14 @@ impl PipelineError {
         )
     }
 }
+
+/// A cancel request as the error that ends all work; whatever else failed as the result of this step, for
+/// callers that go on without it.
+pub(super) fn unless_cancelled<T>(
+    result: Result<T, PipelineError>,
+) -> Result<Result<T, PipelineError>, PipelineError> {
+    match result {
+        Err(error) if error.is_cancelled() => Err(error),
+        other => Ok(other),
+    }
+}

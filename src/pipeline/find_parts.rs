@@ -1,12 +1,13 @@
 //! The parts of a crash model that a stamped part belongs to, found by likeness and by matches.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::PipelineError;
-use super::likeness::{Moments, moments_of_parts};
-use super::load::LoadedPart;
-use super::match_parts::MatchRecipe;
-use super::race::{Found, alone};
+use super::error::unless_cancelled;
+use super::likeness::{Moments, moments_of_parts, more_alike};
+use super::load::{LoadedPart, prepare};
+use super::match_parts::{MatchRecipe, MatchRun, match_parts};
 use crate::assess::Verdict;
 use crate::formats::Selection;
 use crate::geometry::{Point3, Similarity, Vector3};
@@ -31,6 +32,15 @@ const LIES_THERE: f64 = 0.5;
 /// Triangles of a part that are asked.
 const N_PLACES: usize = 400;
 
+/// A choice of crash parts with its match.
+#[derive(Debug, Clone)]
+pub struct Found {
+    /// The crash model with these parts chosen.
+    pub part: LoadedPart,
+    /// The match of the stamped part on them.
+    pub run: MatchRun,
+}
+
 /// What a stamped part belongs to.
 #[derive(Debug, Clone)]
 pub struct FoundParts {
@@ -45,71 +55,170 @@ pub struct FoundParts {
 /// The chosen parts of `parts.crash` are compared by area, spread and thickness, one by one and all
 /// together, and the most alike of them matched, each alone, until one is good. Parts that are as alike as
 /// that one are matched too. Where much of the stamped part lies on nothing, parts that lie there are taken
-/// in and all matched together. Fails only when cancelled.
+/// in and all matched together. `current` is where the stamped part lies, for recipes that start there. A
+/// stop request ends it with the best so far. Fails only when cancelled.
 pub fn find_parts(
     parts: PerRole<&LoadedPart>,
     recipe: &MatchRecipe,
+    current: &Similarity,
     monitor: &Monitor,
 ) -> Result<Option<FoundParts>, PipelineError> {
+    let task = Task {
+        parts,
+        recipe,
+        current,
+        monitor,
+    };
+    let mut search = Search::default();
     let candidates = candidates(parts);
-    let current = Similarity::identity();
-    let mut best: Option<(f64, Found)> = None;
-    let mut others = Vec::new();
     let n_tried = candidates.len().min(MOST_TRIED) as u64;
     for (n_done, (likeness, ids)) in (0_u64..).zip(candidates).take(MOST_TRIED) {
-        let of_best = best.as_ref().map(|(likeness, found)| {
-            let is_good = found.run.assessment.verdict == Verdict::Good;
-            (*likeness, is_good)
-        });
-        if of_best.is_some_and(|(of_best, is_good)| is_good && likeness < AS_ALIKE * of_best) {
+        if search.is_over(likeness) || monitor.stop_requested() {
             break;
         }
         monitor.progress("parts", n_done, Some(n_tried));
-        let is_one = ids.len() == 1;
-        let id = ids[0];
-        let Some(found) = alone(parts, Selection::Parts(ids), recipe, &current, monitor)? else {
-            continue;
-        };
-        let verdict = found.run.assessment.verdict;
-        if !is_convincing(&found) {
-            continue;
-        }
-        if is_one {
-            others.push((id, verdict, found.run.assessment.coverage.rmse()));
-        }
-        let is_good = verdict == Verdict::Good;
-        let is_better = best.as_ref().is_none_or(|(_, best)| {
-            let was_good = best.run.assessment.verdict == Verdict::Good;
-            (is_good && !was_good) || (is_good == was_good && found.is_before(best))
-        });
-        if is_better {
-            best = Some((likeness, found));
+        if let Some(found) = task.alone(ids)? {
+            search.take(likeness, found);
         }
     }
-    let Some((_, found)) = best else {
+    let rivals = search.rivals();
+    let Some((_, found)) = search.best else {
         return Ok(None);
     };
-    let rmse = found.run.assessment.coverage.rmse();
-    let own = found.part.chosen_part_ids();
-    let is_rival = |(id, verdict, of_other): &(u64, Verdict, f64)| {
-        let is_as_good = *verdict == found.run.assessment.verdict && *of_other <= AS_CLOSE * rmse;
-        (is_as_good && !own.contains(id)).then_some(*id)
-    };
-    let rivals = others.iter().filter_map(is_rival).collect();
-    let found = with_further_parts(parts, found, recipe, monitor)?;
+    let found = task.with_further_parts(found)?;
     Ok(Some(FoundParts { found, rivals }))
 }
 
-/// Whether a match that nobody looked at says that the parts belong together: a small flat piece lies
-/// somewhere on many parts.
-fn is_convincing(found: &Found) -> bool {
-    let assessment = &found.run.assessment;
-    let coverage = &assessment.coverage;
-    let shares = [coverage.source_on_target, coverage.target_on_source].map(|side| side.overlap);
-    match assessment.verdict {
-        Verdict::Good => true,
-        Verdict::Check => shares.iter().all(|share| *share >= LEAST_SHARE),
-        Verdict::Poor => false,
+/// True if one of several chosen crash parts should be found first: alone it is more like the stamped part
+/// than all together are.
+pub fn is_part_open(parts: PerRole<&LoadedPart>) -> bool {
+    if parts.stamped.chosen_part_ids().len() != 1 || parts.crash.chosen_part_ids().len() < 2 {
+        return false;
+    }
+    let (singles, together): (Vec<_>, Vec<_>) = candidates(parts)
+        .into_iter()
+        .partition(|(_, ids)| ids.len() == 1);
+    let together = together.first().map_or(0.0, |(likeness, _)| *likeness);
+    let singles = singles
+        .into_iter()
+        .map(|(likeness, ids)| (ids[0], likeness));
+    more_alike(singles, together).is_some()
+}
+
+/// "part 7" or "parts 7, 8".
+pub fn parts_by_id(ids: &[u64]) -> String {
+    let noun = if ids.len() == 1 { "part" } else { "parts" };
+    let ids: Vec<String> = ids.iter().map(u64::to_string).collect();
+    format!("{noun} {}", ids.join(", "))
+}
+
+/// What every match of the search needs.
+struct Task<'a> {
+    parts: PerRole<&'a LoadedPart>,
+    recipe: &'a MatchRecipe,
+    current: &'a Similarity,
+    monitor: &'a Monitor,
+}
+
+/// The convincing matches so far.
+#[derive(Default)]
+struct Search {
+    /// The best with its likeness.
+    best: Option<(f64, Found)>,
+    /// Of every part that was tried alone: id, verdict, RMS of the distances.
+    singles: Vec<(u64, Verdict, f64)>,
+}
+
+impl Search {
+    /// True if parts no more alike than this need not be tried.
+    fn is_over(&self, likeness: f64) -> bool {
+        let best = self.best.as_ref().filter(|(_, found)| found.is_good());
+        best.is_some_and(|(of_best, _)| likeness < AS_ALIKE * of_best)
+    }
+
+    fn take(&mut self, likeness: f64, found: Found) {
+        if !found.is_convincing() {
+            return;
+        }
+        if let [id] = found.part.chosen_part_ids()[..] {
+            let verdict = found.run.assessment.verdict;
+            self.singles.push((id, verdict, found.rmse()));
+        }
+        let is_better = |best: &Found| {
+            let is_closer = found.rmse() < best.rmse();
+            (found.is_good() && !best.is_good()) || (found.is_good() == best.is_good() && is_closer)
+        };
+        if self.best.as_ref().is_none_or(|(_, best)| is_better(best)) {
+            self.best = Some((likeness, found));
+        }
+    }
+
+    /// Parts that fit about as well as the best.
+    fn rivals(&self) -> Vec<u64> {
+        let Some((_, best)) = &self.best else {
+            return Vec::new();
+        };
+        let own = best.part.chosen_part_ids();
+        let is_rival = |(id, verdict, rmse): &(u64, Verdict, f64)| {
+            let fits = *verdict == best.run.assessment.verdict && *rmse <= AS_CLOSE * best.rmse();
+            (fits && !own.contains(id)).then_some(*id)
+        };
+        self.singles.iter().filter_map(is_rival).collect()
+    }
+}
+
+impl Found {
+    fn is_good(&self) -> bool {
+        self.run.assessment.verdict == Verdict::Good
+    }
+
+    fn rmse(&self) -> f64 {
+        self.run.assessment.coverage.rmse()
+    }
+
+    /// Whether a match that nobody looked at says that the parts belong together: a small flat piece lies
+    /// somewhere on many parts.
+    fn is_convincing(&self) -> bool {
+        let assessment = &self.run.assessment;
+        let coverage = &assessment.coverage;
+        let shares =
+            [coverage.source_on_target, coverage.target_on_source].map(|side| side.overlap);
+        match assessment.verdict {
+            Verdict::Good => true,
+            Verdict::Check => shares.iter().all(|share| *share >= LEAST_SHARE),
+            Verdict::Poor => false,
+        }
+    }
+}
+
+impl Task<'_> {
+    /// The match of the stamped part on these parts of the crash model and no others. Parts that cannot be
+    /// matched are none to choose. Fails only when cancelled.
+    fn alone(&self, ids: Vec<u64>) -> Result<Option<Found>, PipelineError> {
+        let PerRole { crash, stamped } = self.parts;
+        let mut settings = crash.settings.clone();
+        settings.selection = Selection::Parts(ids);
+        let model = Arc::clone(&crash.model);
+        let part = prepare(&crash.path, model, &settings, self.monitor);
+        let Ok(part) = unless_cancelled(part)? else {
+            return Ok(None);
+        };
+        let pair = PerRole::new(&part, stamped);
+        let run = match_parts(pair, None, self.recipe, self.current, self.monitor);
+        let run = unless_cancelled(run)?.ok();
+        Ok(run.map(|run| Found { part, run }))
+    }
+
+    /// The match on more parts, where these lie on what the found ones leave of the stamped part.
+    fn with_further_parts(&self, found: Found) -> Result<Found, PipelineError> {
+        let further = further_parts(self.parts, &found);
+        if further.is_empty() || self.monitor.stop_requested() {
+            return Ok(found);
+        }
+        let mut ids = found.part.chosen_part_ids();
+        ids.extend(further);
+        let together = self.alone(ids)?;
+        Ok(together.filter(Found::is_convincing).unwrap_or(found))
     }
 }
 
@@ -144,24 +253,6 @@ fn candidates(parts: PerRole<&LoadedPart>) -> Vec<(f64, Vec<u64>)> {
     found.retain(|(likeness, _)| *likeness >= LEAST_LIKENESS);
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     found
-}
-
-/// The match on more parts, where these lie on what the found ones leave of the stamped part.
-fn with_further_parts(
-    parts: PerRole<&LoadedPart>,
-    found: Found,
-    recipe: &MatchRecipe,
-    monitor: &Monitor,
-) -> Result<Found, PipelineError> {
-    let further = further_parts(parts, &found);
-    if further.is_empty() {
-        return Ok(found);
-    }
-    let mut ids = found.part.chosen_part_ids();
-    ids.extend(further);
-    let current = Similarity::identity();
-    let together = alone(parts, Selection::Parts(ids), recipe, &current, monitor)?;
-    Ok(together.filter(is_convincing).unwrap_or(found))
 }
 
 /// Parts of which more than half lies on what the found ones leave of the stamped part.

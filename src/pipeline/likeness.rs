@@ -99,6 +99,21 @@ pub fn moments_of_parts(model: &Model, factor: f64) -> BTreeMap<u64, Moments> {
     with_area.map(|(part, m)| (part.id, m)).collect()
 }
 
+/// Less alike parts are not taken for each other.
+const ALIKE: f64 = 0.5;
+
+/// Of the likenesses of several parts to another, the most alike part, if it alone is more like it than all
+/// `together` are. Of parts that are equally alike it is the first.
+pub fn more_alike(of_parts: impl IntoIterator<Item = (u64, f64)>, together: f64) -> Option<u64> {
+    let mut best = (None, ALIKE.max(together));
+    for (id, likeness) in of_parts {
+        if likeness > best.1 {
+            best = (Some(id), likeness);
+        }
+    }
+    best.0
+}
+
 /// What is compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Signature {

@@ -176,9 +176,11 @@ impl LoadedPart {
 
     /// File, parts and unit as the command line has to be told.
     pub fn command_side(&self) -> CommandSide<'_> {
+        let selection = &self.settings.selection;
+        let is_only_one = *selection == Selection::All && self.chosen_part_ids().len() < 2;
         CommandSide {
             path: &self.path,
-            selection: &self.settings.selection,
+            selection: Some(selection).filter(|_| !is_only_one),
             length_factor: self.settings.length_factor,
             units: self.settings.units,
         }
@@ -451,10 +453,13 @@ fn near_parts(model: &Model, error: &SelectionError) -> String {
     }
 }
 
-/// Understands a choice of parts as typed: `2001`, `2001,2002`, a title, `title:2001`, `set:7`,
+/// Understands a choice of parts as typed: `all`, `2001`, `2001,2002`, a title, `title:2001`, `set:7`,
 /// `shell-set:7`, `node-set:7`. Anything that is none of these forms is a title.
 pub fn parse_selection(text: &str) -> Selection {
     let text = text.trim();
+    if text == "all" {
+        return Selection::All;
+    }
     if let Some(title) = text.strip_prefix("title:") {
         return Selection::PartTitle(title.to_owned());
     }
@@ -502,16 +507,17 @@ mod tests {
     #[test]
     fn choices_are_typed_as_they_are_understood() {
         let choices = [
+            Selection::All,
             Selection::Parts(vec![1, 22]),
+            Selection::PartTitle("all".into()),
             Selection::PartTitle("set:7".into()),
             Selection::PartSet(7),
             Selection::ShellSet(8),
             Selection::NodeSet(9),
         ];
         for choice in choices {
-            assert_eq!(parse_selection(&choice.typed().unwrap()), choice);
+            assert_eq!(parse_selection(&choice.typed()), choice);
         }
-        assert_eq!(Selection::All.typed(), None);
     }
 
     #[test]

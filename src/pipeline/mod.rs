@@ -21,7 +21,6 @@ pub mod outputs;
 pub mod preferences;
 mod process;
 pub mod project;
-pub mod race;
 pub mod reduce;
 pub mod robustness;
 pub mod robustness_page;

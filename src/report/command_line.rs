@@ -16,8 +16,8 @@ use crate::units::Units;
 pub struct CommandSide<'a> {
     /// Path of the file.
     pub path: &'a Path,
-    /// Parts that are used of it.
-    pub selection: &'a PartSelection,
+    /// Parts that are used of it; `None` leaves the choice to the program.
+    pub selection: Option<&'a PartSelection>,
     /// Its lengths are multiplied by this.
     pub length_factor: f64,
     /// Its units, where the user set them.
@@ -142,9 +142,11 @@ impl Words {
     }
 
     fn side(&mut self, role: Role, side: &CommandSide<'_>) {
+        // Only crash parts are found where none are named; of the stamped file all are taken.
+        let is_usual = role == Role::Stamped && side.selection == Some(&PartSelection::All);
         let role = role.word();
-        if let Some(parts) = side.selection.typed() {
-            self.option(&format!("{role}-part"), parts);
+        if let Some(parts) = side.selection.filter(|_| !is_usual) {
+            self.option(&format!("{role}-part"), parts.typed());
         }
         if let Some(units) = side.units {
             self.option(&format!("{role}-units"), units.label().to_owned());
@@ -211,7 +213,7 @@ mod tests {
     fn line(settings: &MatchSettings, current: &Similarity) -> String {
         let side = |path, selection, length_factor| CommandSide {
             path: Path::new(path),
-            selection,
+            selection: Some(selection),
             length_factor,
             units: None,
         };

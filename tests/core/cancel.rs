@@ -147,15 +147,15 @@ fn written(window: &mut Window, folder: &Path) -> Vec<JobKind> {
     })]
 }
 
-/// A match of a whole model, which tries its parts.
-fn race(folder: &Path) -> JobKind {
+/// A match of a whole model, which begins with the part it belongs to.
+fn find_parts(folder: &Path) -> JobKind {
     let mut window = with_brackets(folder, SampleVariant::WholeModel);
     window.holds = true;
     window.act(Action::MatchOrStop);
-    let race = window.held.pop().expect("a job").1;
-    assert!(matches!(race, JobKind::Race(_)), "{:?}", race.key());
+    let job = window.held.pop().expect("a job").1;
+    assert!(matches!(job, JobKind::FindParts(_)), "{:?}", job.key());
     ASKED.take();
-    race
+    job
 }
 
 /// Points of a job that are tried at most.
@@ -166,7 +166,7 @@ const LATE: usize = 16;
 /// What a job is, so that each kind is tried once.
 fn name(kind: &JobKind) -> String {
     match kind {
-        JobKind::Race(_) => "Race".to_owned(),
+        JobKind::FindParts(_) => "FindParts".to_owned(),
         JobKind::Export(request) => format!("Export {:?}", request.output),
         other => format!("{:?}", other.key()),
     }
@@ -259,7 +259,7 @@ fn a_cancel_at_any_point_ends_the_work() {
 }
 
 #[test]
-fn a_cancel_ends_the_choice_between_the_parts_of_a_model() {
+fn a_cancel_ends_the_search_for_the_crash_part() {
     let folder = tempfile::tempdir().unwrap();
-    try_everywhere(&race(folder.path()), 6);
+    try_everywhere(&find_parts(folder.path()), 6);
 }

@@ -166,6 +166,43 @@ fn two_stamped_parts_in_one_place_are_told() {
 }
 
 #[test]
+fn a_doubtful_match_gives_way_to_a_good_one() {
+    let car = Car::new();
+    // Another version of the part: 3 % longer.
+    let (mut longer, mut is_node) = (String::new(), false);
+    for line in std::fs::read_to_string(car.path(STAMPED[1]))
+        .unwrap()
+        .lines()
+    {
+        if line.starts_with('*') {
+            is_node = line.starts_with("*NODE");
+        }
+        match line.get(24..40).map(|y| y.trim().parse::<f64>()) {
+            Some(Ok(y)) if is_node => {
+                longer += &format!("{}{:>16.6}{}\n", &line[..24], 1.03 * y, &line[40..]);
+            }
+            _ => longer += &format!("{line}\n"),
+        }
+    }
+    std::fs::write(car.path("longer.dynain"), longer).unwrap();
+    let options = ["--out", "mapped", "--json", "-"];
+    let files = ["map-car", CRASH, "longer.dynain", STAMPED[1]];
+    let done = car.run(&[&files, &options[..]].concat());
+    assert_eq!(done.status.code(), Some(1), "{}", errors(&done));
+    let record: Value = serde_json::from_slice(&done.stdout).unwrap();
+    let [longer, own] = [0, 1].map(|row| &record["rows"][row]);
+    assert_eq!(longer["verdict"], "check");
+    assert_eq!(longer["reasons"], serde_json::json!(["pose", "displaced"]));
+    assert_eq!(longer["state"], "none");
+    assert_eq!(own["state"], "sure");
+    // The values are those that the good one has alone.
+    let alone = car.run(&["map-car", CRASH, STAMPED[1], "--out", "alone"]);
+    assert!(alone.status.success(), "{}", errors(&alone));
+    let deck = |folder: &str| std::fs::read(car.path(folder).join("stamped.k")).unwrap();
+    assert!(deck("mapped") == deck("alone"));
+}
+
+#[test]
 fn a_sheet_that_is_two_crash_parts_is_mapped_onto_both() {
     let folder = tempfile::tempdir().unwrap();
     let run = |args: &[&str]| {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::app::{Document, Part, Reason};
+use crate::formats::Selection;
 use crate::jobs::PartSource;
 use crate::registration::StartMethod;
 use crate::report::command_line::{CommandLine, CommandSide};
@@ -45,11 +46,16 @@ impl Document {
         let ceilings = both.map(Part::ceiling);
         let is_reduced = ceilings.iter().any(|(_, ceiling)| ceiling.is_some());
         let (crash_path, stamped_path) = (path(crash), path(stamped));
+        let crash_side = crash.loaded.command_side();
+        // Before a match, all parts of a model are no choice: the match finds those that fit.
+        let is_chosen =
+            self.current_result().is_some() || crash.loaded.settings.selection != Selection::All;
         let line = CommandLine {
             sides: PerRole {
                 crash: CommandSide {
                     path: &crash_path,
-                    ..crash.loaded.command_side()
+                    selection: crash_side.selection.filter(|_| is_chosen),
+                    ..crash_side
                 },
                 stamped: CommandSide {
                     path: &stamped_path,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::MatchState;
 use crate::app::work::Work;
 use crate::app::{Effect, Part};
-use crate::jobs::{JobKind, MatchInput, RaceInput};
+use crate::jobs::{JobKind, MatchInput};
 use crate::pipeline::match_parts::{MatchRecipe, ReducedPair};
 use crate::registration::StartMethod;
 
@@ -22,9 +22,9 @@ impl MatchState {
         self.run_match_of(work, JobKind::Match)
     }
 
-    /// Tries these parts of the crash model one by one; the match follows with the one that fits.
-    pub(in crate::app) fn race(&mut self, work: &mut Work<'_>, ids: Vec<u64>) -> Vec<Effect> {
-        self.run_match_of(work, |input| JobKind::Race(RaceInput { input, ids }))
+    /// Finds the parts of the crash model that the stamped part belongs to; the match follows with them.
+    pub(in crate::app) fn find_parts(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
+        self.run_match_of(work, JobKind::FindParts)
     }
 
     /// From where the part lies now; a wide search would lead away from it.

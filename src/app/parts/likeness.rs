@@ -4,17 +4,11 @@ use std::collections::BTreeMap;
 
 use super::{PartRef, PartsState};
 use crate::app::{AppState, Document};
-use crate::pipeline::likeness::{Moments, Signature};
+use crate::pipeline::likeness::{Moments, Signature, more_alike};
 use crate::role::{PerRole, Role};
 
 /// A crash model of so many parts is sorted as soon as the stamped part is known.
 const MANY: usize = 20;
-
-/// Parts of a crash model that a match tries alone at most.
-const MOST_TRIED: usize = 5;
-
-/// Less alike parts are not taken for each other.
-const ALIKE: f64 = 0.5;
 
 /// What parts are compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,18 +75,13 @@ impl AppState {
         self.more_alike().filter(|_| !is_answered && !is_matched)
     }
 
-    /// The parts of the crash model that a match tries alone first, the likeliest first: while the user has
-    /// not said which are matched, and on full meshes only, which each of them has.
-    pub(in crate::app) fn race_candidates(&self) -> Option<Vec<u64>> {
-        self.part_question()?;
-        let both = self.document.both()?;
-        if both.crash.level.is_some() || both.stamped.level.is_some() {
-            return None;
-        }
-        let found = self.document.likeness_to(LikeWhat::Used(Role::Stamped))?;
-        let order = found.order.into_iter();
-        let used = order.filter(|id| both.crash.is_used(*id) && found.of_part.contains_key(id));
-        Some(used.take(MOST_TRIED).collect())
+    /// True if a match first finds the crash part: while the user has not said which are matched, and on full
+    /// meshes only, which each of them has.
+    pub(in crate::app) fn is_part_open(&self) -> bool {
+        let both = self.document.both();
+        let is_full =
+            both.is_some_and(|both| both.crash.level.is_none() && both.stamped.level.is_none());
+        is_full && self.part_question().is_some()
     }
 }
 
@@ -124,11 +113,10 @@ impl Document {
         let stamped = self.signature(LikeWhat::Used(Role::Stamped))?;
         let together = self.signature(LikeWhat::Used(Role::Crash))?;
         let found = self.likeness_to(LikeWhat::Used(Role::Stamped))?;
-        let mut order = found.order.iter();
-        let id = *order.find(|id| both.crash.is_used(**id))?;
-        let likeness = *found.of_part.get(&id)?;
-        let is_likelier = likeness > ALIKE.max(stamped.likeness(&together));
-        is_likelier.then_some(MoreAlike {
+        let used = found.order.iter().filter(|id| both.crash.is_used(**id));
+        let of_used = used.filter_map(|id| Some((*id, *found.of_part.get(id)?)));
+        let id = more_alike(of_used, stamped.likeness(&together))?;
+        Some(MoreAlike {
             part: PartRef {
                 role: Role::Crash,
                 id,

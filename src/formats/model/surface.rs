@@ -31,18 +31,18 @@ pub enum Selection {
 }
 
 impl Selection {
-    /// The choice as it is typed on the command line; `None` for everything.
-    pub fn typed(&self) -> Option<String> {
+    /// The choice as it is typed on the command line.
+    pub fn typed(&self) -> String {
         match self {
-            Self::All => None,
+            Self::All => "all".to_owned(),
             Self::Parts(ids) => {
                 let ids: Vec<String> = ids.iter().map(u64::to_string).collect();
-                Some(ids.join(","))
+                ids.join(",")
             }
-            Self::PartTitle(title) => Some(format!("title:{title}")),
-            Self::PartSet(id) => Some(format!("set:{id}")),
-            Self::ShellSet(id) => Some(format!("shell-set:{id}")),
-            Self::NodeSet(id) => Some(format!("node-set:{id}")),
+            Self::PartTitle(title) => format!("title:{title}"),
+            Self::PartSet(id) => format!("set:{id}"),
+            Self::ShellSet(id) => format!("shell-set:{id}"),
+            Self::NodeSet(id) => format!("node-set:{id}"),
         }
     }
 }

@@ -10,6 +10,7 @@ use std::sync::Arc;
 pub use record::{CAR_COLUMNS, CarReason, CarRecord, CarRow, CarState};
 
 use super::PipelineError;
+use super::error::unless_cancelled;
 use super::find_parts::{FoundParts, find_parts};
 use super::load::{LoadSettings, LoadedPart, load, prepare};
 use super::map::{
@@ -139,14 +140,14 @@ pub fn map_car(
         monitor.check()?;
         let found = load(&file.path, &file.settings, monitor).and_then(|part| {
             let parts = PerRole::new(crash, &part);
-            find_parts(parts, &recipe.matching, monitor)
+            find_parts(parts, &recipe.matching, &Similarity::identity(), monitor)
         });
         match unless_cancelled(found)? {
             Ok(Some(found)) => {
                 claims.insert(at, claim(row, &found));
             }
             Ok(None) => row.reasons.push(CarReason::NoPart),
-            Err(error) => row.reasons.push(CarReason::Failed(error)),
+            Err(error) => row.reasons.push(CarReason::Failed(error.to_string())),
         }
     }
     let stems = stems(stamped);
@@ -175,9 +176,8 @@ pub fn map_car(
                 included.extend(made.files);
             }
             Err(error) => {
-                let failed = |at: &usize| {
-                    rows[*at].reasons.push(CarReason::Failed(error.clone()));
-                };
+                let why = CarReason::Failed(error.to_string());
+                let failed = |at: &usize| rows[*at].reasons.push(why.clone());
                 members.iter().for_each(failed);
             }
         }
@@ -196,16 +196,6 @@ pub fn map_car(
         write_file(&recipe.folder.join(REPORT), page.as_bytes())?;
     }
     Ok(record)
-}
-
-/// What failed as text, a cancel request as the error it is.
-fn unless_cancelled<T>(
-    result: Result<T, PipelineError>,
-) -> Result<Result<T, String>, PipelineError> {
-    match result {
-        Err(error) if error.is_cancelled() => Err(error),
-        other => Ok(other.map_err(|error| error.to_string())),
-    }
 }
 
 /// Puts what was found into the row.

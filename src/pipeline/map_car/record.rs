@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::assess::Verdict;
+use crate::pipeline::find_parts::parts_by_id;
 use crate::text::{length, percent};
 
 /// How certain it is that a stamped part lies where it belongs, with all its values.
@@ -59,10 +60,7 @@ impl CarReason {
             Self::Failed(error) => error.clone(),
             Self::NoPart => "no part of the crash model fits".to_owned(),
             Self::Pose => "the pose needs a look".to_owned(),
-            Self::Rivals(ids) => {
-                let ids: Vec<String> = ids.iter().map(u64::to_string).collect();
-                format!("fits part {} about as well", ids.join(", "))
-            }
+            Self::Rivals(ids) => format!("fits {} about as well", parts_by_id(ids)),
             Self::Conflict(share) => {
                 format!(
                     "another stamped part lies on {} of the area too",

@@ -1,5 +1,8 @@
 //! A whole model beside one stamped part: the match finds the part by itself.
 
+use std::process::Command;
+
+use serde_json::Value;
 use shapematch::app::Action;
 use shapematch::assess::Verdict;
 use shapematch::jobs::{JobKind, JobOutput, PipelineRunner, Runner as _};
@@ -39,7 +42,10 @@ fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
     let result = window.state.document.current_result().expect("a result");
     assert_eq!(result.run.assessment.verdict, Verdict::Good);
     let rows = window.state.log.rows().iter();
-    assert!(rows.into_iter().any(|row| row.text.contains("tried alone")));
+    assert!(
+        rows.into_iter()
+            .any(|row| row.text.contains("the stamped part fits part"))
+    );
     // Two steps back the whole model is there again.
     window.act(Action::Undo);
     window.act(Action::Undo);
@@ -82,4 +88,81 @@ fn one_thread_and_sixteen_give_the_same_match_and_verdict() {
         })
     };
     assert_eq!(run(1), run(16));
+}
+
+/// A deck that has the parts of the bracket's car, and its own part once more somewhere else.
+const TWICE: &str = "*KEYWORD
+*INCLUDE
+crash.k
+*INCLUDE_TRANSFORM
+own.k
+$#  idnoff    ideoff    idpoff    idmoff    idsoff
+  50000000  50000000  50000000
+$#  idroff
+
+
+$#  tranid
+       900
+*DEFINE_TRANSFORMATION
+       900
+TRANSL         3000.0       0.0       0.0
+*END
+";
+
+#[test]
+fn parts_that_fit_as_well_are_told_and_all_can_be_meant() {
+    let folder = tempfile::tempdir().unwrap();
+    for variant in [SampleVariant::Plain, SampleVariant::WholeModel] {
+        let pair = samples::generate(&SampleSettings {
+            part: SamplePart::Bracket,
+            variant,
+            ..SampleSettings::default()
+        });
+        for file in samples::files(&pair) {
+            let is_own = variant == SampleVariant::Plain && file.name == "crash.k";
+            let name = if is_own { "own.k" } else { file.name };
+            std::fs::write(folder.path().join(name), file.bytes).unwrap();
+        }
+    }
+    std::fs::write(folder.path().join("twice.k"), TWICE).unwrap();
+    let told = "fits part 2000040, and part 52000040 about as well";
+
+    let mut window = Window::new();
+    window.runner = Some(really);
+    for (name, role) in [("twice.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
+        window.open(folder.path().join(name).to_str().unwrap(), role);
+    }
+    window.act(Action::MatchOrStop);
+    let mut rows = window.state.log.rows().iter();
+    assert!(rows.any(|row| row.text.contains(told)));
+
+    let run = |args: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_shapematch"));
+        command.current_dir(folder.path()).arg("match").args(args);
+        let done = command.output().unwrap();
+        let record: Value = serde_json::from_slice(&done.stdout).unwrap();
+        (record, String::from_utf8(done.stderr).unwrap())
+    };
+    let (record, messages) = run(&["twice.k", "stamped.dynain", "--json", "-"]);
+    assert_eq!(record["verdict"], "good");
+    assert_eq!(
+        record["files"]["crash"]["parts"],
+        serde_json::json!([2_000_040])
+    );
+    assert!(
+        messages.contains("fits part 52000040 about as well"),
+        "{messages}"
+    );
+    let (record, _) = run(&[
+        "twice.k",
+        "stamped.dynain",
+        "--crash-part",
+        "all",
+        "--json",
+        "-",
+    ]);
+    assert_eq!(
+        record["files"]["crash"]["parts"].as_array().unwrap().len(),
+        6
+    );
 }
