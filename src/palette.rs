@@ -21,10 +21,10 @@ pub const SURFACES_ON_DARK: PerRole<Rgb> = PerRole {
     crash: [0x3A, 0x97, 0xCF],
     stamped: [0xF7, 0xBC, 0x45],
 };
-/// The same on a light ground; shade darkens them.
+/// The same on a light ground, fuller: what is pale there is lost in it.
 pub const SURFACES_ON_LIGHT: PerRole<Rgb> = PerRole {
-    crash: [0x35, 0x91, 0xC8],
-    stamped: [0xF0, 0xB8, 0x66],
+    crash: [0x2F, 0x88, 0xBD],
+    stamped: [0xEC, 0xA6, 0x2E],
 };
 /// Top and bottom of the dark ground behind the parts.
 pub const DARK_GROUND: [Rgb; 2] = [[0x2B, 0x30, 0x37], [0x17, 0x1A, 0x1E]];

@@ -88,8 +88,10 @@ pub fn restore_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Comm
     else {
         return;
     };
+    // Over the log, which is empty then: the ways to open files stay free.
+    let aside = super::panels::graphics::area(ctx).center().x - ctx.content_rect().center().x;
     let area = egui::Area::new(egui::Id::unique("restore"))
-        .anchor(Align2::CENTER_TOP, vec2(0.0, 72.0))
+        .anchor(Align2::CENTER_BOTTOM, vec2(aside, -UNIT))
         .order(egui::Order::Middle);
     area.show(ctx, |ui| {
         let palette = Palette::of(ui);

@@ -266,6 +266,66 @@ fn the_largest_deviations_are_seen_whole_without_scrolling() {
     }
 }
 
+/// The mapping's difference in a small window: what its colours mean, and what lies under the pointer,
+/// whole and beside everything else.
+#[test]
+fn a_small_window_says_what_its_colours_mean_and_what_is_pointed_at() {
+    let mut window = matched();
+    let map = Action::MapOrCancel.command(window.state().state());
+    act(&mut window, map.into_iter().collect());
+    finish(&mut window);
+    click(&mut window, "Difference");
+    finish(&mut window);
+    // As it is from the start in a window this small.
+    act(&mut window, vec![ViewCommand::FoldColumn(true).into()]);
+    for (scale, [width, height]) in [(1.0, [1024.0, 700.0]), (2.0, [1280.0, 720.0])] {
+        set(&mut window, Theme::Light, scale);
+        window.set_size(Vec2::new(width, height) / scale);
+        let place = format!("{width} × {height} at {scale}");
+        let begin = Instant::now();
+        let is_title = |text: &Painted| text.text.trim().ends_with("thickness");
+        while !texts(&window).iter().any(is_title) {
+            assert!(
+                begin.elapsed() < Duration::from_secs(120),
+                "{place}: no legend"
+            );
+            std::thread::sleep(Duration::from_millis(10));
+            window.run_steps(1);
+        }
+        window.run_steps(20);
+        let area = window
+            .get_by(|node| {
+                node.label()
+                    .is_some_and(|label| label.starts_with("Crash part, "))
+            })
+            .rect();
+        // Somewhere in the middle there is the part.
+        let step = Vec2::new(0.05 * area.width(), 0.0);
+        let from = area.center() - 6.0 * step;
+        let hovered = (0..12).map(|n| from + n as f32 * step).find(|at| {
+            window.hover_at(*at);
+            window.run_steps(3);
+            texts(&window)
+                .iter()
+                .any(|text| text.text.contains("node\u{a0}"))
+        });
+        assert!(hovered.is_some(), "{place}: nothing under the pointer");
+        let seen: String = texts(&window).into_iter().map(|text| text.text).collect();
+        for word in ["difference", "node", "element"] {
+            assert!(seen.contains(word), "{place}: no {word:?}");
+        }
+        let cube = window
+            .query_by_label("View cube (crash)")
+            .map(|cube| cube.rect());
+        for text in texts(&window) {
+            let is_over = cube.is_some_and(|cube| cube.intersects(text.rect));
+            assert!(!is_over || text.text.len() == 1, "{place}: {:?}", text.text);
+        }
+        let found = faults(&window);
+        assert!(found.is_empty(), "{place}: {}", found.join("\n"));
+    }
+}
+
 /// The colours of a window are worked out in the background.
 fn wait_for(window: &mut Window, label: &str) {
     let begin = Instant::now();

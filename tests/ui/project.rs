@@ -286,6 +286,17 @@ fn lost_work_is_offered_and_comes_back() {
             break;
         }
     }
+    // The offer leaves the ways to open files free.
+    for [width, height] in [[1400.0, 900.0], [1024.0, 700.0], [640.0, 360.0]] {
+        next.set_size(egui::vec2(width, height));
+        next.run_steps(4);
+        let offer = next.get_by_label("Restore").rect();
+        let open = next.query_all_by_label_contains("Open ");
+        for button in open {
+            let reach = offer.expand2(egui::vec2(300.0, 8.0));
+            assert!(!button.rect().intersects(reach), "{width} × {height}");
+        }
+    }
     click(&mut next, "Restore");
     finish(&mut next);
     assert_eq!(*next.state().state().document.crash_from_stamped(), pose);

@@ -62,7 +62,7 @@ impl Look {
         surfaces: SURFACES_ON_LIGHT,
         background: Background::LIGHT,
         lines: LineLook::LIGHT,
-        exposure: 1.35,
+        exposure: 1.25,
         ambient: 0.4,
         text: Color32::from_rgb(0x1B, 0x20, 0x26),
         weak: Color32::from_rgb(0x4E, 0x58, 0x63),

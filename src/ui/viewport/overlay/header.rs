@@ -7,7 +7,7 @@ use egui::{
     Sense, Shape, Stroke, Ui, UiBuilder, Vec2, vec2,
 };
 
-use super::{MARGIN, Overlay, grouped};
+use super::{MARGIN, Overlay, grouped, legend};
 use crate::app::{AppState, Command, Preview, ShownGeometry, ViewCommand, short_number};
 use crate::geometry::camera::StandardView;
 use crate::report::start_kind_words;
@@ -23,6 +23,8 @@ const LINE: f32 = 22.0;
 /// Windows smaller than this name each part in one line.
 const NARROW: f32 = 400.0;
 const LOW: f32 = 300.0;
+/// Least width of the facts about a part.
+const LEAST_FACTS: f32 = 90.0;
 /// Height of a note.
 const NOTE: f32 = 17.0;
 
@@ -48,6 +50,7 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
     } else {
         0.0
     };
+    let beside = beside.max(legend::beside_names(over));
     let room = window.width() - 2.0 * MARGIN - beside - 36.0;
     let small =
         |text: String, room: f32| fitted(&painter, text, 11.5, (over.frame.look.weak, room));
@@ -60,7 +63,12 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
             } else {
                 0.0
             };
-            (role, title, small(facts(over, role), room - used))
+            // The beginning of a number says nothing.
+            let facts = match room - used {
+                left if left < LEAST_FACTS => String::new(),
+                _ => facts(over, role),
+            };
+            (role, title, small(facts, room - used))
         })
         .collect();
     let notes = passing_notes(over).into_iter().chain(lasting_notes(over));

@@ -5,7 +5,6 @@ use egui::{CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use super::{MARGIN, Overlay, cube};
 use crate::app::{AppState, ColorBy, MapPicture};
 use crate::assess::deviation::OverlapClass;
-use crate::geometry::Point3;
 use crate::geometry::camera::scale_bar;
 use crate::mapping::Status;
 use crate::pipeline::forming_values::FormingValue;
@@ -16,8 +15,10 @@ use crate::ui::viewport::navigation::{DragKind, pos_of, screen_of};
 use crate::ui::viewport::picture::Hit;
 use crate::ui::widgets::signed;
 
-/// Height of the readout with the row above it that it may move to.
-const READOUT: f32 = 52.0;
+/// Height of the scale bar with its number, below a readout that has no room beside it.
+const ABOVE_BAR: f32 = 30.0;
+/// Most rows of a readout.
+const READOUT_ROWS: usize = 3;
 /// Longest scale bar.
 const MAX_BAR: f64 = 150.0;
 
@@ -49,7 +50,13 @@ fn bar(painter: &Painter, over: &Overlay<'_>) -> f32 {
     let right = left + vec2(bar.pixels as f32, 0.0);
     let text = length_text(bar.length) + over.frame.state.document.unit_suffix();
     let galley = painter.layout_no_wrap(text, FontId::proportional(11.5), over.frame.look.text);
-    let ground = Rect::from_min_max(left + vec2(-8.0, -21.0), right + vec2(8.0, 8.0));
+    // A number wider than its bar needs the room, not the margin.
+    let beyond = vec2((0.5 * (galley.size().x - (right.x - left.x))).max(0.0), 0.0);
+    let (left, right) = (left + beyond, right + beyond);
+    let ground = Rect::from_min_max(
+        left - beyond + vec2(-8.0, -21.0),
+        right + beyond + vec2(8.0, 8.0),
+    );
     painter.rect_filled(
         ground,
         CornerRadius::same(5),
@@ -76,50 +83,58 @@ fn length_text(length: f64) -> String {
     }
 }
 
-/// What lies under the cursor, bottom right, or above the scale bar where there is no room beside it.
+/// What lies under the cursor, bottom right, or above the scale bar where there is no room beside it; in
+/// several rows where one is too long.
 fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rect>) {
     let Some(hit) = over.hit else {
         return;
     };
-    let place = |p: &Point3| format!("({:.1}, {:.1}, {:.1})", p.x, p.y, p.z);
-    let mut text = match hit.node_id {
-        Some(id) => format!("node {id}  {}", place(&hit.node)),
-        None => place(&hit.point),
-    };
+    let mut pieces: Vec<String> = value_text(over, hit).into_iter().collect();
     let parts = hit
         .part
         .map(|part| (part, over.frame.state.document.part(part.role)));
     if let Some((part, Some(of))) = parts
         && of.facts.used.len() > 1
     {
-        text = format!("part {}  {text}", part.id);
+        pieces.push(format!("part {}", part.id));
     }
-    if let Some(element) = hit.element {
-        text = format!("{text}  element {element}");
-    }
-    if let Some(value) = value_text(over, hit) {
-        text = format!("{value}   {text}");
-    }
-    let font = FontId::monospace(11.0);
-    let mut job = egui::text::LayoutJob::simple_singleline(text, font, over.frame.look.text);
+    pieces.extend(hit.node_id.map(|id| format!("node {id}")));
+    let place = hit.node_id.map_or(&hit.point, |_| &hit.node);
+    pieces.push(format!("({:.1}, {:.1}, {:.1})", place.x, place.y, place.z));
+    pieces.extend(hit.element.map(|element| format!("element {element}")));
+    // A row ends between two pieces only.
+    let whole = pieces.iter().map(|piece| piece.replace(' ', "\u{a0}"));
+    let text = whole.collect::<Vec<_>>().join("  ");
     let window = over.frame.rect();
-    let low = |legend: &Rect| {
-        legend.bottom() > window.bottom() - MARGIN - READOUT && legend.left() > window.center().x
+    // The lower left corner is that of the cube.
+    let left = if cube::is_shown(over) {
+        window.left() + MARGIN + cube::SIZE
+    } else {
+        window.left() + MARGIN
     };
-    let right = legend
-        .filter(low)
-        .map_or(window.right(), |legend| legend.left());
-    let room = right - window.left() - 2.0 * MARGIN - 14.0;
-    job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(0.0));
-    let galley = painter.layout_job(job);
-    let size = galley.size() + vec2(14.0, 8.0);
-    let mut corner = Pos2::new(right, window.bottom()) - Vec2::splat(MARGIN) - size;
-    if corner.x < taken + 6.0 {
-        corner.y -= 30.0;
+    let within = |right: f32| {
+        let font = FontId::monospace(11.0);
+        let room = (right - left - MARGIN - 20.0).max(0.0);
+        let color = over.frame.look.text;
+        let mut job = egui::text::LayoutJob::simple(text.clone(), font, color, room);
+        job.wrap.max_rows = READOUT_ROWS;
+        let galley = painter.layout_job(job);
+        let size = galley.size() + vec2(14.0, 8.0);
+        let mut corner = Pos2::new(right, window.bottom()) - Vec2::splat(MARGIN) - size;
+        if corner.x < taken + 6.0 {
+            corner.y -= ABOVE_BAR;
+        }
+        (galley, Rect::from_min_size(corner, size))
+    };
+    let (mut galley, mut ground) = within(window.right());
+    let is_right = |legend: &Rect| legend.left() > window.center().x;
+    if let Some(legend) = legend.filter(is_right)
+        && ground.expand(4.0).intersects(legend)
+    {
+        (galley, ground) = within(legend.left());
     }
-    let ground = Rect::from_min_size(corner, size);
     painter.rect_filled(ground, CornerRadius::same(5), over.frame.look.plate);
-    painter.galley(corner + vec2(7.0, 4.0), galley, over.frame.look.text);
+    painter.galley(ground.min + vec2(7.0, 4.0), galley, over.frame.look.text);
 }
 
 /// What the colour under the cursor says.

@@ -117,11 +117,7 @@ pub(super) fn ticks(
     has_fields: bool,
 ) {
     let n_ticks = ((bar.height() / 26.0) as usize).clamp(3, 7);
-    // One number alone says nothing of a scale.
-    let mut ticks = scale.ticks(n_ticks);
-    if ticks.len() < 2 {
-        ticks = scale.ticks(n_ticks + 2);
-    }
+    let ticks = telling_ticks(scale, n_ticks);
     let is_end = |tick: f64| (scale.position(tick) - 0.5).abs() > 0.46;
     for tick in ticks.iter().filter(|t| !(has_fields && is_end(**t))) {
         let at = Pos2::new(bar.right(), y_of(scale, bar, *tick));
@@ -139,7 +135,30 @@ pub(super) fn ticks(
     }
 }
 
+/// Round values, about as many as asked for: one number alone says nothing of a scale.
+fn telling_ticks(scale: &ColorScale, n_ticks: usize) -> Vec<f64> {
+    let mut finer = (n_ticks..n_ticks + 5).map(|n| scale.ticks(n));
+    finer.find(|ticks| ticks.len() > 1).unwrap_or_default()
+}
+
 /// Height of a value on the bar.
 pub(super) fn y_of(scale: &ColorScale, bar: Rect, value: f64) -> f32 {
     bar.bottom() - scale.position(value) as f32 * bar.height()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::colormap::ColorMap;
+
+    #[test]
+    fn no_scale_has_one_number_alone() {
+        for max in [0.7915, 0.76, 0.753, 0.8, 1.2, 7.0, 1000.0] {
+            let scale = ColorScale::new(ColorMap::Viridis, 0.7085, max);
+            let n = telling_ticks(&scale, 3).len();
+            assert!((2..=5).contains(&n), "{n} up to {max}");
+        }
+        let empty = ColorScale::new(ColorMap::Viridis, 1.0, 1.0);
+        assert!(telling_ticks(&empty, 3).is_empty());
+    }
 }

@@ -24,6 +24,12 @@ const AIR: f32 = 8.0;
 /// Room above the legend for the buttons of the camera, and below it for the scale bar.
 const ABOVE: f32 = 44.0;
 const BELOW: f32 = 36.0;
+/// Windows narrower than this have the names of the parts above the legend, or, if they are too low for
+/// both, shorter ones beside it; narrower than the next they have no legend.
+const NARROW: f32 = 6.0 * SLIM;
+const NARROWEST: f32 = 5.0 * SLIM;
+/// Least height of a folded legend below the names.
+const BELOW_NAMES: f32 = 260.0;
 /// Windows lower than this have no legend, and up to the next only the folded one.
 const LEAST_HEIGHT: f32 = 170.0;
 const OPEN_HEIGHT: f32 = 260.0;
@@ -32,30 +38,20 @@ const FULL_HEIGHT: f32 = 440.0;
 /// The legend at the right edge, below the buttons of the camera; returns where it lies.
 pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) -> Option<Rect> {
     let window = over.frame.rect();
-    // The names of the parts stand beside it.
-    let n_wide = if header::height(over).is_some() {
-        6.0
-    } else {
-        4.0
-    };
-    let is_low = window.height() < LEAST_HEIGHT || window.width() < n_wide * SLIM;
-    if is_low || !over.frame.picture.has_colored() {
-        return None;
-    }
+    top(over)?;
+    let has_room = !is_narrow(over);
     let Some((kind, scale)) = over.scale else {
         // The first measurement is under way.
-        if over.kind.is_some_and(is_measured) {
+        if has_room && over.kind.is_some_and(is_measured) {
             plate(ui, over, WIDTH, |ui| deviation::waiting(ui, over, commands));
         }
         return None;
     };
     if kind == FieldKind::Overlap {
-        let shown = plate(ui, over, WIDTH, |ui| overlap::show(ui, over, commands));
-        return Some(shown);
+        return has_room.then(|| plate(ui, over, WIDTH, |ui| overlap::show(ui, over, commands)));
     }
     if kind == FieldKind::Map(MapPicture::Status) {
-        let shown = plate(ui, over, WIDTH, |ui| status::show(ui, over, commands));
-        return Some(shown);
+        return has_room.then(|| plate(ui, over, WIDTH, |ui| status::show(ui, over, commands)));
     }
     let can_open = window.height() >= OPEN_HEIGHT && window.width() >= 2.0 * WIDTH;
     if is_folded(ui, over) || !can_open {
@@ -75,6 +71,44 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
         FieldKind::Deviation => deviation::show(ui, over, &scale, room, commands),
         _ => bar::plain(ui, over, &title(over, kind), &scale, room.bar, commands),
     }))
+}
+
+/// True in a window where names of parts and a legend have no room beside each other.
+fn is_narrow(over: &Overlay<'_>) -> bool {
+    header::height(over).is_some() && over.frame.rect().width() < NARROW
+}
+
+/// How far below the top of its window the legend begins; `None` where there is none.
+fn top(over: &Overlay<'_>) -> Option<f32> {
+    let window = over.frame.rect();
+    let is_small = window.height() < LEAST_HEIGHT || window.width() < 4.0 * SLIM;
+    if is_small || !over.frame.picture.has_colored() {
+        return None;
+    }
+    let Some(names) = header::height(over).filter(|_| is_narrow(over)) else {
+        return Some(ABOVE);
+    };
+    let below = MARGIN + names + 6.0;
+    if window.height() - below >= BELOW_NAMES {
+        return Some(below);
+    }
+    (window.width() >= NARROWEST).then_some(MARGIN)
+}
+
+/// Width of the legend where the names of the parts leave it room beside them.
+pub(super) fn beside_names(over: &Overlay<'_>) -> f32 {
+    let is_wide_one = over.kind.is_none_or(|kind| {
+        matches!(
+            kind,
+            FieldKind::Overlap | FieldKind::Map(MapPicture::Status)
+        )
+    });
+    let is_beside = is_narrow(over) && top(over) == Some(MARGIN);
+    if is_beside && over.scale.is_some() && !is_wide_one {
+        SLIM + 2.0 * AIR + MARGIN
+    } else {
+        0.0
+    }
 }
 
 /// What the numbers are, with what of it is shown.
@@ -129,7 +163,7 @@ fn slim(
     if kind == FieldKind::Deviation {
         deviation::slim_freshness(ui, over, commands);
     }
-    let left = over.frame.rect().height() - ABOVE - BELOW - 84.0;
+    let left = over.frame.rect().height() - top(over).unwrap_or(ABOVE) - BELOW - 84.0;
     let height = left.clamp(60.0, 220.0);
     let (room, _) = ui.allocate_exact_size(vec2(SLIM, height + 16.0), Sense::hover());
     let bar = Rect::from_min_size(room.min + vec2(1.0, 8.0), vec2(bar::BAR, height));
@@ -191,7 +225,10 @@ fn plate(ui: &mut Ui, over: &Overlay<'_>, width: f32, add: impl FnOnce(&mut Ui))
     let window = over.frame.rect();
     let outer = width + 2.0 * AIR;
     let size = vec2(outer, last.map_or(0.0, |last| last.height()));
-    let home = Pos2::new(window.right() - MARGIN - outer, window.top() + ABOVE);
+    let home = Pos2::new(
+        window.right() - MARGIN - outer,
+        window.top() + top(over).unwrap_or(ABOVE),
+    );
     let low = window.min + Vec2::splat(4.0);
     let high = (window.max - size - Vec2::splat(4.0)).max(low);
     let corner = (home + moved).clamp(low, high);
