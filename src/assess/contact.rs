@@ -5,6 +5,7 @@ use nalgebra::{SMatrix, SVector, SymmetricEigen};
 use rayon::prelude::*;
 
 use super::is_source_smaller;
+use super::stretch::Scaled;
 use crate::geometry::{Point3, Rotation, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::ClosestPoint;
@@ -85,6 +86,16 @@ impl<'a> ContactSearch<'a> {
     /// The places where the parts meet under a pose. O(nodes · log triangles), less for a pose near the
     /// last one.
     pub(super) fn at(&mut self, pose: &Similarity) -> Option<Contacts> {
+        self.at_scaled(pose, None)
+    }
+
+    /// The same with the source under the pose scaled along axes. A place of the target is then given where
+    /// it lies beside the source as it is.
+    pub(super) fn at_scaled(
+        &mut self,
+        pose: &Similarity,
+        scaled: Option<&Scaled>,
+    ) -> Option<Contacts> {
         let Self {
             source,
             target,
@@ -103,7 +114,12 @@ impl<'a> ContactSearch<'a> {
             if weight <= 0.0 {
                 return None;
             }
-            let moved = model_from_data.apply(&positions[vertex]);
+            let position = positions[vertex];
+            let moved = match scaled {
+                None => model_from_data.apply(&position),
+                Some(scaled) if of_source => scaled.apply(&model_from_data.apply(&position)),
+                Some(scaled) => model_from_data.apply(&scaled.undo(&position)),
+            };
             let own = model_from_data.rotate(&data.vertex_normals()[vertex]);
             let hit = model.bvh().closest(&moved, reach, *closest, None)?;
             *closest = Some(hit.triangle);

@@ -13,6 +13,7 @@ mod shape;
 mod skin;
 mod slide;
 mod sliding;
+mod stretch;
 mod uncertainty;
 mod verdict;
 mod words;
@@ -26,6 +27,7 @@ pub use settle::settled;
 pub use shape::{RimFit, ShapeKind, ShapeReason, ShapeStatement, ShapeTolerance};
 pub use skin::without_offset;
 pub use sliding::{FreeMotion, FreeMotionKind, Freedom, free_motions};
+pub use stretch::PartAxis;
 pub use uncertainty::{PartDirection, PoseUncertainty};
 pub use verdict::Verdict;
 pub use words::error_beside;
@@ -168,7 +170,8 @@ pub fn assess(
         shape: None,
     };
     let half = 0.5 * target.measures().diagonal;
-    verdict::decide(&mut assessment, &shape, outcome, half);
+    let mirrored = mirrored_statement(source, target, outcome, settings);
+    verdict::decide(&mut assessment, &shape, mirrored.as_ref(), outcome, half);
     assessment.shape = Some(shape);
     monitor.progress("verify", 2, Some(2));
     Ok(assessment)
@@ -216,15 +219,31 @@ fn statements(
     let rims = Rims::find(source, target, pose, near);
     let evidence = ShapeEvidence {
         source,
+        target,
         pose,
         contacts: &contacts,
         rims: &rims,
         noise,
+        reach,
     };
     let uncertainty = PoseUncertainty::of(source, pose, &contacts, &rims, noise);
     let mut shape = ShapeStatement::of(&evidence, tolerance);
     shape.is_offset_removed = settings.remove_offset && skin::is_removed(&evidence, &shape);
     (uncertainty, shape)
+}
+
+/// The statement about the shape at the pose of the opposite hand, if its score speaks for it.
+fn mirrored_statement(
+    source: &Surface,
+    target: &Surface,
+    outcome: &MatchOutcome,
+    settings: &AssessSettings,
+) -> Option<ShapeStatement> {
+    let check = &outcome.mirror_check;
+    let pose = check.target_from_source.as_ref()?;
+    let speaks_for_it = check.score_ratio? < verdict::OPPOSITE_HAND;
+    let noise = Distances::of(source, target, settings).noise;
+    speaks_for_it.then(|| statements(source, target, pose, noise, settings).1)
 }
 
 fn tolerance_of(target: &Surface, settings: &AssessSettings) -> ShapeTolerance {

@@ -77,7 +77,7 @@ impl<'a> Settling<'a> {
 
     /// [`settled`].
     pub(super) fn settled(&self, pose: &Similarity) -> Option<Similarity> {
-        let [source, _] = self.surfaces;
+        let [source, target] = self.surfaces;
         let Distances {
             tolerance,
             reach,
@@ -107,10 +107,12 @@ impl<'a> Settling<'a> {
             }
             let evidence = ShapeEvidence {
                 source,
+                target,
                 pose: &moved,
                 contacts: &contacts,
                 rims: &rims,
                 noise,
+                reach,
             };
             let next = contacts.undo(&Fit::of(&evidence).rigid).after(&moved);
             if step == 0 && largest_motion(source, pose, &next) <= facets {

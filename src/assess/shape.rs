@@ -1,17 +1,21 @@
 //! Are both parts the same shape? What a smooth bend and twist explain is springback; what remains, and
 //! rims that do not lie where they belong, are differences of the part.
 
+mod bends;
+
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
 use super::contact::{Contacts, Six, quantile, robust_weights, solve};
 use super::rims::Rims;
+use super::stretch::{PartAxis, Stretch, stretch};
 use crate::geometry::serial::{any_float, xyz};
-use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
+use crate::geometry::{Point3, Similarity, Vector3};
 use crate::registration::Surface;
 
+pub(super) use bends::{Bends, N_BENDS};
+
 /// Unknowns of the fit: a rigid motion, an offset, and the bends.
-const N_BENDS: usize = 7;
 const N: usize = 7 + N_BENDS;
 /// Times that places far off the fit are given less weight.
 const ROUNDS: usize = 4;
@@ -150,6 +154,15 @@ pub enum ShapeReason {
         #[serde(with = "xyz")]
         at: Point3,
     },
+    /// One part is a longer, wider or higher version of the other.
+    Stretched {
+        /// How much longer one of them is.
+        by: f64,
+        /// The same as a share; negative where the source is shorter.
+        share: f64,
+        /// Principal axis of the source along which it is.
+        axis: PartAxis,
+    },
     /// Each part has holes where the other is solid.
     Holes {
         /// In the source only.
@@ -208,11 +221,14 @@ pub struct ShapeStatement {
 #[derive(Clone, Copy)]
 pub(super) struct ShapeEvidence<'a> {
     pub(super) source: &'a Surface,
+    pub(super) target: &'a Surface,
     pub(super) pose: &'a Similarity,
     pub(super) contacts: &'a Contacts,
     pub(super) rims: &'a Rims,
     /// Faceting of both meshes.
     pub(super) noise: f64,
+    /// Surfaces within it are compared.
+    pub(super) reach: f64,
 }
 
 impl ShapeStatement {
@@ -274,6 +290,13 @@ impl ShapeStatement {
             });
         }
         reasons.extend(self.rim_reasons(evidence, fit));
+        // Where the parts differ anyway, nothing more is learned from it.
+        if reasons.is_empty()
+            && let Some(found) = stretch(evidence, &self.tolerance)
+        {
+            let Stretch { axis, share, by } = found;
+            reasons.push(ShapeReason::Stretched { by, share, axis });
+        }
         if self.springback > self.tolerance.springback {
             reasons.push(ShapeReason::Bent {
                 by: self.springback,
@@ -508,75 +531,6 @@ fn own_share(matrix: &SMatrix<f64, N, N>) -> f64 {
     others.column_mut(6).fill(0.0);
     mixed[6] = 0.0;
     (whole - mixed.dot(&solve(&others, &mixed))) / whole
-}
-
-/// Deflections w(x, y) out of the part's plane of second and third order, with the displacements in the
-/// plane that keep lengths (Kirchhoff's plate): what springback does.
-struct Bends {
-    center: Point3,
-    axes: Matrix3,
-    half: [f64; 2],
-}
-
-impl Bends {
-    fn of(evidence: &ShapeEvidence<'_>) -> Self {
-        let axes = evidence.pose.rotation * evidence.source.measures().principal_axes;
-        let center = evidence.contacts.center;
-        let mut half = [f64::MIN_POSITIVE; 2];
-        for contact in &evidence.contacts.list {
-            let arm = contact.point - center;
-            for (k, half) in half.iter_mut().enumerate() {
-                *half = half.max(axes.column(k).dot(&arm).abs());
-            }
-        }
-        Self { center, axes, half }
-    }
-
-    /// The rigid motion in what the bends of a solution do, in least squares over the area.
-    fn rigid_part(&self, found: &Row, contacts: &Contacts) -> Six {
-        let sizes = found.fixed_rows::<N_BENDS>(7);
-        let (mut inertia, mut moment) = (Matrix3::zeros(), Vector3::zeros());
-        let (mut sum, mut total) = (Vector3::zeros(), 0.0);
-        for contact in &contacts.list {
-            let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
-            let moved = axes.map(|axis| self.row(&contact.point, &axis).dot(&sizes));
-            let moved = Vector3::from(moved);
-            let arm = (contact.point - contacts.center) / contacts.radius;
-            let weight = contact.weight;
-            inertia += (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * weight;
-            moment += arm.cross(&moved) * weight;
-            sum += moved * weight;
-            total += weight;
-        }
-        let turn = inertia
-            .try_inverse()
-            .map_or(Vector3::zeros(), |i| i * moment);
-        let shift = sum / total;
-        Six::from([turn.x, turn.y, turn.z, shift.x, shift.y, shift.z])
-    }
-
-    /// How much each of the bends, of size 1 at the rim, moves a place along a direction.
-    fn row(&self, point: &Point3, direction: &Vector3) -> SVector<f64, N_BENDS> {
-        let arm = self.axes.transpose() * (point - self.center);
-        let normal = self.axes.transpose() * direction;
-        let (x, y) = (arm.x / self.half[0], arm.y / self.half[1]);
-        // Value, slope along x, slope along y.
-        let bends = [
-            [x * x, 2.0 * x, 0.0],
-            [x * y, y, x],
-            [y * y, 0.0, 2.0 * y],
-            [x * x * x, 3.0 * x * x, 0.0],
-            [x * x * y, 2.0 * x * y, x * x],
-            [x * y * y, y * y, 2.0 * x * y],
-            [y * y * y, 0.0, 3.0 * y * y],
-        ];
-        let moved = bends.map(|[value, along_x, along_y]| {
-            let in_plane = -arm.z * along_x / self.half[0] * normal.x
-                - arm.z * along_y / self.half[1] * normal.y;
-            value * normal.z + in_plane
-        });
-        SVector::from(moved)
-    }
 }
 
 #[cfg(test)]

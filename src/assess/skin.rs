@@ -38,10 +38,12 @@ pub fn without_offset(
         let rims = rims.at(&moved);
         let evidence = ShapeEvidence {
             source,
+            target,
             pose: &moved,
             contacts: &contacts,
             rims: &rims,
             noise,
+            reach,
         };
         let fit = Fit::of(&evidence);
         offset = fit.separate_offset()?;

@@ -25,15 +25,16 @@ const ENOUGH_MET: f64 = 0.75;
 /// Holes in common that hold a part whose surface can slide.
 const HOLES_THAT_HOLD: usize = 2;
 /// Scores of the opposite hand below this fraction of the result's fit clearly better.
-const OPPOSITE_HAND: f64 = 0.8;
+pub(super) const OPPOSITE_HAND: f64 = 0.8;
 /// Below this one they fit a little better.
 const NEAR_MIRROR: f64 = 0.98;
 
-/// Sets the verdict, its reasons, the most severe first, and the statement about the pose. `half` is half
-/// of the target's diagonal.
+/// Sets the verdict, its reasons, the most severe first, and the statement about the pose. `mirrored` is the
+/// statement about the shape of the opposite hand, `half` half of the target's diagonal.
 pub(super) fn decide(
     assessment: &mut Assessment,
     shape: &ShapeStatement,
+    mirrored: Option<&ShapeStatement>,
     outcome: &MatchOutcome,
     half: f64,
 ) {
@@ -44,7 +45,7 @@ pub(super) fn decide(
         uncertainty(assessment),
     ];
     let of_shape = [
-        hand(assessment),
+        hand(assessment, shape, mirrored),
         unit(assessment),
         scale(assessment, shape, half),
         overlap(assessment, shape),
@@ -84,9 +85,19 @@ fn pose_kind(reasons: &[Reason]) -> PoseKind {
     reasons.iter().map(of).max().unwrap_or(PoseKind::Certain)
 }
 
-fn hand(assessment: &Assessment) -> Option<Reason> {
+/// Springback raises the scores of both hands, but not by the same: the opposite hand is named where less
+/// remains of it besides bends, or fewer differences.
+fn hand(
+    assessment: &Assessment,
+    shape: &ShapeStatement,
+    mirrored: Option<&ShapeStatement>,
+) -> Option<Reason> {
     let score_ratio = assessment.mirror_check.score_ratio?;
-    if score_ratio < OPPOSITE_HAND {
+    let fits_better = |mirrored: &ShapeStatement| {
+        mirrored.reasons.len() < shape.reasons.len()
+            || mirrored.remainder < OPPOSITE_HAND * shape.remainder
+    };
+    if score_ratio < OPPOSITE_HAND && mirrored.is_none_or(fits_better) {
         return Some(Reason::OppositeHand { score_ratio });
     }
     (score_ratio < NEAR_MIRROR).then_some(Reason::NearMirrorImage { score_ratio })

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 
 use super::deviation::{ConstantOffset, OffsetKind, OverlapClass};
 use super::{
-    FreeMotion, FreeMotionKind, PartDirection, PoseKind, PoseStatement, Reason, ShapeKind,
-    ShapeReason, ShapeStatement, Twin, TwinAxis, Verdict,
+    FreeMotion, FreeMotionKind, PartAxis, PartDirection, PoseKind, PoseStatement, Reason,
+    ShapeKind, ShapeReason, ShapeStatement, Twin, TwinAxis, Verdict,
 };
 use crate::geometry::{Point3, Vector3};
 use crate::registration::{Termination, UnitGuess};
@@ -179,6 +179,7 @@ impl ShapeReason {
             | Self::Surface { by, limit, .. }
             | Self::Rims { by, limit, .. }
             | Self::Hole { by, limit, .. } => [*by, *limit].map(|x| lengths.of(x)),
+            Self::Stretched { by, .. } => [lengths.of(*by), String::new()],
             Self::HardlyMet { .. } | Self::Holes { .. } => [String::new(), String::new()],
         };
         match self {
@@ -202,6 +203,11 @@ impl ShapeReason {
             Self::Hole { at, .. } => {
                 format!("a hole is off by {by}, more than {limit}, at {}", place(at))
             }
+            Self::Stretched { share, axis, .. } => format!(
+                "the stamped part is {} ({by}) {}: another version",
+                percent(share.abs()),
+                axis.compared(*share > 0.0)
+            ),
             Self::Holes {
                 only_source,
                 only_target,
@@ -211,6 +217,20 @@ impl ShapeReason {
                  part only, one of them at {}",
                 place(at)
             ),
+        }
+    }
+}
+
+impl PartAxis {
+    /// "longer" or "shorter", or what is said of the other axes.
+    pub fn compared(self, is_more: bool) -> &'static str {
+        match (self, is_more) {
+            (Self::Length, true) => "longer",
+            (Self::Length, false) => "shorter",
+            (Self::Width, true) => "wider",
+            (Self::Width, false) => "narrower",
+            (Self::Height, true) => "higher",
+            (Self::Height, false) => "lower",
         }
     }
 }

@@ -93,6 +93,28 @@ fn a_right_pose_is_good_and_covers_everything() {
 }
 
 #[test]
+fn the_opposite_hand_needs_more_than_a_lower_score() {
+    let source = pan(6.0, 0.0, everywhere).transformed(&placement(3));
+    let target = pan(9.0, 0.35, everywhere);
+    let (mut outcome, _) = judge(&source, &target);
+    let same = outcome.target_from_source;
+    let [source, target] = [&source, &target].map(|mesh| Surface::new(mesh, "source").unwrap());
+    let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
+    let mut reasons = |pose: Option<Similarity>| {
+        outcome.mirror_check.score_ratio = Some(0.7);
+        outcome.mirror_check.target_from_source = pose;
+        let assessed = assess(&source, &target, &outcome, &settings, &monitor).unwrap();
+        (assessed.verdict, assessed.reasons[0].clone())
+    };
+    // The shape at that pose is no better than at the result's, so the score alone is not believed.
+    let score_ratio = 0.7;
+    let near = Reason::NearMirrorImage { score_ratio };
+    assert_eq!(reasons(Some(same)), (Verdict::Check, near));
+    let opposite = Reason::OppositeHand { score_ratio };
+    assert_eq!(reasons(None), (Verdict::Poor, opposite));
+}
+
+#[test]
 fn overlap_names_both_denominators() {
     let half = pan(9.0, 0.35, |x, _| x < 0.0);
     let (_, assessed) = judge(&pan(6.0, 0.0, everywhere), &half);
@@ -190,6 +212,11 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
         shape(ShapeReason::Bent { by: 5.0, limit }),
         shape(ShapeReason::Rims { by: 5.0, limit, at }),
         shape(ShapeReason::Hole { by: 5.0, limit, at }),
+        shape(ShapeReason::Stretched {
+            by: 5.0,
+            share: -0.02,
+            axis: PartAxis::Width,
+        }),
         shape(ShapeReason::Holes {
             only_source: 1,
             only_target: 2,

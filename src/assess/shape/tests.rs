@@ -96,3 +96,39 @@ fn an_offset_of_a_section_with_walls_is_told_apart() {
     assert!(shape.is_offset_separable);
     assert!((offset - 0.7).abs() < 0.1, "{shape:?}");
 }
+
+/// A sheet of 1,000 by 500 mm with shallow waves, cut off at both ends by `cut` and stretched along x.
+fn panel(n: usize, cut: f64, factor: f64) -> Surface {
+    let place = |i: usize, j: usize| {
+        let x = (1000.0 - 2.0 * cut) * i as f64 / (2 * n) as f64 + cut - 500.0;
+        let y = 500.0 * j as f64 / n as f64 - 250.0;
+        let z = 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
+        Point3::new(factor * x, y, z)
+    };
+    let m = n + 1;
+    let points = (0..=2 * n).flat_map(|i| (0..m).map(move |j| place(i, j)));
+    let cells = (0..2 * n).flat_map(|i| (0..n).map(move |j| (i * m + j) as u32));
+    let m = m as u32;
+    let triangles = cells.flat_map(|a| [[a, a + m, a + m + 1], [a, a + m + 1, a + 1]]);
+    let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
+    Surface::new(&mesh, "source").unwrap()
+}
+
+#[test]
+fn a_longer_panel_is_told_from_another_trim() {
+    let plain = panel(40, 0.0, 1.0);
+    // The ends of both lie 12 mm inside those of the plain one, or outside.
+    let trimmed = statement(&panel(37, 12.0, 1.0), &plain);
+    assert!(trimmed.reasons.is_empty(), "{trimmed:?}");
+    for (factor, cut) in [(1.024, 0.0), (0.976, 0.0), (1.0 / 1.015, 12.0)] {
+        let shape = statement(&panel(37, cut, factor), &plain);
+        assert_eq!(shape.kind, ShapeKind::OtherVersion, "{shape:?}");
+        let [ShapeReason::Stretched { by, share, axis }] = shape.reasons[..] else {
+            panic!("{factor}: {shape:?}");
+        };
+        assert_eq!(axis, PartAxis::Length);
+        assert!((share - (factor - 1.0)).abs() < 0.002, "{share} {factor}");
+        let longer = 1000.0 * (factor - 1.0).abs();
+        assert!((by - longer).abs() < 2.0, "{by} {longer}");
+    }
+}

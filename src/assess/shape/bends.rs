@@ -1,0 +1,83 @@
+//! What springback does to a sheet: smooth bends and a twist that keep lengths.
+
+use nalgebra::SVector;
+
+use super::super::contact::{Contacts, Six};
+use super::{Row, ShapeEvidence};
+use crate::geometry::{Matrix3, Point3, Vector3};
+
+/// Number of bends.
+pub(in crate::assess) const N_BENDS: usize = 7;
+
+/// Deflections w(x, y) out of the part's plane of second and third order, with the displacements in the
+/// plane that keep lengths (Kirchhoff's plate): what springback does.
+pub(in crate::assess) struct Bends {
+    center: Point3,
+    axes: Matrix3,
+    half: [f64; 2],
+}
+
+impl Bends {
+    pub(in crate::assess) fn of(evidence: &ShapeEvidence<'_>) -> Self {
+        let axes = evidence.pose.rotation * evidence.source.measures().principal_axes;
+        let center = evidence.contacts.center;
+        let mut half = [f64::MIN_POSITIVE; 2];
+        for contact in &evidence.contacts.list {
+            let arm = contact.point - center;
+            for (k, half) in half.iter_mut().enumerate() {
+                *half = half.max(axes.column(k).dot(&arm).abs());
+            }
+        }
+        Self { center, axes, half }
+    }
+
+    /// The rigid motion in what the bends of a solution do, in least squares over the area.
+    pub(super) fn rigid_part(&self, found: &Row, contacts: &Contacts) -> Six {
+        let sizes = found.fixed_rows::<N_BENDS>(7);
+        let (mut inertia, mut moment) = (Matrix3::zeros(), Vector3::zeros());
+        let (mut sum, mut total) = (Vector3::zeros(), 0.0);
+        for contact in &contacts.list {
+            let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+            let moved = axes.map(|axis| self.row(&contact.point, &axis).dot(&sizes));
+            let moved = Vector3::from(moved);
+            let arm = (contact.point - contacts.center) / contacts.radius;
+            let weight = contact.weight;
+            inertia += (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * weight;
+            moment += arm.cross(&moved) * weight;
+            sum += moved * weight;
+            total += weight;
+        }
+        let turn = inertia
+            .try_inverse()
+            .map_or(Vector3::zeros(), |i| i * moment);
+        let shift = sum / total;
+        Six::from([turn.x, turn.y, turn.z, shift.x, shift.y, shift.z])
+    }
+
+    /// How much each of the bends, of size 1 at the rim, moves a place along a direction.
+    pub(in crate::assess) fn row(
+        &self,
+        point: &Point3,
+        direction: &Vector3,
+    ) -> SVector<f64, N_BENDS> {
+        let arm = self.axes.transpose() * (point - self.center);
+        let normal = self.axes.transpose() * direction;
+        let (x, y) = (arm.x / self.half[0], arm.y / self.half[1]);
+        // Value, slope along x, slope along y.
+        let bends = [
+            [x * x, 2.0 * x, 0.0],
+            [x * y, y, x],
+            [y * y, 0.0, 2.0 * y],
+            [x * x * x, 3.0 * x * x, 0.0],
+            [x * x * y, 2.0 * x * y, x * x],
+            [x * y * y, y * y, 2.0 * x * y],
+            [y * y * y, 0.0, 3.0 * y * y],
+        ];
+        let moved = bends.map(|[value, along_x, along_y]| {
+            let in_plane = -arm.z * along_x / self.half[0] * normal.x
+                - arm.z * along_y / self.half[1] * normal.y;
+            value * normal.z + in_plane
+        });
+        SVector::from(moved)
+    }
+}
