@@ -100,7 +100,8 @@ pub fn map(
             &target.rules,
             &strain_rules,
             options,
-        ));
+            monitor,
+        )?);
     }
     let min_cos = options.max_angle_deg.to_radians().cos();
     let source_sizes: Vec<f64> = prepared
@@ -124,7 +125,9 @@ pub fn map(
     };
     let chunks = map_chunks(&context, monitor)?;
     let mut mapped = assemble(chunks, &context);
+    monitor.check()?;
     mapped.history = history::carry(sources, target, &mapped.elements, options.quantities);
+    monitor.check()?;
     fill::fill(&mut mapped, target, options);
     if options.corner_thickness && !mapped.thickness.is_empty() {
         mapped.corners = corners::corner_thickness(&mapped.thickness, target);

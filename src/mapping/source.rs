@@ -12,6 +12,7 @@ use super::patch::{Patch, is_weld_line};
 use super::rule::LayerRule;
 use super::shells::ShellMesh;
 use crate::geometry::{Point3, Similarity, Vector3};
+use crate::monitor::{Cancelled, Monitor};
 use crate::search::{Bvh, ClosestPoint, Feature, Nearby, NormalFilter, SurfaceHit};
 
 /// Gauges smaller than this share of the sheet belong to their surroundings.
@@ -104,24 +105,28 @@ impl<'a> PreparedSource<'a> {
         rules: &[LayerRule],
         strain_rules: &[LayerRule],
         options: &MapOptions,
-    ) -> Self {
+        monitor: &Monitor,
+    ) -> Result<Self, Cancelled> {
         let mesh = part.mesh.moved(target_from_source);
         let (triangles, triangle_element) = mesh.triangles();
         let thickness: Vec<f64> = part.thickness.iter().map(mean_thickness).collect();
         let (bvh, (links, gauge)) = rayon::join(
-            || Bvh::build(triangles),
+            || Bvh::build_for(triangles.into(), monitor),
             || {
                 let links = mesh.links();
                 let gauge = gauges(&mesh, &links.neighbours, &thickness);
                 (links, gauge)
             },
         );
+        let bvh = bvh?;
+        monitor.check()?;
         let states = if options.quantities.needs_states() && part.states.n_present() > 0 {
             let at = |rule| states_at(part, rule, options.stress_balance());
             rules.iter().map(at).collect()
         } else {
             Vec::new()
         };
+        monitor.check()?;
         let strains = if options.quantities.strain && part.strains.n_present() > 0 {
             let at = |rule: &LayerRule| {
                 let linear = |from: &LayerRule| LayerMatrix::new(from, rule, LayerBalance::Linear);
@@ -139,7 +144,7 @@ impl<'a> PreparedSource<'a> {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| {
                 (low.min(*t), high.max(*t))
             });
-        Self {
+        Ok(Self {
             part,
             pose: *target_from_source,
             wants_thickness: options.quantities.thickness && thickness_range.0.is_finite(),
@@ -153,7 +158,7 @@ impl<'a> PreparedSource<'a> {
             states,
             strains,
             mesh,
-        }
+        })
     }
 
     /// Room for the fields at a layer rule of the target; strains are those of `strain_rule`.

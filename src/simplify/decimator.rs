@@ -35,6 +35,9 @@ struct Price {
     weight: f64,
 }
 
+/// Edges that are priced before a cancel request is looked for.
+const PRICED_AT_ONCE: u32 = 1 << 14;
+
 /// With fewer triangles than this, the edges around a collapse are priced anew at once. A price can
 /// fall, and where few edges are left each of them matters.
 const EAGER_BELOW: usize = 1000;
@@ -74,7 +77,11 @@ pub(super) struct Decimator {
 }
 
 impl Decimator {
-    pub(super) fn new(intake: Intake, settings: &SimplifySettings) -> Self {
+    pub(super) fn new(
+        intake: Intake,
+        settings: &SimplifySettings,
+        monitor: &Monitor,
+    ) -> Result<Self, Cancelled> {
         let surface = intake.surface;
         let mut decimator = Self {
             placement: settings.placement,
@@ -91,8 +98,8 @@ impl Decimator {
             refused: Refused::default(),
             collapses: Vec::new(),
         };
-        decimator.fill_queue();
-        decimator
+        decimator.fill_queue(monitor)?;
+        Ok(decimator)
     }
 
     /// Collapses until `max_triangles` are left, nothing legal is left, or the monitor says stop.
@@ -142,7 +149,7 @@ impl Decimator {
                 self.closing = false;
             }
             n_at_fill = self.collapses.len();
-            self.fill_queue();
+            self.fill_queue(monitor)?;
         }
         Ok((self.collapses, StopReason::Reached))
     }
@@ -381,10 +388,13 @@ impl Decimator {
     }
 
     /// Fills the queue with all edges that are left.
-    fn fill_queue(&mut self) {
+    fn fill_queue(&mut self, monitor: &Monitor) -> Result<(), Cancelled> {
         self.refused = Refused::default();
         self.queue.clear();
         for edge in 0..self.surface.edges.len() as u32 {
+            if edge.is_multiple_of(PRICED_AT_ONCE) {
+                monitor.check()?;
+            }
             let [a, b] = self.surface.ends_now(edge);
             if a == b {
                 continue;
@@ -394,6 +404,7 @@ impl Decimator {
                 None => self.refused.feature += 1,
             }
         }
+        Ok(())
     }
 }
 

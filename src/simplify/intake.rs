@@ -6,6 +6,7 @@ use super::quadric::Quadric;
 use super::settings::SimplifySettings;
 use super::surface::{Kind, Surface};
 use crate::geometry::{Point3, TriMesh};
+use crate::monitor::{Cancelled, Monitor};
 
 /// Centre and size of a mesh. All work is done with coordinates less the centre, divided by the
 /// diagonal, so that neither the unit nor the place of the part matters.
@@ -49,10 +50,16 @@ pub(super) struct Intake {
 }
 
 /// Takes a mesh in. O(triangles · log triangles).
-pub(super) fn take_in(mesh: &TriMesh, parts: &[u32], settings: &SimplifySettings) -> Intake {
+pub(super) fn take_in(
+    mesh: &TriMesh,
+    parts: &[u32],
+    settings: &SimplifySettings,
+    monitor: &Monitor,
+) -> Result<Intake, Cancelled> {
     let frame = Frame::of(mesh);
     let positions: Vec<_> = mesh.positions().iter().map(|p| frame.to_unit(p)).collect();
     let triangle_of = distinct_triangles(mesh);
+    monitor.check()?;
     let triangles: Vec<_> = triangle_of
         .iter()
         .map(|&t| mesh.triangles()[t as usize])
@@ -63,12 +70,14 @@ pub(super) fn take_in(mesh: &TriMesh, parts: &[u32], settings: &SimplifySettings
         triangle_of.iter().map(|&t| parts[t as usize]).collect()
     };
     let mut surface = Surface::new(&positions, &triangles, part_of);
+    monitor.check()?;
     add_quadrics(&mut surface, settings);
-    Intake {
+    monitor.check()?;
+    Ok(Intake {
         frame,
         surface,
         triangle_of,
-    }
+    })
 }
 
 /// Indices of the triangles with three different vertices that no earlier triangle has as well.

@@ -47,13 +47,13 @@ impl CollapseSequence {
             });
         }
         monitor.check()?;
-        let mut intake = take_in(mesh, part_of_triangle, settings);
+        let mut intake = take_in(mesh, part_of_triangle, settings, monitor)?;
         let frame = intake.frame;
         let faces = &intake.surface.faces;
         let triangles = faces.iter().map(|face| face.corners).collect();
         let triangle_of = std::mem::take(&mut intake.triangle_of);
         let (collapses, stop_reason) =
-            Decimator::new(intake, settings).run(settings.max_triangles, monitor)?;
+            Decimator::new(intake, settings, monitor)?.run(settings.max_triangles, monitor)?;
         Ok(Self {
             frame,
             positions: mesh.positions().to_vec(),

@@ -189,15 +189,16 @@ pub fn map_parts(
     let target = target_part(crash, &crash_shells, |part| {
         layers.of(part).unwrap_or(FALLBACK_LAYERS)
     });
-    let shells: Result<Vec<PartShells>, _> = stamped
-        .iter()
-        .map(|placed| part_shells(placed.part))
-        .collect();
-    let shells = shells.map_err(mesh_error)?;
-    let pairs = stamped.iter().zip(&shells);
-    let sources: Vec<SourcePart> = pairs
-        .map(|(placed, shells)| source_part(placed.part, shells, recipe))
-        .collect();
+    let mut shells = Vec::with_capacity(stamped.len());
+    for placed in stamped {
+        monitor.check()?;
+        shells.push(part_shells(placed.part).map_err(mesh_error)?);
+    }
+    let mut sources = Vec::with_capacity(stamped.len());
+    for (placed, shells) in stamped.iter().zip(&shells) {
+        monitor.check()?;
+        sources.push(source_part(placed.part, shells, recipe));
+    }
     for ((placed, shells), source) in stamped.iter().zip(&shells).zip(&sources) {
         if wanted.stress || wanted.history {
             ready::check_axes(placed.part, &parts_in_use(shells))?;
