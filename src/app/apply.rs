@@ -137,7 +137,11 @@ impl AppState {
             Vec::new()
         } else if work.jobs.is_busy() {
             let key = work.jobs.running().map(|job| job.key);
-            key.map_or_else(Vec::new, |key| work.cancel(key))
+            // What was asked for both parts at once is one work.
+            let both = key
+                .into_iter()
+                .flat_map(|key| [Some(key), key.of_other_part()]);
+            both.flatten().flat_map(|key| work.cancel(key)).collect()
         } else if topics.inspect.forget_place() {
             Vec::new()
         } else {

@@ -56,6 +56,16 @@ pub enum JobKey {
 }
 
 impl JobKey {
+    /// The same work on the other part, for work that both parts are asked for at once.
+    pub fn of_other_part(self) -> Option<Self> {
+        match self {
+            Self::Load(role) => Some(Self::Load(role.other())),
+            Self::Reduce(role) => Some(Self::Reduce(role.other())),
+            Self::MeasureLevel(role) => Some(Self::MeasureLevel(role.other())),
+            _ => None,
+        }
+    }
+
     /// What the running job does, for the status line.
     pub fn label(self) -> &'static str {
         match self {

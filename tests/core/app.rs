@@ -1514,6 +1514,36 @@ fn crash_parts_are_sorted_by_likeness_until_a_part_changes() {
 }
 
 #[test]
+fn escape_ends_the_reduction_of_both_parts() {
+    let mut window = Window::with_both();
+    let started = window.state.apply(ReduceCommand::To {
+        roles: PerRole::both(true),
+        max_triangles: 10,
+    });
+    let jobs: Vec<(JobKey, Stamp)> = started
+        .into_iter()
+        .filter_map(|effect| match effect {
+            Effect::StartJob(kind, stamp) => Some((kind.key(), stamp)),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(jobs.len(), 2);
+    // The worker has begun with the first.
+    let (key, stamp) = jobs[0];
+    window.tell(JobId(1), key, stamp, JobStage::Started);
+    let ended: Vec<JobKey> = window
+        .state
+        .apply(Command::Escape)
+        .into_iter()
+        .filter_map(|effect| match effect {
+            Effect::CancelJob(key) => Some(key),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(ended, jobs.iter().map(|(key, _)| *key).collect::<Vec<_>>());
+}
+
+#[test]
 fn the_stamped_part_is_shown_as_loaded_and_its_pose_stays() {
     let mut window = Window::with_both();
     window.apply(MoveCommand::SetPose {
