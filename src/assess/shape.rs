@@ -13,10 +13,11 @@ use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::registration::Surface;
 
-pub(super) use bends::{Bends, N_BENDS};
+pub(super) use bends::Bends;
+use bends::N_BENDS;
 
 /// Unknowns of the fit: a rigid motion, an offset, and the bends.
-const N: usize = 7 + N_BENDS;
+pub(super) const N: usize = 7 + N_BENDS;
 /// Times that places far off the fit are given less weight.
 const ROUNDS: usize = 4;
 /// Share of an offset that nothing else can imitate; with less it is not told apart.
@@ -415,7 +416,24 @@ pub(super) struct Fit {
 }
 
 /// One row of the fit.
-type Row = SVector<f64, N>;
+pub(super) type Row = SVector<f64, N>;
+
+/// How much each unknown moves a place along a direction; `offset` is what a unit of the offset does.
+pub(super) fn explaining(
+    contacts: &Contacts,
+    bends: &Bends,
+    point: &Point3,
+    direction: &Vector3,
+    offset: f64,
+) -> Row {
+    let mut row = Row::zeros();
+    let six = contacts.row(point, direction);
+    row.fixed_rows_mut::<6>(0).copy_from(&six);
+    row[6] = offset;
+    row.fixed_rows_mut::<N_BENDS>(7)
+        .copy_from(&bends.row(point, direction));
+    row
+}
 
 impl Fit {
     /// The offset of the sheets, where it can be told from a shift.
@@ -430,13 +448,7 @@ impl Fit {
         let (contacts, rims) = (evidence.contacts, evidence.rims);
         let bends = Bends::of(evidence);
         let row = |point: &Point3, direction: &Vector3, offset: f64| {
-            let mut row = Row::zeros();
-            let six = contacts.row(point, direction);
-            row.fixed_rows_mut::<6>(0).copy_from(&six);
-            row[6] = offset;
-            row.fixed_rows_mut::<N_BENDS>(7)
-                .copy_from(&bends.row(point, direction));
-            row
+            explaining(contacts, &bends, point, direction, offset)
         };
         let places = contacts.list.iter();
         let places: Vec<Row> = places.map(|c| row(&c.point, &c.normal, 1.0)).collect();

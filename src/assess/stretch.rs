@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 use super::contact::{
     Contact, ContactSearch, Contacts, MAX_NODES, quantile, robust_weights, solve,
 };
-use super::shape::{Bends, N_BENDS, ShapeEvidence, ShapeTolerance};
+use super::shape::{Bends, N as N_SMOOTH, ShapeEvidence, ShapeTolerance, explaining};
 use crate::geometry::{Matrix3, Point3};
 
-/// Unknowns of the fit: a rigid motion, an offset, the bends and the stretches.
-const N: usize = 7 + N_BENDS + 3;
+/// Unknowns of the fit: those of the statement about the shape, and the stretches.
+const N: usize = N_SMOOTH + 3;
 /// Times that the part is stretched back and compared again.
 const ROUNDS: usize = 3;
 /// Places of the smaller part that are looked at; three numbers need no more.
@@ -52,12 +52,12 @@ pub(super) struct Stretch {
 /// the other by more than what may remain on both sides. O(nodes · log triangles).
 pub(super) fn stretch(evidence: &ShapeEvidence<'_>, tolerance: &ShapeTolerance) -> Option<Stretch> {
     let limit = 2.0 * tolerance.remainder;
-    let frame = Frame::of(evidence);
+    let frame = Frame(Bends::of(evidence));
     let surfaces = [evidence.source, evidence.target];
     let scale = evidence.pose.scale;
     let mut search = ContactSearch::new(surfaces, scale, evidence.reach, N_PLACES);
     let gaps = Gaps::of(&search.at(evidence.pose)?, &frame);
-    let (_, before) = gaps.explained(N - 3, evidence.noise);
+    let (_, before) = gaps.explained(N_SMOOTH, evidence.noise);
     let (found, mut after) = gaps.explained(N, evidence.noise);
     let mut shares = frame.shares(&found);
     if frame.longest(&shares).1 < 0.5 * limit {
@@ -83,65 +83,36 @@ pub(super) fn stretch(evidence: &ShapeEvidence<'_>, tolerance: &ShapeTolerance) 
     })
 }
 
-/// The directions in which a part can be longer.
-struct Frame {
-    center: Point3,
-    /// Principal axes of the source in the target's frame.
-    axes: Matrix3,
-    /// How far the places reach along them.
-    half: [f64; 3],
-    bends: Bends,
-}
+/// The directions in which a part can be longer: the axes of its bends.
+struct Frame(Bends);
 
 impl Frame {
-    fn of(evidence: &ShapeEvidence<'_>) -> Self {
-        let axes = evidence.pose.rotation * evidence.source.measures().principal_axes;
-        let center = evidence.contacts.center;
-        let mut half = [f64::MIN_POSITIVE; 3];
-        for contact in &evidence.contacts.list {
-            let arm = axes.transpose() * (contact.point - center);
-            for (half, along) in half.iter_mut().zip(arm.iter()) {
-                *half = half.max(along.abs());
-            }
-        }
-        Self {
-            center,
-            axes,
-            half,
-            bends: Bends::of(evidence),
-        }
-    }
-
     /// What the unknowns do to a gap. Stretches are in lengths at the ends of the part.
     fn row(&self, contacts: &Contacts, contact: &Contact) -> Row {
+        let Self(bends) = self;
+        let (point, normal) = (&contact.point, &contact.normal);
         let mut row = Row::zeros();
-        row.fixed_rows_mut::<6>(0)
-            .copy_from(&contacts.row(&contact.point, &contact.normal));
-        row[6] = 1.0;
-        row.fixed_rows_mut::<N_BENDS>(7)
-            .copy_from(&self.bends.row(&contact.point, &contact.normal));
-        let arm = self.axes.transpose() * (contact.point - self.center);
-        let normal = self.axes.transpose() * contact.normal;
+        let smooth = explaining(contacts, bends, point, normal, 1.0);
+        row.fixed_rows_mut::<N_SMOOTH>(0).copy_from(&smooth);
+        let arm = bends.axes.transpose() * (point - bends.center);
+        let normal = bends.axes.transpose() * normal;
         for k in 0..3 {
-            row[N - 3 + k] = arm[k] / self.half[k] * normal[k];
+            row[N_SMOOTH + k] = arm[k] / bends.half[k] * normal[k];
         }
         row
     }
 
     /// Stretches of a solution as shares of the length.
     fn shares(&self, found: &Row) -> [f64; 3] {
-        [0, 1, 2].map(|k| found[N - 3 + k] / self.half[k])
+        [0, 1, 2].map(|k| found[N_SMOOTH + k] / self.0.half[k])
     }
 
     /// The axis along which the parts differ most, and by how much.
     fn longest(&self, shares: &[f64; 3]) -> (usize, f64) {
-        let by = [0, 1, 2].map(|k| 2.0 * self.half[k] * shares[k].abs());
-        (0..3).map(|k| (k, by[k])).fold(
-            (0, by[0]),
-            |most, next| {
-                if next.1 > most.1 { next } else { most }
-            },
-        )
+        let by = [0, 1, 2].map(|k| 2.0 * self.0.half[k] * shares[k].abs());
+        let longer = |most: usize, k: usize| if by[k] > by[most] { k } else { most };
+        let axis = (1..3).fold(0, longer);
+        (axis, by[axis])
     }
 }
 
@@ -200,11 +171,11 @@ pub(super) struct Scaled {
 
 impl Scaled {
     fn new(frame: &Frame, factors: [f64; 3]) -> Self {
-        let axes = &frame.axes;
+        let Frame(Bends { center, axes, .. }) = frame;
         let along =
             |factors: [f64; 3]| axes * Matrix3::from_diagonal(&factors.into()) * axes.transpose();
         Self {
-            center: frame.center,
+            center: *center,
             matrix: along(factors),
             inverse: along(factors.map(f64::recip)),
         }

@@ -12,9 +12,9 @@ use shapematch::pipeline::map::{CheckReason, MapRun, WriteKind};
 use shapematch::pipeline::outputs::{Output, OutputInput};
 use shapematch::pipeline::project::Project;
 use shapematch::role::{PerRole, Role};
-use shapematch::samples::{self, SamplePart, SampleSettings};
+use shapematch::samples::SampleVariant;
 
-use super::app::Window;
+use super::app::{Window, write_bracket};
 
 fn real(kind: JobKind) -> Result<JobOutput, String> {
     let done = PipelineRunner.run(kind, &Monitor::silent());
@@ -24,13 +24,7 @@ fn real(kind: JobKind) -> Result<JobOutput, String> {
 /// A window with a generated bracket at its known pose.
 fn at_the_known_pose() -> (Window, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
-    let pair = samples::generate(&SampleSettings {
-        part: SamplePart::Bracket,
-        ..SampleSettings::default()
-    });
-    for file in samples::files(&pair) {
-        std::fs::write(folder.path().join(file.name), file.bytes).unwrap();
-    }
+    let pair = write_bracket(folder.path(), SampleVariant::Plain);
     let mut window = Window::new();
     window.runner = Some(real);
     for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {

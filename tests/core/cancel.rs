@@ -18,9 +18,9 @@ use shapematch::pipeline::outputs::Output;
 use shapematch::pipeline::project::{Located, ProjectRequest};
 use shapematch::pipeline::sweep::SweepSettings;
 use shapematch::role::{PerRole, Role};
-use shapematch::samples::{self, SamplePart, SampleSettings, SampleVariant};
+use shapematch::samples::SampleVariant;
 
-use super::app::Window;
+use super::app::{Window, write_bracket};
 
 thread_local! {
     /// Every job that the window asked for.
@@ -64,14 +64,7 @@ fn run(kind: &JobKind, at: usize) -> (Result<(), JobError>, usize) {
 
 /// A window with the bracket of both sides, whose jobs are remembered.
 fn with_brackets(folder: &Path, variant: SampleVariant) -> Window {
-    let pair = samples::generate(&SampleSettings {
-        part: SamplePart::Bracket,
-        variant,
-        ..SampleSettings::default()
-    });
-    for file in samples::files(&pair) {
-        std::fs::write(folder.join(file.name), file.bytes).unwrap();
-    }
+    write_bracket(folder, variant);
     let mut window = Window::new();
     window.runner = Some(remembered);
     for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {

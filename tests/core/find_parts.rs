@@ -8,9 +8,9 @@ use shapematch::assess::Verdict;
 use shapematch::jobs::{JobKind, JobOutput, PipelineRunner, Runner as _};
 use shapematch::monitor::Monitor;
 use shapematch::role::Role;
-use shapematch::samples::{self, SamplePart, SampleSettings, SampleVariant};
+use shapematch::samples::SampleVariant;
 
-use super::app::Window;
+use super::app::{Window, write_bracket};
 
 fn really(kind: JobKind) -> Result<JobOutput, String> {
     let done = PipelineRunner.run(kind, &Monitor::silent());
@@ -20,14 +20,7 @@ fn really(kind: JobKind) -> Result<JobOutput, String> {
 #[test]
 fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
     let folder = tempfile::tempdir().unwrap();
-    let pair = samples::generate(&SampleSettings {
-        part: SamplePart::Bracket,
-        variant: SampleVariant::WholeModel,
-        ..SampleSettings::default()
-    });
-    for file in samples::files(&pair) {
-        std::fs::write(folder.path().join(file.name), file.bytes).unwrap();
-    }
+    write_bracket(folder.path(), SampleVariant::WholeModel);
     let mut window = Window::new();
     window.runner = Some(really);
     for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
@@ -54,14 +47,8 @@ fn a_match_of_a_whole_model_tries_the_most_alike_parts_alone() {
 
 #[test]
 fn one_thread_and_sixteen_give_the_same_match_and_verdict() {
-    let pair = samples::generate(&SampleSettings {
-        part: SamplePart::Bracket,
-        ..SampleSettings::default()
-    });
     let folder = tempfile::tempdir().unwrap();
-    for file in samples::files(&pair) {
-        std::fs::write(folder.path().join(file.name), file.bytes).unwrap();
-    }
+    write_bracket(folder.path(), SampleVariant::Plain);
     let run = |n_threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
         pool.build().unwrap().install(|| {
@@ -112,18 +99,10 @@ TRANSL         3000.0       0.0       0.0
 #[test]
 fn parts_that_fit_as_well_are_told_and_all_can_be_meant() {
     let folder = tempfile::tempdir().unwrap();
-    for variant in [SampleVariant::Plain, SampleVariant::WholeModel] {
-        let pair = samples::generate(&SampleSettings {
-            part: SamplePart::Bracket,
-            variant,
-            ..SampleSettings::default()
-        });
-        for file in samples::files(&pair) {
-            let is_own = variant == SampleVariant::Plain && file.name == "crash.k";
-            let name = if is_own { "own.k" } else { file.name };
-            std::fs::write(folder.path().join(name), file.bytes).unwrap();
-        }
-    }
+    write_bracket(folder.path(), SampleVariant::Plain);
+    let [crash, own] = ["crash.k", "own.k"].map(|name| folder.path().join(name));
+    std::fs::rename(crash, own).unwrap();
+    write_bracket(folder.path(), SampleVariant::WholeModel);
     std::fs::write(folder.path().join("twice.k"), TWICE).unwrap();
     let told = "fits part 2000040, and part 52000040 about as well";
 

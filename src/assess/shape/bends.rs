@@ -12,16 +12,18 @@ pub(in crate::assess) const N_BENDS: usize = 7;
 /// Deflections w(x, y) out of the part's plane of second and third order, with the displacements in the
 /// plane that keep lengths (Kirchhoff's plate): what springback does.
 pub(in crate::assess) struct Bends {
-    center: Point3,
-    axes: Matrix3,
-    half: [f64; 2],
+    pub(in crate::assess) center: Point3,
+    /// Principal axes of the source in the target's frame.
+    pub(in crate::assess) axes: Matrix3,
+    /// How far the places reach along them.
+    pub(in crate::assess) half: [f64; 3],
 }
 
 impl Bends {
     pub(in crate::assess) fn of(evidence: &ShapeEvidence<'_>) -> Self {
         let axes = evidence.pose.rotation * evidence.source.measures().principal_axes;
         let center = evidence.contacts.center;
-        let mut half = [f64::MIN_POSITIVE; 2];
+        let mut half = [f64::MIN_POSITIVE; 3];
         for contact in &evidence.contacts.list {
             let arm = contact.point - center;
             for (k, half) in half.iter_mut().enumerate() {
