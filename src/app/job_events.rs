@@ -156,7 +156,9 @@ impl AppState {
                 "the stamped part fits no crash part alone, so all are matched together".to_owned(),
             ),
         };
-        work.log_at(level, "match", None, text, Some(took));
+        // The row of the selection has the time; told twice, it would be counted twice.
+        let own = found.is_none().then_some(took);
+        work.log_at(level, "match", None, text, own);
         if let Some(FoundCrash { part, facts, .. }) = found {
             let new = NewPart {
                 role: Role::Crash,
