@@ -5,7 +5,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Assessment, Clarity, FreeMotionKind, PoseKind, PoseStatement, Reason, ShapeStatement};
+use super::{
+    Assessment, Clarity, FreeMotionKind, PoseKind, PoseStatement, Reason, ShapeReason,
+    ShapeStatement,
+};
 use crate::registration::{MatchOutcome, Termination};
 
 /// Whether the pose can be used.
@@ -85,22 +88,27 @@ fn pose_kind(reasons: &[Reason]) -> PoseKind {
     reasons.iter().map(of).max().unwrap_or(PoseKind::Certain)
 }
 
-/// Springback raises the scores of both hands, but not by the same: the opposite hand is named where less
-/// remains of it besides bends, or fewer differences.
+/// The opposite hand, where both its score and its shape speak for it.
 fn hand(
     assessment: &Assessment,
     shape: &ShapeStatement,
     mirrored: Option<&ShapeStatement>,
 ) -> Option<Reason> {
     let score_ratio = assessment.mirror_check.score_ratio?;
-    let fits_better = |mirrored: &ShapeStatement| {
-        mirrored.reasons.len() < shape.reasons.len()
-            || mirrored.remainder < OPPOSITE_HAND * shape.remainder
-    };
-    if score_ratio < OPPOSITE_HAND && mirrored.is_none_or(fits_better) {
+    if score_ratio < OPPOSITE_HAND && mirrored.is_none_or(|mirrored| fits_better(mirrored, shape)) {
         return Some(Reason::OppositeHand { score_ratio });
     }
     (score_ratio < NEAR_MIRROR).then_some(Reason::NearMirrorImage { score_ratio })
+}
+
+/// Springback raises the scores of both hands, but not by the same: one shape fits better where less remains
+/// of it besides bends, or fewer differences other than a bend.
+fn fits_better(shape: &ShapeStatement, than: &ShapeStatement) -> bool {
+    let n_differences = |shape: &ShapeStatement| {
+        let is_bend = |reason: &ShapeReason| matches!(reason, ShapeReason::Bent { .. });
+        shape.reasons.iter().filter(|r| !is_bend(r)).count()
+    };
+    n_differences(shape) < n_differences(than) || shape.remainder < OPPOSITE_HAND * than.remainder
 }
 
 fn unit(assessment: &Assessment) -> Option<Reason> {
@@ -174,5 +182,36 @@ fn ending(outcome: &MatchOutcome) -> Option<Reason> {
         Termination::Converged | Termination::ClosedForm | Termination::MaxIterations => None,
         Termination::Stopped => Some(Reason::Stopped),
         Termination::Degenerate | Termination::NoPairs => Some(Reason::EndedEarly { termination }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assess::ShapeTolerance;
+
+    #[test]
+    fn a_bend_does_not_speak_for_the_opposite_hand() {
+        let tolerance = ShapeTolerance {
+            remainder: 1.0,
+            springback: 5.0,
+        };
+        let shape = |remainder: f64, reasons: &[ShapeReason]| ShapeStatement {
+            remainder,
+            reasons: reasons.to_vec(),
+            ..ShapeStatement::nothing_met(tolerance)
+        };
+        let bend = ShapeReason::Bent {
+            by: 6.0,
+            limit: 5.0,
+        };
+        let bent = shape(0.2, &[bend]);
+        assert!(!fits_better(&shape(0.3, &[]), &bent));
+        assert!(fits_better(&shape(0.1, &[]), &bent));
+        let hardly = ShapeReason::HardlyMet { share: 0.4 };
+        assert!(fits_better(
+            &shape(0.3, &[bend]),
+            &shape(0.2, &[bend, hardly])
+        ));
     }
 }

@@ -2,7 +2,9 @@
 
 use shapematch::geometry::{Similarity, TriMesh};
 use shapematch::monitor::{Cancelled, Monitor};
-use shapematch::registration::{Surface, WideFind, WideSearch};
+use shapematch::registration::{
+    MatchInput, MatchSettings, Stage, StartRecord, Surface, WideFind, WideSearch, match_surfaces,
+};
 
 use super::drawn_pan::{everywhere, pan, panel, placement, worst_node};
 
@@ -94,4 +96,30 @@ fn a_cancel_ends_it_and_a_stop_keeps_what_was_reached() {
     let cancelled = Monitor::silent();
     cancelled.request_cancel();
     assert_eq!(search.run(false, &cancelled), Err(Cancelled));
+}
+
+/// How many iterations refined each start of a match.
+fn refinements(source: &TriMesh, target: &TriMesh) -> Vec<usize> {
+    let surface = |mesh: &TriMesh, name| Surface::new(mesh, name).unwrap();
+    let (source, target) = (surface(source, "source"), surface(target, "target"));
+    let input = MatchInput {
+        source: &source,
+        target: &target,
+        reduced: None,
+    };
+    let monitor = Monitor::silent();
+    let outcome = match_surfaces(&input, &MatchSettings::default(), &monitor).unwrap();
+    let of_start = |start: &StartRecord| {
+        let iterations = start.iterations.iter();
+        iterations.filter(|i| i.stage == Stage::Refine).count()
+    };
+    outcome.starts.iter().map(of_start).collect()
+}
+
+#[test]
+fn different_parts_are_refined_only_until_they_are_known_to_be_different() {
+    let bent = panel(5.0, 0.2, everywhere);
+    let pan = pan(5.0, 0.0, |x, y| x.abs() < 100.0 && y.abs() < 65.0);
+    let most = refinements(&bent, &pan).into_iter().max();
+    assert!(most.is_some_and(|n| (1..=20).contains(&n)), "{most:?}");
 }

@@ -16,6 +16,9 @@ use crate::search::FeatureGrid;
 
 /// The smallest damping of a step, relative to the stiffness.
 const MIN_DAMPING: f64 = 1e-9;
+/// Where the search is near the pose, points so many times as far away as the farthest that was kept are
+/// not looked for: they would not be kept either, and far questions are the expensive ones.
+const KEPT_REACH: f64 = 4.0;
 /// Damping is never raised above this.
 const MAX_DAMPING: f64 = 1.0;
 
@@ -62,6 +65,8 @@ pub(crate) struct Run {
     pub(crate) took: Duration,
     stage_iterations: usize,
     damping: f64,
+    /// Points farther away than this found no partner worth keeping in the last iteration.
+    reach: f64,
     pairs: Vec<Correspondence>,
     kept: Vec<u32>,
 }
@@ -79,6 +84,7 @@ impl Run {
             took: Duration::ZERO,
             stage_iterations: 0,
             damping: MIN_DAMPING,
+            reach: f64::INFINITY,
             pairs: Vec::new(),
             kept: Vec::new(),
         }
@@ -90,6 +96,7 @@ impl Run {
         self.termination = None;
         self.stage_iterations = 0;
         self.damping = MIN_DAMPING;
+        self.reach = f64::INFINITY;
         self.pairs.clear();
         self.kept.clear();
     }
@@ -129,6 +136,14 @@ impl Run {
             below >= share * total
         });
         found.map_or(f64::INFINITY, |(distance_sq, _)| distance_sq.sqrt())
+    }
+
+    /// Largest distance of a kept pair of the last iteration.
+    fn farthest_kept(&self) -> f64 {
+        let last = self.kept.last();
+        last.map_or(f64::INFINITY, |&i| {
+            self.pairs[i as usize].distance_sq.sqrt()
+        })
     }
 
     /// The kept pairs of the last iteration, closest first, under the pose before its step.
@@ -220,7 +235,11 @@ fn iterate(run: &mut Run, input: &StageInput<'_>, monitor: &MatchMonitor<'_>) {
     run.pairs = match input.grid {
         Some(grid) => correspond_on_grid(&data.samples, grid, &pose, rules.matching.reject.min_cos),
         // The pairs of the last iteration are hints: most points stay with their triangle.
-        None => correspond(&data.samples, model, &pose, &rules.matching, &run.pairs),
+        None => {
+            let mut matching = rules.matching;
+            matching.reject.max_distance = matching.reject.max_distance.min(run.reach);
+            correspond(&data.samples, model, &pose, &matching, &run.pairs)
+        }
     };
     let Some(selected) = select(&run.pairs, &rules.selection) else {
         run.termination = Some(Termination::NoPairs);
@@ -233,6 +252,9 @@ fn iterate(run: &mut Run, input: &StageInput<'_>, monitor: &MatchMonitor<'_>) {
     };
     let increment = step(&run.pairs, &selected.kept, &step_rules);
     run.kept = selected.kept;
+    if let Some(least) = rules.least_reach {
+        run.reach = (KEPT_REACH * run.farthest_kept()).max(least);
+    }
     let Some(increment) = increment else {
         run.termination = Some(Termination::Degenerate);
         return;

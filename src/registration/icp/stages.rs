@@ -50,6 +50,9 @@ pub(crate) struct StageRules {
     pub(crate) matching: MatchRules,
     pub(crate) selection: SelectRules,
     pub(crate) step: StepRules,
+    /// Partners are looked for at least this far away, and farther only as far as the kept ones ask for;
+    /// `None` where all are looked for.
+    pub(crate) least_reach: Option<f64>,
     /// Stop when a step moves no corner by more than this.
     pub(crate) motion_tolerance: f64,
     pub(crate) max_iterations: usize,
@@ -94,6 +97,8 @@ struct StageRow {
     max_iterations: ByOrder<Option<usize>>,
     /// Converged when a step moves no corner by more than so many `motion_tolerance`s.
     tolerance: ByOrder<f64>,
+    /// The pose is near: points far beyond those that are kept need no partner.
+    is_near: bool,
     /// Far from the pose a free scale shrinks the data until it lies anywhere on the model.
     keeps_scale: bool,
 }
@@ -107,6 +112,7 @@ const STAGES: [StageRow; 5] = [
         max_overhang: f64::INFINITY,
         max_iterations: ByOrder::both(Some(20)),
         tolerance: ByOrder::both(20.0),
+        is_near: false,
         keeps_scale: true,
     },
     StageRow {
@@ -123,6 +129,7 @@ const STAGES: [StageRow; 5] = [
             with_normals: Some(60),
         },
         tolerance: ByOrder::both(1.0),
+        is_near: true,
         keeps_scale: false,
     },
     StageRow {
@@ -140,6 +147,7 @@ const STAGES: [StageRow; 5] = [
             point_to_point: 1.0,
             with_normals: 0.01,
         },
+        is_near: true,
         keeps_scale: false,
     },
     StageRow {
@@ -149,6 +157,7 @@ const STAGES: [StageRow; 5] = [
         max_overhang: f64::INFINITY,
         max_iterations: ByOrder::both(None),
         tolerance: ByOrder::both(1.0),
+        is_near: false,
         keeps_scale: false,
     },
     StageRow {
@@ -158,6 +167,7 @@ const STAGES: [StageRow; 5] = [
         max_overhang: f64::INFINITY,
         max_iterations: ByOrder::both(None),
         tolerance: ByOrder::both(1.0),
+        is_near: false,
         keeps_scale: false,
     },
 ];
@@ -267,6 +277,7 @@ pub(crate) fn stage_rules(
                 _ => LIKELY_STEP * data.measures().diagonal.min(model.measures().diagonal),
             },
         },
+        least_reach: (row.is_near && on_triangles).then_some(edge),
         motion_tolerance: settings.motion_tolerance * row.tolerance.of(settings.metric) * edge,
         max_iterations: row
             .max_iterations

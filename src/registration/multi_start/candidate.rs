@@ -53,6 +53,8 @@ pub(crate) struct DataChoice<'a> {
     pub(crate) grid: Option<Arc<FeatureGrid>>,
     /// Points farther away than this find no partner on the exact meshes.
     pub(crate) reach: f64,
+    /// True if the deviation of the shapes is for the match to find out.
+    pub(crate) is_estimated: bool,
     /// How far the shapes differ besides their facets as the coarse stage saw it: springback, noise or an
     /// offset of the sheets. Expected by the stages that follow.
     pub(crate) deviation: f64,
@@ -88,13 +90,28 @@ impl DataChoice<'_> {
         rules
     }
 
-    /// How far the shapes differ under the pose of `run`, whose coarse stage has ended.
-    pub(super) fn deviation_of(&self, run: &Run) -> f64 {
+    /// From now on expects that the shapes differ as they do under the pose of `run`.
+    pub(super) fn expect_as(&mut self, run: &Run) {
+        if self.is_estimated {
+            self.deviation = self.deviation_of(run).clamp(0.0, self.most_deviation());
+        }
+    }
+
+    /// False where the shapes differ by more under the pose of `run` than those of one part may, so that
+    /// a better pose would be worth nothing either. Always true where the deviation is not estimated.
+    pub(super) fn resembles(&self, run: &Run) -> bool {
+        !self.is_estimated || self.deviation_of(run) < self.most_deviation()
+    }
+
+    /// How far the shapes differ under the pose of `run` besides their facets.
+    fn deviation_of(&self, run: &Run) -> f64 {
         let Pairing { data, model } = self.coarse;
         let facets = natural_floor(data, model);
-        let most = self.reach * DEVIATION_REACH;
-        let differs = DEVIATION_SCALE * run.quantile(DEVIATION_SHARE) - FACETING * facets;
-        differs.clamp(0.0, most)
+        DEVIATION_SCALE * run.quantile(DEVIATION_SHARE) - FACETING * facets
+    }
+
+    fn most_deviation(&self) -> f64 {
+        self.reach * DEVIATION_REACH
     }
 
     /// True for poses of the data that a further refinement would bring together.

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 use super::candidate::{Candidate, DataChoice, Pairing};
-use super::rounds::{ranking, refine, run_coarse, run_every_start};
+use super::rounds::{look_closer, ranking, refine, resembles, run_coarse, run_every_start};
 use super::score::{PoseScorer, TwoSided};
 use super::sizes::{
     incompatible_settings, last_stage_swaps, natural_data_side, sizes_incompatible,
@@ -217,6 +217,7 @@ impl<'a> MultiStart<'a> {
             },
         };
         let full = in_roles(self.input.source, self.input.target);
+        let grid = self.wide.as_mut().and_then(|wide| wide.grid(side.other()));
         let coarse = self.input.reduced.map_or(full, |(s, t)| in_roles(s, t));
         let choice = DataChoice {
             coarse,
@@ -230,7 +231,10 @@ impl<'a> MultiStart<'a> {
                 mirror: self.mirror.unwrap_or_default(),
             },
             mirrored: self.mirror.is_some(),
-            grid: self.wide.as_mut().and_then(|wide| wide.grid(side.other())),
+            is_estimated: self.input.reduced.is_none()
+                && grid.is_some()
+                && expects_anything(&self.settings),
+            grid,
             reach: self.reach,
             deviation: 0.0,
         };
@@ -275,14 +279,20 @@ impl<'a> MultiStart<'a> {
             run_coarse(choice, &mut late, settings, monitor)?;
             candidates.extend(late);
         }
-        let is_estimated =
-            self.input.reduced.is_none() && choice.grid.is_some() && expects_anything(settings);
-        if let Some(&best) = ranking(&candidates).first().filter(|_| is_estimated) {
-            choice.deviation = choice.deviation_of(&candidates[best].run);
+        if let Some(&best) = ranking(&candidates).first() {
+            choice.expect_as(&candidates[best].run);
         }
         self.timings.coarse += begin.elapsed();
         let begin = Instant::now();
-        refine(choice, &mut candidates, N_DISTINCT, settings, monitor)?;
+        if !resembles(choice, &candidates) {
+            look_closer(choice, &mut candidates, N_DISTINCT, settings, monitor)?;
+            if let Some(&best) = ranking(&candidates).first() {
+                choice.expect_as(&candidates[best].run);
+            }
+        }
+        if resembles(choice, &candidates) {
+            refine(choice, &mut candidates, N_DISTINCT, settings, monitor)?;
+        }
         self.timings.refine += begin.elapsed();
         done.extend(candidates);
         Ok(())
@@ -364,7 +374,12 @@ impl<'a> MultiStart<'a> {
         if coarse.is_none_or(|(ratio, _)| ratio > CLEARLY_WORSE) {
             return Ok(coarse);
         }
-        refine(choice, &mut images, 1, &self.settings, monitor)?;
+        if !resembles(choice, &images) {
+            look_closer(choice, &mut images, 1, &self.settings, monitor)?;
+        }
+        if resembles(choice, &images) {
+            refine(choice, &mut images, 1, &self.settings, monitor)?;
+        }
         Ok(best(&images))
     }
 
@@ -427,7 +442,13 @@ impl<'a> MultiStart<'a> {
             pairing
         };
         let rules = choice.rules(Stage::Full, &self.settings, pairing);
-        let mut points = Data::new(subsample(pairing.data, N_FULL_POINTS));
+        // Different parts have no pose that more points would make exact.
+        let n_points = if choice.resembles(&candidate.run) {
+            N_FULL_POINTS
+        } else {
+            self.settings.n_refine_points
+        };
+        let mut points = Data::new(subsample(pairing.data, n_points));
         if flipped {
             points = points.flipped();
         }

@@ -67,6 +67,8 @@ const PRESELECTION: Round = Round {
 const CLEARLY_BEHIND: f64 = 8.0;
 /// Iterations of the refinement after which candidates that are clearly behind are dropped.
 const PRUNE_AFTER: usize = 10;
+/// Iterations of a closer look at candidates that do not resemble the model.
+const LOOK_ITERATIONS: usize = 20;
 
 /// What all candidates of a round are advanced on.
 #[derive(Clone, Copy)]
@@ -128,8 +130,54 @@ pub(crate) fn run_coarse(
     Ok(())
 }
 
+/// True if the best candidate has shapes that may be those of one part.
+pub(crate) fn resembles(choice: &DataChoice<'_>, candidates: &[Candidate]) -> bool {
+    let best = ranking(candidates).first().copied();
+    best.is_none_or(|best| choice.resembles(&candidates[best].run))
+}
+
 /// Runs the best `n_distinct` candidates on more points of the fine meshes; the rest is dropped.
 pub(crate) fn refine(
+    choice: &DataChoice<'_>,
+    candidates: &mut [Candidate],
+    n_distinct: usize,
+    settings: &MatchSettings,
+    monitor: &MatchMonitor<'_>,
+) -> Result<(), Cancelled> {
+    let effort = Effort {
+        n_points: settings.n_refine_points,
+        n_iterations: usize::MAX,
+    };
+    refine_with(effort, choice, candidates, n_distinct, settings, monitor)
+}
+
+/// Refines on the few points of the coarse stage: where no candidate resembles the model this tells whether
+/// a right pose is among them that the coarse stage did not reach, and of different parts no more is
+/// worth knowing.
+pub(crate) fn look_closer(
+    choice: &DataChoice<'_>,
+    candidates: &mut [Candidate],
+    n_distinct: usize,
+    settings: &MatchSettings,
+    monitor: &MatchMonitor<'_>,
+) -> Result<(), Cancelled> {
+    let effort = Effort {
+        n_points: settings.n_coarse_points,
+        n_iterations: LOOK_ITERATIONS,
+    };
+    refine_with(effort, choice, candidates, n_distinct, settings, monitor)
+}
+
+/// What a refinement may cost.
+#[derive(Clone, Copy)]
+struct Effort {
+    n_points: usize,
+    /// At most so many, and no more than the rules of the stage allow.
+    n_iterations: usize,
+}
+
+fn refine_with(
+    effort: Effort,
     choice: &DataChoice<'_>,
     candidates: &mut [Candidate],
     n_distinct: usize,
@@ -144,7 +192,7 @@ pub(crate) fn refine(
         after,
     };
     prune(choice, candidates, cut(n_coarse), monitor);
-    let points = BothSigns::new(Data::new(subsample(data, settings.n_refine_points)));
+    let points = BothSigns::new(Data::new(subsample(data, effort.n_points)));
     let rules = choice.rules(Stage::Refine, settings, choice.fine);
     let input = RoundInput {
         points: &points,
@@ -153,8 +201,9 @@ pub(crate) fn refine(
         grid: None,
     };
     enter_stage(candidates, input, monitor);
-    let first = PRUNE_AFTER.min(rules.max_iterations);
-    for n_iterations in [first, rules.max_iterations - first] {
+    let most = effort.n_iterations.min(rules.max_iterations);
+    let first = PRUNE_AFTER.min(most);
+    for n_iterations in [first, most - first] {
         advance_all(choice, candidates, input, n_iterations, monitor)?;
         merge(choice, candidates, monitor);
         prune(choice, candidates, cut(n_coarse + n_iterations), monitor);
