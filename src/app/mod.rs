@@ -54,8 +54,8 @@ pub use log::{
     age_text, clock_text, duration_text,
 };
 pub use mapping::{
-    MapCommand, MapDisplay, MapPicture, MapResult, Mapping, ProbeReport, Quantity, UnmappedElement,
-    file_names,
+    DoubtfulElement, MapCommand, MapDisplay, MapPicture, MapResult, Mapping, ProbeReport, Quantity,
+    UnmappedElement, file_names,
 };
 pub use matching::{
     Cause, LiveStarts, MatchCommand, MatchState, Preview, PreviewCommand, Previews, Starts,

@@ -329,6 +329,17 @@ impl Dialogs {
         });
     }
 
+    /// A file that was dropped while the path of a file to read is asked for is the answer; false if none
+    /// is asked for.
+    pub fn take_dropped(&mut self, path: &Path, ctx: &egui::Context) -> bool {
+        let asks = |prompt: &mut Prompt| prompt.question.is_open();
+        let Some(prompt) = self.prompt.take_if(asks) else {
+            return false;
+        };
+        self.check(prompt.question, path.to_owned(), false, ctx);
+        true
+    }
+
     /// True while a question of ours lies over the window.
     pub fn is_open(&self) -> bool {
         self.prompt.is_some() || self.overwrite.is_some()

@@ -311,6 +311,11 @@ impl Shell {
             .map(|file| file.path().to_owned())
             .filter(|path| !path.as_os_str().is_empty())
             .collect();
+        if let [path] = paths.as_slice()
+            && self.dialogs.take_dropped(path, ctx)
+        {
+            return None;
+        }
         if !paths.is_empty() {
             self.drop = Some(PendingDrop {
                 paths,

@@ -16,7 +16,7 @@ use shapematch::samples::SampleVariant;
 
 use super::app::{Window, write_bracket};
 
-fn real(kind: JobKind) -> Result<JobOutput, String> {
+pub(super) fn real(kind: JobKind) -> Result<JobOutput, String> {
     let done = PipelineRunner.run(kind, &Monitor::silent());
     done.map_err(|error| error.to_string())
 }
@@ -169,7 +169,7 @@ fn plastic_by_layer(run: &MapRun, element: usize) -> Vec<f64> {
 }
 
 /// A window whose bracket was mapped with stresses and strains.
-fn mapped_in_full() -> (Window, tempfile::TempDir) {
+pub(super) fn mapped_in_full() -> (Window, tempfile::TempDir) {
     let (mut window, folder) = at_the_known_pose();
     let mut recipe = window.state.document.mapping.recipe.clone();
     for quantity in [Quantity::Stress, Quantity::Strain] {
@@ -190,6 +190,7 @@ fn pictures_of_a_mapping_are_chosen_and_say_what_the_values_say() {
     for (action, by) in [
         (Action::ShowMapDifference, ColorBy::MapDifference),
         (Action::ShowMapDistance, ColorBy::MapDistance),
+        (Action::ShowMapAngle, ColorBy::MapAngle),
         (Action::ShowMapConfidence, ColorBy::MapConfidence),
         (Action::ShowMapStatus, ColorBy::MapStatus),
     ] {
@@ -383,7 +384,7 @@ fn output_input(window: &Window) -> OutputInput {
 }
 
 /// The mapped deck as the window writes it, with every thickness larger by a tenth of a millimetre.
-fn thicker_deck(window: &Window) -> String {
+pub(super) fn thicker_deck(window: &Window) -> String {
     let input = output_input(window);
     let deck = Output::Mapped(WriteKind::Deck).make(&input, None, &Monitor::silent());
     let text = String::from_utf8(deck.unwrap().bytes).unwrap();

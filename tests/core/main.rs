@@ -5,6 +5,7 @@
 mod app;
 mod app_exports;
 mod app_mapping;
+mod app_mapping_look;
 mod assess;
 mod autosave;
 mod cancel;

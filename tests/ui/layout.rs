@@ -16,14 +16,14 @@ use super::story::{click, finish, matched, window};
 pub(super) type Window = Harness<'static, Shell>;
 
 /// A text as it was painted.
-struct Painted {
-    text: String,
+pub(super) struct Painted {
+    pub(super) text: String,
     rect: Rect,
     clip: Rect,
 }
 
 /// Every text of the last frame that can be seen.
-fn texts(window: &Window) -> Vec<Painted> {
+pub(super) fn texts(window: &Window) -> Vec<Painted> {
     let mut found = Vec::new();
     for clipped in &window.output().shapes {
         collect(&clipped.shape, clipped.clip_rect, &mut found);

@@ -8,6 +8,7 @@ mod keyboard;
 mod large;
 mod layout;
 mod mapping;
+mod mapping_walk;
 mod monkey;
 mod no_window;
 mod pairs;

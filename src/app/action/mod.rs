@@ -196,6 +196,8 @@ actions! {
     ShowMapDifference,
     /// Colours of the distance at the mapping.
     ShowMapDistance,
+    /// Colours of the angle between the normals at the mapping.
+    ShowMapAngle,
     /// Colours of the mapping's confidence.
     ShowMapConfidence,
     /// What became of the mapped elements.

@@ -183,6 +183,14 @@ const MAPPING: &[ActionRow] = &[
         command: |state| mapping_picture(state, Some(MapPicture::Distance)),
     },
     ActionRow {
+        action: Action::ShowMapAngle,
+        label: "Mapping angle",
+        tooltip: "Colour the crash part by the angle between its normals and those of the stamped sheet",
+        keys: Keys::NONE,
+        enabled: has_mapping,
+        command: |state| mapping_picture(state, Some(MapPicture::Angle)),
+    },
+    ActionRow {
         action: Action::ShowMapConfidence,
         label: "Mapping confidence",
         tooltip: "Colour the crash part by how far its mapped values can be trusted",

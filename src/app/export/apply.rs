@@ -166,15 +166,20 @@ impl Work<'_> {
         exported: Exported,
         took: Duration,
     ) -> Vec<Effect> {
-        for note in exported.notes {
-            self.log_step("export", None, note, None);
+        for note in &exported.notes {
+            self.log_step("export", None, note.clone(), None);
         }
         match (exported.to, exported.text) {
             (Destination::Clipboard(what), Some(text)) => self.copy(text, &what),
             (Destination::Clipboard(_), None) => Vec::new(),
             (Destination::File(path), _) => {
                 let text = format!("written: {}", path.display());
-                self.log_at(NoticeLevel::Success, "export", None, text, Some(took));
+                // The message says at once what the log says in rows.
+                let notes = exported.notes.iter().map(String::as_str);
+                let all: Vec<&str> = std::iter::once(text.as_str()).chain(notes).collect();
+                self.notify(NoticeLevel::Success, all.join("; "));
+                let level = NoticeLevel::Success;
+                self.log.push(level, "export", None, text, Some(took));
                 Vec::new()
             }
         }

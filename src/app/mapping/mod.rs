@@ -20,10 +20,13 @@ use crate::mapping::{Quantities, Status};
 use crate::pipeline::forming_values::{FormingValue, has_forming_value, nominal_thickness};
 use crate::pipeline::map::{ComparisonRecord, MapRecipe, MapRecord, MapRun, OtherResult};
 use crate::role::Role;
-use crate::text::{counted, percent};
+use crate::text::{capital, counted, percent};
 
-/// Elements without values that are listed.
+/// Elements of a list.
 const N_LISTED: usize = 40;
+
+/// A confidence that is written as 1.00.
+const WHOLLY_TRUSTED: f64 = 0.995;
 
 /// What undo covers of the mapping.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -77,6 +80,17 @@ pub struct UnmappedElement {
     pub id: u64,
     /// Why the element has no mapped values.
     pub status: Status,
+    /// Centre of the element, in crash coordinates.
+    pub center: Point3,
+}
+
+/// An element of the crash part whose values are to be trusted less than others.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DoubtfulElement {
+    /// Its id in the deck.
+    pub id: u64,
+    /// How far it can be trusted, 0 to 1.
+    pub confidence: f64,
     /// Centre of the element, in crash coordinates.
     pub center: Point3,
 }
@@ -217,6 +231,35 @@ impl AppState {
             center: run.target.mesh.centroids()[element],
         };
         (rows.into_iter().map(element).collect(), n)
+    }
+
+    /// The mapped elements that can be trusted least, the worst first, at most forty; of equal ones those
+    /// that come first in the deck. Elements that can be trusted wholly are not among them.
+    pub fn doubtful_elements(&self) -> Vec<DoubtfulElement> {
+        let parts = self.document.both().zip(self.document.current_mapping());
+        let Some((both, result)) = parts else {
+            return Vec::new();
+        };
+        let run = &result.run;
+        // In order, never longer than the list: one walk over the elements, without a copy of them.
+        let mut worst: Vec<(f64, usize)> = Vec::with_capacity(N_LISTED + 1);
+        for (element, report) in run.mapped.elements.iter().enumerate() {
+            let confidence = report.confidence;
+            let is_doubtful = report.status.has_values() && confidence < WHOLLY_TRUSTED;
+            let is_full = worst.len() == N_LISTED;
+            let beats = !is_full || worst.last().is_some_and(|last| confidence < last.0);
+            if is_doubtful && beats {
+                let at = worst.partition_point(|row| row.0 <= confidence);
+                worst.insert(at, (confidence, element));
+                worst.truncate(N_LISTED);
+            }
+        }
+        let element = |(confidence, element): (f64, usize)| DoubtfulElement {
+            id: result.element_id(&both.crash.loaded, element),
+            confidence,
+            center: run.target.mesh.centroids()[element],
+        };
+        worst.into_iter().map(element).collect()
     }
 
     /// The thickness of the flat sheet: the crash part's section, else the stamped part's.
@@ -393,7 +436,7 @@ pub(super) fn take_mapped(
         counted(record.n_elements, "element")
     );
     for warning in &record.warnings {
-        work.log_at(NoticeLevel::Warning, "map", None, warning.clone(), None);
+        work.log_at(NoticeLevel::Warning, "map", None, capital(warning), None);
     }
     work.log_step("map", None, text, Some(took));
     let stamp = work.document.stamp();

@@ -1,4 +1,5 @@
-//! Which picture of a mapping is shown: values, difference, distance, confidence, status; of which
+//! Which picture of a mapping is shown: values, difference, distance, angle, confidence, status;
+//! of which
 //! quantity and which layer.
 
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,8 @@ pub enum MapPicture {
     Difference,
     /// Signed distance of the stamped sheet along the crash element's normal.
     Distance,
+    /// Angle between the normals of an element and of the stamped sheet there.
+    Angle,
     /// How far an element can be trusted, 0 to 1.
     Confidence,
     /// What became of the elements.
@@ -26,9 +29,10 @@ pub enum MapPicture {
 
 impl MapPicture {
     /// All, in the order of the choice.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Difference,
         Self::Distance,
+        Self::Angle,
         Self::Confidence,
         Self::Status,
         Self::Other,
@@ -39,6 +43,7 @@ impl MapPicture {
         match self {
             Self::Difference => "Difference",
             Self::Distance => "Distance",
+            Self::Angle => "Angle",
             Self::Confidence => "Confidence",
             Self::Status => "Status",
             Self::Other => "Other result",
@@ -50,6 +55,7 @@ impl MapPicture {
         match self {
             Self::Difference => ColorBy::MapDifference,
             Self::Distance => ColorBy::MapDistance,
+            Self::Angle => ColorBy::MapAngle,
             Self::Confidence => ColorBy::MapConfidence,
             Self::Status => ColorBy::MapStatus,
             Self::Other => ColorBy::MapOther,

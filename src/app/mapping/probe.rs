@@ -53,6 +53,26 @@ impl Document {
 }
 
 impl AppState {
+    /// Where the probed element lies on the crash part, and the one it took its values from on the
+    /// stamped part, each in its own model.
+    pub fn probed_places(&self) -> Vec<(Role, Point3)> {
+        let probed = self.document.mapping.probe;
+        let Some((element, result)) = probed.zip(self.document.current_mapping()) else {
+            return Vec::new();
+        };
+        let run = &result.run;
+        let own = run.target.mesh.centroids().get(element);
+        let report = run.mapped.elements.get(element);
+        let theirs = report.and_then(|report| {
+            let partner = report.partner?;
+            let source = run.sources.get(partner.source as usize)?;
+            source.mesh.centroids().get(partner.element as usize)
+        });
+        let places = [(Role::Crash, own), (Role::Stamped, theirs)];
+        let there = |(role, place): (Role, Option<&Point3>)| Some((role, *place?));
+        places.into_iter().filter_map(there).collect()
+    }
+
     /// The probed element, if the mapping is still the one it belongs to.
     pub fn probe(&self) -> Option<ProbeReport> {
         let element = self.document.mapping.probe?;

@@ -52,6 +52,8 @@ pub enum ColorBy {
     MapDifference,
     /// Distance of the stamped sheet from the mapped elements.
     MapDistance,
+    /// Angle between the normals of mapped elements and of the stamped sheet.
+    MapAngle,
     /// How far mapped elements can be trusted.
     MapConfidence,
     /// What became of the elements of the mapping.
@@ -75,7 +77,7 @@ impl From<FormingValue> for ColorBy {
 
 impl ColorBy {
     /// All, in the order of the menu.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Role,
         Self::Part,
         Self::Thickness,
@@ -91,6 +93,7 @@ impl ColorBy {
         Self::MajorStress,
         Self::MapDifference,
         Self::MapDistance,
+        Self::MapAngle,
         Self::MapConfidence,
         Self::MapStatus,
         Self::MapOther,
@@ -138,6 +141,7 @@ impl ColorBy {
             Self::MajorStress => FormingValue::MajorStress.label(),
             Self::MapDifference => "Mapping: difference",
             Self::MapDistance => "Mapping: distance",
+            Self::MapAngle => "Mapping: angle",
             Self::MapConfidence => "Mapping: confidence",
             Self::MapStatus => "Mapping: status",
             Self::MapOther => "Mapping: other result",

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::ColorBy;
-use crate::app::AppState;
+use crate::app::{AppState, MapPicture};
 use crate::geometry::Similarity;
 use crate::role::Role;
 
@@ -106,13 +106,27 @@ impl AppState {
 
     /// What the colours of a window say.
     pub fn color_by(&self, window: Role) -> ColorBy {
+        let chosen = self.shown_colors();
         match self.free_window().filter(|_| window == Role::Stamped) {
             Some(FreeWindow::Deviation) => ColorBy::Deviation,
             // Beside a picture of the mapping the stamped part shows the quantity itself.
-            _ if window == Role::Stamped && self.view.display.color_by.map_picture().is_some() => {
-                self.map_quantity()
+            _ if window == Role::Stamped && chosen.map_picture().is_some() => self.map_quantity(),
+            _ => chosen,
+        }
+    }
+
+    /// The chosen colours, or what is nearest to them where these are not there: without another result
+    /// the difference to the stamped part, without a mapping at this pose the quantity itself.
+    pub fn shown_colors(&self) -> ColorBy {
+        let chosen = self.view.display.color_by;
+        let result = self.document.current_mapping();
+        match (chosen.map_picture(), result) {
+            (None, _) => chosen,
+            (Some(_), None) => self.view.display.mapped.quantity,
+            (Some(MapPicture::Other), Some(result)) if result.other.is_none() => {
+                ColorBy::MapDifference
             }
-            _ => self.view.display.color_by,
+            (Some(_), Some(_)) => chosen,
         }
     }
 

@@ -315,7 +315,7 @@ fn warnings(run: &MapRun, files: Option<&MapFiles>) -> Vec<String> {
     let area = mapped.mapped_area(&run.target.mesh);
     if area < USUAL_COVERAGE {
         warnings.push(format!(
-            "only {:.1} % of the crash part's area carries values; the element table says why",
+            "only {:.1} % of the crash part's area carries values; the status of the elements says why",
             100.0 * area
         ));
     }

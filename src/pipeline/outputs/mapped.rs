@@ -53,13 +53,28 @@ pub(super) fn deck_files(
 
 /// What was found when they were read back.
 pub(super) fn note(files: &MapFiles) -> String {
-    format!(
-        "{} thicknesses, {} stress and {} strain cards, read back within {:.1e}",
-        grouped(files.n_thickness),
-        grouped(files.n_stress),
-        grouped(files.n_strain),
-        files.read_back_error
-    )
+    let counts = [
+        (files.n_thickness, "thicknesses"),
+        (files.n_stress, "stress cards"),
+        (files.n_strain, "strain cards"),
+    ];
+    let counts = counts.iter().filter(|(n, _)| *n > 0);
+    let counts: Vec<String> = counts
+        .map(|(n, of)| format!("{} {of}", grouped(*n)))
+        .collect();
+    let counts = if counts.is_empty() {
+        "no cards".to_owned()
+    } else {
+        counts.join(", ")
+    };
+    let error = files.read_back_error;
+    let replaced = files
+        .replaces
+        .as_ref()
+        .map_or_else(String::new, |replaced| {
+            format!("; takes the place of {}", replaced.display())
+        });
+    format!("{counts}, read back within {error:.1e}{replaced}")
 }
 
 /// The first of these files.

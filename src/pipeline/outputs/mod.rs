@@ -393,7 +393,10 @@ impl Output {
                 for (index, (path, bytes)) in made.files.iter().enumerate() {
                     write_file(path, bytes)?;
                     if index > 0 {
-                        notes.push(format!("written beside: {}", path.display()));
+                        notes.push(format!(
+                            "written beside: {}, whose elements take the place of those in the crash deck",
+                            path.display()
+                        ));
                     }
                 }
                 return Ok(notes);

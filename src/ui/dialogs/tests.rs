@@ -80,3 +80,22 @@ fn a_question_has_the_keys_for_itself() {
     dialogs.prompt = Some(Prompt::new(Question::OpenProject, String::new()));
     assert_eq!(keyboard.owner(&ctx, dialogs.is_open()), KeyOwner::Question);
 }
+
+#[test]
+fn a_dropped_file_answers_the_question_for_a_file_to_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("other.k");
+    std::fs::write(&path, "*KEYWORD").unwrap();
+    let ctx = egui::Context::default();
+    let mut dialogs = Dialogs::default();
+    // Nothing is asked for, or where to write: the file is opened as ever.
+    assert!(!dialogs.take_dropped(&path, &ctx));
+    let save = Question::SaveProject(PathBuf::new());
+    dialogs.prompt = Some(Prompt::new(save, String::new()));
+    assert!(!dialogs.take_dropped(&path, &ctx) && dialogs.is_open());
+    dialogs.prompt = Some(Prompt::new(Question::OtherMapping, String::new()));
+    assert!(dialogs.take_dropped(&path, &ctx));
+    let [command] = wait(&mut dialogs, &ctx).try_into().unwrap();
+    let is_meant = matches!(command, Command::Map(MapCommand::CompareWith(at)) if at == path);
+    assert!(is_meant && !dialogs.is_open());
+}

@@ -256,7 +256,7 @@ fn display_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             secondary(ui, "Colour");
             ui.name_inputs("Colour by", |ui| {
                 egui::ComboBox::from_id_salt("colour by")
-                    .selected_text(display.color_by.label())
+                    .selected_text(state.color_by(Role::Crash).label())
                     .width(ui.available_width())
                     .truncate()
                     .show_ui(ui, |ui| {

@@ -4,14 +4,15 @@ use egui::{Align, Layout, Ui, vec2};
 
 use super::section::section_ui;
 use crate::app::{
-    Action, AppState, BottomTab, Command, InspectCommand, MapCommand, MapPicture, MapResult,
-    Quantity, Section, ViewCommand,
+    Action, AppState, BottomTab, ColorBy, Command, DoubtfulElement, InspectCommand, MapCommand,
+    MapPicture, MapResult, Quantity, Section, UnmappedElement, ViewCommand,
 };
+use crate::geometry::Point3;
 use crate::jobs::JobKey;
 use crate::pipeline::forming_values::LayerChoice;
 use crate::pipeline::map::{MapRecord, PairRecord};
 use crate::role::Role;
-use crate::text::{grouped, length, percent};
+use crate::text::{fixed, grouped, length, percent, sentence};
 use crate::ui::theme::{Palette, ROW, TALL};
 use crate::ui::widgets::{Look, action_button, caption, chip, paragraph, secondary, wide_action};
 
@@ -107,10 +108,11 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
         ui.label(line);
     }
     for warning in &record.warnings {
-        paragraph(ui, warning);
+        paragraph(ui, sentence(warning));
     }
     checks_ui(ui, record, commands);
     picture_ui(ui, state, commands);
+    doubtful_ui(ui, state, commands);
     unmapped_ui(ui, state, commands);
     other_ui(ui, state, commands);
     caption(ui, "Write");
@@ -126,6 +128,9 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
             action_button(ui, state, action, look, commands);
         }
     });
+    if state.jobs.is_active(JobKey::Export) {
+        secondary(ui, "Writing …  Esc gives it up");
+    }
 }
 
 /// The file that mappings are compared with, and the way out of it.
@@ -177,14 +182,14 @@ fn checks_ui(ui: &mut Ui, record: &MapRecord, commands: &mut Vec<Command>) {
 
 /// Which quantity is shown, in which picture, of which layers.
 fn picture_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let shown = &state.view.display;
+    let shown = state.color_by(Role::Crash);
     let is_shown = state.is_mapping_shown();
     let quantity = state.map_quantity();
     let mut chosen = None;
     caption(ui, "Quantity");
     ui.horizontal_wrapped(|ui| {
         for by in state.mapped_quantities() {
-            let is_told = shown.color_by.speaks_of_quantity() || shown.color_by == by;
+            let is_told = shown.speaks_of_quantity() || shown == by;
             if chip(ui, by.label(), is_shown && is_told && by == quantity).clicked() {
                 chosen = Some(state.with_map_quantity(by));
             }
@@ -192,19 +197,19 @@ fn picture_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
     caption(ui, "Picture");
     ui.horizontal_wrapped(|ui| {
-        let is_values = is_shown && shown.color_by.map_picture().is_none();
+        let is_values = is_shown && shown.map_picture().is_none();
         if chip(ui, "Values", is_values).clicked() {
             chosen = Some(state.with_map_picture(None));
         }
         let is_there = |picture: &MapPicture| state.missing_for(picture.color_by()).is_none();
         for picture in MapPicture::ALL.into_iter().filter(is_there) {
-            let is_on = is_shown && shown.color_by == picture.color_by();
+            let is_on = is_shown && shown == picture.color_by();
             if chip(ui, picture.label(), is_on).clicked() {
                 chosen = Some(state.with_map_picture(Some(picture)));
             }
         }
     });
-    let speaks_of_it = shown.color_by == quantity || shown.color_by.speaks_of_quantity();
+    let speaks_of_it = shown == quantity || shown.speaks_of_quantity();
     if let Some(layer) = state.shown_layer(quantity).filter(|_| speaks_of_it) {
         caption(ui, "Layers");
         ui.horizontal(|ui| {
@@ -212,7 +217,7 @@ fn picture_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             ui.spacing_mut().item_spacing.x = 4.0;
             for choice in LayerChoice::ALL {
                 if chip(ui, choice.label(), choice == layer).clicked() {
-                    let mut display = shown.clone();
+                    let mut display = state.view.display.clone();
                     let usual = quantity.forming().map(LayerChoice::usual);
                     display.mapped.layer = Some(choice).filter(|_| usual != Some(choice));
                     chosen = Some(display);
@@ -269,19 +274,54 @@ fn unmapped_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         return;
     }
     caption(ui, format!("{} without values", grouped(n)));
+    let row = |element: &UnmappedElement| {
+        let text = format!("{}  {}", element.id, element.status.label());
+        (text, element.center)
+    };
+    let rows: Vec<_> = elements.iter().map(row).collect();
+    element_list(ui, "unmapped elements", (&rows, n), commands);
+}
+
+/// While the confidence is looked at: the elements that can be trusted least, the worst first; a click
+/// flies there.
+fn doubtful_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    if !state.is_mapping_shown() || state.color_by(Role::Crash) != ColorBy::MapConfidence {
+        return;
+    }
+    let elements = state.doubtful_elements();
+    if elements.is_empty() {
+        secondary(ui, "Every mapped element has a confidence of 1.00");
+        return;
+    }
+    caption(ui, "Least confidence first");
+    let row = |element: &DoubtfulElement| {
+        let confidence = fixed(element.confidence, 2);
+        let text = format!("{}  confidence {confidence}", element.id);
+        (text, element.center)
+    };
+    let rows: Vec<_> = elements.iter().map(row).collect();
+    element_list(ui, "doubtful elements", (&rows, rows.len()), commands);
+}
+
+/// Elements of the crash part with what is said of them, of `n` in all; a click flies there.
+fn element_list(
+    ui: &mut Ui,
+    name: &str,
+    (rows, n): (&[(String, Point3)], usize),
+    commands: &mut Vec<Command>,
+) {
     egui::ScrollArea::vertical()
-        .id_salt("unmapped elements")
+        .id_salt(name)
         .max_height(4.0 * ROW)
         .show(ui, |ui| {
-            for element in &elements {
-                let text = format!("{}  {}", element.id, element.status.label());
-                if ui.button(&text).on_hover_text("Look there").clicked() {
-                    let (role, point) = (Role::Crash, element.center);
+            for (text, point) in rows {
+                if ui.button(text).on_hover_text("Look there").clicked() {
+                    let (role, point, text) = (Role::Crash, *point, text.clone());
                     commands.push(InspectCommand::LookAt { role, point, text }.into());
                 }
             }
-            if n > elements.len() {
-                secondary(ui, format!("and {} more", grouped(n - elements.len())));
+            if n > rows.len() {
+                secondary(ui, format!("and {} more", grouped(n - rows.len())));
             }
         });
 }

@@ -1,7 +1,8 @@
 //! The frame of the four sections: number, title, summary, fold.
 
 use egui::{
-    Align2, CornerRadius, FontId, Margin, Rect, Sense, Stroke, TextStyle, Ui, UiBuilder, pos2, vec2,
+    Align, Align2, CornerRadius, FontId, Margin, Rect, Sense, Stroke, TextStyle, Ui, UiBuilder,
+    pos2, vec2,
 };
 
 use crate::app::{AppState, Command, Section, ViewCommand};
@@ -19,8 +20,10 @@ pub fn section_ui(
 ) {
     let mut fold = Fold::read(ui);
     let is_open = fold.shown[section.index()];
+    let opened = egui::Id::unique("section that was opened");
     if header_ui(ui, state, section, (is_open, summary)) {
         commands.push(ViewCommand::OpenSection(section, !is_open).into());
+        ui.data_mut(|data| data.insert_temp(opened, (section.index(), !is_open)));
     }
     if !is_open {
         return;
@@ -40,6 +43,14 @@ pub fn section_ui(
     body(&mut inner, commands);
     let height = inner.min_rect().height() + margin.sum().y;
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    if ui.data(|data| data.get_temp(opened)) == Some((section.index(), true)) {
+        ui.data_mut(|data| data.remove::<(usize, bool)>(opened));
+        if rect.bottom() > ui.clip_rect().bottom() {
+            // What was asked for is seen, its header first.
+            let whole = rect.with_min_y(rect.top() - TALL);
+            ui.scroll_to_rect(whole, Some(Align::TOP));
+        }
+    }
     let before = std::mem::replace(&mut fold.bodies[section.index()], height);
     fold.write(ui);
     let is_pressed =

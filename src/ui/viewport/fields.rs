@@ -185,6 +185,11 @@ impl FieldStore {
         let ranges = self.ranges.iter().filter_map(|(_, range)| *range);
         let ranges = ranges.filter(|(of, _)| *of == kind).map(|(_, range)| range);
         let [low, high] = ranges.reduce(union)?;
+        if kind == FieldKind::Map(MapPicture::Angle) {
+            // Normals that agree to a tenth of a degree are one colour.
+            let scale = ColorScale::new(ColorMap::Viridis, 0.0, high.max(0.1));
+            return Some(coloring.on_scale(scale));
+        }
         if let FieldKind::Map(_) = kind {
             return Some(coloring.on_signed_scale(low.abs().max(high.abs())));
         }

@@ -1,5 +1,5 @@
 //! Numbers of a mapping as colours of the crash part, one for each element: difference, distance,
-//! confidence, status.
+//! angle, confidence, status.
 
 use super::meshes::ShownMesh;
 use crate::app::MapPicture;
@@ -36,6 +36,7 @@ fn number(
     match picture {
         MapPicture::Difference => run.difference(element, value),
         MapPicture::Distance => report.normal_distance,
+        MapPicture::Angle => report.angle_deg,
         MapPicture::Confidence if report.status.has_values() => report.confidence,
         MapPicture::Confidence => f64::NAN,
         MapPicture::Status => f64::from(report.status as u8),

@@ -34,7 +34,8 @@ pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         return one_by_one_ui(ui, state, result, commands);
     }
     let (width, height) = (ui.available_width(), ui.available_height());
-    let widths = [0.34 * width, 0.32 * width, 0.34 * width - 44.0];
+    // The names of the checks are read whole, and six percentiles stand beside each other.
+    let widths = [0.39 * width, 0.285 * width, 0.325 * width - 44.0];
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 20.0;
         for (view, width) in View::ALL.into_iter().zip(widths) {
@@ -97,15 +98,17 @@ fn checks_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
     let title = format!("Checks: {n_met} of {n_asked} met (click to see)");
     caption(ui, title);
     ui.spacing_mut().item_spacing.y = 0.0;
+    // A table keeps its columns as wide as they were first: one for each width.
+    let width = ui.available_width().round() as u32;
     TableBuilder::new(ui)
-        .id_salt("mapping checks")
+        .id_salt(("mapping checks", width))
         .sense(Sense::click())
         .min_scrolled_height(0.0)
         .auto_shrink([false, false])
         .cell_layout(Layout::left_to_right(Align::Center))
         .column(Column::exact(14.0))
         .column(Column::remainder().clip(true))
-        .column(Column::exact(64.0).clip(true))
+        .column(Column::exact(62.0).clip(true))
         .column(Column::exact(92.0).clip(true))
         .body(|body| {
             body.rows(LINE, checks.len(), |mut row| {
@@ -195,9 +198,16 @@ fn distributions_ui(
 ) {
     let by = state.map_quantity();
     if let Some(comparison) = &result.record.comparison
-        && state.view.display.color_by == ColorBy::MapOther
+        && state.color_by(Role::Crash) == ColorBy::MapOther
     {
-        return compared_ui(ui, state, (result, comparison), commands);
+        // Within its own height: the pane grows with nothing that is in it.
+        egui::ScrollArea::vertical()
+            .id_salt("mapping compared")
+            .auto_shrink([false, false])
+            .show(ui, |ui| {
+                compared_ui(ui, state, (result, comparison), commands);
+            });
+        return;
     }
     let Some(pair) = pair_of(result, by) else {
         caption(
@@ -251,18 +261,14 @@ fn compared_ui(
         ("there", &record.other, palette.secondary),
     ];
     percentiles_ui(ui, &rows);
-    ui.add_space(4.0);
-    let numbers = [
-        ("mean difference", signed(record.mean)),
-        ("RMS", length(record.rms)),
-        ("95 % below", length(record.p95)),
-    ];
-    for (name, number) in numbers {
-        ui.horizontal(|ui| {
-            ui.label(RichText::new(name).small().color(palette.secondary));
-            ui.label(RichText::new(number).small());
-        });
-    }
+    ui.add_space(2.0);
+    let numbers = format!(
+        "mean difference {} · RMS {} · 95\u{a0}%\u{a0}below {}",
+        signed(record.mean),
+        length(record.rms),
+        length(record.p95)
+    );
+    ui.add(egui::Label::new(RichText::new(numbers).small()).wrap());
     let worst = format!(
         "largest {} at element {}",
         length(record.max),
@@ -383,7 +389,7 @@ fn probe_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let width = ui.available_width();
     let height = ui.available_height();
     ui.horizontal_top(|ui| {
-        let table = vec2(0.48 * width, height);
+        let table = vec2(0.5 * width, height);
         ui.allocate_ui_with_layout(table, Layout::top_down(Align::Min), |ui| {
             values_ui(ui, &probe);
         });
@@ -419,7 +425,8 @@ fn values_ui(ui: &mut Ui, probe: &ProbeReport) {
         .show(ui, |ui| {
             egui::Grid::new("probe values")
                 .num_columns(3)
-                .spacing(vec2(10.0, 1.0))
+                .spacing(vec2(8.0, 1.0))
+                .min_row_height(16.0)
                 .show(ui, |ui| {
                     ui.label("");
                     ui.label(RichText::new("▲").small().color(palette.stamped));
@@ -441,7 +448,6 @@ fn profile_ui(ui: &mut Ui, probe: &ProbeReport, size: egui::Vec2) {
         caption(ui, "no quantity with layers was mapped");
         return;
     };
-    let palette = Palette::of(ui);
     let upright = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
         points.iter().map(|[t, value]| [*value, *t]).collect()
     };
@@ -449,12 +455,38 @@ fn profile_ui(ui: &mut Ui, probe: &ProbeReport, size: egui::Vec2) {
     let crash = upright(&probe.profile.crash);
     let values = stamped.iter().chain(&crash).map(|point| point[0]);
     let range = charts::margined(values);
+    ui.vertical(|ui| profile_plot(ui, by, [stamped, crash], (range, size)));
+}
+
+/// A number along a narrow chart; none near its ends, where it would reach beyond the chart.
+fn inner_tick(value: f64, step: f64, range: &std::ops::RangeInclusive<f64>) -> String {
+    let margin = 0.2 * (range.end() - range.start());
+    if value < range.start() + margin || value > range.end() - margin {
+        return String::new();
+    }
+    let n_decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
+    format!("{value:.n_decimals$}")
+}
+
+/// The line of each side, values to the right.
+fn profile_plot(
+    ui: &mut Ui,
+    by: ColorBy,
+    [stamped, crash]: [Vec<[f64; 2]>; 2],
+    (range, size): (Option<[f64; 2]>, egui::Vec2),
+) {
+    let palette = Palette::of(ui);
+    let before = ui.cursor().top();
+    caption(ui, format!("{} over T", by.label()));
+    let size = vec2(
+        size.x - 16.0,
+        (size.y - (ui.cursor().top() - before)).max(40.0),
+    );
     let mut plot = charts::still_chart(ui, "profile", size)
         .include_y(-1.1)
         .include_y(1.1)
-        .x_axis_label(by.label())
-        .y_axis_label("T")
-        .y_axis_min_width(26.0);
+        .y_axis_min_width(26.0)
+        .x_axis_formatter(|mark, range| inner_tick(mark.value, mark.step_size, range));
     if let Some([low, high]) = range {
         plot = plot.include_x(low).include_x(high);
     }

@@ -175,6 +175,7 @@ fn map_text(state: &AppState, picture: MapPicture, value: Option<f64>) -> Option
             format!("difference {text}")
         }
         MapPicture::Distance => format!("distance {}", state.lengths().signed_of(number)),
+        MapPicture::Angle => format!("angle {}°", fixed(number, 1)),
         MapPicture::Confidence => format!("confidence {}", fixed(number, 2)),
         MapPicture::Status => Status::ALL.get(number.round() as usize)?.label().to_owned(),
     })
@@ -186,12 +187,17 @@ fn forming_text(state: &AppState, value: FormingValue, number: f64) -> String {
     if !value.is_stress() {
         return format!("{name} {}", fixed(number, 4));
     }
+    let unit = stress_unit(state).map_or_else(String::new, |unit| format!(" {unit}"));
+    format!("{name} {}{unit}", length(number))
+}
+
+/// Unit of the stresses, if a file says it.
+pub(super) fn stress_unit(state: &AppState) -> Option<&'static str> {
     let system = Role::ALL.into_iter().find_map(|role| {
         let part = state.document.part(role)?;
         part.loaded.units()?.units.system
     });
-    let unit = system.map_or_else(String::new, |system| format!(" {}", system.stress()));
-    format!("{name} {}{unit}", length(number))
+    system.map(|system| system.stress())
 }
 
 /// A ring about the point a rotation turns about, and a cross at the picked pivot.
@@ -248,6 +254,23 @@ pub(super) fn place(ui: &Ui, over: &Overlay<'_>) {
     let plate = Rect::from_min_size(corner, text.size()).expand2(vec2(6.0, 3.0));
     painter.rect_filled(plate, CornerRadius::same(3), over.frame.look.plate);
     painter.galley(corner, text, over.frame.look.text);
+}
+
+/// The probed element, ringed on the crash part and where its values come from on the stamped one.
+pub(super) fn probe(ui: &Ui, over: &Overlay<'_>) {
+    let state = over.frame.state;
+    if !state.is_mapping_shown() {
+        return;
+    }
+    let places = state.probed_places();
+    for (role, point) in places {
+        let shown = over.frame.picture.place_of(role);
+        let point = shown.map(|shown| shown.to_window(&point));
+        let at = point.and_then(|point| pos_of(over.frame.rect(), &over.frame.view.camera, &point));
+        if let Some(at) = at {
+            ring(&over.painter(ui), over, at, 6.0);
+        }
+    }
 }
 
 /// A ring that is seen on any ground.

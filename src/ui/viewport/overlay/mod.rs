@@ -65,6 +65,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     marks::pivot(ui, over);
     marks::node(ui, over);
     marks::place(ui, over);
+    marks::probe(ui, over);
     if over.is_preparing {
         cards::preparing(ui, over);
     }

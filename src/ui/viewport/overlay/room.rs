@@ -51,15 +51,64 @@ fn covered(over: &Overlay<'_>, legend: Option<Rect>, has_banner: bool) -> Covere
         ..Covered::default()
     };
     if let Some(legend) = legend {
-        if window.right() - legend.right() < NEAR_EDGE {
-            covered.right = share(window.right() - legend.left(), window.width());
-        } else if legend.left() - window.left() < NEAR_EDGE {
-            covered.left = share(legend.right() - window.left(), window.width());
-        }
+        cover(&mut covered, legend, window);
     }
     covered
 }
 
+/// Adds what a legend covers, where it lies at an edge: the strip beside it, or the one above it where this
+/// takes less of the window.
+fn cover(covered: &mut Covered, legend: Rect, window: Rect) {
+    let top = share(legend.bottom() - window.top(), window.height());
+    let is_less = |side: f64| top - covered.top < side;
+    if window.right() - legend.right() < NEAR_EDGE {
+        let side = share(window.right() - legend.left(), window.width());
+        if is_less(side) {
+            covered.top = covered.top.max(top);
+        } else {
+            covered.right = side;
+        }
+    } else if legend.left() - window.left() < NEAR_EDGE {
+        let side = share(legend.right() - window.left(), window.width());
+        if is_less(side) {
+            covered.top = covered.top.max(top);
+        } else {
+            covered.left = side;
+        }
+    }
+}
+
 fn share(points: f32, of: f32) -> f64 {
     f64::from((points + AIR) / of.max(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::pos2;
+
+    use super::*;
+
+    #[test]
+    fn a_low_legend_takes_the_top_of_a_window_and_a_high_one_its_side() {
+        let window = Rect::from_min_max(pos2(0.0, 0.0), pos2(470.0, 570.0));
+        let head = Covered {
+            top: 0.12,
+            ..Covered::default()
+        };
+        let mut wide = head;
+        let legend = Rect::from_min_max(pos2(270.0, 44.0), pos2(460.0, 120.0));
+        cover(&mut wide, legend, window);
+        assert_eq!((wide.left, wide.right), (0.0, 0.0));
+        assert!((wide.top - 124.0 / 570.0).abs() < 1e-6);
+        let mut high = head;
+        let legend = Rect::from_min_max(pos2(386.0, 44.0), pos2(460.0, 344.0));
+        cover(&mut high, legend, window);
+        assert!((high.right - 88.0 / 470.0).abs() < 1e-6);
+        assert_eq!((high.left, high.top), (0.0, 0.12));
+        // One that was dragged into the picture lies there on purpose.
+        let mut none = head;
+        let legend = Rect::from_min_max(pos2(100.0, 44.0), pos2(290.0, 120.0));
+        cover(&mut none, legend, window);
+        assert_eq!(none, head);
+    }
 }

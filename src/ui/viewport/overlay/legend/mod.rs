@@ -11,7 +11,7 @@ use egui::{
     UiBuilder, Vec2, vec2,
 };
 
-use super::{MARGIN, Overlay, header};
+use super::{MARGIN, Overlay, header, marks};
 use crate::app::{Command, MapPicture, file_names};
 use crate::colormap::ColorScale;
 use crate::pipeline::forming_values::LayerChoice;
@@ -69,7 +69,11 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     };
     Some(plate(ui, over, WIDTH, |ui| match kind {
         FieldKind::Deviation => deviation::show(ui, over, &scale, room, commands),
-        _ => bar::plain(ui, over, &title(over, kind), &scale, room.bar, commands),
+        _ => {
+            let title = [Some(title(over, kind)), unit(over, kind)];
+            let title = title.into_iter().flatten().collect::<Vec<_>>().join(", ");
+            bar::plain(ui, over, &title, &scale, room.bar, commands);
+        }
     }))
 }
 
@@ -131,13 +135,32 @@ fn title(over: &Overlay<'_>, kind: FieldKind) -> String {
             let name = format!("{}, less {files}", quantity.label());
             layered(&name, state.view.display.mapped.layer)
         }
-        FieldKind::Map(MapPicture::Distance) => {
-            let unit = state.document.unit_suffix().trim();
-            [MapPicture::Distance.label(), unit].join(if unit.is_empty() { "" } else { ", " })
-        }
+        FieldKind::Map(MapPicture::Angle) => "Angle of the normals".to_owned(),
         FieldKind::Forming(_) => layered(kind.label(), state.view.display.mapped.layer),
         _ => kind.label().to_owned(),
     }
+}
+
+/// The unit of the numbers; `None` where they have none or it is not known.
+fn unit(over: &Overlay<'_>, kind: FieldKind) -> Option<String> {
+    let state = over.frame.state;
+    let value = match kind {
+        FieldKind::Overlap | FieldKind::Map(MapPicture::Confidence | MapPicture::Status) => {
+            return None;
+        }
+        FieldKind::Map(MapPicture::Angle) => return Some("°".to_owned()),
+        FieldKind::Forming(value) => Some(value),
+        FieldKind::Map(MapPicture::Difference | MapPicture::Other) => {
+            state.map_quantity().forming()
+        }
+        _ => None,
+    };
+    let unit = match value {
+        Some(value) if value.is_stress() => marks::stress_unit(state)?,
+        Some(_) => return None,
+        None => state.document.unit_suffix().trim(),
+    };
+    (!unit.is_empty()).then(|| unit.to_owned())
 }
 
 fn is_measured(kind: FieldKind) -> bool {
@@ -154,10 +177,8 @@ fn slim(
 ) {
     let name = RichText::new(title(over, kind)).size(11.0);
     ui.add(egui::Label::new(name).wrap());
-    let is_length = !matches!(kind, FieldKind::Forming(_));
-    let unit = over.frame.state.document.unit_suffix();
-    if is_length && !unit.trim().is_empty() {
-        let unit = RichText::new(unit.trim()).size(11.0);
+    if let Some(unit) = unit(over, kind) {
+        let unit = RichText::new(unit).size(11.0);
         ui.label(unit.color(over.frame.look.weak));
     }
     if kind == FieldKind::Deviation {

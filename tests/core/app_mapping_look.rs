@@ -1,0 +1,128 @@
+//! Looking at a mapping without a window: what is shown where a picture is not there, lists of elements, and
+//! what is told after writing.
+
+use shapematch::app::{Action, ColorBy, ExportCommand, HistoryCommand, MapCommand, MoveCommand};
+use shapematch::mapping::Status;
+use shapematch::pipeline::map::WriteKind;
+use shapematch::pipeline::outputs::Output;
+use shapematch::role::Role;
+use shapematch::samples::SampleVariant;
+
+use super::app::{Window, write_bracket};
+use super::app_mapping::{mapped_in_full, real, thicker_deck};
+
+/// A mapped bracket whose stamped part lacks the flanges of the crash part.
+fn mapped_without_flanges() -> (Window, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let pair = write_bracket(folder.path(), SampleVariant::MissingFlanges);
+    let mut window = Window::new();
+    window.runner = Some(real);
+    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
+        window.open(folder.path().join(name).to_str().unwrap(), role);
+    }
+    window.apply(MoveCommand::SetPose {
+        crash_from_stamped: pair.crash_from_stamped,
+        name: "Known pose".to_owned(),
+    });
+    window.act(Action::MapOrCancel);
+    assert!(window.state.document.current_mapping().is_some());
+    (window, folder)
+}
+
+#[test]
+fn a_picture_that_is_not_there_gives_way_to_the_nearest_and_comes_back() {
+    let (mut window, folder) = mapped_in_full();
+    let file = folder.path().join("other.k");
+    std::fs::write(&file, thicker_deck(&window)).unwrap();
+    window.apply(MapCommand::CompareWith(file));
+    let shown = |window: &Window| window.state.color_by(Role::Crash);
+    assert_eq!(shown(&window), ColorBy::MapOther);
+    // Without the other result: the difference to the stamped part.
+    window.act(Action::EndMapComparison);
+    assert_eq!(shown(&window), ColorBy::MapDifference);
+    window.apply(HistoryCommand::Undo);
+    assert_eq!(shown(&window), ColorBy::MapOther);
+    window.apply(HistoryCommand::Undo);
+    assert_eq!(shown(&window), ColorBy::MapDifference);
+    // Without a mapping at this pose: the quantity itself, on both parts.
+    window.act(Action::FlipX);
+    for role in Role::ALL {
+        assert_eq!(window.state.color_by(role), ColorBy::Thickness);
+    }
+    window.apply(HistoryCommand::Undo);
+    assert_eq!(shown(&window), ColorBy::MapDifference);
+}
+
+#[test]
+fn the_elements_that_can_be_trusted_least_are_listed_worst_first() {
+    let (window, _folder) = mapped_without_flanges();
+    let listed = window.state.doubtful_elements();
+    let result = window.state.document.current_mapping().unwrap();
+    let run = &result.run;
+    let crash = &window.part(Role::Crash).loaded;
+    // The plain way: all of them, sorted.
+    let elements = run.mapped.elements.iter().enumerate();
+    let mut all: Vec<(f64, usize)> = elements
+        .filter(|(_, report)| report.status.has_values() && report.confidence < 0.995)
+        .map(|(element, report)| (report.confidence, element))
+        .collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    assert!(all.len() > 40, "{}", all.len());
+    all.truncate(40);
+    let id = |element: usize| crash.model.shells[run.shells[element] as usize].id;
+    let expected: Vec<(u64, f64)> = all.iter().map(|(c, element)| (id(*element), *c)).collect();
+    let found: Vec<(u64, f64)> = listed.iter().map(|e| (e.id, e.confidence)).collect();
+    assert_eq!(found, expected);
+    assert!(found[0].1 < found[39].1);
+    // The first of them is the worst of the check.
+    let checks = &result.record.checks;
+    let check = checks.iter().find(|c| c.name.starts_with("Confidence"));
+    let worst = check.unwrap().worst.unwrap();
+    assert_eq!(run.mapped.elements[worst].confidence, found[0].1);
+    // Elements without values stand in their own list.
+    let (without, _) = window.state.unmapped_elements();
+    assert!(!without.is_empty());
+    for element in without {
+        assert_ne!(element.status, Status::Mapped);
+        assert!(found.iter().all(|(id, _)| *id != element.id));
+    }
+}
+
+#[test]
+fn the_message_after_writing_says_what_was_written_and_what_it_replaces() {
+    let (mut window, folder) = mapped_in_full();
+    let result = window.state.document.current_mapping().unwrap();
+    let elements = &result.run.mapped.elements;
+    let n = elements.iter().filter(|e| e.status.has_values()).count();
+    let n = shapematch::text::grouped(n);
+    let path = folder.path().join("mapped.k");
+    let told = |window: &Window| {
+        let toasts = window.state.log.notices.toasts();
+        let texts: Vec<String> = toasts.map(|notice| notice.text.clone()).collect();
+        texts.join("\n")
+    };
+    window.apply(ExportCommand::Write {
+        kind: Output::Mapped(WriteKind::Deck),
+        path: path.clone(),
+    });
+    let text = told(&window);
+    let crash = folder.path().join("crash.k");
+    for words in [
+        format!("written: {}; {n} thicknesses, ", path.display()),
+        "read back within".to_owned(),
+        format!("takes the place of {}", crash.display()),
+    ] {
+        assert!(text.contains(&words), "{words} is not in {text}");
+    }
+    // The row of the log still names the file alone, which it opens.
+    let row = window.state.log.latest("export").unwrap();
+    assert_eq!(row.text, format!("written: {}", path.display()));
+    window.apply(ExportCommand::Write {
+        kind: Output::Mapped(WriteKind::Include),
+        path: folder.path().join("include.k"),
+    });
+    let text = told(&window);
+    let beside = folder.path().join("include_elements.k");
+    let words = format!("written beside: {}, whose elements", beside.display());
+    assert!(text.contains(&words), "{text}");
+}
