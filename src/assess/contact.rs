@@ -187,10 +187,14 @@ impl Contacts {
         })
     }
 
-    /// Root mean square distance of the surfaces where they meet.
-    pub(super) fn typical_gap(&self) -> f64 {
+    /// Root mean square distance of the surfaces where they meet, without an offset of all of them by at
+    /// most `offset`: skin and mid-surface lie apart at the right pose too.
+    pub(super) fn typical_gap(&self, offset: f64) -> f64 {
         let weight: f64 = self.list.iter().map(|c| c.weight).sum();
-        let gaps = self.list.iter().map(|c| c.weight * c.gap * c.gap);
+        let mean = self.list.iter().map(|c| c.weight * c.gap).sum::<f64>() / weight;
+        let offset = mean.clamp(-offset, offset);
+        let square = |c: &Contact| c.weight * (c.gap - offset).powi(2);
+        let gaps = self.list.iter().map(square);
         (gaps.sum::<f64>() / weight).sqrt()
     }
 

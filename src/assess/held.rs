@@ -104,15 +104,27 @@ pub fn held_by_rims(
         .collect();
     by_rims.sort_by(|a, b| a.0.total_cmp(&b.0));
     let by_rims = pair.apart_from_each_other(by_rims);
-    let rivals: Vec<Settled> = by_rims
+    let settled: Vec<Settled> = by_rims
         .par_iter()
         .filter(|pose| pair.lies_on(pose, &result))
         .filter_map(|pose| pair.settle(pose))
-        .filter(|other| other.is_as_close_as(&result, &pair))
         .collect();
+    // A bent part may have been laid where it hardly fits: what fits best says how close is close.
+    let closest = settled
+        .iter()
+        .filter(|other| other.met >= AS_MUCH * result.met && other.gap < result.gap)
+        .min_by(|a, b| a.gap.total_cmp(&b.gap));
+    let closest = closest.copied().unwrap_or(result);
+    let is_close = |pose: &Settled| pose.is_as_close_as(&closest, &pair);
+    let rivals: Vec<Settled> = settled.into_iter().filter(is_close).collect();
+    let least = if is_close(&result) {
+        result.held + MORE_HELD
+    } else {
+        f64::NEG_INFINITY
+    };
     let best = rivals
         .iter()
-        .filter(|other| other.held > result.held + MORE_HELD)
+        .filter(|other| other.held > least)
         .max_by(|a, b| a.held.total_cmp(&b.held));
     let winner = best.copied().unwrap_or(result);
     let exactly = Settling::new([source, target], found.scale, settings, MAX_NODES);
@@ -292,7 +304,7 @@ impl<'a> Pair<'a> {
         let pair = [self.source, self.target];
         let mut contacts = ContactSearch::new(pair, pose.scale, self.near, N_NODES);
         let contacts = contacts.at(pose)?;
-        Some((contacts.share, contacts.typical_gap()))
+        Some((contacts.share, contacts.typical_gap(self.remainder)))
     }
 
     /// The result and poses of other families whose surfaces lie as close: turned over, or turned round;

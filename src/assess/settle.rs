@@ -16,7 +16,8 @@ const STILL: f64 = 0.02;
 const RIM_SHARE: f64 = 0.015;
 /// Rims must lie beside each other along this share of the smaller part's.
 const LEAST_PAIRED: f64 = 0.3;
-/// The misfit of the rims must shrink at least to this share.
+/// The misfit of the rims must shrink at least to this share, or the distance of the surfaces while no fewer
+/// rims lie beside each other: those of a bent part fit nowhere.
 const BETTER: f64 = 0.7;
 /// The surfaces may come to lie apart by so many times as much …
 const AS_CLOSE: f64 = 1.5;
@@ -25,7 +26,7 @@ const LITTLE_GAP: f64 = 0.5;
 
 /// The pose moved so that surfaces, borders and holes fit together; `None` where that would move it by
 /// no more than the rims are cut into facets, where the rims do not say where the part belongs (parts
-/// that are trimmed differently), or where they fit no better. O(steps · nodes · log triangles).
+/// that are trimmed differently), or where neither they nor the surfaces fit better. O(steps · nodes · log triangles).
 pub fn settled(
     source: &Surface,
     target: &Surface,
@@ -87,7 +88,7 @@ impl<'a> Settling<'a> {
         let corners = source.mesh().aabb().corners();
         let mut contacts = ContactSearch::new(self.surfaces, pose.scale, reach, self.max_nodes);
         let mut moved = *pose;
-        let (mut first_misfit, mut first_gap) = (None, None);
+        let (mut first_misfit, mut first_gap, mut first_share) = (None, None, None);
         let mut is_still = false;
         for step in 0..=STEPS {
             let contacts = contacts.at(&moved)?;
@@ -98,12 +99,14 @@ impl<'a> Settling<'a> {
             let facets = rims.unremarkable();
             let misfit = misfit(&rims);
             let first = *first_misfit.get_or_insert(misfit);
-            let gap = contacts.typical_gap();
+            let gap = contacts.typical_gap(tolerance.remainder);
             let first_gap = *first_gap.get_or_insert(gap);
+            let first_share = *first_share.get_or_insert(rims.share());
             if step == STEPS || is_still {
                 let most = AS_CLOSE * first_gap + noise + LITTLE_GAP * tolerance.remainder;
                 let fits = misfit < tolerance.remainder + facets && gap < most;
-                return (fits && misfit < BETTER * first).then_some(moved);
+                let is_closer = gap < BETTER * first_gap && rims.share() >= first_share;
+                return (fits && misfit < BETTER * first || is_closer).then_some(moved);
             }
             let evidence = ShapeEvidence {
                 source,

@@ -4,10 +4,11 @@ use shapematch::assess::*;
 use shapematch::geometry::{Point3, Pose, Similarity, TriMesh, Vector3};
 use shapematch::monitor::Monitor;
 use shapematch::registration::*;
+use shapematch::samples::disturb;
 use shapematch::text::Lengths;
 use shapematch::units::LengthUnit;
 
-use super::drawn_pan::{everywhere, pan, placement};
+use super::drawn_pan::{everywhere, pan, placement, worst_node};
 
 /// An n × n grid over the unit square, mapped by `place`.
 fn sheet(n: u32, place: impl Fn(f64, f64) -> Point3) -> TriMesh {
@@ -267,4 +268,53 @@ fn every_reason_has_words_a_weight_and_comes_back_from_text() {
     assert!(words.contains("0.500 mm") && words.contains("0.123 mm"));
     let stored = r#"{"kind":"shape","difference":{"what":"bent","by":0.5,"limit":0.1234}}"#;
     assert_eq!(serde_json::to_string(&differ).unwrap(), stored);
+}
+
+/// A wheel arch: a strip of 150° about an axis with a step across it, n × n cells.
+fn arch(n: u32, phase: f64) -> TriMesh {
+    sheet(n, |u, v| {
+        let angle = 2.6 * u + 0.2;
+        let step = ((v - 0.5) / 0.15).clamp(0.0, 1.0);
+        let step = 80.0 * step * step * (3.0 - 2.0 * step);
+        let radius = 320.0 * (1.0 + 0.06 * (1.7 * angle + phase).sin()) + step;
+        let along = 90.0 * (v + 0.3 * u);
+        Point3::new(radius * angle.cos(), radius * angle.sin(), along)
+    })
+}
+
+#[test]
+fn skin_on_mid_surface_does_not_turn_an_arch_off_its_rims() {
+    for phase in [0.0, 4.0] {
+        let target = arch(60, phase);
+        for offset in [-1.0, 1.0] {
+            let error = error_of(&arch(71, phase), &target, offset);
+            assert!(
+                error < 0.5,
+                "phase {phase}, offset {offset}: {error:.2} mm off"
+            );
+        }
+    }
+}
+
+/// How far a part is off at worst that is laid on another one after an offset.
+fn error_of(part: &TriMesh, target: &TriMesh, offset: f64) -> f64 {
+    let truth = placement(4);
+    let stamped = disturb::offset(part, offset).transformed(&truth.inverse());
+    let surface = |mesh: &TriMesh, name| Surface::new(mesh, name).unwrap();
+    let (source, target) = (surface(&stamped, "source"), surface(target, "target"));
+    let input = MatchInput {
+        source: &source,
+        target: &target,
+        reduced: None,
+    };
+    let outcome = match_surfaces(&input, &MatchSettings::default(), &Monitor::silent()).unwrap();
+    let settings = AssessSettings {
+        thickness: Some(1.0),
+        ..AssessSettings::default()
+    };
+    let held = held_by_rims(&source, &target, &outcome, &settings);
+    let pose = held.map(|held| held.target_from_source);
+    let pose = pose.or_else(|| settled(&source, &target, &outcome.target_from_source, &settings));
+    let pose = pose.unwrap_or(outcome.target_from_source);
+    worst_node(&stamped, &truth, &pose)
 }
