@@ -372,13 +372,14 @@ fn checks_name_their_picture_and_add_up_with_the_mapping() {
 }
 
 /// What the window's outputs are made from.
-fn output_input(window: &Window) -> OutputInput {
+pub(super) fn output_input(window: &Window) -> OutputInput {
     let document = &window.state.document;
     let result = document.current_mapping().unwrap();
     OutputInput {
         parts: PerRole::from_fn(|role| document.part(role).map(|p| p.loaded.to_arc())),
         mapping: Some(result.run.to_arc()),
         other: result.other.as_ref().map(|other| other.to_arc()),
+        pins: document.mapping.pins.clone(),
         ..OutputInput::default()
     }
 }

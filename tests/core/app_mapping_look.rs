@@ -3,13 +3,15 @@
 
 use shapematch::app::{Action, ColorBy, ExportCommand, HistoryCommand, MapCommand, MoveCommand};
 use shapematch::mapping::Status;
+use shapematch::monitor::Monitor;
 use shapematch::pipeline::map::WriteKind;
 use shapematch::pipeline::outputs::Output;
+use shapematch::pipeline::project::Project;
 use shapematch::role::Role;
 use shapematch::samples::SampleVariant;
 
 use super::app::{Window, write_bracket};
-use super::app_mapping::{mapped_in_full, real, thicker_deck};
+use super::app_mapping::{mapped_in_full, output_input, real, thicker_deck};
 
 /// A mapped bracket whose stamped part lacks the flanges of the crash part.
 fn mapped_without_flanges() -> (Window, tempfile::TempDir) {
@@ -125,4 +127,77 @@ fn the_message_after_writing_says_what_was_written_and_what_it_replaces() {
     let beside = folder.path().join("include_elements.k");
     let words = format!("written beside: {}, whose elements", beside.display());
     assert!(text.contains(&words), "{text}");
+}
+
+#[test]
+fn pinned_elements_are_told_in_the_report_kept_in_the_project_and_undone() {
+    let (mut window, folder) = mapped_in_full();
+    assert!(Action::PinProbe.enabled(&window.state).is_err());
+    let run = window
+        .state
+        .document
+        .current_mapping()
+        .unwrap()
+        .run
+        .to_arc();
+    let crash = window.part(Role::Crash).loaded.to_arc();
+    let id = |element: usize| crash.model.shells[run.shells[element] as usize].id;
+    let elements = [run.shells.len() / 2, 3];
+    for element in elements {
+        window.apply(MapCommand::Probe(Some(element)));
+        window.act(Action::PinProbe);
+    }
+    let pins = |window: &Window| window.state.document.mapping.pins.clone();
+    assert_eq!(pins(&window), elements.map(id));
+    // One step each; the same key takes the pin away.
+    window.act(Action::PinProbe);
+    assert_eq!(pins(&window), [id(elements[0])]);
+    window.apply(HistoryCommand::Undo);
+    assert_eq!(pins(&window), elements.map(id));
+
+    // The report has both values, distance and ids, as the probe tells them.
+    let probe = window.state.probe().unwrap();
+    let input = output_input(&window);
+    assert_eq!(input.pins, elements.map(id));
+    let page = Output::MapReport.make(&input, None, &Monitor::silent());
+    let page = String::from_utf8(page.unwrap().bytes).unwrap();
+    let (_, told) = page.split_once("Pinned elements with both values").unwrap();
+    let rows: Vec<&str> = told.split("<tr").collect();
+    let stamped_id = probe.stamped_id.unwrap().to_string();
+    for (by, [stamped, mapped]) in &probe.values {
+        if *by == ColorBy::Thinning {
+            continue;
+        }
+        let cells = [
+            probe.id.to_string(),
+            stamped_id.clone(),
+            by.label().to_owned(),
+            shapematch::text::length(*stamped),
+            shapematch::text::length(*mapped),
+        ];
+        let has_all = |row: &&str| cells.iter().all(|text| row.contains(&format!(">{text}<")));
+        assert!(rows.iter().any(has_all), "{cells:?}");
+    }
+
+    // A project keeps them, and one without them is written as ever.
+    let project = window.state.to_project(0);
+    let at = folder.path().join("work.shapematch");
+    let (again, notes) = Project::parse(&project.to_text(&at), &at).unwrap();
+    assert_eq!(
+        (again.mapping_pins, notes.len()),
+        (elements.map(id).to_vec(), 0)
+    );
+    for element in elements {
+        window.apply(MapCommand::TogglePin(id(element)));
+    }
+    assert!(
+        !window
+            .state
+            .to_project(0)
+            .to_text(&at)
+            .contains("mapping_pins")
+    );
+    let page = Output::MapReport.make(&output_input(&window), None, &Monitor::silent());
+    let page = String::from_utf8(page.unwrap().bytes).unwrap();
+    assert!(!page.contains("Pinned elements"));
 }

@@ -107,10 +107,22 @@ fn checks_are_read_whole_and_a_comparison_leaves_the_pane_as_it_is() {
     assert!(largest.rect().bottom() < SIZE.y - 4.0, "{}", largest.rect());
     run(&mut window, MapCommand::Probe(Some(7)));
     assert!((tabs(&window) - before).abs() < 0.5, "the pane has grown");
+    // It is pinned for the report, and the pin has its way out.
+    click(&mut window, "Pin the probe");
+    let pins =
+        |window: &Harness<'static, Shell>| window.state().state().document.mapping.pins.clone();
+    let id = window.state().state().probe().map(|probe| probe.id);
+    assert_eq!(pins(&window), [id.unwrap_or(0)]);
     let mut found = faults(&window);
     // A clipped row of the checks is told wider than it is drawn.
     found.retain(|fault| !fault.contains("\"largest "));
     assert!(found.is_empty(), "{}", found.join("\n"));
+    click(&mut window, "Pinned elements");
+    click(
+        &mut window,
+        &format!("Remove the pin of element {}", id.unwrap_or(0)),
+    );
+    assert!(pins(&window).is_empty());
 }
 
 #[test]

@@ -208,6 +208,8 @@ actions! {
     NextMapQuantity,
     /// Another layer of the sheet.
     NextLayer,
+    /// Pin the probed element for the report.
+    PinProbe,
     /// No longer look at one element of the mapping.
     EndProbe,
     /// The section plane.

@@ -235,16 +235,19 @@ const MAPPING: &[ActionRow] = &[
         command: |state| shown(state.with_next_layer()),
     },
     ActionRow {
+        action: Action::PinProbe,
+        label: "Pin the probe",
+        tooltip: "Put the probed element into the report of the mapping, or take it out again",
+        keys: Keys::press(&[shift('P')]),
+        enabled: is_probed,
+        command: |state| some(MapCommand::TogglePin(state.probe()?.id)),
+    },
+    ActionRow {
         action: Action::EndProbe,
         label: "End the probe",
         tooltip: "Forget the probed element of the mapping",
         keys: Keys::NONE,
-        enabled: |state| {
-            require(
-                state.probe().is_some(),
-                "No element of a mapping is probed.",
-            )
-        },
+        enabled: is_probed,
         command: |_| some(MapCommand::Probe(None)),
     },
 ];
@@ -481,6 +484,11 @@ const WINDOW: &[ActionRow] = &[
         command: |state| scaled(state, 1.0),
     },
 ];
+
+fn is_probed(state: &AppState) -> Result<(), Reason> {
+    let is_probed = state.probe().is_some();
+    require(is_probed, "No element of a mapping is probed.")
+}
 
 fn has_section(state: &AppState) -> Result<(), Reason> {
     state.document.has_any_part()?;

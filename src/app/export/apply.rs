@@ -150,6 +150,7 @@ impl Work<'_> {
                 .document
                 .current_mapping()
                 .map(|result| result.run.to_arc()),
+            pins: self.document.mapping.pins.clone(),
             other: self
                 .document
                 .current_mapping()

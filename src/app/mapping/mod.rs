@@ -39,6 +39,8 @@ pub struct Mapping {
     pub result: Option<MapResult>,
     /// The element that is looked at closely, by its place in the run.
     pub probe: Option<usize>,
+    /// Ids of the crash elements that were pinned for the report, in this order.
+    pub pins: Vec<u64>,
 }
 
 /// A mapping with the state it was made at.
@@ -65,6 +67,8 @@ pub enum MapCommand {
     MapOrCancel,
     /// Look at an element of the current mapping closely, or no longer.
     Probe(Option<usize>),
+    /// Pin an element of the crash part for the report, or take its pin away.
+    TogglePin(u64),
     /// Ask for another mapper's result, or give the running comparison up.
     AskOther,
     /// Compare the current mapping with another mapper's result.
@@ -328,6 +332,7 @@ pub(super) fn apply(work: &mut Work<'_>, command: MapCommand) -> Vec<Effect> {
         MapCommand::AskOther => return vec![Effect::AskOtherMapping],
         MapCommand::CompareWith(file) => return compare_with(work, file).into_iter().collect(),
         MapCommand::EndComparison => end_comparison(work),
+        MapCommand::TogglePin(id) => toggle_pin(work, id),
         MapCommand::Probe(element) => {
             if work.document.mapping.probe != element {
                 work.commit("Probe an element", |document| {
@@ -337,6 +342,25 @@ pub(super) fn apply(work: &mut Work<'_>, command: MapCommand) -> Vec<Effect> {
         }
     }
     Vec::new()
+}
+
+fn toggle_pin(work: &mut Work<'_>, id: u64) {
+    let pins = &work.document.mapping.pins;
+    let at = pins.iter().position(|pin| *pin == id);
+    let name = if at.is_some() {
+        "Remove a pin"
+    } else {
+        "Pin an element"
+    };
+    work.commit(name, |document| {
+        let pins = &mut document.mapping.pins;
+        match at {
+            Some(at) => {
+                pins.remove(at);
+            }
+            None => pins.push(id),
+        }
+    });
 }
 
 fn start(work: &mut Work<'_>) -> Vec<Effect> {

@@ -63,6 +63,7 @@ impl AppState {
             recipe: document.recipe.clone(),
             mapping: document.mapping.recipe.clone(),
             mapping_compared_with: document.mapping.compare_with.as_deref().map(absolute),
+            mapping_pins: document.mapping.pins.clone(),
             result: document.result.as_ref().map(|result| ResultEntry {
                 is_current: document.current_result().is_some(),
                 alternative: result.alternative,

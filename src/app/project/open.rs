@@ -85,6 +85,7 @@ impl AppState {
                 compare_with: project.mapping_compared_with.clone(),
                 result: None,
                 probe: None,
+                pins: project.mapping_pins.clone(),
             },
             pose: StampedPose {
                 crash_from_stamped: project.pose,

@@ -5,6 +5,7 @@ mod convert;
 mod default_thickness;
 mod output;
 mod peak;
+mod probe;
 mod ready;
 mod record;
 mod report;
@@ -21,6 +22,7 @@ pub use compare::{ComparisonRecord, DifferenceRecord, OtherResult, compare_with}
 pub use convert::TargetLayers;
 pub use default_thickness::DefaultThickness;
 pub use output::{MapFiles, MapOutput, WriteKind, deck_comments, elements_path, write_mapping};
+pub use probe::{ProbeRecord, ProbedValue, probe_records};
 pub use record::{DistributionRecord, MapRecord, PairRecord, element_table, map_record};
 pub use report::map_report;
 pub use unmapped::unmapped_sets;

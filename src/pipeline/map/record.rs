@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::compare::{ComparisonRecord, OtherResult, compare_with, largest_von_mises};
 use super::verdict::{CheckRecord, checks_of};
-use super::{MapFiles, MapRun, PlacedPart};
+use super::{MapFiles, MapRun, PlacedPart, ProbeRecord};
 use crate::mapping::{
     Distribution, Histogram, SourcePart, Status, distribution, histogram_distance,
 };
@@ -53,6 +53,9 @@ pub struct MapRecord {
     pub read_back_error: Option<f64>,
     /// Beside another result, if one was given.
     pub comparison: Option<ComparisonRecord>,
+    /// Elements that were pinned to be told, if any were.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub probes: Vec<ProbeRecord>,
     /// What to look at.
     pub warnings: Vec<String>,
     /// Milliseconds for the mapping without files and checks.
@@ -214,6 +217,7 @@ pub fn map_record(
         }),
         read_back_error: files.map(|files| files.read_back_error),
         comparison: other.map(|other| compare_with(run, crash, other)),
+        probes: Vec::new(),
         warnings: warnings(run, files),
         map_ms: run.map_ms,
         check_ms: run.check_ms,

@@ -2,7 +2,8 @@
 
 use super::record::{DistributionRecord, MapRecord, PairRecord, von_mises_of};
 use super::{
-    CheckReason, CheckRecord, DifferenceRecord, MapRun, OtherResult, PipelineError, ShownValue,
+    CheckReason, CheckRecord, DifferenceRecord, MapRun, OtherResult, PipelineError, ProbeRecord,
+    ProbedValue, ShownValue,
 };
 use crate::colormap::{ColorMap, ColorScale, Rgb, UNMATCHED};
 use crate::geometry::{Camera, Point3, Similarity, TriMesh};
@@ -14,7 +15,7 @@ use crate::pipeline::outputs::report_figures::{From, fitted, view_of};
 use crate::report::html::{CheckReport, Figure, MapReport, NumberRow, QuantityReport, map_figure};
 use crate::report::picture::{Paint, PictureMesh, picture};
 use crate::report::{MatrixForm, number};
-use crate::text::{grouped, length, millis, percent};
+use crate::text::{fixed, grouped, length, millis, percent};
 
 /// Pixels of a picture.
 const SIZE: [usize; 2] = [560, 380];
@@ -72,6 +73,7 @@ pub fn map_report(
             })
             .collect(),
         quantities,
+        probes: record.probes.iter().flat_map(probe_rows).collect(),
         comparison: comparison_rows(record),
         compared,
         compared_with: record
@@ -132,6 +134,35 @@ fn facts(record: &MapRecord) -> Vec<(String, String)> {
         }
     }
     facts
+}
+
+/// A row for each quantity of a probe.
+fn probe_rows(probe: &ProbeRecord) -> Vec<[String; 10]> {
+    let finite = |value: f64, text: String| {
+        if value.is_finite() {
+            text
+        } else {
+            "–".to_owned()
+        }
+    };
+    let row = |value: &ProbedValue| {
+        let difference = value.crash - value.stamped;
+        [
+            probe.element.to_string(),
+            probe
+                .stamped_element
+                .map_or_else(|| "–".to_owned(), |id| id.to_string()),
+            probe.status.label().to_owned(),
+            finite(probe.normal_distance, number(probe.normal_distance)),
+            finite(probe.angle_deg, fixed(probe.angle_deg, 1)),
+            fixed(probe.confidence, 2),
+            value.name.to_owned(),
+            finite(value.stamped, length(value.stamped)),
+            finite(value.crash, length(value.crash)),
+            finite(difference, number(difference)),
+        ]
+    };
+    probe.values.iter().map(row).collect()
 }
 
 fn comparison_rows(record: &MapRecord) -> Vec<(String, [String; 6])> {

@@ -8,7 +8,7 @@ use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::map::{
     DefaultThickness, MapFiles, MapOutput, MapRun, OtherResult, PlacedPart, WriteKind,
-    deck_comments, element_table, map_record, map_report, write_mapping,
+    deck_comments, element_table, map_record, map_report, probe_records, write_mapping,
 };
 use crate::role::PerRole;
 use crate::text::grouped;
@@ -95,7 +95,9 @@ pub(super) fn deck(
 pub(super) fn report(input: &OutputInput, monitor: &Monitor) -> Result<String, PipelineError> {
     let (run, parts) = mapped(input)?;
     let other = other(input);
-    let record = map_record(run, parts.crash, &[placed(run, parts)], None, other);
+    let placed = [placed(run, parts)];
+    let mut record = map_record(run, parts.crash, &placed, None, other);
+    record.probes = probe_records(run, parts.crash, &placed, &input.pins);
     map_report(run, &record, parts.crash, other, monitor)
 }
 

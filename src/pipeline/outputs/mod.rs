@@ -144,6 +144,8 @@ pub struct OutputInput {
     pub reduced: PerRole<Option<Arc<TriMesh>>>,
     /// The mapping of the forming results at this pose.
     pub mapping: Option<Arc<MapRun>>,
+    /// Ids of the crash elements that the report of the mapping tells of one by one.
+    pub pins: Vec<u64>,
     /// Another mapper's result that stands beside it.
     pub other: Option<Arc<OtherResult>>,
     /// The text of the log.

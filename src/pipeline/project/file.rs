@@ -159,6 +159,8 @@ pub struct Project {
     pub mapping: MapRecipe,
     /// The other mapper's file that mappings are compared with.
     pub mapping_compared_with: Option<PathBuf>,
+    /// Ids of the crash elements that the report of a mapping tells of one by one.
+    pub mapping_pins: Vec<u64>,
     /// The last match.
     pub result: Option<ResultEntry>,
     /// The tables of the last sweep.
@@ -182,6 +184,8 @@ struct Written<'a> {
     mapping: &'a MapRecipe,
     #[serde(skip_serializing_if = "Option::is_none")]
     mapping_compared_with: Option<PathBuf>,
+    #[serde(skip_serializing_if = "<[u64]>::is_empty")]
+    mapping_pins: &'a [u64],
     window: &'a Option<Value>,
     #[serde(flatten)]
     others: &'a Map<String, Value>,
@@ -303,6 +307,7 @@ impl Project {
             recipe: reader.take_or_tell("recipe").unwrap_or_default(),
             mapping: reader.take_or_tell("mapping").unwrap_or_default(),
             mapping_compared_with: reader.take_or_tell("mapping_compared_with"),
+            mapping_pins: reader.take_or_tell("mapping_pins").unwrap_or_default(),
             result: reader.take_or_tell("result"),
             sweep: reader.take_or_tell("sweep"),
             window: reader
@@ -349,6 +354,7 @@ impl Project {
                 .mapping_compared_with
                 .as_deref()
                 .map(|other| relative(other, folder_of(path))),
+            mapping_pins: &self.mapping_pins,
             window: &self.window,
             others: &self.others,
             result: &self.result,

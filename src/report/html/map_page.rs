@@ -66,6 +66,9 @@ pub struct MapReport {
     pub status_colors: Vec<(String, String)>,
     /// Thickness, plastic strain …
     pub quantities: Vec<QuantityReport>,
+    /// Pinned elements, a row for each quantity: crash and stamped element, status, distance, angle,
+    /// confidence, quantity, stamped and mapped value, difference.
+    pub probes: Vec<[String; 10]>,
     /// Another result: what each row is about, and elements, mean, RMS, 95 %, largest difference, element.
     pub comparison: Vec<(String, [String; 6])>,
     /// Both results of each quantity that was compared.
@@ -122,6 +125,9 @@ impl MapReport {
             @for (i, quantity) in self.quantities.iter().enumerate() {
                 (section(&format!("quantity-{i}"), &quantity.name, &quantity.content()))
             }
+            @if !self.probes.is_empty() {
+                (section("probes", "Probes", &self.probe_table()))
+            }
             @if !self.comparison.is_empty() {
                 (section("comparison", "Beside another result", &self.other()))
             }
@@ -175,6 +181,24 @@ impl MapReport {
                 }
             }
         }
+    }
+
+    fn probe_table(&self) -> Markup {
+        let row = |row: &[String; 10]| row.iter().map(cell).collect::<Vec<Markup>>();
+        let rows: Vec<Vec<Markup>> = self.probes.iter().map(row).collect();
+        let columns = [
+            Column::number("■ element"),
+            Column::number("▲ element"),
+            Column::text("Status"),
+            Column::number("Distance"),
+            Column::number("Angle, °"),
+            Column::number("Confidence"),
+            Column::text("Quantity"),
+            Column::number("▲ stamped"),
+            Column::number("■ mapped"),
+            Column::number("Difference"),
+        ];
+        table("Pinned elements with both values", &columns, &rows)
     }
 
     fn other(&self) -> Markup {

@@ -7,8 +7,8 @@ use egui_plot::{Line, MarkerShape, PlotPoints, Points};
 
 use super::charts;
 use crate::app::{
-    Action, AppState, ColorBy, Command, InspectCommand, MapResult, ProbeReport, ViewCommand,
-    file_names,
+    Action, AppState, ColorBy, Command, InspectCommand, MapCommand, MapResult, ProbeReport,
+    ViewCommand, file_names,
 };
 use crate::pipeline::map::{CheckRecord, ComparisonRecord, DistributionRecord, PairRecord};
 use crate::role::Role;
@@ -362,12 +362,13 @@ fn probe_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some(probe) = state.probe() else {
         caption(ui, "Probe");
         caption(ui, "Click an element of either part to see its values here");
+        pins_ui(ui, state, commands);
         return;
     };
     ui.horizontal(|ui| {
         ui.set_min_height(ROW);
-        let title = format!("Element {}", probe.id);
-        let go = ui.button(title).on_hover_text("Look there");
+        let go = ui.button(probe.id.to_string()).on_hover_text("Look there");
+        let go = go.accessible_name(format!("Element {}", probe.id));
         if go.clicked() {
             let look = InspectCommand::LookAt {
                 role: Role::Crash,
@@ -376,11 +377,19 @@ fn probe_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             };
             commands.push(look.into());
         }
-        ui.label(RichText::new(probe.status.label()).color(Palette::of(ui).secondary));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let end = ("×", Look::Plain, vec2(ROW, ROW));
             let button = action_button(ui, state, Action::EndProbe, end, commands);
             button.accessible_name(Action::EndProbe.row().label);
+            let is_pinned = state.document.mapping.pins.contains(&probe.id);
+            let pin = if is_pinned {
+                ("Pinned", Look::Primary, vec2(0.0, ROW))
+            } else {
+                ("Pin", Look::Plain, vec2(0.0, ROW))
+            };
+            let button = action_button(ui, state, Action::PinProbe, pin, commands);
+            button.accessible_name(Action::PinProbe.row().label);
+            pins_ui(ui, state, commands);
         });
     });
     let text = RichText::new(facts(state, &probe)).small();
@@ -397,14 +406,48 @@ fn probe_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
-/// Where the values come from, in a line.
+/// The elements that were pinned for the report: a click probes one and flies there, the cross takes it out.
+fn pins_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let pins = &state.document.mapping.pins;
+    if pins.is_empty() {
+        return;
+    }
+    let label = format!("{} ▾", grouped(pins.len()));
+    let (button, _) = egui::containers::menu::MenuButton::new(label).ui(ui, |ui| {
+        caption(ui, "Pinned for the report");
+        for &id in pins {
+            ui.horizontal(|ui| {
+                let element = state.document.mapped_element(Role::Crash, id);
+                let name = format!("Element {id}");
+                let go = ui.add_enabled(element.is_some(), egui::Button::new(name));
+                if go.clicked() {
+                    commands.push(MapCommand::Probe(element).into());
+                    if let Some(result) = state.document.current_mapping() {
+                        look_at_element(state, result, id, commands);
+                    }
+                    ui.close();
+                }
+                let remove = ui.button("×").on_hover_text("Take it out of the report");
+                let remove = remove.accessible_name(format!("Remove the pin of element {id}"));
+                if remove.clicked() {
+                    commands.push(MapCommand::TogglePin(id).into());
+                }
+            });
+        }
+    });
+    let button = button.on_hover_text("Elements that were pinned for the report");
+    button.accessible_name("Pinned elements");
+}
+
+/// What became of it and where the values come from, in a line.
 fn facts(state: &AppState, probe: &ProbeReport) -> String {
     let [distance, angle, coverage, confidence] = probe.facts;
+    let status = probe.status.label();
     let Some(stamped) = probe.stamped_id else {
-        return "no stamped element gave it values".to_owned();
+        return format!("{status} · no stamped element gave it values");
     };
     format!(
-        "from ▲ {stamped} · {} · {angle:.0}° · {} covered · confidence {confidence:.2}",
+        "{status} from ▲ {stamped} · {} · {angle:.0}° · {} covered · confidence {confidence:.2}",
         state.lengths().signed_of(distance),
         percent(coverage),
     )
