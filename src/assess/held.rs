@@ -118,7 +118,7 @@ pub fn held_by_rims(
     let is_close = |pose: &Settled| pose.is_as_close_as(&closest, &pair);
     let rivals: Vec<Settled> = settled.into_iter().filter(is_close).collect();
     let least = if is_close(&result) {
-        result.held + MORE_HELD
+        result.held + result.grain.max(MORE_HELD)
     } else {
         f64::NEG_INFINITY
     };
@@ -164,9 +164,7 @@ pub fn hand_by_rims(
         .max_by(|a, b| a.held.total_cmp(&b.held))?;
     let fits_as_well = result.gap <= AS_CLOSE * opposite.gap;
     let behind = result.held - opposite.held;
-    // Nodes along the rims differ, so that two poses of one quality never hold quite the same share.
-    let behind = behind.signum() * (behind.abs() - SAME_SHARE).max(0.0);
-    let ratio = ratio_by_rims(behind, 0.0);
+    let ratio = ratio_by_rims(apart(behind, SAME_SHARE));
     // Rims that fit neither hand are a hint and no more.
     let least = if opposite.held < SURELY_HELD {
         HINT
@@ -182,9 +180,15 @@ fn free_limit(source: &Surface, target: &Surface, settings: &AssessSettings) -> 
     overlap_limit(source, target, settings.allowance).max(springback)
 }
 
-/// How much worse the second of two poses is by the share of the rims that lies where it belongs.
-fn ratio_by_rims(best: f64, other: f64) -> f64 {
-    let behind = (best - other) / TWICE_AS_BAD;
+/// A difference of shares without what says nothing: places along the rims differ, so that two poses of one
+/// quality never hold quite the same share.
+fn apart(difference: f64, nothing: f64) -> f64 {
+    difference.signum() * (difference.abs() - nothing).max(0.0)
+}
+
+/// How much worse a pose is of whose rims so much less lies where it belongs.
+fn ratio_by_rims(behind: f64) -> f64 {
+    let behind = behind / TWICE_AS_BAD;
     if behind >= 0.0 {
         1.0 + behind
     } else {
@@ -215,6 +219,8 @@ struct Settled {
     /// Share of the smaller part's rims that lies where it belongs, less that of holes where the other
     /// part is solid.
     held: f64,
+    /// Share of the rims that one place of them stands for: `held` is no finer.
+    grain: f64,
     /// Share of the smaller part that meets the other.
     met: f64,
     /// How far the surfaces lie apart there, root mean square.
@@ -281,9 +287,11 @@ impl<'a> Pair<'a> {
     /// How well a pose fits.
     fn measured(&self, pose: Similarity) -> Option<Settled> {
         let (met, gap) = self.surfaces_met(&pose)?;
+        let (held, grain) = self.rims_held(&pose);
         Some(Settled {
             pose,
-            held: self.rims_held(&pose),
+            held,
+            grain,
             met,
             gap,
         })
@@ -354,23 +362,27 @@ impl<'a> Pair<'a> {
         (share * mean_sq + alone * self.near * self.near).sqrt()
     }
 
-    /// Share of the smaller part's rims that lies within the tolerance of a rim of the other part, less
-    /// for what lies farther from it; holes where the other part is solid count against the pose.
-    fn rims_held(&self, pose: &Similarity) -> f64 {
+    /// Share of the smaller part's rims that lies within the tolerance of a like rim of the other part, less
+    /// for what lies farther from it; holes where the other part is solid count against the pose. With it the
+    /// share that a single place of the rims stands for.
+    fn rims_held(&self, pose: &Similarity) -> (f64, f64) {
         let rims = self.rims.at(pose);
         let within = 2.0 * (self.remainder + rims.unremarkable());
-        let (mut held, mut paired) = (0.0, 0.0);
+        let (mut held, mut paired, mut largest) = (0.0, 0.0, 0.0_f64);
         for pair in rims.pairs() {
+            largest = largest.max(pair.weight);
             let ratio = pair.gap / within;
-            held += pair.weight * (1.0 - ratio * ratio).max(0.0);
+            if pair.is_of_one_kind {
+                held += pair.weight * (1.0 - ratio * ratio).max(0.0);
+            }
             paired += pair.weight;
         }
-        let share = if paired > 0.0 {
-            rims.share().min(1.0) * held / paired
+        let of_all = if paired > 0.0 {
+            rims.share().min(1.0) / paired
         } else {
             0.0
         };
-        share - rims.missing_share()
+        (of_all * held - rims.missing_share(), of_all * largest)
     }
 
     /// The other poses with what their rims say of them.
@@ -391,7 +403,8 @@ impl<'a> Pair<'a> {
             |other: &Alternative| !same_pose(&other.target_from_source, &winner.pose, &part);
         let is_replaced = winner.held > result.held;
         let with_rims = |other: &Alternative| {
-            let ratio = ratio_by_rims(winner.held, self.rims_held(&other.target_from_source));
+            let (held, grain) = self.rims_held(&other.target_from_source);
+            let ratio = ratio_by_rims(apart(winner.held - held, grain.max(winner.grain)));
             Alternative {
                 score_ratio: other.score_ratio.max(ratio),
                 ..*other

@@ -33,6 +33,9 @@ pub(super) struct RimPair {
     pub(super) gap: f64,
     /// Area that it stands for: length times an edge.
     pub(super) weight: f64,
+    /// True for two rims of holes, or two of the outline: a cut may run along a hole of the other part by
+    /// chance.
+    pub(super) is_of_one_kind: bool,
 }
 
 /// A hole in the target's frame.
@@ -229,6 +232,7 @@ impl RimPlaces {
                 point: beside.point,
                 across,
                 weight: self.step * unit,
+                is_of_one_kind: place.is_hole == beside.is_hole,
             })
         };
         self.own.iter().filter_map(pair).collect()
@@ -369,6 +373,7 @@ pub(super) struct Place {
     pub(super) tangent: Vector3,
     /// Of the sheet.
     pub(super) normal: Vector3,
+    is_hole: bool,
 }
 
 /// About `n` places in the target's frame along those rims of a part that are wanted: of holes or of
@@ -398,6 +403,7 @@ impl Place {
             point: pose.apply(&self.point),
             tangent: pose.rotate(&self.tangent) * sense,
             normal: pose.rotate(&self.normal),
+            ..self
         }
     }
 }
@@ -417,6 +423,7 @@ fn along(rims: &[Rim], spacing: f64) -> Vec<Place> {
                     point: a + (b - a) * t,
                     tangent: (b - a) / length,
                     normal: rim.normals[i],
+                    is_hole: rim.is_hole,
                 });
                 at += spacing;
             }

@@ -73,7 +73,7 @@ impl Design {
     }
 
     /// A closed trim through die-plane corners with the holes that lie well inside.
-    fn trim(&self, corners: &[Corner], holes: &[Path]) -> Trim {
+    pub(super) fn trim(&self, corners: &[Corner], holes: &[Path]) -> Trim {
         let unrolled = |&(x, y, r): &Corner| {
             let (u, v) = (unroll(&self.sheet.spine, x), unroll(&self.sheet.section, y));
             (u, v, r)

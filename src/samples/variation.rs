@@ -120,7 +120,7 @@ impl Design {
             n_stamped_triangles: None,
             ..self.clone()
         };
-        varied.holes = self.holes_with(&change, random, spread);
+        varied.holes = self.holes_with(&varied, &change, random, spread);
         varied
     }
 
@@ -151,7 +151,14 @@ impl Design {
     }
 
     /// Holes where they belong, a little shifted and of another size, unless two would come too near.
-    fn holes_with(&self, change: &Change<'_>, random: &mut Random, spread: f64) -> Vec<Path> {
+    /// The holes of this design on `varied`, which has all else.
+    fn holes_with(
+        &self,
+        varied: &Self,
+        change: &Change<'_>,
+        random: &mut Random,
+        spread: f64,
+    ) -> Vec<Path> {
         let shared = factor(random, spread);
         let mut made: Vec<Path> = Vec::with_capacity(self.holes.len());
         for hole in &self.holes {
@@ -164,7 +171,7 @@ impl Design {
             let middle = hole.middle();
             let is_central = change.old.is_turned && middle.coords.norm() < 1.0;
             let at = Flat::new(change.u(middle.x), change.v(middle.y));
-            let place = |shift: [f64; 2]| {
+            let place = |shift: [f64; 2], size: f64| {
                 hole.remade(|&(x, y, r)| {
                     let (x, y) = ((x - middle.x) * size, (y - middle.y) * size);
                     (at.x + shift[0] + x, at.y + shift[1] + y, r * size)
@@ -175,12 +182,21 @@ impl Design {
                 made.iter()
                     .all(|other| nodes.iter().all(|p| other.distance(p) > 6.0))
             };
-            let moved = place(if is_central { [0.0; 2] } else { shift });
-            let plain = place([0.0; 2]);
-            if is_free(&moved) {
-                made.push(moved);
-            } else if is_free(&plain) {
-                made.push(plain);
+            let is_within = |hole: &Path| {
+                let trim = varied.trim(&varied.outline, std::slice::from_ref(hole));
+                !trim.holes.is_empty()
+            };
+            let still = [0.0; 2];
+            let tried = [
+                place(if is_central { still } else { shift }, size),
+                place(still, size),
+                place(still, 1.0),
+            ];
+            // A hole too near the outline would be left out, and with it what tells a round part's turn.
+            let mut free = tried.iter().filter(|hole| is_free(hole));
+            let found = free.clone().find(|hole| is_within(hole));
+            if let Some(hole) = found.or_else(|| free.next()) {
+                made.push(hole.clone());
             }
         }
         made
@@ -191,6 +207,19 @@ impl Design {
 mod tests {
     use super::super::{SamplePart, SampleSettings, generate};
     use super::*;
+
+    #[test]
+    fn no_hole_is_lost_beside_the_outline() {
+        for part in SamplePart::ALL {
+            let own = Design::of(part);
+            let n_pierced =
+                |design: &Design| design.trim(&design.outline, &design.holes).holes.len();
+            for seed in (0..40).chain([61_000]) {
+                let varied = own.varied(&SampleShape { seed, spread: 0.1 });
+                assert_eq!(n_pierced(&varied), n_pierced(&own), "{part:?} {seed}");
+            }
+        }
+    }
 
     #[test]
     fn every_part_has_other_dimensions_and_the_same_holes() {
