@@ -174,6 +174,7 @@ fn pinned_elements_are_told_in_the_report_kept_in_the_project_and_undone() {
             by.label().to_owned(),
             shapematch::text::length(*stamped),
             shapematch::text::length(*mapped),
+            shapematch::text::signed(*mapped - *stamped),
         ];
         let has_all = |row: &&str| cells.iter().all(|text| row.contains(&format!(">{text}<")));
         assert!(rows.iter().any(has_all), "{cells:?}");

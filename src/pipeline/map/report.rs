@@ -12,10 +12,10 @@ use crate::monitor::Monitor;
 use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::outputs::report_figures::{From, fitted, view_of};
+use crate::report::MatrixForm;
 use crate::report::html::{CheckReport, Figure, MapReport, NumberRow, QuantityReport, map_figure};
 use crate::report::picture::{Paint, PictureMesh, picture};
-use crate::report::{MatrixForm, number};
-use crate::text::{fixed, grouped, length, millis, percent};
+use crate::text::{fixed, grouped, length, millis, percent, signed};
 
 /// Pixels of a picture.
 const SIZE: [usize; 2] = [560, 380];
@@ -153,13 +153,13 @@ fn probe_rows(probe: &ProbeRecord) -> Vec<[String; 10]> {
                 .stamped_element
                 .map_or_else(|| "–".to_owned(), |id| id.to_string()),
             probe.status.label().to_owned(),
-            finite(probe.normal_distance, number(probe.normal_distance)),
+            finite(probe.normal_distance, signed(probe.normal_distance)),
             finite(probe.angle_deg, fixed(probe.angle_deg, 1)),
             fixed(probe.confidence, 2),
             value.name.to_owned(),
             finite(value.stamped, length(value.stamped)),
             finite(value.crash, length(value.crash)),
-            finite(difference, number(difference)),
+            finite(difference, signed(difference)),
         ]
     };
     probe.values.iter().map(row).collect()
@@ -173,7 +173,7 @@ fn comparison_rows(record: &MapRecord) -> Vec<(String, [String; 6])> {
         let found = found?;
         let cells = [
             grouped(found.n_elements),
-            number(found.mean),
+            signed(found.mean),
             length(found.rms),
             length(found.p95),
             length(found.max),
