@@ -23,8 +23,12 @@ pub(super) fn real(kind: JobKind) -> Result<JobOutput, String> {
 
 /// A window with a generated bracket at its known pose.
 fn at_the_known_pose() -> (Window, tempfile::TempDir) {
+    at_the_known_pose_of(SampleVariant::Plain)
+}
+
+pub(super) fn at_the_known_pose_of(variant: SampleVariant) -> (Window, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
-    let pair = write_bracket(folder.path(), SampleVariant::Plain);
+    let pair = write_bracket(folder.path(), variant);
     let mut window = Window::new();
     window.runner = Some(real);
     for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {

@@ -1,7 +1,7 @@
 //! Looking at a mapping without a window: what is shown where a picture is not there, lists of elements, and
 //! what is told after writing.
 
-use shapematch::app::{Action, ColorBy, ExportCommand, HistoryCommand, MapCommand, MoveCommand};
+use shapematch::app::{Action, ColorBy, ExportCommand, HistoryCommand, MapCommand};
 use shapematch::mapping::Status;
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::map::WriteKind;
@@ -10,22 +10,12 @@ use shapematch::pipeline::project::Project;
 use shapematch::role::Role;
 use shapematch::samples::SampleVariant;
 
-use super::app::{Window, write_bracket};
-use super::app_mapping::{mapped_in_full, output_input, real, thicker_deck};
+use super::app::Window;
+use super::app_mapping::{at_the_known_pose_of, mapped_in_full, output_input, thicker_deck};
 
 /// A mapped bracket whose stamped part lacks the flanges of the crash part.
 fn mapped_without_flanges() -> (Window, tempfile::TempDir) {
-    let folder = tempfile::tempdir().unwrap();
-    let pair = write_bracket(folder.path(), SampleVariant::MissingFlanges);
-    let mut window = Window::new();
-    window.runner = Some(real);
-    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
-        window.open(folder.path().join(name).to_str().unwrap(), role);
-    }
-    window.apply(MoveCommand::SetPose {
-        crash_from_stamped: pair.crash_from_stamped,
-        name: "Known pose".to_owned(),
-    });
+    let (mut window, folder) = at_the_known_pose_of(SampleVariant::MissingFlanges);
     window.act(Action::MapOrCancel);
     assert!(window.state.document.current_mapping().is_some());
     (window, folder)

@@ -1,5 +1,4 @@
-//! Which picture of a mapping is shown: values, difference, distance, angle, confidence, status;
-//! of which
+//! Which picture of a mapping is shown: values, difference, distance, angle, confidence, status; of which
 //! quantity and which layer.
 
 use serde::{Deserialize, Serialize};

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 use super::candidate::{Candidate, DataChoice, Pairing};
-use super::rounds::{look_closer, ranking, refine, resembles, run_coarse, run_every_start};
+use super::rounds::{Depth, ranking, refine, resembles, run_coarse, run_every_start};
 use super::score::{PoseScorer, TwoSided};
 use super::sizes::{
     incompatible_settings, last_stage_swaps, natural_data_side, sizes_incompatible,
@@ -285,13 +285,27 @@ impl<'a> MultiStart<'a> {
         self.timings.coarse += begin.elapsed();
         let begin = Instant::now();
         if !resembles(choice, &candidates) {
-            look_closer(choice, &mut candidates, N_DISTINCT, settings, monitor)?;
+            refine(
+                Depth::Look,
+                choice,
+                &mut candidates,
+                N_DISTINCT,
+                settings,
+                monitor,
+            )?;
             if let Some(&best) = ranking(&candidates).first() {
                 choice.expect_as(&candidates[best].run);
             }
         }
         if resembles(choice, &candidates) {
-            refine(choice, &mut candidates, N_DISTINCT, settings, monitor)?;
+            refine(
+                Depth::Whole,
+                choice,
+                &mut candidates,
+                N_DISTINCT,
+                settings,
+                monitor,
+            )?;
         }
         self.timings.refine += begin.elapsed();
         done.extend(candidates);
@@ -375,10 +389,17 @@ impl<'a> MultiStart<'a> {
             return Ok(coarse);
         }
         if !resembles(choice, &images) {
-            look_closer(choice, &mut images, 1, &self.settings, monitor)?;
+            refine(Depth::Look, choice, &mut images, 1, &self.settings, monitor)?;
         }
         if resembles(choice, &images) {
-            refine(choice, &mut images, 1, &self.settings, monitor)?;
+            refine(
+                Depth::Whole,
+                choice,
+                &mut images,
+                1,
+                &self.settings,
+                monitor,
+            )?;
         }
         Ok(best(&images))
     }

@@ -136,48 +136,19 @@ pub(crate) fn resembles(choice: &DataChoice<'_>, candidates: &[Candidate]) -> bo
     best.is_none_or(|best| choice.resembles(&candidates[best].run))
 }
 
-/// Runs the best `n_distinct` candidates on more points of the fine meshes; the rest is dropped.
+/// How far candidates are refined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Depth {
+    /// On the few points of the coarse stage: where no candidate resembles the model this tells whether a right
+    /// pose is among them that the coarse stage did not reach, and of different parts no more is worth knowing.
+    Look,
+    /// On more points, to the end.
+    Whole,
+}
+
+/// Runs the best `n_distinct` candidates on the fine meshes; the rest is dropped.
 pub(crate) fn refine(
-    choice: &DataChoice<'_>,
-    candidates: &mut [Candidate],
-    n_distinct: usize,
-    settings: &MatchSettings,
-    monitor: &MatchMonitor<'_>,
-) -> Result<(), Cancelled> {
-    let effort = Effort {
-        n_points: settings.n_refine_points,
-        n_iterations: usize::MAX,
-    };
-    refine_with(effort, choice, candidates, n_distinct, settings, monitor)
-}
-
-/// Refines on the few points of the coarse stage: where no candidate resembles the model this tells whether
-/// a right pose is among them that the coarse stage did not reach, and of different parts no more is
-/// worth knowing.
-pub(crate) fn look_closer(
-    choice: &DataChoice<'_>,
-    candidates: &mut [Candidate],
-    n_distinct: usize,
-    settings: &MatchSettings,
-    monitor: &MatchMonitor<'_>,
-) -> Result<(), Cancelled> {
-    let effort = Effort {
-        n_points: settings.n_coarse_points,
-        n_iterations: LOOK_ITERATIONS,
-    };
-    refine_with(effort, choice, candidates, n_distinct, settings, monitor)
-}
-
-/// What a refinement may cost.
-#[derive(Clone, Copy)]
-struct Effort {
-    n_points: usize,
-    /// At most so many, and no more than the rules of the stage allow.
-    n_iterations: usize,
-}
-
-fn refine_with(
-    effort: Effort,
+    depth: Depth,
     choice: &DataChoice<'_>,
     candidates: &mut [Candidate],
     n_distinct: usize,
@@ -192,8 +163,12 @@ fn refine_with(
         after,
     };
     prune(choice, candidates, cut(n_coarse), monitor);
-    let points = BothSigns::new(Data::new(subsample(data, effort.n_points)));
     let rules = choice.rules(Stage::Refine, settings, choice.fine);
+    let (n_points, most) = match depth {
+        Depth::Look => (settings.n_coarse_points, LOOK_ITERATIONS),
+        Depth::Whole => (settings.n_refine_points, rules.max_iterations),
+    };
+    let points = BothSigns::new(Data::new(subsample(data, n_points)));
     let input = RoundInput {
         points: &points,
         model,
@@ -201,7 +176,7 @@ fn refine_with(
         grid: None,
     };
     enter_stage(candidates, input, monitor);
-    let most = effort.n_iterations.min(rules.max_iterations);
+    let most = most.min(rules.max_iterations);
     let first = PRUNE_AFTER.min(most);
     for n_iterations in [first, most - first] {
         advance_all(choice, candidates, input, n_iterations, monitor)?;
