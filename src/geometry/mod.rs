@@ -16,6 +16,7 @@ mod similarity;
 pub mod tensor;
 mod topology;
 mod weld;
+mod z_order;
 
 pub use aabb::Aabb;
 pub use borders::Border;
@@ -33,6 +34,7 @@ pub use section::{
 pub use similarity::{MatrixError, Similarity};
 pub use topology::{BorderLoop, Topology, orient_consistently};
 pub use weld::{Welded, weld};
+pub use z_order::z_order;
 
 /// A position in space.
 pub type Point3 = nalgebra::Point3<f64>;

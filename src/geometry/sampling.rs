@@ -1,5 +1,6 @@
 //! Points spread evenly over a surface.
 
+use super::z_order::{LAST_CELL, z_code};
 use super::{Aabb, Point3, TriMesh, Vector3};
 
 /// A point on a surface that stands for a piece of its area.
@@ -71,30 +72,18 @@ fn place([a, b, c]: &[Point3; 3], u: f64, v: f64) -> Point3 {
 
 /// Triangle indices in the order of their centres along a Z-order curve.
 fn along_z_curve(mesh: &TriMesh) -> Vec<u32> {
-    const CELLS: f64 = 1023.0;
     let Aabb { min, .. } = mesh.aabb();
     let extent = mesh.aabb().extents().max().max(f64::MIN_POSITIVE);
     let code = |t: usize| -> u32 {
         let [a, b, c] = mesh.corners(t);
         let center = (a - min + (b - min) + (c - min)) / (3.0 * extent);
-        (0..3).fold(0, |code, axis| {
-            code | spread_bits((center[axis] * CELLS) as u32) << axis
-        })
+        z_code(&(center * LAST_CELL))
     };
     let mut keys: Vec<u64> = (0..mesh.n_triangles())
         .map(|t| u64::from(code(t)) << 32 | t as u64)
         .collect();
     keys.sort_unstable();
     keys.into_iter().map(|key| key as u32).collect()
-}
-
-/// Puts two zero bits between the ten bits of a number.
-fn spread_bits(number: u32) -> u32 {
-    let mut x = number & 0x3ff;
-    x = (x | x << 16) & 0x0300_00ff;
-    x = (x | x << 8) & 0x0300_f00f;
-    x = (x | x << 4) & 0x030c_30c3;
-    (x | x << 2) & 0x0924_9249
 }
 
 /// A number in 0 … 1 that depends on seed and index alone (splitmix64, Steele et al. 2014).

@@ -1,14 +1,12 @@
 //! One target element: its points, their partners, and the values they give.
 
-use std::ops::Range;
-
 use super::blend::Blend;
 use super::field::Fields;
 use super::gather::{Centre, Group, Search, Trail, gauge_of};
 use super::options::{MapMethod, MapOptions, Status};
 use super::points::PointRules;
 use super::source::{PartnerFilter, PreparedSource};
-use super::target::{ElementReport, Partner, TargetPart};
+use super::target::{ElementReport, MappedLayers, Partner, TargetPart};
 use super::uniqueness::AMBIGUOUS_RATIO;
 
 /// Corners closer than this share of the element's size are the same.
@@ -33,10 +31,8 @@ pub(super) struct Buffers {
     pub reports: Vec<ElementReport>,
     pub limits: Vec<Limits>,
     pub thickness: Vec<f64>,
-    pub states: Vec<[f64; 7]>,
-    pub n_states: Vec<u32>,
-    pub strains: Vec<[f64; 6]>,
-    pub n_strains: Vec<u32>,
+    pub states: MappedLayers<7>,
+    pub strains: MappedLayers<6>,
 }
 
 /// What the confidence of an element is made of besides its report.
@@ -67,9 +63,9 @@ pub(super) struct Scratch {
 }
 
 impl Context<'_> {
-    /// Maps elements that follow each other: first all partners, then the fields around these, then
+    /// Maps elements that lie near each other: first all partners, then the fields around these, then
     /// the values.
-    pub fn map_elements(&self, elements: Range<usize>, scratch: &mut Scratch) -> Buffers {
+    pub fn map_elements(&self, elements: &[u32], scratch: &mut Scratch) -> Buffers {
         let mut out = Buffers::default();
         let Scratch {
             search,
@@ -83,12 +79,13 @@ impl Context<'_> {
         search
             .trails
             .resize_with(self.sources.len(), Trail::default);
-        for element in elements.clone() {
-            self.find_partners(element, search, partners, &mut out);
+        for &element in elements {
+            self.find_partners(element as usize, search, partners, &mut out);
         }
-        self.load_fields(elements.clone(), partners, fields);
+        self.load_fields(elements, partners, fields);
         let mut first = 0;
-        for (at, element) in elements.enumerate() {
+        for (at, &element) in elements.iter().enumerate() {
+            let element = element as usize;
             let groups = &partners.groups[first..partners.ends[at]];
             first = partners.ends[at];
             if out.reports[at].status.has_values() {
@@ -104,10 +101,11 @@ impl Context<'_> {
                 let report = &mut out.reports[at];
                 report.status = Status::NoData;
                 report.partner = None;
+            } else {
+                out.thickness.push(f64::NAN);
+                out.states.push(&[]);
+                out.strains.push(&[]);
             }
-            out.thickness.push(f64::NAN);
-            out.n_states.push(0);
-            out.n_strains.push(0);
         }
         out
     }
@@ -126,22 +124,17 @@ impl Context<'_> {
     }
 
     /// Fits the fields that the elements need, each once.
-    fn load_fields(
-        &self,
-        elements: Range<usize>,
-        partners: &Partners,
-        fields: &mut Vec<Option<Fields>>,
-    ) {
+    fn load_fields(&self, elements: &[u32], partners: &Partners, fields: &mut Vec<Option<Fields>>) {
         let n_rules = self.target.rules.len();
         fields.resize_with(self.sources.len() * n_rules, || None);
-        let rule_of = &self.target.rule_of[elements];
-        let mut rules: Vec<usize> = rule_of.iter().map(|&rule| rule as usize).collect();
+        let rule_at = |at: usize| self.target.rule_of[elements[at] as usize] as usize;
+        let mut rules: Vec<usize> = (0..elements.len()).map(rule_at).collect();
         rules.sort_unstable();
         rules.dedup();
         for (source, prepared) in self.sources.iter().enumerate() {
             for &rule in &rules {
                 let strain_rule = if self.strains_at_surfaces { 0 } else { rule };
-                let own = (0..rule_of.len()).filter(|&at| rule_of[at] as usize == rule);
+                let own = (0..elements.len()).filter(|&at| rule_at(at) == rule);
                 let groups = own.flat_map(|at| {
                     let first = at.checked_sub(1).map_or(0, |before| partners.ends[before]);
                     &partners.groups[first..partners.ends[at]]
@@ -351,31 +344,28 @@ impl Context<'_> {
         })
     }
 
-    /// Appends the element's values; false, and nothing appended, if its partners have none.
+    /// Appends the element's values; false if its partners have none.
     fn push_values(&self, element: usize, blend: &Blend<'_>, out: &mut Buffers) -> bool {
         let thickness = blend.thickness();
-        let layers = self.target.rules[self.target.rule_of[element] as usize].len();
-        let (first_state, first_strain) = (out.states.len(), out.strains.len());
-        blend.states(layers, &mut out.states);
-        let quantities = self.options.quantities;
-        for value in &mut out.states[first_state..] {
-            if !quantities.stress {
-                value[..6].fill(0.0);
-            }
-            if !quantities.plastic_strain {
-                value[6] = 0.0;
-            }
-        }
-        let strain_layers = if self.strains_at_surfaces { 2 } else { layers };
-        blend.strains(strain_layers, &mut out.strains);
-        let n_states = out.states.len() - first_state;
-        let n_strains = out.strains.len() - first_strain;
-        if thickness.is_nan() && n_states == 0 && n_strains == 0 {
-            return false;
-        }
         out.thickness.push(thickness);
-        out.n_states.push(n_states as u32);
-        out.n_strains.push(n_strains as u32);
-        true
+        let layers = self.target.rules[self.target.rule_of[element] as usize].len();
+        let quantities = self.options.quantities;
+        out.states.push_from(|states| {
+            let first = states.len();
+            blend.states(layers, states);
+            for value in &mut states[first..] {
+                if !quantities.stress {
+                    value[..6].fill(0.0);
+                }
+                if !quantities.plastic_strain {
+                    value[6] = 0.0;
+                }
+            }
+        });
+        let strain_layers = if self.strains_at_surfaces { 2 } else { layers };
+        out.strains
+            .push_from(|strains| blend.strains(strain_layers, strains));
+        let at = out.thickness.len() - 1;
+        !thickness.is_nan() || !out.states.of(at).is_empty() || !out.strains.of(at).is_empty()
     }
 }

@@ -8,21 +8,9 @@
 //! eight products instead of thirty-six.
 
 use super::layered::{Numbers, PerElement};
-use super::patch::{Link, Patch};
+use super::patch::{Link, Patch, Spin};
 use crate::geometry::Matrix3;
 use crate::geometry::tensor::{Tensor, Turn};
-
-/// What kind of numbers a field holds, which decides how they turn and how steep they may be.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum FieldKind {
-    /// Each number by itself, kept within the range of the neighbours.
-    Scalars,
-    /// Six stress components, turned and kept below the neighbours' largest von Mises stress, and
-    /// scalars after them.
-    Stress,
-    /// Six components that are turned and not limited.
-    Strain,
-}
 
 /// The tensor at the head of some numbers.
 pub(super) fn tensor_of<const N: usize>(values: &[f64; N]) -> Tensor {
@@ -45,15 +33,14 @@ pub(super) fn from_local(local: &Tensor, out_of_frame: &Turn) -> Tensor {
 
 /// The components in a frame that is turned within the plane.
 #[inline]
-fn spun([mean, half, zz, xy, yz, zx]: Tensor, [cos, sin]: [f64; 2]) -> Tensor {
-    let (cos2, sin2) = (cos * cos - sin * sin, 2.0 * cos * sin);
+fn spun([mean, half, zz, xy, yz, zx]: Tensor, spin: &Spin) -> Tensor {
     [
         mean,
-        half * cos2 - xy * sin2,
+        half * spin.cos2 - xy * spin.sin2,
         zz,
-        half * sin2 + xy * cos2,
-        zx * sin + yz * cos,
-        zx * cos - yz * sin,
+        half * spin.sin2 + xy * spin.cos2,
+        zx * spin.sin + yz * spin.cos,
+        zx * spin.cos - yz * spin.sin,
     ]
 }
 
@@ -64,9 +51,13 @@ fn von_mises_sq([mean, half, zz, xy, yz, zx]: &Tensor) -> f64 {
 }
 
 /// A quantity at the elements of a [`Patch`] with its linear variation around the fitted ones.
+///
+/// One number is kept within the range of the neighbours. Six are a strain, which is turned and not
+/// limited. Seven are a stress, turned and kept below the neighbours' largest von Mises stress, and a
+/// number.
+#[derive(Default)]
 pub(super) struct Field<const N: usize> {
-    kind: FieldKind,
-    pub n_layers: usize,
+    n_layers: usize,
     /// Slot by slot, layer by layer; tensors in the frame of the slot.
     values: Vec<[f64; N]>,
     is_present: Vec<bool>,
@@ -74,21 +65,14 @@ pub(super) struct Field<const N: usize> {
     mises_sq: Vec<f64>,
     /// Of the fitted slots, like the values: derivatives along the two directions of the tangent plane.
     gradients: Vec<[[f64; N]; 2]>,
-    /// What the values around the element that is being fitted span, layer by layer.
-    ranges: Vec<Range<N>>,
 }
 
 impl<const N: usize> Field<N> {
-    pub fn new(kind: FieldKind) -> Self {
-        Self {
-            kind,
-            n_layers: 0,
-            values: Vec::new(),
-            is_present: Vec::new(),
-            mises_sq: Vec::new(),
-            gradients: Vec::new(),
-            ranges: Vec::new(),
-        }
+    const IS_TENSOR: bool = N >= 6;
+    const IS_STRESS: bool = N == 7;
+    /// Numbers before this one are turned, those from it on keep to the range of the neighbours.
+    const fn first_scalar() -> usize {
+        if Self::IS_TENSOR { 6 } else { 0 }
     }
 
     /// Takes the values of a patch; fields start flat.
@@ -100,7 +84,7 @@ impl<const N: usize> Field<N> {
             self.is_present.push(numbers.has(element as usize));
             let first = self.values.len();
             numbers.push(element as usize, &mut self.values);
-            if self.kind == FieldKind::Scalars {
+            if !Self::IS_TENSOR {
                 continue;
             }
             let [x, y, z] = patch.frame(slot).map(|axis| axis.transpose());
@@ -111,7 +95,7 @@ impl<const N: usize> Field<N> {
             }
         }
         self.mises_sq.clear();
-        if self.kind == FieldKind::Stress {
+        if Self::IS_STRESS {
             let squares = self.values.iter().map(|v| von_mises_sq(&tensor_of(v)));
             self.mises_sq.extend(squares);
         }
@@ -130,79 +114,53 @@ impl<const N: usize> Field<N> {
         self.values.iter_mut().for_each(change);
     }
 
-    /// Numbers before this one are turned, those from it on keep to the range of the neighbours.
-    fn first_scalar(&self) -> usize {
-        match self.kind {
-            FieldKind::Scalars => 0,
-            _ => 6.min(N),
-        }
-    }
-
     /// True if a slot and all that its fit needs have values: a neighbour without the quantity would
     /// leave the fit one-sided.
     fn may_fit(&self, slot: usize, links: &[Link]) -> bool {
         self.has(slot) && links.iter().all(|link| self.has(link.slot as usize))
     }
 
-    fn start(&mut self, slot: usize) {
-        let own = &self.values[slot * self.n_layers..][..self.n_layers];
-        self.ranges.clear();
-        for (layer, values) in own.iter().enumerate() {
-            let mises_sq = self.mises_sq.get(slot * self.n_layers + layer);
-            self.ranges.push(Range {
-                low: *values,
-                high: *values,
-                mises_sq: mises_sq.copied().unwrap_or(0.0),
-            });
+    /// Fits the gradient of each layer around a slot.
+    fn fit(&mut self, slot: usize, links: &[Link], corners: &[[f64; 2]; 4]) {
+        for layer in 0..self.n_layers {
+            let own = slot * self.n_layers + layer;
+            let (mut gradient, range) = self.around(own, layer, links);
+            limit(&self.values[own], &mut gradient, corners, &range);
+            self.gradients[own] = gradient;
         }
     }
 
+    /// The gradient of a layer at the value `own`, and what the values around span.
     #[inline]
-    fn add(&mut self, slot: usize, link: &Link) {
-        let first_scalar = self.first_scalar();
-        let n = self.n_layers;
-        let other = link.slot as usize * n;
-        for layer in 0..n {
-            let own = &self.values[slot * n + layer];
-            let mut values = self.values[other + layer];
-            if self.kind != FieldKind::Scalars {
-                let spun = spun(tensor_of(&values), link.spin);
-                values[..6].copy_from_slice(&spun);
+    fn around(&self, own: usize, layer: usize, links: &[Link]) -> ([[f64; N]; 2], Range<N>) {
+        let values = &self.values[own];
+        let mut range = Range {
+            low: *values,
+            high: *values,
+            mises_sq: self.mises_sq.get(own).copied().unwrap_or(0.0),
+        };
+        let [mut along, mut across] = [[0.0; N]; 2];
+        for link in links {
+            let at = link.slot as usize * self.n_layers + layer;
+            let mut other = self.values[at];
+            if Self::IS_TENSOR {
+                let spun = spun(tensor_of(&other), &link.spin);
+                other[..6].copy_from_slice(&spun);
             }
-            let [along, across] = &mut self.gradients[slot * n + layer];
             for i in 0..N {
-                let difference = values[i] - own[i];
+                let difference = other[i] - values[i];
                 along[i] += link.weight[0] * difference;
                 across[i] += link.weight[1] * difference;
             }
-            let range = &mut self.ranges[layer];
-            for (i, value) in values.iter().enumerate().skip(first_scalar) {
+            for (i, value) in other.iter().enumerate().skip(Self::first_scalar()) {
                 range.low[i] = range.low[i].min(*value);
                 range.high[i] = range.high[i].max(*value);
             }
-            if self.kind == FieldKind::Stress {
-                range.mises_sq = range.mises_sq.max(self.mises_sq[other + layer]);
+            if Self::IS_STRESS {
+                range.mises_sq = range.mises_sq.max(self.mises_sq[at]);
             }
         }
-    }
-
-    /// Limits the gradients (Barth and Jespersen 1989) so that the field stays within the values
-    /// around, also at the corners of the element.
-    fn limit(&mut self, slot: usize, corners: &[[f64; 2]; 4]) {
-        let first_scalar = self.first_scalar();
-        for (layer, range) in self.ranges.iter().enumerate() {
-            let at = slot * self.n_layers + layer;
-            let (own, gradient) = (&self.values[at], &mut self.gradients[at]);
-            if self.kind == FieldKind::Stress {
-                limit_stress(own, gradient, corners, range.mises_sq);
-            }
-            for i in first_scalar..N {
-                let slope = [gradient[0][i], gradient[1][i]];
-                let factor = scalar_limit(own[i], slope, corners, [range.low[i], range.high[i]]);
-                gradient[0][i] *= factor;
-                gradient[1][i] *= factor;
-            }
-        }
+        ([along, across], range)
     }
 
     /// weight · value + gradient · offset of one layer, for sums over points of an element: `offset`
@@ -237,7 +195,7 @@ pub(super) struct Fields {
 impl Fields {
     /// One number of each element, as thickness, fitted on a patch.
     pub fn of_thickness(patch: Patch, numbers: &[f64]) -> Self {
-        let mut field = Field::new(FieldKind::Scalars);
+        let mut field = Field::default();
         field.load(&PerElement(numbers), &patch);
         let mut fields = Self {
             patch,
@@ -264,14 +222,29 @@ impl Fields {
 fn fit<const N: usize>(field: &mut Option<Field<N>>, slot: usize, patch: &Patch) {
     let links = patch.links(slot);
     let field = field.as_mut().filter(|field| field.may_fit(slot, links));
-    let Some(field) = field.filter(|_| !links.is_empty()) else {
-        return;
-    };
-    field.start(slot);
-    for link in links {
-        field.add(slot, link);
+    if let Some(field) = field.filter(|_| !links.is_empty()) {
+        field.fit(slot, links, patch.corners(slot));
     }
-    field.limit(slot, patch.corners(slot));
+}
+
+/// Limits a gradient (Barth and Jespersen 1989) so that the field stays within the values around, also
+/// at the corners of the element.
+#[inline]
+fn limit<const N: usize>(
+    own: &[f64; N],
+    gradient: &mut [[f64; N]; 2],
+    corners: &[[f64; 2]; 4],
+    range: &Range<N>,
+) {
+    if Field::<N>::IS_STRESS {
+        limit_stress(own, gradient, corners, range.mises_sq);
+    }
+    for i in Field::<N>::first_scalar()..N {
+        let slope = [gradient[0][i], gradient[1][i]];
+        let factor = scalar_limit(own[i], slope, corners, [range.low[i], range.high[i]]);
+        gradient[0][i] *= factor;
+        gradient[1][i] *= factor;
+    }
 }
 
 /// Largest factor up to 1 that keeps value + factor · gradient · offset within the range.

@@ -56,10 +56,8 @@ pub(super) fn fill(mapped: &mut Mapped, target: &TargetPart, options: &MapOption
         }
     }
     if let Some(states) = states {
-        let n_values = states.iter().map(Vec::len).sum();
-        let mut all = MappedLayers::with_capacity(states.len(), n_values);
-        states.iter().for_each(|values| all.push(values));
-        mapped.states = Some(all);
+        let values = states.iter().map(Vec::as_slice);
+        mapped.states = Some(MappedLayers::of_elements(values));
     }
 }
 

@@ -43,9 +43,11 @@ pub use shells::ShellMesh;
 pub use source::SourcePart;
 pub use target::{ElementReport, Mapped, MappedLayers, Partner, TargetPart};
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use rayon::prelude::*;
 
-use crate::geometry::Similarity;
+use crate::geometry::{Similarity, z_order};
 use crate::monitor::Monitor;
 use element::{Buffers, Context, Scratch};
 use points::PointRules;
@@ -123,8 +125,10 @@ pub fn map(
         strains_at_surfaces,
         source_sizes: &source_sizes,
     };
-    let chunks = map_chunks(&context, monitor)?;
-    let mut mapped = assemble(chunks, &context);
+    // Elements that are mapped together have most of their partners in common, however they are numbered.
+    let order = z_order(target.mesh.centroids());
+    let chunks = map_chunks(&order, &context, monitor)?;
+    let mut mapped = assemble(&chunks, &order, &context);
     monitor.check()?;
     mapped.history = history::carry(sources, target, &mapped.elements, options.quantities);
     monitor.check()?;
@@ -224,45 +228,48 @@ fn sense(
     }
 }
 
-fn map_chunks(context: &Context<'_>, monitor: &Monitor) -> Result<Vec<Buffers>, MappingError> {
-    let n_elements = context.target.mesh.len();
-    let n_chunks = n_elements.div_ceil(CHUNK);
-    let done = std::sync::atomic::AtomicU64::new(0);
-    (0..n_chunks)
-        .into_par_iter()
-        .map_init(Scratch::default, |scratch, chunk| {
+fn map_chunks(
+    order: &[u32],
+    context: &Context<'_>,
+    monitor: &Monitor,
+) -> Result<Vec<Buffers>, MappingError> {
+    let n_elements = order.len() as u64;
+    let done = AtomicU64::new(0);
+    order
+        .par_chunks(CHUNK)
+        .map_init(Scratch::default, |scratch, elements| {
             monitor.check()?;
-            let elements = chunk * CHUNK..((chunk + 1) * CHUNK).min(n_elements);
             let buffers = context.map_elements(elements, scratch);
-            let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
-            monitor.progress("map elements", done * CHUNK as u64, Some(n_elements as u64));
+            let n_done = elements.len() as u64;
+            let n_done = n_done + done.fetch_add(n_done, Ordering::Relaxed);
+            monitor.progress("map elements", n_done, Some(n_elements));
             Ok(buffers)
         })
         .collect()
 }
 
-fn assemble(chunks: Vec<Buffers>, context: &Context<'_>) -> Mapped {
+/// Puts together what `chunks` of `order` gave, by the numbers of the elements.
+fn assemble(chunks: &[Buffers], order: &[u32], context: &Context<'_>) -> Mapped {
     let target = context.target;
     let n = target.mesh.len();
-    let n_values = |of: fn(&Buffers) -> usize| chunks.iter().map(of).sum();
-    let mut states = MappedLayers::with_capacity(n, n_values(|chunk| chunk.states.len()));
-    let mut strains = MappedLayers::with_capacity(n, n_values(|chunk| chunk.strains.len()));
-    let mut elements = Vec::with_capacity(n);
-    let mut limits = Vec::with_capacity(n);
-    let mut thickness = Vec::with_capacity(n);
-    for chunk in chunks {
-        push_all(&mut states, &chunk.n_states, &chunk.states);
-        push_all(&mut strains, &chunk.n_strains, &chunk.strains);
-        elements.extend(chunk.reports);
-        limits.extend(chunk.limits);
-        thickness.extend(chunk.thickness);
+    let mut place = vec![0; n];
+    for (at, &element) in order.iter().enumerate() {
+        place[element as usize] = at;
     }
+    let places = || place.iter().map(|at| (&chunks[at / CHUNK], at % CHUNK));
+    let mut elements: Vec<ElementReport> = places().map(|(chunk, at)| chunk.reports[at]).collect();
+    let wanted = context.options.quantities;
+    let (states, strains) = rayon::join(
+        || MappedLayers::of_elements(places().map(|(chunk, at)| chunk.states.of(at))),
+        || MappedLayers::of_elements(places().map(|(chunk, at)| chunk.strains.of(at))),
+    );
     let median_offset = median_offset(&elements);
     let mut n_distant = 0;
-    for (report, limits) in elements.iter_mut().zip(&limits) {
+    for (report, (chunk, at)) in elements.iter_mut().zip(places()) {
         if report.partner.is_none() {
             continue;
         }
+        let limits = &chunk.limits[at];
         let distance = (report.normal_distance - median_offset).abs() / limits.max_distance;
         n_distant += usize::from(distance > 0.5);
         let near = (1.0 - distance * distance).max(0.0);
@@ -270,14 +277,14 @@ fn assemble(chunks: Vec<Buffers>, context: &Context<'_>) -> Mapped {
         report.confidence = report.coverage * near * cos * cos * limits.uniqueness;
     }
     drop_small_conflicts(&mut elements, &target.mesh);
-    let wanted = context.options.quantities;
+    let thickness = if wanted.thickness {
+        places().map(|(chunk, at)| chunk.thickness[at]).collect()
+    } else {
+        Vec::new()
+    };
     Mapped {
         elements,
-        thickness: if wanted.thickness {
-            thickness
-        } else {
-            Vec::new()
-        },
+        thickness,
         corners: Vec::new(),
         states: wanted.needs_states().then_some(states),
         strains: wanted.strain.then_some(strains),
@@ -286,15 +293,6 @@ fn assemble(chunks: Vec<Buffers>, context: &Context<'_>) -> Mapped {
         senses: context.senses.to_vec(),
         median_offset,
         n_distant,
-    }
-}
-
-fn push_all<const N: usize>(to: &mut MappedLayers<N>, counts: &[u32], values: &[[f64; N]]) {
-    let mut rest = values;
-    for &count in counts {
-        let (own, later) = rest.split_at(count as usize);
-        to.push(own);
-        rest = later;
     }
 }
 

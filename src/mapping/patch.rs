@@ -20,9 +20,18 @@ pub(super) struct Link {
     pub slot: u32,
     /// What its difference adds to the two derivatives.
     pub weight: [f64; 2],
-    /// Cosine and sine of the angle by which its frame, laid into the tangent plane by the smallest
-    /// rotation, is turned there.
-    pub spin: [f64; 2],
+    /// How its frame, laid into the tangent plane by the smallest rotation, is turned there.
+    pub spin: Spin,
+}
+
+/// A turn within a plane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Spin {
+    pub cos: f64,
+    pub sin: f64,
+    /// Of twice the angle.
+    pub cos2: f64,
+    pub sin2: f64,
 }
 
 /// Elements numbered by slots: first those around which fields are fitted, then their neighbours.
@@ -209,10 +218,16 @@ fn frame(mesh: &ShellMesh, element: usize) -> [Vector3; 3] {
 
 /// Where the first direction of `from` lies in the plane of `to` after the smallest rotation that takes
 /// normal to normal: u − (n₂ · u) / (1 + n₁ · n₂) · (n₁ + n₂) for any u across n₁.
-fn spin(from: &[Vector3; 3], to: &[Vector3; 3]) -> [f64; 2] {
+fn spin(from: &[Vector3; 3], to: &[Vector3; 3]) -> Spin {
     let ([u, _, n1], [x, y, n2]) = (from, to);
     let fold = n2.dot(u) / (1.0 + n1.dot(n2));
-    [x.dot(u) - fold * x.dot(n1), y.dot(u) - fold * y.dot(n1)]
+    let (cos, sin) = (x.dot(u) - fold * x.dot(n1), y.dot(u) - fold * y.dot(n1));
+    Spin {
+        cos,
+        sin,
+        cos2: cos * cos - sin * sin,
+        sin2: 2.0 * cos * sin,
+    }
 }
 
 /// True if the gauge of the sheet changes between two neighbours, or the part.

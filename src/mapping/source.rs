@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::field::{Field, FieldKind, Fields};
+use super::field::{Field, Fields};
 use super::history::SourceHistory;
 use super::layered::{AtLayers, Layered, Numbers, PerElement};
 use super::layers::{LayerBalance, LayerMatrix};
@@ -165,12 +165,9 @@ impl<'a> PreparedSource<'a> {
     pub fn fields(&self, rule: usize, strain_rule: usize) -> Fields {
         Fields {
             patch: Patch::default(),
-            thickness: self.wants_thickness.then(|| Field::new(FieldKind::Scalars)),
-            states: self.states.get(rule).map(|_| Field::new(FieldKind::Stress)),
-            strains: self
-                .strains
-                .get(strain_rule)
-                .map(|_| Field::new(FieldKind::Strain)),
+            thickness: self.wants_thickness.then(Field::default),
+            states: self.states.get(rule).map(|_| Field::default()),
+            strains: self.strains.get(strain_rule).map(|_| Field::default()),
         }
     }
 

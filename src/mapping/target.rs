@@ -90,23 +90,33 @@ pub struct MappedLayers<const N: usize> {
 
 impl<const N: usize> Default for MappedLayers<N> {
     fn default() -> Self {
-        Self::with_capacity(0, 0)
+        Self {
+            starts: vec![0],
+            values: Vec::new(),
+        }
     }
 }
 
 impl<const N: usize> MappedLayers<N> {
-    pub(super) fn with_capacity(n_elements: usize, n_values: usize) -> Self {
-        let mut starts = Vec::with_capacity(n_elements + 1);
-        starts.push(0);
-        Self {
-            starts,
-            values: Vec::with_capacity(n_values),
-        }
+    /// The values of elements, in their order.
+    pub(super) fn of_elements<'a>(elements: impl Iterator<Item = &'a [[f64; N]]> + Clone) -> Self {
+        let mut layers = Self::default();
+        layers.starts.reserve_exact(elements.size_hint().0);
+        let n_values = elements.clone().map(<[_]>::len).sum();
+        layers.values.reserve_exact(n_values);
+        elements.for_each(|values| layers.push(values));
+        layers
     }
 
     /// Adds the values of the next element; none if it has none.
     pub fn push(&mut self, values: &[[f64; N]]) {
         self.values.extend_from_slice(values);
+        self.starts.push(self.values.len() as u32);
+    }
+
+    /// Adds the next element with the values that `fill` appends.
+    pub(super) fn push_from(&mut self, fill: impl FnOnce(&mut Vec<[f64; N]>)) {
+        fill(&mut self.values);
         self.starts.push(self.values.len() as u32);
     }
 

@@ -1,10 +1,8 @@
 //! Points of a surface that stand for its area: all nodes, or an even choice of them.
 
-use rayon::prelude::*;
-
 use super::icp::Sample;
 use super::surface::Surface;
-use crate::geometry::{Aabb, Point3};
+use crate::geometry::z_order;
 
 /// All vertices of the surface with the area they stand for.
 pub(crate) fn all_nodes(surface: &Surface, area_weights: bool) -> Vec<Sample> {
@@ -35,7 +33,7 @@ pub(crate) fn subsample(surface: &Surface, n: usize) -> Vec<Sample> {
     let mut samples: Vec<Sample> = Vec::with_capacity(n);
     let mut running = 0.0;
     let mut taken = 0usize;
-    for vertex in morton_order(mesh.positions()) {
+    for vertex in z_order(mesh.positions()) {
         running += areas[vertex as usize];
         let passed = ((running / share + 0.5).floor() as usize).min(n);
         if passed > taken {
@@ -45,32 +43,4 @@ pub(crate) fn subsample(surface: &Surface, n: usize) -> Vec<Sample> {
         }
     }
     samples
-}
-
-/// Indices in the order of a Morton curve over the box of the points.
-pub(crate) fn morton_order(points: &[Point3]) -> Vec<u32> {
-    let aabb = Aabb::of_points(points);
-    let extent = aabb.extents().max();
-    let scale = if extent > 0.0 { 1023.0 / extent } else { 0.0 };
-    let mut keyed: Vec<(u32, u32)> = points
-        .iter()
-        .enumerate()
-        .map(|(i, p)| {
-            let cell = (p - aabb.min) * scale;
-            let code =
-                spread(cell.x as u32) | spread(cell.y as u32) << 1 | spread(cell.z as u32) << 2;
-            (code, i as u32)
-        })
-        .collect();
-    // No two are equal, so the order does not depend on the threads.
-    keyed.par_sort_unstable();
-    keyed.into_iter().map(|(_, i)| i).collect()
-}
-
-/// Puts two zero bits between the lowest ten bits of `x`.
-fn spread(x: u32) -> u32 {
-    let x = (x | x << 16) & 0x0300_00FF;
-    let x = (x | x << 8) & 0x0300_F00F;
-    let x = (x | x << 4) & 0x030C_30C3;
-    (x | x << 2) & 0x0924_9249
 }

@@ -793,6 +793,30 @@ fn the_result_does_not_depend_on_threads_and_mirrors_undo_each_other() {
 }
 
 #[test]
+fn the_result_does_not_depend_on_how_elements_are_numbered() {
+    let part = source(Blank::new(2.5).mesh(cylinder), 5, |e, t, _| {
+        let x = (e as f64 * 0.11).sin() + t;
+        [10.0 * x, 5.0 * x, 3.0, x, 2.0, 1.0, 0.2 + 0.05 * x]
+    });
+    let mesh = Blank::new(4.1).mesh(cylinder);
+    let n = mesh.len();
+    // 7919 is a prime that divides no such number of elements: every element comes once.
+    let order: Vec<usize> = (0..n).map(|i| i * 7919 % n).collect();
+    let corners = order.iter().map(|&e| mesh.corners()[e]).collect();
+    let parts = vec![mesh.parts()[0]; n];
+    let shuffled = ShellMesh::new(mesh.positions().to_vec(), corners, parts).unwrap();
+    let plain = map_one(&part, Similarity::identity(), &target(mesh, 3), &full());
+    let other = map_one(&part, Similarity::identity(), &target(shuffled, 3), &full());
+    assert!(n > 256, "more than one chunk: {n}");
+    for (at, &element) in order.iter().enumerate() {
+        assert_eq!(plain.elements[element], other.elements[at]);
+        assert_eq!(plain.thickness[element], other.thickness[at]);
+        let states = |of: &Mapped, element| of.states.as_ref().unwrap().of(element).to_vec();
+        assert_eq!(states(&plain, element), states(&other, at));
+    }
+}
+
+#[test]
 fn wrong_choices_and_missing_results_are_named() {
     let part = source(Blank::new(20.0).mesh(flat), 2, uniform);
     let onto = target(Blank::new(20.0).mesh(flat), 2);

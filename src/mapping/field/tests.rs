@@ -64,7 +64,7 @@ fn a_linear_field_has_its_gradient() {
     let f = |p: &Point3| 3.0 + 2.0 * p.x - 0.7 * p.y;
     let numbers = scalars(&mesh, f);
     let mut fields = fitted(&mesh, &numbers, &[]);
-    let mut field = Field::new(FieldKind::Strain);
+    let mut field = Field::default();
     field.load(&First(&numbers), &fields.patch);
     fields.strains = Some(field);
     fields.fit();
@@ -146,7 +146,7 @@ fn a_spin_within_the_plane_is_the_smallest_rotation_between_planes() {
             let into = patch.frame(other).map(|axis| axis.transpose());
             let local = into_local(&tensor, &Turn::new(&Matrix3::from_rows(&into)));
             let out = Turn::new(&Matrix3::from_columns(patch.frame(slot)));
-            let found = from_local(&spun(local, link.spin), &out);
+            let found = from_local(&spun(local, &link.spin), &out);
             let turn = smallest_rotation(&mesh.normals()[other], &mesh.normals()[slot]).unwrap();
             let expected = Turn::new(&turn).apply(&tensor);
             for (a, b) in found.iter().zip(expected) {

@@ -1,9 +1,8 @@
 //! Samples of both parts: evenly spread points, and the data's in blocks that are moved together.
 
 use super::LANES;
-use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
+use crate::geometry::{Matrix3, Point3, Similarity, Vector3, z_order};
 use crate::registration::icp::orthonormal;
-use crate::registration::subsample::morton_order;
 use crate::registration::surface::Surface;
 use crate::search::FeatureGrid;
 
@@ -67,7 +66,7 @@ impl Cloud {
         let points: Vec<Point3> = samples.iter().map(|(point, _)| *point).collect();
         let sum: Vector3 = points.iter().map(|point| point.coords).sum();
         let center = Point3::from(sum / points.len().max(1) as f64);
-        let order = morton_order(&points);
+        let order = z_order(&points);
         let mut blocks = vec![Block::default(); samples.len() / LANES];
         for (place, rank) in bit_reversed(blocks.len() * LANES).into_iter().enumerate() {
             let (point, normal) = &samples[order[rank] as usize];
