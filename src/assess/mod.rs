@@ -226,7 +226,8 @@ fn statements(
         noise,
         reach,
     };
-    let uncertainty = PoseUncertainty::of(source, pose, &contacts, &rims, noise);
+    let uncertainty =
+        PoseUncertainty::of(source, pose, &contacts, &rims, (noise, settings.thickness));
     let mut shape = ShapeStatement::of(&evidence, tolerance);
     shape.is_offset_removed = settings.remove_offset && skin::is_removed(&evidence, &shape);
     (uncertainty, shape)

@@ -61,22 +61,29 @@ pub struct PoseUncertainty {
     /// Where that node lies, in the target's frame.
     #[serde(with = "xyz")]
     pub place: Point3,
+    /// Half the thickness of the sheet, which is part of the uncertainty where the parts are so flat that
+    /// nothing tells skin on mid-surface from a shift; else 0.
+    #[serde(default)]
+    pub unknown_offset: f64,
     #[serde(with = "xyz")]
     center: Point3,
     motions: Vec<SmallMotion>,
 }
 
 impl PoseUncertainty {
-    /// Measures the uncertainty of a pose. `noise` is a distance that means nothing. `None` where the
-    /// parts do not meet.
+    /// Measures the uncertainty of a pose. `noise` is a distance that means nothing, `thickness` that of the
+    /// sheet, if it is known. `None` where the parts do not meet.
     pub(super) fn of(
         source: &Surface,
         pose: &Similarity,
         contacts: &Contacts,
         rims: &Rims,
-        noise: f64,
+        (noise, thickness): (f64, Option<f64>),
     ) -> Option<Self> {
-        let motions: Vec<SmallMotion> = replicates(contacts, rims, noise)
+        let (mut motions, offset_as_motion) = replicates(contacts, rims, noise);
+        let unknown_offset = offset_as_motion.and(thickness).map_or(0.0, |t| 0.5 * t);
+        motions.extend(offset_as_motion.map(|motion| motion * unknown_offset));
+        let motions: Vec<SmallMotion> = motions
             .iter()
             .map(|six| SmallMotion {
                 turn: Vector3::new(six[0], six[1], six[2]) / contacts.radius,
@@ -88,6 +95,7 @@ impl PoseUncertainty {
             direction: Vector3::x(),
             along: PartDirection::Oblique,
             place: contacts.center,
+            unknown_offset,
             center: contacts.center,
             motions,
         };
@@ -203,21 +211,23 @@ impl Evidence {
         self.squares - self.right.dot(solution)
     }
 
-    /// Share of the offset that no motion does as well.
-    fn own_share(&self) -> f64 {
+    /// The motion that comes closest to an offset of one, and the share of the offset that it leaves.
+    fn offset_as_motion(&self) -> (Seven, f64) {
         let whole = self.matrix[(6, 6)];
         let mut mixed: Seven = self.matrix.column(6).into();
         mixed[6] = 0.0;
         let others = self.clone().without_offset();
-        let own = whole - mixed.dot(&solve(&others.matrix, &mixed));
-        own / whole.max(f64::MIN_POSITIVE)
+        let motion = solve(&others.matrix, &mixed);
+        let own = whole - mixed.dot(&motion);
+        (motion, own / whole.max(f64::MIN_POSITIVE))
     }
 }
 
 /// Motions whose squares sum to the square of the uncertainty: those of the jackknife, and the steps by
 /// which borders or an offset of the sheets would move the pose. Where an offset is what the gaps are, it
-/// is solved for with every motion.
-fn replicates(contacts: &Contacts, rims: &Rims, noise: f64) -> Vec<Six> {
+/// is solved for with every motion. With them the motion that cannot be told from an offset of one, if there
+/// is one.
+fn replicates(contacts: &Contacts, rims: &Rims, noise: f64) -> (Vec<Six>, Option<Six>) {
     let gaps: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();
     let areas: Vec<f64> = contacts.list.iter().map(|c| c.weight).collect();
     let weights = robust_weights(&gaps, &areas, noise);
@@ -230,7 +240,9 @@ fn replicates(contacts: &Contacts, rims: &Rims, noise: f64) -> Vec<Six> {
     }
     let motion_alone = all.clone().without_offset();
     let (plain, with_offset) = (motion_alone.solved(), all.solved());
-    let has_offset = all.own_share() > LEAST_OWN && with_offset[6].abs() > 3.0 * noise;
+    let (offset_as_motion, own_share) = all.offset_as_motion();
+    let is_separable = own_share > LEAST_OWN;
+    let has_offset = is_separable && with_offset[6].abs() > 3.0 * noise;
     let is_offset =
         has_offset && all.left(&with_offset) < OFFSET_LEAVES * motion_alone.left(&plain);
     let (whole, all, gaps) = if is_offset {
@@ -259,7 +271,7 @@ fn replicates(contacts: &Contacts, rims: &Rims, noise: f64) -> Vec<Six> {
     }
     let matrix = all.matrix.fixed_view::<6, 6>(0, 0).into_owned();
     motions.extend(weak_motions(&matrix, &weights, &gaps, contacts, noise));
-    motions
+    (motions, (!is_separable).then(|| six(offset_as_motion)))
 }
 
 fn evidence_of_patches(
@@ -369,6 +381,28 @@ mod tests {
         assert!(slid.largest > less.largest, "{slid:?}");
         assert_eq!(slid.along, PartDirection::Along, "{slid:?}");
         assert!(slid.direction.x.abs() > 0.8);
+    }
+
+    #[test]
+    fn flat_sheets_do_not_tell_skin_from_mid_surface() {
+        let flat = gutter(0.0, 0.0).mesh().clone();
+        let pressed = flat.positions().iter().map(|p| Point3::new(p.x, p.y, 0.0));
+        let flat = TriMesh::new(pressed.collect(), flat.triangles().to_vec()).unwrap();
+        let flat = Surface::new(&flat, "flat").unwrap();
+        let thick = AssessSettings {
+            thickness: Some(1.6),
+            ..AssessSettings::default()
+        };
+        let still = Similarity::identity();
+        let stated = statements(&flat, &flat, &still, 0.01, &thick).0.unwrap();
+        assert_eq!(stated.unknown_offset, 0.8);
+        assert!((stated.largest - 0.8).abs() < 0.05, "{stated:?}");
+        assert_eq!(stated.along, PartDirection::Through);
+        let part = gutter(0.3, 0.0);
+        let curved = statements(&part, &part, &still, 0.01, &thick).0.unwrap();
+        assert_eq!(curved.unknown_offset, 0.0);
+        assert!(curved.largest < 0.1);
+        assert_eq!(uncertainty(&flat, &flat, &still).unknown_offset, 0.0);
     }
 
     #[test]

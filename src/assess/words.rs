@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 
 use super::deviation::{ConstantOffset, OffsetKind, OverlapClass};
 use super::{
-    FreeMotion, FreeMotionKind, PartAxis, PartDirection, PoseKind, PoseStatement, Reason,
-    ShapeKind, ShapeReason, ShapeStatement, Twin, TwinAxis, Verdict,
+    FreeMotion, FreeMotionKind, PartAxis, PartDirection, PoseKind, PoseStatement, PoseUncertainty,
+    Reason, ShapeKind, ShapeReason, ShapeStatement, Twin, TwinAxis, Verdict,
 };
 use crate::geometry::{Point3, Vector3};
 use crate::registration::{Termination, UnitGuess};
@@ -296,6 +296,18 @@ impl PoseKind {
     }
 }
 
+impl PoseUncertainty {
+    /// Why a flat part is uncertain through the sheet; `None` where it is not.
+    pub fn words_of_unknown_offset(&self, lengths: Lengths) -> Option<String> {
+        (self.unknown_offset > 0.0).then(|| {
+            format!(
+                "the parts are too flat to tell skin from mid-surface, half the thickness is {}",
+                lengths.of(self.unknown_offset)
+            )
+        })
+    }
+}
+
 impl PoseStatement {
     /// "certain: ± 0.03 mm, mostly along the part (tolerance 5.00 mm)".
     pub fn words(&self, lengths: Lengths) -> String {
@@ -303,8 +315,10 @@ impl PoseStatement {
         let Some(stated) = &self.uncertainty else {
             return label.to_owned();
         };
+        let offset = stated.words_of_unknown_offset(lengths);
+        let offset = offset.map_or_else(String::new, |words| format!("; {words}"));
         format!(
-            "{label}: ± {}, mostly {} (tolerance {})",
+            "{label}: ± {}, mostly {} (tolerance {}{offset})",
             lengths.of(stated.largest),
             stated.along.words(),
             lengths.of(self.tolerance)

@@ -38,6 +38,9 @@ impl Report<'_> {
                 "), there at " (vector(stated.place.into(), 1))
                 ". Each patch of the part in turn was left out and the pose found again; a wholly \
                  different pose would not show here."
+                @if let Some(words) = stated.words_of_unknown_offset(lengths) {
+                    " Through the sheet, " (words) "."
+                }
             }
             (pictures(&self.figures.uncertainty))
             @if let Some(scale) = &self.uncertainty_scale {
