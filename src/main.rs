@@ -9,10 +9,7 @@ use shapematch::cli::{self, Cli};
 fn main() -> ExitCode {
     let cli = Cli::parse();
     start_logging(cli.quiet);
-    if let Err(error) = rayon::ThreadPoolBuilder::new()
-        .num_threads(cli.threads)
-        .build_global()
-    {
+    if let Err(error) = threads(&cli).build_global() {
         log::warn!("the number of threads could not be set: {error}");
     }
     let outcome = match &cli.command {
@@ -23,6 +20,16 @@ fn main() -> ExitCode {
         log::error!("{error:#}");
         cli::exit_status(&error)
     })
+}
+
+/// The threads of the work; those of a window stand behind it.
+fn threads(cli: &Cli) -> rayon::ThreadPoolBuilder {
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(cli.threads);
+    #[cfg(feature = "gui")]
+    if cli.command.is_none() {
+        return threads.start_handler(|_| shapematch::ui::step_back());
+    }
+    threads
 }
 
 /// Messages go to standard error; `RUST_LOG` says more.

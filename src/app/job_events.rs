@@ -120,7 +120,9 @@ impl AppState {
                 let matching = topics.matching;
                 matching.take_measured(work, measurement, stamp, took);
             }
-            JobOutput::Mapped { run, record } => return take_mapped(work, run, record, took),
+            JobOutput::Mapped { run, record, lists } => {
+                return take_mapped(work, (run, record, lists), took);
+            }
             JobOutput::MappingCompared { run, other, record } => {
                 take_compared(work, &run, other, *record, took);
             }

@@ -8,7 +8,9 @@ use crate::assess::Coverage;
 use crate::geometry::{Similarity, TriMesh};
 use crate::pipeline::inspect::Comparison;
 use crate::pipeline::load::{LoadSettings, LoadedPart};
-use crate::pipeline::map::{ComparisonRecord, MapRecipe, MapRecord, MapRun, OtherResult};
+use crate::pipeline::map::{
+    ComparisonRecord, ElementLists, MapRecipe, MapRecord, MapRun, OtherResult,
+};
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
 use crate::pipeline::project::ProjectRequest;
 use crate::pipeline::reduce::{Deviation, Level, Levels};
@@ -363,6 +365,8 @@ pub enum JobOutput {
         run: Arc<MapRun>,
         /// The same in figures.
         record: Arc<MapRecord>,
+        /// Elements to look at.
+        lists: Arc<ElementLists>,
     },
     /// Another mapper's result was read.
     MappingCompared {

@@ -17,7 +17,9 @@ use crate::pipeline::PipelineError;
 use crate::pipeline::find_parts::find_parts;
 use crate::pipeline::inspect::compare_parts;
 use crate::pipeline::load::{self, LoadedPart};
-use crate::pipeline::map::{OtherResult, PlacedPart, compare_with, map_parts, map_record};
+use crate::pipeline::map::{
+    OtherResult, PlacedPart, compare_with, element_lists, map_parts, map_record,
+};
 use crate::pipeline::match_parts::{self, match_parts};
 use crate::pipeline::reduce::Levels;
 use crate::pipeline::sweep::sweep;
@@ -256,10 +258,13 @@ fn map(input: &MapInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
         crash_from_stamped: input.crash_from_stamped,
     };
     let run = map_parts(&input.parts.crash, &[placed], &input.recipe, monitor)?;
+    monitor.check()?;
     let record = map_record(&run, &input.parts.crash, &[placed], None, None);
+    let lists = element_lists(&run, &input.parts.crash);
     Ok(JobOutput::Mapped {
         run: Arc::new(run),
         record: Arc::new(record),
+        lists: Arc::new(lists),
     })
 }
 

@@ -137,7 +137,9 @@ pub fn match_parts<'a>(
         shape_tolerance: None,
         ..check
     };
+    monitor.check()?;
     settle(&mut outcome, source, target, &settings, &placing);
+    monitor.check()?;
     times.align_ms = prepare_ms + outcome.timings.align.as_secs_f64() * 1e3;
     times.match_ms = (outcome.timings.total - outcome.timings.align).as_secs_f64() * 1e3;
     let verify = Instant::now();

@@ -89,7 +89,12 @@ impl Download {
             timeout: Some(PATIENCE),
         };
         device.poll(wait).map_err(|_| ReadbackError::Device)?;
-        self.poll(device).unwrap_or(Err(ReadbackError::Device))
+        // Another thread that uses the device may be the one that tells, a little later.
+        let done = self.done.take().ok_or(ReadbackError::Device)?;
+        match done.recv_timeout(PATIENCE) {
+            Ok(Ok(())) => self.bytes(),
+            Ok(Err(_)) | Err(_) => Err(ReadbackError::Device),
+        }
     }
 
     fn bytes(&self) -> Result<Vec<u8>, ReadbackError> {

@@ -77,8 +77,8 @@ impl Renderer {
     /// Lays the viewport's picture over the whole of the pass's viewport; nothing before the first
     /// [`Renderer::draw`]. The pass must have the window format, one sample and no depth.
     pub fn paint(&self, target: &ViewTarget, pass: &mut wgpu::RenderPass<'_>) {
-        if let Some(group) = target.composite() {
-            self.context.composite.draw(pass, group);
+        if let Some((group, is_stretched)) = target.composite() {
+            self.context.composite.draw(pass, group, is_stretched);
         }
     }
 

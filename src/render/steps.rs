@@ -149,8 +149,7 @@ impl ViewTarget {
         if is_moving || (is_other && now.duration_since(stale_since) > STALE) {
             steps.since = Some(now);
             steps.stale_since = None;
-            self.drawn = None;
-            self.draw_now(gpu, context, cache, encoder, (&frame, Detail::Coarse));
+            self.draw_coarse(gpu, context, cache, encoder, &frame);
             return Drawn::Partly(SETTLED);
         }
         let rest = steps
@@ -208,7 +207,7 @@ impl ViewTarget {
         }
         self.steps.pending = None;
         self.steps.stale_since = None;
-        self.drawn = Some((frame.scene.clone(), *frame.camera));
+        self.show_exact(frame);
         Drawn::Exact
     }
 }

@@ -13,12 +13,19 @@ use super::texture::{attachment, slice_pass, texture, view};
 use super::uniforms::Region;
 use crate::geometry::Camera;
 
+/// Pixels of the window per pixel of a coarse picture, on each axis, where a processor draws.
+const GRAIN: u32 = 2;
+
 /// The textures of one viewport and what was last drawn into them.
 #[derive(Debug, Default)]
 pub struct ViewTarget {
     pub(super) textures: Option<Textures>,
     pub(super) drawn: Option<(Scene, Camera)>,
     pub(super) steps: Steps,
+    /// Smaller textures for coarse pictures, and whether the last picture is in them.
+    small: Option<Textures>,
+    is_small: bool,
+    has_grain: bool,
 }
 
 #[derive(Debug)]
@@ -52,7 +59,16 @@ impl ViewTarget {
         Self::default()
     }
 
-    /// Size of the picture in pixels; `None` before the first.
+    /// [`ViewTarget::new`] on a device whose time goes with the pixels, as that of a software driver: coarse
+    /// pictures have half the pixels on each axis.
+    pub fn on_processor() -> Self {
+        Self {
+            has_grain: true,
+            ..Self::default()
+        }
+    }
+
+    /// Size of the window's picture in pixels; `None` before the first.
     pub fn size(&self) -> Option<[u32; 2]> {
         self.textures.as_ref().map(|textures| textures.size)
     }
@@ -63,11 +79,18 @@ impl ViewTarget {
     }
 
     pub(super) fn picture(&self) -> Option<&wgpu::Texture> {
-        self.textures.as_ref().map(|textures| &textures.picture)
+        self.shown().map(|textures| &textures.picture)
     }
 
-    pub(super) fn composite(&self) -> Option<&wgpu::BindGroup> {
-        self.textures.as_ref().map(|textures| &textures.composite)
+    fn shown(&self) -> Option<&Textures> {
+        let small = self.small.as_ref().filter(|_| self.is_small);
+        small.or(self.textures.as_ref())
+    }
+
+    /// The picture for laying it on the window, and whether it is to be stretched.
+    pub(super) fn composite(&self) -> Option<(&wgpu::BindGroup, bool)> {
+        let shown = self.shown()?;
+        Some((&shown.composite, self.is_small))
     }
 
     /// Makes the textures for a size; true if they are new.
@@ -75,6 +98,8 @@ impl ViewTarget {
         let is_new = self.size() != Some(size);
         if is_new {
             self.textures = Some(Textures::new(gpu.device, context, size));
+            self.small = None;
+            self.is_small = false;
             self.drawn = None;
         }
         is_new
@@ -101,41 +126,51 @@ impl ViewTarget {
         if self.shows(&frame) {
             return false;
         }
-        self.draw_now(gpu, context, cache, encoder, (&frame, Detail::Exact));
+        if let Some(textures) = &mut self.textures {
+            textures.draw_all(gpu, context, cache, encoder, (&frame, Detail::Exact));
+        }
+        self.is_small = false;
         self.drawn = Some((frame.scene.clone(), *frame.camera));
         true
     }
 
-    /// Records the whole drawing, coarse or not, into textures that are there.
-    pub(super) fn draw_now(
+    /// Records the whole coarse picture, after [`ViewTarget::resize`].
+    pub(super) fn draw_coarse(
         &mut self,
         gpu: Gpu<'_>,
         context: &Context,
         cache: &mut MeshCache,
         encoder: &mut wgpu::CommandEncoder,
-        (frame, detail): (&Frame<'_>, Detail),
+        frame: &Frame<'_>,
     ) {
-        let Some(textures) = &mut self.textures else {
-            return;
-        };
-        let sheets = textures.sheets(gpu.device, frame);
-        let views = sheets.unwrap_or(&context.no_sheets).views();
-        let region = Region::whole(frame.size);
-        let prepared = Prepared::new(gpu, cache, (frame, detail), region, views);
-        if let Some(sheets) = sheets {
-            // The frame's own group reads what is drawn here.
-            let group = prepared.frame_group(gpu, context.no_sheets.views());
-            for sheet in Sheet::ALL {
-                let what = (&context.passes.surface, sheet);
-                sheets.draw(what, &group, encoder, &prepared, &mut Slice::all());
+        self.drawn = None;
+        self.is_small = self.has_grain;
+        if !self.has_grain {
+            if let Some(textures) = &mut self.textures {
+                textures.draw_all(gpu, context, cache, encoder, (frame, Detail::Coarse));
             }
+            return;
         }
-        textures.draw(context, encoder, &prepared, &mut Slice::all());
-        textures.finish(encoder);
-        if prepared.has_selection {
-            textures.draw_mask(gpu, context, encoder, &prepared, &mut Slice::all());
-            textures.draw_outline(context, encoder, &prepared);
-        }
+        // Widths are in points, so that lines look as wide as ever.
+        let scene = Scene {
+            pixels_per_point: frame.scene.scale_factor() / GRAIN as f32,
+            ..frame.scene.clone()
+        };
+        let small = Frame {
+            scene: &scene,
+            camera: frame.camera,
+            size: frame.size.map(|pixels| pixels.div_ceil(GRAIN)),
+        };
+        let textures = self
+            .small
+            .get_or_insert_with(|| Textures::new(gpu.device, context, small.size));
+        textures.draw_all(gpu, context, cache, encoder, (&small, Detail::Coarse));
+    }
+
+    /// The picture in the large textures is finished.
+    pub(super) fn show_exact(&mut self, frame: &Frame<'_>) {
+        self.is_small = false;
+        self.drawn = Some((frame.scene.clone(), *frame.camera));
     }
 }
 
@@ -166,6 +201,35 @@ impl Textures {
             picture_view,
             sheets: None,
             mask: None,
+        }
+    }
+
+    /// Records the whole drawing, coarse or not.
+    fn draw_all(
+        &mut self,
+        gpu: Gpu<'_>,
+        context: &Context,
+        cache: &mut MeshCache,
+        encoder: &mut wgpu::CommandEncoder,
+        (frame, detail): (&Frame<'_>, Detail),
+    ) {
+        let sheets = self.sheets(gpu.device, frame);
+        let views = sheets.unwrap_or(&context.no_sheets).views();
+        let region = Region::whole(frame.size);
+        let prepared = Prepared::new(gpu, cache, (frame, detail), region, views);
+        if let Some(sheets) = sheets {
+            // The frame's own group reads what is drawn here.
+            let group = prepared.frame_group(gpu, context.no_sheets.views());
+            for sheet in Sheet::ALL {
+                let what = (&context.passes.surface, sheet);
+                sheets.draw(what, &group, encoder, &prepared, &mut Slice::all());
+            }
+        }
+        self.draw(context, encoder, &prepared, &mut Slice::all());
+        self.finish(encoder);
+        if prepared.has_selection {
+            self.draw_mask(gpu, context, encoder, &prepared, &mut Slice::all());
+            self.draw_outline(context, encoder, &prepared);
         }
     }
 

@@ -4,12 +4,58 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
+use crate::jobs::{JobError, JobKind, JobOutput, Runner};
+use crate::registration::MatchMonitor;
 use crate::role::{PerRole, Role};
 
 /// Does `work` once on a thread of that name; false if the system has no thread left.
 pub(super) fn run_once(name: &str, work: impl FnOnce() + Send + 'static) -> bool {
     let thread = std::thread::Builder::new().name(name.to_owned());
     thread.spawn(work).is_ok()
+}
+
+/// How much further back than the window its work stands when processors are few (0 to 19).
+#[cfg(target_os = "linux")]
+const STEP: i32 = 8;
+
+/// Puts the calling thread behind the window and the driver that draws it: work that takes all processors
+/// must not make the window wait. Elsewhere than on Linux nothing happens.
+pub fn step_back() {
+    #[cfg(target_os = "linux")]
+    {
+        use rustix::process::{getpriority_process, setpriority_process};
+        // Without the right to it, the thread stays where it is.
+        let _ = getpriority_process(None).and_then(|now| setpriority_process(None, now + STEP));
+    }
+}
+
+/// Does jobs behind the window.
+pub(super) struct Behind<R> {
+    runner: R,
+    is_behind: bool,
+}
+
+impl<R> Behind<R> {
+    pub fn new(runner: R) -> Self {
+        Self {
+            runner,
+            is_behind: false,
+        }
+    }
+}
+
+impl<R: Runner> Runner for Behind<R> {
+    fn run<'a>(
+        &mut self,
+        kind: JobKind,
+        monitor: impl Into<MatchMonitor<'a>>,
+    ) -> Result<JobOutput, JobError> {
+        // The same thread runs all jobs.
+        if !std::mem::replace(&mut self.is_behind, true) {
+            step_back();
+        }
+        self.runner.run(kind, monitor)
+    }
 }
 
 /// Something to be made.
@@ -184,6 +230,20 @@ mod tests {
                 key * 10
             }),
         }
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn only_the_thread_that_asks_steps_back() {
+        let own = || rustix::process::getpriority_process(None).unwrap();
+        let before = own();
+        let thread = std::thread::Builder::new().name("behind".to_owned());
+        let behind = thread.spawn(move || {
+            step_back();
+            own()
+        });
+        assert_eq!(behind.unwrap().join().unwrap(), (before + STEP).min(19));
+        assert_eq!(own(), before);
     }
 
     #[test]

@@ -22,4 +22,5 @@ pub mod toasts;
 pub mod viewport;
 pub mod widgets;
 
+pub use background::step_back;
 pub use shell::{Shell, run};

@@ -13,8 +13,13 @@ use crate::app::{
 };
 use crate::colormap::ColorMap;
 
-/// Draws the open dialog, if any.
-pub fn overlays_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Command>) {
+/// Draws the open dialog, if any. `is_on_processor`: every pixel costs the processor time.
+pub fn overlays_ui(
+    ctx: &egui::Context,
+    state: &AppState,
+    is_on_processor: bool,
+    commands: &mut Vec<Command>,
+) {
     if state.view.dialog != Some(Dialog::Palette) {
         palette::forget(ctx);
     }
@@ -24,7 +29,11 @@ pub fn overlays_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Com
     let frame = egui::Frame::popup(&ctx.global_style())
         .inner_margin(24)
         .corner_radius(8);
-    let modal = Modal::new(egui::Id::unique(("dialog", dialog as u8))).frame(frame);
+    let mut modal = Modal::new(egui::Id::unique(("dialog", dialog as u8))).frame(frame);
+    if is_on_processor {
+        // Darkening the whole window doubles the time of every frame.
+        modal = modal.backdrop_color(egui::Color32::TRANSPARENT);
+    }
     let response = modal.show(ctx, |ui| {
         ui.spacing_mut().item_spacing.y = UNIT;
         let room = ctx.content_rect().size() - vec2(96.0, 160.0);

@@ -4,6 +4,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use super::background::Behind;
 use super::dialogs::Dialogs;
 use super::keyboard::Keyboard;
 use super::no_window::explained;
@@ -122,7 +123,10 @@ impl Shell {
         let autosave = Autosave::start(files.sessions, move || waking.request_repaint())?;
         let waking = cc.egui_ctx.clone();
         let watch = FileWatch::start(PAUSE, move || waking.request_repaint())?;
-        let worker = Worker::spawn(PipelineRunner, Arc::new(move || ctx.request_repaint()))?;
+        let worker = Worker::spawn(
+            Behind::new(PipelineRunner),
+            Arc::new(move || ctx.request_repaint()),
+        )?;
         let mut state = AppState::new(preferences.settings);
         state.log.clock = clock();
         let mut shell = Self {
@@ -461,7 +465,8 @@ impl eframe::App for Shell {
         panels::window_ui(ui, &self.state, &mut self.viewports, &mut commands);
         toasts::toasts_ui(&ctx, &self.state, &mut commands);
         project_dialogs::restore_ui(&ctx, &self.state, &mut commands);
-        overlays::overlays_ui(&ctx, &self.state, &mut commands);
+        let is_on_processor = self.viewports.is_on_processor();
+        overlays::overlays_ui(&ctx, &self.state, is_on_processor, &mut commands);
         self.dialogs.show(&ctx, &mut commands);
         commands.extend(self.keyboard.commands(&ctx, &self.state, owner));
         if !commands.is_empty() {

@@ -184,6 +184,40 @@ impl Observer for Shapes {
 }
 
 #[test]
+fn a_processor_draws_coarse_pictures_with_fewer_pixels() {
+    let mesh = wavy();
+    let drawn = Arc::new(RenderMesh::new(MeshInput::plain(&mesh)));
+    let scene = Scene {
+        drawables: vec![Drawable::new(drawn, [0x56, 0xB4, 0xE9])],
+        ..Scene::default()
+    };
+    let mut renderer = new_renderer();
+    let mut camera = camera();
+    let mut target = ViewTarget::on_processor();
+    for _ in 0..2 {
+        let expected = renderer.picture(&frame(&scene, &camera)).unwrap();
+        let (partly, coarse) = step(&mut renderer, &mut target, &frame(&scene, &camera));
+        assert!(matches!(partly, Drawn::Partly(_)));
+        assert_eq!(coarse.dimensions(), (SIZE[0] / 2, SIZE[1] / 2));
+        // Stretched over the window it shows the same, up to lines.
+        let stretched = image::imageops::resize(
+            &coarse,
+            SIZE[0],
+            SIZE[1],
+            image::imageops::FilterType::Triangle,
+        );
+        let off = difference(&stretched, &expected);
+        assert!(off < 0.2, "{off}");
+        let (exact, _) = settle(&mut renderer, &mut target, &frame(&scene, &camera));
+        assert_eq!(exact.dimensions(), (SIZE[0], SIZE[1]));
+        assert_eq!(difference(&exact, &expected), 0.0);
+        // And again once the view moves.
+        let pivot = camera.target;
+        camera.orbit(OrbitStyle::Turntable, &pivot, 0.4, 0.1);
+    }
+}
+
+#[test]
 fn a_part_is_seen_as_points_while_it_is_read() {
     let shapes = Arc::new(Shapes::default());
     let monitor = Monitor::with_observer(Arc::clone(&shapes) as Arc<dyn Observer>);

@@ -51,6 +51,12 @@ fn legends_have_the_unit_of_their_numbers() {
     ] {
         click(&mut window, name);
         finish(&mut window);
+        // Colours are made beside the jobs, however long that takes.
+        let begin = std::time::Instant::now();
+        while n_units(&window) != n && begin.elapsed().as_secs() < 60 {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+            window.run_steps(1);
+        }
         assert_eq!(n_units(&window), n, "{name}");
         let degrees = texts(&window)
             .iter()

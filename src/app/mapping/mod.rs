@@ -14,19 +14,15 @@ use std::time::Duration;
 use super::follow_up::FollowUp;
 use super::work::Work;
 use super::{AppState, ColorBy, Document, Effect, NoticeLevel, Reason, Shared};
-use crate::geometry::Point3;
 use crate::jobs::{CompareMappingInput, JobKey, JobKind, MapInput, Stamp};
-use crate::mapping::{Quantities, Status};
+use crate::mapping::Quantities;
 use crate::pipeline::forming_values::{FormingValue, has_forming_value, nominal_thickness};
-use crate::pipeline::map::{ComparisonRecord, MapRecipe, MapRecord, MapRun, OtherResult};
+use crate::pipeline::map::{
+    ComparisonRecord, ElementLists, MapRecipe, MapRecord, MapRun, OtherResult,
+};
+pub use crate::pipeline::map::{DoubtfulElement, UnmappedElement};
 use crate::role::Role;
 use crate::text::{capital, counted, percent};
-
-/// Elements of a list.
-const N_LISTED: usize = 40;
-
-/// A confidence that is written as 1.00.
-const WHOLLY_TRUSTED: f64 = 0.995;
 
 /// What undo covers of the mapping.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -50,6 +46,8 @@ pub struct MapResult {
     pub run: Shared<MapRun>,
     /// The same in figures.
     pub record: Shared<MapRecord>,
+    /// Elements to look at.
+    pub lists: Shared<ElementLists>,
     /// Parts and pose.
     pub stamp: Stamp,
     /// What was chosen when it was made.
@@ -75,28 +73,6 @@ pub enum MapCommand {
     CompareWith(PathBuf),
     /// Compare no longer.
     EndComparison,
-}
-
-/// An element of the crash part that carries no values.
-#[derive(Debug, Clone, PartialEq)]
-pub struct UnmappedElement {
-    /// Its id in the deck.
-    pub id: u64,
-    /// Why the element has no mapped values.
-    pub status: Status,
-    /// Centre of the element, in crash coordinates.
-    pub center: Point3,
-}
-
-/// An element of the crash part whose values are to be trusted less than others.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DoubtfulElement {
-    /// Its id in the deck.
-    pub id: u64,
-    /// How far it can be trusted, 0 to 1.
-    pub confidence: f64,
-    /// Centre of the element, in crash coordinates.
-    pub center: Point3,
 }
 
 impl Document {
@@ -208,62 +184,17 @@ impl AppState {
     /// The elements without values of the current mapping, the first of each reason in turn, at most
     /// forty; and how many there are.
     pub fn unmapped_elements(&self) -> (Vec<UnmappedElement>, usize) {
-        let parts = self.document.both().zip(self.document.current_mapping());
-        let Some((both, result)) = parts else {
-            return (Vec::new(), 0);
-        };
-        let run = &result.run;
-        let without = run.mapped.elements.iter().enumerate();
-        let without = without.filter(|(_, report)| !report.status.has_values());
-        // The first of each reason, then the others in the order of the deck.
-        let mut seen = Vec::new();
-        let mut rows: Vec<(bool, usize, Status)> = without
-            .map(|(element, report)| {
-                let is_known = seen.contains(&report.status);
-                if !is_known {
-                    seen.push(report.status);
-                }
-                (is_known, element, report.status)
-            })
-            .collect();
-        rows.sort_by_key(|row| row.0);
-        let n = rows.len();
-        rows.truncate(N_LISTED);
-        let element = |(_, element, status): (bool, usize, Status)| UnmappedElement {
-            id: both.crash.loaded.model.shells[run.shells[element] as usize].id,
-            status,
-            center: run.target.mesh.centroids()[element],
-        };
-        (rows.into_iter().map(element).collect(), n)
+        let result = self.document.current_mapping();
+        result.map_or_else(Default::default, |result| {
+            (result.lists.unmapped.clone(), result.lists.n_unmapped)
+        })
     }
 
     /// The mapped elements that can be trusted least, the worst first, at most forty; of equal ones those
     /// that come first in the deck. Elements that can be trusted wholly are not among them.
     pub fn doubtful_elements(&self) -> Vec<DoubtfulElement> {
-        let parts = self.document.both().zip(self.document.current_mapping());
-        let Some((both, result)) = parts else {
-            return Vec::new();
-        };
-        let run = &result.run;
-        // In order, never longer than the list: one walk over the elements, without a copy of them.
-        let mut worst: Vec<(f64, usize)> = Vec::with_capacity(N_LISTED + 1);
-        for (element, report) in run.mapped.elements.iter().enumerate() {
-            let confidence = report.confidence;
-            let is_doubtful = report.status.has_values() && confidence < WHOLLY_TRUSTED;
-            let is_full = worst.len() == N_LISTED;
-            let beats = !is_full || worst.last().is_some_and(|last| confidence < last.0);
-            if is_doubtful && beats {
-                let at = worst.partition_point(|row| row.0 <= confidence);
-                worst.insert(at, (confidence, element));
-                worst.truncate(N_LISTED);
-            }
-        }
-        let element = |(confidence, element): (f64, usize)| DoubtfulElement {
-            id: result.element_id(&both.crash.loaded, element),
-            confidence,
-            center: run.target.mesh.centroids()[element],
-        };
-        worst.into_iter().map(element).collect()
+        let result = self.document.current_mapping();
+        result.map_or_else(Vec::new, |result| result.lists.doubtful.clone())
     }
 
     /// The thickness of the flat sheet: the crash part's section, else the stamped part's.
@@ -449,8 +380,7 @@ pub fn file_names(paths: &[String]) -> String {
 /// Takes a mapping over as one undo step, and compares it with the file that mappings are compared with.
 pub(super) fn take_mapped(
     work: &mut Work<'_>,
-    run: Arc<MapRun>,
-    record: Arc<MapRecord>,
+    (run, record, lists): (Arc<MapRun>, Arc<MapRecord>, Arc<ElementLists>),
     took: Duration,
 ) -> Vec<Effect> {
     let other = work.document.mapping.compare_with.clone();
@@ -474,6 +404,7 @@ pub(super) fn take_mapped(
         mapping.result = Some(MapResult {
             run: run.into(),
             record: record.into(),
+            lists: lists.into(),
             stamp,
             asked: mapping.recipe.clone(),
             other: None,

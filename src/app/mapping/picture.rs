@@ -216,8 +216,8 @@ impl AppState {
         let Some(result) = self.document.current_mapping() else {
             return Vec::new();
         };
-        let elements = &result.run.mapped.elements;
-        let row = |status: Status| elements.iter().position(|report| report.status == status);
+        let first_of = &result.lists.first_of;
+        let row = |status: Status| Some(first_of.iter().find(|(of, _)| *of == status)?.1);
         let statuses = result.record.statuses.iter();
         statuses
             .filter_map(|of| Some((of.status, of.n_elements, of.area_share, row(of.status)?)))

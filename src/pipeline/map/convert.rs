@@ -2,13 +2,18 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::{MapRecipe, parts_in_use};
+use super::{MapRecipe, mesh_error, parts_in_use};
 use crate::formats::Model;
-use crate::geometry::{MeshError, Point3};
+use crate::geometry::Point3;
 use crate::mapping::{
     LayerHistory, LayerRule, Layered, RuleKind, ShellMesh, SourceHistory, SourcePart, TargetPart,
 };
+use crate::monitor::{Cancelled, Monitor};
+use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
+
+/// Elements between two looks for a cancel request.
+const CHUNK: usize = 1 << 14;
 
 /// The shells of a loaded part as a mapping mesh, with their indices in the model.
 pub(super) struct PartShells {
@@ -19,33 +24,41 @@ pub(super) struct PartShells {
 
 /// The chosen shells in the crash model's length unit, in the order of the deck. Solids and thick
 /// shells have no thickness to be mapped and are left out.
-pub(super) fn part_shells(part: &LoadedPart) -> Result<PartShells, MeshError> {
+pub(super) fn part_shells(
+    part: &LoadedPart,
+    monitor: &Monitor,
+) -> Result<PartShells, PipelineError> {
     let model = &part.model;
     let n_shells = model.shells.len() as u32;
     let triangles = 0..part.mesh.n_triangles() as u32;
     let mut shells: Vec<u32> = triangles.filter_map(|t| part.ids.element_of(t)).collect();
     shells.retain(|&element| element < n_shells);
+    monitor.check()?;
     shells.sort_unstable();
     shells.dedup();
     let factor = part.settings.length_factor;
     // Only the nodes in use, so that a part of a whole car stays small.
     let mut place = HashMap::new();
     let mut positions: Vec<Point3> = Vec::new();
-    let corners = shells.iter().map(|&shell| {
-        model.shells[shell as usize].nodes.map(|node| {
-            *place.entry(node).or_insert_with(|| {
-                positions.push(model.nodes.positions()[node as usize] * factor);
-                (positions.len() - 1) as u32
+    let mut corners: Vec<[u32; 4]> = Vec::with_capacity(shells.len());
+    for chunk in shells.chunks(CHUNK) {
+        monitor.check()?;
+        corners.extend(chunk.iter().map(|&shell| {
+            model.shells[shell as usize].nodes.map(|node| {
+                *place.entry(node).or_insert_with(|| {
+                    positions.push(model.nodes.positions()[node as usize] * factor);
+                    (positions.len() - 1) as u32
+                })
             })
-        })
-    });
-    let corners: Vec<[u32; 4]> = corners.collect();
+        }));
+    }
+    monitor.check()?;
     let parts = shells
         .iter()
         .map(|&shell| model.shells[shell as usize].part)
         .collect();
     Ok(PartShells {
-        mesh: ShellMesh::new(positions, corners, parts)?,
+        mesh: ShellMesh::new(positions, corners, parts).map_err(mesh_error)?,
         shells,
     })
 }
@@ -56,7 +69,8 @@ pub(super) fn source_part(
     part: &LoadedPart,
     shells: &PartShells,
     recipe: &MapRecipe,
-) -> SourcePart {
+    monitor: &Monitor,
+) -> Result<SourcePart, Cancelled> {
     let stress_factor = recipe.stress_factor.unwrap_or(1.0);
     let model = &part.model;
     let factor = part.settings.length_factor;
@@ -64,10 +78,14 @@ pub(super) fn source_part(
         let corners = model.shell_thickness(shell).unwrap_or([f64::NAN; 4]);
         corners.map(|t| t * factor)
     });
+    monitor.check()?;
     let index = element_index(model, &shells.shells);
     let mut states = Layered::new(shells.shells.len());
     let mut history = SourceHistory::new(shells.shells.len());
-    for stress in model.forming.stresses() {
+    for (number, stress) in model.forming.stresses().enumerate() {
+        if number % CHUNK == 0 {
+            monitor.check()?;
+        }
         if let Some(&element) = index.get(&stress.element_id) {
             let points = stress.points.iter().map(|point| {
                 let [xx, yy, zz, xy, yz, zx] = point.stress.map(|s| s * stress_factor);
@@ -87,7 +105,10 @@ pub(super) fn source_part(
         }
     }
     let mut strains = Layered::new(shells.shells.len());
-    for strain in model.forming.strains() {
+    for (number, strain) in model.forming.strains().enumerate() {
+        if number % CHUNK == 0 {
+            monitor.check()?;
+        }
         if let Some(&element) = index.get(&strain.element_id) {
             strains.set(
                 element,
@@ -95,14 +116,14 @@ pub(super) fn source_part(
             );
         }
     }
-    SourcePart {
+    Ok(SourcePart {
         thickness: thickness.collect(),
         states,
         strains,
         history,
         laws: laws(model, shells, recipe.stamped_law.as_deref()),
         mesh: shells.mesh.clone(),
-    }
+    })
 }
 
 /// The material laws of the parts in use, as far as they are known; `given` counts for all.
@@ -139,13 +160,17 @@ pub(super) fn target_part(
     part: &LoadedPart,
     shells: &PartShells,
     layers_of_part: impl Fn(u32) -> TargetLayers,
-) -> TargetPart {
+    monitor: &Monitor,
+) -> Result<TargetPart, Cancelled> {
     let model = &part.model;
     let factor = part.settings.length_factor;
     let mut kinds: Vec<TargetLayers> = Vec::new();
     let mut rule_of = Vec::with_capacity(shells.shells.len());
     let mut n_plane = Vec::with_capacity(shells.shells.len());
-    for &of_part in shells.mesh.parts() {
+    for (element, &of_part) in shells.mesh.parts().iter().enumerate() {
+        if element % CHUNK == 0 {
+            monitor.check()?;
+        }
         let layers = layers_of_part(of_part);
         let same =
             |kind: &TargetLayers| (kind.n_layers, kind.rule) == (layers.n_layers, layers.rule);
@@ -165,12 +190,12 @@ pub(super) fn target_part(
     let rules = kinds
         .iter()
         .map(|kind| LayerRule::new(kind.rule, kind.n_layers));
-    TargetPart {
+    Ok(TargetPart {
         rules: rules.collect(),
         rule_of,
         n_plane,
         nominal_thickness: nominal.collect(),
         laws: laws(model, shells, None),
         mesh: shells.mesh.clone(),
-    }
+    })
 }

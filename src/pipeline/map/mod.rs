@@ -3,6 +3,7 @@
 mod compare;
 mod convert;
 mod default_thickness;
+mod lists;
 mod output;
 mod peak;
 mod probe;
@@ -21,6 +22,7 @@ use serde::{Deserialize, Serialize};
 pub use compare::{ComparisonRecord, DifferenceRecord, OtherResult, compare_with};
 pub use convert::TargetLayers;
 pub use default_thickness::DefaultThickness;
+pub use lists::{DoubtfulElement, ElementLists, UnmappedElement, element_lists};
 pub use output::{MapFiles, MapOutput, WriteKind, deck_comments, elements_path, write_mapping};
 pub use probe::{ProbeRecord, ProbedValue, probe_records};
 pub use record::{DistributionRecord, MapRecord, PairRecord, element_table, map_record};
@@ -178,7 +180,7 @@ pub fn map_parts(
     monitor: &Monitor,
 ) -> Result<MapRun, PipelineError> {
     let start = Instant::now();
-    let crash_shells = part_shells(crash).map_err(mesh_error)?;
+    let crash_shells = part_shells(crash, monitor)?;
     let layers = Layers { crash, recipe };
     let crash_parts = parts_in_use(&crash_shells);
     for &part in &crash_parts {
@@ -188,19 +190,17 @@ pub fn map_parts(
     if wanted.stress || wanted.history {
         ready::check_axes(crash, &crash_parts)?;
     }
-    let target = target_part(crash, &crash_shells, |part| {
-        layers.of(part).unwrap_or(FALLBACK_LAYERS)
-    });
+    let layers_of = |part| layers.of(part).unwrap_or(FALLBACK_LAYERS);
+    let target = target_part(crash, &crash_shells, layers_of, monitor)?;
     let mut shells = Vec::with_capacity(stamped.len());
     for placed in stamped {
-        monitor.check()?;
-        shells.push(part_shells(placed.part).map_err(mesh_error)?);
+        shells.push(part_shells(placed.part, monitor)?);
     }
     let mut sources = Vec::with_capacity(stamped.len());
     for (placed, shells) in stamped.iter().zip(&shells) {
-        monitor.check()?;
-        sources.push(source_part(placed.part, shells, recipe));
+        sources.push(source_part(placed.part, shells, recipe, monitor)?);
     }
+    monitor.check()?;
     for ((placed, shells), source) in stamped.iter().zip(&shells).zip(&sources) {
         if wanted.stress || wanted.history {
             ready::check_axes(placed.part, &parts_in_use(shells))?;

@@ -5,7 +5,10 @@ use crate::render::pipeline::{Depth, OVER, PipelineSpec, texture_entry};
 /// Lays a finished picture on the window.
 #[derive(Debug)]
 pub(in crate::render) struct Composite {
-    pipeline: wgpu::RenderPipeline,
+    /// For pictures that have the window's pixels.
+    exact: wgpu::RenderPipeline,
+    /// For pictures that are stretched.
+    stretched: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
 }
@@ -37,23 +40,27 @@ impl Composite {
         } else {
             "fs_gamma"
         };
-        let pipeline = PipelineSpec {
-            layouts: &[&layout],
-            fragment,
-            depth: Depth::Absent,
-            blend: OVER,
-            format,
-            samples: 1,
-            ..PipelineSpec::new("composite", &shader)
-        }
-        .build(device);
-        // Nearest: the picture has the window's pixels, and anything else would blur it.
+        let pipeline = |is_stretched: f64| {
+            PipelineSpec {
+                layouts: &[&layout],
+                fragment,
+                depth: Depth::Absent,
+                blend: OVER,
+                format,
+                samples: 1,
+                constants: &[("IS_STRETCHED", is_stretched)],
+                ..PipelineSpec::new("composite", &shader)
+            }
+            .build(device)
+        };
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("composite"),
+            mag_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
         Self {
-            pipeline,
+            exact: pipeline(0.0),
+            stretched: pipeline(1.0),
             layout,
             sampler,
         }
@@ -80,8 +87,18 @@ impl Composite {
         })
     }
 
-    pub(in crate::render) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, group: &wgpu::BindGroup) {
-        pass.set_pipeline(&self.pipeline);
+    /// Lays a picture over the viewport of the pass; `is_stretched` if its pixels are not the window's.
+    pub(in crate::render) fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        group: &wgpu::BindGroup,
+        is_stretched: bool,
+    ) {
+        pass.set_pipeline(if is_stretched {
+            &self.stretched
+        } else {
+            &self.exact
+        });
         pass.set_bind_group(0, group, &[]);
         pass.draw(0..3, 0..1);
     }

@@ -15,15 +15,24 @@ pub(super) struct Gpu {
     targets: PerRole<ViewTarget>,
 }
 
+/// True if the driver draws with the processor.
+pub(super) fn is_software(state: &RenderState) -> bool {
+    state.adapter.get_info().device_type == wgpu::DeviceType::Cpu
+}
+
 impl Gpu {
     /// Compiles the shaders and leaves everything with egui.
     pub fn install(state: &RenderState) {
+        let target = |_| {
+            if is_software(state) {
+                ViewTarget::on_processor()
+            } else {
+                ViewTarget::new()
+            }
+        };
         let gpu = Self {
             renderer: Renderer::new(&state.device, &state.queue, state.target_format),
-            targets: PerRole {
-                crash: ViewTarget::new(),
-                stamped: ViewTarget::new(),
-            },
+            targets: PerRole::from_fn(target),
         };
         state.renderer.write().callback_resources.insert(gpu);
     }

@@ -70,6 +70,11 @@ impl Viewports {
         }
     }
 
+    /// True if every pixel of the window costs the processor time, as with a software driver.
+    pub fn is_on_processor(&self) -> bool {
+        self.render_state.as_ref().is_some_and(gpu::is_software)
+    }
+
     /// Shows one window in the rest of `ui`.
     pub fn show(&mut self, ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
         let rect = ui.available_rect_before_wrap();
