@@ -58,6 +58,10 @@ pub(super) fn stretch(evidence: &ShapeEvidence<'_>, tolerance: &ShapeTolerance) 
     let mut search = ContactSearch::new(surfaces, scale, evidence.reach, N_PLACES);
     let gaps = Gaps::of(&search.at(evidence.pose)?, &frame);
     let (_, before) = gaps.explained(N_SMOOTH, evidence.noise);
+    if before <= evidence.noise {
+        // What facets leave open says nothing, least of all about the length of an extruded part.
+        return None;
+    }
     let (found, mut after) = gaps.explained(N, evidence.noise);
     let mut shares = frame.shares(&found);
     if frame.longest(&shares).1 < 0.5 * limit {
