@@ -30,6 +30,9 @@ pub trait Observer: Send + Sync {
 
     /// Places spread over the shape that is being prepared, for a first picture.
     fn shape(&self, _points: Vec<[f64; 3]>) {}
+
+    /// The work looks whether it is to end.
+    fn asked(&self) {}
 }
 
 #[derive(Debug, Default)]
@@ -94,6 +97,9 @@ impl Monitor {
 
     /// `Err(Cancelled)` once [`Monitor::request_cancel`] was called; to be asked once per chunk.
     pub fn check(&self) -> Result<(), Cancelled> {
+        if let Some(observer) = &self.observer {
+            observer.asked();
+        }
         if self.flags.cancel.load(Ordering::Relaxed) {
             Err(Cancelled)
         } else {

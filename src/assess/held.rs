@@ -10,6 +10,7 @@ use super::slide::slid;
 use super::sliding::{FreeMotion, FreeMotionKind, weak_motion};
 use super::{AssessSettings, overlap_limit, tolerance_of};
 use crate::geometry::Similarity;
+use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
 
 /// Rims are looked for within this share of the diagonal: first poses are that good.
@@ -76,12 +77,19 @@ pub fn held_by_rims(
     target: &Surface,
     outcome: &MatchOutcome,
     settings: &AssessSettings,
-) -> Option<HeldPose> {
+    monitor: &Monitor,
+) -> Result<Option<HeldPose>, Cancelled> {
     let found = &outcome.target_from_source;
     let limit = free_limit(source, target, settings);
-    let free = weak_motion(source, target, found, limit)?;
+    let Some(free) = weak_motion(source, target, found, limit) else {
+        return Ok(None);
+    };
+    monitor.check()?;
     let pair = Pair::new(source, target, found.scale, settings);
-    let result = pair.settle(found)?;
+    let Some(result) = pair.settle(found) else {
+        return Ok(None);
+    };
+    monitor.check()?;
     let tried = outcome
         .starts
         .iter()
@@ -94,21 +102,27 @@ pub fn held_by_rims(
         .take(MOST_POSES)
         .collect();
     let roots = pair.roots(&result, &others, &free);
-    let slid = roots
-        .iter()
-        .flat_map(|(root, free)| slid(source, target, root, free, MOST_SLID));
-    let poses: Vec<Similarity> = slid.chain(others.iter().copied()).collect();
-    let mut by_rims: Vec<(f64, Similarity)> = poses
-        .par_iter()
-        .map(|pose| (pair.rims_apart(pose), *pose))
-        .collect();
+    let mut poses = Vec::new();
+    for (root, free) in &roots {
+        monitor.check()?;
+        poses.extend(slid(source, target, root, free, MOST_SLID));
+    }
+    poses.extend(&others);
+    let apart = |pose: &Similarity| {
+        monitor.check()?;
+        Ok((pair.rims_apart(pose), *pose))
+    };
+    let by_rims: Result<Vec<(f64, Similarity)>, Cancelled> = poses.par_iter().map(apart).collect();
+    let mut by_rims = by_rims?;
     by_rims.sort_by(|a, b| a.0.total_cmp(&b.0));
     let by_rims = pair.apart_from_each_other(by_rims);
-    let settled: Vec<Settled> = by_rims
-        .par_iter()
-        .filter(|pose| pair.lies_on(pose, &result))
-        .filter_map(|pose| pair.settle(pose))
-        .collect();
+    let settle = |pose: &Similarity| {
+        monitor.check()?;
+        let is_likely = pair.lies_on(pose, &result);
+        Ok(is_likely.then(|| pair.settle(pose)).flatten())
+    };
+    let settled: Result<Vec<Option<Settled>>, Cancelled> = by_rims.par_iter().map(settle).collect();
+    let settled: Vec<Settled> = settled?.into_iter().flatten().collect();
     // A bent part may have been laid where it hardly fits: what fits best says how close is close.
     let closest = settled
         .iter()
@@ -128,10 +142,10 @@ pub fn held_by_rims(
         .max_by(|a, b| a.held.total_cmp(&b.held));
     let winner = best.copied().unwrap_or(result);
     let exactly = Settling::new([source, target], found.scale, settings, MAX_NODES);
-    Some(HeldPose {
+    Ok(Some(HeldPose {
         target_from_source: exactly.settled(&winner.pose).unwrap_or(winner.pose),
         alternatives: pair.alternatives(&winner, &result, &rivals, outcome),
-    })
+    }))
 }
 
 /// Score of the opposite hand over that of the result, where the surfaces fit both: a hole on one side

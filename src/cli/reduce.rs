@@ -52,7 +52,7 @@ pub fn run(args: &ReduceArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     check_outputs(targets(args), &part.files())?;
     let settings = settings(args);
     let levels = Levels::record(&part, &settings, &monitor)?;
-    let level = levels.level(args.triangles);
+    let level = levels.level(args.triangles, &monitor)?;
     let deviation = levels.measure(&level.mesh, &monitor)?;
     let record = record(args, &levels, &level, &deviation);
     if !takes_stdout(args.json.as_deref()) {

@@ -18,7 +18,7 @@ use crate::monitor::{Cancelled, Monitor};
 /// Bytes per positional read.
 const PIECE: usize = 1 << 20;
 /// Bytes between two questions to the monitor.
-const WAVE: usize = 64 << 20;
+const WAVE: usize = 16 << 20;
 
 /// More bytes than may be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

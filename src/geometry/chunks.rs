@@ -8,6 +8,9 @@ use crate::monitor::{Cancelled, Monitor};
 
 /// Items per piece. Fixed, so that nothing depends on the number of threads.
 pub(crate) const CHUNK: usize = 1 << 14;
+/// Items that all threads make together between two questions, and that one of them takes at least.
+const WAVE: usize = 8 * CHUNK;
+const LEAST: usize = 1 << 10;
 
 /// Hands consecutive ranges that cover `0..n` to `work`, asking `monitor` before each.
 pub(crate) fn for_chunks(
@@ -22,23 +25,18 @@ pub(crate) fn for_chunks(
     Ok(())
 }
 
-/// `make(0)`, `make(1)`, … on all threads; `blank` fills the places before.
-pub(crate) fn map_chunks<T: Clone + Send>(
+/// `make(0)`, `make(1)`, … on all threads.
+pub(crate) fn map_chunks<T: Send>(
     n: usize,
-    blank: T,
     monitor: &Monitor,
     make: impl Fn(usize) -> T + Sync,
 ) -> Result<Vec<T>, Cancelled> {
-    let mut made = vec![blank; n];
-    made.par_chunks_mut(CHUNK)
-        .enumerate()
-        .try_for_each(|(chunk, places)| {
-            monitor.check()?;
-            for (i, place) in places.iter_mut().enumerate() {
-                *place = make(chunk * CHUNK + i);
-            }
-            Ok(())
-        })?;
+    let mut made = Vec::with_capacity(n);
+    for start in (0..n).step_by(WAVE) {
+        monitor.check()?;
+        let wave = (start..n.min(start + WAVE)).into_par_iter();
+        made.par_extend(wave.with_min_len(LEAST).map(&make));
+    }
     Ok(made)
 }
 
@@ -48,7 +46,7 @@ mod tests {
 
     #[test]
     fn every_item_comes_once_and_in_its_place() {
-        let n = 2 * CHUNK + 7;
+        let n = 2 * WAVE + 7;
         let monitor = Monitor::silent();
         let mut next = 0;
         for_chunks(n, &monitor, |range| {
@@ -57,7 +55,7 @@ mod tests {
         })
         .unwrap();
         assert_eq!(next, n);
-        let squares = map_chunks(n, 0, &monitor, |i| i * i).unwrap();
+        let squares = map_chunks(n, &monitor, |i| i * i).unwrap();
         assert!(squares.iter().enumerate().all(|(i, &s)| s == i * i));
     }
 
@@ -66,6 +64,6 @@ mod tests {
         let monitor = Monitor::silent();
         monitor.request_cancel();
         assert_eq!(for_chunks(1, &monitor, |_| panic!("ran")), Err(Cancelled));
-        assert_eq!(map_chunks(1, 0, &monitor, |i| i), Err(Cancelled));
+        assert_eq!(map_chunks(1, &monitor, |i| i), Err(Cancelled));
     }
 }

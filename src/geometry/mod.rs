@@ -34,7 +34,7 @@ pub use section::{
 pub use similarity::{MatrixError, Similarity};
 pub use topology::{BorderLoop, Topology, orient_consistently};
 pub use weld::{Welded, weld};
-pub use z_order::z_order;
+pub use z_order::{z_order, z_order_for};
 
 /// A position in space.
 pub type Point3 = nalgebra::Point3<f64>;

@@ -12,9 +12,7 @@ const MAX_FAN: usize = 1024;
 
 /// Unit normal of each triangle; zero without area. O(triangles).
 pub fn face_normals(mesh: &TriMesh, monitor: &Monitor) -> Result<Vec<Vector3>, Cancelled> {
-    map_chunks(mesh.n_triangles(), Vector3::zeros(), monitor, |t| {
-        mesh.normal(t)
-    })
+    map_chunks(mesh.n_triangles(), monitor, |t| mesh.normal(t))
 }
 
 /// For each vertex the corners of triangles that lie there. Corner `3 · t + i` is corner `i` of
@@ -179,7 +177,7 @@ pub fn vertex_normals(
     fans: &VertexFans,
     monitor: &Monitor,
 ) -> Result<Vec<Vector3>, Cancelled> {
-    map_chunks(mesh.n_vertices(), Vector3::zeros(), monitor, |vertex| {
+    map_chunks(mesh.n_vertices(), monitor, |vertex| {
         let weighted = |&corner: &u32| {
             let [u, v] = corner_sides(mesh, corner);
             faces[corner as usize / 3] * u.angle(&v)

@@ -57,7 +57,7 @@ impl Topology {
         Ok(Self {
             edges,
             edge_start,
-            edge_triangles: listed.into_iter().map(|(_, t)| t).collect(),
+            edge_triangles: map_chunks(listed.len(), monitor, |side| listed[side].1)?,
         })
     }
 
@@ -202,14 +202,14 @@ pub fn orient_consistently(
     topology: &Topology,
     monitor: &Monitor,
 ) -> Result<(TriMesh, usize), Cancelled> {
-    let disagree = map_chunks(topology.edges.len(), false, monitor, |edge| match *topology
-        .triangles_of(edge)
-    {
-        [s, t] if s != t => {
-            let ends = topology.edges[edge];
-            runs_forward(&mesh, s, ends) == runs_forward(&mesh, t, ends)
+    let disagree = map_chunks(topology.edges.len(), monitor, |edge| {
+        match *topology.triangles_of(edge) {
+            [s, t] if s != t => {
+                let ends = topology.edges[edge];
+                runs_forward(&mesh, s, ends) == runs_forward(&mesh, t, ends)
+            }
+            _ => false,
         }
-        _ => false,
     })?;
     if !disagree.contains(&true) {
         return Ok((mesh, 0));

@@ -87,7 +87,7 @@ fn first_at_place(mesh: &TriMesh, monitor: &Monitor) -> Result<Vec<u32>, Cancell
             first[vertex as usize] = vertex;
         }
     })?;
-    let hashes = map_chunks(positions.len(), 0, monitor, |v| place_hash(&positions[v]))?;
+    let hashes = map_chunks(positions.len(), monitor, |v| place_hash(&positions[v]))?;
     let n_shards = if positions.len() < ONE_SHARD {
         1
     } else {

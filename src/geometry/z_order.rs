@@ -3,13 +3,20 @@
 
 use rayon::prelude::*;
 
+use super::chunks::map_chunks;
 use super::{Aabb, Point3, Vector3};
+use crate::monitor::{Cancelled, Monitor};
 
 /// Cells along an edge of the box, less one.
 pub(crate) const LAST_CELL: f64 = 1023.0;
 
 /// Indices of the points in the order of a Z-order curve over their box. O(n log n).
 pub fn z_order(points: &[Point3]) -> Vec<u32> {
+    z_order_for(points, &Monitor::silent()).expect("nobody cancels a silent monitor")
+}
+
+/// [`z_order`] of many points, on all threads; ends when `monitor` is cancelled.
+pub fn z_order_for(points: &[Point3], monitor: &Monitor) -> Result<Vec<u32>, Cancelled> {
     let aabb = Aabb::of_points(points);
     let extent = aabb.extents().max();
     let scale = if extent > 0.0 {
@@ -17,11 +24,13 @@ pub fn z_order(points: &[Point3]) -> Vec<u32> {
     } else {
         0.0
     };
-    let key = |(i, point): (usize, &Point3)| (z_code(&((point - aabb.min) * scale)), i as u32);
-    let mut keyed: Vec<(u32, u32)> = points.iter().enumerate().map(key).collect();
+    let mut keyed = map_chunks(points.len(), monitor, |i| {
+        (z_code(&((points[i] - aabb.min) * scale)), i as u32)
+    })?;
+    monitor.check()?;
     // No two are equal, so the order does not depend on the threads.
     keyed.par_sort_unstable();
-    keyed.into_iter().map(|(_, i)| i).collect()
+    map_chunks(keyed.len(), monitor, |i| keyed[i].1)
 }
 
 /// Place on the curve of a point in cells, 0 to [`LAST_CELL`] along each axis.

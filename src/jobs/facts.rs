@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::formats::PartSummary;
 use crate::geometry::{Aabb, Landmarks, Vector3};
+use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::likeness::{Moments, moments_of_parts};
 use crate::pipeline::load::LoadedPart;
 
@@ -37,18 +38,23 @@ pub struct PartFacts {
 
 impl PartFacts {
     /// Counts and measures. O(elements).
-    pub fn of(part: &LoadedPart) -> Self {
+    pub fn of(part: &LoadedPart, monitor: &Monitor) -> Result<Self, Cancelled> {
         let (model, measures) = (&part.model, part.surface.measures());
         let formed = if !model.forming.is_empty() {
             2
         } else {
             u8::from(model.parts.len() == 1 && !model.shell_extras.is_empty())
         };
-        Self {
-            parts: model.part_summaries(),
+        let parts = model.part_summaries();
+        monitor.check()?;
+        let part_bounds = part_bounds(part);
+        monitor.check()?;
+        let moments = moments_of_parts(model, part.settings.length_factor, monitor)?;
+        Ok(Self {
+            parts,
             used: part.chosen_part_ids().into_iter().collect(),
-            part_bounds: part_bounds(part),
-            moments: moments_of_parts(model, part.settings.length_factor),
+            part_bounds,
+            moments,
             bounds: part.mesh.aabb(),
             area: measures.area,
             edge_length: measures.mean_edge_length,
@@ -56,7 +62,7 @@ impl PartFacts {
             landmarks: Landmarks::of(part.surface.mesh(), part.surface.borders()),
             thickness: part.mean_thickness(),
             formed,
-        }
+        })
     }
 }
 

@@ -74,7 +74,7 @@ fn at_its_level(
     monitor: &Monitor,
 ) -> Result<OpenedPart, JobError> {
     let part = Arc::new(found.part);
-    let facts = Arc::new(PartFacts::of(&part));
+    let facts = Arc::new(PartFacts::of(&part, monitor)?);
     let level = entry
         .max_triangles
         .map(|n| reduce_part(&part, None, n, monitor));

@@ -94,7 +94,7 @@ impl Runner for PipelineRunner {
                 settings,
             } => {
                 let part = source.load(role, &settings, monitor)?;
-                Ok(loaded(role, source, part))
+                Ok(loaded(role, source, part, monitor)?)
             }
             JobKind::Reselect {
                 role,
@@ -103,7 +103,8 @@ impl Runner for PipelineRunner {
             } => {
                 let model = Arc::clone(&part.model);
                 let again = load::prepare(&part.path, model, &settings, monitor)?;
-                Ok(loaded(role, PartSource::File(part.path.clone()), again))
+                let source = PartSource::File(part.path.clone());
+                Ok(loaded(role, source, again, monitor)?)
             }
             JobKind::Reduce(input) => reduce(input, monitor),
             JobKind::MeasureLevel(input) => measure_level(input, monitor),
@@ -126,14 +127,19 @@ impl Runner for PipelineRunner {
     }
 }
 
-fn loaded(role: Role, source: PartSource, part: LoadedPart) -> JobOutput {
-    let facts = Arc::new(PartFacts::of(&part));
-    JobOutput::Loaded {
+fn loaded(
+    role: Role,
+    source: PartSource,
+    part: LoadedPart,
+    monitor: &Monitor,
+) -> Result<JobOutput, Cancelled> {
+    let facts = Arc::new(PartFacts::of(&part, monitor)?);
+    Ok(JobOutput::Loaded {
         role,
         source,
         part: Arc::new(part),
         facts,
-    }
+    })
 }
 
 fn reduce(input: ReduceInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
@@ -174,7 +180,7 @@ pub(super) fn reduce_part(
             Arc::new(Recording { levels, down_to })
         }
     };
-    let level = recording.levels.level(max_triangles);
+    let level = recording.levels.level(max_triangles, monitor)?;
     let measured = MeasuredLevel {
         max_triangles,
         level,
@@ -217,13 +223,14 @@ fn run_match(input: &MatchInput, monitor: MatchMonitor<'_>) -> Result<JobOutput,
 fn run_find_parts(input: &MatchInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
     let parts = input.parts.as_deref();
     let found = find_parts(parts, &input.recipe, &input.current, monitor)?;
-    Ok(JobOutput::PartsFound(found.map(|found| {
-        let part = found.found.part;
-        FoundCrash {
-            facts: Arc::new(PartFacts::of(&part)),
-            part: Arc::new(part),
-            rivals: found.rivals,
-        }
+    let Some(found) = found else {
+        return Ok(JobOutput::PartsFound(None));
+    };
+    let part = found.found.part;
+    Ok(JobOutput::PartsFound(Some(FoundCrash {
+        facts: Arc::new(PartFacts::of(&part, monitor)?),
+        part: Arc::new(part),
+        rivals: found.rivals,
     })))
 }
 
@@ -260,6 +267,7 @@ fn map(input: &MapInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
     let run = map_parts(&input.parts.crash, &[placed], &input.recipe, monitor)?;
     monitor.check()?;
     let record = map_record(&run, &input.parts.crash, &[placed], None, None);
+    monitor.check()?;
     let lists = element_lists(&run, &input.parts.crash);
     Ok(JobOutput::Mapped {
         run: Arc::new(run),

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use super::history::SourceHistory;
 use super::layered::Layered;
 use super::options::{MapOptions, Quantities};
@@ -9,7 +11,8 @@ use super::source::SourcePart;
 use super::target::{Mapped, TargetPart};
 use super::{MappingError, PlacedSource, map};
 use crate::geometry::Similarity;
-use crate::monitor::Monitor;
+use crate::geometry::chunks::for_chunks;
+use crate::monitor::{Cancelled, Monitor};
 
 /// Area-weighted distribution of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +40,7 @@ pub fn distribution(values: impl Iterator<Item = (f64, f64)>) -> Option<Distribu
     let mut sorted: Vec<(f64, f64)> = values
         .filter(|(value, area)| value.is_finite() && *area > 0.0)
         .collect();
-    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sorted.par_sort_by(|a, b| a.0.total_cmp(&b.0));
     let area: f64 = sorted.iter().map(|(_, area)| area).sum();
     let mean = sorted.iter().map(|(value, area)| value * area).sum::<f64>() / area;
     let (min, max) = (sorted.first()?.0, sorted.last()?.0);
@@ -128,17 +131,20 @@ pub fn map_back(
     let n = target.mesh.len();
     let mut states = Layered::new(n);
     if let Some(layers) = &mapped.states {
-        for element in 0..n {
-            let rule = &target.rules[target.rule_of[element] as usize];
-            let values = layers.of(element);
-            let planes = values.len() / rule.len().max(1);
-            let places = rule
-                .places()
-                .iter()
-                .flat_map(|&t| std::iter::repeat_n(t, planes));
-            states.set(element, places.zip(values.iter().copied()));
-        }
+        for_chunks(n, monitor, |range| {
+            for element in range {
+                let rule = &target.rules[target.rule_of[element] as usize];
+                let values = layers.of(element);
+                let planes = values.len() / rule.len().max(1);
+                let places = rule
+                    .places()
+                    .iter()
+                    .flat_map(|&t| std::iter::repeat_n(t, planes));
+                states.set(element, places.zip(values.iter().copied()));
+            }
+        })?;
     }
+    monitor.check()?;
     let as_source = SourcePart {
         mesh: target.mesh.clone(),
         thickness: mapped
@@ -153,6 +159,7 @@ pub fn map_back(
     };
     let rules = target.rules.clone();
     let moved = source.part.mesh.moved(&source.target_from_source);
+    monitor.check()?;
     let as_target = TargetPart {
         rule_of: vec![0; moved.len()],
         n_plane: vec![1; moved.len()],
@@ -172,30 +179,42 @@ pub fn map_back(
         target_from_source: Similarity::identity(),
     };
     let back = map(&[placed], &as_target, &options, monitor)?;
-    Ok(compare_back(source.part, &as_target, &back))
+    Ok(compare_back(source.part, &as_target, &back, monitor)?)
 }
 
-fn compare_back(source: &SourcePart, as_target: &TargetPart, back: &Mapped) -> MapBack {
+/// Values with the area each stands for.
+type Weighted = Vec<(f64, f64)>;
+
+fn compare_back(
+    source: &SourcePart,
+    as_target: &TargetPart,
+    back: &Mapped,
+    monitor: &Monitor,
+) -> Result<MapBack, Cancelled> {
     let areas = as_target.mesh.areas();
     let mut thickness = (Vec::new(), Vec::new());
     let mut plastic = (Vec::new(), Vec::new());
-    for (element, &area) in areas.iter().enumerate() {
-        let own = source.mean_thickness(element);
-        let returned = back.thickness.get(element).copied().unwrap_or(f64::NAN);
-        if own.is_finite() && returned.is_finite() {
-            thickness.0.push((own, area));
-            thickness.1.push(((returned - own).abs(), area));
+    for_chunks(areas.len(), monitor, |range| {
+        for element in range {
+            let area = areas[element];
+            let own = source.mean_thickness(element);
+            let returned = back.thickness.get(element).copied().unwrap_or(f64::NAN);
+            if own.is_finite() && returned.is_finite() {
+                thickness.0.push((own, area));
+                thickness.1.push(((returned - own).abs(), area));
+            }
+            let own = source.mean_plastic_strain(element);
+            let returned = back.mean_plastic_strain(as_target, element);
+            if own.is_finite() && returned.is_finite() {
+                plastic.0.push((own, area));
+                plastic.1.push(((returned - own).abs(), area));
+            }
         }
-        let own = source.mean_plastic_strain(element);
-        let returned = back.mean_plastic_strain(as_target, element);
-        if own.is_finite() && returned.is_finite() {
-            plastic.0.push((own, area));
-            plastic.1.push(((returned - own).abs(), area));
-        }
-    }
-    let [thickness, plastic] = [thickness, plastic].map(|(own, differences)| {
+    })?;
+    let compared = |(own, differences): (Weighted, Weighted)| {
         let range =
             distribution(own.into_iter()).map_or(0.0, |d| d.percentiles[2] - d.percentiles[0]);
+        monitor.check()?;
         let squares = differences
             .iter()
             .map(|(d, area)| d * d * area)
@@ -207,9 +226,11 @@ fn compare_back(source: &SourcePart, as_target: &TargetPart, back: &Mapped) -> M
         } else {
             0.0
         };
-        (rms, p95, range)
-    });
-    MapBack {
+        monitor.check()?;
+        Ok((rms, p95, range))
+    };
+    let (thickness, plastic) = (compared(thickness)?, compared(plastic)?);
+    Ok(MapBack {
         thickness_rms: thickness.0,
         thickness_p95: thickness.1,
         thickness_range: thickness.2,
@@ -222,7 +243,7 @@ fn compare_back(source: &SourcePart, as_target: &TargetPart, back: &Mapped) -> M
             .iter()
             .map(|report| report.status.has_values())
             .collect(),
-    }
+    })
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 use rayon::prelude::*;
 
 use super::shells::ShellMesh;
+use crate::geometry::chunks::{for_chunks, map_chunks};
+use crate::monitor::{Cancelled, Monitor};
 
 /// Elements that one thread takes at a time.
 const CHUNK: usize = 4096;
@@ -20,35 +22,37 @@ pub struct Links {
 
 impl Links {
     /// O(elements).
-    pub(super) fn of(mesh: &ShellMesh) -> Self {
-        let merged = mesh.merged_nodes();
+    pub(super) fn of(mesh: &ShellMesh, monitor: &Monitor) -> Result<Self, Cancelled> {
+        let merged = mesh.merged_nodes(monitor)?;
         let n_merged = merged.iter().filter(|&&v| v != u32::MAX).max();
         let n_merged = n_merged.map_or(0, |&v| v as usize + 1);
-        let corners_of: Vec<[u32; 4]> = mesh
-            .corners()
-            .iter()
-            .map(|corners| corners.map(|node| merged[node as usize]))
-            .collect();
-        let around_node = Lists::group(n_merged, || {
-            corners_of
-                .iter()
-                .enumerate()
-                .flat_map(|(element, corners)| {
-                    let distinct = if corners[2] == corners[3] { 3 } else { 4 };
-                    // A node that only collapsed elements name has no number.
-                    let nodes = corners.iter().take(distinct);
-                    let nodes = nodes.filter(|&&node| node != u32::MAX);
-                    nodes.map(move |&node| (node as usize, element as u32))
-                })
-        });
+        let corners_of = map_chunks(mesh.len(), monitor, |element| {
+            mesh.corners()[element].map(|node| merged[node as usize])
+        })?;
+        let nodes_of = |element: usize| {
+            let corners = &corners_of[element];
+            let distinct = if corners[2] == corners[3] { 3 } else { 4 };
+            // A node that only collapsed elements name has no number.
+            let nodes = corners.iter().take(distinct);
+            nodes.copied().filter(|&node| node != u32::MAX)
+        };
+        let around_node = Lists::group([n_merged, mesh.len()], nodes_of, monitor)?;
         let has_area = |element: u32| mesh.areas()[element as usize] > 0.0;
         let chunks: Vec<Chunk> = corners_of
             .par_chunks(CHUNK)
             .enumerate()
             .map(|(chunk, corners)| {
-                Chunk::of(chunk * CHUNK, corners, &around_node, &corners_of, has_area)
+                monitor.check()?;
+                let first = chunk * CHUNK;
+                Ok(Chunk::of(
+                    first,
+                    corners,
+                    &around_node,
+                    &corners_of,
+                    has_area,
+                ))
             })
-            .collect();
+            .collect::<Result<_, Cancelled>>()?;
         let mut links = Self {
             neighbours: Neighbours(Lists {
                 start: Vec::with_capacity(mesh.len() + 1),
@@ -60,26 +64,32 @@ impl Links {
         let Neighbours(Lists { start, items }) = &mut links.neighbours;
         start.push(0);
         for chunk in chunks {
+            monitor.check()?;
             let first = items.len() as u32;
             start.extend(chunk.ends.iter().map(|end| first + end));
             items.extend_from_slice(&chunk.items);
             links.border_edges.extend_from_slice(&chunk.border_edges);
         }
         let mut is_border = vec![false; n_merged];
-        for (corners, &bits) in corners_of.iter().zip(&links.border_edges) {
-            for [i, j] in edges(corners) {
-                if bits & (1 << i) != 0 {
-                    for end in [corners[i], corners[j]] {
-                        if let Some(border) = is_border.get_mut(end as usize) {
-                            *border = true;
+        for_chunks(corners_of.len(), monitor, |range| {
+            for (corners, &bits) in corners_of[range.clone()]
+                .iter()
+                .zip(&links.border_edges[range])
+            {
+                for [i, j] in edges(corners) {
+                    if bits & (1 << i) != 0 {
+                        for end in [corners[i], corners[j]] {
+                            if let Some(border) = is_border.get_mut(end as usize) {
+                                *border = true;
+                            }
                         }
                     }
                 }
             }
-        }
+        })?;
         let of_node = |node: &u32| is_border.get(*node as usize).is_some_and(|&border| border);
         links.is_border_node = merged.iter().map(of_node).collect();
-        links
+        Ok(links)
     }
 
     /// True if the edge of an element between two of its nodes lies on the border; a diagonal never
@@ -186,22 +196,32 @@ struct Lists {
 }
 
 impl Lists {
-    /// Groups (list, item) pairs by list, items in the order they come.
-    fn group<I: Iterator<Item = (usize, u32)>>(n_lists: usize, pairs: impl Fn() -> I) -> Self {
+    /// Groups items `0..n_items` by the lists they belong to, in rising order.
+    fn group<I: Iterator<Item = u32>>(
+        [n_lists, n_items]: [usize; 2],
+        lists_of: impl Fn(usize) -> I,
+        monitor: &Monitor,
+    ) -> Result<Self, Cancelled> {
         let mut start = vec![0_u32; n_lists + 1];
-        for (list, _) in pairs() {
-            start[list + 1] += 1;
-        }
+        for_chunks(n_items, monitor, |range| {
+            for list in range.flat_map(&lists_of) {
+                start[list as usize + 1] += 1;
+            }
+        })?;
         for list in 0..n_lists {
             start[list + 1] += start[list];
         }
         let mut next = start.clone();
         let mut items = vec![0; start[n_lists] as usize];
-        for (list, item) in pairs() {
-            items[next[list] as usize] = item;
-            next[list] += 1;
-        }
-        Self { start, items }
+        for_chunks(n_items, monitor, |range| {
+            for item in range {
+                for list in lists_of(item) {
+                    items[next[list as usize] as usize] = item as u32;
+                    next[list as usize] += 1;
+                }
+            }
+        })?;
+        Ok(Self { start, items })
     }
 
     /// The items of a list; none of one that is not there.

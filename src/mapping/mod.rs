@@ -47,8 +47,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
-use crate::geometry::{Similarity, z_order};
-use crate::monitor::Monitor;
+use crate::geometry::{Similarity, z_order_for};
+use crate::monitor::{Cancelled, Monitor};
 use element::{Buffers, Context, Scratch};
 use points::PointRules;
 use source::{PartnerFilter, PreparedSource};
@@ -110,6 +110,7 @@ pub fn map(
         .iter()
         .map(|source| usual_size(&source.mesh))
         .collect();
+    monitor.check()?;
     let senses: Vec<Option<bool>> = prepared
         .iter()
         .zip(&source_sizes)
@@ -126,9 +127,9 @@ pub fn map(
         source_sizes: &source_sizes,
     };
     // Elements that are mapped together have most of their partners in common, however they are numbered.
-    let order = z_order(target.mesh.centroids());
+    let order = z_order_for(target.mesh.centroids(), monitor)?;
     let chunks = map_chunks(&order, &context, monitor)?;
-    let mut mapped = assemble(&chunks, &order, &context);
+    let mut mapped = assemble(&chunks, &order, &context, monitor)?;
     monitor.check()?;
     mapped.history = history::carry(sources, target, &mapped.elements, options.quantities);
     monitor.check()?;
@@ -249,7 +250,12 @@ fn map_chunks(
 }
 
 /// Puts together what `chunks` of `order` gave, by the numbers of the elements.
-fn assemble(chunks: &[Buffers], order: &[u32], context: &Context<'_>) -> Mapped {
+fn assemble(
+    chunks: &[Buffers],
+    order: &[u32],
+    context: &Context<'_>,
+    monitor: &Monitor,
+) -> Result<Mapped, Cancelled> {
     let target = context.target;
     let n = target.mesh.len();
     let mut place = vec![0; n];
@@ -258,12 +264,15 @@ fn assemble(chunks: &[Buffers], order: &[u32], context: &Context<'_>) -> Mapped 
     }
     let places = || place.iter().map(|at| (&chunks[at / CHUNK], at % CHUNK));
     let mut elements: Vec<ElementReport> = places().map(|(chunk, at)| chunk.reports[at]).collect();
+    monitor.check()?;
     let wanted = context.options.quantities;
     let (states, strains) = rayon::join(
         || MappedLayers::of_elements(places().map(|(chunk, at)| chunk.states.of(at))),
         || MappedLayers::of_elements(places().map(|(chunk, at)| chunk.strains.of(at))),
     );
+    monitor.check()?;
     let median_offset = median_offset(&elements);
+    monitor.check()?;
     let mut n_distant = 0;
     for (report, (chunk, at)) in elements.iter_mut().zip(places()) {
         if report.partner.is_none() {
@@ -276,13 +285,14 @@ fn assemble(chunks: &[Buffers], order: &[u32], context: &Context<'_>) -> Mapped 
         let cos = report.angle_deg.to_radians().cos();
         report.confidence = report.coverage * near * cos * cos * limits.uniqueness;
     }
+    monitor.check()?;
     drop_small_conflicts(&mut elements, &target.mesh);
     let thickness = if wanted.thickness {
         places().map(|(chunk, at)| chunk.thickness[at]).collect()
     } else {
         Vec::new()
     };
-    Mapped {
+    Ok(Mapped {
         elements,
         thickness,
         corners: Vec::new(),
@@ -293,7 +303,7 @@ fn assemble(chunks: &[Buffers], order: &[u32], context: &Context<'_>) -> Mapped 
         senses: context.senses.to_vec(),
         median_offset,
         n_distant,
-    }
+    })
 }
 
 fn median_offset(elements: &[ElementReport]) -> f64 {

@@ -2,8 +2,9 @@
 //! sheet as triangles.
 
 use super::links::{Links, Neighbours};
-use crate::geometry::{MeshError, Point3, Similarity, TriMesh, Vector3, Welded, weld};
-use crate::monitor::Monitor;
+use crate::geometry::chunks::for_chunks;
+use crate::geometry::{MeshError, Point3, Similarity, TriMesh, Vector3, weld};
+use crate::monitor::{Cancelled, Monitor};
 
 /// Shells of one sheet, three or four corners each; a triangle repeats its third corner.
 #[derive(Debug, Clone)]
@@ -140,68 +141,70 @@ impl ShellMesh {
 
     /// The sheet as triangles, quads cut along the shorter diagonal, with the element of each and
     /// normals on the side of the element's. Elements without area are left out.
-    pub fn triangles(&self) -> (TriMesh, Vec<u32>) {
+    pub fn triangles(&self, monitor: &Monitor) -> Result<(TriMesh, Vec<u32>), Cancelled> {
         let mut triangles = Vec::with_capacity(2 * self.len());
         let mut elements = Vec::with_capacity(2 * self.len());
-        for (element, &[a, b, c, d]) in self.corners.iter().enumerate() {
-            if self.normals[element] == Vector3::zeros() {
-                continue;
-            }
-            let x = self.corner_points(element);
-            let mut push = |mut triangle: [u32; 3]| {
-                let [p, q, r] = triangle.map(|node| self.positions[node as usize]);
-                let normal = (q - p).cross(&(r - p));
-                if normal == Vector3::zeros() {
-                    return;
+        for_chunks(self.len(), monitor, |range| {
+            for element in range {
+                for triangle in self.halves(element).into_iter().flatten() {
+                    triangles.push(triangle);
+                    elements.push(element as u32);
                 }
-                if normal.dot(&self.normals[element]) < 0.0 {
-                    triangle.swap(1, 2);
-                }
-                triangles.push(triangle);
-                elements.push(element as u32);
-            };
-            if c == d {
-                push([a, b, c]);
-            } else if (x[2] - x[0]).norm_squared() <= (x[3] - x[1]).norm_squared() {
-                push([a, b, c]);
-                push([a, c, d]);
-            } else {
-                push([a, b, d]);
-                push([b, c, d]);
             }
-        }
+        })?;
         let mesh = TriMesh::new(self.positions.clone(), triangles);
-        (
-            mesh.expect("corners and nodes were checked when the shells were taken"),
-            elements,
-        )
+        let mesh = mesh.expect("corners and nodes were checked when the shells were taken");
+        Ok((mesh, elements))
+    }
+
+    /// The triangles of an element that have an area.
+    fn halves(&self, element: usize) -> [Option<[u32; 3]>; 2] {
+        let own = &self.normals[element];
+        if *own == Vector3::zeros() {
+            return [None; 2];
+        }
+        let faced = |mut triangle: [u32; 3]| {
+            let [p, q, r] = triangle.map(|node| self.positions[node as usize]);
+            let normal = (q - p).cross(&(r - p));
+            if normal.dot(own) < 0.0 {
+                triangle.swap(1, 2);
+            }
+            (normal != Vector3::zeros()).then_some(triangle)
+        };
+        let [a, b, c, d] = self.corners[element];
+        let x = self.corner_points(element);
+        if c == d {
+            [faced([a, b, c]), None]
+        } else if (x[2] - x[0]).norm_squared() <= (x[3] - x[1]).norm_squared() {
+            [faced([a, b, c]), faced([a, c, d])]
+        } else {
+            [faced([a, b, d]), faced([b, c, d])]
+        }
     }
 
     /// For each node, the first node at the same position: meshes whose parts do not share nodes
     /// then have no border between them.
-    pub fn merged_nodes(&self) -> Vec<u32> {
+    pub fn merged_nodes(&self, monitor: &Monitor) -> Result<Vec<u32>, Cancelled> {
         let all = self.corners.iter();
         let halves = all
             .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
             .collect();
+        monitor.check()?;
         let mesh = TriMesh::new(self.positions.clone(), halves);
-        merged(mesh.expect("corners and nodes were checked")).vertex_of
+        let mesh = mesh.expect("corners and nodes were checked");
+        Ok(weld(mesh, monitor)?.vertex_of)
     }
 
     /// The elements that share at least one merged node with each element, without itself.
     pub fn neighbours(&self) -> Neighbours {
-        self.links().neighbours
+        let links = self.links(&Monitor::silent());
+        links.expect("nobody cancels a silent monitor").neighbours
     }
 
     /// Neighbours and border of the sheet, through doubled nodes.
-    pub fn links(&self) -> Links {
-        Links::of(self)
+    pub fn links(&self, monitor: &Monitor) -> Result<Links, Cancelled> {
+        Links::of(self, monitor)
     }
-}
-
-/// The mesh with nodes at equal positions merged.
-fn merged(mesh: TriMesh) -> Welded {
-    weld(mesh, &Monitor::silent()).expect("a silent monitor is never cancelled")
 }
 
 #[cfg(test)]
@@ -233,7 +236,7 @@ mod tests {
         assert_eq!(mesh.centroids()[0], Point3::new(0.5, 0.5, 1.0));
         assert_eq!(mesh.normals(), [Vector3::z(); 3]);
         assert_eq!(mesh.size(2), 1.0);
-        let (triangles, elements) = mesh.triangles();
+        let (triangles, elements) = mesh.triangles(&Monitor::silent()).unwrap();
         assert_eq!(elements, [0, 0, 1, 1, 2]);
         assert_eq!(triangles.area(), 2.5);
     }
@@ -241,7 +244,7 @@ mod tests {
     #[test]
     fn neighbours_and_borders_look_through_doubled_nodes() {
         let mesh = strip();
-        let links = mesh.links();
+        let links = mesh.links(&Monitor::silent()).unwrap();
         assert_eq!(links.neighbours.of(0), [1]);
         assert_eq!(links.neighbours.of(1), [0, 2]);
         // The left square has three free edges, the middle one two, the triangle two.
@@ -262,7 +265,7 @@ mod tests {
     fn a_mirror_keeps_the_top_side() {
         let mesh = strip().moved(&Similarity::mirror_x());
         assert_eq!(mesh.normals()[0], Vector3::z());
-        let (triangles, _) = mesh.triangles();
+        let (triangles, _) = mesh.triangles(&Monitor::silent()).unwrap();
         assert_eq!(triangles.mean_normal(), Vector3::z());
     }
 }

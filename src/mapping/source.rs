@@ -17,6 +17,8 @@ use crate::search::{Bvh, ClosestPoint, Feature, Nearby, NormalFilter, SurfaceHit
 
 /// Gauges smaller than this share of the sheet belong to their surroundings.
 const SMALLEST_GAUGE: f64 = 0.01;
+/// Elements of one gauge that are found between two questions to the monitor.
+const CHECKED_AFTER: usize = 1 << 14;
 
 /// A stamped part with its forming results, in its own frame.
 #[derive(Debug, Clone)]
@@ -108,17 +110,18 @@ impl<'a> PreparedSource<'a> {
         monitor: &Monitor,
     ) -> Result<Self, Cancelled> {
         let mesh = part.mesh.moved(target_from_source);
-        let (triangles, triangle_element) = mesh.triangles();
+        monitor.check()?;
+        let (triangles, triangle_element) = mesh.triangles(monitor)?;
         let thickness: Vec<f64> = part.thickness.iter().map(mean_thickness).collect();
-        let (bvh, (links, gauge)) = rayon::join(
+        let (bvh, of_links) = rayon::join(
             || Bvh::build_for(triangles.into(), monitor),
             || {
-                let links = mesh.links();
-                let gauge = gauges(&mesh, &links.neighbours, &thickness);
-                (links, gauge)
+                let links = mesh.links(monitor)?;
+                let gauge = gauges(&mesh, &links.neighbours, &thickness, monitor)?;
+                Ok((links, gauge))
             },
         );
-        let bvh = bvh?;
+        let (bvh, (links, gauge)) = (bvh?, of_links?);
         monitor.check()?;
         let states = if options.quantities.needs_states() && part.states.n_present() > 0 {
             let at = |rule| states_at(part, rule, options.stress_balance());
@@ -424,7 +427,12 @@ fn states_at<'a>(part: &'a SourcePart, rule: &LayerRule, balance: LayerBalance) 
 
 /// Numbers the sheets of one gauge: elements that are linked by smooth neighbours. Small islands
 /// join the neighbour they have most to do with, because a spot of strong thinning is no weld line.
-fn gauges(mesh: &ShellMesh, neighbours: &Neighbours, thickness: &[f64]) -> Vec<u32> {
+fn gauges(
+    mesh: &ShellMesh,
+    neighbours: &Neighbours,
+    thickness: &[f64],
+    monitor: &Monitor,
+) -> Result<Vec<u32>, Cancelled> {
     let mut gauge = vec![u32::MAX; mesh.len()];
     let mut areas = Vec::new();
     let mut waiting = Vec::new();
@@ -436,7 +444,12 @@ fn gauges(mesh: &ShellMesh, neighbours: &Neighbours, thickness: &[f64]) -> Vec<u
         areas.push(0.0);
         gauge[first] = number;
         waiting.push(first);
+        let mut n_found = 0_usize;
         while let Some(element) = waiting.pop() {
+            if n_found.is_multiple_of(CHECKED_AFTER) {
+                monitor.check()?;
+            }
+            n_found += 1;
             areas[number as usize] += mesh.areas()[element];
             for &other in neighbours.of(element) {
                 let other = other as usize;
@@ -456,5 +469,5 @@ fn gauges(mesh: &ShellMesh, neighbours: &Neighbours, thickness: &[f64]) -> Vec<u
             }
         }
     }
-    gauge
+    Ok(gauge)
 }

@@ -159,6 +159,10 @@ impl PipelineError {
                 | Self::Format(FormatError::Cancelled(_))
                 | Self::Registration(RegistrationError::Cancelled(_))
                 | Self::Simplify(SimplifyError::Cancelled(_))
+                | Self::Selection {
+                    error: SelectionError::Cancelled(_),
+                    ..
+                }
         )
     }
 }

@@ -11,7 +11,7 @@ use super::match_parts::{MatchRecipe, MatchRun, match_parts};
 use crate::assess::Verdict;
 use crate::formats::Selection;
 use crate::geometry::{Point3, Similarity, Vector3};
-use crate::monitor::Monitor;
+use crate::monitor::{Cancelled, Monitor};
 use crate::role::PerRole;
 use crate::search::ClosestPoint as _;
 
@@ -70,7 +70,7 @@ pub fn find_parts(
         monitor,
     };
     let mut search = Search::default();
-    let candidates = candidates(parts);
+    let candidates = candidates(parts, monitor)?;
     let n_tried = candidates.len().min(MOST_TRIED) as u64;
     for (n_done, (likeness, ids)) in (0_u64..).zip(candidates).take(MOST_TRIED) {
         if search.is_over(likeness) || monitor.stop_requested() {
@@ -95,9 +95,10 @@ pub fn is_part_open(parts: PerRole<&LoadedPart>) -> bool {
     if parts.stamped.chosen_part_ids().len() != 1 || parts.crash.chosen_part_ids().len() < 2 {
         return false;
     }
-    let (singles, together): (Vec<_>, Vec<_>) = candidates(parts)
-        .into_iter()
-        .partition(|(_, ids)| ids.len() == 1);
+    let candidates = candidates(parts, &Monitor::silent());
+    let candidates = candidates.expect("nobody cancels a silent monitor");
+    let (singles, together): (Vec<_>, Vec<_>) =
+        candidates.into_iter().partition(|(_, ids)| ids.len() == 1);
     let together = together.first().map_or(0.0, |(likeness, _)| *likeness);
     let singles = singles
         .into_iter()
@@ -223,8 +224,13 @@ impl Task<'_> {
 }
 
 /// Every chosen part alone, and all together, with their likeness to the stamped part, the most alike first.
-fn candidates(parts: PerRole<&LoadedPart>) -> Vec<(f64, Vec<u64>)> {
-    let moments = parts.map(|part| moments_of_parts(&part.model, part.settings.length_factor));
+fn candidates(
+    parts: PerRole<&LoadedPart>,
+    monitor: &Monitor,
+) -> Result<Vec<(f64, Vec<u64>)>, Cancelled> {
+    let moments =
+        |part: &LoadedPart| moments_of_parts(&part.model, part.settings.length_factor, monitor);
+    let moments = parts.map(moments).transpose()?;
     let used = parts.map(|part| part.chosen_part_ids());
     let all_of = |ids: &[u64], role: &BTreeMap<u64, Moments>| {
         let of_parts = ids.iter().filter_map(|id| role.get(id));
@@ -232,7 +238,7 @@ fn candidates(parts: PerRole<&LoadedPart>) -> Vec<(f64, Vec<u64>)> {
     };
     let stamped = all_of(&used.stamped, &moments.stamped);
     let Some(stamped) = stamped.signature(parts.stamped.mean_thickness()) else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
     let factor = parts.crash.settings.length_factor;
     let summaries = parts.crash.model.part_summaries();
@@ -252,7 +258,7 @@ fn candidates(parts: PerRole<&LoadedPart>) -> Vec<(f64, Vec<u64>)> {
     }
     found.retain(|(likeness, _)| *likeness >= LEAST_LIKENESS);
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    found
+    Ok(found)
 }
 
 /// Parts of which more than half lies on what the found ones leave of the stamped part.

@@ -1,5 +1,8 @@
 //! The way back from a prepared mesh to the deck it was made of.
 
+use crate::geometry::chunks::{for_chunks, map_chunks};
+use crate::monitor::{Cancelled, Monitor};
+
 /// Which node, element and part of the deck the vertices and triangles of a mesh come from. Nodes,
 /// elements and parts are meant by their place in the model.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -33,29 +36,36 @@ pub(super) struct Origins {
 impl IdMap {
     /// Follows joining: `vertex_of` gives the vertex that each earlier vertex became (`u32::MAX` for
     /// none), `triangle_of` the earlier triangle of each triangle. O(vertices + triangles).
-    pub(super) fn new(origins: &Origins, vertex_of: &[u32], triangle_of: &[u32]) -> Self {
-        let joined = origins.node.iter().zip(vertex_of);
-        let vertices: Vec<NodeVertex> = joined
-            .filter(|(_, vertex)| **vertex != u32::MAX)
-            .map(|(&node, &vertex)| NodeVertex { node, vertex })
-            .collect();
+    pub(super) fn new(
+        origins: &Origins,
+        vertex_of: &[u32],
+        triangle_of: &[u32],
+        monitor: &Monitor,
+    ) -> Result<Self, Cancelled> {
+        let mut vertices = Vec::with_capacity(vertex_of.len());
         let mut first_node = Vec::new();
-        for &NodeVertex { node, vertex } in &vertices {
-            // Vertices are numbered in the order of their first nodes.
-            if vertex as usize == first_node.len() {
-                first_node.push(node);
+        for_chunks(vertex_of.len(), monitor, |range| {
+            for (&node, &vertex) in origins.node[range.clone()].iter().zip(&vertex_of[range]) {
+                if vertex == u32::MAX {
+                    continue;
+                }
+                vertices.push(NodeVertex { node, vertex });
+                // Vertices are numbered in the order of their first nodes.
+                if vertex as usize == first_node.len() {
+                    first_node.push(node);
+                }
             }
-        }
+        })?;
         let of_triangles = |origin: &[u32]| {
-            let places = triangle_of.iter().map(|&t| origin[t as usize]);
-            places.collect()
+            let of = |triangle: usize| origin[triangle_of[triangle] as usize];
+            map_chunks(triangle_of.len(), monitor, of)
         };
-        Self {
+        Ok(Self {
             vertices,
             first_node,
-            element: of_triangles(&origins.element),
-            part: of_triangles(&origins.part),
-        }
+            element: of_triangles(&origins.element)?,
+            part: of_triangles(&origins.part)?,
+        })
     }
 
     /// The first node that became a vertex.
@@ -95,7 +105,7 @@ mod tests {
             element: vec![7, 7, 8],
             part: vec![0, 0, 1],
         };
-        let map = IdMap::new(&origins, &[0, 1, 0, u32::MAX], &[0, 2]);
+        let map = IdMap::new(&origins, &[0, 1, 0, u32::MAX], &[0, 2], &Monitor::silent()).unwrap();
         assert_eq!(
             [0, 1, 2].map(|v| map.node_of(v)),
             [Some(40), Some(41), None]

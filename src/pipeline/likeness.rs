@@ -6,7 +6,9 @@
 use std::collections::BTreeMap;
 
 use crate::formats::Model;
+use crate::geometry::chunks::for_chunks;
 use crate::geometry::{Matrix3, Point3, Vector3};
+use crate::monitor::{Cancelled, Monitor};
 
 /// Area and its first and second moments. Sums over several parts are the moments of all together.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,28 +77,34 @@ impl Moments {
 /// The moments of every part of a model with shells, by its id. O(shells).
 ///
 /// `factor` is what the coordinates are multiplied by.
-pub fn moments_of_parts(model: &Model, factor: f64) -> BTreeMap<u64, Moments> {
+pub fn moments_of_parts(
+    model: &Model,
+    factor: f64,
+    monitor: &Monitor,
+) -> Result<BTreeMap<u64, Moments>, Cancelled> {
     let mut moments = vec![Moments::default(); model.parts.len()];
     let positions = model.nodes.positions();
     // About a corner of the model, so that far coordinates take no digits from small parts.
     let origin = positions.first().copied().unwrap_or_default();
-    for shell in &model.shells {
-        let Some(sum) = moments.get_mut(shell.part as usize) else {
-            continue;
-        };
-        let at = |n: u32| Point3::from((positions[n as usize] - origin) * factor);
-        let [a, b, c, d] = shell.nodes.map(at);
-        sum.add_triangle([a, b, c]);
-        if !shell.is_triangle() {
-            sum.add_triangle([a, c, d]);
+    for_chunks(model.shells.len(), monitor, |range| {
+        for shell in &model.shells[range] {
+            let Some(sum) = moments.get_mut(shell.part as usize) else {
+                continue;
+            };
+            let at = |n: u32| Point3::from((positions[n as usize] - origin) * factor);
+            let [a, b, c, d] = shell.nodes.map(at);
+            sum.add_triangle([a, b, c]);
+            if !shell.is_triangle() {
+                sum.add_triangle([a, c, d]);
+            }
         }
-    }
+    })?;
     let with_area = model
         .parts
         .iter()
         .zip(moments)
         .filter(|(_, m)| m.area > 0.0);
-    with_area.map(|(part, m)| (part.id, m)).collect()
+    Ok(with_area.map(|(part, m)| (part.id, m)).collect())
 }
 
 /// Less alike parts are not taken for each other.
@@ -173,7 +181,7 @@ mod tests {
     }
 
     fn signature(model: &Model, factor: f64) -> Signature {
-        let moments = moments_of_parts(model, factor);
+        let moments = moments_of_parts(model, factor, &Monitor::silent()).unwrap();
         let all = moments
             .values()
             .fold(Moments::default(), |sum, m| sum.and(m));

@@ -14,8 +14,9 @@ use crate::formats::{
     self, Diagnostic, Diagnostics, Disk, FileHash, FileSource, Memory, Model, ReadOptions,
     Selection, SelectionError, Severity,
 };
+use crate::geometry::chunks::for_chunks;
 use crate::geometry::{CleanMesh, MeshError, Point3, TriMesh};
-use crate::monitor::Monitor;
+use crate::monitor::{Cancelled, Monitor};
 use crate::registration::Surface;
 use crate::report::command_line::CommandSide;
 use crate::role::Role;
@@ -333,20 +334,20 @@ pub fn prepare(
     monitor.check()?;
     monitor.progress("prepare", 0, None);
     let chosen = model
-        .surface(&settings.selection)
+        .build_surface(&settings.selection, monitor)
         .map_err(|error| PipelineError::Selection {
             near: near_parts(&model, &error),
             error,
             path: path.to_path_buf(),
             diagnostic: model.diagnostics.most_severe().cloned().map(Box::new),
         })?;
-    monitor.check()?;
-    let mean_thickness = mean_thickness(&model, &chosen);
+    let mean_thickness = mean_thickness(&model, &chosen, monitor)?;
     let guessed_units = model
         .stated_units
         .or_else(|| units::of_sizes(chosen.mesh.aabb().diagonal(), mean_thickness));
     let n_vertices = chosen.mesh.n_vertices();
-    let scaled = scaled(chosen.mesh, factor).map_err(|error| PipelineError::Selection {
+    let scaled = scaled(chosen.mesh, factor, monitor)?;
+    let scaled = scaled.map_err(|error| PipelineError::Selection {
         near: String::new(),
         error: error.into(),
         path: path.to_path_buf(),
@@ -358,7 +359,7 @@ pub fn prepare(
         element: chosen.triangle_element,
         part: chosen.triangle_part,
     };
-    let ids = IdMap::new(&origins, &clean.vertex_of, &clean.triangle_of);
+    let ids = IdMap::new(&origins, &clean.vertex_of, &clean.triangle_of, monitor)?;
     drop(origins);
     let n_turned = clean.n_turned;
     let surface = Surface::prepare(clean, "chosen", monitor)?;
@@ -389,22 +390,30 @@ pub fn prepare(
 }
 
 /// Area-weighted mean thickness of the chosen elements in the file's own unit, if known.
-fn mean_thickness(model: &Model, chosen: &formats::Surface) -> Option<f64> {
+fn mean_thickness(
+    model: &Model,
+    chosen: &formats::Surface,
+    monitor: &Monitor,
+) -> Result<Option<f64>, Cancelled> {
     // As a difference from the first, so that equal thicknesses have themselves as mean.
     let (mut first, mut sum, mut area_sum) = (None, 0.0, 0.0);
-    for (triangle, &element) in chosen.triangle_element.iter().enumerate() {
-        if (element as usize) < model.shells.len()
-            && let Some(corners) = model.shell_thickness(element)
-        {
-            let area = chosen.mesh.triangle_area(triangle);
-            let first = *first.get_or_insert(corners[0]);
-            let excess: f64 = corners.iter().map(|corner| corner - first).sum();
-            sum += area * excess / 4.0;
-            area_sum += area;
+    for_chunks(chosen.triangle_element.len(), monitor, |range| {
+        for triangle in range {
+            let element = chosen.triangle_element[triangle];
+            if (element as usize) < model.shells.len()
+                && let Some(corners) = model.shell_thickness(element)
+            {
+                let area = chosen.mesh.triangle_area(triangle);
+                let first = *first.get_or_insert(corners[0]);
+                let excess: f64 = corners.iter().map(|corner| corner - first).sum();
+                sum += area * excess / 4.0;
+                area_sum += area;
+            }
         }
-    }
-    let mean = first? + if area_sum > 0.0 { sum / area_sum } else { 0.0 };
-    (mean > 0.0).then_some(mean)
+    })?;
+    let excess = if area_sum > 0.0 { sum / area_sum } else { 0.0 };
+    let mean = first.map(|first: f64| first + excess);
+    Ok(mean.filter(|mean| *mean > 0.0))
 }
 
 /// How many diagnostics are more than notes.
@@ -416,12 +425,21 @@ fn diagnostics(diagnostics: &Diagnostics) -> u64 {
 }
 
 /// The mesh in another unit; an error if a product overflows.
-fn scaled(mesh: TriMesh, factor: f64) -> Result<TriMesh, MeshError> {
+fn scaled(
+    mesh: TriMesh,
+    factor: f64,
+    monitor: &Monitor,
+) -> Result<Result<TriMesh, MeshError>, Cancelled> {
     if factor == 1.0 {
-        return Ok(mesh);
+        return Ok(Ok(mesh));
     }
-    let positions: Vec<Point3> = mesh.positions().iter().map(|p| p * factor).collect();
-    TriMesh::new(positions, mesh.triangles().to_vec())
+    let (mut positions, triangles) = mesh.into_parts();
+    for_chunks(positions.len(), monitor, |range| {
+        for position in &mut positions[range] {
+            *position *= factor;
+        }
+    })?;
+    Ok(TriMesh::new(positions, triangles))
 }
 
 /// The parts that may have been meant, by id or by title: "; the nearest parts are 2001 \"floor\"".

@@ -11,7 +11,7 @@ use super::{PipelineError, millis_since};
 use crate::assess::{self, AssessSettings, Assessment};
 use crate::geometry::serial::shared;
 use crate::geometry::{Similarity, TriMesh};
-use crate::monitor::Monitor;
+use crate::monitor::{Cancelled, Monitor};
 use crate::registration::starts::{self, Start};
 use crate::registration::{
     self, MatchInput, MatchMonitor, MatchOutcome, MatchSettings, Method, StartMethod,
@@ -138,7 +138,7 @@ pub fn match_parts<'a>(
         ..check
     };
     monitor.check()?;
-    settle(&mut outcome, source, target, &settings, &placing);
+    settle(&mut outcome, [source, target], &settings, &placing, monitor)?;
     monitor.check()?;
     times.align_ms = prepare_ms + outcome.timings.align.as_secs_f64() * 1e3;
     times.match_ms = (outcome.timings.total - outcome.timings.align).as_secs_f64() * 1e3;
@@ -244,30 +244,33 @@ fn assess_settings(parts: PerRole<&LoadedPart>, settings: &MatchSettings) -> Ass
 /// leave free.
 pub(super) fn settle(
     outcome: &mut MatchOutcome,
-    source: &Surface,
-    target: &Surface,
+    [source, target]: [&Surface; 2],
     settings: &MatchSettings,
     check: &AssessSettings,
-) {
+    monitor: &Monitor,
+) -> Result<(), Cancelled> {
     let is_searched = settings.refine_on_full && settings.method != Method::Umeyama;
     if !is_searched || outcome.termination == Termination::Stopped {
-        return;
+        return Ok(());
     }
-    if let Some(held) = assess::held_by_rims(source, target, outcome, check) {
+    if let Some(held) = assess::held_by_rims(source, target, outcome, check, monitor)? {
         outcome.target_from_source = held.target_from_source;
         outcome.alternatives = held.alternatives;
     } else if let Some(pose) = assess::settled(source, target, &outcome.target_from_source, check) {
         outcome.target_from_source = pose;
     }
+    monitor.check()?;
     if check.remove_offset
         && let Some(pose) =
             assess::without_offset(source, target, &outcome.target_from_source, check)
     {
         outcome.target_from_source = pose;
     }
+    monitor.check()?;
     if let Some(ratio) = assess::hand_by_rims(source, target, outcome, check) {
         outcome.mirror_check.score_ratio = Some(ratio);
     }
+    Ok(())
 }
 
 /// The first poses of "Align surface normals": centroids and mean normals aligned, both signs,
@@ -296,7 +299,7 @@ fn level(
         return Ok(Arc::clone(&part.mesh));
     };
     let levels = Levels::record(part, &SimplifySettings::to_triangles(n), monitor)?;
-    Ok(levels.level(n).mesh)
+    Ok(levels.level(n, monitor)?.mesh)
 }
 
 /// Prepared surfaces of the reduced meshes; a part that is not reduced has its own already.

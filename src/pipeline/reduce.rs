@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::load::LoadedPart;
 use super::{PipelineError, millis_since};
+use crate::geometry::chunks::for_chunks;
 use crate::geometry::{Point3, Topology, TriMesh};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::Surface;
@@ -118,14 +119,19 @@ impl Levels {
     }
 
     /// The finest mesh with at most `max_triangles` triangles. O(vertices + triangles).
-    pub fn level(&self, max_triangles: usize) -> Level {
-        let simplified = self.sequence.simplified(max_triangles);
-        Level {
-            n_flipped: n_flipped(&self.full, &simplified.mesh, &simplified.triangle_of),
+    pub fn level(&self, max_triangles: usize, monitor: &Monitor) -> Result<Level, Cancelled> {
+        let simplified = self.sequence.simplified(max_triangles, monitor)?;
+        Ok(Level {
+            n_flipped: n_flipped(
+                &self.full,
+                &simplified.mesh,
+                &simplified.triangle_of,
+                monitor,
+            )?,
             mesh: Arc::new(simplified.mesh),
             triangle_of: Arc::new(simplified.triangle_of),
             report: simplified.report,
-        }
+        })
     }
 
     /// Measures how far `reduced` lies from the full mesh.
@@ -143,8 +149,12 @@ impl Levels {
             }
         };
         let ours = Trees::of(&Arc::new(reduced.clone()), monitor)?;
-        let there = spread(&surface_samples(reduced), &full.surface, monitor)?;
-        let back = spread(&surface_samples(&self.full), &ours.surface, monitor)?;
+        let there = spread(&surface_samples(reduced, monitor)?, &full.surface, monitor)?;
+        let back = spread(
+            &surface_samples(&self.full, monitor)?,
+            &ours.surface,
+            monitor,
+        )?;
         let border_there = spread(&border_samples(ours.border.mesh()), &full.border, monitor)?;
         let border_back = spread(&border_samples(full.border.mesh()), &ours.border, monitor)?;
         let surface = there.and(&back);
@@ -161,13 +171,21 @@ impl Levels {
 }
 
 /// Triangles of `reduced` that face away from the triangles of `full` they came from.
-fn n_flipped(full: &TriMesh, reduced: &TriMesh, triangle_of: &[u32]) -> usize {
-    let faces_away = |(triangle, origin): (usize, &u32)| {
-        let before = full.area_vector(*origin as usize);
-        reduced.area_vector(triangle).dot(&before) < 0.0
+fn n_flipped(
+    full: &TriMesh,
+    reduced: &TriMesh,
+    triangle_of: &[u32],
+    monitor: &Monitor,
+) -> Result<usize, Cancelled> {
+    let faces_away = |triangle: &usize| {
+        let before = full.area_vector(triangle_of[*triangle] as usize);
+        reduced.area_vector(*triangle).dot(&before) < 0.0
     };
-    let pairs = triangle_of.iter().enumerate();
-    pairs.filter(|pair| faces_away(*pair)).count()
+    let mut n = 0;
+    for_chunks(triangle_of.len(), monitor, |range| {
+        n += range.filter(faces_away).count();
+    })?;
+    Ok(n)
 }
 
 impl Trees {
@@ -202,27 +220,29 @@ struct Sample {
 }
 
 /// Corners of a regular subdivision of every triangle, about [`N_SAMPLES`] in all, weighted by area.
-fn surface_samples(mesh: &TriMesh) -> Vec<Sample> {
+fn surface_samples(mesh: &TriMesh, monitor: &Monitor) -> Result<Vec<Sample>, Cancelled> {
     let piece = mesh.area() / N_SAMPLES as f64;
     let mut samples = Vec::with_capacity(2 * N_SAMPLES);
-    for t in 0..mesh.n_triangles() {
-        let area = mesh.triangle_area(t);
-        let n = (2.0 * area / piece).sqrt().ceil().clamp(1.0, 300.0) as usize;
-        let [a, b, c] = mesh.corners(t);
-        // Corners belong to the surface too, and the largest distance is often found there.
-        let count = (n + 1) * (n + 2) / 2;
-        for i in 0..=n {
-            for j in 0..=n - i {
-                let (u, v) = (i as f64 / n as f64, j as f64 / n as f64);
-                let point = a + (b - a) * u + (c - a) * v;
-                samples.push(Sample {
-                    point,
-                    weight: area / count as f64,
-                });
+    for_chunks(mesh.n_triangles(), monitor, |range| {
+        for t in range {
+            let area = mesh.triangle_area(t);
+            let n = (2.0 * area / piece).sqrt().ceil().clamp(1.0, 300.0) as usize;
+            let [a, b, c] = mesh.corners(t);
+            // Corners belong to the surface too, and the largest distance is often found there.
+            let count = (n + 1) * (n + 2) / 2;
+            for i in 0..=n {
+                for j in 0..=n - i {
+                    let (u, v) = (i as f64 / n as f64, j as f64 / n as f64);
+                    let point = a + (b - a) * u + (c - a) * v;
+                    samples.push(Sample {
+                        point,
+                        weight: area / count as f64,
+                    });
+                }
             }
         }
-    }
-    samples
+    })?;
+    Ok(samples)
 }
 
 /// Ends and inner points of every segment, weighted by length.
@@ -338,12 +358,14 @@ mod tests {
     fn triangles_that_turn_over_are_counted() {
         let mesh = plate(6, 0.5);
         let own: Vec<u32> = (0..mesh.n_triangles() as u32).collect();
-        assert_eq!(n_flipped(&mesh, &mesh, &own), 0);
+        let flipped = |other| n_flipped(&mesh, other, &own, &Monitor::silent());
+        assert_eq!(flipped(&mesh), Ok(0));
         let turned = (*mesh).clone().flipped();
-        assert_eq!(n_flipped(&mesh, &turned, &own), mesh.n_triangles());
+        assert_eq!(flipped(&turned), Ok(mesh.n_triangles()));
         let settings = SimplifySettings::to_triangles(20);
         let levels = Levels::record_mesh(&mesh, &[], &settings, &Monitor::silent()).unwrap();
-        assert_eq!(levels.level(20).n_flipped, 0);
+        let level = levels.level(20, &Monitor::silent()).unwrap();
+        assert_eq!(level.n_flipped, 0);
     }
 
     #[test]
@@ -353,7 +375,7 @@ mod tests {
         let levels = Levels::record_mesh(&mesh, &[], &settings, &Monitor::silent()).unwrap();
         let rms: Vec<f64> = [100, 400, 1600, 3200]
             .map(|n| {
-                let level = levels.level(n);
+                let level = levels.level(n, &Monitor::silent()).unwrap();
                 assert!(level.mesh.n_triangles() <= n);
                 levels.measure(&level.mesh, &Monitor::silent()).unwrap().rms
             })

@@ -164,7 +164,7 @@ fn run_one(
         thickness: Some(pair.thickness),
         ..AssessSettings::default()
     };
-    settle(&mut outcome, &source, &target, settings, &check);
+    settle(&mut outcome, [&source, &target], settings, &check, &silent)?;
     let assessment = assess::assess(&source, &target, &outcome, &check, &silent)?;
     let time_ms = millis_since(begin);
     let truth = pair.crash_from_stamped.as_ref();

@@ -190,7 +190,7 @@ fn reduction_row(
         levels = Levels::record(stamped, &settings, monitor)?;
         time_ms = time_ms.min(levels.record_ms);
     }
-    let mesh = levels.level(max_triangles).mesh;
+    let mesh = levels.level(max_triangles, monitor)?.mesh;
     let deviation = levels.measure(&mesh, monitor)?;
     Ok(ReductionRow {
         max_triangles,

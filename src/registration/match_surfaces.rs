@@ -55,11 +55,12 @@ pub fn match_surfaces<'a>(
     let mut numbers = StartNumbers::default();
     let mut searches = Vec::new();
     if settings.hand != Hand::Mirrored {
-        searches.push(MultiStart::new(*input, settings, None));
+        searches.push(MultiStart::new(*input, settings, None, monitor.monitor)?);
     }
     if let Some(mirrored) = &mirrored {
         let mirror = Some(Similarity::mirror_x());
-        searches.push(MultiStart::new(mirrored.input(input), settings, mirror));
+        let input = mirrored.input(input);
+        searches.push(MultiStart::new(input, settings, mirror, monitor.monitor)?);
     }
     for search in &mut searches {
         search.run(&mut numbers, monitor)?;

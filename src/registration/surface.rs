@@ -84,9 +84,7 @@ impl Surface {
         monitor: &Monitor,
     ) -> Result<Self, RegistrationError> {
         let CleanMesh { mesh, topology, .. } = clean;
-        let vectors = map_chunks(mesh.n_triangles(), Vector3::zeros(), monitor, |t| {
-            mesh.area_vector(t)
-        })?;
+        let vectors = map_chunks(mesh.n_triangles(), monitor, |t| mesh.area_vector(t))?;
         let area: f64 = vectors.iter().map(Vector3::norm).sum();
         if area <= 0.0 || !area.is_finite() {
             return Err(RegistrationError::EmptyMesh { side });
@@ -102,6 +100,7 @@ impl Surface {
             },
         );
         let (normals, measures) = (normals?, measures?);
+        monitor.check()?;
         let (border_edges, border_vertices) = borders(&mesh, &topology);
         Ok(Self {
             bvh: Arc::new(bvh?),
@@ -254,7 +253,7 @@ struct Normals {
 
 impl Normals {
     fn of(mesh: &TriMesh, vectors: &[Vector3], monitor: &Monitor) -> Result<Self, Cancelled> {
-        let faces = map_chunks(vectors.len(), Vector3::zeros(), monitor, |t| {
+        let faces = map_chunks(vectors.len(), monitor, |t| {
             vectors[t].try_normalize(0.0).unwrap_or_default()
         })?;
         let fans = VertexFans::of(mesh, monitor)?;
@@ -262,7 +261,7 @@ impl Normals {
         Ok(Self {
             of_vertices: vertex_normals(mesh, &faces, &fans, monitor)?,
             of_corners: corner_normals(mesh, &faces, &fans, sharp, monitor)?,
-            areas: map_chunks(mesh.n_vertices(), 0.0, monitor, |vertex| {
+            areas: map_chunks(mesh.n_vertices(), monitor, |vertex| {
                 let around = fans.around(vertex).iter();
                 around.map(|&c| vectors[c as usize / 3].norm() / 3.0).sum()
             })?,
@@ -300,8 +299,7 @@ fn measures(
         || {
             let centroid = mesh.centroid();
             monitor.check()?;
-            let frame = principal_frame(mesh, vectors, &centroid, area);
-            monitor.check()?;
+            let frame = principal_frame(mesh, vectors, (&centroid, area), monitor)?;
             Ok((centroid, frame, vectors.iter().sum::<Vector3>() / area))
         },
         || chordal_error(mesh, topology, vectors, monitor),
@@ -325,17 +323,19 @@ fn measures(
 fn principal_frame(
     mesh: &TriMesh,
     vectors: &[Vector3],
-    centroid: &Point3,
-    area: f64,
-) -> (Matrix3, Vector3) {
+    (centroid, area): (&Point3, f64),
+    monitor: &Monitor,
+) -> Result<(Matrix3, Vector3), Cancelled> {
     let mut covariance = Matrix3::zeros();
-    for (t, vector) in vectors.iter().enumerate() {
-        let [a, b, c] = mesh.corners(t).map(|p| p - centroid);
-        let sum = a + b + c;
-        let moment =
-            a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose();
-        covariance += moment * (vector.norm() / 12.0);
-    }
+    for_chunks(vectors.len(), monitor, |range| {
+        for t in range {
+            let [a, b, c] = mesh.corners(t).map(|p| p - centroid);
+            let sum = a + b + c;
+            let moment =
+                a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose();
+            covariance += moment * (vectors[t].norm() / 12.0);
+        }
+    })?;
     let eigen = SymmetricEigen::new(covariance / area);
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
@@ -343,7 +343,7 @@ fn principal_frame(
     let second: Vector3 = eigen.eigenvectors.column(order[1]).into();
     let axes = Matrix3::from_columns(&[first, second, first.cross(&second)]);
     let spread = Vector3::from(order.map(|i| eigen.eigenvalues[i].max(0.0).sqrt()));
-    (axes, spread)
+    Ok((axes, spread))
 }
 
 /// Over every smooth interior edge the sagitta h·φ/8 of an arc of span h (mean height of both

@@ -29,7 +29,7 @@ impl Cut {
 }
 
 /// An item by the middle of its box.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 struct Placed {
     middle: [f32; 3],
     id: u32,
@@ -45,7 +45,7 @@ pub(super) fn cut_to_pieces(
     if n <= MAX_PIECE {
         return Ok(Cut::Piece((0..n as u32).collect()));
     }
-    let mut placed = map_chunks(n, Placed::default(), monitor, |i| Placed {
+    let mut placed = map_chunks(n, monitor, |i| Placed {
         middle: box_of(i as u32).center().into(),
         id: i as u32,
     })?;

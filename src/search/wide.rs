@@ -15,6 +15,7 @@ use obvhs::bvh2::builder::build_bvh2;
 use rayon::prelude::*;
 
 use super::pieces::{Cut, cut_to_pieces};
+use crate::geometry::chunks::map_chunks;
 use crate::geometry::{Aabb, Point3, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 
@@ -177,13 +178,11 @@ impl<P: Pack> WideTree<P> {
             .collect::<Result<_, Cancelled>>()?;
         let mut leaves = Vec::new();
         let mut joined = folded.into_iter();
-        tree.root = Some(tree.join(&cut, &mut joined, &mut leaves, 1).link);
-        monitor.check()?;
-        tree.packs = leaves
-            .par_iter()
-            .map(|leaf| P::new(leaf.as_slice(), &item))
-            .collect();
-        monitor.check()?;
+        let root = tree.join(&cut, &mut joined, &mut leaves, (1, monitor))?;
+        tree.root = Some(root.link);
+        tree.packs = map_chunks(leaves.len(), monitor, |leaf| {
+            P::new(leaves[leaf].as_slice(), &item)
+        })?;
         Ok(tree)
     }
 
@@ -194,12 +193,13 @@ impl<P: Pack> WideTree<P> {
         cut: &Cut,
         folded: &mut impl Iterator<Item = Folded>,
         leaves: &mut Vec<Few>,
-        depth: usize,
-    ) -> Joined {
+        (depth, monitor): (usize, &Monitor),
+    ) -> Result<Joined, Cancelled> {
+        monitor.check()?;
         let parts = match cut {
             Cut::Piece(_) => {
                 let piece = folded.next().expect("each piece was folded");
-                return self.append(piece, leaves, depth);
+                return Ok(self.append(piece, leaves, depth));
             }
             Cut::Parts(parts) => parts,
         };
@@ -207,15 +207,15 @@ impl<P: Pack> WideTree<P> {
         self.nodes.push(Node::unused());
         let mut bounds = Box32::empty();
         for (slot, part) in parts.iter().enumerate() {
-            let below = self.join(part, folded, leaves, depth + 1);
+            let below = self.join(part, folded, leaves, (depth + 1, monitor))?;
             self.nodes[number].set(slot, &below.bounds);
             self.nodes[number].child[slot] = below.link;
             bounds = bounds.union(&below.bounds);
         }
-        Joined {
+        Ok(Joined {
             link: Link(number as u32),
             bounds,
-        }
+        })
     }
 
     fn append(&mut self, piece: Folded, leaves: &mut Vec<Few>, depth: usize) -> Joined {

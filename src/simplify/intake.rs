@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::quadric::Quadric;
 use super::settings::SimplifySettings;
 use super::surface::{Kind, Surface};
+use crate::geometry::chunks::{for_chunks, map_chunks};
 use crate::geometry::{Point3, TriMesh};
 use crate::monitor::{Cancelled, Monitor};
 
@@ -57,22 +58,19 @@ pub(super) fn take_in(
     monitor: &Monitor,
 ) -> Result<Intake, Cancelled> {
     let frame = Frame::of(mesh);
-    let positions: Vec<_> = mesh.positions().iter().map(|p| frame.to_unit(p)).collect();
-    let triangle_of = distinct_triangles(mesh);
-    monitor.check()?;
-    let triangles: Vec<_> = triangle_of
-        .iter()
-        .map(|&t| mesh.triangles()[t as usize])
-        .collect();
-    let part_of: Vec<u32> = if parts.is_empty() {
+    let positions = map_chunks(mesh.n_vertices(), monitor, |v| {
+        frame.to_unit(&mesh.positions()[v])
+    })?;
+    let triangle_of = distinct_triangles(mesh, monitor)?;
+    let n = triangle_of.len();
+    let triangles = map_chunks(n, monitor, |i| mesh.triangles()[triangle_of[i] as usize])?;
+    let part_of = if parts.is_empty() {
         Vec::new()
     } else {
-        triangle_of.iter().map(|&t| parts[t as usize]).collect()
+        map_chunks(n, monitor, |i| parts[triangle_of[i] as usize])?
     };
-    let mut surface = Surface::new(&positions, &triangles, part_of);
-    monitor.check()?;
-    add_quadrics(&mut surface, settings);
-    monitor.check()?;
+    let mut surface = Surface::new(&positions, &triangles, part_of, monitor)?;
+    add_quadrics(&mut surface, settings, monitor)?;
     Ok(Intake {
         frame,
         surface,
@@ -81,60 +79,68 @@ pub(super) fn take_in(
 }
 
 /// Indices of the triangles with three different vertices that no earlier triangle has as well.
-fn distinct_triangles(mesh: &TriMesh) -> Vec<u32> {
-    let sorted: Vec<[u32; 3]> = mesh
-        .triangles()
-        .iter()
-        .map(|corners| {
-            let mut sorted = *corners;
-            sorted.sort_unstable();
-            sorted
-        })
-        .collect();
+fn distinct_triangles(mesh: &TriMesh, monitor: &Monitor) -> Result<Vec<u32>, Cancelled> {
+    let sorted = map_chunks(mesh.n_triangles(), monitor, |t| {
+        let mut sorted = mesh.triangles()[t];
+        sorted.sort_unstable();
+        sorted
+    })?;
     // Triangles with the same smallest vertex, chained from the latest to the earliest.
     let mut last_of = vec![u32::MAX; mesh.n_vertices()];
     let mut earlier = vec![u32::MAX; sorted.len()];
     let mut kept = Vec::with_capacity(sorted.len());
-    for (t, corners) in sorted.iter().enumerate() {
-        let head = &mut last_of[corners[0] as usize];
-        let mut other = *head;
-        while other != u32::MAX && sorted[other as usize] != *corners {
-            other = earlier[other as usize];
+    for_chunks(sorted.len(), monitor, |range| {
+        for t in range {
+            let corners = &sorted[t];
+            let head = &mut last_of[corners[0] as usize];
+            let mut other = *head;
+            while other != u32::MAX && sorted[other as usize] != *corners {
+                other = earlier[other as usize];
+            }
+            if other == u32::MAX && corners[0] != corners[1] && corners[1] != corners[2] {
+                kept.push(t as u32);
+                earlier[t] = *head;
+                *head = t as u32;
+            }
         }
-        if other == u32::MAX && corners[0] != corners[1] && corners[1] != corners[2] {
-            kept.push(t as u32);
-            earlier[t] = *head;
-            *head = t as u32;
-        }
-    }
-    kept
+    })?;
+    Ok(kept)
 }
 
 /// Gives every vertex its quadric and its kind.
-fn add_quadrics(surface: &mut Surface, settings: &SimplifySettings) {
+fn add_quadrics(
+    surface: &mut Surface,
+    settings: &SimplifySettings,
+    monitor: &Monitor,
+) -> Result<(), Cancelled> {
     let Surface {
         vertices,
         faces,
         edges,
         ..
     } = surface;
-    for face in faces {
-        let quadric = Quadric::triangle(&face.pull, settings.stiffness);
-        for v in face.corners {
-            vertices[v as usize].quadric.add(&quadric);
+    for_chunks(faces.len(), monitor, |range| {
+        for face in &faces[range] {
+            let quadric = Quadric::triangle(&face.pull, settings.stiffness);
+            for v in face.corners {
+                vertices[v as usize].quadric.add(&quadric);
+            }
         }
-    }
+    })?;
     let mut n_features = vec![0; vertices.len()];
-    for edge in edges.iter().filter(|edge| edge.is_feature) {
-        let [u, v] = edge.ends.map(|v| v as usize);
-        let along = vertices[v].position - vertices[u].position;
-        let quadric = Quadric::line(&along, settings.boundary_weight);
-        for end in [u, v] {
-            vertices[end].quadric.add(&quadric);
-            n_features[end] += 1;
+    for_chunks(edges.len(), monitor, |range| {
+        for edge in edges[range].iter().filter(|edge| edge.is_feature) {
+            let [u, v] = edge.ends.map(|v| v as usize);
+            let along = vertices[v].position - vertices[u].position;
+            let quadric = Quadric::line(&along, settings.boundary_weight);
+            for end in [u, v] {
+                vertices[end].quadric.add(&quadric);
+                n_features[end] += 1;
+            }
         }
-    }
+    })?;
     for (vertex, n) in vertices.iter_mut().zip(n_features) {
         vertex.kind = Kind::on(n);
     }
+    Ok(())
 }

@@ -46,5 +46,5 @@ pub fn simplify(
     monitor: &Monitor,
 ) -> Result<Simplified, SimplifyError> {
     let sequence = CollapseSequence::record(mesh, settings, monitor)?;
-    Ok(sequence.simplified(settings.max_triangles))
+    Ok(sequence.simplified(settings.max_triangles, monitor)?)
 }

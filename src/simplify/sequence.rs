@@ -3,8 +3,9 @@
 use super::decimator::{Collapse, Decimator};
 use super::intake::{Frame, take_in};
 use super::settings::{Simplified, SimplifyError, SimplifyReport, SimplifySettings, StopReason};
+use crate::geometry::chunks::for_chunks;
 use crate::geometry::{Point3, TriMesh};
-use crate::monitor::Monitor;
+use crate::monitor::{Cancelled, Monitor};
 
 /// A recorded simplification. Every level between the full mesh and the coarsest can be taken out
 /// in any order, each in O(vertices + triangles), and equals what [`super::simplify`] gives for
@@ -84,11 +85,16 @@ impl CollapseSequence {
 
     /// The finest mesh with at most `max_triangles` triangles; the coarsest if none is so small.
     pub fn level(&self, max_triangles: usize) -> TriMesh {
-        self.simplified(max_triangles).mesh
+        let taken_out = self.simplified(max_triangles, &Monitor::silent());
+        taken_out.expect("nobody cancels a silent monitor").mesh
     }
 
     /// [`CollapseSequence::level`] with the ties to the original and the report.
-    pub fn simplified(&self, max_triangles: usize) -> Simplified {
+    pub fn simplified(
+        &self,
+        max_triangles: usize,
+        monitor: &Monitor,
+    ) -> Result<Simplified, Cancelled> {
         let n_made = self
             .collapses
             .partition_point(|c| c.n_triangles as usize > max_triangles);
@@ -100,13 +106,17 @@ impl CollapseSequence {
         let made = &self.collapses[..n_made];
         // From the last collapse to the first, what a vertex was merged into is already known.
         let mut root: Vec<u32> = (0..self.positions.len() as u32).collect();
-        for collapse in made.iter().rev() {
-            root[collapse.removed as usize] = root[collapse.kept as usize];
-        }
+        for_chunks(n_made, monitor, |range| {
+            for collapse in made[n_made - range.end..n_made - range.start].iter().rev() {
+                root[collapse.removed as usize] = root[collapse.kept as usize];
+            }
+        })?;
         let mut moved_by = vec![u32::MAX; self.positions.len()];
-        for (step, collapse) in made.iter().enumerate() {
-            moved_by[collapse.kept as usize] = step as u32;
-        }
+        for_chunks(n_made, monitor, |range| {
+            for step in range {
+                moved_by[made[step].kept as usize] = step as u32;
+            }
+        })?;
         let position = |v: u32| match moved_by[v as usize] {
             u32::MAX => self.positions[v as usize],
             step => self.frame.restore(&made[step as usize].position),
@@ -115,29 +125,31 @@ impl CollapseSequence {
         let mut positions = Vec::new();
         let mut triangles = Vec::new();
         let mut triangle_of = Vec::new();
-        for (corners, &original) in self.triangles.iter().zip(&self.triangle_of) {
-            let [a, b, c] = corners.map(|v| root[v as usize]);
-            if a == b || b == c || c == a {
-                continue;
-            }
-            triangles.push([a, b, c].map(|v| {
-                if number[v as usize] == u32::MAX {
-                    number[v as usize] = positions.len() as u32;
-                    positions.push(position(v));
+        for_chunks(self.triangles.len(), monitor, |range| {
+            for t in range {
+                let [a, b, c] = self.triangles[t].map(|v| root[v as usize]);
+                if a == b || b == c || c == a {
+                    continue;
                 }
-                number[v as usize]
-            }));
-            triangle_of.push(original);
-        }
+                triangles.push([a, b, c].map(|v| {
+                    if number[v as usize] == u32::MAX {
+                        number[v as usize] = positions.len() as u32;
+                        positions.push(position(v));
+                    }
+                    number[v as usize]
+                }));
+                triangle_of.push(self.triangle_of[t]);
+            }
+        })?;
         let vertex_of = root.iter().map(|&v| number[v as usize]).collect();
         let mesh = TriMesh::new(positions, triangles)
             .expect("indices are numbered above and collapses end at finite places");
-        Simplified {
+        Ok(Simplified {
             report: self.report(made, max_triangles, mesh.n_triangles()),
             mesh,
             triangle_of,
             vertex_of,
-        }
+        })
     }
 
     fn report(

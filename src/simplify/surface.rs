@@ -3,6 +3,8 @@
 use nalgebra::Vector3;
 
 use super::quadric::{Quadric, pull_of};
+use crate::geometry::chunks::for_chunks;
+use crate::monitor::{Cancelled, Monitor};
 
 /// Stands for no vertex, no edge and no face.
 const GONE: u32 = u32::MAX;
@@ -114,36 +116,46 @@ impl Surface {
         positions: &[Vector3<f64>],
         triangles: &[[u32; 3]],
         part_of: Vec<u32>,
-    ) -> Self {
+        monitor: &Monitor,
+    ) -> Result<Self, Cancelled> {
         let mut fans = vec![Fan::default(); positions.len()];
-        for &vertex in triangles.iter().flatten() {
-            fans[vertex as usize].capacity += 1;
-        }
+        for_chunks(triangles.len(), monitor, |range| {
+            for &vertex in triangles[range].iter().flatten() {
+                fans[vertex as usize].capacity += 1;
+            }
+        })?;
         let mut start = 0;
         for fan in &mut fans {
             fan.start = start;
             start += fan.capacity;
         }
         let mut pool = vec![0; start as usize];
-        for (t, corners) in triangles.iter().enumerate() {
-            for &vertex in corners {
-                let fan = &mut fans[vertex as usize];
-                pool[(fan.start + fan.len) as usize] = t as u32;
-                fan.len += 1;
+        let mut faces = Vec::with_capacity(triangles.len());
+        for_chunks(triangles.len(), monitor, |range| {
+            for t in range {
+                let corners = triangles[t];
+                for vertex in corners {
+                    let fan = &mut fans[vertex as usize];
+                    pool[(fan.start + fan.len) as usize] = t as u32;
+                    fan.len += 1;
+                }
+                faces.push(Face {
+                    corners,
+                    edges: [GONE; 3],
+                    pull: pull_of(&twice_area(&corners.map(|v| positions[v as usize]))),
+                });
             }
-        }
-        let face = |corners: &[u32; 3]| Face {
-            corners: *corners,
-            edges: [GONE; 3],
-            pull: pull_of(&twice_area(&corners.map(|v| positions[v as usize]))),
-        };
-        let vertex = |position: &Vector3<f64>| Vertex {
-            position: *position,
-            ..Vertex::default()
-        };
+        })?;
+        let mut vertices = Vec::with_capacity(positions.len());
+        for_chunks(positions.len(), monitor, |range| {
+            vertices.extend(positions[range].iter().map(|&position| Vertex {
+                position,
+                ..Vertex::default()
+            }));
+        })?;
         let mut surface = Self {
-            vertices: positions.iter().map(vertex).collect(),
-            faces: triangles.iter().map(face).collect(),
+            vertices,
+            faces,
             edges: Vec::with_capacity(3 * positions.len()),
             part_of,
             n_triangles: triangles.len(),
@@ -152,47 +164,53 @@ impl Surface {
             merged_into: (0..positions.len() as u32).collect(),
             merging: Vec::new(),
         };
-        surface.number_edges();
-        surface
+        surface.number_edges(monitor)?;
+        Ok(surface)
     }
 
     /// Numbers the edges by their smaller end, then by their larger, and finds the features.
-    fn number_edges(&mut self) {
+    fn number_edges(&mut self, monitor: &Monitor) -> Result<(), Cancelled> {
         // The face, which of its edges, and the far end, which sorts first.
         let mut spokes: Vec<(u32, u32, usize)> = Vec::new();
-        for near in 0..self.vertices.len() as u32 {
-            spokes.clear();
-            for &t in self.around(near) {
-                let face = &self.faces[t as usize];
-                let i = face.index_of(near);
-                let [next, last] = face.others(near);
-                if next > near {
-                    spokes.push((next, t, (i + 2) % 3));
-                }
-                if last > near {
-                    spokes.push((last, t, (i + 1) % 3));
-                }
+        for_chunks(self.vertices.len(), monitor, |range| {
+            for near in range {
+                self.number_edges_of(near as u32, &mut spokes);
             }
-            spokes.sort_unstable();
-            for sides in spokes.chunk_by(|x, y| x.0 == y.0) {
-                let id = self.edges.len() as u32;
-                for &(_, t, i) in sides {
-                    self.faces[t as usize].edges[i] = id;
-                }
-                let is_smooth = match *sides {
-                    [(_, s, i), (_, t, j)] => {
-                        let runs_from =
-                            |t: u32, i: usize| self.faces[t as usize].corners[(i + 1) % 3];
-                        runs_from(s, i) != runs_from(t, j) && self.part(s) == self.part(t)
-                    }
-                    _ => false,
-                };
-                self.edges.push(Edge {
-                    ends: [near, sides[0].0],
-                    key: 0,
-                    is_feature: !is_smooth,
-                });
+        })
+    }
+
+    /// Numbers the edges from a vertex to those after it.
+    fn number_edges_of(&mut self, near: u32, spokes: &mut Vec<(u32, u32, usize)>) {
+        spokes.clear();
+        for &t in self.around(near) {
+            let face = &self.faces[t as usize];
+            let i = face.index_of(near);
+            let [next, last] = face.others(near);
+            if next > near {
+                spokes.push((next, t, (i + 2) % 3));
             }
+            if last > near {
+                spokes.push((last, t, (i + 1) % 3));
+            }
+        }
+        spokes.sort_unstable();
+        for sides in spokes.chunk_by(|x, y| x.0 == y.0) {
+            let id = self.edges.len() as u32;
+            for &(_, t, i) in sides {
+                self.faces[t as usize].edges[i] = id;
+            }
+            let is_smooth = match *sides {
+                [(_, s, i), (_, t, j)] => {
+                    let runs_from = |t: u32, i: usize| self.faces[t as usize].corners[(i + 1) % 3];
+                    runs_from(s, i) != runs_from(t, j) && self.part(s) == self.part(t)
+                }
+                _ => false,
+            };
+            self.edges.push(Edge {
+                ends: [near, sides[0].0],
+                key: 0,
+                is_feature: !is_smooth,
+            });
         }
     }
 
@@ -378,7 +396,7 @@ mod tests {
     fn hexagon() -> Surface {
         let positions = vec![Vector3::zeros(); 7];
         let triangles: Vec<_> = (1..7).map(|i| [0, i, i % 6 + 1]).collect();
-        Surface::new(&positions, &triangles, Vec::new())
+        Surface::new(&positions, &triangles, Vec::new(), &Monitor::silent()).unwrap()
     }
 
     #[test]

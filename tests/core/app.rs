@@ -139,7 +139,7 @@ fn prepared(
     settings: &LoadSettings,
 ) -> Result<LoadedPartAndFacts, String> {
     let part = prepare(path, model, settings, &Monitor::silent()).map_err(|e| e.to_string())?;
-    let facts = PartFacts::of(&part);
+    let facts = PartFacts::of(&part, &Monitor::silent()).unwrap();
     Ok((Arc::new(part), Arc::new(facts)))
 }
 

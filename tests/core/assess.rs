@@ -312,8 +312,8 @@ fn error_of(part: &TriMesh, target: &TriMesh, offset: f64) -> f64 {
         thickness: Some(1.0),
         ..AssessSettings::default()
     };
-    let held = held_by_rims(&source, &target, &outcome, &settings);
-    let pose = held.map(|held| held.target_from_source);
+    let held = held_by_rims(&source, &target, &outcome, &settings, &Monitor::silent());
+    let pose = held.unwrap().map(|held| held.target_from_source);
     let pose = pose.or_else(|| settled(&source, &target, &outcome.target_from_source, &settings));
     let pose = pose.unwrap_or(outcome.target_from_source);
     worst_node(&stamped, &truth, &pose)

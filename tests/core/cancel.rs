@@ -33,33 +33,57 @@ fn remembered(kind: JobKind) -> Result<JobOutput, String> {
     done.map_err(|error| error.to_string())
 }
 
-/// Counts reports and cancels at one of them.
+/// Where a job can be cancelled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Point {
+    /// A report of progress.
+    Report,
+    /// A look whether it is to end.
+    Question,
+}
+
+/// Counts points of one kind and cancels at one of them.
 struct CancelAt {
+    point: Point,
     at: usize,
-    n_reports: AtomicUsize,
+    n_seen: AtomicUsize,
     monitor: OnceLock<Monitor>,
 }
 
-impl Observer for CancelAt {
-    fn progress(&self, _: Progress) {
-        let number = self.n_reports.fetch_add(1, Ordering::SeqCst);
+impl CancelAt {
+    fn reach(&self, point: Point) {
+        if point != self.point {
+            return;
+        }
+        let number = self.n_seen.fetch_add(1, Ordering::SeqCst);
         if let Some(monitor) = self.monitor.get().filter(|_| number == self.at) {
             monitor.request_cancel();
         }
     }
 }
 
-/// Runs a job that is cancelled at a report; how it ended and how many reports came.
-fn run(kind: &JobKind, at: usize) -> (Result<(), JobError>, usize) {
+impl Observer for CancelAt {
+    fn progress(&self, _: Progress) {
+        self.reach(Point::Report);
+    }
+
+    fn asked(&self) {
+        self.reach(Point::Question);
+    }
+}
+
+/// Runs a job that is cancelled at a point; how it ended and how many such points came.
+fn run(kind: &JobKind, point: Point, at: usize) -> (Result<(), JobError>, usize) {
     let observer = Arc::new(CancelAt {
+        point,
         at,
-        n_reports: AtomicUsize::new(0),
+        n_seen: AtomicUsize::new(0),
         monitor: OnceLock::new(),
     });
     let monitor = Monitor::with_observer(Arc::clone(&observer) as Arc<dyn Observer>);
     observer.monitor.set(monitor.clone()).unwrap();
     let done = PipelineRunner.run(kind.clone(), &monitor).map(|_| ());
-    (done, observer.n_reports.load(Ordering::SeqCst))
+    (done, observer.n_seen.load(Ordering::SeqCst))
 }
 
 /// A window with the bracket of both sides, whose jobs are remembered.
@@ -153,7 +177,7 @@ fn find_parts(folder: &Path) -> JobKind {
 
 /// Points of a job that are tried at most.
 const MOST: usize = 12;
-/// Reports that threads may still send after a cancel.
+/// Points that threads may still reach after a cancel.
 const LATE: usize = 16;
 
 /// What a job is, so that each kind is tried once.
@@ -176,14 +200,14 @@ fn file(kind: &JobKind) -> Option<&Path> {
     }
 }
 
-/// Runs a job that is cancelled at a report. What is cancelled leaves no file.
-fn cancelled_at(kind: &JobKind, at: usize) -> (Result<(), JobError>, usize) {
+/// Runs a job that is cancelled at a point. What is cancelled leaves no file.
+fn cancelled_at(kind: &JobKind, point: Point, at: usize) -> (Result<(), JobError>, usize) {
     // That another job reads: it stays as the whole run left it.
     let kept = file(kind).map(|path| (path, std::fs::read(path).unwrap()));
     if let Some((path, _)) = &kept {
         std::fs::remove_file(path).unwrap();
     }
-    let done = run(kind, at);
+    let done = run(kind, point, at);
     if let Some((path, bytes)) = kept {
         let is_written = path.exists();
         assert_eq!(is_written, done.0.is_ok(), "{}", name(kind));
@@ -194,15 +218,18 @@ fn cancelled_at(kind: &JobKind, at: usize) -> (Result<(), JobError>, usize) {
 
 fn try_everywhere(kind: &JobKind, most: usize) {
     let what = name(kind);
-    let (done, n_reports) = run(kind, usize::MAX);
-    assert_eq!(done, Ok(()), "{what}");
-    for at in (0..n_reports).step_by(n_reports.div_ceil(most).max(1)) {
-        let (done, n_seen) = cancelled_at(kind, at);
-        let place = format!("{what} at {at} of {n_reports}");
-        assert!(n_seen <= at + 1 + LATE, "{place}: went on to {n_seen}");
-        let was_last = at + 1 == n_reports;
-        let is_cancelled = matches!(done, Err(JobError::Cancelled(_)));
-        assert!(is_cancelled || was_last, "{place}: {done:?}");
+    for (point, most) in [(Point::Report, most), (Point::Question, most.div_ceil(2))] {
+        let (done, n) = run(kind, point, usize::MAX);
+        assert_eq!(done, Ok(()), "{what}");
+        for at in (0..n).step_by(n.div_ceil(most).max(1)) {
+            let (done, n_seen) = cancelled_at(kind, point, at);
+            let place = format!("{what} at {point:?} {at} of {n}");
+            assert!(n_seen <= at + 1 + LATE, "{place}: went on to {n_seen}");
+            // The last report comes when all is done; a question is always heard.
+            let was_last = point == Point::Report && at + 1 == n;
+            let is_cancelled = matches!(done, Err(JobError::Cancelled(_)));
+            assert!(is_cancelled || was_last, "{place}: {done:?}");
+        }
     }
     // Before the first word of it.
     let monitor = Monitor::silent();

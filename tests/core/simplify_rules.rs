@@ -168,7 +168,7 @@ fn the_parts_on_both_sides_of_a_seam_keep_their_area() {
     let sequence =
         CollapseSequence::record_parts(&mesh, &part_of, &settings, &Monitor::silent()).unwrap();
     for n in [24, 18] {
-        let result = sequence.simplified(n);
+        let result = sequence.simplified(n, &Monitor::silent()).unwrap();
         let after = area_of(&result.mesh, &|t| result.triangle_of[t] as usize);
         assert!(
             (after - before).abs() < 0.15 * before,

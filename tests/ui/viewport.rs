@@ -111,7 +111,7 @@ fn done(kind: JobKind) -> JobOutput {
             let model = Arc::new(Model::from_mesh(&sheet(), "sheet"));
             let path = PathBuf::from("sheet.k");
             let part = prepare(&path, model, &settings, &Monitor::silent()).unwrap();
-            let facts = Arc::new(PartFacts::of(&part));
+            let facts = Arc::new(PartFacts::of(&part, &Monitor::silent()).unwrap());
             JobOutput::Loaded {
                 role,
                 source,

@@ -2,7 +2,8 @@
 
 use super::DeviationSettings;
 use super::offset::{ConstantPart, Sample};
-use crate::geometry::{Point3, Similarity, Vector3};
+use crate::geometry::chunks::{for_chunks, map_chunks};
+use crate::geometry::{Similarity, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::Surface;
 use crate::search::{Feature, SearchLimits, SurfaceHit, closest_many};
@@ -84,7 +85,7 @@ pub fn source_on_target(
         model: target,
         world_from_data: *target_from_source,
         world_from_model: Similarity::identity(),
-        sides: Sides::of(target),
+        sides: Sides::of(target, monitor)?,
         is_data_source: true,
     };
     let limit = settings.limit_for(source, target);
@@ -104,7 +105,7 @@ pub fn target_on_source(
         model: source,
         world_from_data: Similarity::identity(),
         world_from_model: *target_from_source,
-        sides: Sides::of(target),
+        sides: Sides::of(target, monitor)?,
         is_data_source: false,
     };
     let limit = settings.limit_for(source, target);
@@ -131,25 +132,27 @@ impl Way<'_> {
     ) -> Result<DeviationField, Cancelled> {
         let model_from_data = self.world_from_model.inverse().after(&self.world_from_data);
         let positions = self.data.mesh().positions();
-        let queries: Vec<Point3> = positions.iter().map(|p| model_from_data.apply(p)).collect();
+        let queries = map_chunks(positions.len(), monitor, |vertex| {
+            model_from_data.apply(&positions[vertex])
+        })?;
         let limits = SearchLimits {
             max_distance: reach / self.world_from_model.scale,
             min_cos: None,
         };
         let hits = closest_many(self.model.bvh(), &queries, &[], &[], limits, monitor)?;
-        let hits = hits.iter().enumerate();
-        let found: Vec<Judged> = hits
-            .map(|(vertex, hit)| match hit {
-                Some(hit) => self.judge(vertex, hit, limit),
-                None => Judged::NOTHING,
-            })
-            .collect();
+        let found = map_chunks(hits.len(), monitor, |vertex| match &hits[vertex] {
+            Some(hit) => self.judge(vertex, hit, limit),
+            None => Judged::NOTHING,
+        })?;
         monitor.check()?;
         let constant = if self.sides.are_known {
-            ConstantPart::of(&self.samples(&found))
+            let samples = self.samples(&found);
+            monitor.check()?;
+            ConstantPart::of(&samples)
         } else {
             None
         };
+        monitor.check()?;
         let mut field = self.as_given(&found, limit, reach);
         field.constant = constant;
         Ok(field)
@@ -298,30 +301,33 @@ struct Sides {
 }
 
 impl Sides {
-    fn of(surface: &Surface) -> Self {
+    fn of(surface: &Surface, monitor: &Monitor) -> Result<Self, Cancelled> {
         let mesh = surface.mesh();
         let topology = surface.topology();
         let mut beyond = vec![[NOBODY; 3]; mesh.n_triangles()];
         let mut are_known = true;
-        for (edge, &[u, v]) in topology.edges.iter().enumerate() {
-            let &[s, t] = topology.triangles_of(edge) else {
-                continue;
-            };
-            // Which edge of a triangle it is, and whether the triangle runs along it from u to v.
-            let side = |triangle: u32| {
-                let corners = mesh.triangles()[triangle as usize];
-                (0..3).find_map(|i| match [corners[i], corners[(i + 1) % 3]] {
-                    [a, b] if [a, b] == [u, v] => Some((i, true)),
-                    [a, b] if [a, b] == [v, u] => Some((i, false)),
-                    _ => None,
-                })
-            };
-            if let (Some((i, forth)), Some((j, back))) = (side(s), side(t)) {
-                beyond[s as usize][i] = t;
-                beyond[t as usize][j] = s;
-                are_known &= forth != back;
+        for_chunks(topology.edges.len(), monitor, |range| {
+            for edge in range {
+                let [u, v] = topology.edges[edge];
+                let &[s, t] = topology.triangles_of(edge) else {
+                    continue;
+                };
+                // Which edge of a triangle it is, and whether the triangle runs along it from u to v.
+                let side = |triangle: u32| {
+                    let corners = mesh.triangles()[triangle as usize];
+                    (0..3).find_map(|i| match [corners[i], corners[(i + 1) % 3]] {
+                        [a, b] if [a, b] == [u, v] => Some((i, true)),
+                        [a, b] if [a, b] == [v, u] => Some((i, false)),
+                        _ => None,
+                    })
+                };
+                if let (Some((i, forth)), Some((j, back))) = (side(s), side(t)) {
+                    beyond[s as usize][i] = t;
+                    beyond[t as usize][j] = s;
+                    are_known &= forth != back;
+                }
             }
-        }
-        Self { beyond, are_known }
+        })?;
+        Ok(Self { beyond, are_known })
     }
 }

@@ -95,17 +95,19 @@ pub fn compare(
     let finish = |field: DeviationField, surface: &Surface, scale: f64| {
         let separation = SPOT_EDGES * surface.measures().mean_edge_length;
         let spots = worst_spots(&field, surface, scale, separation * scale, N_SPOTS);
+        monitor.check()?;
         let stats = DeviationStats::of(&field, settings.thickness, noise);
-        OneWay {
+        Ok(OneWay {
             field,
             stats,
             spots,
-        }
+        })
     };
     monitor.check()?;
-    let source_on_target = finish(forth, source, pose.scale);
+    let source_on_target = finish(forth, source, pose.scale)?;
     monitor.check()?;
-    let target_on_source = finish(back, target, 1.0);
+    let target_on_source = finish(back, target, 1.0)?;
+    monitor.check()?;
     Ok(Deviation {
         is_signed: source_on_target.field.is_signed,
         limit: source_on_target.field.limit,

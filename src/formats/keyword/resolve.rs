@@ -55,6 +55,7 @@ pub(super) fn finish(
     leave_out_nodes(&repeated, &mut model);
     monitor.check()?;
     tell_flat_shells(&assembly, &mut model);
+    monitor.check()?;
     tell_no_elements(&mut assembly, &model);
     model.raw_titles = std::mem::take(&mut assembly.raw_titles);
     let mut found = assembly.found;

@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::{Model, Nodes, Solid};
+use crate::geometry::chunks::for_chunks;
 use crate::geometry::{Aabb, MeshError, Point3, TriMesh};
+use crate::monitor::{Cancelled, Monitor};
 
 /// Marks a node no chosen element uses.
 const UNUSED: u32 = u32::MAX;
@@ -70,6 +72,9 @@ pub enum SelectionError {
     /// The triangles make no mesh.
     #[error("the surface cannot be built: {0}")]
     Mesh(#[from] MeshError),
+    /// The work was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// The triangles of the chosen elements and where they come from.
@@ -109,16 +114,28 @@ impl Model {
     /// The triangle mesh of the chosen elements. Quads are cut along the shorter diagonal (equal
     /// ones from the first corner), concave ones along the inner one; of solids the faces used once are taken, outward. O(elements).
     pub fn surface(&self, selection: &Selection) -> Result<Surface, SelectionError> {
+        self.build_surface(selection, &Monitor::silent())
+    }
+
+    /// [`Model::surface`] that ends when `monitor` is cancelled.
+    pub fn build_surface(
+        &self,
+        selection: &Selection,
+        monitor: &Monitor,
+    ) -> Result<Surface, SelectionError> {
         let chosen = self.chosen(selection)?;
         let mut builder = Builder::new(&self.nodes);
-        for (index, shell) in self.shells.iter().enumerate() {
-            if chosen.shell(index, shell.part) {
-                let name = || format!("shell {}", shell.id);
-                builder.polygon(shell.corners(), index as u32, shell.part, name);
+        for_chunks(self.shells.len(), monitor, |range| {
+            for index in range {
+                let shell = &self.shells[index];
+                if chosen.shell(index, shell.part) {
+                    let name = || format!("shell {}", shell.id);
+                    builder.polygon(shell.corners(), index as u32, shell.part, name);
+                }
             }
-        }
-        self.add_skin(&chosen, &mut builder);
-        builder.finish()
+        })?;
+        self.add_skin(&chosen, &mut builder, monitor)?;
+        builder.finish(monitor)
     }
 
     /// The parts in the order they were met. O(elements).
@@ -231,24 +248,31 @@ impl Model {
     }
 
     /// Adds the faces that exactly one chosen solid has.
-    fn add_skin(&self, chosen: &Chosen, builder: &mut Builder) {
-        let solids = || {
-            let all = self.solids.iter().enumerate();
-            all.filter(|(_, solid)| chosen.solid(solid.part))
-        };
+    fn add_skin(
+        &self,
+        chosen: &Chosen,
+        builder: &mut Builder,
+        monitor: &Monitor,
+    ) -> Result<(), Cancelled> {
+        let is_chosen = |index: &usize| chosen.solid(self.solids[*index].part);
         let mut uses: HashMap<[u32; 4], u32> = HashMap::new();
-        for (_, solid) in solids() {
-            for face in faces(solid) {
-                *uses.entry(face_key(&face)).or_default() += 1;
+        for_chunks(self.solids.len(), monitor, |range| {
+            for index in range.filter(is_chosen) {
+                for face in faces(&self.solids[index]) {
+                    *uses.entry(face_key(&face)).or_default() += 1;
+                }
             }
-        }
-        for (index, solid) in solids() {
-            let element = (self.shells.len() + index) as u32;
-            for face in faces(solid).filter(|face| uses[&face_key(face)] == 1) {
-                let name = || format!("solid {}", solid.id);
-                builder.polygon(&face, element, solid.part, name);
+        })?;
+        for_chunks(self.solids.len(), monitor, |range| {
+            for index in range.filter(is_chosen) {
+                let solid = &self.solids[index];
+                let element = (self.shells.len() + index) as u32;
+                for face in faces(solid).filter(|face| uses[&face_key(face)] == 1) {
+                    let name = || format!("solid {}", solid.id);
+                    builder.polygon(&face, element, solid.part, name);
+                }
             }
-        }
+        })
     }
 }
 
@@ -393,24 +417,32 @@ impl<'a> Builder<'a> {
     }
 
     /// Numbers the used nodes in the order of the file, so that neighbours stay neighbours.
-    fn finish(mut self) -> Result<Surface, SelectionError> {
+    fn finish(mut self, monitor: &Monitor) -> Result<Surface, SelectionError> {
         if self.triangles.is_empty() {
             return Err(SelectionError::Empty);
         }
-        for &node in self.triangles.iter().flatten() {
-            self.node_vertex[node as usize] = 0;
-        }
-        let mut positions = Vec::new();
-        for (node, vertex) in self.node_vertex.iter_mut().enumerate() {
-            if *vertex != UNUSED {
-                *vertex = positions.len() as u32;
-                positions.push(self.nodes.positions()[node]);
-                self.surface.vertex_node.push(node as u32);
+        let n_triangles = self.triangles.len();
+        for_chunks(n_triangles, monitor, |range| {
+            for &node in self.triangles[range].iter().flatten() {
+                self.node_vertex[node as usize] = 0;
             }
-        }
-        for node in self.triangles.iter_mut().flatten() {
-            *node = self.node_vertex[*node as usize];
-        }
+        })?;
+        let mut positions = Vec::new();
+        for_chunks(self.node_vertex.len(), monitor, |range| {
+            for node in range {
+                let vertex = &mut self.node_vertex[node];
+                if *vertex != UNUSED {
+                    *vertex = positions.len() as u32;
+                    positions.push(self.nodes.positions()[node]);
+                    self.surface.vertex_node.push(node as u32);
+                }
+            }
+        })?;
+        for_chunks(n_triangles, monitor, |range| {
+            for node in self.triangles[range].iter_mut().flatten() {
+                *node = self.node_vertex[*node as usize];
+            }
+        })?;
         self.surface.mesh = TriMesh::new(positions, self.triangles)?;
         Ok(self.surface)
     }

@@ -36,7 +36,7 @@ impl OtherResult {
         crash: &LoadedPart,
         monitor: &Monitor,
     ) -> Result<Self, PipelineError> {
-        let index = element_index(&crash.model, &run.shells);
+        let index = element_index(&crash.model, &run.shells, monitor)?;
         let factor = crash.settings.length_factor;
         let mut thickness = vec![f64::NAN; run.shells.len()];
         let mut states = Layered::new(run.shells.len());

@@ -35,6 +35,7 @@ pub(super) fn part_shells(
     shells.retain(|&element| element < n_shells);
     monitor.check()?;
     shells.sort_unstable();
+    monitor.check()?;
     shells.dedup();
     let factor = part.settings.length_factor;
     // Only the nodes in use, so that a part of a whole car stays small.
@@ -79,7 +80,11 @@ pub(super) fn source_part(
         corners.map(|t| t * factor)
     });
     monitor.check()?;
-    let index = element_index(model, &shells.shells);
+    let thickness: Vec<[f64; 4]> = thickness.collect();
+    monitor.check()?;
+    let has_results = !model.forming.is_empty();
+    let named = if has_results { &shells.shells[..] } else { &[] };
+    let index = element_index(model, named, monitor)?;
     let mut states = Layered::new(shells.shells.len());
     let mut history = SourceHistory::new(shells.shells.len());
     for (number, stress) in model.forming.stresses().enumerate() {
@@ -117,7 +122,7 @@ pub(super) fn source_part(
         }
     }
     Ok(SourcePart {
-        thickness: thickness.collect(),
+        thickness,
         states,
         strains,
         history,
@@ -139,9 +144,18 @@ fn laws(model: &Model, shells: &PartShells, given: Option<&str>) -> BTreeMap<u32
 }
 
 /// Where each element id stands in the list.
-pub(super) fn element_index(model: &Model, shells: &[u32]) -> HashMap<u64, usize> {
-    let ids = shells.iter().map(|&shell| model.shells[shell as usize].id);
-    ids.zip(0..).collect()
+pub(super) fn element_index(
+    model: &Model,
+    shells: &[u32],
+    monitor: &Monitor,
+) -> Result<HashMap<u64, usize>, Cancelled> {
+    let mut index = HashMap::with_capacity(shells.len());
+    for (number, chunk) in shells.chunks(CHUNK).enumerate() {
+        monitor.check()?;
+        let ids = chunk.iter().map(|&shell| model.shells[shell as usize].id);
+        index.extend(ids.zip(number * CHUNK..));
+    }
+    Ok(index)
 }
 
 /// What the layers of the crash elements are.

@@ -311,6 +311,7 @@ fn check(
     if placed.len() == 1 {
         let covered = |element: &usize| back.is_covered[*element];
         let source = first.part;
+        monitor.check()?;
         let thickness = (0..source.mesh.len())
             .filter(covered)
             .map(|element| (source.mean_thickness(element), source.mesh.areas()[element]));
@@ -332,6 +333,7 @@ fn check(
         };
         let mapped_plastic = |element: usize| mapped.mean_plastic_strain(target, element);
         checks.thickness = distribution(thickness).zip(on_target(&mapped_thickness));
+        monitor.check()?;
         checks.plastic_strain = distribution(plastic).zip(on_target(&mapped_plastic));
     }
     checks.map_back = Some(back);

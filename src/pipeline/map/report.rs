@@ -8,7 +8,7 @@ use super::{
 use crate::colormap::{ColorMap, ColorScale, Rgb, UNMATCHED};
 use crate::geometry::{Camera, Point3, Similarity, TriMesh};
 use crate::mapping::{ShellMesh, SourcePart};
-use crate::monitor::Monitor;
+use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::outputs::report_figures::{From, fitted, view_of};
@@ -33,7 +33,7 @@ pub fn map_report(
     other: Option<&OtherResult>,
     monitor: &Monitor,
 ) -> Result<String, PipelineError> {
-    let painter = Painter::new(run, crash);
+    let painter = Painter::new(run, crash, monitor)?;
     let quantities = painter.quantities(record, monitor)?;
     monitor.progress("draw", 2, Some(3));
     let compared = painter.compared(record, other, monitor)?;
@@ -235,18 +235,19 @@ struct ElementMesh {
 }
 
 impl ElementMesh {
-    fn new(shells: &ShellMesh) -> Self {
-        let (triangles, element_of) = shells.triangles();
+    fn new(shells: &ShellMesh, monitor: &Monitor) -> Result<Self, Cancelled> {
+        let (triangles, element_of) = shells.triangles(monitor)?;
+        monitor.check()?;
         let corners = triangles.triangles().iter().flatten();
         let positions: Vec<Point3> = corners
             .map(|&corner| triangles.positions()[corner as usize])
             .collect();
         let split = (0..triangles.n_triangles() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
         let mesh = TriMesh::new(positions, split.collect());
-        Self {
+        Ok(Self {
             mesh: mesh.expect("corners count the positions, which were checked"),
             element_of_vertex: element_of.iter().flat_map(|&e| [e, e, e]).collect(),
-        }
+        })
     }
 
     fn colors(&self, color: impl Fn(usize) -> Rgb) -> Vec<Rgb> {
@@ -256,20 +257,18 @@ impl ElementMesh {
 }
 
 impl<'a> Painter<'a> {
-    fn new(run: &'a MapRun, crash: &LoadedPart) -> Self {
+    fn new(run: &'a MapRun, crash: &LoadedPart, monitor: &Monitor) -> Result<Self, Cancelled> {
         let view = view_of(&crash.surface, From::Front);
-        let target = ElementMesh::new(&run.target.mesh);
+        let target = ElementMesh::new(&run.target.mesh, monitor)?;
         let still = Similarity::identity();
-        Self {
+        let sources = run.sources.iter();
+        let sources = sources.map(|source| ElementMesh::new(&source.mesh, monitor));
+        Ok(Self {
             run,
             camera: fitted(view, target.mesh.positions(), &still, SIZE),
             target,
-            sources: run
-                .sources
-                .iter()
-                .map(|source| ElementMesh::new(&source.mesh))
-                .collect(),
-        }
+            sources: sources.collect::<Result<_, Cancelled>>()?,
+        })
     }
 
     /// Every quantity with statistics, before and after.

@@ -13,7 +13,7 @@ use super::starts::{Start, StartMethod, starts};
 use super::variations::{mirror_images, twins};
 use super::wide_starts::WideStarts;
 use crate::geometry::Similarity;
-use crate::monitor::Cancelled;
+use crate::monitor::{Cancelled, Monitor};
 use crate::registration::RegistrationError;
 use crate::registration::icp::{
     Data, Floor, Frames, Run, Selection, Stage, StageInput, advance, edge_length, natural_floor,
@@ -109,7 +109,8 @@ impl<'a> MultiStart<'a> {
         input: MatchInput<'a>,
         settings: &'a MatchSettings,
         mirror: Option<Similarity>,
-    ) -> Self {
+        monitor: &Monitor,
+    ) -> Result<Self, Cancelled> {
         let (source, target) = (input.source, input.target);
         let diagonal = |surface: &Surface| surface.measures().diagonal;
         let smaller = diagonal(source).min(diagonal(target));
@@ -124,8 +125,10 @@ impl<'a> MultiStart<'a> {
         };
         let wide = is_wide.then(|| WideStarts::of(&input)).flatten();
         let larger = wide.as_ref().and_then(WideStarts::larger);
-        Self {
-            scorer: PoseScorer::new(source, target, settings.allowance, reach, larger),
+        monitor.check()?;
+        let allowance = settings.allowance;
+        Ok(Self {
+            scorer: PoseScorer::new([source, target], allowance, (reach, larger), monitor)?,
             settings: if is_incompatible {
                 Cow::Owned(incompatible_settings(settings))
             } else {
@@ -137,7 +140,7 @@ impl<'a> MultiStart<'a> {
             mirror,
             choices: Vec::new(),
             timings: SearchTimings::default(),
-        }
+        })
     }
 
     /// Runs the starts and what survives the wide search, and the other choice of data where the data
@@ -469,7 +472,7 @@ impl<'a> MultiStart<'a> {
         } else {
             self.settings.n_refine_points
         };
-        let mut points = Data::new(subsample(pairing.data, n_points));
+        let mut points = Data::new(subsample(pairing.data, n_points, monitor.monitor)?);
         if flipped {
             points = points.flipped();
         }

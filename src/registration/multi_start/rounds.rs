@@ -106,15 +106,19 @@ pub(crate) fn run_coarse(
         let on_grid = round.on_grid && grid.is_some();
         let key = (round.points, on_grid);
         let unchanged = in_use.take().filter(|(last, _)| *last == key);
-        let (_, points) = in_use.insert(unchanged.unwrap_or_else(|| {
-            // Scores and pairs of other points do not carry over.
-            for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
-                candidate.run.enter_stage();
+        let points = match unchanged {
+            Some(points) => points,
+            None => {
+                // Scores and pairs of other points do not carry over.
+                for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
+                    candidate.run.enter_stage();
+                }
+                let n_points = (round.points * settings.n_coarse_points as f64).ceil() as usize;
+                let points = subsample(data, n_points, monitor.monitor)?;
+                (key, BothSigns::new(Data::new(points)))
             }
-            let n_points = (round.points * settings.n_coarse_points as f64).ceil() as usize;
-            let points = BothSigns::new(Data::new(subsample(data, n_points)));
-            (key, points)
-        }));
+        };
+        let (_, points) = in_use.insert(points);
         let input = RoundInput {
             points,
             model,
@@ -168,7 +172,8 @@ pub(crate) fn refine(
         Depth::Look => (settings.n_coarse_points, LOOK_ITERATIONS),
         Depth::Whole => (settings.n_refine_points, rules.max_iterations),
     };
-    let points = BothSigns::new(Data::new(subsample(data, n_points)));
+    let points = subsample(data, n_points, monitor.monitor)?;
+    let points = BothSigns::new(Data::new(points));
     let input = RoundInput {
         points: &points,
         model,

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::holes::Holes;
 use crate::geometry::{Point3, Similarity, Vector3};
+use crate::monitor::{Cancelled, Monitor};
 use crate::registration::icp::{
     Correspondence, Floor, MatchRules, PairWith, RejectRules, Sample, SelectRules, Selection,
     correspond, edge_length, natural_floor, select,
@@ -76,25 +77,24 @@ impl TwoSided {
 impl<'a> PoseScorer<'a> {
     /// `reach` is infinite where far points are asked for too; else `far` is the larger part.
     pub(crate) fn new(
-        source: &'a Surface,
-        target: &'a Surface,
+        [source, target]: [&'a Surface; 2],
         allowance: f64,
-        reach: f64,
-        far: Option<Arc<FeatureGrid>>,
-    ) -> Self {
+        (reach, far): (f64, Option<Arc<FeatureGrid>>),
+        monitor: &Monitor,
+    ) -> Result<Self, Cancelled> {
         let edge = edge_length(source, target);
-        Self {
+        Ok(Self {
             source,
             target,
-            source_samples: subsample(source, N_POINTS),
-            target_samples: subsample(target, N_POINTS),
+            source_samples: subsample(source, N_POINTS, monitor)?,
+            target_samples: subsample(target, N_POINTS, monitor)?,
             source_holes: Holes::new(source, edge),
             target_holes: Holes::new(target, edge),
             floor: CURVED * natural_floor(source, target) + allowance,
             reach,
             far,
             source_is_smaller: source.measures().area <= target.measures().area,
-        }
+        })
     }
 
     /// Scores the pose of `source` on `target`; `flipped` reverses the source's normals.
