@@ -4,11 +4,11 @@
 use rayon::prelude::*;
 
 use super::contact::{ContactSearch, MAX_NODES};
-use super::rims::RimComparison;
+use super::rims::{RimComparison, RimKind, Rims};
 use super::settle::Settling;
 use super::slide::slid;
 use super::sliding::{FreeMotion, FreeMotionKind, weak_motion};
-use super::{AssessSettings, overlap_limit, tolerance_of};
+use super::{AssessSettings, Distances, overlap_limit};
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
@@ -38,6 +38,8 @@ const MORE_HELD: f64 = 0.005;
 const TWICE_AS_BAD: f64 = 0.05;
 /// Distances of surfaces up to this share of the tolerance mean nothing.
 const NO_GAP: f64 = 0.1;
+/// The facets of a flat part are known no better than this, likewise.
+const NOTHING: f64 = 0.01;
 /// Shares of the rims that differ by less than this do not tell hands apart.
 const SAME_SHARE: f64 = 0.02;
 /// The opposite hand is told by its rims if so much of them lies where it belongs; with less its score counts
@@ -54,6 +56,8 @@ const OPPOSITE_IS_CLEAR: f64 = 1.3;
 const AS_CLOSE: f64 = 1.5;
 /// … and so many tolerances more.
 const LITTLE_GAP: f64 = 0.25;
+/// … or, if that is less, so many times what they lie apart and what facets leave open.
+const OFF: f64 = 3.0;
 /// A pose that meets so many times as much of the part may lie as far apart as springback explains.
 const MUCH_MORE: f64 = 1.3;
 /// It must meet this share of what the result meets.
@@ -131,14 +135,17 @@ pub fn held_by_rims(
     let closest = closest.copied().unwrap_or(result);
     let is_close = |pose: &Settled| pose.is_as_close_as(&closest, &pair);
     let rivals: Vec<Settled> = settled.into_iter().filter(is_close).collect();
-    let least = if is_close(&result) {
-        result.held + result.grain.max(MORE_HELD)
-    } else {
-        f64::NEG_INFINITY
+    let is_better = |other: &&Settled| {
+        // Another trim moves outlines, and no hole.
+        let misplaces_holes = result.n_holes >= other.n_holes
+            && result.worst_hole <= pair.remainder
+            && other.worst_hole > pair.remainder;
+        let more = result.held + result.grain.max(MORE_HELD);
+        !is_close(&result) || other.held > more && !misplaces_holes
     };
     let best = rivals
         .iter()
-        .filter(|other| other.held > least)
+        .filter(is_better)
         .max_by(|a, b| a.held.total_cmp(&b.held));
     let winner = best.copied().unwrap_or(result);
     let exactly = Settling::new([source, target], found.scale, settings, MAX_NODES);
@@ -190,7 +197,7 @@ pub fn hand_by_rims(
 
 /// Distance within which surfaces leave a motion free: what overlaps, and what springback explains.
 fn free_limit(source: &Surface, target: &Surface, settings: &AssessSettings) -> f64 {
-    let springback = tolerance_of(target, settings).springback;
+    let springback = Distances::of(source, target, settings).tolerance.springback;
     overlap_limit(source, target, settings.allowance).max(springback)
 }
 
@@ -224,6 +231,8 @@ struct Pair<'a> {
     springback: f64,
     /// What may remain of the distance of rims.
     remainder: f64,
+    /// Distance of surfaces that means nothing.
+    noise: f64,
 }
 
 /// A pose after its last step.
@@ -235,6 +244,9 @@ struct Settled {
     held: f64,
     /// Share of the rims that one place of them stands for: `held` is no finer.
     grain: f64,
+    /// Holes with a counterpart, and how far the one that lies farthest from it is off.
+    n_holes: usize,
+    worst_hole: f64,
     /// Share of the smaller part that meets the other.
     met: f64,
     /// How far the surfaces lie apart there, root mean square.
@@ -243,7 +255,9 @@ struct Settled {
 
 impl Settled {
     fn is_as_close_as(&self, other: &Self, pair: &Pair<'_>) -> bool {
-        let mut most = AS_CLOSE * other.gap + LITTLE_GAP * pair.remainder;
+        // Where surfaces lie as close as their facets allow, one that lies a little off is elsewhere.
+        let little = (LITTLE_GAP * pair.remainder).min(OFF * (other.gap + pair.noise));
+        let mut most = AS_CLOSE * other.gap + little;
         if self.met > MUCH_MORE * other.met {
             // A bent part lies closer where only a piece of it meets the other.
             most = most.max(pair.springback);
@@ -263,7 +277,8 @@ impl<'a> Pair<'a> {
         scale: f64,
         settings: &AssessSettings,
     ) -> Self {
-        let tolerance = tolerance_of(target, settings);
+        let distances = Distances::of(source, target, settings);
+        let tolerance = distances.tolerance;
         let near = NEAR_SHARE * target.measures().diagonal;
         let pair = [source, target];
         Self {
@@ -275,6 +290,7 @@ impl<'a> Pair<'a> {
             near,
             springback: tolerance.springback,
             remainder: tolerance.remainder,
+            noise: distances.noise.max(NOTHING * tolerance.remainder),
         }
     }
 
@@ -301,11 +317,15 @@ impl<'a> Pair<'a> {
     /// How well a pose fits.
     fn measured(&self, pose: Similarity) -> Option<Settled> {
         let (met, gap) = self.surfaces_met(&pose)?;
-        let (held, grain) = self.rims_held(&pose);
+        let rims = self.rims.at(&pose);
+        let (held, grain) = self.rims_held(&rims);
+        let holes = rims.holes.iter().map(|pair| pair.off.norm());
         Some(Settled {
             pose,
             held,
             grain,
+            n_holes: rims.holes.len(),
+            worst_hole: holes.fold(0.0, f64::max),
             met,
             gap,
         })
@@ -379,14 +399,13 @@ impl<'a> Pair<'a> {
     /// Share of the smaller part's rims that lies within the tolerance of a like rim of the other part, less
     /// for what lies farther from it; holes where the other part is solid count against the pose. With it the
     /// share that a single place of the rims stands for.
-    fn rims_held(&self, pose: &Similarity) -> (f64, f64) {
-        let rims = self.rims.at(pose);
+    fn rims_held(&self, rims: &Rims) -> (f64, f64) {
         let within = 2.0 * (self.remainder + rims.unremarkable());
         let (mut held, mut paired, mut largest) = (0.0, 0.0, 0.0_f64);
         for pair in rims.pairs() {
             largest = largest.max(pair.weight);
             let ratio = pair.gap / within;
-            if pair.is_of_one_kind {
+            if pair.kind != RimKind::Mixed {
                 held += pair.weight * (1.0 - ratio * ratio).max(0.0);
             }
             paired += pair.weight;
@@ -417,7 +436,7 @@ impl<'a> Pair<'a> {
             |other: &Alternative| !same_pose(&other.target_from_source, &winner.pose, &part);
         let is_replaced = winner.held > result.held;
         let with_rims = |other: &Alternative| {
-            let (held, grain) = self.rims_held(&other.target_from_source);
+            let (held, grain) = self.rims_held(&self.rims.at(&other.target_from_source));
             let ratio = ratio_by_rims(apart(winner.held - held, grain.max(winner.grain)));
             Alternative {
                 score_ratio: other.score_ratio.max(ratio),

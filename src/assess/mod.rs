@@ -14,6 +14,7 @@ mod skin;
 mod slide;
 mod sliding;
 mod stretch;
+mod trims;
 mod uncertainty;
 mod verdict;
 mod words;
@@ -226,9 +227,13 @@ fn statements(
         noise,
         reach,
     };
+    let other_trim = trims::other_trim(&evidence, &tolerance);
+    let rims = other_trim.as_ref().map_or(&rims, |trim| &trim.left);
+    let evidence = ShapeEvidence { rims, ..evidence };
     let uncertainty =
-        PoseUncertainty::of(source, pose, &contacts, &rims, (noise, settings.thickness));
+        PoseUncertainty::of(source, pose, &contacts, rims, (noise, settings.thickness));
     let mut shape = ShapeStatement::of(&evidence, tolerance);
+    shape.rims.other_trim = other_trim.as_ref().map(|trim| trim.apart);
     shape.is_offset_removed = settings.remove_offset && skin::is_removed(&evidence, &shape);
     (uncertainty, shape)
 }

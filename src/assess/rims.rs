@@ -3,6 +3,7 @@
 
 use super::contact::robust_weights;
 use super::is_source_smaller;
+use super::shape::ShapeTolerance;
 use crate::geometry::{Border, Point3, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::{ClosestPoint, PointTree};
@@ -33,9 +34,19 @@ pub(super) struct RimPair {
     pub(super) gap: f64,
     /// Area that it stands for: length times an edge.
     pub(super) weight: f64,
-    /// True for two rims of holes, or two of the outline: a cut may run along a hole of the other part by
-    /// chance.
-    pub(super) is_of_one_kind: bool,
+    /// Which rims they are.
+    pub(super) kind: RimKind,
+}
+
+/// Which rims lie beside each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum RimKind {
+    /// Two outlines.
+    Outlines,
+    /// Two rims of holes.
+    Holes,
+    /// An outline and the rim of a hole: a cut may run along a hole of the other part by chance.
+    Mixed,
 }
 
 /// A hole in the target's frame.
@@ -232,7 +243,11 @@ impl RimPlaces {
                 point: beside.point,
                 across,
                 weight: self.step * unit,
-                is_of_one_kind: place.is_hole == beside.is_hole,
+                kind: match (place.is_hole, beside.is_hole) {
+                    (true, true) => RimKind::Holes,
+                    (false, false) => RimKind::Outlines,
+                    _ => RimKind::Mixed,
+                },
             })
         };
         self.own.iter().filter_map(pair).collect()
@@ -249,9 +264,25 @@ impl Rims {
         &self.pairs
     }
 
+    /// The rims without those pairs that are not wanted; each is given with its number.
+    pub(super) fn filtered(&self, is_wanted: impl Fn(usize, &RimPair) -> bool) -> Self {
+        let pairs = self.pairs.iter().enumerate();
+        let wanted = pairs.filter(|(i, pair)| is_wanted(*i, pair));
+        Self {
+            pairs: wanted.map(|(_, pair)| *pair).collect(),
+            ..self.clone()
+        }
+    }
+
     /// Distance between rims that says nothing about the parts.
     pub(super) fn unremarkable(&self) -> f64 {
         RIM_FACETS * self.edge + RAGGED * self.ragged
+    }
+
+    /// How far apart rims may lie: what facets and ragged trims do to them has nothing to do with how the
+    /// parts differ.
+    pub(super) fn limit(&self, tolerance: &ShapeTolerance) -> f64 {
+        tolerance.remainder.hypot(self.unremarkable())
     }
 
     /// Share of the smaller part's rims that lie beside rims of the other.

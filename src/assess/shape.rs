@@ -98,6 +98,10 @@ pub struct RimFit {
     /// Distance across the rim that 90 % of the rims beside each other do not exceed, without what
     /// springback and an error of the pose explain; `None` where too few rims lie beside each other.
     pub offset: Option<f64>,
+    /// Where one part was trimmed farther out than the other: how far outlines lie apart, at 90 % of those that
+    /// do. They are no evidence, neither of the pose nor of the shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub other_trim: Option<f64>,
     /// Holes that both parts have.
     pub n_holes: usize,
     /// Largest distance of a hole from its counterpart, likewise, with the difference of the radii.
@@ -309,8 +313,7 @@ impl ShapeStatement {
 
     fn rim_reasons(&self, evidence: &ShapeEvidence<'_>, fit: &Fit) -> Vec<ShapeReason> {
         let rims = evidence.rims;
-        // What facets and ragged trims do to a rim has nothing to do with how the parts differ.
-        let limit = self.tolerance.remainder.hypot(rims.unremarkable());
+        let limit = rims.limit(&self.tolerance);
         let mut reasons = Vec::new();
         let holes = rims.holes.iter().zip(&fit.holes);
         let worst = holes.max_by(|a, b| a.1.total_cmp(b.1));
@@ -374,6 +377,7 @@ fn rim_fit(rims: &Rims, fit: &Fit) -> RimFit {
     let mut sizes: Vec<(f64, f64)> = sizes.zip(rims.pairs().iter().map(|p| p.weight)).collect();
     RimFit {
         offset: (rims.share() >= LEAST_PAIRED).then(|| quantile(&mut sizes, 0.9)),
+        other_trim: None,
         n_holes: fit.holes.len(),
         worst_hole: fit.holes.iter().copied().fold(0.0, f64::max),
         only_source: rims.missing[0].len(),
@@ -407,7 +411,7 @@ pub(super) struct Fit {
     left: Vec<f64>,
     /// The same for each pair of rims and of holes.
     pub(super) rims: Vec<f64>,
-    holes: Vec<f64>,
+    pub(super) holes: Vec<f64>,
     /// How far the source lies from where it belongs, bends counted as part of its shape; turns in
     /// lengths at the contacts' radius.
     pub(super) rigid: Six,

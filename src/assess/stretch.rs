@@ -7,13 +7,20 @@ use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
 use super::contact::{
-    Contact, ContactSearch, Contacts, MAX_NODES, quantile, robust_weights, solve,
+    Contact, ContactSearch, Contacts, MAX_NODES, Six, quantile, robust_weights, solve,
 };
+use super::rims::{HolePair, RimKind, RimPair};
 use super::shape::{Bends, N as N_SMOOTH, ShapeEvidence, ShapeTolerance, explaining};
-use crate::geometry::{Matrix3, Point3};
+use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 
 /// Unknowns of the fit: those of the statement about the shape, and the stretches.
 const N: usize = N_SMOOTH + 3;
+/// Unknowns of the fit of outlines: a rigid motion and the stretches.
+const N_PLACED: usize = 9;
+/// Outlines are compared at this share of their length.
+const MOSTLY_OF_OUTLINES: f64 = 0.9;
+/// Surfaces that lie so many times as far apart stretched back speak against a stretch.
+const REFUTED: f64 = 1.5;
 /// Times that the part is stretched back and compared again.
 const ROUNDS: usize = 3;
 /// Places of the smaller part that are looked at; three numbers need no more.
@@ -87,6 +94,16 @@ pub(super) fn stretch(evidence: &ShapeEvidence<'_>, tolerance: &ShapeTolerance) 
     })
 }
 
+/// Whether one part that is longer, wider or higher than the other explains how their outlines lie apart, and
+/// neither surfaces nor holes speak against it. `limit` is how far rims may lie apart.
+/// O(nodes · log triangles).
+pub(super) fn explains_outlines(evidence: &ShapeEvidence<'_>, limit: f64) -> bool {
+    let frame = Frame(Bends::of(evidence));
+    frame.of_outlines(evidence, limit).is_some_and(|found| {
+        !frame.misplaces_holes(evidence, &found, limit) && frame.keeps_surfaces(evidence, &found)
+    })
+}
+
 /// The directions in which a part can be longer: the axes of its bends.
 struct Frame(Bends);
 
@@ -106,6 +123,85 @@ impl Frame {
         row
     }
 
+    /// What a rigid motion and the stretches do to a place along a direction.
+    fn placed(&self, contacts: &Contacts, point: &Point3, direction: &Vector3) -> Placed {
+        let Self(bends) = self;
+        let mut row = Placed::zeros();
+        row.fixed_rows_mut::<6>(0)
+            .copy_from(&contacts.row(point, direction));
+        let arm = bends.axes.transpose() * (point - bends.center);
+        let direction = bends.axes.transpose() * direction;
+        for k in 0..3 {
+            row[6 + k] = arm[k] / bends.half[k] * direction[k];
+        }
+        row
+    }
+
+    /// The motion and the stretches that lay the outlines on each other, in robust least squares; `None` where
+    /// none does.
+    fn of_outlines(&self, evidence: &ShapeEvidence<'_>, limit: f64) -> Option<Placed> {
+        let ShapeEvidence { contacts, rims, .. } = *evidence;
+        let outlines = rims.pairs().iter();
+        let outlines: Vec<&RimPair> = outlines.filter(|p| p.kind == RimKind::Outlines).collect();
+        let row = |pair: &&RimPair| self.placed(contacts, &pair.point, &pair.across);
+        let rows: Vec<Placed> = outlines.iter().map(row).collect();
+        let lengths: Vec<f64> = outlines.iter().map(|p| p.weight).collect();
+        let at_most = |left: &[f64]| {
+            let sizes = left.iter().map(|l| l.abs()).zip(lengths.iter().copied());
+            quantile(&mut sizes.collect::<Vec<_>>(), MOSTLY_OF_OUTLINES)
+        };
+        let mut left: Vec<f64> = outlines.iter().map(|p| p.gap).collect();
+        let before = at_most(&left);
+        let floor = evidence.noise.max(rims.unremarkable());
+        let mut found = Placed::zeros();
+        for _ in 0..ROUNDS {
+            let weights = robust_weights(&left, &lengths, floor);
+            let mut matrix = SMatrix::<f64, N_PLACED, N_PLACED>::zeros();
+            let mut right = Placed::zeros();
+            for ((row, pair), weight) in rows.iter().zip(&outlines).zip(weights) {
+                matrix.ger(weight, row, row, 1.0);
+                right += row * (weight * pair.gap);
+            }
+            found = solve(&matrix, &right);
+            for ((left, row), pair) in left.iter_mut().zip(&rows).zip(&outlines) {
+                *left = pair.gap - row.dot(&found);
+            }
+        }
+        (at_most(&left) <= limit.max(EXPLAINED * before)).then_some(found)
+    }
+
+    /// Whether a hole would lie farther off than it does, and farther than rims may.
+    fn misplaces_holes(&self, evidence: &ShapeEvidence<'_>, found: &Placed, limit: f64) -> bool {
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+        evidence.rims.holes.iter().any(|pair| {
+            let HolePair { hole, off, .. } = pair;
+            let row = |axis: Vector3| self.placed(evidence.contacts, &hole.center, &axis);
+            let moved = Vector3::from(axes.map(|axis| row(axis).dot(found)));
+            let within = |off: Vector3| (off - hole.normal * off.dot(&hole.normal)).norm();
+            let after = within(off - moved);
+            after > limit && after > within(*off)
+        })
+    }
+
+    /// Whether the surfaces still lie on each other with the source moved and stretched back.
+    fn keeps_surfaces(&self, evidence: &ShapeEvidence<'_>, found: &Placed) -> bool {
+        let ShapeEvidence { pose, noise, .. } = *evidence;
+        let surfaces = [evidence.source, evidence.target];
+        let mut search = ContactSearch::new(surfaces, pose.scale, evidence.reach, N_PLACES);
+        let mut left_at = |pose: &Similarity, scaled: Option<&Scaled>| {
+            let gaps = Gaps::of(&search.at_scaled(pose, scaled)?, self);
+            Some(gaps.explained(N_SMOOTH, noise).1)
+        };
+        let factors = [0, 1, 2].map(|k| 1.0 / (1.0 + found[6 + k] / self.0.half[k]));
+        let six: Six = found.fixed_rows::<6>(0).into();
+        let moved = evidence.contacts.undo(&six).after(pose);
+        let as_it_is = left_at(pose, None);
+        let scaled = left_at(&moved, Some(&Scaled::new(self, factors)));
+        as_it_is
+            .zip(scaled)
+            .is_some_and(|(as_it_is, scaled)| scaled <= REFUTED * as_it_is.max(noise))
+    }
+
     /// Stretches of a solution as shares of the length.
     fn shares(&self, found: &Row) -> [f64; 3] {
         [0, 1, 2].map(|k| found[N_SMOOTH + k] / self.0.half[k])
@@ -119,6 +215,9 @@ impl Frame {
         (axis, by[axis])
     }
 }
+
+/// What a rigid motion and the stretches do to a place.
+type Placed = SVector<f64, N_PLACED>;
 
 /// One row of the fit.
 type Row = SVector<f64, N>;

@@ -97,12 +97,24 @@ fn an_offset_of_a_section_with_walls_is_told_apart() {
     assert!((offset - 0.7).abs() < 0.1, "{shape:?}");
 }
 
-/// A sheet of 1,000 by 500 mm with shallow waves, cut off at both ends by `cut` and stretched along x.
-fn panel(n: usize, cut: f64, factor: f64) -> Surface {
+/// A sheet of 1,000 by 500 mm with shallow waves, cut off at both ends and both sides by `cut` and stretched
+/// along x.
+fn panel(n: usize, cut: [f64; 2], factor: f64) -> Surface {
+    sheet(n, cut, factor, |x, y| {
+        30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos()
+    })
+}
+
+fn sheet(
+    n: usize,
+    [ends, sides]: [f64; 2],
+    factor: f64,
+    height: impl Fn(f64, f64) -> f64,
+) -> Surface {
     let place = |i: usize, j: usize| {
-        let x = (1000.0 - 2.0 * cut) * i as f64 / (2 * n) as f64 + cut - 500.0;
-        let y = 500.0 * j as f64 / n as f64 - 250.0;
-        let z = 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
+        let x = (1000.0 - 2.0 * ends) * i as f64 / (2 * n) as f64 + ends - 500.0;
+        let y = (500.0 - 2.0 * sides) * j as f64 / n as f64 + sides - 250.0;
+        let z = height(x, y);
         Point3::new(factor * x, y, z)
     };
     let m = n + 1;
@@ -116,12 +128,12 @@ fn panel(n: usize, cut: f64, factor: f64) -> Surface {
 
 #[test]
 fn a_longer_panel_is_told_from_another_trim() {
-    let plain = panel(40, 0.0, 1.0);
+    let plain = panel(40, [0.0, 0.0], 1.0);
     // The ends of both lie 12 mm inside those of the plain one, or outside.
-    let trimmed = statement(&panel(37, 12.0, 1.0), &plain);
+    let trimmed = statement(&panel(37, [12.0, 0.0], 1.0), &plain);
     assert!(trimmed.reasons.is_empty(), "{trimmed:?}");
     for (factor, cut) in [(1.024, 0.0), (0.976, 0.0), (1.0 / 1.015, 12.0)] {
-        let shape = statement(&panel(37, cut, factor), &plain);
+        let shape = statement(&panel(37, [cut, 0.0], factor), &plain);
         assert_eq!(shape.kind, ShapeKind::OtherVersion, "{shape:?}");
         let [ShapeReason::Stretched { by, share, axis }] = shape.reasons[..] else {
             panic!("{factor}: {shape:?}");
@@ -131,6 +143,42 @@ fn a_longer_panel_is_told_from_another_trim() {
         let longer = 1000.0 * (factor - 1.0).abs();
         assert!((by - longer).abs() < 2.0, "{by} {longer}");
     }
+}
+
+#[test]
+fn another_trim_all_round_is_no_other_version_where_the_surface_says_so() {
+    let settings = AssessSettings::default();
+    let still = Similarity::identity();
+    let stated = |source: &Surface, target: &Surface| {
+        let (pose, shape) = statements(source, target, &still, 0.01, &settings);
+        (pose.unwrap(), shape)
+    };
+    // Before its last trim the part reaches 5 mm farther out all round, or on three sides.
+    let plain = panel(40, [0.0, 0.0], 1.0);
+    for cut in [[5.0, 5.0], [0.0, 6.0], [-4.0, -7.0]] {
+        let (pose, shape) = stated(&panel(37, cut, 1.0), &plain);
+        assert_eq!(shape.kind, ShapeKind::Same, "{shape:?}");
+        let apart = shape.rims.other_trim.unwrap();
+        let farthest = cut.map(f64::abs).into_iter().fold(0.0, f64::max);
+        assert!((apart - farthest).abs() < 0.5, "{apart} {cut:?}");
+        assert!(
+            shape.remainder < 0.05 && pose.largest < 0.1,
+            "{pose:?} {shape:?}"
+        );
+    }
+    // A flat plate says nothing about where it ends: it may as well be a larger one.
+    let flat = |cut: f64| sheet(40, [cut, cut], 1.0, |_, _| 0.0);
+    let (_, shape) = stated(&flat(5.0), &flat(0.0));
+    assert_eq!(shape.kind, ShapeKind::OtherVersion, "{shape:?}");
+    assert_eq!(shape.rims.other_trim, None);
+    // Larger in all directions is another version, whatever the outlines are like.
+    let factor = 1.02;
+    let larger = panel(37, [0.0, 0.0], 1.0).mesh().transformed(&Similarity {
+        scale: factor,
+        ..still
+    });
+    let (_, shape) = stated(&Surface::new(&larger, "source").unwrap(), &plain);
+    assert_eq!(shape.kind, ShapeKind::OtherVersion, "{shape:?}");
 }
 
 #[test]

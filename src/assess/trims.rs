@@ -1,0 +1,108 @@
+//! Were the parts trimmed differently? A stamped part before its last trim has the surface and the holes of
+//! the crash part and an outline farther out, which then says nothing about pose and shape.
+
+use super::contact::quantile;
+use super::rims::{RimKind, Rims};
+use super::shape::{Fit, ShapeEvidence, ShapeTolerance};
+use super::stretch;
+
+/// Outlines of which more than this share lies apart hold no pose.
+const MOST_APART: f64 = 0.5;
+/// Outlines lie apart if a small motion and a bend leave more than this share of their distance.
+const LEFT: f64 = 0.5;
+/// Share of the outlines that the statement about borders is made at.
+const STATED: f64 = 0.9;
+
+/// What is left of the rims of parts that were trimmed differently.
+pub(super) struct OtherTrim {
+    /// The rims that say something about the parts.
+    pub(super) left: Rims,
+    /// How far the others lie apart, at 90 % of them.
+    pub(super) apart: f64,
+}
+
+/// The rims without the outlines that lie apart because the parts were trimmed differently; `None` where they
+/// lie together, or where one part looks like a longer, wider or higher version of the other.
+pub(super) fn other_trim(
+    evidence: &ShapeEvidence<'_>,
+    tolerance: &ShapeTolerance,
+) -> Option<OtherTrim> {
+    let limit = evidence.rims.limit(tolerance);
+    let outlines = Outlines::of(evidence, limit)?;
+    if outlines.share_apart() <= 1.0 - STATED || stretch::explains_outlines(evidence, limit) {
+        return None;
+    }
+    Some(OtherTrim {
+        apart: outlines.distance(),
+        left: outlines.trusted(),
+    })
+}
+
+/// The rims that say where the part belongs; `None` where all do. `limit` is how far rims may lie apart.
+pub(super) fn trusted(evidence: &ShapeEvidence<'_>, limit: f64) -> Option<Rims> {
+    let outlines = Outlines::of(evidence, limit)?;
+    (outlines.share_apart() > MOST_APART).then(|| outlines.trusted())
+}
+
+/// The outlines of which some lie apart whatever small motion or bend is tried.
+struct Outlines<'a> {
+    rims: &'a Rims,
+    /// Of each pair of rims, whether it is of outlines that lie apart.
+    is_apart: Vec<bool>,
+}
+
+impl<'a> Outlines<'a> {
+    /// `None` where hardly any lies apart. O(places), less where they lie together at once.
+    fn of(evidence: &ShapeEvidence<'a>, limit: f64) -> Option<Self> {
+        let rims = evidence.rims;
+        let apart = |left: &dyn Fn(usize) -> f64| {
+            let pairs = rims.pairs().iter().enumerate();
+            pairs
+                .map(|(i, pair)| {
+                    pair.kind == RimKind::Outlines
+                        && left(i).abs() > limit.max(LEFT * pair.gap.abs())
+                })
+                .collect()
+        };
+        let as_they_are = Self {
+            rims,
+            is_apart: apart(&|i| rims.pairs()[i].gap),
+        };
+        if as_they_are.share_apart() <= 1.0 - STATED {
+            return None;
+        }
+        let fit = Fit::of(evidence);
+        Some(Self {
+            rims,
+            is_apart: apart(&|i| fit.rims[i]),
+        })
+    }
+
+    /// Share of the outlines that lies apart.
+    fn share_apart(&self) -> f64 {
+        let (mut apart, mut whole) = (0.0, 0.0);
+        for (pair, &is_apart) in self.rims.pairs().iter().zip(&self.is_apart) {
+            if pair.kind == RimKind::Outlines {
+                whole += pair.weight;
+                apart += if is_apart { pair.weight } else { 0.0 };
+            }
+        }
+        if whole > 0.0 { apart / whole } else { 0.0 }
+    }
+
+    /// How far those lie apart, at 90 % of them.
+    fn distance(&self) -> f64 {
+        let pairs = self.rims.pairs().iter().zip(&self.is_apart);
+        let apart = pairs.filter(|(_, is_apart)| **is_apart);
+        let sizes = apart.map(|(pair, _)| (pair.gap.abs(), pair.weight));
+        quantile(&mut sizes.collect::<Vec<_>>(), STATED)
+    }
+
+    /// The rims without those that lie apart; without all outlines where most do, since some lie beside each
+    /// other by chance then.
+    fn trusted(&self) -> Rims {
+        let none = self.share_apart() > MOST_APART;
+        self.rims
+            .filtered(|i, pair| !self.is_apart[i] && (!none || pair.kind == RimKind::Holes))
+    }
+}
