@@ -1,7 +1,9 @@
 //! Looking at a mapping without a window: what is shown where a picture is not there, lists of elements, and
 //! what is told after writing.
 
-use shapematch::app::{Action, ColorBy, ExportCommand, HistoryCommand, MapCommand};
+use shapematch::app::{
+    Action, ColorBy, ExportCommand, HistoryCommand, MapCommand, MapPicture, ViewCommand,
+};
 use shapematch::mapping::Status;
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::map::WriteKind;
@@ -43,6 +45,47 @@ fn a_picture_that_is_not_there_gives_way_to_the_nearest_and_comes_back() {
     }
     window.apply(HistoryCommand::Undo);
     assert_eq!(shown(&window), ColorBy::MapDifference);
+}
+
+#[test]
+fn mapped_and_stamped_are_wiped_and_blinked_between_where_both_show_one_quantity() {
+    let (mut window, _folder) = mapped_in_full();
+    if !window.state.view.is_moved_over {
+        window.act(Action::ToggleMoveOver);
+    }
+    let show = |window: &mut Window, picture| {
+        let display = window.state.with_map_picture(picture);
+        window.apply(ViewCommand::SetDisplay(Box::new(display)));
+    };
+    show(&mut window, None);
+    assert!(window.state.can_compare_mapped());
+    assert_eq!(window.state.mapped_wipe(), None);
+    window.act(Action::ToggleWipe);
+    assert_eq!(window.state.mapped_wipe(), Some(0.5));
+    window.apply(ViewCommand::SetBlinking(true));
+    assert!(window.state.is_mapped_blinking());
+    assert_eq!(window.state.mapped_wipe(), None);
+    window.apply(ViewCommand::SetBlinking(false));
+    assert_eq!(window.state.mapped_wipe(), Some(0.5));
+    // The stamped part has no difference to itself.
+    show(&mut window, Some(MapPicture::Difference));
+    assert!(!window.state.can_compare_mapped());
+    assert_eq!(window.state.mapped_wipe(), None);
+}
+
+#[test]
+fn the_distance_of_the_sheets_has_its_unit() {
+    let (window, _folder) = mapped_in_full();
+    let checks = &window
+        .state
+        .document
+        .current_mapping()
+        .unwrap()
+        .record
+        .checks;
+    let distance = checks.iter().find(|c| c.name == "Distance of the sheets");
+    let found = &distance.unwrap().found;
+    assert!(found.ends_with(" mm"), "{found}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::process::Command as Process;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use shapematch::app::{BottomTab, ColorBy, ExportCommand, FileCommand, MapCommand};
+use shapematch::app::{BottomTab, ColorBy, ExportCommand, FileCommand, MapCommand, ViewCommand};
 use shapematch::pipeline::map::WriteKind;
 use shapematch::pipeline::outputs::Output;
 use shapematch::report::MatrixForm;
@@ -51,6 +51,29 @@ fn a_mapping_is_made_looked_at_and_followed_to_its_worst_place() {
     let counted = shapematch::text::grouped(n.unwrap_or(0));
     let row = format!("mapped: {counted} elements, 100.0 %");
     assert!(window.query_by_label(&row).is_some(), "{row}");
+    in_a_narrow_window(&mut window, |window| {
+        click(window, "Legend (crash)");
+        window.run_steps(4);
+        assert!(
+            window.query_by_label(&row).is_some(),
+            "{row} behind a button"
+        );
+        window.key_press(egui::Key::Escape);
+    });
+    // Values of both sides lie on either side of a line.
+    run(&mut window, ViewCommand::ToggleMoveOver);
+    click(&mut window, "Values");
+    finish(&mut window);
+    wipe(&mut window);
+    let line = "Line between mapped and stamped";
+    assert!(window.query_by_label(line).is_some(), "{line}");
+    click(&mut window, "Difference");
+    finish(&mut window);
+    assert!(window.query_by_label(line).is_none(), "{line}");
+    click(&mut window, "Values");
+    finish(&mut window);
+    wipe(&mut window);
+    run(&mut window, ViewCommand::ToggleMoveOver);
     // A check leads to its picture, with its worst place marked.
     let check = window.get_by(|node| {
         let label = node.label();
@@ -79,6 +102,27 @@ fn a_mapping_is_made_looked_at_and_followed_to_its_worst_place() {
     }
     click(&mut window, "End the probe");
     assert!(window.state().state().probe().is_none());
+}
+
+/// The button of section 4; section 3 has one of that name too where it is open.
+fn wipe(window: &mut Harness<'static, Shell>) {
+    let buttons = window.get_all_by_label("Wipe");
+    buttons.last().expect("a button").click_accesskit();
+    window.run_steps(2);
+    finish(window);
+}
+
+/// The same window with 800 × 540 pixels and a text of 200 %, and back.
+fn in_a_narrow_window(
+    window: &mut Harness<'static, Shell>,
+    look: impl FnOnce(&mut Harness<'static, Shell>),
+) {
+    run(window, ViewCommand::FoldColumn(true));
+    window.set_size(egui::vec2(400.0, 270.0));
+    window.run_steps(4);
+    look(window);
+    window.set_size(egui::vec2(1400.0, 900.0));
+    run(window, ViewCommand::FoldColumn(false));
 }
 
 /// Runs a command as a click on its button does.

@@ -8,6 +8,7 @@ use crate::app::{AppState, ColorBy, Display, FreeWindow};
 use crate::mapping::Status;
 use crate::pipeline::forming_values::{FormingValue, LayerChoice};
 use crate::pipeline::map::{CheckPicture, ShownValue};
+use crate::role::Role;
 
 /// Pictures of a mapping on the crash part beside the mapped values themselves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -130,6 +131,23 @@ impl AppState {
     /// its pose.
     pub fn is_mapping_apart(&self) -> bool {
         self.free_window() == Some(FreeWindow::Stamped)
+    }
+
+    /// True if both sides of the mapping show one quantity, so that they can be wiped and blinked between in
+    /// the left window.
+    pub fn can_compare_mapped(&self) -> bool {
+        self.is_mapping_apart() && self.color_by(Role::Crash).map_picture().is_none()
+    }
+
+    /// True while the stamped part is blinked to in the place of the mapped one.
+    pub fn is_mapped_blinking(&self) -> bool {
+        self.view.is_blinking && self.can_compare_mapped()
+    }
+
+    /// Where the line lies between the mapped and the stamped part, if there is one.
+    pub fn mapped_wipe(&self) -> Option<f32> {
+        let can = self.can_compare_mapped() && !self.view.is_blinking;
+        self.view.display.wipe.filter(|_| can)
     }
 
     /// The layers that are shown of a quantity; `None` where it has none.

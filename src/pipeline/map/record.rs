@@ -11,7 +11,10 @@ use crate::mapping::{
     Distribution, Histogram, SourcePart, Status, distribution, histogram_distance,
 };
 use crate::pipeline::load::LoadedPart;
+use crate::pipeline::units::PairUnits;
 use crate::report::{DIRECTION, build_id};
+use crate::role::PerRole;
+use crate::text::Lengths;
 
 /// Below this share of the area a mapping is to be looked at.
 const USUAL_COVERAGE: f64 = 0.95;
@@ -222,7 +225,9 @@ pub fn map_record(
         map_ms: run.map_ms,
         check_ms: run.check_ms,
     };
-    record.checks = checks_of(run, &record);
+    let first = stamped.first().map(|placed| placed.part);
+    let units = PairUnits::of(PerRole::new(Some(crash), first));
+    record.checks = checks_of(run, &record, Lengths::new(units.lengths));
     record
 }
 

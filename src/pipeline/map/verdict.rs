@@ -7,7 +7,7 @@ use super::record::{MapRecord, PairRecord};
 use super::{MapRun, ShownValue};
 use crate::mapping::Status;
 use crate::pipeline::forming_values::FormingValue;
-use crate::text::{counted, fixed, length, percent};
+use crate::text::{Lengths, counted, fixed, percent};
 
 /// Share of the area that is to carry values.
 pub(in crate::pipeline) const LEAST_AREA: f64 = 0.95;
@@ -93,10 +93,10 @@ pub struct CheckRecord {
     pub worst: Option<usize>,
 }
 
-pub(super) fn checks_of(run: &MapRun, record: &MapRecord) -> Vec<CheckRecord> {
+pub(super) fn checks_of(run: &MapRun, record: &MapRecord, lengths: Lengths) -> Vec<CheckRecord> {
     let mut checks = vec![area(run, record)];
     checks.extend(doubled(run));
-    checks.push(distance(run));
+    checks.push(distance(run, lengths));
     checks.push(confidence(run));
     let plastic = Some(FormingValue::PlasticStrain);
     for (name, pair, picture, value) in [
@@ -189,7 +189,7 @@ fn doubled(run: &MapRun) -> Option<CheckRecord> {
     })
 }
 
-fn distance(run: &MapRun) -> CheckRecord {
+fn distance(run: &MapRun, lengths: Lengths) -> CheckRecord {
     let mapped = &run.mapped;
     let apart = |element: usize| {
         let report = &mapped.elements[element];
@@ -203,9 +203,9 @@ fn distance(run: &MapRun) -> CheckRecord {
     let worst = largest(run, apart);
     CheckRecord {
         name: "Distance of the sheets".to_owned(),
-        found: worst.map_or_else(|| "–".to_owned(), |worst| length(apart(worst))),
+        found: worst.map_or_else(|| "–".to_owned(), |worst| lengths.of(apart(worst))),
         limit: match run.recipe.options.max_distance {
-            Some(reach) => format!("at most {}", length(reach / 2.0)),
+            Some(reach) => format!("at most {}", lengths.of(reach / 2.0)),
             None => "half an element".to_owned(),
         },
         is_met: Some(mapped.n_distant == 0),

@@ -228,6 +228,33 @@ fn picture_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Some(display) = chosen {
         commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
     }
+    if state.can_compare_mapped() {
+        compare_ui(ui, state, commands);
+    }
+}
+
+/// Wipes and blinks between the mapped crash part and the stamped one at its pose.
+fn compare_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    caption(ui, "Mapped and stamped in one window");
+    ui.horizontal(|ui| {
+        let is_wiped = state.view.display.wipe.is_some();
+        let look = if is_wiped { Look::On } else { Look::Plain };
+        let wipe = (Action::ToggleWipe.row().label, look, vec2(64.0, ROW));
+        action_button(ui, state, Action::ToggleWipe, wipe, commands);
+        let blink = egui::Button::new(Action::Blink.row().label).min_size(vec2(64.0, ROW));
+        let blink = ui.add(blink);
+        // The key of the same name holds it down as well.
+        let (id, is_held) = (blink.id.with("held"), blink.is_pointer_button_down_on());
+        if ui.data(|data| data.get_temp(id)).unwrap_or(false) != is_held {
+            ui.data_mut(|data| data.insert_temp(id, is_held));
+            commands.push(ViewCommand::SetBlinking(is_held).into());
+        }
+        let key = Action::Blink.row().shortcut();
+        let key = key.map_or_else(String::new, |key| format!(" ({key})"));
+        blink.on_hover_text(format!(
+            "Hold to see the stamped part in the place of the mapped one{key}"
+        ));
+    });
 }
 
 /// Counts, means, and the way back.

@@ -50,7 +50,12 @@ impl Divider {
 pub(super) fn divider(state: &AppState, view: &ViewFrame) -> Option<Divider> {
     let display = &state.view.display;
     let is_shared = view.window == Role::Crash && state.view.is_moved_over;
-    let wipe = display.wipe.filter(|_| is_shared).map(Divider::Wipe);
+    let wipe = if state.is_mapping_apart() {
+        state.mapped_wipe()
+    } else {
+        display.wipe
+    };
+    let wipe = wipe.filter(|_| is_shared).map(Divider::Wipe);
     let is_beside = free_window(state, view).is_some();
     let split = display
         .split
@@ -69,12 +74,16 @@ pub(super) fn visible_parts(state: &AppState, view: &ViewFrame) -> Vec<PartInsta
         return beside(state, view, free);
     }
     let mut parts = Vec::new();
-    if view.window == Role::Crash && state.document.part(Role::Crash).is_some() {
+    // The mapped part stands alone, its stamped part beside it, unless both are compared in one window.
+    let is_apart = view.over >= 1.0 && state.is_mapping_apart();
+    let is_blinked_away = is_apart && state.is_mapped_blinking();
+    if view.window == Role::Crash && state.document.part(Role::Crash).is_some() && !is_blinked_away
+    {
         parts.push(crash(state));
     }
-    // The mapped part stands alone, its stamped part beside it.
-    let is_apart = view.over >= 1.0 && state.is_mapping_apart();
-    if state.document.part(Role::Stamped).is_some() && !is_apart {
+    if is_blinked_away || is_apart && state.mapped_wipe().is_some() {
+        parts.push(full(Role::Stamped, view.pose));
+    } else if state.document.part(Role::Stamped).is_some() && !is_apart {
         parts.extend(stamped(state, view));
     }
     let is_shared = view.window == Role::Crash && state.view.is_moved_over;
@@ -116,14 +125,9 @@ pub(super) fn free_window(state: &AppState, view: &ViewFrame) -> Option<FreeWind
 /// The parts beside the shared window.
 fn beside(state: &AppState, view: &ViewFrame, free: FreeWindow) -> Vec<PartInstance> {
     let instance = |role, world_from_part| PartInstance {
-        role,
-        world_from_part,
-        offset: Vector3::zeros(),
-        opacity: 1.0,
         is_detailed: matches!(free, FreeWindow::FullMesh | FreeWindow::Stamped)
             || is_detailed(state),
-        wipe: WipeSide::Both,
-        is_ghost: false,
+        ..full(role, world_from_part)
     };
     let pose = match free {
         FreeWindow::SecondPose => state.second_pose().unwrap_or(view.pose),
@@ -139,6 +143,19 @@ fn beside(state: &AppState, view: &ViewFrame, free: FreeWindow) -> Vec<PartInsta
         FreeWindow::FullMesh | FreeWindow::SecondPose => true,
     };
     parts.filter(is_shown).collect()
+}
+
+/// A part as full mesh, as it is.
+fn full(role: Role, world_from_part: Similarity) -> PartInstance {
+    PartInstance {
+        role,
+        world_from_part,
+        offset: Vector3::zeros(),
+        opacity: 1.0,
+        is_detailed: true,
+        wipe: WipeSide::Both,
+        is_ghost: false,
+    }
 }
 
 /// A part as reduced on the left of the line and as full mesh on its right.

@@ -76,6 +76,45 @@ fn decades((low, high): (f64, f64)) -> Vec<GridMark> {
     marks
 }
 
+/// Share of a narrow chart at either end where a number would reach beyond it, and least share between two.
+const END: f64 = 0.2;
+const APART: f64 = 0.45;
+
+/// Two round numbers along a narrow chart, with the step that they are multiples of; none near its ends.
+fn inner_ticks((low, high): (f64, f64)) -> (Vec<f64>, f64) {
+    let width = high - low;
+    if !(width > 0.0 && width.is_finite()) {
+        return (Vec::new(), 1.0);
+    }
+    let (first, last) = (low + END * width, high - END * width);
+    let mut decade = 10_f64.powf(width.log10().ceil());
+    loop {
+        for factor in [1.0, 0.5, 0.2] {
+            let step = factor * decade;
+            let ends = [(first / step).ceil() * step, (last / step).floor() * step];
+            if ends[1] - ends[0] > APART * width {
+                return (ends.to_vec(), step);
+            }
+        }
+        decade /= 10.0;
+    }
+}
+
+/// Grid of a narrow chart that has its numbers inside.
+pub fn inner_marks(bounds: (f64, f64)) -> Vec<GridMark> {
+    // A mark is labelled when its step is wide on the screen.
+    let step_size = bounds.1 - bounds.0;
+    let marks = inner_ticks(bounds).0.into_iter();
+    marks.map(|value| GridMark { value, step_size }).collect()
+}
+
+/// The number at a mark of [`inner_marks`], with the digits that its step needs.
+pub fn inner_text(value: f64, bounds: (f64, f64)) -> String {
+    let (_, step) = inner_ticks(bounds);
+    let n_decimals = (-step.log10() + 1e-9).ceil().clamp(0.0, 9.0) as usize;
+    format!("{value:.n_decimals$}")
+}
+
 /// The range of some values with a margin, for an axis that must not touch its curves.
 pub fn range(values: impl Iterator<Item = f64>) -> Option<RangeInclusive<f64>> {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
@@ -106,6 +145,31 @@ mod tests {
         let [low, high] = margined([2.0, f64::NAN, 2.0].into_iter()).unwrap();
         assert!(low < 2.0 && high > 2.0);
         assert_eq!(margined([f64::NAN].into_iter()), None);
+    }
+
+    #[test]
+    fn a_narrow_chart_has_two_numbers_inside() {
+        for (low, high) in [
+            (0.0, 1.0),
+            (0.7085, 0.7915),
+            (-312.0, 420.0),
+            (0.0099, 0.0101),
+            (3.0, 3.37),
+            (-1e-7, 1e-7),
+        ] {
+            let bounds = (low, high);
+            let marks = inner_marks(bounds);
+            assert_eq!(marks.len(), 2, "{bounds:?}");
+            assert!(
+                marks
+                    .iter()
+                    .all(|mark| low < mark.value && mark.value < high)
+            );
+            let mut texts: Vec<_> = marks.iter().map(|m| inner_text(m.value, bounds)).collect();
+            texts.dedup();
+            assert_eq!(texts.len(), marks.len(), "{texts:?}");
+        }
+        assert!(inner_marks((1.0, 1.0)).is_empty());
     }
 
     #[test]

@@ -501,16 +501,6 @@ fn profile_ui(ui: &mut Ui, probe: &ProbeReport, size: egui::Vec2) {
     ui.vertical(|ui| profile_plot(ui, by, [stamped, crash], (range, size)));
 }
 
-/// A number along a narrow chart; none near its ends, where it would reach beyond the chart.
-fn inner_tick(value: f64, step: f64, range: &std::ops::RangeInclusive<f64>) -> String {
-    let margin = 0.2 * (range.end() - range.start());
-    if value < range.start() + margin || value > range.end() - margin {
-        return String::new();
-    }
-    let n_decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
-    format!("{value:.n_decimals$}")
-}
-
 /// The line of each side, values to the right.
 fn profile_plot(
     ui: &mut Ui,
@@ -529,7 +519,10 @@ fn profile_plot(
         .include_y(-1.1)
         .include_y(1.1)
         .y_axis_min_width(26.0)
-        .x_axis_formatter(|mark, range| inner_tick(mark.value, mark.step_size, range));
+        .x_grid_spacer(|input| charts::inner_marks(input.bounds))
+        .x_axis_formatter(|mark, range| {
+            charts::inner_text(mark.value, (*range.start(), *range.end()))
+        });
     if let Some([low, high]) = range {
         plot = plot.include_x(low).include_x(high);
     }

@@ -6,7 +6,7 @@ use egui::{
 };
 
 use super::Overlay;
-use crate::app::{Command, ViewCommand};
+use crate::app::{AppState, Command, ViewCommand};
 use crate::ui::viewport::visible_parts::{Divider, divider};
 
 /// How far beside the line it can be grabbed.
@@ -23,7 +23,9 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
     let line = Rect::from_x_y_ranges(x..=x, over.frame.rect().y_range());
     let id = ui.make_persistent_id(("divider", over.role().word()));
     let response = ui.interact(line.expand2(vec2(SLOP, 0.0)), id, Sense::drag());
-    response.widget_info(|| WidgetInfo::labeled(WidgetRole::Slider, true, label(divider)));
+    let names = names(divider, over.frame.state);
+    let label = format!("Line between {} and {}", names[0], names[1]);
+    response.widget_info(|| WidgetInfo::labeled(WidgetRole::Slider, true, &label));
     let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
     if let Some(pos) = response
         .interact_pointer_pos()
@@ -44,13 +46,15 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
         1.5
     };
     paint(ui, over, line, width);
-    sides(ui, over, divider, x);
+    sides(ui, over, names, x);
 }
 
-fn label(divider: Divider) -> &'static str {
+/// What lies on either side.
+fn names(divider: Divider, state: &AppState) -> [&'static str; 2] {
     match divider {
-        Divider::Wipe(_) => "Wipe between crash and stamped",
-        Divider::Split(_) => "Split between reduced and full",
+        Divider::Wipe(_) if state.is_mapping_apart() => ["mapped", "stamped"],
+        Divider::Wipe(_) => ["crash", "stamped"],
+        Divider::Split(_) => ["reduced", "full"],
     }
 }
 
@@ -77,11 +81,7 @@ fn paint(ui: &Ui, over: &Overlay<'_>, line: Rect, width: f32) {
 }
 
 /// The names of the two sides, at the foot of the line.
-fn sides(ui: &Ui, over: &Overlay<'_>, divider: Divider, x: f32) {
-    let names = match divider {
-        Divider::Wipe(_) => ["crash", "stamped"],
-        Divider::Split(_) => ["reduced", "full"],
-    };
+fn sides(ui: &Ui, over: &Overlay<'_>, names: [&str; 2], x: f32) {
     let painter = over.painter(ui);
     let y = over.frame.rect().bottom() - 52.0;
     let places = [(-8.0, Align2::RIGHT_CENTER), (8.0, Align2::LEFT_CENTER)];

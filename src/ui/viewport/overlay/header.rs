@@ -124,6 +124,8 @@ fn block_height(over: &Overlay<'_>) -> f32 {
 fn roles(over: &Overlay<'_>) -> &'static [Role] {
     let state = over.frame.state;
     match over.role() {
+        Role::Crash if state.is_mapped_blinking() => &[Role::Stamped],
+        Role::Crash if state.mapped_wipe().is_some() => &Role::ALL,
         Role::Crash if state.view.is_moved_over && !state.is_mapping_apart() => &Role::ALL,
         Role::Crash => &[Role::Crash],
         Role::Stamped => &[Role::Stamped],

@@ -38,8 +38,7 @@ const FULL_HEIGHT: f32 = 440.0;
 /// The legend at the right edge, below the buttons of the camera; returns where it lies.
 pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) -> Option<Rect> {
     let window = over.frame.rect();
-    top(over)?;
-    let has_room = !is_narrow(over);
+    let has_room = top(over).is_some() && !is_narrow(over);
     let Some((kind, scale)) = over.scale else {
         // The first measurement is under way.
         if has_room && over.kind.is_some_and(is_measured) {
@@ -47,11 +46,23 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
         }
         return None;
     };
-    if kind == FieldKind::Overlap {
-        return has_room.then(|| plate(ui, over, WIDTH, |ui| overlap::show(ui, over, commands)));
+    let classes: Option<Classes> = match kind {
+        FieldKind::Overlap => Some(overlap::show),
+        FieldKind::Map(MapPicture::Status) => Some(status::show),
+        _ => None,
+    };
+    if let Some(classes) = classes {
+        if has_room {
+            return Some(plate(ui, over, WIDTH, |ui| classes(ui, over, commands)));
+        }
+        behind_button(ui, over, |ui| classes(ui, over, commands));
+        return None;
     }
-    if kind == FieldKind::Map(MapPicture::Status) {
-        return has_room.then(|| plate(ui, over, WIDTH, |ui| status::show(ui, over, commands)));
+    if top(over).is_none() {
+        behind_button(ui, over, |ui| {
+            slim(ui, over, (kind, &scale), false, commands);
+        });
+        return None;
     }
     let can_open = window.height() >= OPEN_HEIGHT && window.width() >= 2.0 * WIDTH;
     if is_folded(ui, over) || !can_open {
@@ -75,6 +86,42 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
             bar::plain(ui, over, &title, &scale, room.bar, commands);
         }
     }))
+}
+
+/// Draws what the classes of a picture are.
+type Classes = fn(&mut Ui, &Overlay<'_>, &mut Vec<Command>);
+
+/// Height of the button that opens a legend for which its window has no room.
+const BUTTON: f32 = 20.0;
+
+/// A button at the foot of the window that opens the legend over it.
+fn behind_button(ui: &mut Ui, over: &Overlay<'_>, add: impl FnOnce(&mut Ui)) {
+    if !over.frame.picture.has_colored() {
+        return;
+    }
+    let window = over.frame.rect();
+    let size = vec2(56.0_f32.min(window.width()), BUTTON);
+    let place = Rect::from_min_size(window.max - size - Vec2::splat(4.0), size);
+    let builder = UiBuilder::new()
+        .max_rect(place)
+        .layout(Layout::right_to_left(Align::Center));
+    ui.scope_builder(builder, |ui| {
+        let text = egui::RichText::new("Legend").size(11.0);
+        let button = egui::Button::new(text).fill(over.frame.look.plate.to_opaque());
+        let close = egui::PopupCloseBehavior::CloseOnClickOutside;
+        let config = egui::containers::menu::MenuConfig::new().close_behavior(close);
+        let menu = egui::containers::menu::MenuButton::from_button(button).config(config);
+        let (response, _) = menu.ui(ui, |ui| {
+            ui.set_width(WIDTH);
+            egui::ScrollArea::vertical()
+                .max_height(ui.ctx().content_rect().height() - 2.0 * BUTTON)
+                .show(ui, add);
+        });
+        let name = format!("Legend ({})", over.role().word());
+        response
+            .on_hover_text("What the colours mean")
+            .accessible_name(name);
+    });
 }
 
 /// True in a window where names of parts and a legend have no room beside each other.
