@@ -38,8 +38,6 @@ const MORE_HELD: f64 = 0.005;
 const TWICE_AS_BAD: f64 = 0.05;
 /// Distances of surfaces up to this share of the tolerance mean nothing.
 const NO_GAP: f64 = 0.1;
-/// The facets of a flat part are known no better than this, likewise.
-const NOTHING: f64 = 0.01;
 /// Shares of the rims that differ by less than this do not tell hands apart.
 const SAME_SHARE: f64 = 0.02;
 /// The opposite hand is told by its rims if so much of them lies where it belongs; with less its score counts
@@ -56,8 +54,6 @@ const OPPOSITE_IS_CLEAR: f64 = 1.3;
 const AS_CLOSE: f64 = 1.5;
 /// … and so many tolerances more.
 const LITTLE_GAP: f64 = 0.25;
-/// … or, if that is less, so many times what they lie apart and what facets leave open.
-const OFF: f64 = 3.0;
 /// A pose that meets so many times as much of the part may lie as far apart as springback explains.
 const MUCH_MORE: f64 = 1.3;
 /// It must meet this share of what the result meets.
@@ -231,8 +227,7 @@ struct Pair<'a> {
     springback: f64,
     /// What may remain of the distance of rims.
     remainder: f64,
-    /// Distance of surfaces that means nothing.
-    noise: f64,
+    distances: Distances,
 }
 
 /// A pose after its last step.
@@ -255,8 +250,7 @@ struct Settled {
 
 impl Settled {
     fn is_as_close_as(&self, other: &Self, pair: &Pair<'_>) -> bool {
-        // Where surfaces lie as close as their facets allow, one that lies a little off is elsewhere.
-        let little = (LITTLE_GAP * pair.remainder).min(OFF * (other.gap + pair.noise));
+        let little = pair.distances.little_more(LITTLE_GAP, other.gap);
         let mut most = AS_CLOSE * other.gap + little;
         if self.met > MUCH_MORE * other.met {
             // A bent part lies closer where only a piece of it meets the other.
@@ -290,7 +284,7 @@ impl<'a> Pair<'a> {
             near,
             springback: tolerance.springback,
             remainder: tolerance.remainder,
-            noise: distances.noise.max(NOTHING * tolerance.remainder),
+            distances,
         }
     }
 

@@ -95,6 +95,12 @@ const REACH: f64 = 0.03;
 const SPRINGBACK_REACH: f64 = 3.0;
 const RIM_REACH: f64 = 8.0;
 
+/// Surfaces that lie farther apart than before by so many times what they lay apart and what facets leave open
+/// lie elsewhere.
+const OFF: f64 = 3.0;
+/// The facets of a flat part are known no better than this share of what may remain.
+const NOTHING: f64 = 0.01;
+
 /// Sources up to so many times the area of the target count as the smaller part.
 const AS_LARGE: f64 = 1.02;
 
@@ -122,6 +128,16 @@ impl Distances {
             near: (RIM_REACH * tolerance.remainder).min(reach),
             noise: chordal(source).max(chordal(target)) + settings.allowance,
         }
+    }
+}
+
+impl Distances {
+    /// How much farther apart than `gap` surfaces may lie and still lie as close: a share of what may remain,
+    /// but little where they lie as close as their facets allow, since what lies off is elsewhere then.
+    fn little_more(&self, share: f64, gap: f64) -> f64 {
+        let remainder = self.tolerance.remainder;
+        let nothing = self.noise.max(NOTHING * remainder);
+        (share * remainder).min(OFF * (gap + nothing))
     }
 }
 

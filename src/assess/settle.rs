@@ -23,10 +23,6 @@ const BETTER: f64 = 0.7;
 const AS_CLOSE: f64 = 1.5;
 /// … and this share of what may remain.
 const LITTLE_GAP: f64 = 0.5;
-/// … or, if that is less, so many times what they lie apart and what facets leave open.
-const OFF: f64 = 3.0;
-/// The facets of a flat part are known no better than this share of what may remain.
-const NOTHING: f64 = 0.01;
 
 /// The pose moved so that surfaces, borders and holes fit together; `None` where that would move it by
 /// no more than the rims are cut into facets, where the rims do not say where the part belongs (parts
@@ -107,8 +103,7 @@ impl<'a> Settling<'a> {
             let first_gap = *first_gap.get_or_insert(gap);
             let first_share = *first_share.get_or_insert(rims.share());
             if step == STEPS || is_still {
-                let nothing = noise.max(NOTHING * tolerance.remainder);
-                let little = (LITTLE_GAP * tolerance.remainder).min(OFF * (first_gap + nothing));
+                let little = self.distances.little_more(LITTLE_GAP, first_gap);
                 let most = AS_CLOSE * first_gap + noise + little;
                 let fits = misfit < tolerance.remainder + facets && gap < most;
                 let is_closer = gap < BETTER * first_gap && rims.share() >= first_share;

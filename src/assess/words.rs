@@ -263,10 +263,7 @@ impl ShapeStatement {
             format!(", offset of the sheets {}{removed}", lengths.of(offset))
         });
         let trim = self.rims.other_trim.map_or_else(String::new, |apart| {
-            format!(
-                ", trimmed differently (borders {} apart)",
-                lengths.of(apart)
-            )
+            format!(", trimmed differently, borders {} apart", lengths.of(apart))
         });
         format!(
             "{label}: bend and twist {}, remainder {}{offset}{trim} (tolerance {} and {})",
