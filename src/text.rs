@@ -24,6 +24,13 @@ pub fn counted(n: usize, noun: &str) -> String {
     format!("{} {noun}{plural}", grouped(n))
 }
 
+/// "part 7" or "parts 7, 8".
+pub fn parts_by_id(ids: &[u64]) -> String {
+    let noun = if ids.len() == 1 { "part" } else { "parts" };
+    let ids: Vec<String> = ids.iter().map(u64::to_string).collect();
+    format!("{noun} {}", ids.join(", "))
+}
+
 /// A fraction in percent with one decimal: `87.0 %`.
 pub fn percent(fraction: f64) -> String {
     format!("{} %", fixed(100.0 * fraction, 1))

@@ -7,8 +7,8 @@ use super::parts::NewPart;
 use super::reduce::take_level_measured;
 use super::{AppState, Effect, NoticeLevel};
 use crate::jobs::{FoundCrash, JobEvent, JobKey, JobOutput, JobStage, Live, Stamp};
-use crate::pipeline::find_parts::parts_by_id;
 use crate::role::Role;
+use crate::text::parts_by_id;
 
 impl AppState {
     pub(super) fn take_job_event(&mut self, event: JobEvent) -> Vec<Effect> {

@@ -92,7 +92,8 @@ pub struct InputArgs {
     /// shell-set:ID, node-set:ID, or all. Without it, the part of a whole model that fits is found.
     #[arg(long, value_name = "PART")]
     pub crash_part: Option<String>,
-    /// Part of the stamped file, as for --crash-part.
+    /// Part of the stamped file, as for --crash-part. Without it, the sheet: parts that are rigid, or have
+    /// no forming results where others have them, are tools and left out.
     #[arg(long, value_name = "PART")]
     pub stamped_part: Option<String>,
     /// Units of the crash file, stated in the results; guessed if not given. They change no number.

@@ -14,9 +14,10 @@ use super::map_choices::{
     default_thickness, law, quantities, reach,
 };
 use super::map_text::summary;
-use super::recipe::pose;
+use super::recipe::{pose, selection};
 use super::{
-    UsageError, check_outputs, json_target, print, progress, takes_stdout, write_json, write_output,
+    UsageError, check_outputs, json_target, print, progress, takes_stdout, warn_of_tools,
+    write_json, write_output,
 };
 use crate::assess::Verdict;
 use crate::formats::{ReadOptions, Selection};
@@ -24,7 +25,7 @@ use crate::geometry::Similarity;
 use crate::mapping::{MapMethod, MapOptions, NormalSense, Overlap, Quantities, RuleKind};
 use crate::monitor::Monitor;
 use crate::pipeline::find_parts::find_parts;
-use crate::pipeline::load::{LoadSettings, LoadedPart, load, parse_selection, prepare};
+use crate::pipeline::load::{LoadSettings, LoadedPart, load, prepare};
 use crate::pipeline::map::{
     DefaultThickness, MapFiles, MapOutput, MapRecipe, MapRecord, OtherResult, PlacedPart,
     deck_comments, element_table, elements_path, map_parts, map_record, map_report, unmapped_sets,
@@ -35,7 +36,7 @@ use crate::pipeline::match_parts::{MatchRecipe, match_parts};
 use crate::pipeline::outputs::{Content, Target};
 use crate::pipeline::project::Project;
 use crate::registration::Hand;
-use crate::role::PerRole;
+use crate::role::{PerRole, Role};
 
 /// Exit status where a gate such as `--require` is not met; the files are written all the same.
 const EXIT_GATE: u8 = 1;
@@ -66,7 +67,8 @@ struct MapChoice {
     /// shell-set:ID, node-set:ID. Where the parts are matched first, it is found if not given.
     #[arg(long, value_name = "PART")]
     crash_part: Option<String>,
-    /// Part of the stamped files, written as for --crash-part.
+    /// Part of the stamped files, written as for --crash-part, or all. Without it, the sheet: parts that are
+    /// rigid, or have no forming results where others have them, are tools and left out.
     #[arg(long, value_name = "PART")]
     stamped_part: Option<String>,
     /// Factor on the stamped coordinates and thicknesses, for files in another length unit.
@@ -203,7 +205,7 @@ Examples:
   shapematch map crash.k stamped.dynain --project work.shapematch --report map.html
   shapematch map crash.k stamped.dynain --compare dyna.inc --json differences.json
 
-Exit status: 0 mapped, 1 failed or less mapped than --require asks for, 2 wrong usage, 3 mapped with a
+Exit status: 0 mapped, 1 failed or less mapped than --require asks for, 2 wrong usage, 3 mapped with a \
 pose that the match calls poor.";
 
 impl MapChoice {
@@ -454,8 +456,8 @@ fn targets(output: &MapOutputArgs) -> Vec<Target> {
 
 fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Vec<LoadedPart>)> {
     let choice = &args.choice;
-    let settings = |part: Option<&str>, length_factor: f64| LoadSettings {
-        selection: part.map(parse_selection).unwrap_or_default(),
+    let settings = |role, part: Option<&str>, length_factor: f64| LoadSettings {
+        selection: selection(role, part),
         length_factor,
         units: None,
         read: ReadOptions {
@@ -465,15 +467,23 @@ fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Ve
     };
     let crash = load(
         &args.crash,
-        &settings(choice.crash_part.as_deref(), 1.0),
+        &settings(Role::Crash, choice.crash_part.as_deref(), 1.0),
         monitor,
     )?;
-    let of_stamped = settings(choice.stamped_part.as_deref(), choice.stamped_length_factor);
+    let of_stamped = settings(
+        Role::Stamped,
+        choice.stamped_part.as_deref(),
+        choice.stamped_length_factor,
+    );
     let stamped = args
         .stamped
         .iter()
         .map(|path| load(path, &of_stamped, monitor));
-    Ok((crash, stamped.collect::<Result<_, _>>()?))
+    let stamped: Vec<LoadedPart> = stamped.collect::<Result<_, _>>()?;
+    for part in &stamped {
+        warn_of_tools(part);
+    }
+    Ok((crash, stamped))
 }
 
 /// Where the stamped parts lie.

@@ -11,13 +11,14 @@ use super::map::MapValues;
 use super::map_choices::{HandName, default_thickness};
 use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
 use crate::formats::ReadOptions;
-use crate::pipeline::load::{LoadSettings, load};
+use crate::pipeline::load::{LoadSettings, load, usual_selection};
 use crate::pipeline::map::{DefaultThickness, MapRecipe};
 use crate::pipeline::map_car::{
     CAR_COLUMNS, CarRecipe, CarRecord, CarRow, CarState, StampedFile, car_files, map_car,
 };
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::pipeline::outputs::{Content, Target};
+use crate::role::Role;
 
 /// `shapematch map-car`.
 #[derive(Debug, Args)]
@@ -77,7 +78,8 @@ pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         include_folders: args.include_folder.clone(),
         ..ReadOptions::default()
     };
-    let settings = |length_factor| LoadSettings {
+    let settings = |role, length_factor| LoadSettings {
+        selection: usual_selection(role),
         length_factor,
         read: read.clone(),
         ..LoadSettings::default()
@@ -87,14 +89,14 @@ pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         .iter()
         .map(|path| StampedFile {
             path: path.clone(),
-            settings: settings(args.stamped_length_factor),
+            settings: settings(Role::Stamped, args.stamped_length_factor),
         })
         .collect();
     make_folder(&args.out)?;
     let mut inputs = vec![args.car.clone()];
     inputs.extend(args.stamped.iter().cloned());
     check_outputs(targets(args, &stamped), &inputs)?;
-    let crash = load(&args.car, &settings(1.0), &monitor)?;
+    let crash = load(&args.car, &settings(Role::Crash, 1.0), &monitor)?;
     inputs.extend(crash.files());
     check_outputs(targets(args, &stamped), &inputs)?;
     let mut recipe = CarRecipe {

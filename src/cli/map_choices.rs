@@ -135,7 +135,7 @@ pub(super) fn quantities(text: &str) -> Result<Quantities, String> {
     for word in text.split(',') {
         match word.trim() {
             "thickness" => chosen.thickness = true,
-            "plastic" => chosen.plastic_strain = true,
+            "plastic" | "plastic-strain" => chosen.plastic_strain = true,
             "strain" => chosen.strain = true,
             "stress" => chosen.stress = true,
             "history" => chosen.history = true,

@@ -10,12 +10,12 @@ use super::args::{MatchArgs, OutputArgs};
 use super::recipe::{Asked, asked};
 use super::{
     EXIT_POOR, EXIT_USAGE, UsageError, check_outputs, is_stdout, match_text, print, print_exactly,
-    progress, project, takes_stdout,
+    progress, project, takes_stdout, warn_of_tools,
 };
 use crate::assess::Verdict;
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
-use crate::pipeline::find_parts::{find_parts, is_part_open, parts_by_id};
+use crate::pipeline::find_parts::{find_parts, is_part_open};
 use crate::pipeline::load::{LoadedPart, load};
 use crate::pipeline::match_parts::{MatchRun, ReducedPair, match_parts, with_alternative};
 use crate::pipeline::outputs::record::match_record;
@@ -25,7 +25,7 @@ use crate::registration::MatchMonitor;
 use crate::report::MatrixForm;
 use crate::report::cards::check_file_name;
 use crate::role::PerRole;
-use crate::text::counted;
+use crate::text::{counted, parts_by_id};
 
 /// Matches and writes what was asked for.
 pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
@@ -245,5 +245,7 @@ fn load_both(
         || load(paths.crash, &asked.crash, monitor),
         || load(paths.stamped, &asked.stamped, monitor),
     );
-    Ok(PerRole::new(crash?, stamped?))
+    let parts = PerRole::new(crash?, stamped?);
+    warn_of_tools(&parts.stamped);
+    Ok(parts)
 }

@@ -35,6 +35,7 @@ use serde::Serialize;
 
 pub use self::terminal::printable;
 use crate::pipeline::PipelineError;
+use crate::pipeline::load::LoadedPart;
 use crate::pipeline::outputs::{Content, Target, check_targets, json_text};
 use crate::pipeline::write_file::write_file;
 
@@ -42,6 +43,13 @@ use crate::pipeline::write_file::write_file;
 pub const EXIT_POOR: u8 = 3;
 /// Exit status for wrong usage, as clap gives it.
 pub const EXIT_USAGE: u8 = 2;
+
+/// Says which parts of a stamped file are left out as tools, and the option that takes them.
+fn warn_of_tools(stamped: &LoadedPart) {
+    if let Some(line) = stamped.tools_line() {
+        log::warn!("{line}; --stamped-part all takes them too");
+    }
+}
 
 /// Runs one subcommand.
 pub fn run(task: &Task, quiet: bool) -> anyhow::Result<ExitCode> {

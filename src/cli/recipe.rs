@@ -7,9 +7,9 @@ use anyhow::Context as _;
 use super::UsageError;
 use super::args::{InputArgs, MatchArgs};
 use super::setting_args::SettingArgs;
-use crate::formats::ReadOptions;
+use crate::formats::{ReadOptions, Selection};
 use crate::geometry::Similarity;
-use crate::pipeline::load::{LoadSettings, parse_selection};
+use crate::pipeline::load::{LoadSettings, parse_selection, usual_selection};
 use crate::registration::{Hand, MatchSettings, Method, Motion, StartMethod};
 use crate::report::matrix::ParseMatrixError;
 use crate::report::parse_matrix;
@@ -133,6 +133,11 @@ pub(super) fn pose(word: &str) -> anyhow::Result<Similarity> {
     Ok(parsed.motion)
 }
 
+/// The parts that an option names, else those that are usual for the role.
+pub fn selection(role: Role, typed: Option<&str>) -> Selection {
+    typed.map_or_else(|| usual_selection(role), parse_selection)
+}
+
 fn load_settings(input: &InputArgs, role: Role) -> LoadSettings {
     let (part, length_factor, units) = match role {
         Role::Crash => (
@@ -147,7 +152,7 @@ fn load_settings(input: &InputArgs, role: Role) -> LoadSettings {
         ),
     };
     LoadSettings {
-        selection: part.as_deref().map(parse_selection).unwrap_or_default(),
+        selection: selection(role, part.as_deref()),
         length_factor,
         units,
         read: ReadOptions {

@@ -15,6 +15,8 @@ pub struct PartFacts {
     pub parts: Vec<PartSummary>,
     /// Ids of the parts that are matched.
     pub used: BTreeSet<u64>,
+    /// Ids of parts that are no formed sheet but tools, where the file tells.
+    pub tools: BTreeSet<u64>,
     /// Box around each of them, in the crash model's unit.
     pub part_bounds: BTreeMap<u64, Aabb>,
     /// Area and spread of each part of the deck that has shells, in the crash model's unit.
@@ -53,6 +55,7 @@ impl PartFacts {
         Ok(Self {
             parts,
             used: part.chosen_part_ids().into_iter().collect(),
+            tools: model.tools().into_iter().collect(),
             part_bounds,
             moments,
             bounds: part.mesh.aabb(),

@@ -106,13 +106,6 @@ pub fn is_part_open(parts: PerRole<&LoadedPart>) -> bool {
     more_alike(singles, together).is_some()
 }
 
-/// "part 7" or "parts 7, 8".
-pub fn parts_by_id(ids: &[u64]) -> String {
-    let noun = if ids.len() == 1 { "part" } else { "parts" };
-    let ids: Vec<String> = ids.iter().map(u64::to_string).collect();
-    format!("{noun} {}", ids.join(", "))
-}
-
 /// What every match of the search needs.
 struct Task<'a> {
     parts: PerRole<&'a LoadedPart>,

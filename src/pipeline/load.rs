@@ -21,12 +21,15 @@ use crate::registration::Surface;
 use crate::report::command_line::CommandSide;
 use crate::role::Role;
 use crate::samples::{self, SampleFile};
+use crate::text::{counted, parts_by_id};
 use crate::units::{self, KnownUnits, UnitOrigin, Units};
 
 /// What lengths may be multiplied by: wider than any two units of length lie apart.
 const UNIT_FACTORS: RangeInclusive<f64> = 1e-9..=1e9;
 /// Places shown of a part before its picture is there.
 const N_SHAPE: usize = 3000;
+/// Tools that are named by their ids.
+const N_NAMED_TOOLS: usize = 6;
 /// Parts that are named where one was asked for that does not exist.
 const N_NEAR_PARTS: usize = 5;
 
@@ -51,6 +54,15 @@ impl Default for LoadSettings {
             units: None,
             read: ReadOptions::default(),
         }
+    }
+}
+
+/// The parts that are taken where none are named: those that may be the formed sheet of a stamped file, all
+/// of a crash model.
+pub fn usual_selection(role: Role) -> Selection {
+    match role {
+        Role::Crash => Selection::All,
+        Role::Stamped => Selection::Sheet,
     }
 }
 
@@ -218,6 +230,21 @@ impl LoadedPart {
             .filter(|(_, used)| *used)
             .map(|(part, _)| part.id)
             .collect()
+    }
+
+    /// Says which parts are left out as tools of the forming simulation; `None` if none are.
+    pub fn tools_line(&self) -> Option<String> {
+        let is_asked = self.settings.selection == Selection::Sheet;
+        let tools = is_asked.then(|| self.model.tools())?;
+        let which = match tools.len() {
+            0 => return None,
+            1..=N_NAMED_TOOLS => parts_by_id(&tools),
+            n => counted(n, "part"),
+        };
+        Some(format!(
+            "{}: {which} left out as tools, which are rigid or have no forming results",
+            self.file_name()
+        ))
     }
 
     /// The first node of the matched surface: its id, and its place in the crash model's unit.
@@ -471,12 +498,14 @@ fn near_parts(model: &Model, error: &SelectionError) -> String {
     }
 }
 
-/// Understands a choice of parts as typed: `all`, `2001`, `2001,2002`, a title, `title:2001`, `set:7`,
+/// Understands a choice of parts as typed: `all`, `sheet`, `2001`, `2001,2002`, a title, `title:2001`, `set:7`,
 /// `shell-set:7`, `node-set:7`. Anything that is none of these forms is a title.
 pub fn parse_selection(text: &str) -> Selection {
     let text = text.trim();
-    if text == "all" {
-        return Selection::All;
+    match text {
+        "all" => return Selection::All,
+        "sheet" => return Selection::Sheet,
+        _ => {}
     }
     if let Some(title) = text.strip_prefix("title:") {
         return Selection::PartTitle(title.to_owned());
@@ -526,6 +555,7 @@ mod tests {
     fn choices_are_typed_as_they_are_understood() {
         let choices = [
             Selection::All,
+            Selection::Sheet,
             Selection::Parts(vec![1, 22]),
             Selection::PartTitle("all".into()),
             Selection::PartTitle("set:7".into()),

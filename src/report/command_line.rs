@@ -142,8 +142,8 @@ impl Words {
     }
 
     fn side(&mut self, role: Role, side: &CommandSide<'_>) {
-        // Only crash parts are found where none are named; of the stamped file all are taken.
-        let is_usual = role == Role::Stamped && side.selection == Some(&PartSelection::All);
+        // Where none are named, the crash parts are found, and of the stamped file the sheet is taken.
+        let is_usual = role == Role::Stamped && side.selection == Some(&PartSelection::Sheet);
         let role = role.word();
         if let Some(parts) = side.selection.filter(|_| !is_usual) {
             self.option(&format!("{role}-part"), parts.typed());
@@ -221,7 +221,7 @@ mod tests {
         let command = CommandLine {
             sides: PerRole {
                 crash: side("my car.k", &parts, 1.0),
-                stamped: side("-it's.dynain", &PartSelection::All, 25.4),
+                stamped: side("-it's.dynain", &PartSelection::Sheet, 25.4),
             },
             read: &ReadOptions::default(),
             settings,

@@ -50,6 +50,7 @@ mod simplify_rules;
 mod skin;
 mod textbook_qem;
 mod tidy;
+mod tools;
 mod tuning;
 mod units;
 mod wide_search;

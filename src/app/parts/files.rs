@@ -10,7 +10,7 @@ use crate::app::work::Work;
 use crate::app::{Action, Effect, NoticeLevel, Part, Settings, StampedPose, facts};
 use crate::formats::ReadOptions;
 use crate::jobs::{JobKey, JobKind, PartFacts, PartSource, ProjectRequest};
-use crate::pipeline::load::{LoadSettings, LoadedPart};
+use crate::pipeline::load::{LoadSettings, LoadedPart, usual_selection};
 use crate::pipeline::project::is_project;
 use crate::role::{PerRole, Role};
 
@@ -182,6 +182,11 @@ impl PartsState {
     }
 
     fn swap(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
+        self.exchange(work);
+        self.leave_tools_out(work)
+    }
+
+    fn exchange(&mut self, work: &mut Work<'_>) {
         let revision = work.history.next_revision();
         work.previews.drop_all();
         let has_swapped = work.commit("Swap the parts", |document| {
@@ -199,7 +204,29 @@ impl PartsState {
             work.follow(FollowUp::PartsSwapped);
             work.log_step("load", None, "crash and stamped part exchanged", None);
         }
-        Vec::new()
+    }
+
+    /// Once it is known which file is the stamped one: of a forming deck the sheet is matched, not die, punch
+    /// and binder. What was left out is taken in again where the file turns out to be the crash model.
+    fn leave_tools_out(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
+        let mut effects = Vec::new();
+        for role in Role::ALL {
+            let other = usual_selection(role.other());
+            let of_other = |part: &Part| {
+                part.loaded.settings.selection == other && !part.facts.tools.is_empty()
+            };
+            if work.document.part(role).is_some_and(of_other) {
+                let usual = usual_selection(role);
+                // Another unit that is asked for at the same time is of the same step.
+                let factor = work.document.wanted_length_factor();
+                let factor = factor.filter(|_| role == Role::Stamped);
+                effects.extend(self.reselect(work, role, |settings| {
+                    settings.selection = usual;
+                    settings.length_factor = factor.unwrap_or(settings.length_factor);
+                }));
+            }
+        }
+        effects
     }
 
     fn set_length_factor(&mut self, work: &mut Work<'_>, role: Role, factor: f64) -> Vec<Effect> {
@@ -281,6 +308,8 @@ impl PartsState {
         let now = work.unix_now();
         work.settings.remember(&source, now);
         let part = self.with_remembered_units(work, part);
+        let before = work.document.part(role);
+        let is_again = before.is_some_and(|before| before.source == source);
         self.place(work, role, source, part, facts);
         if is_guess {
             self.guess.n_pending -= 1;
@@ -292,6 +321,9 @@ impl PartsState {
         self.refresh_likeness(work.document);
         let mut effects = vec![Effect::SaveSettings];
         effects.extend(self.settle_length_factor(work));
+        if self.guess.n_pending == 0 && !is_again {
+            effects.extend(self.leave_tools_out(work));
+        }
         effects
     }
 
@@ -346,7 +378,7 @@ impl PartsState {
         let is_by_name = crash.facts.formed == stamped.facts.formed
             && stamped_word(crash) > stamped_word(stamped);
         if crash.facts.formed > stamped.facts.formed || is_by_name {
-            self.swap(work);
+            self.exchange(work);
         }
         self.tell_guess(work, is_by_name);
     }
@@ -382,6 +414,7 @@ impl PartsState {
             took,
         } = new;
         let line = facts::load_line(&part, &facts);
+        let tools = part.tools_line();
         let revision = work.history.next_revision();
         let name = self.reselect_name(work, role, &part, &facts);
         let gesture = self.unit_gesture.take();
@@ -395,6 +428,9 @@ impl PartsState {
             }
         });
         work.log_step("select", Some(role), line, Some(took));
+        if let Some(line) = tools {
+            work.log_at(NoticeLevel::Note, "select", Some(role), line, None);
+        }
         self.refresh_likeness(work.document);
         work.follow(FollowUp::PartReselected(role));
     }

@@ -12,6 +12,7 @@ use serde_json::{Map, Value};
 
 use self::window::WindowEntry;
 use super::{AppState, Document, Effect, Mapping, MatchResult, Part, age_text, clock_text};
+use crate::formats::Selection;
 use crate::jobs::{PartSource, ProjectRequest};
 use crate::pipeline::autosave::RecoveredSession;
 use crate::pipeline::match_parts::MatchRecipe;
@@ -86,7 +87,7 @@ impl AppState {
                 || !part.colors.is_empty()
                 || settings.units.is_some()
                 || settings.length_factor != 1.0
-                || settings.selection != crate::formats::Selection::All
+                || !matches!(settings.selection, Selection::All | Selection::Sheet)
         };
         let parts = [&document.parts.crash, &document.parts.stamped];
         let has_parts = parts.iter().any(|part| part.is_some());

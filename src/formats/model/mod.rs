@@ -3,6 +3,7 @@
 mod forming;
 mod formulation;
 mod index;
+mod sheet;
 mod surface;
 mod titles;
 

@@ -20,6 +20,8 @@ pub enum Selection {
     /// Every shell, and the skin of every solid.
     #[default]
     All,
+    /// The parts that may be the formed sheet ([`Model::sheet_parts`]): not the tools.
+    Sheet,
     /// The elements of these part ids.
     Parts(Vec<u64>),
     /// The elements of parts with this title, letter case and blanks around it ignored.
@@ -37,6 +39,7 @@ impl Selection {
     pub fn typed(&self) -> String {
         match self {
             Self::All => "all".to_owned(),
+            Self::Sheet => "sheet".to_owned(),
             Self::Parts(ids) => {
                 let ids: Vec<String> = ids.iter().map(u64::to_string).collect();
                 ids.join(",")
@@ -189,6 +192,7 @@ impl Model {
         let no_set = |kind, id| SelectionError::NoSuchSet { kind, id };
         match selection {
             Selection::All => Ok(Chosen::Parts(vec![true; self.parts.len()])),
+            Selection::Sheet => Ok(Chosen::Parts(self.sheet_parts())),
             Selection::Parts(ids) => self.chosen_parts(ids),
             Selection::PartTitle(title) => {
                 let wanted = title.trim().to_lowercase();

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::assess::Verdict;
-use crate::pipeline::find_parts::parts_by_id;
+use crate::text::parts_by_id;
 use crate::text::{length, percent};
 
 /// How certain it is that a stamped part lies where it belongs, with all its values.
