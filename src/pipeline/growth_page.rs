@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::growth::{GrowthRow, GrowthTable};
 use super::robustness_page::{Axis, STYLE};
-use crate::text::{fixed, grouped, length};
+use crate::text::{fixed, grouped, length, minus};
 
 /// The heads of the columns.
 pub const GROWTH_COLUMNS: [&str; 5] = [
@@ -34,7 +34,7 @@ impl GrowthTable {
         let power = |exponent: Option<f64>| {
             exponent.map_or_else(
                 || "not fitted".to_owned(),
-                |p| format!("n to the power of {p:.2}"),
+                |p| minus(&format!("n to the power of {p:.2}")),
             )
         };
         format!(
@@ -61,8 +61,9 @@ pub fn growth_page(table: &GrowthTable) -> String {
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>{title}</title><style>{STYLE}</style></head><body>\n<h1>{title}</h1>\n<p class=\"soft\">{}</p>\n\
-         <p class=\"soft\">Blue: the match. Amber: preparing. Dashed: growth like the square root, from the \
-         smallest pair.</p>\n{}\n\
+         <p class=\"soft\"><span class=\"key r\">●</span> match \u{2003} <span class=\"key c\">■</span> prepare \
+         \u{2003} ┄ growth of the match like the square root, from the smallest pair</p>\n\
+         <div class=\"scroll\">{}</div>\n\
          <div class=\"scroll\"><table><thead><tr>{head}</tr></thead><tbody>\n{body}</tbody></table></div>\n\
          </body></html>\n",
         table.notes(),
@@ -76,18 +77,35 @@ fn html_row(row: &GrowthRow) -> String {
     format!("<tr>{cells}</tr>\n")
 }
 
+/// What a time grows by that grows like the square root of the triangles.
+fn growth(first: &GrowthRow, last: &GrowthRow) -> f64 {
+    (last.triangles as f64 / first.triangles as f64).sqrt()
+}
+
+/// Ends of the axis of the triangles; the numbers of the times stand left of it.
+const LEFT: f64 = 88.0;
+const RIGHT: f64 = 880.0;
+
 fn plot(table: &GrowthTable) -> String {
+    let sizes = table.rows.iter().map(|row| row.triangles as f64);
     let x = Axis {
         low: 500.0,
-        high: 3e6,
-        from: 70.0,
-        to: 880.0,
+        high: (1.5 * sizes.fold(0.0, f64::max)).max(2e4),
+        from: LEFT,
+        to: RIGHT,
     };
+    let times = table
+        .rows
+        .iter()
+        .map(|row| row.match_ms.max(row.prepare_ms));
+    let dashed = table.rows.first().zip(table.rows.last());
+    let dashed = dashed.map_or(0.0, |(first, last)| first.match_ms * growth(first, last));
+    let slowest = times.fold(dashed, f64::max).max(100.0);
     let y = Axis {
         low: 1.0,
-        high: 1e5,
+        high: 10_f64.powf(slowest.log10().ceil()),
         from: 400.0,
-        to: 10.0,
+        to: 14.0,
     };
     let mut svg = String::from(
         "<svg viewBox=\"0 0 900 440\" role=\"img\" aria-label=\"Times over triangles, both logarithmic\">",
@@ -97,7 +115,7 @@ fn plot(table: &GrowthTable) -> String {
         // Writing to a string cannot fail.
         let _ = write!(
             svg,
-            "<line x1=\"{at:.1}\" y1=\"10\" x2=\"{at:.1}\" y2=\"400\"/>\
+            "<line x1=\"{at:.1}\" y1=\"14\" x2=\"{at:.1}\" y2=\"400\"/>\
              <text x=\"{at:.1}\" y=\"416\" text-anchor=\"middle\">{text}</text>"
         );
     }
@@ -105,14 +123,15 @@ fn plot(table: &GrowthTable) -> String {
         let (at, text) = (y.at(tick), grouped(tick as usize));
         let _ = write!(
             svg,
-            "<line x1=\"70\" y1=\"{at:.1}\" x2=\"880\" y2=\"{at:.1}\"/>\
-             <text x=\"62\" y=\"{:.1}\" text-anchor=\"end\">{text} ms</text>",
+            "<line x1=\"{LEFT}\" y1=\"{at:.1}\" x2=\"{RIGHT}\" y2=\"{at:.1}\"/>\
+             <text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{text} ms</text>",
+            LEFT - 8.0,
             at + 4.0
         );
     }
     svg += "<text x=\"475\" y=\"436\" text-anchor=\"middle\">triangles of both meshes</text>";
     if let (Some(first), Some(last)) = (table.rows.first(), table.rows.last()) {
-        let grown = (last.triangles as f64 / first.triangles as f64).sqrt();
+        let grown = growth(first, last);
         let _ = write!(
             svg,
             "<line class=\"limit\" x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\"/>",
@@ -128,10 +147,19 @@ fn plot(table: &GrowthTable) -> String {
     ] {
         for row in &table.rows {
             let (at, up) = (x.at(row.triangles as f64), y.at(of(row)));
-            let _ = write!(
-                svg,
-                "<circle class=\"{class}\" cx=\"{at:.1}\" cy=\"{up:.1}\" r=\"5\"/>"
-            );
+            // Told apart without colours too.
+            let _ = if class == "r" {
+                write!(
+                    svg,
+                    "<circle class=\"{class}\" cx=\"{at:.1}\" cy=\"{up:.1}\" r=\"5\"/>"
+                )
+            } else {
+                let (left, top) = (at - 4.5, up - 4.5);
+                write!(
+                    svg,
+                    "<rect class=\"{class}\" x=\"{left:.1}\" y=\"{top:.1}\" width=\"9\" height=\"9\"/>"
+                )
+            };
         }
     }
     svg + "</svg>"

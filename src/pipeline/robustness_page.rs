@@ -24,7 +24,8 @@ border-bottom:1px solid var(--line);white-space:nowrap}td:first-child,th:first-c
 thead th,.soft{color:var(--soft);font-weight:500}.scroll{overflow-x:auto}pre{color:var(--soft);font:inherit;\
 white-space:pre-line}svg{width:100%;height:auto;font:12px system-ui,sans-serif}svg text{fill:var(--soft)}\
 svg line{stroke:var(--line)}.g{fill:var(--good)}.c{fill:var(--check)}.p{fill:var(--poor)}.r{fill:var(--right)}\
-svg .limit{stroke:var(--poor);stroke-dasharray:5 4}";
+svg .limit{stroke:var(--soft);stroke-dasharray:5 4}svg{min-width:640px}\
+.key.r{color:var(--right)}.key.c{color:var(--check)}";
 
 /// The table with its plots as one HTML page.
 pub fn page(table: &RobustnessTable, runs: &[RobustnessRun]) -> String {

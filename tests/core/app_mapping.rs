@@ -93,11 +93,13 @@ fn forming_results_are_mapped_shown_written_and_undone() {
         .make(&input, None, &monitor)
         .unwrap()
         .bytes;
-    assert!(
-        String::from_utf8(page)
-            .unwrap()
-            .contains("What became of the elements")
-    );
+    let page = String::from_utf8(page).unwrap();
+    assert!(page.contains("What became of the elements"));
+    // How the checks ended stands above the figures, and the figures write no hyphen for a minus.
+    let (n_met, n_asked) = result.record.n_met();
+    let head = &page[..page.find("<main>").unwrap()];
+    assert!(head.contains(&format!("{n_met} of {n_asked} checks met")));
+    assert!(head.contains("to stamped") && !head.contains(">-0."));
     let table = Output::MapTable.make(&input, None, &monitor).unwrap().bytes;
     let rows = String::from_utf8(table).unwrap().lines().count();
     assert_eq!(rows, result.run.shells.len() + 1);

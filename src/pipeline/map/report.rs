@@ -15,7 +15,7 @@ use crate::pipeline::outputs::report_figures::{From, fitted, view_of};
 use crate::report::MatrixForm;
 use crate::report::html::{CheckReport, Figure, MapReport, NumberRow, QuantityReport, map_figure};
 use crate::report::picture::{Paint, PictureMesh, picture};
-use crate::text::{fixed, grouped, length, millis, percent, signed};
+use crate::text::{fixed, grouped, length, millis, minus, percent, signed};
 
 /// Pixels of a picture.
 const SIZE: [usize; 2] = [560, 380];
@@ -98,11 +98,19 @@ fn file_name(path: &str) -> String {
     )
 }
 
-fn facts(record: &MapRecord) -> Vec<(String, String)> {
+/// The headline figures: name, value, what the value is.
+fn facts(record: &MapRecord) -> Vec<[String; 3]> {
     let mut facts = vec![
-        ("Area with values".to_owned(), percent(record.mapped_area)),
-        ("Elements".to_owned(), grouped(record.n_elements)),
-        ("Mapped in".to_owned(), millis(record.map_ms)),
+        [
+            "Area with values".to_owned(),
+            percent(record.mapped_area),
+            "of the crash part".to_owned(),
+        ],
+        [
+            "Elements".to_owned(),
+            grouped(record.n_elements),
+            format!("mapped in {}", millis(record.map_ms)),
+        ],
     ];
     for (name, pair) in [
         ("Mean thickness", &record.thickness),
@@ -110,8 +118,8 @@ fn facts(record: &MapRecord) -> Vec<(String, String)> {
     ] {
         if let Some(pair) = pair {
             let change = pair.crash.mean / pair.stamped.mean - 1.0;
-            let value = format!("{} ({:+.2} %)", length(pair.crash.mean), 100.0 * change);
-            facts.push((name.to_owned(), value));
+            let note = minus(&format!("{:+.2} % to stamped", 100.0 * change));
+            facts.push([name.to_owned(), length(pair.crash.mean), note]);
         }
     }
     if let Some(back) = &record.map_back {
@@ -128,8 +136,8 @@ fn facts(record: &MapRecord) -> Vec<(String, String)> {
             ),
         ] {
             if range > 0.0 {
-                let value = format!("95 % within {} of the range", percent(p95 / range));
-                facts.push((name.to_owned(), value));
+                let note = "of the range, 95 % of the area".to_owned();
+                facts.push([name.to_owned(), percent(p95 / range), note]);
             }
         }
     }

@@ -9,7 +9,7 @@ use crate::assess::deviation::{DeviationStats, Histogram};
 use crate::colormap::{ColorMap, ColorScale, Rgb};
 use crate::registration::{MatchOutcome, StartOutcome, StartRecord};
 use crate::role::PerRole;
-use crate::text::{Lengths, percent, trimmed};
+use crate::text::{Lengths, minus, percent, trimmed};
 
 /// Width of the charts and of the legend of the colours.
 const WIDTH: f64 = 960.0;
@@ -323,7 +323,9 @@ fn color_strip(scale: &ColorScale, axes: &Axes) -> Markup {
 
 fn plain_ticks(scale: &ColorScale, n: usize) -> Vec<(f64, String)> {
     let ticks = scale.ticks(n).into_iter();
-    ticks.map(|at| (at, trimmed(at, DECIMALS))).collect()
+    ticks
+        .map(|at| (at, minus(&trimmed(at, DECIMALS))))
+        .collect()
 }
 
 /// Two histograms over one range: the first as bars, the second as a line.
@@ -338,11 +340,11 @@ pub fn two_histograms(shares: &[Vec<f64>; 2], range: [f64; 2], name: &str) -> Ma
         x: [scale.min, scale.max],
         y: [0.0, highest * 1.06],
     };
-    let steps = [0.0, 0.25, 0.5, 0.75, 1.0];
-    let fractions = steps.map(|step| {
-        let share = step * highest;
-        (share, format!("{} %", trimmed(100.0 * share, 1)))
-    });
+    let fractions = ColorScale::new(ColorMap::Viridis, 0.0, 100.0 * highest).ticks(5);
+    let fractions: Vec<_> = fractions
+        .into_iter()
+        .map(|share| (share / 100.0, format!("{} %", trimmed(share, 2))))
+        .collect();
     let place = |bins: &[f64], i: usize| {
         let at = scale.min + (scale.max - scale.min) * i as f64 / bins.len().max(1) as f64;
         axes.x(at)

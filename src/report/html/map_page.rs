@@ -52,8 +52,8 @@ pub struct MapReport {
     pub build: String,
     /// Names of the crash file and of the stamped files.
     pub names: [String; 2],
-    /// The main figures, by name.
-    pub facts: Vec<(String, String)>,
+    /// The main figures: name, value, what the value is.
+    pub facts: Vec<[String; 3]>,
     /// What to look at.
     pub warnings: Vec<String>,
     /// The checks, in their order.
@@ -90,6 +90,7 @@ impl MapReport {
                     span.stamped { "▲ " (stamped) } span.joint { " onto " }
                     span.crash { "■ " (crash) }
                 }
+                (self.checks_met())
                 (self.facts())
             }
             main { (self.main()) }
@@ -102,11 +103,34 @@ impl MapReport {
         )
     }
 
+    /// How many of the checks that ask for something are met, and which are not.
+    fn checks_met(&self) -> Markup {
+        let asked = || self.checks.iter().filter(|check| check.is_met.is_some());
+        let missed: Vec<&CheckReport> = asked().filter(|c| c.is_met == Some(false)).collect();
+        let n_asked = asked().count();
+        let (class, sign) = match missed.is_empty() {
+            true => ("verdict good", "✔"),
+            false => ("verdict check", "!"),
+        };
+        html! {
+            @if n_asked > 0 {
+                div class=(class) {
+                    strong { (sign) " " (n_asked - missed.len()) " of " (n_asked) " checks met" }
+                    ul {
+                        @for check in missed {
+                            li { (check.cells[0]) ": " (check.cells[1]) ", asked for " (check.cells[2]) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
     fn facts(&self) -> Markup {
         html! {
             dl.figures {
-                @for (name, value) in &self.facts {
-                    div { dt { (name) } dd { (value) } }
+                @for [name, value, note] in &self.facts {
+                    div { dt { (name) } dd { (value) @if !note.is_empty() { small { (note) } } } }
                 }
             }
             @if !self.warnings.is_empty() {
