@@ -34,6 +34,7 @@ mod reduce;
 mod settings;
 mod shared;
 mod state;
+mod typed;
 mod view;
 mod work;
 
@@ -78,6 +79,7 @@ pub use reduce::{LevelResult, ReduceCommand, ReduceState};
 pub use settings::{MouseScheme, Settings, StartupOptions, Theme};
 pub use shared::Shared;
 pub use state::AppState;
+pub use typed::{typed_count, typed_length, typed_number};
 pub use view::{
     BottomTab, ColorBy, Dialog, Display, FreeWindow, Section, Sections, ShownGeometry, Stale,
     ViewCommand, ViewRoom, ViewState,

@@ -1,12 +1,12 @@
 //! What lies over the window: help sheet, command search, preferences, messages, about.
 
-use egui::{Align, DragValue, Layout, Modal, RichText, ScrollArea, Ui, vec2};
+use egui::{Align, Layout, Modal, RichText, ScrollArea, Ui, vec2};
 
 use super::palette::{self, palette_ui};
 use super::picture_options::picture_ui;
 use super::project_dialogs::{missing_ui, unsaved_ui};
 use super::theme::{Palette, UNIT};
-use super::widgets::{caption, chip, form_row, level_color, paragraph, secondary};
+use super::widgets::{caption, chip, form_row, level_color, number_field, paragraph, secondary};
 use crate::app::{
     AppState, Command, Dialog, ExportCommand, Menu, MouseScheme, Notice, NoticeCommand,
     NoticeLevel, Settings, Theme, ViewCommand, clock_text,
@@ -215,10 +215,9 @@ fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 .on_hover_text("After each step, in the folder of the program's data");
         });
         form_row(ui, "Read limit", LABEL, |ui| {
-            let field = DragValue::new(&mut settings.read_limit)
+            let field = number_field(&mut settings.read_limit, " GiB")
                 .range(Settings::READ_LIMITS)
-                .speed(0.1)
-                .suffix(" GiB");
+                .speed(0.1);
             ui.add(field).on_hover_text(
                 "Largest file that is read, unpacked and with all its included files. Reload a file \
                  after raising it.",

@@ -1,9 +1,9 @@
 //! The dialog of a picture: size, background, windows.
 
-use egui::{DragValue, Ui};
+use egui::Ui;
 
 use super::theme::UNIT;
-use super::widgets::{caption, chip, form_row, large_button};
+use super::widgets::{caption, chip, count_field, form_row, large_button};
 use crate::app::{
     AppState, Command, ExportCommand, PictureChoice, PictureSize, PictureWindows, Settings,
     ViewCommand,
@@ -73,7 +73,7 @@ fn size_ui(ui: &mut Ui, choice: &mut PictureChoice) {
                 .iter_mut()
                 .zip(["Width in pixels", "Height in pixels"])
             {
-                let field = DragValue::new(side).range(PictureSize::SIDES).speed(8.0);
+                let field = count_field(side).range(PictureSize::SIDES).speed(8.0);
                 ui.name_inputs(name, |ui| ui.add(field));
             }
             caption(ui, "pixels");

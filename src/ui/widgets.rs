@@ -1,12 +1,13 @@
 //! Small pieces that every panel uses, so that they look alike everywhere.
 
 use super::theme::{Palette, ROW, TALL, UNIT};
-use crate::app::{Action, AppState, Command, NoticeLevel};
+use crate::app::{Action, AppState, Command, NoticeLevel, typed_count, typed_length, typed_number};
 use crate::role::Role;
+use crate::text::Lengths;
 pub use crate::text::{grouped, length, percent, signed};
 use egui::{
-    Align, Button, Color32, CornerRadius, Frame, Layout, Margin, Rect, Response, RichText, Sense,
-    Stroke, Ui, Vec2, pos2, vec2,
+    Align, Button, Color32, CornerRadius, DragValue, Frame, Layout, Margin, Rect, Response,
+    RichText, Sense, Stroke, Ui, Vec2, emath::Numeric, pos2, vec2,
 };
 
 /// A count on a chip: full, 50k, 2k, 500.
@@ -16,6 +17,23 @@ pub fn short_count(n: usize) -> String {
     } else {
         grouped(n)
     }
+}
+
+/// A field for a number with its unit, as people type it: `12,5`, `-3 °`.
+pub fn number_field<'a, N: Numeric>(value: &'a mut N, unit: &'static str) -> DragValue<'a> {
+    let field = DragValue::new(value).suffix(unit);
+    field.custom_parser(move |text| typed_number(text, unit))
+}
+
+/// A field for a length of the window, which may be typed in another unit: `0.5 in`.
+pub fn length_field(value: &mut f64, lengths: Lengths) -> DragValue<'_> {
+    let field = DragValue::new(value).suffix(lengths.suffix());
+    field.custom_parser(move |text| typed_length(text, lengths))
+}
+
+/// A field for a whole number: `2,000`, `2k`.
+pub fn count_field<N: Numeric>(value: &mut N) -> DragValue<'_> {
+    DragValue::new(value).custom_parser(|text| typed_count(text).map(|count| count as f64))
 }
 
 /// Draws the mark of a part, ■ or ▲, in its colour.

@@ -464,6 +464,22 @@ fn units_are_hinted_once_and_the_factor_is_one_undo_step() {
 }
 
 #[test]
+fn while_the_unit_is_asked_a_match_says_nothing_else() {
+    let mut window = Window::new();
+    window.open("crash.k", Role::Crash);
+    window.open("metres.k", Role::Stamped);
+    window.act(Action::MatchOrStop);
+    assert!(window.state.document.current_result().is_some());
+    assert!(window.state.is_unit_in_doubt());
+    assert_eq!(window.state.n_equal_poses(), 1);
+    let causes = window.state.causes();
+    assert_eq!(causes.len(), 1, "{causes:?}");
+    assert!(Action::NextAlternative.enabled(&window.state).is_err());
+    window.apply(FileCommand::DismissUnitHint);
+    assert!(!window.state.is_unit_in_doubt());
+}
+
+#[test]
 fn levels_that_reduce_nothing_are_not_offered() {
     let mut window = Window::with_both();
     let n_full = Role::ALL

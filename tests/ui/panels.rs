@@ -4,7 +4,7 @@ use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{Action, BottomTab, Dialog, Menu, Section};
 use shapematch::role::Role;
 
-use super::story::{click, finish, window};
+use super::story::{click, finish, matched, window};
 
 #[test]
 fn an_empty_window_invites_and_says_why_the_rest_waits() {
@@ -138,5 +138,43 @@ fn every_state_of_the_window_has_names_at_every_size() {
         window.set_size(egui::Vec2::from(size));
         window.run_steps(3);
         window.check_accessibility();
+    }
+}
+
+#[test]
+fn a_typed_move_takes_a_decimal_comma_and_its_button_stays_under_the_pointer() {
+    let mut window = matched();
+    click(&mut window, "Move by hand");
+    window.run_steps(4);
+    let x = |window: &egui_kittest::Harness<'static, shapematch::ui::Shell>| {
+        window
+            .state()
+            .state()
+            .document
+            .crash_from_stamped()
+            .translation
+            .x
+    };
+    for (typed, moved) in [("12,5", 12.5), ("1 cm", 10.0), ("nan", 10.0), ("inf", 10.0)] {
+        let before = x(&window);
+        window.get_by_label("Move by").click();
+        window.run_steps(2);
+        window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+        window.event(egui::Event::Text(typed.to_owned()));
+        window.run_steps(2);
+        window.key_press(egui::Key::Enter);
+        window.run_steps(2);
+        let name = format!("Move by {moved} mm on X");
+        let at = window.get_by_label(&name).rect().center();
+        window.hover_at(at);
+        window.run_steps(2);
+        window.get_by_label(&name).click();
+        window.run_steps(4);
+        assert!((x(&window) - before - moved).abs() < 1e-9, "{typed}");
+        let now = window.get_by_label(&name).rect();
+        assert!(
+            now.contains(at),
+            "{typed}: the button went from {at} to {now}"
+        );
     }
 }

@@ -216,6 +216,11 @@ fn has_alternative(state: &AppState) -> Result<(), Reason> {
     let run = result.ok_or(Reason("Run a match first."))?;
     let n_alternatives = facts::n_alternatives(&run.run);
     require(n_alternatives > 0, "No other pose fits nearly as well.")?;
+    let is_in_doubt = state.is_unit_in_doubt();
+    require(
+        !is_in_doubt,
+        "Say first whether the files are in different units.",
+    )?;
     let is_same_pair = run.stamp.parts == state.document.stamp().parts;
     require(is_same_pair, "A part was exchanged after the match.")?;
     state.jobs.is_unlocked()

@@ -5,7 +5,7 @@ use crate::assess::{Assessment, Clarity, Reason, ShapeReason, Verdict, error_bes
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::registration::{Hand, StartMethod};
 use crate::role::Role;
-use crate::text::{capital, fixed, sentence, whole_percent};
+use crate::text::{capital, length, sentence, whole_percent};
 
 /// Causes that are listed; more would be guessing.
 const MOST: usize = 3;
@@ -49,6 +49,14 @@ impl AppState {
             self.shape_cause(assessment),
         ];
         found.into_iter().flatten().take(MOST).collect()
+    }
+
+    /// True while it is asked whether the parts are in different units and the match says so too: then
+    /// nothing else that it found means anything.
+    pub fn is_unit_in_doubt(&self) -> bool {
+        let result = self.document.current_result();
+        let unit = result.and_then(|result| result.run.assessment.scale_check.unit.as_ref());
+        unit.is_some() && self.unit_hint().is_some() && self.parts_cause().is_none()
     }
 
     /// Why the last match gave no pose, if these are still its parts.
@@ -146,7 +154,7 @@ impl AppState {
             title: "Different units".to_owned(),
             evidence: format!(
                 "The crash part is {} times as large as the stamped part.",
-                fixed(check.size_ratio, 4)
+                length(check.size_ratio)
             ),
             remedy: self.unit_remedy(),
         })

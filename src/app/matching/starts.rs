@@ -116,7 +116,15 @@ impl AppState {
     /// Poses of the result that fit nearly equally well, itself included; 0 without a result.
     pub fn n_equal_poses(&self) -> usize {
         let result = self.document.result.as_ref();
-        result.map_or(0, |result| 1 + facts::n_alternatives(&result.run))
+        result.map_or(0, |result| {
+            let is_in_doubt = self.is_unit_in_doubt();
+            let n_alternatives = if is_in_doubt {
+                0
+            } else {
+                facts::n_alternatives(&result.run)
+            };
+            1 + n_alternatives
+        })
     }
 
     /// Starts of the running match that have ended, and those that began.

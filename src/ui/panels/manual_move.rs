@@ -3,17 +3,23 @@
 use egui::{CollapsingHeader, DragValue, Key, Modifiers, Ui, vec2};
 
 use crate::app::{
-    Action, AppState, Axis, AxisFrame, Command, MoveCommand, turns_deg, with_turns_deg,
+    Action, AppState, Axis, AxisFrame, Command, MoveCommand, turns_deg, typed_number,
+    with_turns_deg,
 };
 use crate::geometry::Similarity;
 use crate::report::parse_matrix;
 use crate::role::Role;
 use crate::text::fixed;
 use crate::ui::theme::{ROW, UNIT};
-use crate::ui::widgets::{Look, action_button, caption, chip, form_row, plain_action, set_draft};
+use crate::ui::widgets::{
+    Look, action_button, caption, chip, form_row, length_field, number_field, plain_action,
+    set_draft,
+};
 
 /// Width of the label column.
 const LABEL: f32 = 76.0;
+/// Largest typed move, angle or coordinate.
+const LARGEST_MOVE: f64 = 1e9;
 
 /// The fold "Move by hand".
 pub fn manual_move_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -33,6 +39,7 @@ pub fn manual_move_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
 
 fn axes_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     form_row(ui, "Axes", LABEL, |ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
         for frame in AxisFrame::ALL {
             if chip(ui, frame.label(), state.moving.axes == frame).clicked() {
                 commands.push(MoveCommand::SetAxes(frame).into());
@@ -51,18 +58,27 @@ fn axes_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 /// A typed move along and a typed turn about each axis.
 fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let frame = state.moving.axes;
-    for (name, unit, is_turn) in [("Move", "", false), ("Rotate", "°", true)] {
+    let length_unit = state.lengths().suffix();
+    for (name, unit, is_turn) in [("Move", length_unit, false), ("Rotate", "°", true)] {
         let id = egui::Id::unique(("typed move", name));
         let mut value: f64 =
             ui.data(|data| data.get_temp(id))
                 .unwrap_or(if is_turn { 15.0 } else { 10.0 });
         form_row(ui, name, LABEL, |ui| {
-            let field = DragValue::new(&mut value)
-                .speed(if is_turn { 1.0 } else { 0.5 })
-                .suffix(unit)
+            let field = if is_turn {
+                number_field(&mut value, unit).speed(1.0)
+            } else {
+                length_field(&mut value, state.lengths()).speed(0.5)
+            };
+            let field = field
+                .range(-LARGEST_MOVE..=LARGEST_MOVE)
                 .max_decimals(6)
                 .min_size(vec2(80.0, ROW));
-            ui.add(field);
+            let field = ui.add(field);
+            // A field with a unit is named after the unit otherwise.
+            ui.ctx().accesskit_node_builder(field.id, |node| {
+                node.set_label(format!("{name} by"));
+            });
             for axis in Axis::ALL {
                 let label = format!("{} {}", if value < 0.0 { "−" } else { "+" }, axis.letter());
                 let spoken = format!("{name} by {value}{unit} on {}", axis.letter());
@@ -162,7 +178,7 @@ fn fields_ui(
     label: &str,
     spoken: &str,
     values: [f64; 3],
-    unit: &str,
+    unit: &'static str,
 ) -> Option<(Axis, f64, f64)> {
     let mut typed = None;
     form_row(ui, label, LABEL, |ui| {
@@ -174,7 +190,10 @@ fn fields_ui(
             let before = values[axis.index()];
             let before = if before.abs() < 5e-4 { 0.0 } else { before };
             let mut value = before;
+            // Three have no room for their unit.
             let field = DragValue::new(&mut value)
+                .custom_parser(move |text| typed_number(text, unit))
+                .range(-LARGEST_MOVE..=LARGEST_MOVE)
                 .fixed_decimals(3)
                 .speed(0.5)
                 .update_while_editing(false)

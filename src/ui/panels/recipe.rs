@@ -1,13 +1,15 @@
 //! Every setting of a match behind the gear, as the table of settings has them.
 
-use egui::{ComboBox, DragValue, Rect, Sense, Stroke, Ui, Vec2, pos2};
+use egui::{ComboBox, Rect, Sense, Stroke, Ui, Vec2, pos2};
 
 use crate::app::AppState;
 use crate::registration::{Floor, MatchSettings, Method};
 use crate::settings::{ChoiceWords, Domain, Group, MatchRecipe, SETTINGS, Setting, Value};
 use crate::text::Lengths;
 use crate::ui::theme::{Palette, ROW, UNIT};
-use crate::ui::widgets::{caption, card, form_row, segments, tight};
+use crate::ui::widgets::{
+    caption, card, count_field, form_row, length_field, number_field, segments, tight,
+};
 
 /// Width of the column of labels.
 const LABEL: f32 = 112.0;
@@ -179,18 +181,17 @@ fn value_ui(ui: &mut Ui, state: &AppState, setting: &Setting, value: &mut Value)
         }
         (Domain::Count(range), Value::Count(n)) => {
             form_row(ui, setting.label, LABEL, |ui| {
-                ui.add(DragValue::new(n).range(range.clone()).speed(1.0))
+                ui.add(count_field(n).range(range.clone()).speed(1.0))
                     .on_hover_text(setting.help);
             });
         }
         (Domain::Number { unit, range, step }, Value::Number(number)) => {
             form_row(ui, setting.label, LABEL, |ui| {
-                let field = DragValue::new(number)
+                let field = number_field(number, unit.suffix(lengths))
                     .range(range.clone())
                     .speed(*step)
                     .max_decimals(6);
-                ui.add(field.suffix(unit.suffix(lengths)))
-                    .on_hover_text(setting.help);
+                ui.add(field).on_hover_text(setting.help);
             });
         }
         (Domain::Floor, Value::Floor(floor)) => floor_ui(ui, setting, floor, lengths),
@@ -241,8 +242,7 @@ fn floor_ui(ui: &mut Ui, setting: &Setting, floor: &mut Floor, lengths: Lengths)
             .on_hover_text(setting.help);
         if let Floor::Length(length) = floor {
             ui.name_inputs("Length of the floor", |ui| {
-                let value = DragValue::new(length).range(0.0..=1e6).speed(0.01);
-                ui.add(value.suffix(lengths.suffix()));
+                ui.add(length_field(length, lengths).range(0.0..=1e6).speed(0.01));
             });
         }
     });
@@ -264,7 +264,7 @@ fn limit_ui(ui: &mut Ui, state: &AppState, setting: &Setting, limit: &mut Option
         }
         if let Some(n) = limit {
             ui.name_inputs(setting.label, |ui| {
-                ui.add(DragValue::new(n).range(100..=10_000_000).speed(20.0));
+                ui.add(count_field(n).range(100..=10_000_000).speed(20.0));
             });
         }
     });

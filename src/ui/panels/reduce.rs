@@ -1,6 +1,6 @@
 //! Section 2: fewer triangles, at any level, with the full mesh kept.
 
-use egui::{DragValue, Response, Slider, Ui, vec2};
+use egui::{Response, Slider, Ui, vec2};
 
 use super::section::section_ui;
 use crate::app::{
@@ -12,8 +12,8 @@ use crate::role::{PerRole, Role};
 use crate::text::counted;
 use crate::ui::theme::{LABEL, Palette, ROW, UNIT};
 use crate::ui::widgets::{
-    Look, action_button, caption, chip, form_row, grouped, icon_button, paragraph, role_mark,
-    short_count, square, tight,
+    Look, action_button, caption, chip, count_field, form_row, grouped, icon_button, paragraph,
+    role_mark, short_count, square, tight,
 };
 
 /// Draws section 2.
@@ -67,15 +67,11 @@ fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut settings: Settings = state.settings.clone();
     let mut is_entered = false;
     form_row(ui, "Max triangles", LABEL, |ui| {
-        let field = DragValue::new(&mut settings.max_triangles)
+        let field = count_field(&mut settings.max_triangles)
             .range(4..=50_000_000)
             .speed(20.0)
             .update_while_editing(false)
             .custom_formatter(|n, _| grouped(n as usize))
-            .custom_parser(|text| {
-                let digits: String = text.chars().filter(char::is_ascii_digit).collect();
-                digits.parse().ok()
-            })
             .min_size(vec2((ui.available_width() - CHOICE).clamp(56.0, 98.0), ROW));
         let field = ui.add(field);
         ui.spacing_mut().button_padding.x = 8.0;

@@ -1,9 +1,11 @@
 //! The verdict card and the matrix.
 
-use egui::{Button, Color32, DragValue, RichText, Ui, vec2};
+use egui::{Button, Color32, RichText, Ui, vec2};
 
 use super::explain;
-use crate::app::{Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, Section};
+use crate::app::{
+    Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, Section, typed_length,
+};
 use crate::assess::{Ambiguity, Coverage, OneSided, Verdict};
 use crate::registration::{group_starts, limits};
 use crate::report::{PoseRecord, few_agree_words, number, start_counts};
@@ -13,8 +15,8 @@ use crate::text::{capital, fixed, sentence, vector, whole_percent};
 use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
-    Look, action_button, caption, card, chip, figure, paragraph, percent, plain_action, square,
-    tight,
+    Look, action_button, caption, card, chip, figure, length_field, paragraph, percent,
+    plain_action, square, tight,
 };
 
 /// Verdict, figures, alternatives, matrix.
@@ -29,15 +31,20 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     ui.add_space(2.0);
     let top = ui.cursor().top();
+    let held = HeldHeight::read(ui);
     card(ui, |ui| {
+        let first = ui.cursor().top();
         if state.document.current_result().is_some() {
             verdict_ui(ui, state, result, commands);
-            figures_ui(ui, state, result);
-            alternatives_ui(ui, state, result, commands);
+            if !state.is_unit_in_doubt() {
+                figures_ui(ui, state, result);
+                alternatives_ui(ui, state, result, commands);
+            }
             explain::causes_ui(ui, state.causes(), commands);
         } else {
             outdated_ui(ui, state, result, commands);
         }
+        held.hold(ui, first);
     });
     // A new result comes into sight by itself.
     let id = egui::Id::unique("stamp of the result in sight");
@@ -49,6 +56,41 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.scroll_to_rect(egui::Rect::from_x_y_ranges(x, top..=bottom), None);
     }
     matrix_ui(ui, state, commands);
+}
+
+/// The height of the card, which gets lower with the first move by hand: it is kept while the pointer is
+/// at what stands below it, so that a button can be clicked twice.
+#[derive(Debug, Clone, Copy, Default)]
+struct HeldHeight {
+    height: f32,
+    bottom: f32,
+}
+
+impl HeldHeight {
+    fn id() -> egui::Id {
+        egui::Id::unique("height of the verdict card")
+    }
+
+    fn read(ui: &Ui) -> Self {
+        ui.data(|data| data.get_temp(Self::id()))
+            .unwrap_or_default()
+    }
+
+    /// At the end of the card whose content began at `first`.
+    fn hold(self, ui: &mut Ui, first: f32) {
+        let pointer = ui.input(|input| input.pointer.hover_pos());
+        let is_below = pointer.is_some_and(|at| ui.clip_rect().contains(at) && at.y > self.bottom);
+        let missing = self.height - (ui.cursor().top() - first);
+        if is_below && missing > 0.0 {
+            ui.add_space(missing);
+        }
+        let bottom = ui.cursor().top();
+        let now = Self {
+            height: bottom - first,
+            bottom,
+        };
+        ui.data_mut(|data| data.insert_temp(Self::id(), now));
+    }
 }
 
 /// A result that the shown pose or parts are no longer those of: quiet, with the ways on.
@@ -118,8 +160,13 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
         paragraph(ui, text);
         return;
     }
-    for reason in assessment.reasons.iter().take(3) {
+    let is_unit_in_doubt = state.is_unit_in_doubt();
+    let n_told = if is_unit_in_doubt { 1 } else { 3 };
+    for reason in assessment.reasons.iter().take(n_told) {
         paragraph(ui, sentence(&reason.words(lengths)));
+    }
+    if is_unit_in_doubt {
+        return;
     }
     for statement in assessment.statements(lengths) {
         paragraph(ui, sentence(&statement));
@@ -147,13 +194,16 @@ fn tolerance_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &
             *tolerance = 0.0;
         }
         ui.name_inputs(setting.label, |ui| {
-            let field = DragValue::new(&mut shown)
+            let lengths = state.lengths();
+            let field = length_field(&mut shown, lengths)
                 .range(limits::LENGTH)
                 .speed(0.01 * usual)
                 .max_decimals(4)
-                .suffix(state.lengths().suffix())
                 .update_while_editing(false)
-                .custom_parser(length_or_nothing);
+                .custom_parser(move |text| match text.trim() {
+                    "" => Some(0.0),
+                    text => typed_length(text, lengths),
+                });
             let field = ui.add(field).on_hover_text(
                 "Shape tolerance: how far the shapes may differ besides springback. The verdict follows \
                  at once; the pose stays. An empty field takes the automatic tolerance",
@@ -167,16 +217,6 @@ fn tolerance_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &
     if recipe != state.document.recipe {
         commands.push(MatchCommand::SetRecipe(Box::new(recipe)).into());
     }
-}
-
-/// A typed length without its unit; nothing stands for 0.
-fn length_or_nothing(text: &str) -> Option<f64> {
-    let is_digit = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | 'e');
-    let number = text.trim().trim_end_matches(|c| !is_digit(c));
-    if number.is_empty() {
-        return Some(0.0);
-    }
-    number.parse().ok()
 }
 
 /// How much worse the shown alternative is than the best pose, 1 = equally good.

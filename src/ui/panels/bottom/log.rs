@@ -102,9 +102,9 @@ fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
     }
 }
 
-/// True for a row that shows its whole text: what came out of a match always does.
+/// True for a row that shows its whole text: what came out of a match and what went wrong always do.
 fn is_whole(row: &LogRow, index: usize, opened: &Opened) -> bool {
-    row.step == RESULT || opened.contains(&index)
+    row.step == RESULT || row.level >= NoticeLevel::Warning || opened.contains(&index)
 }
 
 /// One line, or as many as the whole text needs.

@@ -2,8 +2,7 @@
 //! numbers say.
 
 use egui::{
-    Align, Button, CursorIcon, DragValue, Layout, Rect, RichText, Sense, Stroke, Ui, WidgetInfo,
-    pos2, vec2,
+    Align, Button, CursorIcon, Layout, Rect, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
 use super::{Room, WIDTH, bar, menu, overlap};
@@ -14,7 +13,7 @@ use crate::role::Role;
 use crate::text::capital;
 use crate::ui::theme::{Palette, color};
 use crate::ui::viewport::overlay::Overlay;
-use crate::ui::widgets::{length, paint_role_mark, percent, signed};
+use crate::ui::widgets::{length, number_field, paint_role_mark, percent, signed};
 
 /// Width of the histogram beside the bar.
 const HISTOGRAM: f32 = 64.0;
@@ -215,7 +214,7 @@ fn limit_field(
     };
     ui.horizontal(|ui| {
         ui.add_space(HISTOGRAM - 2.0);
-        let field = DragValue::new(&mut value)
+        let field = number_field(&mut value, "")
             .speed(0.01 * scale.max.abs().max(scale.min.abs()))
             .range(-1e9..=1e9)
             .custom_formatter(|value, _| signed(value));
@@ -439,7 +438,7 @@ fn tolerance(
         ui.label(RichText::new("within ±").size(12.0));
         ui.spacing_mut().item_spacing.x = 2.0;
         let mut value = scale.tolerance;
-        let field = DragValue::new(&mut value)
+        let field = number_field(&mut value, "")
             .speed(0.01 * scale.max.abs())
             .range(0.0..=1e9)
             .custom_formatter(|value, _| length(value));
