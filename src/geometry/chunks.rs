@@ -9,7 +9,7 @@ use crate::monitor::{Cancelled, Monitor};
 /// Items per piece. Fixed, so that nothing depends on the number of threads.
 pub(crate) const CHUNK: usize = 1 << 14;
 /// Items that all threads make together between two questions, and that one of them takes at least.
-const WAVE: usize = 8 * CHUNK;
+const WAVE: usize = 4 * CHUNK;
 const LEAST: usize = 1 << 10;
 
 /// Hands consecutive ranges that cover `0..n` to `work`, asking `monitor` before each.

@@ -3,27 +3,48 @@
 use super::bvh::Bvh;
 use super::pack::TrianglePack;
 use super::traverse::{OUT_OF_SIGHT, Walk, reach_of};
-use super::wide::{Link, Pack, Query};
+use super::wide::{Link, Node, Pack, Query, WIDTH};
 use super::{NormalFilter, SurfaceHit};
-use crate::geometry::{Point3, Vector3};
+use crate::geometry::Point3;
 
 /// Triangles near a place that a filter lets through. Its room is used again.
 #[derive(Debug, Clone, Default)]
 pub struct Nearby {
-    leaves: Vec<Leaf>,
+    /// The leaves that hold them, four side by side.
+    leaves: Vec<Leaves>,
     waiting: Vec<Link>,
-    /// The place, in the tree's frame.
-    center: Vector3,
 }
 
-/// A leaf of the tree with triangles near the place.
-#[derive(Debug, Clone, Copy)]
-struct Leaf {
-    number: u32,
-    /// Bit per triangle that counts.
-    marked: u32,
-    /// Distance from the place, in the tree's frame; never too large.
-    distance: f32,
+/// Leaves of the tree with triangles near a place.
+#[derive(Debug, Clone)]
+pub(super) struct Leaves {
+    /// Their boxes and numbers.
+    pub(super) node: Node,
+    /// Of each leaf a bit per triangle that counts.
+    pub(super) marked: [u32; WIDTH],
+}
+
+impl Nearby {
+    /// Adds a leaf, whose box is that of a child of `parent`.
+    fn push(
+        &mut self,
+        number: &mut usize,
+        parent: Option<(&Node, usize)>,
+        (link, marked): (Link, u32),
+    ) {
+        let slot = *number % WIDTH;
+        if slot == 0 {
+            self.leaves.push(Leaves {
+                node: Node::unused(),
+                marked: [0; WIDTH],
+            });
+        }
+        *number += 1;
+        if let Some(leaves) = self.leaves.last_mut() {
+            leaves.node.adopt(slot, link, parent);
+            leaves.marked[slot] = marked;
+        }
+    }
 }
 
 impl Bvh {
@@ -38,39 +59,38 @@ impl Bvh {
     ) -> bool {
         nearby.leaves.clear();
         nearby.waiting.clear();
-        nearby.center = self.frame.to_local(center);
+        let local = self.frame.to_local(center);
         // NaN counts as out of sight.
-        if !(nearby.center.amax() <= OUT_OF_SIGHT && radius.is_finite()) {
+        if !(local.amax() <= OUT_OF_SIGHT && radius.is_finite()) {
             return false;
         }
-        let reach = reach_of(&nearby.center, (radius * self.frame.scale) as f32);
+        let reach = reach_of(&local, (radius * self.frame.scale) as f32);
         let limit = glam::Vec4::splat(reach * reach);
-        let query = Query::at(&nearby.center);
-        nearby.waiting.extend(self.tree.root);
+        let query = Query::at(&local);
+        let mut n_leaves = 0;
+        let mut visit = |nearby: &mut Nearby, link: Link, parent: Option<(&Node, usize)>| {
+            let leaf = match link.leaf() {
+                Ok(leaf) => leaf,
+                Err(_) => return nearby.waiting.push(link),
+            };
+            let pack = &self.tree.packs[leaf];
+            let within = pack.distance_sq(&query).cmple(limit).bitmask();
+            let marked = self.admitted(filter, pack, within);
+            if marked != 0 {
+                nearby.push(&mut n_leaves, parent, (link, marked));
+            }
+        };
+        if let Some(root) = self.tree.root {
+            visit(nearby, root, None);
+        }
         while let Some(link) = nearby.waiting.pop() {
-            match link.leaf() {
-                Err(node) => {
-                    let node = &self.tree.nodes[node];
-                    let mut within = node.distance_sq(&query).cmple(limit).bitmask();
-                    while within != 0 {
-                        let slot = within.trailing_zeros() as usize;
-                        within &= within - 1;
-                        nearby.waiting.push(node.child[slot]);
-                    }
-                }
-                Ok(leaf) => {
-                    let pack = &self.tree.packs[leaf];
-                    let distances = pack.distance_sq(&query);
-                    let within = distances.cmple(limit).bitmask();
-                    let marked = self.admitted(filter, pack, within);
-                    if marked != 0 {
-                        nearby.leaves.push(Leaf {
-                            number: leaf as u32,
-                            marked,
-                            distance: nearest_marked(&distances.to_array(), marked),
-                        });
-                    }
-                }
+            let Err(node) = link.leaf() else { continue };
+            let node = &self.tree.nodes[node];
+            let mut within = node.distance_sq(&query).cmple(limit).bitmask();
+            while within != 0 {
+                let slot = within.trailing_zeros() as usize;
+                within &= within - 1;
+                visit(nearby, node.child[slot], Some((node, slot)));
             }
         }
         true
@@ -89,28 +109,16 @@ impl Bvh {
         let limit = max_distance * self.frame.scale;
         let admit = |_: &TrianglePack, marked: u32| marked;
         let walk = Walk::new(&self.tree, &local, limit, admit, exact);
-        // A leaf farther from the place than this is farther from the query than the limit.
-        let apart = (local - nearby.center).norm();
-        let reach = reach_of(&local, (limit + apart) as f32);
-        let leaves = nearby.leaves.iter().filter(|leaf| leaf.distance <= reach);
-        let leaves = leaves.map(|leaf| (leaf.number as usize, leaf.marked));
-        let nearest = walk.run_over(leaves);
+        let nearest = walk.run_over(&nearby.leaves);
         nearest.map(|nearest| SurfaceHit::on_triangle(nearest.id, nearest.found))
     }
-}
-
-fn nearest_marked(distances_sq: &[f32; 4], marked: u32) -> f32 {
-    let all = distances_sq.iter().enumerate();
-    let marked = all.filter(|(slot, _)| marked & (1 << slot) != 0);
-    let least = marked.fold(f32::INFINITY, |least, (_, distance)| least.min(*distance));
-    least.sqrt()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::{BruteForce, ClosestPoint};
     use super::*;
-    use crate::geometry::TriMesh;
+    use crate::geometry::{TriMesh, Vector3};
 
     /// A wavy sheet far from the origin with every fourth triangle turned over.
     fn sheet() -> TriMesh {

@@ -130,20 +130,31 @@ fn clamp_unit(t: Vec4) -> Vec4 {
 
 impl TrianglePack {
     fn set(&mut self, slot: usize, corners: &[Vector3; 3]) {
-        let length = |i: usize| (corners[(i + 1) % 3] - corners[i]).norm_squared();
-        let start = (1..3).fold(0, |best, i| if length(i) > length(best) { i } else { best });
+        let side_sq = [0, 1, 2].map(|i| (corners[(i + 1) % 3] - corners[i]).norm_squared());
+        let longer = |best, i| if side_sq[i] > side_sq[best] { i } else { best };
+        let start = (1..3).fold(0, longer);
         let [a, b, c] = [0, 1, 2].map(|i| corners[(start + i) % 3]);
-        let ab = b - a;
-        let first = ab.try_normalize(0.0).unwrap_or_else(Vector3::x);
-        let across = (c - a) - first * first.dot(&(c - a));
-        // Below this, `across` is rounding and may point anywhere, even along `first`.
-        let tiny = ab.norm() * 1e-14;
-        let second = across.try_normalize(tiny).map_or_else(
-            || any_perpendicular(&first),
+        let [ab_sq, bc_sq, ac_sq] = [0, 1, 2].map(|i| side_sq[(start + i) % 3]);
+        let (length, ac) = (ab_sq.sqrt(), c - a);
+        let first = if length > 0.0 {
+            (b - a) * (1.0 / length)
+        } else {
+            Vector3::x()
+        };
+        let cx = ac.dot(&first);
+        let across = ac - first * cx;
+        let height = across.norm();
+        let second = if height > length * 1e-6 {
+            across * (1.0 / height)
+        } else if height > length * 1e-14 {
             // Once more, because what cancelled above left `across` slightly off.
-            |v| (v - first * first.dot(&v)).normalize(),
-        );
-        let (cx, cy) = ((c - a).dot(&first), (c - a).dot(&second).max(0.0));
+            let v = across * (1.0 / height);
+            (v - first * first.dot(&v)).normalize()
+        } else {
+            // `across` is rounding and may point anywhere, even along `first`.
+            any_perpendicular(&first)
+        };
+        let cy = ac.dot(&second).max(0.0);
         let inverse = |length_sq: f64| {
             if length_sq < NO_LENGTH * NO_LENGTH {
                 0.0
@@ -156,11 +167,11 @@ impl TrianglePack {
             self.first_axis[axis][slot] = first[axis] as f32;
             self.second_axis[axis][slot] = second[axis] as f32;
         }
-        self.b[slot] = ab.norm() as f32;
+        self.b[slot] = length as f32;
         self.c[0][slot] = cx as f32;
         self.c[1][slot] = cy as f32;
-        self.inv_bc[slot] = inverse((c - b).norm_squared());
-        self.inv_ac[slot] = inverse((c - a).norm_squared());
+        self.inv_bc[slot] = inverse(bc_sq);
+        self.inv_ac[slot] = inverse(ac_sq);
     }
 }
 

@@ -1,8 +1,10 @@
 //! Rays through the tree, for picking.
 
+use glam::Vec4;
+
 use super::Bvh;
 use super::ClosestPoint;
-use super::wide::{Link, Node, WIDTH};
+use super::wide::{Link, Node};
 use crate::geometry::{Point3, Vector3};
 
 /// Where a ray first meets the surface.
@@ -40,18 +42,19 @@ impl Bvh {
             return None;
         }
         // Boxes are in local units; a uniform scale leaves the direction as it is.
-        let local = self.frame.to_local(origin);
-        let inverse = direction.map(|x| 1.0 / x);
+        let slabs = Slabs::new(&self.frame.to_local(origin), &direction);
         // A hair beyond, because entries are rounded too.
-        let reach = |distance: f64| distance * self.frame.scale * (1.0 + 1e-9) + 1e-9;
+        let reach = |distance: f64| (distance * self.frame.scale * (1.0 + 1e-6) + 1e-9) as f32;
         let mut limit = reach(max_distance);
         let mut best: Option<RayHit> = None;
-        let mut waiting: Vec<(f64, Link)> = self.tree.root.map(|r| (0.0, r)).into_iter().collect();
-        while let Some((entry, link)) = waiting.pop() {
-            if entry > limit {
+        // The distance's bits above the link's, so that entries sort as numbers.
+        let mut waiting: Vec<u64> = Vec::with_capacity(self.tree.stack_size);
+        waiting.extend(self.tree.root.map(|root| u64::from(root.0)));
+        while let Some(next) = waiting.pop() {
+            if f32::from_bits((next >> 32) as u32) > limit {
                 continue;
             }
-            match link.leaf() {
+            match Link(next as u32).leaf() {
                 Ok(leaf) => {
                     for id in self.tree.packs[leaf].real_ids() {
                         let hit = self.meet(origin, &direction, id);
@@ -62,14 +65,8 @@ impl Bvh {
                 }
                 Err(node) => {
                     let first = waiting.len();
-                    enter(
-                        &self.tree.nodes[node],
-                        &local,
-                        &inverse,
-                        limit,
-                        &mut waiting,
-                    );
-                    waiting[first..].sort_by(|a, b| b.0.total_cmp(&a.0));
+                    slabs.enter(&self.tree.nodes[node], limit, &mut waiting);
+                    waiting[first..].sort_unstable_by(|a, b| b.cmp(a));
                 }
             }
         }
@@ -112,35 +109,49 @@ fn nearer(best: Option<RayHit>, hit: Option<RayHit>) -> Option<RayHit> {
     }
 }
 
-/// Appends the children whose boxes the ray enters before `limit`, with the distance at which it does
-/// (slab test, Kay and Kajiya 1986). Boxes are a little larger than what they hold, which covers the
-/// rounding here.
-fn enter(
-    node: &Node,
-    origin: &Vector3,
-    inverse: &Vector3,
-    limit: f64,
-    entered: &mut Vec<(f64, Link)>,
-) {
-    for slot in 0..WIDTH {
-        let Some([min, max]) = node.bounds(slot) else {
-            continue;
+/// A ray against four boxes at once (slab test, Kay and Kajiya 1986). It may enter a box that it passes
+/// closely by, and never passes one that it enters: boxes grow by all that rounding can take.
+struct Slabs {
+    /// For each axis the origin and one over the direction.
+    axes: [(Vec4, Vec4); 3],
+    grown: Vec4,
+}
+
+/// More than the rounding of a distance along a ray.
+const ROUNDING: f32 = 1e-6;
+
+impl Slabs {
+    fn new(origin: &Vector3, direction: &Vector3) -> Self {
+        let axis = |i: usize| {
+            // Along a slab the ray is in it everywhere or nowhere, and so it is with a large number.
+            let inverse = (1.0 / direction[i]).clamp(-1e30, 1e30) as f32;
+            (Vec4::splat(origin[i] as f32), Vec4::splat(inverse))
         };
-        let (mut from, mut to) = (0.0_f64, limit);
-        for axis in 0..3 {
-            let to_min = f64::from(min[axis]) - origin[axis];
-            let to_max = f64::from(max[axis]) - origin[axis];
-            if inverse[axis].is_finite() {
-                let (s, t) = (to_min * inverse[axis], to_max * inverse[axis]);
-                from = from.max(s.min(t));
-                to = to.min(s.max(t));
-            } else if to_min > 0.0 || to_max < 0.0 {
-                // Parallel to the slab and outside it.
-                to = f64::NEG_INFINITY;
-            }
+        Self {
+            axes: [0, 1, 2].map(axis),
+            grown: Vec4::splat(4.0 * f32::EPSILON * (2.0 + origin.amax() as f32)),
         }
-        if from <= to {
-            entered.push((from, node.child[slot]));
+    }
+
+    /// Appends the children whose boxes the ray enters before `limit`, with the distance at which it
+    /// does.
+    #[inline]
+    fn enter(&self, node: &Node, limit: f32, entered: &mut Vec<u64>) {
+        let (mut from, mut to) = (Vec4::ZERO, Vec4::splat(limit));
+        for (axis, (origin, inverse)) in self.axes.iter().enumerate() {
+            let [min, max] = node.slabs(axis);
+            let s = (min - self.grown - *origin) * *inverse;
+            let t = (max + self.grown - *origin) * *inverse;
+            from = from.max(s.min(t));
+            to = to.min(s.max(t));
+        }
+        let from = from * (1.0 - ROUNDING);
+        let mut within = from.cmple(to * (1.0 + ROUNDING)).bitmask() & node.used();
+        let from = from.to_array();
+        while within != 0 {
+            let slot = within.trailing_zeros() as usize;
+            within &= within - 1;
+            entered.push(u64::from(from[slot].to_bits()) << 32 | u64::from(node.child[slot].0));
         }
     }
 }

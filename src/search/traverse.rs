@@ -5,6 +5,9 @@
 //! in `f64` picks among them. So the answer is the same as if every item had been asked in `f64`,
 //! whatever the shape of the tree.
 
+use glam::Vec4;
+
+use super::nearby::Leaves;
 use super::wide::{Link, Pack, Query, WIDTH, WideTree};
 use crate::geometry::Vector3;
 
@@ -115,13 +118,34 @@ where
         self.best
     }
 
-    /// The winner among the marked items of some leaves.
-    pub(super) fn run_over(
-        mut self,
-        leaves: impl Iterator<Item = (usize, u32)>,
-    ) -> Option<Nearest<T>> {
-        for (leaf, marked) in leaves {
-            self.visit(leaf, marked);
+    /// The winner among the marked items of some leaves: first of the nearest one, then of those whose
+    /// boxes are within reach.
+    pub(super) fn run_over(mut self, leaves: &[Leaves]) -> Option<Nearest<T>> {
+        let mut first = (f32::INFINITY, 0, 0);
+        for (at, few) in leaves.iter().enumerate() {
+            let distances = few.node.distance_sq(&self.query);
+            if distances.min_element() < first.0 {
+                first = (distances.min_element(), at, distances.min_position());
+            }
+        }
+        let visit = |walk: &mut Self, at: usize, slot: usize| {
+            if let Ok(leaf) = leaves[at].node.child[slot].leaf() {
+                walk.visit(leaf, leaves[at].marked[slot]);
+            }
+        };
+        if !leaves.is_empty() {
+            visit(&mut self, first.1, first.2);
+        }
+        for (at, few) in leaves.iter().enumerate() {
+            let distances = few.node.distance_sq(&self.query);
+            let mut within = distances.cmple(Vec4::splat(self.bound_sq)).bitmask();
+            while within != 0 {
+                let slot = within.trailing_zeros() as usize;
+                within &= within - 1;
+                if (at, slot) != (first.1, first.2) {
+                    visit(&mut self, at, slot);
+                }
+            }
         }
         self.decide();
         self.best
@@ -186,7 +210,7 @@ where
     fn visit(&mut self, leaf: usize, marked: u32) {
         let pack = &self.tree.packs[leaf];
         let distances = pack.distance_sq(&self.query);
-        let within = marked & distances.cmple(glam::Vec4::splat(self.bound_sq)).bitmask();
+        let within = marked & distances.cmple(Vec4::splat(self.bound_sq)).bitmask();
         if within == 0 {
             return;
         }
