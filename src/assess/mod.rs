@@ -62,6 +62,12 @@ pub struct AssessSettings {
     pub millimetre: Option<f64>,
 }
 
+impl AssessSettings {
+    fn length_of_millimetre(&self) -> f64 {
+        self.millimetre.unwrap_or(1.0)
+    }
+}
+
 /// Everything that speaks for or against a pose.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Assessment {
@@ -168,7 +174,9 @@ pub fn assess(
         let other = outcome.alternatives.first();
         ambiguity.twin = other.map(|a| Twin::of(source, pose, &a.target_from_source));
     }
-    let Distances { noise, .. } = Distances::of(source, target, settings);
+    let Distances {
+        noise, tolerance, ..
+    } = Distances::of(source, target, settings);
     let (uncertainty, shape) = statements(source, target, pose, noise, settings);
     let mut assessment = Assessment {
         verdict: Verdict::Good,
@@ -182,13 +190,19 @@ pub fn assess(
         pose: Some(PoseStatement {
             kind: PoseKind::Certain,
             uncertainty,
-            tolerance: shape.tolerance.springback,
+            tolerance: tolerance.of_pose(shape.springback, settings.length_of_millimetre()),
         }),
         shape: None,
     };
-    let half = 0.5 * target.measures().diagonal;
+    let most_scaled = tolerance.springback / (0.5 * target.measures().diagonal);
     let mirrored = mirrored_statement(source, target, outcome, settings);
-    verdict::decide(&mut assessment, &shape, mirrored.as_ref(), outcome, half);
+    verdict::decide(
+        &mut assessment,
+        &shape,
+        mirrored.as_ref(),
+        outcome,
+        most_scaled,
+    );
     assessment.shape = Some(shape);
     monitor.progress("verify", 2, Some(2));
     Ok(assessment)
@@ -230,6 +244,8 @@ fn statements(
         near,
         ..
     } = Distances::of(source, target, settings);
+    let millimetre = settings.length_of_millimetre();
+    let tolerance = tolerance.for_bends(target.measures().diagonal, millimetre);
     let Some(contacts) = Contacts::find(source, target, pose, reach) else {
         return (None, ShapeStatement::nothing_met(tolerance));
     };
@@ -273,7 +289,7 @@ fn tolerance_of(target: &Surface, settings: &AssessSettings) -> ShapeTolerance {
         settings.shape_tolerance,
         settings.thickness,
         target.measures().diagonal,
-        settings.millimetre.unwrap_or(1.0),
+        settings.length_of_millimetre(),
     );
     usual.at_least(settings.allowance)
 }

@@ -26,6 +26,10 @@ pub(super) const LEAST_OWN: f64 = 0.02;
 /// millimetres.
 const SPRINGBACK_SHARE: f64 = 0.005;
 const SPRINGBACK_MOST: f64 = 5.0;
+/// Springback does not shrink with the part: of small ones so many millimetres are accepted, at most a share
+/// of the diagonal.
+const SPRINGBACK_OF_SMALL: f64 = 2.5;
+const SHARE_OF_SMALL: f64 = 0.02;
 /// Remainder that is accepted at least, in millimetres.
 const REMAINDER_LEAST: f64 = 1.0;
 /// Where fewer of the smaller part's rims lie beside rims of the other, the parts are trimmed differently
@@ -66,6 +70,24 @@ impl ShapeTolerance {
             remainder,
             springback: smooth.max(remainder),
         }
+    }
+
+    /// The tolerance that bends are judged with, which leaves room for the springback of small parts. The
+    /// search and the pose keep to the narrower one.
+    #[must_use]
+    pub(super) fn for_bends(self, diagonal: f64, millimetre: f64) -> Self {
+        let of_small = (SPRINGBACK_OF_SMALL * millimetre).min(SHARE_OF_SMALL * diagonal);
+        Self {
+            springback: self.springback.max(of_small),
+            ..self
+        }
+    }
+
+    /// Uncertainty up to which a pose is certain. The pose of a part that is bent by `bend` is known no better
+    /// than that, which is stated with the shape and judged there.
+    pub(super) fn of_pose(&self, bend: f64, millimetre: f64) -> f64 {
+        let most = self.springback.max(SPRINGBACK_MOST * millimetre);
+        (self.springback + bend).min(most)
     }
 
     /// The tolerance with both limits at least `allowance`.

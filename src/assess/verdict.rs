@@ -33,13 +33,13 @@ pub(super) const OPPOSITE_HAND: f64 = 0.8;
 const NEAR_MIRROR: f64 = 0.98;
 
 /// Sets the verdict, its reasons, the most severe first, and the statement about the pose. `mirrored` is the
-/// statement about the shape of the opposite hand, `half` half of the target's diagonal.
+/// statement about the shape of the opposite hand, `most_scaled` how far the scale of the pairs may be off.
 pub(super) fn decide(
     assessment: &mut Assessment,
     shape: &ShapeStatement,
     mirrored: Option<&ShapeStatement>,
     outcome: &MatchOutcome,
-    half: f64,
+    most_scaled: f64,
 ) {
     let of_pose = [
         ending(outcome),
@@ -50,7 +50,7 @@ pub(super) fn decide(
     let of_shape = [
         hand(assessment, shape, mirrored),
         unit(assessment),
-        scale(assessment, shape, half),
+        scale(assessment, most_scaled),
         overlap(assessment, shape),
     ];
     let found = of_pose.into_iter().chain(of_shape).flatten();
@@ -120,10 +120,9 @@ fn unit(assessment: &Assessment) -> Option<Reason> {
 }
 
 /// A scale that would move the ends of the part by more than springback may.
-fn scale(assessment: &Assessment, shape: &ShapeStatement, half: f64) -> Option<Reason> {
+fn scale(assessment: &Assessment, most: f64) -> Option<Reason> {
     let scale = assessment.scale_check.pair_scale;
-    let at_the_ends = (scale - 1.0).abs() * half;
-    (at_the_ends > shape.tolerance.springback).then_some(Reason::PairScale { scale })
+    ((scale - 1.0).abs() > most).then_some(Reason::PairScale { scale })
 }
 
 fn overlap(assessment: &Assessment, shape: &ShapeStatement) -> Option<Reason> {

@@ -61,6 +61,23 @@ fn bending_is_springback_and_nothing_else() {
 }
 
 #[test]
+fn springback_does_not_shrink_with_the_part() {
+    let plain = hat(40, |p| p);
+    let tolerance = ShapeTolerance::new(None, Some(1.5), plain.measures().diagonal, 1.0);
+    let shape = statement(&hat(37, bent(4.5)), &plain);
+    assert_eq!(shape.kind, ShapeKind::Deformed, "{shape:?}");
+    assert!(shape.reasons.is_empty(), "{shape:?}");
+    assert!(shape.springback > tolerance.springback, "{shape:?}");
+    // The pose of a straight part has the narrower limit, that of a bent one its bend besides.
+    assert_eq!(tolerance.of_pose(0.0, 1.0), tolerance.springback);
+    assert_eq!(tolerance.of_pose(0.5, 1.0), tolerance.springback + 0.5);
+    assert_eq!(tolerance.of_pose(9.0, 1.0), SPRINGBACK_MOST);
+    // Of a part of a hand's width two and a half millimetres are too much.
+    let small = ShapeTolerance::new(None, None, 80.0, 1.0).for_bends(80.0, 1.0);
+    assert!((small.springback - 1.6).abs() < 1e-12);
+}
+
+#[test]
 fn a_longer_part_and_a_higher_part_are_other_versions() {
     let plain = hat(40, |p| p);
     let longer = hat(40, |p| Point3::new(1.02 * p.x, p.y, p.z));
