@@ -12,7 +12,8 @@ use shapematch::samples::SampleVariant;
 
 use super::app::{Window, write_bracket};
 
-fn really(kind: JobKind) -> Result<JobOutput, String> {
+/// Does a job as the worker does.
+pub fn really(kind: JobKind) -> Result<JobOutput, String> {
     let done = PipelineRunner.run(kind, &Monitor::silent());
     done.map_err(|error| error.to_string())
 }

@@ -7,20 +7,14 @@ use std::process::Command;
 
 use serde_json::Value;
 use shapematch::app::{Action, FileCommand, PartCommand};
-use shapematch::jobs::{JobKind, JobOutput, PipelineRunner, Runner as _};
-use shapematch::monitor::Monitor;
 use shapematch::role::Role;
 use shapematch::samples::SampleVariant;
 
 use super::app::{Window, write_bracket};
+use super::find_parts::really;
 
 /// Part id of the sheet in the generated stamped file.
 const SHEET: u64 = 1;
-
-fn really(kind: JobKind) -> Result<JobOutput, String> {
-    let done = PipelineRunner.run(kind, &Monitor::silent());
-    done.map_err(|error| error.to_string())
-}
 
 /// The bracket pair, and `forming.k` with two rigid copies of the sheet above and below it.
 fn write_forming_deck(folder: &Path) {
