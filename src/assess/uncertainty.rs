@@ -245,12 +245,17 @@ fn replicates(contacts: &Contacts, rims: &Rims, noise: f64) -> (Vec<Six>, Option
     let has_offset = is_separable && with_offset[6].abs() > 3.0 * noise;
     let is_offset =
         has_offset && all.left(&with_offset) < OFFSET_LEAVES * motion_alone.left(&plain);
-    let (whole, all, gaps) = if is_offset {
-        let left = gaps.iter().map(|gap| gap + with_offset[6]).collect();
-        (with_offset, all, left)
+    let (whole, all) = if is_offset {
+        (with_offset, all)
     } else {
-        (plain, motion_alone, gaps)
+        (plain, motion_alone)
     };
+    let explained = if has_offset { with_offset } else { plain };
+    let gaps: Vec<f64> = contacts
+        .list
+        .iter()
+        .map(|c| c.gap + contacts.row(&c.point, &c.normal).push(1.0).dot(&explained))
+        .collect();
     let six = |seven: Seven| -> Six { seven.fixed_rows::<6>(0).into() };
     let n = parts.len() as f64;
     let mut motions: Vec<Six> = parts
@@ -264,11 +269,10 @@ fn replicates(contacts: &Contacts, rims: &Rims, noise: f64) -> (Vec<Six>, Option
             six((all.without(&part).solved() - whole) * ((n - 1.0) / n).sqrt())
         })
         .collect();
-    motions.push(six(whole));
-    if has_offset && !is_offset {
-        // Nobody knows whether the offset is one, so that its step counts as well.
-        motions.push(six(with_offset - whole));
-    }
+    // Nobody knows whether an offset that explains only some of the gaps is one: the farther of both poses
+    // counts.
+    let steps = [six(whole), six(explained)];
+    motions.push(steps[usize::from(steps[1].norm() > steps[0].norm())]);
     let matrix = all.matrix.fixed_view::<6, 6>(0, 0).into_owned();
     motions.extend(weak_motions(&matrix, &weights, &gaps, contacts, noise));
     (motions, (!is_separable).then(|| six(offset_as_motion)))
@@ -403,6 +407,35 @@ mod tests {
         assert_eq!(curved.unknown_offset, 0.0);
         assert!(curved.largest < 0.1);
         assert_eq!(uncertainty(&flat, &flat, &still).unknown_offset, 0.0);
+    }
+
+    /// Where it is open whether gaps are an offset, a pose that takes them for one is off by the step to the
+    /// other answer, and a pose that does not by the same step back.
+    #[test]
+    fn an_offset_that_may_be_one_is_counted_once() {
+        let offset = 0.6;
+        let part = gutter(0.3, 0.0);
+        let (places, normals) = (part.mesh().positions(), part.mesh().vertex_normals());
+        let places = places.iter().zip(&normals).map(|(p, normal)| {
+            let wave = 0.8 * (p.x / 12.0).sin();
+            p + normal * (offset + wave)
+        });
+        let lifted = TriMesh::new(places.collect(), part.mesh().triangles().to_vec()).unwrap();
+        let lifted = Surface::new(&lifted, "lifted").unwrap();
+        let as_offset = uncertainty(&lifted, &part, &Similarity::identity());
+        let (sum, squares) = normals.iter().fold((0.0, 0.0), |(sum, squares), normal| {
+            (sum + normal.z, squares + normal.z * normal.z)
+        });
+        let mut as_shift = Similarity::identity();
+        as_shift.translation.z = -offset * sum / squares;
+        let as_shift = uncertainty(&lifted, &part, &as_shift);
+        let ratio = as_offset.largest / as_shift.largest;
+        assert!(
+            (0.85..1.15).contains(&ratio),
+            "{} {}",
+            as_offset.largest,
+            as_shift.largest
+        );
     }
 
     #[test]
