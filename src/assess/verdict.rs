@@ -178,7 +178,10 @@ fn ambiguity(assessment: &Assessment) -> Option<Reason> {
 fn ending(outcome: &MatchOutcome) -> Option<Reason> {
     let termination = outcome.termination;
     match termination {
-        Termination::Converged | Termination::ClosedForm | Termination::MaxIterations => None,
+        Termination::Converged
+        | Termination::ClosedForm
+        | Termination::MaxIterations
+        | Termination::NoGain => None,
         Termination::Stopped => Some(Reason::Stopped),
         Termination::Degenerate | Termination::NoPairs => Some(Reason::EndedEarly { termination }),
     }

@@ -135,6 +135,7 @@ impl Termination {
         match self {
             Self::Converged => "converged",
             Self::MaxIterations => "reached the iteration limit",
+            Self::NoGain => "stopped gaining",
             Self::Stopped => "stopped on request",
             Self::Degenerate => "the pairs fix no motion",
             Self::NoPairs => "no point found a partner",

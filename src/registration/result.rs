@@ -88,7 +88,7 @@ pub struct StartRecord {
     pub last: Similarity,
     /// Every iteration, in order.
     pub iterations: Vec<IterationRecord>,
-    /// Objective of the last iteration.
+    /// Objective of that pose.
     #[serde(with = "any_float")]
     pub score: f64,
     /// Distance that 95 % of its last kept pairs stay below; infinite while it runs.

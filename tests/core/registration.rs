@@ -6,6 +6,8 @@ use shapematch::assess::{AssessSettings, Verdict, assess};
 use shapematch::geometry::{Point3, Pose, Similarity, TriMesh, Vector3};
 use shapematch::monitor::Monitor;
 use shapematch::registration::*;
+use shapematch::samples::disturb::sprung;
+use shapematch::samples::{SamplePart, SampleSettings, generate};
 use shapematch::settings::Choice;
 
 use super::drawn_pan::{everywhere, pan, panel, placement, worst_node};
@@ -55,6 +57,47 @@ fn the_same_mesh_moved_is_found_to_round_off() {
     let part = pan(9.0, 0.2, everywhere);
     let (source, truth) = moved(&part, 5);
     check(&source, &part, &truth, 1e-9 * part.aabb().diagonal());
+}
+
+#[test]
+fn the_last_stage_ends_where_residuals_leave_the_pose_open() {
+    let target = pan(5.0, 0.35, everywhere);
+    let (source, truth) = moved(&noisy(&pan(3.0, 0.0, everywhere), 0.5), 3);
+    let outcome = check(&source, &target, &truth, 0.1);
+    assert_eq!(outcome.termination, Termination::Converged);
+    let iterations = &outcome.starts[outcome.winner].iterations;
+    let n_full = iterations.iter().filter(|it| it.stage == Stage::Full);
+    assert!(n_full.count() < 8);
+}
+
+/// A bent plate slides on the other one while its score rises.
+#[test]
+fn a_start_that_slides_off_ends_at_its_best_pose() {
+    let pair = generate(&SampleSettings {
+        part: SamplePart::Plate,
+        seed: 7,
+        crash_size: Some(4.0),
+        stamped_size: Some(4.0),
+        ..SampleSettings::default()
+    });
+    let stamped = sprung(&pair.stamped.to_trimesh(), 1.0, 7);
+    let crash = pair.crash.to_trimesh();
+    let outcome = run(&stamped, &crash, &MatchSettings::default());
+    let has_no_gain = |start: &&StartRecord| start.termination == Some(Termination::NoGain);
+    let mut n_found = 0;
+    for start in outcome.starts.iter().filter(has_no_gain) {
+        let refined = start.iterations.iter();
+        let refined = refined.filter(|it| it.stage == Stage::Refine);
+        let best = refined.min_by(|a, b| a.objective.total_cmp(&b.objective));
+        let best = best.unwrap();
+        assert_eq!(start.score, best.objective);
+        assert_eq!(
+            worst_node(&stamped, &start.last, &best.target_from_source),
+            0.0
+        );
+        n_found += 1;
+    }
+    assert!(n_found > 0);
 }
 
 /// One way of laying the panel on itself.

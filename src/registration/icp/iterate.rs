@@ -49,6 +49,15 @@ impl Data {
     }
 }
 
+/// A pose on the way and what it is worth.
+#[derive(Debug, Clone, Copy)]
+struct Standing {
+    model_from_data: Similarity,
+    score: f64,
+    fraction: f64,
+    rmse: f64,
+}
+
 /// One run from one start, to be continued at will.
 #[derive(Debug, Clone)]
 pub(crate) struct Run {
@@ -64,6 +73,8 @@ pub(crate) struct Run {
     /// Time the iterations took.
     pub(crate) took: Duration,
     stage_iterations: usize,
+    /// The pose of the stage with the lowest score.
+    best: Option<Standing>,
     damping: f64,
     /// Points farther away than this found no partner worth keeping in the last iteration.
     reach: f64,
@@ -83,6 +94,7 @@ impl Run {
             termination: None,
             took: Duration::ZERO,
             stage_iterations: 0,
+            best: None,
             damping: MIN_DAMPING,
             reach: f64::INFINITY,
             pairs: Vec::new(),
@@ -95,10 +107,30 @@ impl Run {
         self.score = f64::INFINITY;
         self.termination = None;
         self.stage_iterations = 0;
+        self.best = None;
         self.damping = MIN_DAMPING;
         self.reach = f64::INFINITY;
         self.pairs.clear();
         self.kept.clear();
+    }
+
+    /// Ends the run at the pose of its stage with the lowest score.
+    pub(crate) fn end_at_best(&mut self) {
+        let Some(best) = self.best else {
+            return;
+        };
+        self.model_from_data = best.model_from_data;
+        self.score = best.score;
+        self.fraction = best.fraction;
+        self.rmse = best.rmse;
+        self.termination = Some(Termination::NoGain);
+    }
+
+    /// By how much the score fell over the last `n` iterations, negative where it rose; `None` if the stage
+    /// is younger.
+    pub(crate) fn gain(&self, n: usize) -> Option<f64> {
+        let before = (self.stage_iterations > n).then(|| self.records.len() - 1 - n)?;
+        Some(self.records[before].objective - self.score)
     }
 
     /// How far the kept pairs lie apart. Infinite before the first iteration.
@@ -261,7 +293,10 @@ fn iterate(run: &mut Run, input: &StageInput<'_>, monitor: &MatchMonitor<'_>) {
     };
     run.model_from_data = orthonormal(&increment.after(&pose));
     let motion = run.model_from_data.max_displacement(&pose, &data.corners);
-    if motion <= rules.motion_tolerance {
+    let tolerance = rules
+        .motion_tolerance
+        .max(rules.tolerance_of_rmse * run.rmse);
+    if motion <= tolerance {
         run.termination = Some(Termination::Converged);
     } else if run.stage_iterations >= rules.max_iterations {
         run.termination = Some(Termination::MaxIterations);
@@ -275,6 +310,14 @@ fn record(run: &mut Run, selected: &Selected, input: &StageInput<'_>, monitor: &
     run.score = selected.objective;
     run.fraction = selected.fraction;
     run.rmse = selected.mse.sqrt();
+    if run.best.is_none_or(|best| run.score < best.score) {
+        run.best = Some(Standing {
+            model_from_data: run.model_from_data,
+            score: run.score,
+            fraction: run.fraction,
+            rmse: run.rmse,
+        });
+    }
     let record = IterationRecord {
         stage: input.rules.stage,
         target_from_source: input.frames.target_from_source(&run.model_from_data),

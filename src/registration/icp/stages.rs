@@ -53,8 +53,10 @@ pub(crate) struct StageRules {
     /// Partners are looked for at least this far away, and farther only as far as the kept ones ask for;
     /// `None` where all are looked for.
     pub(crate) least_reach: Option<f64>,
-    /// Stop when a step moves no corner by more than this.
+    /// Stop when a step moves no corner by more than this …
     pub(crate) motion_tolerance: f64,
+    /// … or by more than this share of the distance that the kept pairs lie apart.
+    pub(crate) tolerance_of_rmse: f64,
     pub(crate) max_iterations: usize,
 }
 
@@ -97,6 +99,8 @@ struct StageRow {
     max_iterations: ByOrder<Option<usize>>,
     /// Converged when a step moves no corner by more than so many `motion_tolerance`s.
     tolerance: ByOrder<f64>,
+    /// … or by no more than this share of what the kept pairs leave.
+    of_rmse: ByOrder<f64>,
     /// The pose is near: points far beyond those that are kept need no partner.
     is_near: bool,
     /// Far from the pose a free scale shrinks the data until it lies anywhere on the model.
@@ -112,6 +116,7 @@ const STAGES: [StageRow; 5] = [
         max_overhang: f64::INFINITY,
         max_iterations: ByOrder::both(Some(20)),
         tolerance: ByOrder::both(20.0),
+        of_rmse: ByOrder::both(0.0),
         is_near: false,
         keeps_scale: true,
     },
@@ -129,6 +134,7 @@ const STAGES: [StageRow; 5] = [
             with_normals: Some(60),
         },
         tolerance: ByOrder::both(1.0),
+        of_rmse: ByOrder::both(0.0),
         is_near: true,
         keeps_scale: false,
     },
@@ -147,6 +153,10 @@ const STAGES: [StageRow; 5] = [
             point_to_point: 1.0,
             with_normals: 0.01,
         },
+        of_rmse: ByOrder {
+            point_to_point: 0.0,
+            with_normals: SETTLED,
+        },
         is_near: true,
         keeps_scale: false,
     },
@@ -157,6 +167,7 @@ const STAGES: [StageRow; 5] = [
         max_overhang: f64::INFINITY,
         max_iterations: ByOrder::both(None),
         tolerance: ByOrder::both(1.0),
+        of_rmse: ByOrder::both(0.0),
         is_near: false,
         keeps_scale: false,
     },
@@ -167,6 +178,7 @@ const STAGES: [StageRow; 5] = [
         max_overhang: f64::INFINITY,
         max_iterations: ByOrder::both(None),
         tolerance: ByOrder::both(1.0),
+        of_rmse: ByOrder::both(0.0),
         is_near: false,
         keeps_scale: false,
     },
@@ -181,6 +193,9 @@ impl Stage {
     }
 }
 
+/// A step below this share of the residuals moves the pose by less than they leave it open: residuals of
+/// springback are alike over patches, so that the mean of all is not exact to more than an eighth of one.
+const SETTLED: f64 = 0.05;
 /// λ with a wide basin (Phillips, Liu, Tomasi 2007: a first run with 3 widens the basin).
 const WIDE_LAMBDA: f64 = 3.0;
 /// Floor with a wide basin, as a fraction of the mean edge length.
@@ -279,6 +294,7 @@ pub(crate) fn stage_rules(
         },
         least_reach: (row.is_near && on_triangles).then_some(edge),
         motion_tolerance: settings.motion_tolerance * row.tolerance.of(settings.metric) * edge,
+        tolerance_of_rmse: row.of_rmse.of(settings.metric),
         max_iterations: row
             .max_iterations
             .of(settings.metric)

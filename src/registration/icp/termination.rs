@@ -10,6 +10,8 @@ pub enum Termination {
     Converged,
     /// The iteration cap was reached first.
     MaxIterations,
+    /// More iterations would not have helped: the score rose, or was too far behind that of another start.
+    NoGain,
     /// The user asked to stop; the pose is the best so far.
     Stopped,
     /// The kept pairs fix no motion (too few of them, or all on one line).

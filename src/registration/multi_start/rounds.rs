@@ -65,8 +65,14 @@ const PRESELECTION: Round = Round {
 };
 /// A candidate whose score is this many times the best one's is dropped at the end of a round.
 const CLEARLY_BEHIND: f64 = 8.0;
-/// Iterations of the refinement after which candidates that are clearly behind are dropped.
+/// Iterations of the refinement after each of which candidates that are clearly behind are dropped.
 const PRUNE_AFTER: usize = 10;
+/// A candidate is refined no further if it would still score so many times as much as the best one when it
+/// went on gaining to the end as it does now: another pose that does is no near alternative.
+const WITHIN_SIGHT: f64 = 1.5;
+/// Nor if its score rose by this share since the last look: it slides along a part that does not hold it,
+/// away from the best pose it had.
+const SLIDES_OFF: f64 = 0.01;
 /// Iterations of a closer look at candidates that do not resemble the model.
 const LOOK_ITERATIONS: usize = 20;
 
@@ -182,11 +188,14 @@ pub(crate) fn refine(
     };
     enter_stage(candidates, input, monitor);
     let most = most.min(rules.max_iterations);
-    let first = PRUNE_AFTER.min(most);
-    for n_iterations in [first, most - first] {
+    let mut done = 0;
+    while done < most {
+        let n_iterations = PRUNE_AFTER.min(most - done);
         advance_all(choice, candidates, input, n_iterations, monitor)?;
+        done += n_iterations;
         merge(choice, candidates, monitor);
-        prune(choice, candidates, cut(n_coarse + n_iterations), monitor);
+        prune(choice, candidates, cut(n_coarse + done), monitor);
+        end_without_gain(candidates, most - done);
     }
     Ok(())
 }
@@ -285,6 +294,25 @@ fn prune(
     for (rank, i) in order.into_iter().enumerate() {
         if rank >= cut.keep || (rank > 0 && candidates[i].run.score > limit) {
             candidates[i].end(dropped, choice, monitor);
+        }
+    }
+}
+
+/// Ends the runs that more iterations would not help, of which `n_left` are left.
+fn end_without_gain(candidates: &mut [Candidate], n_left: usize) {
+    let Some(&best) = ranking(candidates).first() else {
+        return;
+    };
+    let limit = WITHIN_SIGHT * candidates[best].run.score;
+    for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
+        let run = &mut candidate.run;
+        let Some(gain) = run.gain(PRUNE_AFTER - 1) else {
+            continue;
+        };
+        let slides_off = gain < -SLIDES_OFF * run.score;
+        let could_gain = gain.max(0.0) * n_left as f64 / PRUNE_AFTER as f64;
+        if run.termination.is_none() && (slides_off || run.score - could_gain > limit) {
+            run.end_at_best();
         }
     }
 }
