@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::intake::Intake;
-use super::legality::{Marks, Refusal, keeps_orientation, link_condition};
+use super::legality::{Refusal, Ring, keeps_orientation, link_condition};
 use super::quadric::{EdgeQuadric, Quadric, pull_of};
 use super::queue::{Entry, Queue, key_of, later_than};
 use super::settings::{Placement, SimplifySettings, Speed, StopReason};
@@ -67,9 +67,7 @@ pub(super) struct Decimator {
     boundary_weight: f64,
     stiffness: f64,
     surface: Surface,
-    marks: Marks,
-    /// The triangles around the edge at hand that stay, with their normals after the collapse.
-    turned: Vec<(u32, Vector3<f64>)>,
+    ring: Ring,
     queue: Queue,
     closing: bool,
     refused: Refused,
@@ -90,9 +88,8 @@ impl Decimator {
             may_close_loops: settings.may_close_loops,
             boundary_weight: settings.boundary_weight,
             stiffness: settings.stiffness,
-            marks: Marks::new(surface.vertices.len()),
+            ring: Ring::new(surface.vertices.len()),
             surface,
-            turned: Vec::new(),
             queue: Queue::new(),
             closing: false,
             refused: Refused::default(),
@@ -201,11 +198,10 @@ impl Decimator {
     }
 
     fn refusal(&mut self, [a, b]: [u32; 2], position: &Vector3<f64>) -> Option<Refusal> {
-        if !link_condition(&self.surface, &mut self.marks, a, b, self.closing) {
+        if !link_condition(&self.surface, &mut self.ring, a, b, self.closing) {
             return Some(Refusal::Link);
         }
-        let (ends, turned) = ([a, b], &mut self.turned);
-        if !keeps_orientation(&self.surface, ends, position, self.min_cosine, turned) {
+        if !keeps_orientation(&self.surface, &mut self.ring, position, self.min_cosine) {
             return Some(Refusal::Flip);
         }
         None
@@ -214,8 +210,9 @@ impl Decimator {
     fn collapse(&mut self, kept: u32, removed: u32, price: &Price) {
         let third = self.third_of_loop(kept, removed);
         let kind = self.surface.kind(kept).max(self.surface.kind(removed));
-        self.renew_quadrics(kept, removed);
-        self.surface.collapse(kept, removed, price.position);
+        self.renew_quadrics(kept);
+        self.surface
+            .collapse(&self.ring, [kept, removed], price.position);
         self.surface.vertices[kept as usize].kind = kind;
         self.collapses.push(Collapse {
             kept,
@@ -242,36 +239,32 @@ impl Decimator {
 
     /// Gives the triangles that stay around a collapsed edge their new pulls, and the vertices they
     /// belong to their new quadrics: the merged vertex, and if it is to be exact all its neighbours.
-    fn renew_quadrics(&mut self, kept: u32, removed: u32) {
-        let is_exact = self.is_exact;
+    fn renew_quadrics(&mut self, kept: u32) {
+        let Surface {
+            vertices, faces, ..
+        } = &mut self.surface;
         let stiffness = self.stiffness;
-        if is_exact {
-            for i in 0..self.surface.around(removed).len() {
-                let face = self.surface.faces[self.surface.around(removed)[i] as usize];
-                let [next, last] = face.others(removed);
-                if next == kept || last == kept {
-                    let third = (next ^ last ^ kept) as usize;
-                    let quadric = Quadric::triangle(&face.pull, stiffness);
-                    self.surface.vertices[third].quadric.subtract(&quadric);
-                }
+        if self.is_exact {
+            for &(face, opposite) in self.ring.gone() {
+                let quadric = Quadric::triangle(&faces[face as usize].pull, stiffness);
+                vertices[opposite as usize].quadric.subtract(&quadric);
             }
         }
         let mut sum = Quadric::default();
-        for (t, twice_area) in &self.turned {
-            let face = &mut self.surface.faces[*t as usize];
-            let before = std::mem::replace(&mut face.pull, pull_of(twice_area));
+        for staying in self.ring.stay() {
+            let face = &mut faces[staying.face as usize];
+            let before = std::mem::replace(&mut face.pull, pull_of(&staying.twice_area));
             let quadric = Quadric::triangle(&face.pull, stiffness);
             sum.add(&quadric);
-            if is_exact {
+            if self.is_exact {
                 let mut change = quadric;
                 change.subtract(&Quadric::triangle(&before, stiffness));
-                for v in face.corners {
-                    // The merged vertices get a change as well, which the sum then replaces.
-                    self.surface.vertices[v as usize].quadric.add(&change);
+                for v in staying.others {
+                    vertices[v as usize].quadric.add(&change);
                 }
             }
         }
-        self.surface.vertices[kept as usize].quadric = sum;
+        vertices[kept as usize].quadric = sum;
     }
 
     /// Makes up for the updates that were left out, and leaves out none from now on.

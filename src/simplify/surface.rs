@@ -1,7 +1,10 @@
 //! The mesh while it shrinks: vertices, faces, edges, and the fan of faces around each vertex.
 
+use std::hint::select_unpredictable;
+
 use nalgebra::Vector3;
 
+use super::legality::Ring;
 use super::quadric::{Quadric, pull_of};
 use crate::geometry::chunks::for_chunks;
 use crate::monitor::{Cancelled, Monitor};
@@ -62,11 +65,14 @@ impl Face {
     /// The other two corners, in the face's direction of travel from `vertex`.
     pub(super) fn others(&self, vertex: u32) -> [u32; 2] {
         let [a, b, c] = self.corners;
-        match self.index_of(vertex) {
-            0 => [b, c],
-            1 => [c, a],
-            _ => [a, b],
-        }
+        // Which corner it is cannot be foreseen: choices cost less than branches.
+        let (is_second, is_third) = (b == vertex, c == vertex);
+        let next = select_unpredictable(is_third, a, b);
+        let last = select_unpredictable(is_third, b, c);
+        [
+            select_unpredictable(is_second, c, next),
+            select_unpredictable(is_second, a, last),
+        ]
     }
 }
 
@@ -277,49 +283,43 @@ impl Surface {
         [a.min(b), a.max(b)]
     }
 
-    /// Merges `removed` into `kept`, which moves to `position`. Faces with both are gone.
+    /// Merges `removed` into `kept`, which moves to `position`. Faces with both are gone. `ring` is
+    /// that of the edge from `kept` to `removed`, as the link condition fills it.
     /// The pulls of the faces that stay are for the caller to renew.
-    pub(super) fn collapse(&mut self, kept: u32, removed: u32, position: Vector3<f64>) {
+    pub(super) fn collapse(
+        &mut self,
+        ring: &Ring,
+        [kept, removed]: [u32; 2],
+        position: Vector3<f64>,
+    ) {
         self.vertices[kept as usize].position = position;
         self.merged_into[removed as usize] = kept;
-        let from = std::mem::take(&mut self.fans[removed as usize]);
-        let slots = from.start as usize..(from.start + from.len) as usize;
-        let reserved = self.fans[kept as usize].len + from.len;
-        self.make_room(kept, reserved);
+        self.fans[removed as usize] = Fan::default();
         self.merging.clear();
-        for slot in slots.clone() {
-            let t = self.pool[slot];
+        for &(t, third) in ring.gone() {
             let face = &mut self.faces[t as usize];
-            let [next, last] = face.others(removed);
-            if next == kept || last == kept {
-                let third = next ^ last ^ kept;
-                let stays = face.edges[face.index_of(removed)];
-                let goes = face.edges[face.index_of(kept)];
-                face.corners = [GONE; 3];
-                self.merging.push((stays, goes, third));
-                self.forget(kept, t);
-                self.forget(third, t);
-                self.n_triangles -= 1;
-            }
+            let stays = face.edges[face.index_of(removed)];
+            let goes = face.edges[face.index_of(kept)];
+            face.corners = [GONE; 3];
+            self.merging.push((stays, goes, third));
+            self.forget(third, t);
         }
-        for slot in slots {
-            let t = self.pool[slot];
-            let face = &mut self.faces[t as usize];
-            if face.corners[0] == GONE {
-                continue;
-            }
+        self.n_triangles -= ring.gone().len();
+        for staying in ring.stay_at_second() {
+            let face = &mut self.faces[staying.face as usize];
             let i = face.index_of(removed);
             face.corners[i] = kept;
-            for edge in &mut face.edges {
-                for &(stays, goes, _) in &self.merging {
-                    if *edge == goes {
-                        *edge = stays;
-                    }
+            for &(stays, goes, _) in &self.merging {
+                for edge in &mut face.edges {
+                    *edge = select_unpredictable(*edge == goes, stays, *edge);
                 }
             }
-            let fan = &mut self.fans[kept as usize];
-            self.pool[(fan.start + fan.len) as usize] = t;
-            fan.len += 1;
+        }
+        self.make_room(kept, ring.stay().len() as u32);
+        let fan = &self.fans[kept as usize];
+        let slots = &mut self.pool[fan.start as usize..(fan.start + fan.len) as usize];
+        for (slot, staying) in slots.iter_mut().zip(ring.stay()) {
+            *slot = staying.face;
         }
         for i in 0..self.merging.len() {
             let (stays, goes, third) = self.merging[i];
@@ -362,16 +362,15 @@ impl Surface {
         self.part(s) != self.part(t) || forward(s) == forward(t)
     }
 
-    fn make_room(&mut self, vertex: u32, capacity: u32) {
+    /// Gives a vertex a fan of so many faces, whose numbers are for the caller to set.
+    fn make_room(&mut self, vertex: u32, len: u32) {
         let fan = &mut self.fans[vertex as usize];
-        if capacity <= fan.capacity {
-            return;
+        fan.len = len;
+        if len > fan.capacity {
+            fan.start = self.pool.len() as u32;
+            fan.capacity = len;
+            self.pool.resize((fan.start + len) as usize, GONE);
         }
-        let old = fan.start as usize..(fan.start + fan.len) as usize;
-        fan.start = self.pool.len() as u32;
-        fan.capacity = capacity;
-        self.pool.extend_from_within(old);
-        self.pool.resize((fan.start + capacity) as usize, GONE);
     }
 
     fn forget(&mut self, vertex: u32, triangle: u32) {
@@ -391,6 +390,7 @@ fn twice_area([a, b, c]: &[Vector3<f64>; 3]) -> Vector3<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::legality::link_condition;
     use super::*;
 
     fn hexagon() -> Surface {
@@ -399,10 +399,16 @@ mod tests {
         Surface::new(&positions, &triangles, Vec::new(), &Monitor::silent()).unwrap()
     }
 
+    fn collapse(surface: &mut Surface, kept: u32, removed: u32) {
+        let mut ring = Ring::new(surface.vertices.len());
+        assert!(link_condition(surface, &mut ring, kept, removed, false));
+        surface.collapse(&ring, [kept, removed], Vector3::x());
+    }
+
     #[test]
     fn a_collapse_keeps_fans_and_triangles_in_step() {
         let mut surface = hexagon();
-        surface.collapse(0, 1, Vector3::x());
+        collapse(&mut surface, 0, 1);
         assert_eq!(surface.n_triangles, 4);
         assert_eq!(surface.around(0).len(), 4);
         assert_eq!(surface.around(1).len(), 0);
@@ -421,7 +427,7 @@ mod tests {
         let mut surface = hexagon();
         assert_eq!(surface.edges.len(), 12);
         assert_eq!(surface.edges.iter().filter(|e| e.is_feature).count(), 6);
-        surface.collapse(0, 1, Vector3::x());
+        collapse(&mut surface, 0, 1);
         for t in 0..6 {
             let face = surface.faces[t];
             for i in 0..if face.corners[0] == GONE { 0 } else { 3 } {
