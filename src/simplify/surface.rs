@@ -23,6 +23,8 @@ pub(super) enum Kind {
     Line,
     /// On another number of feature edges: stays where it is.
     Corner,
+    /// Has triangles that are not here: must not change at all.
+    Frozen,
 }
 
 impl Kind {
@@ -85,6 +87,13 @@ pub(super) struct Edge {
     pub(super) key: u32,
     /// A border edge, a seam, or an edge with three or more triangles.
     pub(super) is_feature: bool,
+}
+
+/// A face at an edge, and whether it travels along it from the smaller end to the larger.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    face: u32,
+    is_forward: bool,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -174,49 +183,64 @@ impl Surface {
         Ok(surface)
     }
 
-    /// Numbers the edges by their smaller end, then by their larger, and finds the features.
+    /// Numbers the edges by their smaller end, then as the fan comes, and finds the features.
     fn number_edges(&mut self, monitor: &Monitor) -> Result<(), Cancelled> {
-        // The face, which of its edges, and the far end, which sorts first.
-        let mut spokes: Vec<(u32, u32, usize)> = Vec::new();
+        // The latest edge to each vertex from a smaller one.
+        let mut latest = vec![GONE; self.vertices.len()];
+        // For each edge from the vertex at hand its sides: how many, and the first two.
+        let mut sides: Vec<(u32, [Side; 2])> = Vec::new();
         for_chunks(self.vertices.len(), monitor, |range| {
             for near in range {
-                self.number_edges_of(near as u32, &mut spokes);
+                self.number_edges_of(near as u32, &mut latest, &mut sides);
             }
         })
     }
 
     /// Numbers the edges from a vertex to those after it.
-    fn number_edges_of(&mut self, near: u32, spokes: &mut Vec<(u32, u32, usize)>) {
-        spokes.clear();
-        for &t in self.around(near) {
-            let face = &self.faces[t as usize];
-            let i = face.index_of(near);
-            let [next, last] = face.others(near);
-            if next > near {
-                spokes.push((next, t, (i + 2) % 3));
-            }
-            if last > near {
-                spokes.push((last, t, (i + 1) % 3));
+    fn number_edges_of(
+        &mut self,
+        near: u32,
+        latest: &mut [u32],
+        sides: &mut Vec<(u32, [Side; 2])>,
+    ) {
+        sides.clear();
+        let n_before = self.edges.len() as u32;
+        let fan = self.fans[near as usize];
+        for slot in fan.start..fan.start + fan.len {
+            let face = self.pool[slot as usize];
+            let corners = &mut self.faces[face as usize];
+            let i = corners.index_of(near);
+            let [next, last] = corners.others(near);
+            for (far, opposite, is_forward) in
+                [(next, (i + 2) % 3, true), (last, (i + 1) % 3, false)]
+            {
+                if far < near {
+                    continue;
+                }
+                let side = Side { face, is_forward };
+                let known = latest[far as usize];
+                if known >= n_before && known != GONE {
+                    corners.edges[opposite] = known;
+                    let (n, both) = &mut sides[(known - n_before) as usize];
+                    both[1] = side;
+                    *n += 1;
+                } else {
+                    let id = self.edges.len() as u32;
+                    latest[far as usize] = id;
+                    corners.edges[opposite] = id;
+                    sides.push((1, [side; 2]));
+                    self.edges.push(Edge {
+                        ends: [near, far],
+                        key: 0,
+                        is_feature: true,
+                    });
+                }
             }
         }
-        spokes.sort_unstable();
-        for sides in spokes.chunk_by(|x, y| x.0 == y.0) {
-            let id = self.edges.len() as u32;
-            for &(_, t, i) in sides {
-                self.faces[t as usize].edges[i] = id;
-            }
-            let is_smooth = match *sides {
-                [(_, s, i), (_, t, j)] => {
-                    let runs_from = |t: u32, i: usize| self.faces[t as usize].corners[(i + 1) % 3];
-                    runs_from(s, i) != runs_from(t, j) && self.part(s) == self.part(t)
-                }
-                _ => false,
-            };
-            self.edges.push(Edge {
-                ends: [near, sides[0].0],
-                key: 0,
-                is_feature: !is_smooth,
-            });
+        for (&(n, [s, t]), edge) in sides.iter().zip(n_before..) {
+            let is_smooth =
+                n == 2 && s.is_forward != t.is_forward && self.part(s.face) == self.part(t.face);
+            self.edges[edge as usize].is_feature = !is_smooth;
         }
     }
 
@@ -244,6 +268,12 @@ impl Surface {
     pub(super) fn faces_around(&self, vertex: u32) -> impl Iterator<Item = (u32, &Face)> + '_ {
         let around = self.around(vertex).iter();
         around.map(|&t| (t, &self.faces[t as usize]))
+    }
+
+    /// The faces that are left, each with its corners.
+    pub(super) fn left(&self) -> impl Iterator<Item = (usize, [u32; 3])> + '_ {
+        let corners = self.faces.iter().map(|face| face.corners).enumerate();
+        corners.filter(|(_, corners)| corners[0] != GONE)
     }
 
     /// The faces that share the edge, each with the vertex opposite to it.
