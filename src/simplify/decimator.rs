@@ -2,11 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::intake::Intake;
-use super::legality::{Marks, Refusal, keeps_orientation, link_condition};
+use super::legality::{Refusal, Ring, keeps_orientation, link_condition};
 use super::quadric::{EdgeQuadric, Quadric, pull_of};
-use super::queue::{Entry, Queue, key_of, later_than};
-use super::settings::{Placement, SimplifySettings, Speed, StopReason};
+use super::queue::{Entry, N_BUCKETS, Queue, key_of, later_than};
+use super::settings::{Placement, SimplifySettings, StopReason};
 use super::surface::{Kind, Surface};
 use crate::monitor::{Cancelled, Monitor};
 
@@ -38,13 +37,12 @@ struct Price {
 /// Edges that are priced before a cancel request is looked for.
 const PRICED_AT_ONCE: u32 = 1 << 14;
 
+/// Edges that come up between two questions to the monitor.
+const POPPED_AT_ONCE: usize = 1024;
+
 /// With fewer triangles than this, the edges around a collapse are priced anew at once. A price can
 /// fall, and where few edges are left each of them matters.
 const EAGER_BELOW: usize = 1000;
-
-/// With fewer triangles than this, [`Speed::Fast`] is exact: few collapses are left, and they make
-/// most of the error.
-const EXACT_BELOW: usize = 8000;
 
 /// An edge whose price has risen by less than this, half an octave of keys, is collapsed all the
 /// same. On the car floor sample the error is the same as with none.
@@ -67,65 +65,94 @@ pub(super) struct Decimator {
     boundary_weight: f64,
     stiffness: f64,
     surface: Surface,
-    marks: Marks,
-    /// The triangles around the edge at hand that stay, with their normals after the collapse.
-    turned: Vec<(u32, Vector3<f64>)>,
+    ring: Ring,
     queue: Queue,
     closing: bool,
     refused: Refused,
     collapses: Vec<Collapse>,
+    dearest: Vec<u16>,
 }
 
 impl Decimator {
     pub(super) fn new(
-        intake: Intake,
+        surface: Surface,
         settings: &SimplifySettings,
+        is_exact: bool,
         monitor: &Monitor,
     ) -> Result<Self, Cancelled> {
-        let surface = intake.surface;
         let mut decimator = Self {
             placement: settings.placement,
-            is_exact: settings.speed == Speed::Exact,
+            is_exact,
             min_cosine: settings.max_turn_deg.to_radians().cos(),
             may_close_loops: settings.may_close_loops,
             boundary_weight: settings.boundary_weight,
             stiffness: settings.stiffness,
-            marks: Marks::new(surface.vertices.len()),
+            ring: Ring::new(surface.vertices.len()),
             surface,
-            turned: Vec::new(),
             queue: Queue::new(),
             closing: false,
             refused: Refused::default(),
             collapses: Vec::new(),
+            dearest: Vec::new(),
         };
         decimator.fill_queue(monitor)?;
         Ok(decimator)
     }
 
+    pub(super) fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    pub(super) fn queue(&self) -> &Queue {
+        &self.queue
+    }
+
+    /// The collapses so far.
+    pub(super) fn collapses(&self) -> &[Collapse] {
+        &self.collapses
+    }
+
+    /// For each collapse the dearest bucket that has come up by then.
+    pub(super) fn dearest(&self) -> &[u16] {
+        &self.dearest
+    }
+
+    /// Collapses what comes up before the bucket `end`.
+    pub(super) fn run_before(&mut self, end: usize, monitor: &Monitor) -> Result<(), Cancelled> {
+        for n_popped in 0_usize.. {
+            if n_popped.is_multiple_of(POPPED_AT_ONCE) {
+                monitor.check()?;
+                if monitor.stop_requested() {
+                    break;
+                }
+            }
+            let Some(entry) = self.queue.pop_before(end) else {
+                break;
+            };
+            self.treat(entry);
+        }
+        Ok(())
+    }
+
     /// Collapses until `max_triangles` are left, nothing legal is left, or the monitor says stop.
     pub(super) fn run(
-        mut self,
+        &mut self,
         max_triangles: usize,
         monitor: &Monitor,
-    ) -> Result<(Vec<Collapse>, StopReason), Cancelled> {
-        let n_start = self.surface.n_triangles;
-        let to_do = n_start.saturating_sub(max_triangles) as u64;
+        report: impl Fn(usize),
+    ) -> Result<StopReason, Cancelled> {
         let mut n_popped = 0_usize;
         let mut n_at_fill = self.collapses.len();
         while self.surface.n_triangles > max_triangles {
-            if n_popped.is_multiple_of(1024) {
+            if n_popped.is_multiple_of(POPPED_AT_ONCE) {
                 monitor.check()?;
                 if monitor.stop_requested() {
-                    return Ok((self.collapses, StopReason::StopRequested));
+                    return Ok(StopReason::StopRequested);
                 }
-                let done = (n_start - self.surface.n_triangles) as u64;
-                monitor.progress("simplify", done, Some(to_do));
+                report(self.surface.n_triangles);
             }
             n_popped += 1;
-            if !self.is_exact && self.surface.n_triangles < EXACT_BELOW {
-                self.become_exact();
-            }
-            if let Some(entry) = self.queue.pop() {
+            if let Some(entry) = self.queue.pop_before(N_BUCKETS) {
                 self.treat(entry);
                 continue;
             }
@@ -137,12 +164,11 @@ impl Decimator {
                         flip,
                         feature,
                     } = self.refused;
-                    let reason = StopReason::NothingLegal {
+                    return Ok(StopReason::NothingLegal {
                         link,
                         flip,
                         feature,
-                    };
-                    return Ok((self.collapses, reason));
+                    });
                 }
                 self.closing = true;
             } else {
@@ -151,7 +177,7 @@ impl Decimator {
             n_at_fill = self.collapses.len();
             self.fill_queue(monitor)?;
         }
-        Ok((self.collapses, StopReason::Reached))
+        Ok(StopReason::Reached)
     }
 
     /// Prices an entry that came up, and collapses it, puts it back, or sets it aside.
@@ -201,11 +227,10 @@ impl Decimator {
     }
 
     fn refusal(&mut self, [a, b]: [u32; 2], position: &Vector3<f64>) -> Option<Refusal> {
-        if !link_condition(&self.surface, &mut self.marks, a, b, self.closing) {
+        if !link_condition(&self.surface, &mut self.ring, a, b, self.closing) {
             return Some(Refusal::Link);
         }
-        let (ends, turned) = ([a, b], &mut self.turned);
-        if !keeps_orientation(&self.surface, ends, position, self.min_cosine, turned) {
+        if !keeps_orientation(&self.surface, &mut self.ring, position, self.min_cosine) {
             return Some(Refusal::Flip);
         }
         None
@@ -214,9 +239,13 @@ impl Decimator {
     fn collapse(&mut self, kept: u32, removed: u32, price: &Price) {
         let third = self.third_of_loop(kept, removed);
         let kind = self.surface.kind(kept).max(self.surface.kind(removed));
-        self.renew_quadrics(kept, removed);
-        self.surface.collapse(kept, removed, price.position);
+        self.renew_quadrics(kept);
+        self.surface
+            .collapse(&self.ring, [kept, removed], price.position);
         self.surface.vertices[kept as usize].kind = kind;
+        let dearest_before = self.dearest.last().copied().unwrap_or(0);
+        self.dearest
+            .push(dearest_before.max(self.queue.first() as u16));
         self.collapses.push(Collapse {
             kept,
             removed,
@@ -242,44 +271,32 @@ impl Decimator {
 
     /// Gives the triangles that stay around a collapsed edge their new pulls, and the vertices they
     /// belong to their new quadrics: the merged vertex, and if it is to be exact all its neighbours.
-    fn renew_quadrics(&mut self, kept: u32, removed: u32) {
-        let is_exact = self.is_exact;
+    fn renew_quadrics(&mut self, kept: u32) {
+        let Surface {
+            vertices, faces, ..
+        } = &mut self.surface;
         let stiffness = self.stiffness;
-        if is_exact {
-            for i in 0..self.surface.around(removed).len() {
-                let face = self.surface.faces[self.surface.around(removed)[i] as usize];
-                let [next, last] = face.others(removed);
-                if next == kept || last == kept {
-                    let third = (next ^ last ^ kept) as usize;
-                    let quadric = Quadric::triangle(&face.pull, stiffness);
-                    self.surface.vertices[third].quadric.subtract(&quadric);
-                }
+        if self.is_exact {
+            for &(face, opposite) in self.ring.gone() {
+                let quadric = Quadric::triangle(&faces[face as usize].pull, stiffness);
+                vertices[opposite as usize].quadric.subtract(&quadric);
             }
         }
         let mut sum = Quadric::default();
-        for (t, twice_area) in &self.turned {
-            let face = &mut self.surface.faces[*t as usize];
-            let before = std::mem::replace(&mut face.pull, pull_of(twice_area));
+        for staying in self.ring.stay() {
+            let face = &mut faces[staying.face as usize];
+            let before = std::mem::replace(&mut face.pull, pull_of(&staying.twice_area));
             let quadric = Quadric::triangle(&face.pull, stiffness);
             sum.add(&quadric);
-            if is_exact {
+            if self.is_exact {
                 let mut change = quadric;
                 change.subtract(&Quadric::triangle(&before, stiffness));
-                for v in face.corners {
-                    // The merged vertices get a change as well, which the sum then replaces.
-                    self.surface.vertices[v as usize].quadric.add(&change);
+                for v in staying.others {
+                    vertices[v as usize].quadric.add(&change);
                 }
             }
         }
-        self.surface.vertices[kept as usize].quadric = sum;
-    }
-
-    /// Makes up for the updates that were left out, and leaves out none from now on.
-    fn become_exact(&mut self) {
-        self.is_exact = true;
-        for v in 0..self.surface.vertices.len() as u32 {
-            self.surface.vertices[v as usize].quadric = self.quadric_of(v);
-        }
+        vertices[kept as usize].quadric = sum;
     }
 
     /// Where features have changed, so have the lines of the vertices on them.
@@ -332,20 +349,24 @@ impl Decimator {
         let (first, second) = (&vertices[a as usize], &vertices[b as usize]);
         let both_on_features = first.kind != Kind::Free && second.kind != Kind::Free;
         let both_fixed = first.kind == Kind::Corner && second.kind == Kind::Corner;
-        if both_fixed || (both_on_features && !self.surface.edges[edge as usize].is_feature) {
+        let is_frozen = first.kind == Kind::Frozen || second.kind == Kind::Frozen;
+        if is_frozen
+            || both_fixed
+            || (both_on_features && !self.surface.edges[edge as usize].is_feature)
+        {
             return None;
         }
         let across = second.position - first.position;
         let quadric = EdgeQuadric::new(&first.quadric, &second.quadric, across);
-        let shift = if first.kind == Kind::Corner {
-            Vector3::zeros()
+        let (shift, cost) = if first.kind == Kind::Corner {
+            (Vector3::zeros(), quadric.at(&Vector3::zeros()))
         } else if second.kind == Kind::Corner {
-            across
+            (across, quadric.at(&across))
         } else {
             place(&quadric, &across, self.placement)
         };
         Some(Price {
-            cost: quadric.at(&shift),
+            cost,
             position: first.position + shift,
             weight: quadric.weight(),
         })
@@ -390,7 +411,7 @@ impl Decimator {
     /// Fills the queue with all edges that are left.
     fn fill_queue(&mut self, monitor: &Monitor) -> Result<(), Cancelled> {
         self.refused = Refused::default();
-        self.queue.clear();
+        self.queue = Queue::new();
         for edge in 0..self.surface.edges.len() as u32 {
             if edge.is_multiple_of(PRICED_AT_ONCE) {
                 monitor.check()?;
@@ -408,8 +429,12 @@ impl Decimator {
     }
 }
 
-/// The shift from the first end to where the merged vertex goes.
-fn place(quadric: &EdgeQuadric, across: &Vector3<f64>, placement: Placement) -> Vector3<f64> {
+/// The shift from the first end to where the merged vertex goes, and what it costs there.
+fn place(
+    quadric: &EdgeQuadric,
+    across: &Vector3<f64>,
+    placement: Placement,
+) -> (Vector3<f64>, f64) {
     if placement == Placement::Optimal
         && let Some(least) = quadric.minimum()
     {
@@ -421,11 +446,11 @@ fn place(quadric: &EdgeQuadric, across: &Vector3<f64>, placement: Placement) -> 
     } else {
         3
     };
-    let mut best = candidates[0];
-    for candidate in &candidates[1..n] {
-        if quadric.at(candidate) < quadric.at(&best) {
-            best = *candidate;
-        }
-    }
-    best
+    let priced = candidates[..n].iter().map(|x| (*x, quadric.at(x)));
+    let cheaper = |best: (Vector3<f64>, f64), next: (Vector3<f64>, f64)| {
+        if next.1 < best.1 { next } else { best }
+    };
+    priced
+        .reduce(cheaper)
+        .expect("there are two candidates or three")
 }

@@ -1,12 +1,13 @@
 //! From a mesh as it comes to the state a collapse starts from.
 
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 use super::quadric::Quadric;
 use super::settings::SimplifySettings;
 use super::surface::{Kind, Surface};
-use crate::geometry::chunks::{for_chunks, map_chunks};
-use crate::geometry::{Point3, TriMesh};
+use crate::geometry::chunks::{CHUNK, for_chunks, map_chunks};
+use crate::geometry::{Aabb, Point3, TriMesh};
 use crate::monitor::{Cancelled, Monitor};
 
 /// Centre and size of a mesh. All work is done with coordinates less the centre, divided by the
@@ -19,7 +20,12 @@ pub(super) struct Frame {
 
 impl Frame {
     fn of(mesh: &TriMesh) -> Self {
-        let aabb = mesh.aabb();
+        let pieces = mesh.triangles().par_chunks(CHUNK / 4);
+        let boxes = pieces.map(|piece| {
+            let corners = piece.iter().flatten();
+            Aabb::of_points(corners.map(|&v| &mesh.positions()[v as usize]))
+        });
+        let aabb = boxes.reduce(Aabb::empty, |a, b| a.union(&b));
         let diagonal = aabb.diagonal();
         Self {
             center: aabb.center(),
@@ -41,20 +47,29 @@ impl Frame {
     }
 }
 
+/// What is left of a mesh, in unit coordinates. Vertices keep their numbers.
+#[derive(Debug, Clone)]
+pub(super) struct UnitMesh {
+    pub(super) positions: Vec<Vector3<f64>>,
+    /// Triangles that differ from each other, each with three vertices.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// Part of each triangle; empty if there is only one.
+    pub(super) part_of: Vec<u32>,
+}
+
 /// Everything a decimation starts from.
 #[derive(Debug, Clone)]
 pub(super) struct Intake {
     pub(super) frame: Frame,
-    pub(super) surface: Surface,
-    /// For each face of `surface`, its triangle in the mesh that came in.
+    pub(super) mesh: UnitMesh,
+    /// For each triangle of `mesh`, its triangle in the mesh that came in.
     pub(super) triangle_of: Vec<u32>,
 }
 
-/// Takes a mesh in. O(triangles · log triangles).
+/// Takes a mesh in. O(vertices + triangles).
 pub(super) fn take_in(
     mesh: &TriMesh,
     parts: &[u32],
-    settings: &SimplifySettings,
     monitor: &Monitor,
 ) -> Result<Intake, Cancelled> {
     let frame = Frame::of(mesh);
@@ -69,11 +84,13 @@ pub(super) fn take_in(
     } else {
         map_chunks(n, monitor, |i| parts[triangle_of[i] as usize])?
     };
-    let mut surface = Surface::new(&positions, &triangles, part_of, monitor)?;
-    add_quadrics(&mut surface, settings, monitor)?;
     Ok(Intake {
         frame,
-        surface,
+        mesh: UnitMesh {
+            positions,
+            triangles,
+            part_of,
+        },
         triangle_of,
     })
 }
@@ -108,7 +125,7 @@ fn distinct_triangles(mesh: &TriMesh, monitor: &Monitor) -> Result<Vec<u32>, Can
 }
 
 /// Gives every vertex its quadric and its kind.
-fn add_quadrics(
+pub(super) fn add_quadrics(
     surface: &mut Surface,
     settings: &SimplifySettings,
     monitor: &Monitor,

@@ -10,10 +10,11 @@
 //! Where the time goes decides the layout: an edge waits in a bucket queue under the price it had
 //! when it was last priced, and is priced anew when it comes up (`decimator`); position and quadric
 //! of a vertex lie together, and a face keeps the vector whose outer product is its quadric
-//! (`surface`).
+//! (`surface`). A large mesh is collapsed in regions side by side (`regions`).
 //!
-//! The result does not depend on the unit of length or on the place of the part, and nearly
-//! equal prices are decided by the order of the edges, so the same mesh always gives the same result.
+//! The result does not depend on the unit of length, on the place of the part or on the number of
+//! threads, and nearly equal prices are decided by the order of the edges, so the same mesh always
+//! gives the same result.
 
 mod border;
 mod decimator;
@@ -21,6 +22,7 @@ mod intake;
 mod legality;
 mod quadric;
 mod queue;
+mod regions;
 mod sequence;
 mod settings;
 mod surface;

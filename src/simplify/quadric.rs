@@ -97,30 +97,27 @@ impl Quadric {
 
     /// The `x` with `A x = right`, or `None` if there is not exactly one.
     ///
-    /// LDLᵀ without pivoting. A pivot counts as zero relative to the weight, so the answer does not
-    /// depend on the unit of length.
+    /// One elimination, then determinants, so that no division waits for another. A pivot counts as
+    /// zero relative to the weight, so the answer does not depend on the unit of length.
     fn solve(&self, right: &Vector3<f64>) -> Option<Vector3<f64>> {
         let smallest = 1e-12 * self.weight();
-        if self.xx <= smallest {
+        // What is left of the other two equations times `xx`.
+        let yy = self.xx * self.yy - self.xy * self.xy;
+        let yz = self.xx * self.yz - self.xy * self.xz;
+        let zz = self.xx * self.zz - self.xz * self.xz;
+        let right_y = self.xx * right.y - self.xy * right.x;
+        let right_z = self.xx * right.z - self.xz * right.x;
+        let determinant = yy * zz - yz * yz;
+        let is_flat = self.xx <= smallest
+            || yy <= smallest * self.xx
+            || determinant <= smallest * self.xx * yy;
+        if is_flat {
             return None;
         }
-        let inverse0 = 1.0 / self.xx;
-        let (l10, l20) = (self.xy * inverse0, self.xz * inverse0);
-        let d1 = self.yy - l10 * self.xy;
-        if d1 <= smallest {
-            return None;
-        }
-        let inverse1 = 1.0 / d1;
-        let u12 = self.yz - l10 * self.xz;
-        let l21 = u12 * inverse1;
-        let d2 = self.zz - l20 * self.xz - l21 * u12;
-        if d2 <= smallest {
-            return None;
-        }
-        let y1 = right.y - l10 * right.x;
-        let z = (right.z - l20 * right.x - l21 * y1) / d2;
-        let y = y1 * inverse1 - l21 * z;
-        let x = right.x * inverse0 - l10 * y - l20 * z;
+        let inverse = 1.0 / determinant;
+        let y = (zz * right_y - yz * right_z) * inverse;
+        let z = (yy * right_z - yz * right_y) * inverse;
+        let x = (right.x - self.xy * y - self.xz * z) * (1.0 / self.xx);
         Some(Vector3::new(x, y, z))
     }
 }
@@ -160,9 +157,11 @@ impl EdgeQuadric {
         (from_first + self.across.dot(&self.second_times_across)).max(0.0)
     }
 
-    /// Where the value is least, or `None` if it is flat in some direction.
-    pub(super) fn minimum(&self) -> Option<Vector3<f64>> {
-        self.sum.solve(&self.second_times_across)
+    /// Where the value is least and what it is there, or `None` if it is flat in some direction.
+    pub(super) fn minimum(&self) -> Option<(Vector3<f64>, f64)> {
+        let least = self.sum.solve(&self.second_times_across)?;
+        let value = (self.across - least).dot(&self.second_times_across);
+        Some((least, value.max(0.0)))
     }
 
     /// Sum of both ends' weights.
@@ -188,7 +187,8 @@ mod tests {
         let across = Vector3::new(3.0, 1.0, 2.0);
         let edge = EdgeQuadric::new(&a, &b, across);
         let corner = Vector3::new(0.0, 0.0, 2.2 / 0.8);
-        assert!((edge.minimum().unwrap() - corner).norm() < 1e-12);
+        let (least, value) = edge.minimum().unwrap();
+        assert!((least - corner).norm() < 1e-12 && value < 1e-12);
         assert!(edge.at(&corner) < 1e-12);
         assert!((edge.at(&across) - (9.0 + 2.6 * 2.6)).abs() < 1e-12);
         assert!((edge.at(&Vector3::zeros()) - 2.2 * 2.2).abs() < 1e-12);

@@ -33,45 +33,88 @@ pub(super) fn later_than(key: u32) -> u32 {
 /// Buckets per factor of two in price.
 const BUCKETS_PER_OCTAVE_LOG2: u32 = 4;
 const SHIFT: u32 = 15 - BUCKETS_PER_OCTAVE_LOG2;
-const N_BUCKETS: usize = 1 << (24 - SHIFT);
+/// Buckets in all.
+pub(super) const N_BUCKETS: usize = 1 << (24 - SHIFT);
+
+/// Ends a list of entries.
+const END: u32 = u32::MAX;
 
 /// A bucket queue: prices within a sixteenth of an octave share a bucket, whose latest entry comes
 /// out first. Full order by price gains nothing: the errors of the reduced car floor sample are the
 /// same, to the scatter of a few percent that any change of the order brings.
 #[derive(Debug)]
 pub(super) struct Queue {
-    buckets: Vec<Vec<Entry>>,
+    buckets: Vec<Bucket>,
+    /// Entries, each with the one after it in its bucket or among the free ones.
+    slots: Vec<(Entry, u32)>,
+    free: u32,
     /// Index of the cheapest bucket that may have entries.
     first: usize,
 }
 
+#[derive(Debug, Clone, Copy)]
+struct Bucket {
+    latest: u32,
+    len: u32,
+}
+
 impl Queue {
     pub(super) fn new() -> Self {
+        let nothing = Bucket {
+            latest: END,
+            len: 0,
+        };
         Self {
-            buckets: vec![Vec::new(); N_BUCKETS],
+            buckets: vec![nothing; N_BUCKETS],
+            slots: Vec::new(),
+            free: END,
             first: 0,
         }
     }
 
-    pub(super) fn clear(&mut self) {
-        self.buckets.iter_mut().for_each(Vec::clear);
-        self.first = 0;
-    }
-
     pub(super) fn push(&mut self, entry: Entry) {
-        let bucket = (entry.key() >> SHIFT) as usize;
-        self.first = self.first.min(bucket);
-        self.buckets[bucket].push(entry);
+        let index = (entry.key() >> SHIFT) as usize;
+        self.first = self.first.min(index);
+        let bucket = &mut self.buckets[index];
+        let slot = (entry, bucket.latest);
+        bucket.len += 1;
+        if self.free == END {
+            bucket.latest = self.slots.len() as u32;
+            self.slots.push(slot);
+        } else {
+            bucket.latest = self.free;
+            let free = &mut self.slots[self.free as usize];
+            self.free = free.1;
+            *free = slot;
+        }
     }
 
-    /// Takes an entry from the cheapest bucket.
-    pub(super) fn pop(&mut self) -> Option<Entry> {
+    /// The cheapest bucket that may have entries: that of the entry that came out last, if nothing
+    /// was put in since.
+    pub(super) fn first(&self) -> usize {
+        self.first
+    }
+
+    /// Entries in a bucket.
+    pub(super) fn len_of(&self, bucket: usize) -> usize {
+        self.buckets[bucket].len as usize
+    }
+
+    /// Takes an entry from the cheapest bucket if that comes before `end`, see [`N_BUCKETS`].
+    pub(super) fn pop_before(&mut self, end: usize) -> Option<Entry> {
         loop {
-            let bucket = self.buckets.get_mut(self.first)?;
-            if let Some(entry) = bucket.pop() {
-                return Some(entry);
+            let bucket = self.buckets[..end].get_mut(self.first)?;
+            if bucket.latest == END {
+                self.first += 1;
+                continue;
             }
-            self.first += 1;
+            let at = bucket.latest;
+            let slot = &mut self.slots[at as usize];
+            bucket.latest = slot.1;
+            bucket.len -= 1;
+            slot.1 = self.free;
+            self.free = at;
+            return Some(slot.0);
         }
     }
 }
@@ -88,7 +131,7 @@ mod tests {
         let mut queue = Queue::new();
         let mut waiting = BTreeSet::new();
         let take = |queue: &mut Queue, waiting: &mut BTreeSet<u32>| {
-            let entry = queue.pop().unwrap();
+            let entry = queue.pop_before(N_BUCKETS).unwrap();
             let cheapest = waiting.iter().map(|&i| key(i)).min().unwrap();
             assert_eq!(entry.key() >> SHIFT, cheapest >> SHIFT);
             assert!(waiting.remove(&entry.edge()));
@@ -103,6 +146,6 @@ mod tests {
         while !waiting.is_empty() {
             take(&mut queue, &mut waiting);
         }
-        assert_eq!(queue.pop(), None);
+        assert_eq!(queue.pop_before(N_BUCKETS), None);
     }
 }

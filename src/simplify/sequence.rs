@@ -1,7 +1,8 @@
 //! The order of collapses, and the mesh at any point of it.
 
-use super::decimator::{Collapse, Decimator};
+use super::decimator::Collapse;
 use super::intake::{Frame, take_in};
+use super::regions::decimate;
 use super::settings::{Simplified, SimplifyError, SimplifyReport, SimplifySettings, StopReason};
 use crate::geometry::chunks::for_chunks;
 use crate::geometry::{Point3, TriMesh};
@@ -48,18 +49,14 @@ impl CollapseSequence {
             });
         }
         monitor.check()?;
-        let mut intake = take_in(mesh, part_of_triangle, settings, monitor)?;
-        let frame = intake.frame;
-        let faces = &intake.surface.faces;
-        let triangles = faces.iter().map(|face| face.corners).collect();
-        let triangle_of = std::mem::take(&mut intake.triangle_of);
-        let (collapses, stop_reason) =
-            Decimator::new(intake, settings, monitor)?.run(settings.max_triangles, monitor)?;
+        let intake = take_in(mesh, part_of_triangle, monitor)?;
+        let triangles = intake.mesh.triangles.clone();
+        let (collapses, stop_reason) = decimate(intake.mesh, settings, monitor)?;
         Ok(Self {
-            frame,
+            frame: intake.frame,
             positions: mesh.positions().to_vec(),
             triangles,
-            triangle_of,
+            triangle_of: intake.triangle_of,
             n_before: mesh.n_triangles(),
             collapses,
             stop_reason,

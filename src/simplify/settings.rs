@@ -17,12 +17,12 @@ pub enum Placement {
 /// triangles, as in `tests/bench/RESULTS.md`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Speed {
-    /// The quadrics of the merged vertex and of all its neighbours. Two-sided rms 0.0051 mm at
-    /// 20,000 triangles, 0.039 at 10,000, 0.23 at 1,000.
+    /// The quadrics of the merged vertex and of all its neighbours. Two-sided rms 0.0054 mm at
+    /// 20,000 triangles, 0.041 at 10,000, 0.22 at 1,000.
     #[default]
     Exact,
-    /// The merged vertex's quadric only, as long as there are 8,000 triangles or more; below it is
-    /// `Exact`. 0.0053, 0.042 and 0.23 mm, for 5 % less time; of 200,000 triangles 14 % less.
+    /// The merged vertex's quadric only, as long as some 8,000 triangles or more are left; below it
+    /// is `Exact`. 0.0056, 0.044 and 0.23 mm, for 6 to 9 % less time.
     Fast,
 }
 

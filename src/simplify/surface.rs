@@ -1,7 +1,10 @@
 //! The mesh while it shrinks: vertices, faces, edges, and the fan of faces around each vertex.
 
+use std::hint::select_unpredictable;
+
 use nalgebra::Vector3;
 
+use super::legality::Ring;
 use super::quadric::{Quadric, pull_of};
 use crate::geometry::chunks::for_chunks;
 use crate::monitor::{Cancelled, Monitor};
@@ -20,6 +23,8 @@ pub(super) enum Kind {
     Line,
     /// On another number of feature edges: stays where it is.
     Corner,
+    /// Has triangles that are not here: must not change at all.
+    Frozen,
 }
 
 impl Kind {
@@ -62,11 +67,14 @@ impl Face {
     /// The other two corners, in the face's direction of travel from `vertex`.
     pub(super) fn others(&self, vertex: u32) -> [u32; 2] {
         let [a, b, c] = self.corners;
-        match self.index_of(vertex) {
-            0 => [b, c],
-            1 => [c, a],
-            _ => [a, b],
-        }
+        // Which corner it is cannot be foreseen: choices cost less than branches.
+        let (is_second, is_third) = (b == vertex, c == vertex);
+        let next = select_unpredictable(is_third, a, b);
+        let last = select_unpredictable(is_third, b, c);
+        [
+            select_unpredictable(is_second, c, next),
+            select_unpredictable(is_second, a, last),
+        ]
     }
 }
 
@@ -79,6 +87,13 @@ pub(super) struct Edge {
     pub(super) key: u32,
     /// A border edge, a seam, or an edge with three or more triangles.
     pub(super) is_feature: bool,
+}
+
+/// A face at an edge, and whether it travels along it from the smaller end to the larger.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    face: u32,
+    is_forward: bool,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -168,49 +183,64 @@ impl Surface {
         Ok(surface)
     }
 
-    /// Numbers the edges by their smaller end, then by their larger, and finds the features.
+    /// Numbers the edges by their smaller end, then as the fan comes, and finds the features.
     fn number_edges(&mut self, monitor: &Monitor) -> Result<(), Cancelled> {
-        // The face, which of its edges, and the far end, which sorts first.
-        let mut spokes: Vec<(u32, u32, usize)> = Vec::new();
+        // The latest edge to each vertex from a smaller one.
+        let mut latest = vec![GONE; self.vertices.len()];
+        // For each edge from the vertex at hand its sides: how many, and the first two.
+        let mut sides: Vec<(u32, [Side; 2])> = Vec::new();
         for_chunks(self.vertices.len(), monitor, |range| {
             for near in range {
-                self.number_edges_of(near as u32, &mut spokes);
+                self.number_edges_of(near as u32, &mut latest, &mut sides);
             }
         })
     }
 
     /// Numbers the edges from a vertex to those after it.
-    fn number_edges_of(&mut self, near: u32, spokes: &mut Vec<(u32, u32, usize)>) {
-        spokes.clear();
-        for &t in self.around(near) {
-            let face = &self.faces[t as usize];
-            let i = face.index_of(near);
-            let [next, last] = face.others(near);
-            if next > near {
-                spokes.push((next, t, (i + 2) % 3));
-            }
-            if last > near {
-                spokes.push((last, t, (i + 1) % 3));
+    fn number_edges_of(
+        &mut self,
+        near: u32,
+        latest: &mut [u32],
+        sides: &mut Vec<(u32, [Side; 2])>,
+    ) {
+        sides.clear();
+        let n_before = self.edges.len() as u32;
+        let fan = self.fans[near as usize];
+        for slot in fan.start..fan.start + fan.len {
+            let face = self.pool[slot as usize];
+            let corners = &mut self.faces[face as usize];
+            let i = corners.index_of(near);
+            let [next, last] = corners.others(near);
+            for (far, opposite, is_forward) in
+                [(next, (i + 2) % 3, true), (last, (i + 1) % 3, false)]
+            {
+                if far < near {
+                    continue;
+                }
+                let side = Side { face, is_forward };
+                let known = latest[far as usize];
+                if known >= n_before && known != GONE {
+                    corners.edges[opposite] = known;
+                    let (n, both) = &mut sides[(known - n_before) as usize];
+                    both[1] = side;
+                    *n += 1;
+                } else {
+                    let id = self.edges.len() as u32;
+                    latest[far as usize] = id;
+                    corners.edges[opposite] = id;
+                    sides.push((1, [side; 2]));
+                    self.edges.push(Edge {
+                        ends: [near, far],
+                        key: 0,
+                        is_feature: true,
+                    });
+                }
             }
         }
-        spokes.sort_unstable();
-        for sides in spokes.chunk_by(|x, y| x.0 == y.0) {
-            let id = self.edges.len() as u32;
-            for &(_, t, i) in sides {
-                self.faces[t as usize].edges[i] = id;
-            }
-            let is_smooth = match *sides {
-                [(_, s, i), (_, t, j)] => {
-                    let runs_from = |t: u32, i: usize| self.faces[t as usize].corners[(i + 1) % 3];
-                    runs_from(s, i) != runs_from(t, j) && self.part(s) == self.part(t)
-                }
-                _ => false,
-            };
-            self.edges.push(Edge {
-                ends: [near, sides[0].0],
-                key: 0,
-                is_feature: !is_smooth,
-            });
+        for (&(n, [s, t]), edge) in sides.iter().zip(n_before..) {
+            let is_smooth =
+                n == 2 && s.is_forward != t.is_forward && self.part(s.face) == self.part(t.face);
+            self.edges[edge as usize].is_feature = !is_smooth;
         }
     }
 
@@ -238,6 +268,12 @@ impl Surface {
     pub(super) fn faces_around(&self, vertex: u32) -> impl Iterator<Item = (u32, &Face)> + '_ {
         let around = self.around(vertex).iter();
         around.map(|&t| (t, &self.faces[t as usize]))
+    }
+
+    /// The faces that are left, each with its corners.
+    pub(super) fn left(&self) -> impl Iterator<Item = (usize, [u32; 3])> + '_ {
+        let corners = self.faces.iter().map(|face| face.corners).enumerate();
+        corners.filter(|(_, corners)| corners[0] != GONE)
     }
 
     /// The faces that share the edge, each with the vertex opposite to it.
@@ -277,49 +313,43 @@ impl Surface {
         [a.min(b), a.max(b)]
     }
 
-    /// Merges `removed` into `kept`, which moves to `position`. Faces with both are gone.
+    /// Merges `removed` into `kept`, which moves to `position`. Faces with both are gone. `ring` is
+    /// that of the edge from `kept` to `removed`, as the link condition fills it.
     /// The pulls of the faces that stay are for the caller to renew.
-    pub(super) fn collapse(&mut self, kept: u32, removed: u32, position: Vector3<f64>) {
+    pub(super) fn collapse(
+        &mut self,
+        ring: &Ring,
+        [kept, removed]: [u32; 2],
+        position: Vector3<f64>,
+    ) {
         self.vertices[kept as usize].position = position;
         self.merged_into[removed as usize] = kept;
-        let from = std::mem::take(&mut self.fans[removed as usize]);
-        let slots = from.start as usize..(from.start + from.len) as usize;
-        let reserved = self.fans[kept as usize].len + from.len;
-        self.make_room(kept, reserved);
+        self.fans[removed as usize] = Fan::default();
         self.merging.clear();
-        for slot in slots.clone() {
-            let t = self.pool[slot];
+        for &(t, third) in ring.gone() {
             let face = &mut self.faces[t as usize];
-            let [next, last] = face.others(removed);
-            if next == kept || last == kept {
-                let third = next ^ last ^ kept;
-                let stays = face.edges[face.index_of(removed)];
-                let goes = face.edges[face.index_of(kept)];
-                face.corners = [GONE; 3];
-                self.merging.push((stays, goes, third));
-                self.forget(kept, t);
-                self.forget(third, t);
-                self.n_triangles -= 1;
-            }
+            let stays = face.edges[face.index_of(removed)];
+            let goes = face.edges[face.index_of(kept)];
+            face.corners = [GONE; 3];
+            self.merging.push((stays, goes, third));
+            self.forget(third, t);
         }
-        for slot in slots {
-            let t = self.pool[slot];
-            let face = &mut self.faces[t as usize];
-            if face.corners[0] == GONE {
-                continue;
-            }
+        self.n_triangles -= ring.gone().len();
+        for staying in ring.stay_at_second() {
+            let face = &mut self.faces[staying.face as usize];
             let i = face.index_of(removed);
             face.corners[i] = kept;
-            for edge in &mut face.edges {
-                for &(stays, goes, _) in &self.merging {
-                    if *edge == goes {
-                        *edge = stays;
-                    }
+            for &(stays, goes, _) in &self.merging {
+                for edge in &mut face.edges {
+                    *edge = select_unpredictable(*edge == goes, stays, *edge);
                 }
             }
-            let fan = &mut self.fans[kept as usize];
-            self.pool[(fan.start + fan.len) as usize] = t;
-            fan.len += 1;
+        }
+        self.make_room(kept, ring.stay().len() as u32);
+        let fan = &self.fans[kept as usize];
+        let slots = &mut self.pool[fan.start as usize..(fan.start + fan.len) as usize];
+        for (slot, staying) in slots.iter_mut().zip(ring.stay()) {
+            *slot = staying.face;
         }
         for i in 0..self.merging.len() {
             let (stays, goes, third) = self.merging[i];
@@ -362,16 +392,15 @@ impl Surface {
         self.part(s) != self.part(t) || forward(s) == forward(t)
     }
 
-    fn make_room(&mut self, vertex: u32, capacity: u32) {
+    /// Gives a vertex a fan of so many faces, whose numbers are for the caller to set.
+    fn make_room(&mut self, vertex: u32, len: u32) {
         let fan = &mut self.fans[vertex as usize];
-        if capacity <= fan.capacity {
-            return;
+        fan.len = len;
+        if len > fan.capacity {
+            fan.start = self.pool.len() as u32;
+            fan.capacity = len;
+            self.pool.resize((fan.start + len) as usize, GONE);
         }
-        let old = fan.start as usize..(fan.start + fan.len) as usize;
-        fan.start = self.pool.len() as u32;
-        fan.capacity = capacity;
-        self.pool.extend_from_within(old);
-        self.pool.resize((fan.start + capacity) as usize, GONE);
     }
 
     fn forget(&mut self, vertex: u32, triangle: u32) {
@@ -391,6 +420,7 @@ fn twice_area([a, b, c]: &[Vector3<f64>; 3]) -> Vector3<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::legality::link_condition;
     use super::*;
 
     fn hexagon() -> Surface {
@@ -399,10 +429,16 @@ mod tests {
         Surface::new(&positions, &triangles, Vec::new(), &Monitor::silent()).unwrap()
     }
 
+    fn collapse(surface: &mut Surface, kept: u32, removed: u32) {
+        let mut ring = Ring::new(surface.vertices.len());
+        assert!(link_condition(surface, &mut ring, kept, removed, false));
+        surface.collapse(&ring, [kept, removed], Vector3::x());
+    }
+
     #[test]
     fn a_collapse_keeps_fans_and_triangles_in_step() {
         let mut surface = hexagon();
-        surface.collapse(0, 1, Vector3::x());
+        collapse(&mut surface, 0, 1);
         assert_eq!(surface.n_triangles, 4);
         assert_eq!(surface.around(0).len(), 4);
         assert_eq!(surface.around(1).len(), 0);
@@ -421,7 +457,7 @@ mod tests {
         let mut surface = hexagon();
         assert_eq!(surface.edges.len(), 12);
         assert_eq!(surface.edges.iter().filter(|e| e.is_feature).count(), 6);
-        surface.collapse(0, 1, Vector3::x());
+        collapse(&mut surface, 0, 1);
         for t in 0..6 {
             let face = surface.faces[t];
             for i in 0..if face.corners[0] == GONE { 0 } else { 3 } {

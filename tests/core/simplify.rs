@@ -112,6 +112,32 @@ fn levels_are_what_simplify_gives() {
     }
 }
 
+/// Of a mesh that is large enough to be reduced in regions, whatever the number of threads.
+#[test]
+fn levels_of_a_large_mesh_are_what_simplify_gives() {
+    let mesh = pan(13.0);
+    assert!(mesh.n_triangles() > 12_000);
+    let settings = SimplifySettings::to_triangles(0);
+    let sequence = CollapseSequence::record(&mesh, &settings, &Monitor::silent()).unwrap();
+    for (n, n_threads) in [(10_000, 1), (4_000, 5), (3_000, 2), (700, 3)] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads);
+        let direct = pool.build().unwrap().install(|| reduce(&mesh, n));
+        let level = sequence.simplified(n, &Monitor::silent()).unwrap();
+        assert_eq!(level.mesh, direct.mesh);
+        assert_eq!(level.vertex_of, direct.vertex_of);
+        assert!((n - 1..=n).contains(&direct.mesh.n_triangles()));
+        assert_eq!(n_loops(&direct.mesh), 13);
+        assert_eq!(widest_edge(&direct.mesh), 2);
+        let rms = rms(&mesh, &direct.mesh);
+        assert!(rms < 0.5, "{n}: {rms}");
+    }
+}
+
+#[test]
+fn no_row_of_small_triangles_is_left_where_a_large_mesh_was_cut() {
+    assert_eq!(reduce(&plate(60), 2).mesh.n_triangles(), 2);
+}
+
 #[test]
 fn sheets_one_thickness_apart_stay_apart() {
     let lower = plate(10);
@@ -155,21 +181,32 @@ fn the_unit_and_the_place_do_not_matter() {
 
 #[test]
 fn parts_keep_their_seam() {
-    let mesh = plate(12);
-    // The seam runs along x = 6.
-    let part_of: Vec<u32> = (0..mesh.n_triangles())
-        .map(|t| u32::from(mesh.corners(t).iter().all(|p| p.x >= 6.0)))
-        .collect();
-    let settings = SimplifySettings::to_triangles(8);
-    let monitor = Monitor::silent();
-    let sequence = CollapseSequence::record_parts(&mesh, &part_of, &settings, &monitor).unwrap();
-    let result = sequence.simplified(8, &Monitor::silent()).unwrap();
-    for (t, &original) in result.triangle_of.iter().enumerate() {
-        let right = part_of[original as usize] == 1;
-        for p in result.mesh.corners(t) {
-            assert!(if right { p.x > 5.9 } else { p.x < 6.1 });
+    for (n, max_triangles) in [(12, 8), (60, 100), (60, 4_500)] {
+        let mesh = plate(n);
+        // The seam runs along the middle.
+        let middle = f64::from(n / 2);
+        let part_of: Vec<u32> = (0..mesh.n_triangles())
+            .map(|t| u32::from(mesh.corners(t).iter().all(|p| p.x >= middle)))
+            .collect();
+        let settings = SimplifySettings::to_triangles(max_triangles);
+        let monitor = Monitor::silent();
+        let sequence = CollapseSequence::record_parts(&mesh, &part_of, &settings, &monitor);
+        let result = sequence.unwrap().simplified(max_triangles, &monitor);
+        let result = result.unwrap();
+        assert!(result.mesh.n_triangles() <= max_triangles);
+        for (t, &original) in result.triangle_of.iter().enumerate() {
+            let right = part_of[original as usize] == 1;
+            for p in result.mesh.corners(t) {
+                assert!(if right {
+                    p.x > middle - 0.1
+                } else {
+                    p.x < middle + 0.1
+                });
+            }
         }
     }
+    let (mesh, monitor) = (plate(2), Monitor::silent());
+    let settings = SimplifySettings::to_triangles(8);
     let error = CollapseSequence::record_parts(&mesh, &[0], &settings, &monitor).unwrap_err();
     assert!(matches!(error, SimplifyError::LabelCount { .. }));
 }
