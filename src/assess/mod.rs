@@ -204,6 +204,7 @@ pub fn assess(
         most_scaled,
     );
     assessment.shape = Some(shape);
+    monitor.check()?;
     monitor.progress("verify", 2, Some(2));
     Ok(assessment)
 }

@@ -113,6 +113,9 @@ pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     recipe.matching.settings.hand = args.hand.hand();
     let record = map_car(&crash, &stamped, &recipe, &monitor)?;
     drop(monitor);
+    for line in record.rows.iter().filter_map(CarRow::tools_line) {
+        log::warn!("{line}");
+    }
     if let Some(path) = &args.json {
         write_json(path, &record)?;
     }

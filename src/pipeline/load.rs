@@ -66,6 +66,18 @@ pub fn usual_selection(role: Role) -> Selection {
     }
 }
 
+/// Says which parts of a file are left out as tools of the forming simulation; `None` if none are.
+pub fn tools_line(file_name: &str, tools: &[u64]) -> Option<String> {
+    let which = match tools.len() {
+        0 => return None,
+        1..=N_NAMED_TOOLS => parts_by_id(tools),
+        n => counted(n, "part"),
+    };
+    Some(format!(
+        "{file_name}: {which} left out as tools, which are rigid or have no forming results"
+    ))
+}
+
 /// What loading did.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LoadReport {
@@ -232,19 +244,15 @@ impl LoadedPart {
             .collect()
     }
 
-    /// Says which parts are left out as tools of the forming simulation; `None` if none are.
-    pub fn tools_line(&self) -> Option<String> {
+    /// Ids of the parts that are left out as tools of the forming simulation.
+    pub fn tools_left_out(&self) -> Vec<u64> {
         let is_asked = self.settings.selection == Selection::Sheet;
-        let tools = is_asked.then(|| self.model.tools())?;
-        let which = match tools.len() {
-            0 => return None,
-            1..=N_NAMED_TOOLS => parts_by_id(&tools),
-            n => counted(n, "part"),
-        };
-        Some(format!(
-            "{}: {which} left out as tools, which are rigid or have no forming results",
-            self.file_name()
-        ))
+        is_asked.then(|| self.model.tools()).unwrap_or_default()
+    }
+
+    /// Says which parts are left out as tools; `None` if none are.
+    pub fn tools_line(&self) -> Option<String> {
+        tools_line(&self.file_name(), &self.tools_left_out())
     }
 
     /// The first node of the matched surface: its id, and its place in the crash model's unit.

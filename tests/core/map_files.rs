@@ -293,7 +293,7 @@ fn the_report_holds_pictures_tables_and_the_comparison() {
     // their difference.
     assert_eq!(page.matches("data:image/png;base64,").count(), 10);
     for words in [
-        "Thickness",
+        "Thickness, mm",
         "Effective plastic strain",
         "mapped less the stamped element",
         "What became of the elements",

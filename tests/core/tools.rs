@@ -64,6 +64,27 @@ fn tools_of_a_forming_deck_are_left_out_and_told() {
 }
 
 #[test]
+fn a_car_is_mapped_from_the_sheet_of_a_forming_deck() {
+    let folder = tempfile::tempdir().unwrap();
+    write_forming_deck(folder.path());
+    let done = Command::new(env!("CARGO_BIN_EXE_shapematch"))
+        .current_dir(folder.path())
+        .args(["map-car", "crash.k", "forming.k", "--out", "mapped"])
+        .args(["--json", "-"])
+        .output()
+        .unwrap();
+    let record: Value = serde_json::from_slice(&done.stdout).unwrap();
+    let row = &record["rows"][0];
+    assert_eq!(row["tools_left_out"], serde_json::json!([2, 3]));
+    assert_eq!(row["state"], "sure", "{row}");
+    let told = String::from_utf8(done.stderr).unwrap();
+    assert!(
+        told.contains("forming.k: parts 2, 3 left out as tools"),
+        "{told}"
+    );
+}
+
+#[test]
 fn the_window_matches_the_sheet_and_takes_the_tools_on_request() {
     let folder = tempfile::tempdir().unwrap();
     write_forming_deck(folder.path());

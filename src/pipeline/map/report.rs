@@ -12,10 +12,12 @@ use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::outputs::report_figures::{From, fitted, view_of};
+use crate::pipeline::units::PairUnits;
 use crate::report::MatrixForm;
 use crate::report::html::{CheckReport, Figure, MapReport, NumberRow, QuantityReport, map_figure};
 use crate::report::picture::{Paint, PictureMesh, picture};
-use crate::text::{fixed, grouped, length, millis, minus, percent, signed};
+use crate::role::PerRole;
+use crate::text::{Lengths, fixed, grouped, length, millis, minus, percent, signed};
 
 /// Pixels of a picture.
 const SIZE: [usize; 2] = [560, 380];
@@ -49,7 +51,7 @@ pub fn map_report(
                 .collect::<Vec<_>>()
                 .join(", "),
         ],
-        facts: facts(record),
+        facts: facts(record, painter.lengths),
         warnings: record.warnings.clone(),
         checks: checks(record),
         statuses: record
@@ -99,7 +101,7 @@ fn file_name(path: &str) -> String {
 }
 
 /// The headline figures: name, value, what the value is.
-fn facts(record: &MapRecord) -> Vec<[String; 3]> {
+fn facts(record: &MapRecord, lengths: Lengths) -> Vec<[String; 3]> {
     let mut facts = vec![
         [
             "Area with values".to_owned(),
@@ -112,14 +114,15 @@ fn facts(record: &MapRecord) -> Vec<[String; 3]> {
             format!("mapped in {}", millis(record.map_ms)),
         ],
     ];
-    for (name, pair) in [
-        ("Mean thickness", &record.thickness),
-        ("Mean plastic strain", &record.plastic_strain),
+    for (name, pair, suffix) in [
+        ("Mean thickness", &record.thickness, lengths.suffix()),
+        ("Mean plastic strain", &record.plastic_strain, ""),
     ] {
         if let Some(pair) = pair {
             let change = pair.crash.mean / pair.stamped.mean - 1.0;
             let note = minus(&format!("{:+.2} % to stamped", 100.0 * change));
-            facts.push([name.to_owned(), length(pair.crash.mean), note]);
+            let mean = format!("{}{suffix}", length(pair.crash.mean));
+            facts.push([name.to_owned(), mean, note]);
         }
     }
     if let Some(back) = &record.map_back {
@@ -234,6 +237,7 @@ struct Painter<'a> {
     camera: Camera,
     target: ElementMesh,
     sources: Vec<ElementMesh>,
+    lengths: Lengths,
 }
 
 /// A mesh whose elements share no corner, so that each has its own colour.
@@ -267,6 +271,7 @@ impl ElementMesh {
 impl<'a> Painter<'a> {
     fn new(run: &'a MapRun, crash: &LoadedPart, monitor: &Monitor) -> Result<Self, Cancelled> {
         let view = view_of(&crash.surface, From::Front);
+        let units = PairUnits::of(PerRole::new(Some(crash), None));
         let target = ElementMesh::new(&run.target.mesh, monitor)?;
         let still = Similarity::identity();
         let sources = run.sources.iter();
@@ -275,6 +280,7 @@ impl<'a> Painter<'a> {
             run,
             camera: fitted(view, target.mesh.positions(), &still, SIZE),
             target,
+            lengths: Lengths::new(units.lengths),
             sources: sources.collect::<Result<_, Cancelled>>()?,
         })
     }
@@ -292,7 +298,8 @@ impl<'a> Painter<'a> {
         if let Some(pair) = &record.thickness {
             let on_source = |part: &SourcePart, element| scale * part.mean_thickness(element);
             let on_target = |element: usize| run.thickness(element);
-            quantities.push(self.quantity("Thickness", pair, &on_source, &on_target));
+            let name = self.lengths.axis("Thickness");
+            quantities.push(self.quantity(&name, pair, &on_source, &on_target));
         }
         monitor.check()?;
         monitor.progress("draw", 1, Some(3));
@@ -372,7 +379,11 @@ impl<'a> Painter<'a> {
         for ((name, found), value) in comparison.rows().into_iter().zip(values) {
             monitor.check()?;
             let shown = ShownValue::usual(value);
-            quantities.extend(found.map(|found| self.beside(name, found, other, &shown)));
+            let name = match value {
+                None => self.lengths.axis(name),
+                Some(_) => name.to_owned(),
+            };
+            quantities.extend(found.map(|found| self.beside(&name, found, other, &shown)));
         }
         Ok(quantities)
     }

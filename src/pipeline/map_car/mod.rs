@@ -139,6 +139,7 @@ pub fn map_car(
     for (at, (file, row)) in stamped.iter().zip(&mut rows).enumerate() {
         monitor.check()?;
         let found = load(&file.path, &file.settings, monitor).and_then(|part| {
+            row.tools_left_out = part.tools_left_out();
             let parts = PerRole::new(crash, &part);
             find_parts(parts, &recipe.matching, &Similarity::identity(), monitor)
         });

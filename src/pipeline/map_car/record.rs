@@ -5,8 +5,8 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::assess::Verdict;
-use crate::text::parts_by_id;
-use crate::text::{length, percent};
+use crate::pipeline::load::tools_line;
+use crate::text::{length, parts_by_id, percent};
 
 /// How certain it is that a stamped part lies where it belongs, with all its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -85,6 +85,8 @@ pub struct CarRow {
     pub state: CarState,
     /// Why.
     pub reasons: Vec<CarReason>,
+    /// Ids of its parts that are left out as tools of the forming simulation.
+    pub tools_left_out: Vec<u64>,
     /// Ids of the crash parts it belongs to.
     pub crash_parts: Vec<u64>,
     /// Title of the first of them.
@@ -111,6 +113,7 @@ impl CarRow {
             file: file.display().to_string(),
             state: CarState::None,
             reasons: Vec::new(),
+            tools_left_out: Vec::new(),
             crash_parts: Vec::new(),
             title: String::new(),
             crash_from_stamped: None,
@@ -123,14 +126,23 @@ impl CarRow {
         }
     }
 
+    /// Says which of its parts are left out as tools; `None` if none are.
+    pub fn tools_line(&self) -> Option<String> {
+        tools_line(&self.file_name(), &self.tools_left_out)
+    }
+
+    fn file_name(&self) -> String {
+        let name = Path::new(&self.file).file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    }
+
     /// Cells of a table: file, crash part, state, verdict, RMS, mapped area, thickness, reasons.
     pub fn cells(&self) -> [String; 8] {
-        let name = Path::new(&self.file).file_name().unwrap_or_default();
         let ids: Vec<String> = self.crash_parts.iter().map(u64::to_string).collect();
         let reasons: Vec<String> = self.reasons.iter().map(CarReason::text).collect();
         let or_blank = |cell: Option<String>| cell.unwrap_or_default();
         [
-            name.to_string_lossy().into_owned(),
+            self.file_name(),
             format!("{} {}", ids.join(", "), self.title)
                 .trim()
                 .to_owned(),
