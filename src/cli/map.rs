@@ -10,11 +10,11 @@ use clap::builder::BoolishValueParser;
 use clap::{ArgAction, Args};
 
 use super::map_choices::{
-    HandName, KindName, MethodName, MirrorName, OverlapName, Reach, RuleName, SenseName,
-    default_thickness, law, quantities, reach,
+    HandName, KindName, MirrorName, RuleName, default_thickness, law, quantities,
 };
 use super::map_text::summary;
 use super::recipe::{pose, selection};
+use super::setting_args::MapSettingArgs;
 use super::{
     UsageError, check_outputs, json_target, print, progress, takes_stdout, warn_of_tools,
     write_json, write_output,
@@ -22,7 +22,7 @@ use super::{
 use crate::assess::Verdict;
 use crate::formats::{ReadOptions, Selection};
 use crate::geometry::Similarity;
-use crate::mapping::{MapMethod, MapOptions, NormalSense, Overlap, Quantities, RuleKind};
+use crate::mapping::{MapOptions, Quantities, RuleKind};
 use crate::monitor::Monitor;
 use crate::pipeline::find_parts::find_parts;
 use crate::pipeline::load::{LoadSettings, LoadedPart, load, prepare};
@@ -123,34 +123,8 @@ pub(super) struct MapValues {
     /// Points in the plane of each layer; from the element formulation if not given.
     #[arg(long, value_name = "1|4", value_parser = clap::value_parser!(u8).range(1..=4))]
     n_plane: Option<u8>,
-    /// How values pass over: area (mean over points of the element), nearest (element by element, as the
-    /// solver does), or shape (means at the nodes, interpolated by shape functions).
-    #[arg(long, value_enum, default_value = "area")]
-    method: MethodName,
-    /// Largest distance of a partner, in the crash model's unit; auto is the element size.
-    #[arg(long, value_name = "LENGTH|auto", default_value = "auto", value_parser = reach)]
-    max_distance: Reach,
-    /// Largest angle between the normals, degrees.
-    #[arg(long, value_name = "DEG", default_value_t = 60.0)]
-    max_angle: f64,
-    /// Whether normals must point to the same side.
-    #[arg(long, value_enum, default_value = "auto")]
-    signed: SenseName,
-    /// Where stamped parts overlap, take the nearest, the first or the thicker one.
-    #[arg(long, value_enum, default_value = "nearest")]
-    overlap: OverlapName,
-    /// Keep membrane force and moment of the stresses where the layers differ.
-    #[arg(long, value_name = "YES|NO", default_value = "yes", action = ArgAction::Set, value_parser = BoolishValueParser::new())]
-    layer_balance: bool,
-    /// Rings of unmapped elements to be filled with the means of mapped neighbours.
-    #[arg(long, value_name = "RINGS", default_value_t = 0)]
-    fill: usize,
-    /// Factor on the mapped thickness.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
-    thickness_scale: f64,
-    /// Thickness at each corner instead of one for the element.
-    #[arg(long, value_name = "YES|NO", default_value = "no", action = ArgAction::Set, value_parser = BoolishValueParser::new())]
-    corner_thickness: bool,
+    #[command(flatten)]
+    options: MapSettingArgs,
 }
 
 /// What is written.
@@ -231,27 +205,7 @@ impl MapValues {
         MapRecipe {
             options: MapOptions {
                 quantities: self.quantities,
-                method: match self.method {
-                    MethodName::Area => MapMethod::Area,
-                    MethodName::Nearest => MapMethod::Nearest,
-                    MethodName::Shape => MapMethod::Shape,
-                },
-                max_distance: self.max_distance.0,
-                max_angle_deg: self.max_angle,
-                normal_sense: match self.signed {
-                    SenseName::Auto => NormalSense::Auto,
-                    SenseName::Yes => NormalSense::Signed,
-                    SenseName::No => NormalSense::Either,
-                },
-                keep_force_and_moment: self.layer_balance,
-                overlap: match self.overlap {
-                    OverlapName::Nearest => Overlap::Nearest,
-                    OverlapName::First => Overlap::First,
-                    OverlapName::Thicker => Overlap::Thicker,
-                },
-                fill_rings: self.fill,
-                thickness_scale: self.thickness_scale,
-                corner_thickness: self.corner_thickness,
+                ..self.options.options()
             },
             n_layers: self.layers.map(usize::from),
             rule: self.rule.map(|rule| match rule {

@@ -33,27 +33,6 @@ impl HandName {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum MethodName {
-    Area,
-    Nearest,
-    Shape,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum SenseName {
-    Auto,
-    Yes,
-    No,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum OverlapName {
-    Nearest,
-    First,
-    Thicker,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum KindName {
     Include,
     Part,
@@ -92,19 +71,6 @@ impl MirrorName {
     }
 }
 
-/// A largest distance; `None` is the size of the elements.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Reach(pub Option<f64>);
-
-pub(super) fn reach(text: &str) -> Result<Reach, String> {
-    if text == "auto" {
-        return Ok(Reach(None));
-    }
-    let number = text.parse();
-    let number = number.map_err(|_| format!("{text:?} is neither a length nor auto"))?;
-    Ok(Reach(Some(number)))
-}
-
 pub(super) fn default_thickness(text: &str) -> Result<DefaultThickness, String> {
     match text {
         "section" => Ok(DefaultThickness::Section),
@@ -125,26 +91,18 @@ pub(super) fn quantities(text: &str) -> Result<Quantities, String> {
         "full" => return Ok(Quantities::FULL),
         _ => {}
     }
-    let mut chosen = Quantities {
-        thickness: false,
-        plastic_strain: false,
-        strain: false,
-        stress: false,
-        history: false,
-    };
+    let mut chosen = Quantities::NONE;
     for word in text.split(',') {
-        match word.trim() {
-            "thickness" => chosen.thickness = true,
-            "plastic" | "plastic-strain" => chosen.plastic_strain = true,
-            "strain" => chosen.strain = true,
-            "stress" => chosen.stress = true,
-            "history" => chosen.history = true,
-            other => {
-                return Err(format!(
-                    "{other:?} is none of thickness, plastic, strain, stress, history, usual, full"
-                ));
-            }
-        }
+        let name = match word.trim() {
+            "plastic-strain" => "plastic",
+            name => name,
+        };
+        let mut all = chosen.named();
+        let Some((_, is_on)) = all.iter_mut().find(|(known, _)| *known == name) else {
+            let names = all.map(|(name, _)| name).join(", ");
+            return Err(format!("{name:?} is none of {names}, usual, full"));
+        };
+        **is_on = true;
     }
     Ok(chosen)
 }

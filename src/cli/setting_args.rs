@@ -1,11 +1,12 @@
-//! The options of the match settings, made from the table of settings.
+//! The options of the settings, made from the tables of settings.
 
 use clap::builder::{BoolishValueParser, PossibleValue, PossibleValuesParser};
 use clap::error::Result;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, value_parser};
 
+use crate::mapping::MapOptions;
 use crate::registration::Floor;
-use crate::settings::{ChoiceWords, Domain, MatchRecipe, SETTINGS, Setting, Unit, Value};
+use crate::settings::{ChoiceWords, Domain, MAP_SETTINGS, SETTINGS, Setting, Unit, Value};
 use crate::text::trimmed;
 
 /// What was typed of the settings.
@@ -37,16 +38,13 @@ impl Args for SettingArgs {
 
 impl FromArgMatches for SettingArgs {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self> {
-        let mut found = Self::default();
-        for setting in &SETTINGS {
-            if let Domain::Poses = setting.domain {
-                let words = matches.get_many::<String>(setting.option);
-                found.start_poses = words.into_iter().flatten().cloned().collect();
-            } else if let Some(value) = value(setting, matches) {
-                found.typed.push((setting.option, value));
-            }
-        }
-        Ok(found)
+        let is_poses = |setting: &&Setting| matches!(setting.domain, Domain::Poses);
+        let poses = SETTINGS.iter().filter(is_poses);
+        let words = poses.flat_map(|row| matches.get_many::<String>(row.option));
+        Ok(Self {
+            typed: typed(&SETTINGS, matches),
+            start_poses: words.flatten().cloned().collect(),
+        })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<()> {
@@ -55,8 +53,52 @@ impl FromArgMatches for SettingArgs {
     }
 }
 
+/// What was typed of the settings of a mapping.
+#[derive(Debug, Clone, Default)]
+pub struct MapSettingArgs(Vec<(&'static str, Value)>);
+
+impl MapSettingArgs {
+    /// The usual choices with what was typed.
+    pub fn options(&self) -> MapOptions {
+        let mut options = MapOptions::default();
+        for setting in &MAP_SETTINGS {
+            for (_, value) in self.0.iter().filter(|(name, _)| *name == setting.option) {
+                setting.set(&mut options, value);
+            }
+        }
+        options
+    }
+}
+
+impl Args for MapSettingArgs {
+    fn augment_args(command: Command) -> Command {
+        command.args(MAP_SETTINGS.iter().map(arg))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for MapSettingArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self> {
+        Ok(Self(typed(&MAP_SETTINGS, matches)))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<()> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// The settings that were typed, with their values.
+fn typed<R>(rows: &'static [Setting<R>], matches: &ArgMatches) -> Vec<(&'static str, Value)> {
+    let typed = |row: &'static Setting<R>| Some((row.option, value(row, matches)?));
+    rows.iter().filter_map(typed).collect()
+}
+
 /// The option of one setting.
-fn arg(setting: &'static Setting) -> Arg {
+fn arg<R: Default>(setting: &'static Setting<R>) -> Arg {
     let arg = Arg::new(setting.option)
         .long(setting.option)
         .aliases(setting.former.iter().copied())
@@ -84,6 +126,10 @@ fn arg(setting: &'static Setting) -> Arg {
             .allow_negative_numbers(true)
             .value_parser(value_parser!(f64)),
         Domain::Floor => arg.value_name("LENGTH|auto|none").value_parser(floor),
+        Domain::Reach => arg
+            .value_name("LENGTH|auto")
+            .allow_negative_numbers(true)
+            .value_parser(reach),
         Domain::Poses => arg
             .value_name("FILE|NUMBERS")
             .action(ArgAction::Append)
@@ -98,7 +144,7 @@ fn possible(words: &ChoiceWords) -> PossibleValue {
 }
 
 /// The help of the table with range and default.
-fn help(setting: &Setting) -> String {
+fn help<R: Default>(setting: &Setting<R>) -> String {
     let mut help = setting.help.to_owned();
     if let Domain::Number { unit, range, .. } = &setting.domain
         && *range.end() < f64::MAX
@@ -110,7 +156,7 @@ fn help(setting: &Setting) -> String {
         let [low, high] = [range.start(), range.end()].map(|end| trimmed(*end, 6));
         help += &format!(" [{low}{suffix} to {high}{suffix}]");
     }
-    let usual = setting.get(&MatchRecipe::default());
+    let usual = setting.get(&R::default());
     let word = usual.as_ref().and_then(Value::word);
     match word {
         Some(word) => help + &format!(" [default: {}]", word.trim_end_matches(".0")),
@@ -119,7 +165,7 @@ fn help(setting: &Setting) -> String {
 }
 
 /// The value typed for a setting.
-fn value(setting: &Setting, matches: &ArgMatches) -> Option<Value> {
+fn value<R>(setting: &Setting<R>, matches: &ArgMatches) -> Option<Value> {
     let name = setting.option;
     match &setting.domain {
         Domain::Choice(words) => {
@@ -138,6 +184,10 @@ fn value(setting: &Setting, matches: &ArgMatches) -> Option<Value> {
         }
         Domain::Number { .. } => matches.get_one(name).copied().map(Value::Number),
         Domain::Floor => matches.get_one(name).copied().map(Value::Floor),
+        Domain::Reach => {
+            let Reach(length) = matches.get_one(name)?;
+            Some(Value::Reach(*length))
+        }
         Domain::Poses => None,
     }
 }
@@ -152,4 +202,17 @@ fn floor(word: &str) -> std::result::Result<Floor, String> {
             .map(Floor::Length)
             .map_err(|_| "expected a length, auto or none".to_owned()),
     }
+}
+
+/// A largest length; `None` leaves it to the program.
+#[derive(Debug, Clone, Copy)]
+struct Reach(Option<f64>);
+
+fn reach(word: &str) -> std::result::Result<Reach, String> {
+    if word == "auto" {
+        return Ok(Reach(None));
+    }
+    let number = word.parse();
+    let number = number.map_err(|_| "expected a length or auto".to_owned())?;
+    Ok(Reach(Some(number)))
 }

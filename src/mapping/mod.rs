@@ -37,7 +37,7 @@ pub use history::{LawGap, LayerHistory, MappedHistory, SourceHistory};
 pub use layered::Layered;
 pub use layers::{LayerBalance, LayerMatrix};
 pub use links::{Links, Neighbours};
-pub use options::{MapMethod, MapOptions, NormalSense, Overlap, Quantities, Status};
+pub use options::{MapMethod, MapOptions, NormalSense, Overlap, Quantities, Status, limits};
 pub use rule::{LayerRule, RuleKind};
 pub use shells::ShellMesh;
 pub use source::SourcePart;
@@ -167,14 +167,14 @@ fn check(
     }
     let setting = |name, value: f64, range| Err(MappingError::Setting { name, value, range });
     if let Some(distance) = options.max_distance
-        && !(distance > 0.0 && distance.is_finite())
+        && !limits::POSITIVE.contains(&distance)
     {
         return setting("the largest distance", distance, "above 0");
     }
-    if !(1.0..=90.0).contains(&options.max_angle_deg) {
+    if !limits::ANGLE_DEG.contains(&options.max_angle_deg) {
         return setting("the largest angle", options.max_angle_deg, "1° to 90°");
     }
-    if !(options.thickness_scale > 0.0 && options.thickness_scale.is_finite()) {
+    if !limits::POSITIVE.contains(&options.thickness_scale) {
         return setting("the thickness factor", options.thickness_scale, "above 0");
     }
     Ok(())

@@ -28,6 +28,14 @@ impl Quantities {
         stress: false,
         history: false,
     };
+    /// Nothing.
+    pub const NONE: Self = Self {
+        thickness: false,
+        plastic_strain: false,
+        strain: false,
+        stress: false,
+        history: false,
+    };
     /// Everything the source has.
     pub const FULL: Self = Self {
         thickness: true,
@@ -36,6 +44,17 @@ impl Quantities {
         stress: true,
         history: true,
     };
+
+    /// Each quantity with its name on the command line.
+    pub fn named(&mut self) -> [(&'static str, &mut bool); 5] {
+        [
+            ("thickness", &mut self.thickness),
+            ("plastic", &mut self.plastic_strain),
+            ("strain", &mut self.strain),
+            ("stress", &mut self.stress),
+            ("history", &mut self.history),
+        ]
+    }
 
     /// True if stress points are needed.
     pub(super) fn needs_states(self) -> bool {
@@ -87,6 +106,19 @@ pub enum Overlap {
     First,
     /// The thicker one.
     Thicker,
+}
+
+/// Ranges outside of which a mapping refuses a choice.
+pub mod limits {
+    use std::ops::RangeInclusive;
+
+    /// Largest distance and factor on the thickness: any number above 0.
+    pub const POSITIVE: RangeInclusive<f64> = f64::MIN_POSITIVE..=f64::MAX;
+    /// Largest angle between the normals, in degrees. Above 90° a sheet would take the values of one that
+    /// faces away.
+    pub const ANGLE_DEG: RangeInclusive<f64> = 1.0..=90.0;
+    /// Rings of elements that are filled.
+    pub const RINGS: RangeInclusive<usize> = 0..=usize::MAX;
 }
 
 /// Choices of a mapping. The defaults suit a fine stamped mesh on a coarser crash mesh.

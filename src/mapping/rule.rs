@@ -118,6 +118,17 @@ pub enum RuleKind {
     Equal,
 }
 
+impl RuleKind {
+    /// Name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gauss => "gauss",
+            Self::Lobatto => "lobatto",
+            Self::Equal => "equal",
+        }
+    }
+}
+
 /// Layers of a shell: places in rising order and weights that sum to 2.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LayerRule {

@@ -1,4 +1,5 @@
-//! The `shapematch match …` line that does a match again, without a window and bit for bit.
+//! The `shapematch match …` and `shapematch map …` lines that do a match and a mapping again, without a
+//! window and bit for bit.
 //!
 //! The other direction, from words to settings, is in the module of the command line; a test walks both.
 
@@ -6,9 +7,10 @@ use std::path::Path;
 
 use crate::formats::{ReadOptions, Selection as PartSelection};
 use crate::geometry::Similarity;
+use crate::mapping::{MapOptions, RuleKind};
 use crate::registration::{MatchSettings, StartMethod};
 use crate::role::{PerRole, Role};
-use crate::settings::{Domain, MatchRecipe, SETTINGS, Setting, exact};
+use crate::settings::{Domain, MAP_SETTINGS, MatchRecipe, SETTINGS, Setting, exact};
 use crate::units::Units;
 
 /// One file of a match and what is taken from it.
@@ -51,9 +53,7 @@ impl CommandLine<'_> {
         for (role, side) in self.sides.iter() {
             words.side(role, side);
         }
-        for folder in &self.read.include_folders {
-            words.option("include-folder", folder.display().to_string());
-        }
+        words.folders(self.read);
         let limit = self.read.limit();
         if limit != ReadOptions::USUAL_LIMIT {
             words.option("read-limit", exact(limit));
@@ -78,6 +78,77 @@ impl CommandLine<'_> {
     /// The words as one line to paste into a shell.
     pub fn line(&self) -> String {
         shell_line(&self.words())
+    }
+}
+
+/// Everything a mapping depends on.
+#[derive(Debug, Clone, Copy)]
+pub struct MapCommandLine<'a> {
+    /// The two files.
+    pub sides: PerRole<CommandSide<'a>>,
+    /// Further folders for included files.
+    pub read: &'a ReadOptions,
+    /// Where the stamped part lies (crash from stamped).
+    pub pose: &'a Similarity,
+    /// Quantities, method, limits.
+    pub options: &'a MapOptions,
+    /// Layers of the crash elements, the rule through their thickness, and points in the plane, where they
+    /// are not the deck's.
+    pub layers: (Option<usize>, Option<RuleKind>, Option<u8>),
+    /// Factor on the stamped stresses.
+    pub stress_factor: Option<f64>,
+    /// Material law of the stamped parts.
+    pub stamped_law: Option<&'a str>,
+}
+
+impl MapCommandLine<'_> {
+    /// The line to paste into a shell. What is the default is left out.
+    pub fn line(&self) -> String {
+        let mut words = Words(vec!["shapematch".into(), "map".into()]);
+        for (_, side) in self.sides.iter() {
+            words.0.push(file_word(side.path));
+        }
+        for (role, side) in self.sides.iter() {
+            // A mapping takes factors, not units.
+            words.side(
+                role,
+                &CommandSide {
+                    units: None,
+                    ..*side
+                },
+            );
+        }
+        words.folders(self.read);
+        words.option("pose", pose_word(self.pose));
+        let mut quantities = self.options.quantities;
+        if quantities != MapOptions::default().quantities {
+            let chosen = quantities.named().into_iter().filter(|(_, is_on)| **is_on);
+            let names: Vec<&str> = chosen.map(|(name, _)| name).collect();
+            words.option("quantities", names.join(","));
+        }
+        let usual = MapOptions::default();
+        for setting in &MAP_SETTINGS {
+            let value = setting.get(self.options);
+            let value = value.filter(|value| Some(value) != setting.get(&usual).as_ref());
+            if let Some(word) = value.and_then(|value| value.word()) {
+                words.option(setting.option, word);
+            }
+        }
+        let (layers, rule, n_plane) = self.layers;
+        let rule = rule.map(|rule| rule.name().to_owned());
+        let stress_factor = self.stress_factor.map(exact);
+        for (name, word) in [
+            ("layers", layers.map(|n| n.to_string())),
+            ("rule", rule),
+            ("n-plane", n_plane.map(|n| n.to_string())),
+            ("stress-factor", stress_factor),
+            ("stamped-material", self.stamped_law.map(str::to_owned)),
+        ] {
+            if let Some(word) = word {
+                words.option(name, word);
+            }
+        }
+        shell_line(&words.0)
     }
 }
 
@@ -139,6 +210,12 @@ impl Words {
     fn option(&mut self, name: &str, value: String) {
         self.flag(name);
         self.0.push(value);
+    }
+
+    fn folders(&mut self, read: &ReadOptions) {
+        for folder in &read.include_folders {
+            self.option("include-folder", folder.display().to_string());
+        }
     }
 
     fn side(&mut self, role: Role, side: &CommandSide<'_>) {

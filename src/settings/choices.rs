@@ -1,6 +1,7 @@
 //! The words of every choice: value => name, label, help. The compiler refuses a value without a row.
 
 use super::{Choice, ChoiceWords};
+use crate::mapping::{MapMethod, NormalSense, Overlap};
 use crate::registration::{
     DataSide, Floor, Hand, Method, Metric, Motion, PairWith, Search, Selection, StartMethod,
 };
@@ -112,4 +113,31 @@ choices! { Search:
         "All starts on few points; only the best distinct ones are refined";
     EveryStart => "every-start", "Every start to convergence",
         "All starts on all points, as in the paper; slow";
+}
+
+choices! { MapMethod:
+    Area => "area", "Area mean",
+        "Mean over points of the crash element, each with the linear field around its stamped element";
+    Nearest => "nearest", "Nearest",
+        "Value of the stamped element nearest to the centre, as the solver does";
+    Shape => "shape", "Shape",
+        "Means at the stamped nodes, interpolated by shape functions; ridges become lower";
+}
+
+choices! { NormalSense:
+    Auto => "auto", "Automatic",
+        "The same side where at least 90 % of the area agree on it";
+    Signed => "yes", "Same side",
+        "Only sheets that face the same side";
+    Either => "no", "Either side",
+        "Both sides of the sheet";
+}
+
+choices! { Overlap:
+    Nearest => "nearest", "Nearest",
+        "The nearer sheet";
+    First => "first", "First",
+        "The stamped part named first";
+    Thicker => "thicker", "Thicker",
+        "The thicker sheet";
 }

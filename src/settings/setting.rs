@@ -6,10 +6,10 @@ use super::{ChoiceWords, MatchRecipe, Value};
 use crate::registration::Floor;
 use crate::text::{Lengths, counted, grouped, trimmed, yes_no};
 
-/// One setting of a match.
+/// One setting of a match, or of another work whose choices are an `R`.
 #[derive(Debug)]
-pub struct Setting {
-    /// The field of [`MatchRecipe`] as it is stored, for example `settings.starts.method`.
+pub struct Setting<R: 'static = MatchRecipe> {
+    /// The field of `R` as it is stored, for example `settings.starts.method`.
     pub field: &'static str,
     /// Option of the command line, without hyphens.
     pub option: &'static str,
@@ -26,7 +26,7 @@ pub struct Setting {
     /// Which values it takes.
     pub domain: Domain,
     /// How it is read and changed.
-    pub access: Access,
+    pub access: Access<R>,
 }
 
 /// A heading of the settings.
@@ -40,15 +40,18 @@ pub enum Group {
     Correspondences,
     /// Points, meshes and iterations.
     Search,
+    /// How forming results pass over.
+    Values,
 }
 
 impl Group {
     /// Every group, in the order of help and form.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Method,
         Self::Starts,
         Self::Correspondences,
         Self::Search,
+        Self::Values,
     ];
 
     /// Heading of the group.
@@ -58,6 +61,7 @@ impl Group {
             Self::Starts => "Start poses",
             Self::Correspondences => "Correspondences",
             Self::Search => "Search",
+            Self::Values => "Values",
         }
     }
 }
@@ -77,13 +81,15 @@ pub enum Domain {
     Number {
         /// Unit of the number.
         unit: Unit,
-        /// The range outside of which a match refuses it.
+        /// The range outside of which it is refused.
         range: RangeInclusive<f64>,
         /// By how much a drag of one point changes it.
         step: f64,
     },
     /// A length, `auto` or `none`.
     Floor,
+    /// A length above 0, or `auto`.
+    Reach,
     /// A list of poses.
     Poses,
 }
@@ -115,28 +121,28 @@ impl Unit {
 
 /// How a setting is read from and written to a recipe.
 #[derive(Debug)]
-pub struct Access {
+pub struct Access<R: 'static = MatchRecipe> {
     /// Its value; `None` where other settings leave no place for it.
-    pub get: fn(&MatchRecipe) -> Option<Value>,
+    pub get: fn(&R) -> Option<Value>,
     /// Changes it; false where there is no place for it, or the value is of another kind.
-    pub set: fn(&mut MatchRecipe, &Value) -> bool,
+    pub set: fn(&mut R, &Value) -> bool,
     /// Why it has no effect beside the other settings, if so.
-    pub unused: fn(&MatchRecipe) -> Option<&'static str>,
+    pub unused: fn(&R) -> Option<&'static str>,
 }
 
-impl Setting {
+impl<R> Setting<R> {
     /// Its value; `None` where other settings leave no place for it.
-    pub fn get(&self, recipe: &MatchRecipe) -> Option<Value> {
+    pub fn get(&self, recipe: &R) -> Option<Value> {
         (self.access.get)(recipe)
     }
 
     /// Changes it; false where there is no place for it, or the value is of another kind.
-    pub fn set(&self, recipe: &mut MatchRecipe, value: &Value) -> bool {
+    pub fn set(&self, recipe: &mut R, value: &Value) -> bool {
         (self.access.set)(recipe, value)
     }
 
     /// Why it has no effect beside the other settings, if so.
-    pub fn unused(&self, recipe: &MatchRecipe) -> Option<&'static str> {
+    pub fn unused(&self, recipe: &R) -> Option<&'static str> {
         (self.access.unused)(recipe)
     }
 
@@ -153,7 +159,8 @@ impl Setting {
             },
             Value::Floor(Floor::Auto) => "estimated".to_owned(),
             Value::Floor(Floor::None) => "none".to_owned(),
-            Value::Floor(Floor::Length(value)) => lengths.of(*value),
+            Value::Reach(None) => "automatic".to_owned(),
+            Value::Floor(Floor::Length(value)) | Value::Reach(Some(value)) => lengths.of(*value),
             Value::Poses(poses) => counted(poses.len(), "pose"),
         }
     }

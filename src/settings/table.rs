@@ -2,25 +2,11 @@
 
 use std::ops::RangeInclusive;
 
-use super::value::Field as _;
+use super::value::{Field as _, at};
 use super::{Access, Choice as _, Domain, Group, MatchRecipe, Setting, Unit};
 use crate::registration::{
     DataSide, Hand, Method, Metric, Motion, PairWith, Search, Selection, StartMethod, limits,
 };
-
-/// Access to a field of the recipe, and why it may have no effect.
-macro_rules! at {
-    ($($field:ident).+) => {
-        at!($($field).+, |_| None)
-    };
-    ($($field:ident).+, $unused:expr) => {
-        Access {
-            get: |recipe| Some(recipe.$($field).+.value()),
-            set: |recipe, value| recipe.$($field).+.put(value),
-            unused: $unused,
-        }
-    };
-}
 
 /// Access to a parameter of one kind of pair selection.
 macro_rules! of_selection {

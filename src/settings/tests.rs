@@ -6,6 +6,7 @@ use serde_json::Value as Json;
 
 use super::*;
 use crate::geometry::{Point3, TriMesh};
+use crate::mapping::{MapMethod, MapOptions, NormalSense, Overlap};
 use crate::monitor::Monitor;
 use crate::registration::{
     DataSide, Hand, MatchInput, MatchSettings, Method, Metric, Motion, PairWith, RegistrationError,
@@ -46,17 +47,32 @@ fn every_field_has_exactly_one_row() {
     let rows: Vec<String> = SETTINGS.iter().map(|row| row.field.to_owned()).collect();
     assert_eq!(rows.len(), fields.len(), "a field has two rows");
     assert_eq!(rows.into_iter().collect::<BTreeSet<_>>(), fields);
+    // The quantities of a mapping are chosen apart.
+    let options = serde_json::to_value(MapOptions::default()).unwrap();
+    let names = options.as_object().unwrap().keys();
+    let fields: BTreeSet<&str> = names.map(String::as_str).collect();
+    let rows: BTreeSet<&str> = MAP_SETTINGS.iter().map(|row| row.field).collect();
+    assert_eq!(rows.len(), MAP_SETTINGS.len(), "a field has two rows");
+    assert_eq!(&rows | &BTreeSet::from(["quantities"]), fields);
 }
 
 #[test]
 fn no_name_stands_twice() {
+    no_name_twice(&SETTINGS);
+    no_name_twice(&MAP_SETTINGS);
+    for row in &SETTINGS {
+        assert!(std::ptr::eq(setting(row.option).unwrap(), row));
+    }
+}
+
+fn no_name_twice<R>(rows: &[Setting<R>]) {
     let count = |names: Vec<&str>| {
         (
             names.len(),
             names.into_iter().collect::<BTreeSet<_>>().len(),
         )
     };
-    let all = |name: fn(&Setting) -> &'static str| SETTINGS.iter().map(name).collect::<Vec<_>>();
+    let all = |name: fn(&Setting<R>) -> &'static str| rows.iter().map(name).collect::<Vec<_>>();
     for names in [
         all(|row| row.key),
         all(|row| row.label),
@@ -65,18 +81,17 @@ fn no_name_stands_twice() {
         let (n, n_different) = count(names.clone());
         assert_eq!(n, n_different, "{names:?}");
     }
-    let options = SETTINGS
+    let options = rows
         .iter()
         .flat_map(|row| row.former.iter().chain([&row.option]));
     let (n, n_different) = count(options.copied().collect());
     assert_eq!(n, n_different);
-    for row in &SETTINGS {
+    for row in rows {
         assert!(
             !row.help.ends_with('.') && !row.help.is_empty(),
             "{}",
             row.option
         );
-        assert!(std::ptr::eq(setting(row.option).unwrap(), row));
     }
 }
 
@@ -110,6 +125,9 @@ fn choices_are_found_by_name() {
     check_choice::<Motion>();
     check_choice::<Hand>();
     check_choice::<Search>();
+    check_choice::<MapMethod>();
+    check_choice::<NormalSense>();
+    check_choice::<Overlap>();
 }
 
 #[test]

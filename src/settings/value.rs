@@ -23,6 +23,8 @@ pub enum Value {
     Number(f64),
     /// The floor of Fractional ICP.
     Floor(Floor),
+    /// A largest length; `None` leaves it to the program.
+    Reach(Option<f64>),
     /// Start poses, crash from stamped.
     Poses(Vec<Similarity>),
 }
@@ -41,8 +43,10 @@ impl Value {
             Self::Switch(value) => yes_no(*value).to_owned(),
             Self::Count(n) => n.to_string(),
             Self::Limit(n) => n.as_ref()?.to_string(),
-            Self::Number(value) | Self::Floor(Floor::Length(value)) => exact(*value),
-            Self::Floor(Floor::Auto) => "auto".to_owned(),
+            Self::Number(value) | Self::Floor(Floor::Length(value)) | Self::Reach(Some(value)) => {
+                exact(*value)
+            }
+            Self::Floor(Floor::Auto) | Self::Reach(None) => "auto".to_owned(),
             Self::Floor(Floor::None) => "none".to_owned(),
             Self::Poses(_) => return None,
         })
@@ -98,5 +102,21 @@ macro_rules! fields {
 }
 
 fields! {
-    Switch(bool), Count(usize), Limit(Option<usize>), Number(f64), Floor(Floor), Poses(Vec<Similarity>)
+    Switch(bool), Count(usize), Limit(Option<usize>), Number(f64), Floor(Floor), Reach(Option<f64>),
+    Poses(Vec<Similarity>)
 }
+
+/// Access to a field, and why it may have no effect.
+macro_rules! at {
+    ($($field:ident).+) => {
+        at!($($field).+, |_| None)
+    };
+    ($($field:ident).+, $unused:expr) => {
+        Access {
+            get: |recipe| Some(recipe.$($field).+.value()),
+            set: |recipe, value| recipe.$($field).+.put(value),
+            unused: $unused,
+        }
+    };
+}
+pub(super) use at;

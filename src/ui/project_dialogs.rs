@@ -72,9 +72,12 @@ pub fn missing_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui,
         "They were looked for where the project says, and beside the project.",
     );
-    if plain(ui, "Cancel").clicked() {
-        commands.push(ProjectCommand::GiveUp.into());
-    }
+    // In a row as the other answers are, which has the words in the middle of the buttons.
+    ui.horizontal(|ui| {
+        if plain(ui, "Cancel").clicked() {
+            commands.push(ProjectCommand::GiveUp.into());
+        }
+    });
 }
 
 /// Work that its program did not live to save, offered until something was loaded.

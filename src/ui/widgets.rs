@@ -177,7 +177,30 @@ pub fn tight<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
     result
 }
 
-/// Choices side by side in one frame, all of the same width; the index of the one clicked.
+/// Least room on both sides of a label of [`segments`] together.
+const AROUND: f32 = 14.0;
+
+/// The widths of segments: the same for all, unless a label would touch the edge of its own; then all have
+/// the same room around their labels.
+fn segment_widths(ui: &Ui, labels: &[(&str, bool, bool)], width: f32) -> Vec<f32> {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let of = |(label, ..): &(&str, bool, bool)| {
+        let text = (*label).to_owned();
+        let galley = ui
+            .painter()
+            .layout_no_wrap(text, font.clone(), Color32::WHITE);
+        galley.size().x
+    };
+    let texts: Vec<f32> = labels.iter().map(of).collect();
+    let n = labels.len().max(1) as f32;
+    if texts.iter().all(|text| text + AROUND <= width / n) {
+        return vec![width / n; labels.len()];
+    }
+    let around = (width - texts.iter().sum::<f32>()) / n;
+    texts.iter().map(|text| text + around).collect()
+}
+
+/// Choices side by side in one frame; the index of the one clicked.
 pub fn segments(ui: &mut Ui, labels: &[(&str, bool, bool)], width: f32) -> Option<usize> {
     let palette = Palette::of(ui);
     let (rect, _) = ui.allocate_exact_size(vec2(width, ROW + 4.0), Sense::hover());
@@ -186,11 +209,12 @@ pub fn segments(ui: &mut Ui, labels: &[(&str, bool, bool)], width: f32) -> Optio
     let stroke = Stroke::new(1.0, palette.line);
     ui.painter()
         .rect_stroke(rect, radius, stroke, egui::StrokeKind::Inside);
-    let step = rect.width() / labels.len().max(1) as f32;
+    let widths = segment_widths(ui, labels, rect.width());
+    let mut left = rect.left();
     let mut clicked = None;
-    for (index, (label, is_on, can)) in labels.iter().enumerate() {
-        let left = rect.left() + step * index as f32;
-        let cell = Rect::from_min_size(pos2(left, rect.top()), vec2(step, rect.height()));
+    for (index, ((label, is_on, can), width)) in labels.iter().zip(widths).enumerate() {
+        let cell = Rect::from_min_size(pos2(left, rect.top()), vec2(width, rect.height()));
+        left += width;
         let id = ui.unique_id().with(("segment", *label));
         let sense = if *can { Sense::click() } else { Sense::hover() };
         let response = ui.interact(cell, id, sense);

@@ -1,10 +1,11 @@
-//! Looking at a mapping without a window: what is shown where a picture is not there, lists of elements, and
-//! what is told after writing.
+//! Looking at a mapping without a window: its settings, what is shown where a picture is not there, lists of
+//! elements, and what is told after writing.
 
 use shapematch::app::{
-    Action, ColorBy, ExportCommand, HistoryCommand, MapCommand, MapPicture, ViewCommand,
+    Action, ColorBy, Effect, ExportCommand, FileCommand, HistoryCommand, MapCommand, MapPicture,
+    Section, ViewCommand,
 };
-use shapematch::mapping::Status;
+use shapematch::mapping::{MapMethod, Status};
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::map::WriteKind;
 use shapematch::pipeline::outputs::Output;
@@ -21,6 +22,53 @@ fn mapped_without_flanges() -> (Window, tempfile::TempDir) {
     window.act(Action::MapOrCancel);
     assert!(window.state.document.current_mapping().is_some());
     (window, folder)
+}
+
+#[test]
+fn settings_are_one_step_mark_the_mapping_and_stand_in_its_command_line() {
+    let (mut window, _folder) = mapped_without_flanges();
+    let line = |window: &Window| window.state.document.map_command_line().unwrap();
+    let usual = line(&window);
+    assert!(
+        usual.starts_with("shapematch map ") && usual.contains(" --pose "),
+        "{usual}"
+    );
+    assert!(
+        !usual.contains("--max-distance") && !usual.contains("--quantities"),
+        "{usual}"
+    );
+    let mut options = window.state.document.mapping.recipe.options.clone();
+    let usual_options = options.clone();
+    options.method = MapMethod::Nearest;
+    for reach in [3.0, 4.5] {
+        options.max_distance = Some(reach);
+        window.apply(MapCommand::SetOptions(Box::new(options.clone())));
+    }
+    let said = format!("{usual} --method nearest --max-distance 4.5");
+    assert_eq!(line(&window), said);
+    let stale = |window: &Window| window.state.stale(Section::Map).map(|stale| stale.reason);
+    assert_eq!(
+        stale(&window),
+        Some("the options changed after the mapping")
+    );
+    window.act(Action::CopyMapCommandLine);
+    let copied = window.effects.last();
+    assert!(
+        matches!(copied, Some(Effect::CopyText(text)) if *text == said),
+        "{copied:?}"
+    );
+    window.act(Action::MapOrCancel);
+    assert_eq!(stale(&window), None);
+    window.act(Action::Undo);
+    window.act(Action::Undo);
+    assert_eq!(window.state.document.mapping.recipe.options, usual_options);
+    assert_eq!(stale(&window), None);
+    window.apply(FileCommand::SetLengthFactor {
+        role: Role::Crash,
+        factor: 1000.0,
+    });
+    let reason = Action::CopyMapCommandLine.enabled(&window.state);
+    assert!(reason.is_err_and(|reason| reason.0.contains("factor")));
 }
 
 #[test]

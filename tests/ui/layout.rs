@@ -18,8 +18,8 @@ pub(super) type Window = Harness<'static, Shell>;
 /// A text as it was painted.
 pub(super) struct Painted {
     pub(super) text: String,
-    rect: Rect,
-    clip: Rect,
+    pub(super) rect: Rect,
+    pub(super) clip: Rect,
 }
 
 /// Every text of the last frame that can be seen.
@@ -124,7 +124,7 @@ fn overlapping_buttons(window: &Window) -> Vec<String> {
 }
 
 /// Changes theme and scale as the preferences do.
-fn set(window: &mut Window, theme: Theme, ui_scale: f32) {
+pub(super) fn set(window: &mut Window, theme: Theme, ui_scale: f32) {
     let ctx = window.ctx.clone();
     let mut settings = window.state().state().settings.clone();
     settings.theme = theme;
@@ -136,7 +136,7 @@ fn set(window: &mut Window, theme: Theme, ui_scale: f32) {
 }
 
 /// Toasts lie over the windows on purpose.
-fn dismiss_toasts(window: &mut Window) {
+pub(super) fn dismiss_toasts(window: &mut Window) {
     let toasts = window.state().state().log.notices.toasts();
     let ids: Vec<_> = toasts.map(|notice| notice.id).collect();
     let commands = ids.into_iter().map(|id| NoticeCommand::Dismiss(id).into());
@@ -201,6 +201,60 @@ fn nothing_is_cut_at_any_size_and_scale_in_any_theme() {
     look(&mut window, "mapped");
     let n = all.len();
     assert!(all.is_empty(), "{n} faults\n{}", all.join("\n"));
+}
+
+/// The first start of a small window after files were opened: the question about the mouse is seen whole.
+#[test]
+fn the_question_about_the_mouse_is_seen_whole_below_recent_files() {
+    let mut window = window();
+    let ctx = window.ctx.clone();
+    let mut settings = window.state().state().settings.clone();
+    settings.is_mouse_asked = false;
+    settings.recent = [
+        "crash.k",
+        "a_rather_long_name_of_a_stamped_part.dynain",
+        "w.shapematch",
+    ]
+    .map(std::path::PathBuf::from)
+    .to_vec();
+    let commands = vec![Command::Settings(Box::new(settings))];
+    window.state_mut().run_commands(commands, &ctx);
+    for [width, height] in [[1280.0, 720.0], [1280.0, 640.0], [1600.0, 900.0]] {
+        window.set_size(Vec2::new(width, height));
+        window.run_steps(4);
+        let ok = window.get_by_label("OK").rect();
+        let texts = texts(&window);
+        let text = texts.iter().find(|text| text.text == "OK").expect("drawn");
+        let foot = Rect::from_min_max(ok.left_bottom(), ok.right_bottom() + Vec2::new(0.0, 9.0));
+        assert!(
+            text.clip.contains_rect(foot),
+            "{width}: {foot} of {}",
+            text.clip
+        );
+        let listed = texts.iter().filter(|text| text.text == "crash.k").count();
+        assert!(listed >= 1, "{width}: no recent file");
+    }
+}
+
+/// Every label of a row of choices keeps off the edges of its own.
+#[test]
+fn the_uses_of_the_right_window_have_room_around_their_names() {
+    let mut window = matched();
+    click(&mut window, "Move over");
+    finish(&mut window);
+    for width in [1400.0, 1280.0, 1180.0] {
+        window.set_size(Vec2::new(width, 720.0));
+        window.run_steps(4);
+        for name in ["Full mesh", "Second pose"] {
+            let Some(cell) = window.query_by_label(name) else {
+                continue;
+            };
+            let (cell, texts) = (cell.rect(), texts(&window));
+            let text = texts.iter().find(|text| text.text == name).expect("drawn");
+            let room = (text.rect.left() - cell.left()).min(cell.right() - text.rect.right());
+            assert!(room >= 4.0, "{name} at {width}: {room}");
+        }
+    }
 }
 
 #[test]

@@ -7,12 +7,11 @@ use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{BottomTab, ColorBy, ExportCommand, FileCommand, MapCommand, ViewCommand};
 use shapematch::pipeline::map::WriteKind;
 use shapematch::pipeline::outputs::Output;
-use shapematch::report::MatrixForm;
 use shapematch::role::Role;
 use shapematch::samples::{self, SamplePart, SampleSettings};
 use shapematch::ui::Shell;
 
-use super::layout::faults;
+use super::layout::{dismiss_toasts, faults};
 use super::story::{click, finish, matched, window};
 
 fn color_by(window: &Harness<'static, Shell>) -> ColorBy {
@@ -132,6 +131,75 @@ fn run(window: &mut Harness<'static, Shell>, command: impl Into<shapematch::app:
     finish(window);
 }
 
+/// Clicks a field of numbers, types, and goes on.
+fn type_into(window: &mut Harness<'static, Shell>, field: &str, text: &str) {
+    let role = egui::accesskit::Role::SpinButton;
+    window.get_by_role_and_label(role, field).click();
+    window.run_steps(2);
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    if text.is_empty() {
+        window.key_press(egui::Key::Backspace);
+    } else {
+        window.event(egui::Event::Text(text.to_owned()));
+    }
+    window.run_steps(2);
+    window.key_press(egui::Key::Enter);
+    window.run_steps(2);
+}
+
+#[test]
+fn settings_of_a_mapping_are_changed_undone_and_mark_the_result() {
+    use shapematch::app::{Action, Section};
+    let mut window = matched();
+    click(&mut window, "Map");
+    finish(&mut window);
+    let stale = |window: &Harness<'static, Shell>| {
+        let state = window.state().state();
+        state.stale(Section::Map).is_some()
+    };
+    let reach = |window: &Harness<'static, Shell>| {
+        let document = &window.state().state().document;
+        document.mapping.recipe.options.max_distance
+    };
+    assert!(!stale(&window));
+    let is_there = |window: &Harness<'static, Shell>| {
+        let all = window.query_all_by_label("Largest distance");
+        all.count() > 0
+    };
+    assert!(!is_there(&window), "rarely used settings are folded");
+    click(&mut window, "Mapping settings");
+    assert!(is_there(&window));
+    type_into(&mut window, "Largest distance", "0,5 in");
+    assert_eq!(reach(&window), Some(12.7));
+    assert!(stale(&window));
+    // An empty field and the word say the same.
+    for text in ["auto", "3", ""] {
+        type_into(&mut window, "Largest distance", text);
+        assert_eq!(reach(&window), (text == "3").then_some(3.0), "{text:?}");
+    }
+    assert!(!stale(&window));
+    type_into(&mut window, "Largest distance", "3");
+    // What was typed into the form is one step, the mapping another.
+    let undo = Action::Undo.command(window.state().state());
+    run(&mut window, undo.expect("a step"));
+    assert_eq!(reach(&window), None);
+    let redo = Action::Redo.command(window.state().state());
+    run(&mut window, redo.expect("a step"));
+    assert_eq!(reach(&window), Some(3.0));
+    let project = window.state().state().to_project(0);
+    assert_eq!(project.mapping.options.max_distance, Some(3.0));
+    click(&mut window, "Map");
+    finish(&mut window);
+    assert!(!stale(&window));
+    dismiss_toasts(&mut window);
+    for size in [[1400.0, 900.0], [1280.0, 720.0], [853.0, 480.0]] {
+        window.set_size(egui::Vec2::from(size));
+        window.run_steps(3);
+        let found = faults(&window);
+        assert!(found.is_empty(), "{size:?}: {}", found.join("\n"));
+    }
+}
+
 #[test]
 fn what_the_window_writes_is_what_the_command_line_writes_byte_for_byte() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -152,10 +220,22 @@ fn what_the_window_writes_is_what_the_command_line_writes_byte_for_byte() {
     finish(&mut window);
     click(&mut window, "Strain");
     click(&mut window, "Stress");
+    // Settings that are not the usual ones, as they are typed.
+    click(&mut window, "Mapping settings");
+    type_into(&mut window, "Largest distance", "7,5");
+    type_into(&mut window, "Largest angle", "40");
+    let document = &window.state().state().document;
+    let options = &document.mapping.recipe.options;
+    assert_eq!(options.max_distance, Some(7.5));
+    assert_eq!(options.max_angle_deg, 40.0);
     click(&mut window, "Map");
     finish(&mut window);
-    let pose = *window.state().state().document.crash_from_stamped();
-    std::fs::write(at("pose.txt"), MatrixForm::Rows.write(&pose)).expect("a folder");
+    let document = &window.state().state().document;
+    let line = document.map_command_line().expect("both parts");
+    let usual = "--quantities thickness,plastic,strain,stress --max-distance 7.5 --max-angle 40.0";
+    assert!(line.ends_with(usual), "{line}");
+    let program = env!("CARGO_BIN_EXE_shapematch");
+    let line = line.replacen("shapematch", program, 1);
     // All three stand beside each other in section 4 and in the palette.
     for name in ["Deck…", "Part…", "Include…"] {
         assert!(window.query_by_label(name).is_some(), "no {name}");
@@ -168,15 +248,9 @@ fn what_the_window_writes_is_what_the_command_line_writes_byte_for_byte() {
         let (here, there) = (of("window", ".k"), of("line", ".k"));
         let (output, path) = (Output::Mapped(kind), here.clone());
         run(&mut window, ExportCommand::Write { kind: output, path });
-        let status = Process::new(env!("CARGO_BIN_EXE_shapematch"))
-            .arg("map")
-            .args([at("crash.k"), at("stamped.dynain")])
-            .arg("--pose")
-            .arg(at("pose.txt"))
-            .args(["--quantities", "thickness,plastic,strain,stress"])
-            .args(["--write", kind.name(), "--out"])
-            .arg(&there)
-            .status();
+        let out = there.display();
+        let line = format!("{line} --write {} --out '{out}'", kind.name());
+        let status = Process::new("sh").args(["-c", &line]).status();
         assert!(status.is_ok_and(|status| status.success()), "{kind:?}");
         let mut files = vec![(here, there)];
         if kind == WriteKind::Include {

@@ -3,13 +3,13 @@
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use shapematch::app::{ColorBy, ExportCommand, MapCommand, ViewCommand};
+use shapematch::app::{ColorBy, ExportCommand, MapCommand, Theme, ViewCommand};
 use shapematch::pipeline::map::WriteKind;
 use shapematch::pipeline::outputs::Output;
 use shapematch::role::Role;
 use shapematch::ui::Shell;
 
-use super::layout::{faults, texts};
+use super::layout::{Painted, faults, set, texts};
 use super::story::{click, finish, matched};
 
 const SIZE: egui::Vec2 = egui::vec2(1280.0, 800.0);
@@ -175,4 +175,69 @@ fn a_section_that_is_opened_is_seen_and_doubtful_elements_are_a_click_away() {
         .looked_at()
         .map(|(_, place)| place.point);
     assert_eq!(place, Some(first.center));
+}
+
+/// The charts of the pane at its first height in a window of 1280 × 720 pixels: numbers along each axis, all
+/// of them whole and on no other.
+#[test]
+fn a_low_pane_has_whole_axes_at_every_scale() {
+    let mut window = mapped();
+    run(&mut window, MapCommand::Probe(Some(7)));
+    for scale in [1.0, 1.5] {
+        set(&mut window, Theme::Dark, scale);
+        window.set_size(egui::vec2(1280.0, 720.0) / scale);
+        window.run_steps(6);
+        for (view, least) in [("Probe", 2), ("Distribution", 2)] {
+            click(&mut window, view);
+            window.run_steps(3);
+            let pane = window.get_by_label(view).rect();
+            let is_number = |text: &&Painted| {
+                let number = text
+                    .text
+                    .replace(['\u{a0}', '%', ' '], "")
+                    .replace('−', "-");
+                number.parse::<f64>().is_ok() && text.rect.top() > pane.top() - 60.0
+            };
+            let all = texts(&window);
+            let numbers: Vec<&Painted> = all.iter().filter(is_number).collect();
+            let lowest = numbers
+                .iter()
+                .map(|text| text.rect.bottom())
+                .fold(0.0, f32::max);
+            // Those along the values stand in one row at the bottom of the chart.
+            let along = numbers
+                .iter()
+                .filter(|text| text.rect.bottom() > lowest - 3.0);
+            let along: Vec<_> = along.map(|text| (&text.text, text.rect)).collect();
+            assert!(along.len() >= 2, "{view} at {scale}: {along:?}");
+            let height = 720.0 / scale;
+            assert!(
+                lowest <= height - 1.0,
+                "{view} at {scale}: {lowest} of {height}"
+            );
+            for text in &numbers {
+                let is_whole = text.clip.expand(1.0).contains_rect(text.rect);
+                let is_of_chart = text.rect.left() > along[0].1.left() - 60.0;
+                assert!(
+                    is_whole || !is_of_chart,
+                    "{view} at {scale}: {:?} {} of {}",
+                    text.text,
+                    text.rect,
+                    text.clip
+                );
+            }
+            // Those upright stand right of the percentiles, and above the others.
+            let beside = all.iter().find(|text| text.text == "max");
+            let left = beside.map_or(pane.right(), |text| text.rect.right() - 1.0);
+            let is_upright =
+                |text: &&&Painted| text.rect.left() > left && text.rect.center().y < lowest - 16.0;
+            let upright = numbers.iter().filter(is_upright).count();
+            assert!(
+                upright >= least,
+                "{view} at {scale}: {upright} numbers upright"
+            );
+            let found = faults(&window);
+            assert!(found.is_empty(), "{view} at {scale}: {}", found.join("\n"));
+        }
+    }
 }

@@ -34,6 +34,14 @@ const COPY: &[ActionRow] = &[
         command: |_| some(ExportCommand::CopyCommandLine),
     },
     ActionRow {
+        action: Action::CopyMapCommandLine,
+        label: "Copy mapping as command line",
+        tooltip: "Copy the command that maps at this pose with these choices without the window, bit for bit",
+        keys: Keys::NONE,
+        enabled: |state| state.document.can_copy_map_command_line(),
+        command: |_| some(ExportCommand::CopyMapCommandLine),
+    },
+    ActionRow {
         action: Action::CopyLog,
         label: "Copy log",
         tooltip: "Copy the rows of the log as text",

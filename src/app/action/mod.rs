@@ -298,6 +298,8 @@ actions! {
     CopyMatrix,
     /// The match as a line for a shell.
     CopyCommandLine,
+    /// The mapping as a line for a shell.
+    CopyMapCommandLine,
     /// The log as text.
     CopyLog,
     /// The report of the match into a file.

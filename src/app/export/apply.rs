@@ -21,6 +21,10 @@ impl Work<'_> {
                 Some(line) => self.copy(line, "Command line"),
                 None => Vec::new(),
             },
+            ExportCommand::CopyMapCommandLine => match self.document.map_command_line() {
+                Some(line) => self.copy(line, "Command line of the mapping"),
+                None => Vec::new(),
+            },
             ExportCommand::CopyLog => self.copy(self.log.to_text(), "Log"),
             ExportCommand::CopyText { text, what } => self.copy(text, &what),
             ExportCommand::TakePicture { is_transparent } => self.take_picture(is_transparent),

@@ -21,6 +21,8 @@ pub enum ExportCommand {
     },
     /// The line that does the match without the window.
     CopyCommandLine,
+    /// The line that does the mapping without the window.
+    CopyMapCommandLine,
     /// The log as text.
     CopyLog,
     /// A text that a panel shows.

@@ -6,8 +6,8 @@ use crate::app::{Document, Part, Reason};
 use crate::formats::Selection;
 use crate::jobs::PartSource;
 use crate::registration::StartMethod;
-use crate::report::command_line::{CommandLine, CommandSide};
-use crate::role::PerRole;
+use crate::report::command_line::{CommandLine, CommandSide, MapCommandLine};
+use crate::role::{PerRole, Role};
 
 /// Where the line puts the example pairs, which are in no file, and the option that writes them.
 const EXAMPLES: [(PartSource, &str, &str); 2] = [
@@ -72,14 +72,53 @@ impl Document {
             current: self.crash_from_stamped(),
             alternative: self.current_result().and_then(|result| result.alternative),
         };
-        let mut before = String::new();
-        for (source, folder, option) in EXAMPLES {
-            if [crash, stamped].iter().any(|part| part.source == source) {
-                before += &format!("shapematch sample {folder} {option} && ");
-            }
-        }
-        Some(before + &line.line())
+        Some(examples(both) + &line.line())
     }
+
+    /// `Ok` if a line can do the mapping that section 4 asks for.
+    pub fn can_copy_map_command_line(&self) -> Result<(), Reason> {
+        self.can_map()?;
+        let crash = self.part(Role::Crash);
+        if crash.is_some_and(|crash| crash.length_factor() != 1.0) {
+            return Err(Reason(
+                "The command line maps in the unit of the crash file, which has a factor here.",
+            ));
+        }
+        Ok(())
+    }
+
+    /// The line that maps with the present files, parts, pose and choices, bit for bit; `None` without
+    /// both parts.
+    pub fn map_command_line(&self) -> Option<String> {
+        let both = self.both()?;
+        let paths = both.map(path);
+        let recipe = self.wanted_mapping();
+        let side = |role: Role| CommandSide {
+            path: paths.get(role),
+            ..both.get(role).loaded.command_side()
+        };
+        let line = MapCommandLine {
+            sides: PerRole::from_fn(side),
+            read: &both.crash.loaded.settings.read,
+            pose: self.crash_from_stamped(),
+            options: &recipe.options,
+            layers: (recipe.n_layers, recipe.rule, recipe.n_plane),
+            stress_factor: recipe.stress_factor,
+            stamped_law: recipe.stamped_law.as_deref(),
+        };
+        Some(examples(both) + &line.line())
+    }
+}
+
+/// What writes the example pairs, before a line that reads them.
+fn examples(both: PerRole<&Part>) -> String {
+    let mut before = String::new();
+    for (source, folder, option) in EXAMPLES {
+        if both.iter().any(|(_, part)| part.source == source) {
+            before += &format!("shapematch sample {folder} {option} && ");
+        }
+    }
+    before
 }
 
 fn path(part: &Part) -> PathBuf {

@@ -150,6 +150,15 @@ impl History {
         GestureId(u64::MAX - self.n_gestures)
     }
 
+    /// The series that the last step of this name is still part of, or a new one.
+    pub(super) fn series(&mut self, name: &str) -> GestureId {
+        let is_last = self.done.last().is_some_and(|step| step.name == name);
+        match self.open_gesture.filter(|_| is_last) {
+            Some(gesture) => gesture,
+            None => self.next_gesture(),
+        }
+    }
+
     /// Notes a step that led away from `before`. Further steps of the same gesture only rename it.
     pub fn push(
         &mut self,

@@ -15,7 +15,7 @@ use super::follow_up::FollowUp;
 use super::work::Work;
 use super::{AppState, ColorBy, Document, Effect, NoticeLevel, Reason, Shared};
 use crate::jobs::{CompareMappingInput, JobKey, JobKind, MapInput, Stamp};
-use crate::mapping::Quantities;
+use crate::mapping::{MapOptions, Quantities};
 use crate::pipeline::forming_values::{FormingValue, has_forming_value, nominal_thickness};
 use crate::pipeline::map::{
     ComparisonRecord, ElementLists, MapRecipe, MapRecord, MapRun, OtherResult,
@@ -50,8 +50,6 @@ pub struct MapResult {
     pub lists: Shared<ElementLists>,
     /// Parts and pose.
     pub stamp: Stamp,
-    /// What was chosen when it was made.
-    pub asked: MapRecipe,
     /// Another mapper's result for the same elements.
     pub other: Option<Shared<OtherResult>>,
 }
@@ -59,8 +57,10 @@ pub struct MapResult {
 /// Commands of section 4.
 #[derive(Debug, Clone)]
 pub enum MapCommand {
-    /// Other quantities or options.
+    /// Other quantities.
     SetRecipe(Box<MapRecipe>),
+    /// Another method or limit; several in a row are one step, as a drag sends them.
+    SetOptions(Box<MapOptions>),
     /// Map, or give the running mapping up.
     MapOrCancel,
     /// Look at an element of the current mapping closely, or no longer.
@@ -80,6 +80,23 @@ impl Document {
     pub fn current_mapping(&self) -> Option<&MapResult> {
         let result = self.mapping.result.as_ref();
         result.filter(|result| result.stamp == self.stamp())
+    }
+
+    /// True if quantities or options were changed after the current mapping was made.
+    pub fn is_mapping_out_of_date(&self) -> bool {
+        let result = self.current_mapping();
+        result.is_some_and(|result| result.run.recipe != self.wanted_mapping())
+    }
+
+    /// What a mapping would be asked with now: without the quantities that the stamped part lacks.
+    pub fn wanted_mapping(&self) -> MapRecipe {
+        let mut recipe = self.mapping.recipe.clone();
+        for quantity in Quantity::ALL {
+            if self.lacks_quantity(quantity).is_some() {
+                *quantity.switch(&mut recipe.options.quantities) = false;
+            }
+        }
+        recipe
     }
 
     /// `Ok` if the forming results can be mapped now.
@@ -253,6 +270,13 @@ pub(super) fn apply(work: &mut Work<'_>, command: MapCommand) -> Vec<Effect> {
                 document.mapping.recipe = *recipe;
             });
         }
+        MapCommand::SetOptions(options) => {
+            let name = "Mapping settings";
+            let gesture = work.history.series(name);
+            work.commit_in(name, Some(gesture), |document| {
+                document.mapping.recipe.options = *options;
+            });
+        }
         MapCommand::MapOrCancel if work.jobs.is_active(JobKey::Map) => {
             return work.cancel(JobKey::Map);
         }
@@ -301,12 +325,7 @@ fn start(work: &mut Work<'_>) -> Vec<Effect> {
     let Some(both) = work.document.both() else {
         return Vec::new();
     };
-    let mut recipe = work.document.mapping.recipe.clone();
-    for quantity in Quantity::ALL {
-        if work.document.lacks_quantity(quantity).is_some() {
-            *quantity.switch(&mut recipe.options.quantities) = false;
-        }
-    }
+    let recipe = work.document.wanted_mapping();
     let input = MapInput {
         parts: both.map(|part| part.loaded.to_arc()),
         recipe,
@@ -406,7 +425,6 @@ pub(super) fn take_mapped(
             record: record.into(),
             lists: lists.into(),
             stamp,
-            asked: mapping.recipe.clone(),
             other: None,
         });
     });

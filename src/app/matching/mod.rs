@@ -17,7 +17,7 @@ pub use preview::{Preview, Previews};
 pub use starts::{LiveStarts, Starts};
 
 use super::work::Work;
-use super::{AppState, Effect, GestureId, History, Reason, Shared};
+use super::{AppState, Effect, Reason, Shared};
 use crate::assess::Coverage;
 use crate::jobs::{JobKind, Live, Stamp, SweepRows};
 use crate::pipeline::sweep::Sweep;
@@ -42,7 +42,6 @@ pub struct MatchState {
     sweep: Option<Shared<Sweep>>,
     /// The rows of the running sweep, and where the next ones come from.
     sweep_so_far: Option<(Sweep, SweepRows)>,
-    recipe_gesture: Option<GestureId>,
 }
 
 impl AppState {
@@ -71,16 +70,6 @@ impl MatchState {
             MatchCommand::Sweep(settings) => return self.run_sweep(work, *settings),
         }
         Vec::new()
-    }
-
-    /// The gesture of a series of changes of the match settings.
-    fn recipe_gesture(&mut self, history: &mut History) -> GestureId {
-        let open = self.recipe_gesture;
-        let gesture = match open.filter(|gesture| history.is_open(*gesture)) {
-            Some(gesture) => gesture,
-            None => history.next_gesture(),
-        };
-        *self.recipe_gesture.insert(gesture)
     }
 
     /// The tables of the last sweep.

@@ -13,8 +13,9 @@ impl MatchState {
     pub(super) fn set_recipe(&mut self, work: &mut Work<'_>, recipe: MatchRecipe) {
         if work.is_unlocked().is_ok() {
             // A slider sends many recipes; they are one step until something else happens.
-            let gesture = self.recipe_gesture(work.history);
-            work.commit_in("Match settings", Some(gesture), |d| d.recipe = recipe);
+            let name = "Match settings";
+            let gesture = work.history.series(name);
+            work.commit_in(name, Some(gesture), |d| d.recipe = recipe);
         }
     }
 

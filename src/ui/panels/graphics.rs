@@ -206,7 +206,7 @@ fn empty_ui(ui: &mut Ui, rect: Rect, role: Role, state: &AppState, commands: &mu
         read_points(ui, frame.shrink(UNIT), role, points);
     }
     let room = frame.shrink(8.0).size();
-    let size = vec2(320.0_f32.min(room.x), 400.0_f32.min(room.y));
+    let size = vec2(320.0_f32.min(room.x), 440.0_f32.min(room.y));
     // A low window keeps the words and the buttons and leaves the ornament.
     centered(ui, rect, size, |ui| {
         egui::ScrollArea::vertical()
@@ -313,16 +313,29 @@ fn invitation_ui(
             action_button(ui, state, Action::OpenRealisticExample, realistic, commands);
         }
     }
-    recent_ui(ui, role, state, commands);
     let has_room = ui.available_width() > 240.0;
-    if role == Role::Stamped && is_empty && has_room && !state.settings.is_mouse_asked {
+    let has_card = role == Role::Stamped && is_empty && has_room && !state.settings.is_mouse_asked;
+    // The other window lists them too, and a question must be seen whole.
+    let room = ui.clip_rect().bottom() - ui.cursor().top();
+    let n_recent = if has_card {
+        ((room - CARD - 5.0 * UNIT) / ROW).clamp(0.0, N_RECENT as f32) as usize
+    } else {
+        N_RECENT
+    };
+    recent_ui(ui, role, (state, n_recent), commands);
+    if has_card {
         ui.add_space(2.0 * UNIT);
         mouse_card(ui, state, commands);
     }
 }
 
-fn recent_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
-    let recent = state.settings.recent.iter().take(3);
+/// Files opened last that are offered, where there is room.
+const N_RECENT: usize = 3;
+/// Height of the question about the mouse with the space above it.
+const CARD: f32 = 136.0;
+
+fn recent_ui(ui: &mut Ui, role: Role, (state, n): (&AppState, usize), commands: &mut Vec<Command>) {
+    let recent = state.settings.recent.iter().take(n);
     if recent.len() == 0 {
         return;
     }

@@ -3,18 +3,23 @@
 use egui::{Align, Layout, Ui, vec2};
 
 use super::section::section_ui;
+use super::setting_form::{Gear, setting_ui};
 use crate::app::{
     Action, AppState, BottomTab, ColorBy, Command, DoubtfulElement, InspectCommand, MapCommand,
     MapPicture, MapResult, Quantity, Section, UnmappedElement, ViewCommand,
 };
 use crate::geometry::Point3;
 use crate::jobs::JobKey;
+use crate::mapping::MapOptions;
 use crate::pipeline::forming_values::LayerChoice;
 use crate::pipeline::map::{MapRecord, PairRecord};
 use crate::role::Role;
+use crate::settings::{MAP_SETTINGS, Setting};
 use crate::text::{fixed, grouped, length, percent, sentence};
 use crate::ui::theme::{Palette, ROW, TALL};
-use crate::ui::widgets::{Look, action_button, caption, chip, paragraph, secondary, wide_action};
+use crate::ui::widgets::{
+    Look, action_button, caption, card, chip, paragraph, secondary, wide_action,
+};
 
 /// Quantities beside each other.
 const N_CHIPS: usize = 3;
@@ -34,6 +39,7 @@ pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 return;
             }
             quantities_ui(ui, state, commands);
+            options_ui(ui, state, commands);
             run_ui(ui, state, commands);
             if let Some(result) = state.document.current_mapping() {
                 result_ui(ui, state, result, commands);
@@ -56,7 +62,9 @@ fn summary(state: &AppState) -> String {
 fn quantities_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut recipe = state.document.mapping.recipe.clone();
     // What may be greyed has a part of the window of its own, which a wrapped row would not break.
+    let has_own = has_own_options(&recipe.options);
     for row in Quantity::ALL.chunks(N_CHIPS) {
+        let is_last = row.len() < N_CHIPS;
         ui.horizontal(|ui| {
             for &quantity in row {
                 let missing = state.document.lacks_quantity(quantity);
@@ -72,6 +80,11 @@ fn quantities_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                     }
                 });
             }
+            if is_last {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    GEAR.ui(ui, has_own);
+                });
+            }
         });
     }
     if recipe != state.document.mapping.recipe {
@@ -79,10 +92,45 @@ fn quantities_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
+/// The gear that shows and hides method and limits.
+const GEAR: Gear = Gear {
+    id: "mapping settings are open",
+    what: "mapping settings",
+};
+
+/// The method, limits and the rest, while the gear is on.
+fn options_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    if !GEAR.is_on(ui) {
+        return;
+    }
+    let before = &state.document.mapping.recipe.options;
+    let mut options = before.clone();
+    card(ui, |ui| {
+        for setting in MAP_SETTINGS.iter().filter(|row| row.option != OVERLAP) {
+            setting_ui(ui, state, setting, (&mut options, &MapOptions::default()));
+        }
+    });
+    if options != *before {
+        commands.push(MapCommand::SetOptions(Box::new(options)).into());
+    }
+}
+
+/// The window maps one stamped part, which no other overlaps.
+const OVERLAP: &str = "overlap";
+
+/// True if a setting behind the gear is not the usual one.
+fn has_own_options(options: &MapOptions) -> bool {
+    let usual = MapOptions::default();
+    let is_own = |row: &Setting<MapOptions>| row.get(options) != row.get(&usual);
+    MAP_SETTINGS.iter().any(is_own)
+}
+
 fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let is_running = state.jobs.is_active(JobKey::Map);
     let label = if is_running { "Cancel" } else { "Map" };
-    let look = if is_running {
+    let is_made = state.document.current_mapping().is_some();
+    let is_done = is_made && !state.document.is_mapping_out_of_date();
+    let look = if is_running || is_done {
         Look::Plain
     } else {
         Look::Primary
@@ -117,6 +165,9 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
     other_ui(ui, state, commands);
     caption(ui, "Write");
     ui.horizontal_wrapped(|ui| {
+        // All five have room in one row.
+        ui.spacing_mut().button_padding.x = 5.0;
+        ui.spacing_mut().item_spacing.x = 3.0;
         for (action, label) in [
             (Action::SaveMappedDeck, "Deck…"),
             (Action::SaveMappedPart, "Part…"),
@@ -124,7 +175,7 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
             (Action::SaveMapReport, "Report…"),
             (Action::SaveMapTable, "Table…"),
         ] {
-            let look = (label, Look::Plain, vec2(64.0, ROW));
+            let look = (label, Look::Plain, vec2(0.0, ROW));
             action_button(ui, state, action, look, commands);
         }
     });

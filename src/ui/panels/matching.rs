@@ -156,7 +156,7 @@ fn chain_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                         }
                     }
                 });
-            recipe::gear_ui(ui);
+            recipe::GEAR.ui(ui, recipe::has_own_settings(&recipe));
         });
         recipe::recipe_ui(ui, state, &mut recipe);
     });

@@ -16,6 +16,7 @@ pub mod recipe;
 pub mod reduce;
 pub mod result;
 pub mod section;
+mod setting_form;
 pub mod top_bar;
 pub mod units;
 

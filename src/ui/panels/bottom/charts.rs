@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use egui::{Ui, Vec2};
 use egui_plot::{GridMark, Plot};
 
+use crate::text::trimmed;
 use crate::ui::theme::Palette;
 
 /// A chart that shows and does not move: no zoom, no drag, quiet grid.
@@ -100,8 +101,47 @@ fn inner_ticks((low, high): (f64, f64)) -> (Vec<f64>, f64) {
     }
 }
 
+/// A narrow chart with two numbers along its values, none of which reaches beyond it.
+pub fn with_inner_numbers(plot: Plot<'_>) -> Plot<'_> {
+    plot.x_grid_spacer(|input| inner_marks(input.bounds))
+        .x_axis_formatter(|mark, range| inner_text(mark.value, (*range.start(), *range.end())))
+}
+
+/// A low chart of shares with two numbers upright: nothing, and a round one below the top.
+pub fn with_two_shares(plot: Plot<'_>) -> Plot<'_> {
+    plot.y_grid_spacer(|input| {
+        let high = input.bounds.1;
+        let marks = [0.0, round_below(high)].into_iter();
+        let marks = marks.filter(|value| value.is_finite());
+        // A mark is labelled when its step is wide on the screen.
+        marks
+            .map(|value| GridMark {
+                value,
+                step_size: high,
+            })
+            .collect()
+    })
+    .y_axis_formatter(|mark, _| share_text(mark.value))
+}
+
+/// The largest of 1, 2 and 5 with zeros that leaves a tenth of the way to `high` free.
+fn round_below(high: f64) -> f64 {
+    let limit = 0.9 * high;
+    let decade = 10_f64.powf(limit.log10().floor());
+    let factors = [5.0, 2.0, 1.0].into_iter();
+    let mut fitting = factors
+        .map(|factor| factor * decade)
+        .filter(|value| *value <= limit);
+    fitting.next().unwrap_or(f64::NAN)
+}
+
+/// A share with the digits that a round one needs.
+fn share_text(share: f64) -> String {
+    format!("{}\u{a0}%", trimmed(100.0 * share, 6))
+}
+
 /// Grid of a narrow chart that has its numbers inside.
-pub fn inner_marks(bounds: (f64, f64)) -> Vec<GridMark> {
+fn inner_marks(bounds: (f64, f64)) -> Vec<GridMark> {
     // A mark is labelled when its step is wide on the screen.
     let step_size = bounds.1 - bounds.0;
     let marks = inner_ticks(bounds).0.into_iter();
@@ -109,7 +149,7 @@ pub fn inner_marks(bounds: (f64, f64)) -> Vec<GridMark> {
 }
 
 /// The number at a mark of [`inner_marks`], with the digits that its step needs.
-pub fn inner_text(value: f64, bounds: (f64, f64)) -> String {
+fn inner_text(value: f64, bounds: (f64, f64)) -> String {
     let (_, step) = inner_ticks(bounds);
     let n_decimals = (-step.log10() + 1e-9).ceil().clamp(0.0, 9.0) as usize;
     format!("{value:.n_decimals$}")
@@ -170,6 +210,13 @@ mod tests {
             assert_eq!(texts.len(), marks.len(), "{texts:?}");
         }
         assert!(inner_marks((1.0, 1.0)).is_empty());
+    }
+
+    #[test]
+    fn a_low_chart_names_a_round_share_below_its_top() {
+        let read = [0.106, 0.3, 1.0, 0.0021].map(|high| share_text(round_below(high)));
+        assert_eq!(read, ["5\u{a0}%", "20\u{a0}%", "50\u{a0}%", "0.1\u{a0}%"]);
+        assert!(round_below(0.0).is_nan());
     }
 
     #[test]

@@ -1,22 +1,17 @@
-//! The mapping looked at closely: its checks, the distribution of a quantity on both sides, and one
-//! element with its profile through the thickness.
+//! The mapping looked at closely: its checks, the distribution of a quantity on both sides, and the probe.
 
 use egui::{Align, Layout, RichText, Sense, Ui, vec2};
 use egui_extras::{Column, TableBuilder};
-use egui_plot::{Line, MarkerShape, PlotPoints, Points};
+use egui_plot::{Line, PlotPoints};
 
 use super::charts;
-use crate::app::{
-    Action, AppState, ColorBy, Command, InspectCommand, MapCommand, MapResult, ProbeReport,
-    ViewCommand, file_names,
-};
+use super::probe::probe_ui;
+use crate::app::{AppState, ColorBy, Command, InspectCommand, MapResult, ViewCommand, file_names};
 use crate::pipeline::map::{CheckRecord, ComparisonRecord, DistributionRecord, PairRecord};
 use crate::role::Role;
 use crate::text::grouped;
-use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::{
-    Look, action_button, caption, length, nothing_yet, percent, segments, signed,
-};
+use crate::ui::theme::Palette;
+use crate::ui::widgets::{caption, length, nothing_yet, segments, signed};
 
 /// Height of a row.
 const LINE: f32 = 19.0;
@@ -30,23 +25,42 @@ pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     let scroll = &mut ui.spacing_mut().scroll;
     scroll.floating_allocated_width = scroll.bar_width;
+    if ui.available_height() < LOW {
+        return low_ui(ui, state, result, commands);
+    }
     if ui.available_width() < NARROW {
         return one_by_one_ui(ui, state, result, commands);
     }
     let (width, height) = (ui.available_width(), ui.available_height());
     // The names of the checks are read whole, and six percentiles stand beside each other.
     let widths = [0.39 * width, 0.285 * width, 0.325 * width - 44.0];
+    // In a wide pane a number stays beside its name.
+    let widths = [0, 1, 2].map(|i| widths[i].min(WIDEST[i]));
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 20.0;
         for (view, width) in View::ALL.into_iter().zip(widths) {
-            ui.allocate_ui_with_layout(vec2(width, height), Layout::top_down(Align::Min), |ui| {
-                ui.set_width(width);
-                ui.spacing_mut().item_spacing.x = 8.0;
-                view.show(ui, state, result, commands);
+            column_ui(ui, vec2(width, height), |ui| {
+                view.show(ui, state, (result, false), commands);
             });
         }
     });
 }
+
+/// A column of a row, as wide and high as this whatever is in it.
+pub(super) fn column_ui(ui: &mut Ui, size: egui::Vec2, add_contents: impl FnOnce(&mut Ui)) {
+    ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
+        ui.set_width(size.x);
+        ui.spacing_mut().item_spacing.x = 8.0;
+        add_contents(ui);
+    });
+}
+
+/// In a pane lower than this only one of the three is shown too, with its parts beside each other.
+const LOW: f32 = 110.0;
+/// Width of the choice between them there.
+const CHOICE: f32 = 92.0;
+/// Largest widths of the three.
+const WIDEST: [f32; 3] = [480.0, 760.0, 640.0];
 
 /// In a pane narrower than this only one of the three is shown at a time.
 const NARROW: f32 = 860.0;
@@ -70,25 +84,79 @@ impl View {
         }
     }
 
-    fn show(self, ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut Vec<Command>) {
+    fn show(
+        self,
+        ui: &mut Ui,
+        state: &AppState,
+        (result, is_low): (&MapResult, bool),
+        commands: &mut Vec<Command>,
+    ) {
         match self {
             Self::Checks => checks_ui(ui, state, result, commands),
-            Self::Distribution => distributions_ui(ui, state, result, commands),
-            Self::Probe => probe_ui(ui, state, commands),
+            Self::Distribution => distributions_ui(ui, state, (result, is_low), commands),
+            Self::Probe => probe_ui(ui, state, is_low, commands),
         }
     }
 }
 
+fn view_id() -> egui::Id {
+    egui::Id::unique("mapping view")
+}
+
+/// The one that is shown where there is room for one: what was chosen, or the probe once an element is probed.
+fn shown_view(ui: &Ui, state: &AppState) -> View {
+    let probe = state.document.mapping.probe;
+    let known: Option<(View, Option<usize>)> = ui.data(|data| data.get_temp(view_id()));
+    let (mut view, before) = known.unwrap_or((View::Checks, None));
+    if probe.is_some() && probe != before {
+        view = View::Probe;
+    }
+    choose_view(ui, state, view);
+    view
+}
+
+fn choose_view(ui: &Ui, state: &AppState, view: View) {
+    let probe = state.document.mapping.probe;
+    ui.data_mut(|data| data.insert_temp(view_id(), (view, probe)));
+}
+
 /// One of the three below a choice between them.
 fn one_by_one_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut Vec<Command>) {
-    let id = ui.scope_id().with("mapping view");
-    let now = ui.data(|data| data.get_temp(id)).unwrap_or(View::Checks);
+    let now = shown_view(ui, state);
     let labels = View::ALL.map(|view| (view.label(), view == now, true));
     let width = 300.0_f32.min(ui.available_width());
     if let Some(index) = segments(ui, &labels, width) {
-        ui.data_mut(|data| data.insert_temp(id, View::ALL[index]));
+        choose_view(ui, state, View::ALL[index]);
     }
-    now.show(ui, state, result, commands);
+    now.show(ui, state, (result, false), commands);
+}
+
+/// One of the three beside a choice between them, at full height.
+fn low_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut Vec<Command>) {
+    let now = shown_view(ui, state);
+    let height = ui.available_height();
+    ui.horizontal_top(|ui| {
+        column_ui(ui, vec2(CHOICE, height), |ui| {
+            ui.spacing_mut().item_spacing.y = 2.0;
+            let n = View::ALL.len() as f32;
+            let size = vec2(CHOICE, ((height - (n - 1.0) * 2.0) / n).floor());
+            for view in View::ALL {
+                let button = egui::Button::selectable(view == now, view.label());
+                let button = ui.add(button.min_size(size));
+                if button.clicked() {
+                    choose_view(ui, state, view);
+                }
+            }
+        });
+        ui.add_space(8.0);
+        let width = match now {
+            View::Checks => ui.available_width().min(WIDEST[0]),
+            View::Distribution | View::Probe => ui.available_width(),
+        };
+        column_ui(ui, vec2(width, height), |ui| {
+            now.show(ui, state, (result, true), commands);
+        });
+    });
 }
 
 /// One row for each check; a click shows the picture in which it is seen and flies to the worst place.
@@ -98,10 +166,10 @@ fn checks_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
     let title = format!("Checks: {n_met} of {n_asked} met (click to see)");
     caption(ui, title);
     ui.spacing_mut().item_spacing.y = 0.0;
-    // A table keeps its columns as wide as they were first: one for each width.
-    let width = ui.available_width().round() as u32;
+    // A table keeps its columns as wide and its rows where they were first: one for each width and place.
+    let place = [ui.available_width(), ui.cursor().left()].map(|x| x.round() as i32);
     TableBuilder::new(ui)
-        .id_salt(("mapping checks", width))
+        .id_salt(("mapping checks", place))
         .sense(Sense::click())
         .min_scrolled_height(0.0)
         .auto_shrink([false, false])
@@ -193,7 +261,7 @@ fn pair_of(result: &MapResult, by: ColorBy) -> Option<&PairRecord> {
 fn distributions_ui(
     ui: &mut Ui,
     state: &AppState,
-    result: &MapResult,
+    (result, is_low): (&MapResult, bool),
     commands: &mut Vec<Command>,
 ) {
     let by = state.map_quantity();
@@ -221,13 +289,31 @@ fn distributions_ui(
         ColorBy::VonMises => ", largest of the layers",
         _ => "",
     };
-    caption(ui, format!("{}{of_layers}, by area", by.label()));
-    let palette = Palette::of(ui);
-    let rows = [
-        ("▲", &pair.stamped, palette.stamped),
-        ("■", &pair.crash, palette.crash),
-    ];
-    percentiles_ui(ui, &rows);
+    let is_narrow = is_low && ui.available_width() < PERCENTILES + CHART;
+    let columns: &[usize] = if is_narrow {
+        &[0, 1, 3, 5]
+    } else {
+        &[0, 1, 2, 3, 4, 5]
+    };
+    let numbers = |ui: &mut Ui| {
+        caption(ui, format!("{}{of_layers}, by area", by.label()));
+        let palette = Palette::of(ui);
+        let rows = [
+            ("▲", &pair.stamped, palette.stamped),
+            ("■", &pair.crash, palette.crash),
+        ];
+        percentiles_ui(ui, &rows, columns);
+    };
+    if is_low {
+        let height = ui.available_height();
+        ui.horizontal_top(|ui| {
+            let width = PERCENTILES * (columns.len() + 1) as f32 / 7.0;
+            column_ui(ui, vec2(width, height), numbers);
+            histogram_ui(ui, pair, vec2(ui.available_width() - 8.0, height));
+        });
+        return;
+    }
+    numbers(ui);
     let size = vec2(ui.available_width(), ui.available_height().max(40.0));
     histogram_ui(ui, pair, size);
 }
@@ -260,7 +346,7 @@ fn compared_ui(
         ("here", &record.here, palette.crash),
         ("there", &record.other, palette.secondary),
     ];
-    percentiles_ui(ui, &rows);
+    percentiles_ui(ui, &rows, &[0, 1, 2, 3, 4, 5]);
     ui.add_space(2.0);
     let numbers = format!(
         "mean difference {} · RMS {} · 95\u{a0}%\u{a0}below {}",
@@ -289,7 +375,12 @@ fn compared_ui(
     ui.add(egui::Label::new(text).wrap());
 }
 
-fn look_at_element(state: &AppState, result: &MapResult, id: u64, commands: &mut Vec<Command>) {
+pub(super) fn look_at_element(
+    state: &AppState,
+    result: &MapResult,
+    id: u64,
+    commands: &mut Vec<Command>,
+) {
     let Some(crash) = state.document.part(Role::Crash) else {
         return;
     };
@@ -305,32 +396,45 @@ fn look_at_element(state: &AppState, result: &MapResult, id: u64, commands: &mut
     commands.push(look.into());
 }
 
-/// One row for each side: its sign, its numbers, its colour.
-fn percentiles_ui(ui: &mut Ui, rows: &[(&str, &DistributionRecord, egui::Color32)]) {
+/// Room for six percentiles beside each other.
+const PERCENTILES: f32 = 268.0;
+/// Least room for the histogram beside them; where there is less, four of them do.
+const CHART: f32 = 200.0;
+
+/// One row for each side: its sign, the numbers of these columns, its colour.
+fn percentiles_ui(
+    ui: &mut Ui,
+    rows: &[(&str, &DistributionRecord, egui::Color32)],
+    columns: &[usize],
+) {
     let palette = Palette::of(ui);
     let titles = ["mean", "5 %", "50 %", "95 %", "99 %", "max"];
     let numbers =
         |of: &DistributionRecord| [of.mean, of.p5, of.p50, of.p95, of.p99, of.max].map(length);
     let quiet = |text: &str| RichText::new(text).small().color(palette.secondary);
     egui::Grid::new("mapping percentiles")
-        .num_columns(titles.len() + 1)
+        .num_columns(columns.len() + 1)
         .spacing(vec2(6.0, 0.0))
         .min_row_height(15.0)
         .show(ui, |ui| {
             ui.label("");
-            for title in titles {
-                ui.label(quiet(title));
+            for &column in columns {
+                ui.label(quiet(titles[column]));
             }
             ui.end_row();
             for (name, of, color) in rows {
                 ui.label(RichText::new(*name).small().color(*color));
-                for number in numbers(of) {
-                    ui.label(RichText::new(number).small());
+                let numbers = numbers(of);
+                for &column in columns {
+                    ui.label(RichText::new(&numbers[column]).small());
                 }
                 ui.end_row();
             }
         });
 }
+
+/// A histogram narrower than this has two numbers along its values, so that they tell the range.
+const NARROW_CHART: f32 = 700.0;
 
 /// Share of the area over the value, as two stepped lines.
 fn histogram_ui(ui: &mut Ui, pair: &PairRecord, size: egui::Vec2) {
@@ -344,196 +448,18 @@ fn histogram_ui(ui: &mut Ui, pair: &PairRecord, size: egui::Vec2) {
         let corners = corners.flat_map(|(bin, share)| [[at(bin), *share], [at(bin + 1), *share]]);
         corners.collect::<Vec<_>>().into()
     };
-    charts::still_chart(ui, "mapping histogram", size)
+    let mut plot = charts::still_chart(ui, "mapping histogram", size)
         .include_y(0.0)
-        .y_axis_min_width(36.0)
-        .y_axis_formatter(|mark, _| percent(mark.value))
-        .show(ui, |plot| {
-            let [stamped, crash] = &pair.histograms;
-            let line = Line::new("▲ stamped", steps(stamped)).fill(0.0);
-            plot.line(line.color(palette.stamped).width(1.5).fill_alpha(0.15));
-            let line = Line::new("■ crash, mapped", steps(crash)).fill(0.0);
-            plot.line(line.color(palette.crash).width(1.5).fill_alpha(0.15));
-        });
-}
-
-/// One element: where its values come from, both sides in numbers and through the thickness.
-fn probe_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let Some(probe) = state.probe() else {
-        caption(ui, "Probe");
-        caption(ui, "Click an element of either part to see its values here");
-        pins_ui(ui, state, commands);
-        return;
-    };
-    ui.horizontal(|ui| {
-        ui.set_min_height(ROW);
-        let go = ui.button(probe.id.to_string()).on_hover_text("Look there");
-        let go = go.accessible_name(format!("Element {}", probe.id));
-        if go.clicked() {
-            let look = InspectCommand::LookAt {
-                role: Role::Crash,
-                point: probe.center,
-                text: format!("element {}", probe.id),
-            };
-            commands.push(look.into());
-        }
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let end = ("×", Look::Plain, vec2(ROW, ROW));
-            let button = action_button(ui, state, Action::EndProbe, end, commands);
-            button.accessible_name(Action::EndProbe.row().label);
-            let is_pinned = state.document.mapping.pins.contains(&probe.id);
-            let pin = if is_pinned {
-                ("Pinned", Look::Primary, vec2(0.0, ROW))
-            } else {
-                ("Pin", Look::Plain, vec2(0.0, ROW))
-            };
-            let button = action_button(ui, state, Action::PinProbe, pin, commands);
-            button.accessible_name(Action::PinProbe.row().label);
-            pins_ui(ui, state, commands);
-        });
-    });
-    let text = RichText::new(facts(state, &probe)).small();
-    let text = text.color(Palette::of(ui).secondary);
-    ui.add(egui::Label::new(text).wrap());
-    let width = ui.available_width();
-    let height = ui.available_height();
-    ui.horizontal_top(|ui| {
-        let table = vec2(0.5 * width, height);
-        ui.allocate_ui_with_layout(table, Layout::top_down(Align::Min), |ui| {
-            values_ui(ui, &probe);
-        });
-        profile_ui(ui, &probe, vec2(ui.available_width(), height));
-    });
-}
-
-/// The elements that were pinned for the report: a click probes one and flies there, the cross takes it out.
-fn pins_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let pins = &state.document.mapping.pins;
-    if pins.is_empty() {
-        return;
-    }
-    let label = format!("{} ▾", grouped(pins.len()));
-    let (button, _) = egui::containers::menu::MenuButton::new(label).ui(ui, |ui| {
-        caption(ui, "Pinned for the report");
-        for &id in pins {
-            ui.horizontal(|ui| {
-                let element = state.document.mapped_element(Role::Crash, id);
-                let name = format!("Element {id}");
-                let go = ui.add_enabled(element.is_some(), egui::Button::new(name));
-                if go.clicked() {
-                    commands.push(MapCommand::Probe(element).into());
-                    if let Some(result) = state.document.current_mapping() {
-                        look_at_element(state, result, id, commands);
-                    }
-                    ui.close();
-                }
-                let remove = ui.button("×").on_hover_text("Take it out of the report");
-                let remove = remove.accessible_name(format!("Remove the pin of element {id}"));
-                if remove.clicked() {
-                    commands.push(MapCommand::TogglePin(id).into());
-                }
-            });
-        }
-    });
-    let button = button.on_hover_text("Elements that were pinned for the report");
-    button.accessible_name("Pinned elements");
-}
-
-/// What became of it and where the values come from, in a line.
-fn facts(state: &AppState, probe: &ProbeReport) -> String {
-    let [distance, angle, coverage, confidence] = probe.facts;
-    let status = probe.status.label();
-    let Some(stamped) = probe.stamped_id else {
-        return format!("{status} · no stamped element gave it values");
-    };
-    format!(
-        "{status} from ▲ {stamped} · {} · {angle:.0}° · {} covered · confidence {confidence:.2}",
-        state.lengths().signed_of(distance),
-        percent(coverage),
-    )
-}
-
-fn values_ui(ui: &mut Ui, probe: &ProbeReport) {
-    let palette = Palette::of(ui);
-    let number = |value: f64| {
-        if value.is_finite() {
-            length(value)
-        } else {
-            "–".to_owned()
-        }
-    };
-    egui::ScrollArea::vertical()
-        .id_salt("probe values")
-        .auto_shrink([false, false])
-        .show(ui, |ui| {
-            egui::Grid::new("probe values")
-                .num_columns(3)
-                .spacing(vec2(8.0, 1.0))
-                .min_row_height(16.0)
-                .show(ui, |ui| {
-                    ui.label("");
-                    ui.label(RichText::new("▲").small().color(palette.stamped));
-                    ui.label(RichText::new("■").small().color(palette.crash));
-                    ui.end_row();
-                    for (by, [stamped, crash]) in &probe.values {
-                        ui.label(RichText::new(by.label()).small().color(palette.secondary));
-                        ui.label(RichText::new(number(*stamped)).small());
-                        ui.label(RichText::new(number(*crash)).small());
-                        ui.end_row();
-                    }
-                });
-        });
-}
-
-/// Value over T: bottom −1, top +1; points are the layers.
-fn profile_ui(ui: &mut Ui, probe: &ProbeReport, size: egui::Vec2) {
-    let Some(by) = probe.profile_of else {
-        caption(ui, "no quantity with layers was mapped");
-        return;
-    };
-    let upright = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
-        points.iter().map(|[t, value]| [*value, *t]).collect()
-    };
-    let stamped = upright(&probe.profile.stamped);
-    let crash = upright(&probe.profile.crash);
-    let values = stamped.iter().chain(&crash).map(|point| point[0]);
-    let range = charts::margined(values);
-    ui.vertical(|ui| profile_plot(ui, by, [stamped, crash], (range, size)));
-}
-
-/// The line of each side, values to the right.
-fn profile_plot(
-    ui: &mut Ui,
-    by: ColorBy,
-    [stamped, crash]: [Vec<[f64; 2]>; 2],
-    (range, size): (Option<[f64; 2]>, egui::Vec2),
-) {
-    let palette = Palette::of(ui);
-    let before = ui.cursor().top();
-    caption(ui, format!("{} over T", by.label()));
-    let size = vec2(
-        size.x - 16.0,
-        (size.y - (ui.cursor().top() - before)).max(40.0),
-    );
-    let mut plot = charts::still_chart(ui, "profile", size)
-        .include_y(-1.1)
-        .include_y(1.1)
-        .y_axis_min_width(26.0)
-        .x_grid_spacer(|input| charts::inner_marks(input.bounds))
-        .x_axis_formatter(|mark, range| {
-            charts::inner_text(mark.value, (*range.start(), *range.end()))
-        });
-    if let Some([low, high]) = range {
-        plot = plot.include_x(low).include_x(high);
+        .y_axis_min_width(36.0);
+    plot = charts::with_two_shares(plot);
+    if size.x < NARROW_CHART {
+        plot = charts::with_inner_numbers(plot);
     }
     plot.show(ui, |plot| {
-        let line = Line::new("▲ stamped", stamped.clone());
-        plot.line(line.color(palette.stamped).width(1.5));
-        let points = Points::new("▲ stamped", stamped).shape(MarkerShape::Up);
-        plot.points(points.color(palette.stamped).radius(4.0));
-        let line = Line::new("■ crash", crash.clone());
-        plot.line(line.color(palette.crash).width(1.5));
-        let points = Points::new("■ crash", crash).shape(MarkerShape::Square);
-        plot.points(points.color(palette.crash).radius(3.5));
+        let [stamped, crash] = &pair.histograms;
+        let line = Line::new("▲ stamped", steps(stamped)).fill(0.0);
+        plot.line(line.color(palette.stamped).width(1.5).fill_alpha(0.15));
+        let line = Line::new("■ crash, mapped", steps(crash)).fill(0.0);
+        plot.line(line.color(palette.crash).width(1.5).fill_alpha(0.15));
     });
 }

@@ -13,7 +13,7 @@ const WIDTH: f32 = 496.0;
 const HEIGHT: f32 = 28.0;
 
 /// Where the row of choices has no room the choice is a menu.
-const NARROW: f32 = 366.0;
+const NARROW: f32 = 400.0;
 const MENU: f32 = 150.0;
 /// Room for the folded legend.
 const LEGEND: f32 = 84.0;

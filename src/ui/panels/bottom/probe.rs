@@ -1,0 +1,227 @@
+//! One element of a mapping: where its values come from, both sides in numbers and through the thickness.
+
+use egui::{Align, Layout, RichText, Ui, vec2};
+use egui_plot::{Line, MarkerShape, Points};
+
+use super::charts;
+use super::mapping::{column_ui, look_at_element};
+use crate::app::{Action, AppState, ColorBy, Command, InspectCommand, MapCommand, ProbeReport};
+use crate::role::Role;
+use crate::text::grouped;
+use crate::ui::theme::{Palette, ROW};
+use crate::ui::widgets::{Look, action_button, caption, length, percent};
+
+/// One element: where its values come from, both sides in numbers and through the thickness.
+pub fn probe_ui(ui: &mut Ui, state: &AppState, is_low: bool, commands: &mut Vec<Command>) {
+    let Some(probe) = state.probe() else {
+        caption(ui, "Probe");
+        caption(ui, "Click an element of either part to see its values here");
+        pins_ui(ui, state, commands);
+        return;
+    };
+    if is_low {
+        return low_probe_ui(ui, state, &probe, commands);
+    }
+    probe_head_ui(ui, state, &probe, commands);
+    facts_ui(ui, state, &probe);
+    let (width, height) = (ui.available_width(), ui.available_height());
+    ui.horizontal_top(|ui| {
+        column_ui(ui, vec2(0.5 * width, height), |ui| {
+            values_ui(ui, &probe, |_| {})
+        });
+        profile_ui(ui, &probe, vec2(ui.available_width(), height));
+    });
+}
+
+/// Room of a low pane for the head of the probe, its values, and the profile beside each other.
+const THREE: f32 = 560.0;
+
+/// The probe in a low pane: the profile has its whole height.
+fn low_probe_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, commands: &mut Vec<Command>) {
+    let (width, height) = (ui.available_width(), ui.available_height());
+    ui.horizontal_top(|ui| {
+        if width < THREE {
+            column_ui(ui, vec2(0.52 * width, height), |ui| {
+                probe_head_ui(ui, state, probe, commands);
+                values_ui(ui, probe, |ui| facts_ui(ui, state, probe));
+            });
+        } else {
+            column_ui(ui, vec2(0.34 * width, height), |ui| {
+                probe_head_ui(ui, state, probe, commands);
+                facts_ui(ui, state, probe);
+            });
+            column_ui(ui, vec2(0.28 * width, height), |ui| {
+                values_ui(ui, probe, |_| {});
+            });
+        }
+        profile_ui(ui, probe, vec2(ui.available_width(), height));
+    });
+}
+
+/// The element, and what can be done with it.
+fn probe_head_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(ROW);
+        let go = ui.button(probe.id.to_string()).on_hover_text("Look there");
+        let go = go.accessible_name(format!("Element {}", probe.id));
+        if go.clicked() {
+            let look = InspectCommand::LookAt {
+                role: Role::Crash,
+                point: probe.center,
+                text: format!("element {}", probe.id),
+            };
+            commands.push(look.into());
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let end = ("×", Look::Plain, vec2(ROW, ROW));
+            let button = action_button(ui, state, Action::EndProbe, end, commands);
+            button.accessible_name(Action::EndProbe.row().label);
+            let is_pinned = state.document.mapping.pins.contains(&probe.id);
+            let pin = if is_pinned {
+                ("Pinned", Look::Primary, vec2(0.0, ROW))
+            } else {
+                ("Pin", Look::Plain, vec2(0.0, ROW))
+            };
+            let button = action_button(ui, state, Action::PinProbe, pin, commands);
+            button.accessible_name(Action::PinProbe.row().label);
+            pins_ui(ui, state, commands);
+        });
+    });
+}
+
+fn facts_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport) {
+    let text = RichText::new(facts(state, probe)).small();
+    let text = text.color(Palette::of(ui).secondary);
+    ui.add(egui::Label::new(text).wrap());
+}
+
+/// The elements that were pinned for the report: a click probes one and flies there, the cross takes it out.
+fn pins_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let pins = &state.document.mapping.pins;
+    if pins.is_empty() {
+        return;
+    }
+    let label = format!("{} ▾", grouped(pins.len()));
+    let (button, _) = egui::containers::menu::MenuButton::new(label).ui(ui, |ui| {
+        caption(ui, "Pinned for the report");
+        for &id in pins {
+            ui.horizontal(|ui| {
+                let element = state.document.mapped_element(Role::Crash, id);
+                let name = format!("Element {id}");
+                let go = ui.add_enabled(element.is_some(), egui::Button::new(name));
+                if go.clicked() {
+                    commands.push(MapCommand::Probe(element).into());
+                    if let Some(result) = state.document.current_mapping() {
+                        look_at_element(state, result, id, commands);
+                    }
+                    ui.close();
+                }
+                let remove = ui.button("×").on_hover_text("Take it out of the report");
+                let remove = remove.accessible_name(format!("Remove the pin of element {id}"));
+                if remove.clicked() {
+                    commands.push(MapCommand::TogglePin(id).into());
+                }
+            });
+        }
+    });
+    let button = button.on_hover_text("Elements that were pinned for the report");
+    button.accessible_name("Pinned elements");
+}
+
+/// What became of it and where the values come from, in a line.
+fn facts(state: &AppState, probe: &ProbeReport) -> String {
+    let [distance, angle, coverage, confidence] = probe.facts;
+    let status = probe.status.label();
+    let Some(stamped) = probe.stamped_id else {
+        return format!("{status} · no stamped element gave it values");
+    };
+    format!(
+        "{status} from ▲ {stamped} · {} · {angle:.0}° · {} covered · confidence {confidence:.2}",
+        state.lengths().signed_of(distance),
+        percent(coverage),
+    )
+}
+
+/// The values of both sides, below what stands `before` them.
+fn values_ui(ui: &mut Ui, probe: &ProbeReport, before: impl FnOnce(&mut Ui)) {
+    let palette = Palette::of(ui);
+    let number = |value: f64| {
+        if value.is_finite() {
+            length(value)
+        } else {
+            "–".to_owned()
+        }
+    };
+    egui::ScrollArea::vertical()
+        .id_salt("probe values")
+        .auto_shrink([false, false])
+        .show(ui, |ui| {
+            before(ui);
+            egui::Grid::new("probe values")
+                .num_columns(3)
+                .spacing(vec2(8.0, 1.0))
+                .min_row_height(16.0)
+                .show(ui, |ui| {
+                    ui.label("");
+                    ui.label(RichText::new("▲").small().color(palette.stamped));
+                    ui.label(RichText::new("■").small().color(palette.crash));
+                    ui.end_row();
+                    for (by, [stamped, crash]) in &probe.values {
+                        ui.label(RichText::new(by.label()).small().color(palette.secondary));
+                        ui.label(RichText::new(number(*stamped)).small());
+                        ui.label(RichText::new(number(*crash)).small());
+                        ui.end_row();
+                    }
+                });
+        });
+}
+
+/// Value over T: bottom −1, top +1; points are the layers.
+fn profile_ui(ui: &mut Ui, probe: &ProbeReport, size: egui::Vec2) {
+    let Some(by) = probe.profile_of else {
+        caption(ui, "no quantity with layers was mapped");
+        return;
+    };
+    let upright = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        points.iter().map(|[t, value]| [*value, *t]).collect()
+    };
+    let stamped = upright(&probe.profile.stamped);
+    let crash = upright(&probe.profile.crash);
+    let values = stamped.iter().chain(&crash).map(|point| point[0]);
+    let range = charts::margined(values);
+    ui.vertical(|ui| profile_plot(ui, by, [stamped, crash], (range, size)));
+}
+
+/// The line of each side, values to the right.
+fn profile_plot(
+    ui: &mut Ui,
+    by: ColorBy,
+    [stamped, crash]: [Vec<[f64; 2]>; 2],
+    (range, size): (Option<[f64; 2]>, egui::Vec2),
+) {
+    let palette = Palette::of(ui);
+    let before = ui.cursor().top();
+    caption(ui, format!("{} over T", by.label()));
+    let size = vec2(
+        size.x - 16.0,
+        (size.y - (ui.cursor().top() - before)).max(40.0),
+    );
+    let mut plot = charts::still_chart(ui, "profile", size)
+        .include_y(-1.1)
+        .include_y(1.1)
+        .y_axis_min_width(26.0);
+    plot = charts::with_inner_numbers(plot);
+    if let Some([low, high]) = range {
+        plot = plot.include_x(low).include_x(high);
+    }
+    plot.show(ui, |plot| {
+        let line = Line::new("▲ stamped", stamped.clone());
+        plot.line(line.color(palette.stamped).width(1.5));
+        let points = Points::new("▲ stamped", stamped).shape(MarkerShape::Up);
+        plot.points(points.color(palette.stamped).radius(4.0));
+        let line = Line::new("■ crash", crash.clone());
+        plot.line(line.color(palette.crash).width(1.5));
+        let points = Points::new("■ crash", crash).shape(MarkerShape::Square);
+        plot.points(points.color(palette.crash).radius(3.5));
+    });
+}
