@@ -158,6 +158,7 @@ pub fn sweep(
             return Ok(tables);
         }
         let row = reduction_row(parts.stamped, max_triangles, settings.n_repeats, monitor)?;
+        monitor.check()?;
         tell(SweepRow::Reduction(row));
         tables.reduction.push(row);
     }
@@ -171,6 +172,7 @@ pub fn sweep(
             return Ok(tables);
         }
         let row = matching_row(parts, max_triangles, &reference, settings, monitor)?;
+        monitor.check()?;
         tell(SweepRow::Matching(row));
         tables.matching.push(row);
     }
