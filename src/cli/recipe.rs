@@ -320,6 +320,7 @@ mod tests {
             Domain::Floor => [Floor::Auto, Floor::None, Floor::Length(0.1 + 0.2)]
                 .map(Value::Floor)
                 .to_vec(),
+            Domain::Reach => [None, Some(0.1 + 0.2)].map(Value::Reach).to_vec(),
             Domain::Poses => vec![Value::Poses(vec![odd_pose(), odd_pose()])],
         };
         let others = candidates.into_iter().filter(|other| other != value);

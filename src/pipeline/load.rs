@@ -246,8 +246,11 @@ impl LoadedPart {
 
     /// Ids of the parts that are left out as tools of the forming simulation.
     pub fn tools_left_out(&self) -> Vec<u64> {
-        let is_asked = self.settings.selection == Selection::Sheet;
-        is_asked.then(|| self.model.tools()).unwrap_or_default()
+        if self.settings.selection == Selection::Sheet {
+            self.model.tools()
+        } else {
+            Vec::new()
+        }
     }
 
     /// Says which parts are left out as tools; `None` if none are.
