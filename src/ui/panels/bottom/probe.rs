@@ -27,7 +27,7 @@ pub fn probe_ui(ui: &mut Ui, state: &AppState, is_low: bool, commands: &mut Vec<
     let (width, height) = (ui.available_width(), ui.available_height());
     ui.horizontal_top(|ui| {
         column_ui(ui, vec2(0.5 * width, height), |ui| {
-            values_ui(ui, &probe, |_| {})
+            values_ui(ui, &probe, |_| {});
         });
         profile_ui(ui, &probe, vec2(ui.available_width(), height));
     });
