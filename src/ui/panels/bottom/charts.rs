@@ -111,8 +111,7 @@ pub fn with_inner_numbers(plot: Plot<'_>) -> Plot<'_> {
 pub fn with_two_shares(plot: Plot<'_>) -> Plot<'_> {
     plot.y_grid_spacer(|input| {
         let high = input.bounds.1;
-        let marks = [0.0, round_below(high)].into_iter();
-        let marks = marks.filter(|value| value.is_finite());
+        let marks = std::iter::once(0.0).chain(round_below(high));
         // A mark is labelled when its step is wide on the screen.
         marks
             .map(|value| GridMark {
@@ -124,15 +123,13 @@ pub fn with_two_shares(plot: Plot<'_>) -> Plot<'_> {
     .y_axis_formatter(|mark, _| share_text(mark.value))
 }
 
-/// The largest of 1, 2 and 5 with zeros that leaves a tenth of the way to `high` free.
-fn round_below(high: f64) -> f64 {
+/// The largest of 1, 2 and 5 with zeros that leaves a tenth of the way to `high` free; `None` without a way.
+fn round_below(high: f64) -> Option<f64> {
     let limit = 0.9 * high;
     let decade = 10_f64.powf(limit.log10().floor());
     let factors = [5.0, 2.0, 1.0].into_iter();
-    let mut fitting = factors
-        .map(|factor| factor * decade)
-        .filter(|value| *value <= limit);
-    fitting.next().unwrap_or(f64::NAN)
+    let mut marks = factors.map(|factor| factor * decade);
+    marks.find(|mark| *mark > 0.0 && *mark <= limit)
 }
 
 /// A share with the digits that a round one needs.
@@ -214,9 +211,9 @@ mod tests {
 
     #[test]
     fn a_low_chart_names_a_round_share_below_its_top() {
-        let read = [0.106, 0.3, 1.0, 0.0021].map(|high| share_text(round_below(high)));
+        let read = [0.106, 0.3, 1.0, 0.0021].map(|high| share_text(round_below(high).unwrap()));
         assert_eq!(read, ["5\u{a0}%", "20\u{a0}%", "50\u{a0}%", "0.1\u{a0}%"]);
-        assert!(round_below(0.0).is_nan());
+        assert_eq!(round_below(0.0), None);
     }
 
     #[test]
