@@ -129,7 +129,7 @@ fn back_ui<R>(ui: &mut Ui, at: Rect, setting: &Setting<R>) -> bool {
     let response = tight(ui, |ui| ui.put(at, button));
     let name = format!("Reset {}", setting.label);
     response
-        .on_hover_text("Back to the value of the method")
+        .on_hover_text("Back to the usual value")
         .accessible_name(name)
         .clicked()
 }
