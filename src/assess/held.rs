@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::contact::{ContactSearch, MAX_NODES};
 use super::rims::{RimComparison, RimKind, Rims};
-use super::settle::Settling;
+use super::settle::{Least, Settling};
 use super::slide::slid;
 use super::sliding::{FreeMotion, FreeMotionKind, weak_motion};
 use super::{AssessSettings, Distances, overlap_limit};
@@ -58,6 +58,10 @@ const LITTLE_GAP: f64 = 0.25;
 const MUCH_MORE: f64 = 1.3;
 /// It must meet this share of what the result meets.
 const AS_MUCH: f64 = 0.9;
+/// Shares of the part that meet the other are the same up to this much.
+const SAME_MET: f64 = 0.005;
+/// A pose with fewer holes and no more of anything else counts as at least so many times as bad.
+const FEWER_HOLES: f64 = 1.5;
 
 /// A pose that borders and holes hold, and what is left of the others.
 #[derive(Debug, Clone, PartialEq)]
@@ -130,24 +134,22 @@ pub fn held_by_rims(
         .min_by(|a, b| a.gap.total_cmp(&b.gap));
     let closest = closest.copied().unwrap_or(result);
     let is_close = |pose: &Settled| pose.is_as_close_as(&closest, &pair);
-    let rivals: Vec<Settled> = settled.into_iter().filter(is_close).collect();
-    let is_better = |other: &&Settled| {
-        // Another trim moves outlines, and no hole.
-        let misplaces_holes = result.n_holes >= other.n_holes
-            && result.worst_hole <= pair.remainder
-            && other.worst_hole > pair.remainder;
-        let more = result.held + result.grain.max(MORE_HELD);
-        !is_close(&result) || other.held > more && !misplaces_holes
-    };
-    let best = rivals
-        .iter()
-        .filter(is_better)
-        .max_by(|a, b| a.held.total_cmp(&b.held));
-    let winner = best.copied().unwrap_or(result);
+    let rivals: Vec<Settled> = settled
+        .into_par_iter()
+        .filter_map(|pose| {
+            let closer = || pair.closer(&pose).filter(is_close);
+            is_close(&pose).then_some(pose).or_else(closer)
+        })
+        .collect();
+    let choice = pair.choice(&result, is_close(&result), &rivals);
+    let winner = choice.unwrap_or(result);
     let exactly = Settling::new([source, target], found.scale, settings, MAX_NODES);
+    let alternatives = pair.alternatives(&winner, choice.is_some(), &rivals, outcome);
     Ok(Some(HeldPose {
-        target_from_source: exactly.settled(&winner.pose).unwrap_or(winner.pose),
-        alternatives: pair.alternatives(&winner, &result, &rivals, outcome),
+        target_from_source: exactly
+            .settled(&winner.pose, Least::Facets)
+            .unwrap_or(winner.pose),
+        alternatives,
     }))
 }
 
@@ -242,6 +244,8 @@ struct Settled {
     /// Holes with a counterpart, and how far the one that lies farthest from it is off.
     n_holes: usize,
     worst_hole: f64,
+    /// Holes where the other part is solid, as a share of the smaller part's rims.
+    missing: f64,
     /// Share of the smaller part that meets the other.
     met: f64,
     /// How far the surfaces lie apart there, root mean square.
@@ -261,6 +265,16 @@ impl Settled {
             most = most.max(ROUGHLY * pair.springback);
         }
         self.met >= AS_MUCH * other.met && self.gap <= most
+    }
+
+    /// Whether more holes have their counterpart than under the other pose, at no cost: as much of the part
+    /// meets the other, and no more holes lie where it is solid. Outlines do not count against that:
+    /// pieces of them lie beside each other by chance, as a hole hardly ever does.
+    fn has_more_holes_than(&self, other: &Self, within: f64) -> bool {
+        self.n_holes > other.n_holes
+            && self.worst_hole <= within
+            && self.missing <= other.missing + self.grain
+            && self.met >= other.met - SAME_MET
     }
 }
 
@@ -289,9 +303,36 @@ impl<'a> Pair<'a> {
     }
 
     fn settle(&self, pose: &Similarity) -> Option<Settled> {
-        let pose = self.roughly.settled(pose).unwrap_or(*pose);
-        let pose = self.finely.settled(&pose).unwrap_or(pose);
-        self.measured(pose)
+        let least = Least::Facets;
+        let pose = self.roughly.settled(pose, least).unwrap_or(*pose);
+        self.measured(self.finely.settled(&pose, least).unwrap_or(pose))
+    }
+
+    /// A pose whose surfaces lie apart, moved however little: ragged rims step aside by more than surfaces may
+    /// lie apart.
+    fn closer(&self, pose: &Settled) -> Option<Settled> {
+        self.measured(self.finely.settled(&pose.pose, Least::Any)?)
+    }
+
+    /// The rival that the rims speak for; `None` where they speak for the result, which may win only if it
+    /// lies close.
+    fn choice(&self, result: &Settled, is_close: bool, rivals: &[Settled]) -> Option<Settled> {
+        let beats = |a: &Settled, b: &Settled| a.has_more_holes_than(b, self.remainder);
+        let is_better = |other: &Settled| {
+            // Another trim moves outlines, and no hole.
+            let misplaces_holes = result.n_holes >= other.n_holes
+                && result.worst_hole <= self.remainder
+                && other.worst_hole > self.remainder;
+            let more = result.held + result.grain.max(MORE_HELD);
+            let holds_more = other.held > more && !misplaces_holes && !beats(result, other);
+            !is_close || holds_more || beats(other, result)
+        };
+        let better: Vec<&Settled> = rivals.iter().filter(|other| is_better(other)).collect();
+        let unbeaten = better
+            .iter()
+            .filter(|pose| !better.iter().any(|other| beats(other, pose)));
+        let best = unbeaten.max_by(|a, b| a.held.total_cmp(&b.held));
+        best.map(|best| **best)
     }
 
     /// The first of poses that would settle as one.
@@ -320,6 +361,7 @@ impl<'a> Pair<'a> {
             grain,
             n_holes: rims.holes.len(),
             worst_hole: holes.fold(0.0, f64::max),
+            missing: rims.missing_share(),
             met,
             gap,
         })
@@ -416,7 +458,7 @@ impl<'a> Pair<'a> {
     fn alternatives(
         &self,
         winner: &Settled,
-        result: &Settled,
+        is_replaced: bool,
         rivals: &[Settled],
         outcome: &MatchOutcome,
     ) -> Vec<Alternative> {
@@ -428,12 +470,19 @@ impl<'a> Pair<'a> {
         };
         let is_other =
             |other: &Alternative| !same_pose(&other.target_from_source, &winner.pose, &part);
-        let is_replaced = winner.held > result.held;
         let with_rims = |other: &Alternative| {
-            let (held, grain) = self.rims_held(&self.rims.at(&other.target_from_source));
-            let ratio = ratio_by_rims(apart(winner.held - held, grain.max(winner.grain)));
+            let Some(pose) = self.measured(other.target_from_source) else {
+                return *other;
+            };
+            let grain = pose.grain.max(winner.grain);
+            let by_rims = ratio_by_rims(apart(winner.held - pose.held, grain));
+            let by_holes = if winner.has_more_holes_than(&pose, self.remainder) {
+                FEWER_HOLES
+            } else {
+                0.0
+            };
             Alternative {
-                score_ratio: other.score_ratio.max(ratio),
+                score_ratio: other.score_ratio.max(by_rims).max(by_holes),
                 ..*other
             }
         };

@@ -34,7 +34,16 @@ pub fn settled(
     settings: &AssessSettings,
 ) -> Option<Similarity> {
     let settling = Settling::new([source, target], pose.scale, settings, MAX_NODES);
-    settling.settled(pose)
+    settling.settled(pose, Least::Facets)
+}
+
+/// The smallest first step with which a pose is moved at all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Least {
+    /// Any.
+    Any,
+    /// What the rims are cut into.
+    Facets,
 }
 
 /// What moving poses of a pair needs: both rims are prepared once for all of them.
@@ -76,8 +85,8 @@ impl<'a> Settling<'a> {
         }
     }
 
-    /// [`settled`].
-    pub(super) fn settled(&self, pose: &Similarity) -> Option<Similarity> {
+    /// [`settled`], from this first step on.
+    pub(super) fn settled(&self, pose: &Similarity, least: Least) -> Option<Similarity> {
         let [source, target] = self.surfaces;
         let Distances {
             tolerance,
@@ -122,7 +131,8 @@ impl<'a> Settling<'a> {
             let rims = trusted.as_ref().unwrap_or(&rims);
             let evidence = ShapeEvidence { rims, ..evidence };
             let next = contacts.undo(&Fit::of(&evidence).rigid).after(&moved);
-            if step == 0 && largest_motion(source, pose, &next) <= facets {
+            if step == 0 && least == Least::Facets && largest_motion(source, pose, &next) <= facets
+            {
                 return None;
             }
             is_still = next.max_displacement(&moved, &corners) < STILL * facets;

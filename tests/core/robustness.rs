@@ -106,6 +106,11 @@ fn pieces_of_parts_that_slide_are_found_along_all_of_the_part() {
         (21, SamplePart::Channel, Scenario::Coarse),
         (31, SamplePart::Fender, Scenario::Addendum),
         (31, SamplePart::Sill, Scenario::Addendum),
+        // Turned by half, two of three holes and a stretch of the addendum's outline coincide.
+        (212, SamplePart::Plate, Scenario::Addendum),
+        // The true place lies farther from the surface than another until it is moved by less than the ragged
+        // cut steps aside.
+        (214, SamplePart::Channel, Scenario::Cut(0.2)),
     ] {
         let run = run(seed, part, scenario);
         assert_eq!(run.ending, Ending::Right, "{run:?}");
