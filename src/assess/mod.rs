@@ -25,7 +25,7 @@ pub use held::{HeldPose, hand_by_rims, held_by_rims};
 pub use pose::{PoseKind, PoseStatement};
 pub use reason::Reason;
 pub use settle::settled;
-pub use shape::{RimFit, ShapeKind, ShapeReason, ShapeStatement, ShapeTolerance};
+pub use shape::{BorderApart, RimFit, ShapeKind, ShapeReason, ShapeStatement, ShapeTolerance};
 pub use skin::without_offset;
 pub use sliding::{FreeMotion, FreeMotionKind, Freedom, free_motions};
 pub use stretch::PartAxis;

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::contact::{Contacts, Six, quantile, robust_weights, solve};
 use super::rims::Rims;
 use super::stretch::{PartAxis, Stretch, stretch};
+use super::trims;
 use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::registration::Surface;
@@ -124,6 +125,10 @@ pub struct RimFit {
     /// do. They are no evidence, neither of the pose nor of the shape.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub other_trim: Option<f64>,
+    /// Where most borders lie together, the stretch that lies farthest apart, if that is by more than is
+    /// accepted: a single end that was cut elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub apart: Option<BorderApart>,
     /// Holes that both parts have.
     pub n_holes: usize,
     /// Largest distance of a hole from its counterpart, likewise, with the difference of the radii.
@@ -133,6 +138,16 @@ pub struct RimFit {
     pub only_source: usize,
     /// Holes of the target where the source is solid.
     pub only_target: usize,
+}
+
+/// A stretch of border that lies apart from its counterpart. In target units and the target's frame.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BorderApart {
+    /// Distance across the border that half of the stretch exceeds.
+    pub by: f64,
+    /// Its middle.
+    #[serde(with = "xyz")]
+    pub at: Point3,
 }
 
 /// What speaks against one shape. Lengths in target units, places in the target's frame.
@@ -277,7 +292,7 @@ impl ShapeStatement {
             offset: Some(fit.offset).filter(|o| o.abs() > FACETING * evidence.noise),
             is_offset_separable: fit.is_separable,
             is_offset_removed: false,
-            rims: rim_fit(evidence.rims, &fit),
+            rims: rim_fit(evidence.rims, &fit, &tolerance),
             reasons: Vec::new(),
         };
         statement.reasons = statement.find_reasons(evidence, &fit);
@@ -394,12 +409,13 @@ impl ShapeStatement {
     }
 }
 
-fn rim_fit(rims: &Rims, fit: &Fit) -> RimFit {
+fn rim_fit(rims: &Rims, fit: &Fit, tolerance: &ShapeTolerance) -> RimFit {
     let sizes = fit.rims.iter().map(|left| left.abs());
     let mut sizes: Vec<(f64, f64)> = sizes.zip(rims.pairs().iter().map(|p| p.weight)).collect();
     RimFit {
         offset: (rims.share() >= LEAST_PAIRED).then(|| quantile(&mut sizes, 0.9)),
         other_trim: None,
+        apart: trims::farthest_apart(rims, &fit.rims, rims.limit(tolerance)),
         n_holes: fit.holes.len(),
         worst_hole: fit.holes.iter().copied().fold(0.0, f64::max),
         only_source: rims.missing[0].len(),

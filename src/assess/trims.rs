@@ -3,7 +3,7 @@
 
 use super::contact::quantile;
 use super::rims::{RimKind, Rims};
-use super::shape::{Fit, ShapeEvidence, ShapeTolerance};
+use super::shape::{BorderApart, Fit, ShapeEvidence, ShapeTolerance};
 use super::stretch;
 
 /// Outlines of which more than this share lies apart hold no pose.
@@ -12,6 +12,9 @@ const MOST_APART: f64 = 0.5;
 const LEFT: f64 = 0.5;
 /// Share of the outlines that the statement about borders is made at.
 const STATED: f64 = 0.9;
+
+/// A stretch of border is told if it is at least this share of the borders beside each other.
+const STRETCH: f64 = 0.03;
 
 /// What is left of the rims of parts that were trimmed differently.
 pub(super) struct OtherTrim {
@@ -42,6 +45,23 @@ pub(super) fn other_trim(
 pub(super) fn trusted(evidence: &ShapeEvidence<'_>, limit: f64) -> Option<Rims> {
     let outlines = Outlines::of(evidence, limit)?;
     (outlines.share_apart() > MOST_APART).then(|| outlines.trusted())
+}
+
+/// The stretch of the rims that lies farthest apart, if by more than `limit`; `left` are the distances across
+/// them without what springback and an error of the pose explain. O(places).
+pub(super) fn farthest_apart(rims: &Rims, left: &[f64], limit: f64) -> Option<BorderApart> {
+    let pairs = rims.pairs();
+    let n = ((STRETCH * pairs.len() as f64) as usize).max(5);
+    let stretches = pairs.windows(n).zip(left.windows(n));
+    let apart = stretches.filter_map(|(pairs, left)| {
+        let mut sizes: Vec<f64> = left.iter().map(|x| x.abs()).collect();
+        let by = *sizes.select_nth_unstable_by(n / 2, f64::total_cmp).1;
+        (by > limit).then_some(BorderApart {
+            by,
+            at: pairs[n / 2].point,
+        })
+    });
+    apart.max_by(|a, b| a.by.total_cmp(&b.by))
 }
 
 /// The outlines of which some lie apart whatever small motion or bend is tried.

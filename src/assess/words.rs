@@ -263,9 +263,17 @@ impl ShapeStatement {
             };
             format!(", offset of the sheets {}{removed}", lengths.of(offset))
         });
-        let trim = self.rims.other_trim.map_or_else(String::new, |apart| {
-            format!(", trimmed differently, borders {} apart", lengths.of(apart))
-        });
+        let trim = match (self.rims.other_trim, self.rims.apart) {
+            (Some(apart), _) => {
+                format!(", trimmed differently, borders {} apart", lengths.of(apart))
+            }
+            (None, Some(border)) if self.reasons.is_empty() => format!(
+                ", trimmed differently at one place, borders {} apart at {}",
+                lengths.of(border.by),
+                vector(border.at.into(), 1)
+            ),
+            _ => String::new(),
+        };
         format!(
             "{label}: bend and twist {}, remainder {}{offset}{trim} (tolerance {} and {})",
             lengths.of(self.springback),

@@ -294,7 +294,7 @@ impl Shell {
         {
             let text = format!("Preferences cannot be saved: {error}");
             self.state
-                .apply(NoticeCommand::Tell(NoticeLevel::Note, text));
+                .apply(NoticeCommand::Tell(NoticeLevel::Warning, text));
         }
     }
 
@@ -500,7 +500,7 @@ fn from_autosave(event: AutosaveEvent<Box<Document>>) -> Vec<Command> {
         }
         AutosaveEvent::AutosaveFailed(reason) => {
             let text = format!("Autosave is off: {reason}");
-            vec![NoticeCommand::Tell(NoticeLevel::Note, text).into()]
+            vec![NoticeCommand::Tell(NoticeLevel::Warning, text).into()]
         }
         AutosaveEvent::Sessions(sessions) => {
             vec![ProjectCommand::NotifyRecovered(sessions).into()]

@@ -4,6 +4,7 @@ use super::super::AssessSettings;
 use super::super::statements;
 use super::*;
 use crate::geometry::TriMesh;
+use crate::text::Lengths;
 
 /// A hat section of 400 by 120 mm whose nodes are moved by `displace`.
 fn hat(n: usize, displace: impl Fn(Point3) -> Point3) -> Surface {
@@ -206,4 +207,35 @@ fn facets_do_not_make_an_extruded_piece_longer() {
     let piece = hat(380, |p| wavy(8.0 * 1.03, Point3::new(0.9 * p.x, p.y, p.z)));
     let shape = statement(&piece, &plain);
     assert!(shape.reasons.is_empty(), "{shape:?}");
+}
+
+#[test]
+fn one_end_that_was_cut_elsewhere_is_told_with_its_place() {
+    let plain = panel(80, [0.0, 0.0], 1.0);
+    assert_eq!(
+        statement(&panel(37, [0.0, 0.0], 1.0), &plain).rims.apart,
+        None
+    );
+    // 6.25 mm are cut off half of one end, a twelfth of the outline.
+    let mesh = plain.mesh();
+    let points = mesh.positions();
+    let is_left = |corners: &&[u32; 3]| {
+        let sum: Vector3 = corners.iter().map(|&v| points[v as usize].coords).sum();
+        sum.x < 3.0 * 493.75 || sum.y > 0.0
+    };
+    let triangles = mesh.triangles().iter().filter(is_left).copied().collect();
+    let cut = TriMesh::new(points.to_vec(), triangles).unwrap();
+    let shape = statement(&Surface::new(&cut, "source").unwrap(), &plain);
+    assert!(shape.reasons.is_empty(), "{shape:?}");
+    let apart = shape.rims.apart.unwrap();
+    assert!((apart.by - 6.25).abs() < 0.5, "{apart:?}");
+    assert!(
+        apart.at.x > 480.0 && (-250.0..0.0).contains(&apart.at.y),
+        "{apart:?}"
+    );
+    let words = shape.words(Lengths::default());
+    assert!(
+        words.contains("trimmed differently at one place"),
+        "{words}"
+    );
 }

@@ -126,7 +126,7 @@ fn help_ui<R>(ui: &Ui, at: Rect, setting: &Setting<R>) {
 /// The way back to the usual value of a setting that was changed; true if it was taken.
 fn back_ui<R>(ui: &mut Ui, at: Rect, setting: &Setting<R>) -> bool {
     let button = egui::Button::new("⟲").frame_when_inactive(false);
-    let response = tight(ui, |ui| ui.put(at, button));
+    let response = tight(ui, |ui| ui.place(at, button));
     let name = format!("Reset {}", setting.label);
     response
         .on_hover_text("Back to the usual value")
