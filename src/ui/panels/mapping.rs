@@ -4,6 +4,7 @@ use egui::{Align, Layout, Ui, vec2};
 
 use super::section::section_ui;
 use super::setting_form::{Gear, setting_ui};
+use super::stamped_files::stamped_files_ui;
 use crate::app::{
     Action, AppState, BottomTab, ColorBy, Command, DoubtfulElement, InspectCommand, MapCommand,
     MapPicture, MapResult, Quantity, Section, UnmappedElement, ViewCommand,
@@ -34,7 +35,10 @@ pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         &summary,
         commands,
         |ui, commands| {
-            if let Err(reason) = state.document.can_map() {
+            if state.document.both().is_some() {
+                stamped_files_ui(ui, state, commands);
+            }
+            if let Err(reason) = state.document.has_forming_results() {
                 paragraph(ui, reason.to_string());
                 return;
             }
@@ -106,7 +110,9 @@ fn options_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let before = &state.document.mapping.recipe.options;
     let mut options = before.clone();
     card(ui, |ui| {
-        for setting in MAP_SETTINGS.iter().filter(|row| row.option != OVERLAP) {
+        let has_several = !state.document.mapping.further.is_empty();
+        let is_shown = |row: &&Setting<MapOptions>| has_several || row.option != OVERLAP;
+        for setting in MAP_SETTINGS.iter().filter(is_shown) {
             setting_ui(ui, state, setting, (&mut options, &MapOptions::default()));
         }
     });
@@ -115,7 +121,7 @@ fn options_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-/// The window maps one stamped part, which no other overlaps.
+/// One stamped part alone is overlapped by no other.
 const OVERLAP: &str = "overlap";
 
 /// True if a setting behind the gear is not the usual one.
