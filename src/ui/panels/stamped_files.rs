@@ -16,9 +16,7 @@ pub fn stamped_files_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
     ui.horizontal(|ui| {
         caption(ui, "Stamped files");
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let look = ("Add…", Look::Plain, vec2(0.0, ROW));
-            let button = action_button(ui, state, Action::AddStamped, look, commands);
-            button.accessible_name(Action::AddStamped.row().label);
+            add_stamped_ui(ui, state, "Add…", commands);
         });
     });
     for row in &rows {
@@ -29,6 +27,13 @@ pub fn stamped_files_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
             ui.add(egui::Label::new(text).wrap());
         }
     }
+}
+
+/// The way to one more stamped file.
+pub fn add_stamped_ui(ui: &mut Ui, state: &AppState, label: &str, commands: &mut Vec<Command>) {
+    let look = (label, Look::Plain, vec2(0.0, ROW));
+    let button = action_button(ui, state, Action::AddStamped, look, commands);
+    button.accessible_name(Action::AddStamped.row().label);
 }
 
 /// Name, verdict, pose, and the way out of the list.
