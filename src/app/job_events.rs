@@ -122,28 +122,8 @@ impl AppState {
                 let matching = topics.matching;
                 matching.take_measured(work, measurement, stamp, took);
             }
-            JobOutput::FurtherLoaded {
-                revision,
-                replaces,
-                part,
-            } => {
-                topics.parts.was_read_again(work, &part.files());
-                let new = NewFurther {
-                    revision,
-                    replaces,
-                    part,
-                    took,
-                };
-                topics.mapping.take_loaded(work, new);
-            }
-            JobOutput::FurtherPlaced {
-                revision,
-                crash_revision,
-                part,
-                run,
-            } => {
-                let task = (revision, crash_revision);
-                topics.mapping.take_placed(work, task, part, run, took);
+            further @ (JobOutput::FurtherLoaded { .. } | JobOutput::FurtherPlaced { .. }) => {
+                self.take_further(further, took);
             }
             JobOutput::Mapped {
                 run,
@@ -164,6 +144,37 @@ impl AppState {
             JobOutput::Exported(exported) => return work.take_exported(exported, took),
         }
         Vec::new()
+    }
+
+    /// A further stamped file was read, or has its pose.
+    fn take_further(&mut self, output: JobOutput, took: Duration) {
+        let (mut work, topics) = self.split();
+        match output {
+            JobOutput::FurtherLoaded {
+                revision,
+                replaces,
+                part,
+            } => {
+                topics.parts.was_read_again(&mut work, &part.files());
+                let new = NewFurther {
+                    revision,
+                    replaces,
+                    part,
+                    took,
+                };
+                topics.mapping.take_loaded(&mut work, new);
+            }
+            JobOutput::FurtherPlaced {
+                revision,
+                crash_revision,
+                part,
+                run,
+            } => {
+                let task = (revision, crash_revision);
+                topics.mapping.take_placed(&mut work, task, part, run, took);
+            }
+            _ => {}
+        }
     }
 
     /// The crash parts that the stamped part belongs to, or none: the match follows.

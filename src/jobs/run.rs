@@ -115,7 +115,7 @@ impl Runner for PipelineRunner {
             JobKind::Verdict(input) => judge(&input, monitor),
             JobKind::Measure(input) => measure(&input, monitor),
             JobKind::Compare(input) => compare(&input, monitor),
-            JobKind::LoadFurther(input) => load_further(input, monitor),
+            JobKind::LoadFurther(input) => load_further(&input, monitor),
             JobKind::PlaceFurther(input) => place_further(input, match_monitor),
             JobKind::Map(input) => map(&input, monitor),
             JobKind::CompareMapping(input) => compare_mapping(input, monitor),
@@ -262,7 +262,7 @@ fn compare(input: &CompareInput, monitor: &Monitor) -> Result<JobOutput, JobErro
     Ok(JobOutput::Compared(Arc::new(comparison)))
 }
 
-fn load_further(input: FurtherInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
+fn load_further(input: &FurtherInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
     let part = load::load(&input.file, &input.settings, monitor)?;
     Ok(JobOutput::FurtherLoaded {
         revision: input.revision,
