@@ -3,7 +3,7 @@
 
 use super::{
     AppState, Command, Dialog, Effect, FreeWindow, MatchCommand, NoticeCommand, Section, Settings,
-    ViewCommand, mapping,
+    ViewCommand,
 };
 
 impl AppState {
@@ -47,7 +47,7 @@ impl AppState {
             Command::Move(command) => topics.moving.apply(work, command, frame),
             Command::Match(_) if is_part_open => return topics.matching.find_parts(work),
             Command::Match(command) => return topics.matching.apply(work, command),
-            Command::Map(command) => return mapping::apply(work, command),
+            Command::Map(command) => return topics.mapping.apply(work, command),
             Command::Preview(command) => {
                 let is_unlocked = work.is_unlocked().is_ok();
                 work.previews.apply(command, is_unlocked);
@@ -108,6 +108,7 @@ impl AppState {
         let mut effects = Vec::new();
         let is_moving = self.moving.is_grabbed() || self.is_preview();
         let (shown, is_wanted) = (self.shown_pose(), self.wants_comparison());
+        let is_part_open = self.is_part_open();
         let (mut work, topics) = self.split();
         if is_wanted {
             let inspect = topics.inspect;
@@ -116,6 +117,7 @@ impl AppState {
         effects.extend(topics.moving.keep_measuring_overlap(&mut work));
         effects.extend(topics.matching.keep_measuring_alternative(&mut work));
         effects.extend(topics.matching.keep_judging(&mut work));
+        effects.extend(topics.mapping.keep_placing(&mut work, is_part_open));
         effects
     }
 

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::{Label, Mapping, PointPairs, Shared};
+use crate::formats::model::ReadFile;
 use crate::geometry::{Aabb, Similarity, TriMesh};
 use crate::jobs::{MeasuredLevel, PartFacts, PartSource, Stamp};
 use crate::pipeline::load::LoadedPart;
@@ -151,6 +152,28 @@ impl Document {
             },
             pose: self.pose.revision,
         }
+    }
+
+    /// The numbers of all parts there are, those of further stamped files too.
+    pub fn revisions(&self) -> Vec<u64> {
+        let parts = self.parts.iter().filter_map(|(_, part)| part.as_ref());
+        let further = self.mapping.further.iter();
+        parts
+            .map(|part| part.revision)
+            .chain(further.map(|further| further.revision))
+            .collect()
+    }
+
+    /// The files that were read from disk, with what was read.
+    pub fn files_read(&self) -> Vec<ReadFile> {
+        let parts = self.parts.iter().filter_map(|(_, part)| part.as_ref());
+        let from_disk = parts.filter(|part| matches!(part.source, PartSource::File(_)));
+        let further = self.mapping.further.iter().map(|further| &further.loaded);
+        from_disk
+            .map(|part| &part.loaded)
+            .chain(further)
+            .flat_map(|part| part.model.files.clone())
+            .collect()
     }
 
     /// True if the stamped part was moved.

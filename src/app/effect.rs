@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Document, PictureChoice, PicturePlace};
-use crate::jobs::{JobKey, JobKind, Stamp};
+use crate::jobs::{JobKey, JobKind, ProjectFile, Stamp};
 use crate::pipeline::outputs::Output;
 use crate::pipeline::project::Project;
 use crate::role::Role;
@@ -22,7 +22,9 @@ pub enum Effect {
     /// Ask for a project; answer with `ProjectCommand::Open`.
     AskOpenProject,
     /// Ask for a file of a project; answer with `ProjectCommand::Locate`.
-    AskLocate(Role),
+    AskLocate(ProjectFile),
+    /// Ask for a further stamped file; answer with `MapCommand::AddFurther`.
+    AskFurther,
     /// Ask for another mapper's result; answer with `MapCommand::CompareWith`.
     AskOtherMapping,
     /// Ask where to write the project, beginning there; answer with `ProjectCommand::Write`.

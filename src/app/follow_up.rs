@@ -1,5 +1,6 @@
 //! What a change in one topic asks of the others: the only place where topics meet.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use super::{
@@ -24,6 +25,8 @@ pub(super) enum FollowUp {
     PartLoaded(Role),
     /// A part took another selection or unit.
     PartReselected(Role),
+    /// Further stamped files are to be read again: all, or those of these files.
+    ReadFurtherAgain(Option<BTreeSet<PathBuf>>),
     /// A level was made.
     LevelMade,
     /// A match was taken over.
@@ -75,6 +78,15 @@ impl AppState {
                 self.with_scene(|view, scene| view.fit_after_load(role, scene));
                 let (mut work, topics) = self.split();
                 return topics.reduce.reduce_again(&mut work, role);
+            }
+            FollowUp::ReadFurtherAgain(changed) => {
+                let (mut work, topics) = self.split();
+                return topics.mapping.read_again(&mut work, |part| {
+                    let is_among = |files: &BTreeSet<PathBuf>| {
+                        part.files().iter().any(|file| files.contains(file))
+                    };
+                    changed.as_ref().is_none_or(is_among)
+                });
             }
             FollowUp::LevelMade => self.view.shown = ShownGeometry::Reduced,
             FollowUp::Matched {

@@ -87,6 +87,7 @@ impl JobBoard {
                 source: PartSource::File(path),
                 ..
             } => path.file_name(),
+            JobKind::LoadFurther(input) => input.file.file_name(),
             _ => None,
         };
         let file = file.map(|name| name.to_string_lossy().into_owned());

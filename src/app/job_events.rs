@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::mapping::{take_compared, take_mapped};
+use super::mapping::{FURTHER_WITHOUT_POSE, NewFurther, take_compared, take_mapped};
 use super::parts::NewPart;
 use super::reduce::take_level_measured;
 use super::{AppState, Effect, NoticeLevel};
@@ -50,6 +50,8 @@ impl AppState {
         let now = self.document.stamp();
         match key {
             JobKey::Load(_) | JobKey::OpenProject | JobKey::Export => true,
+            // They say themselves which file and which crash part they belong to.
+            JobKey::LoadFurther(_) | JobKey::PlaceFurther => true,
             JobKey::Reselect(role) | JobKey::Reduce(role) => {
                 now.parts.get(role) == stamp.parts.get(role)
             }
@@ -120,8 +122,16 @@ impl AppState {
                 let matching = topics.matching;
                 matching.take_measured(work, measurement, stamp, took);
             }
-            JobOutput::Mapped { run, record, lists } => {
-                return take_mapped(work, (run, record, lists), took);
+            further @ (JobOutput::FurtherLoaded { .. } | JobOutput::FurtherPlaced { .. }) => {
+                self.take_further(further, took);
+            }
+            JobOutput::Mapped {
+                run,
+                record,
+                lists,
+                further,
+            } => {
+                return take_mapped(work, (run, record, lists), further, took);
             }
             JobOutput::MappingCompared { run, other, record } => {
                 take_compared(work, &run, other, *record, took);
@@ -134,6 +144,37 @@ impl AppState {
             JobOutput::Exported(exported) => return work.take_exported(exported, took),
         }
         Vec::new()
+    }
+
+    /// A further stamped file was read, or has its pose.
+    fn take_further(&mut self, output: JobOutput, took: Duration) {
+        let (mut work, topics) = self.split();
+        match output {
+            JobOutput::FurtherLoaded {
+                revision,
+                replaces,
+                part,
+            } => {
+                topics.parts.was_read_again(&mut work, &part.files());
+                let new = NewFurther {
+                    revision,
+                    replaces,
+                    part,
+                    took,
+                };
+                topics.mapping.take_loaded(&mut work, new);
+            }
+            JobOutput::FurtherPlaced {
+                revision,
+                crash_revision,
+                part,
+                run,
+            } => {
+                let task = (revision, crash_revision);
+                topics.mapping.take_placed(&mut work, task, part, run, took);
+            }
+            _ => {}
+        }
     }
 
     /// The crash parts that the stamped part belongs to, or none: the match follows.
@@ -175,6 +216,9 @@ impl AppState {
 
     fn take_cancelled(&mut self, key: JobKey, elapsed: Duration) {
         self.end_of(key);
+        if let JobKey::LoadFurther(revision) = key {
+            self.mapping.load_cancelled(revision);
+        }
         // A job that was replaced before it began is no news.
         if elapsed > Duration::ZERO {
             let (step, role) = step_of(key);
@@ -186,7 +230,10 @@ impl AppState {
         self.end_of(key);
         let (step, role) = step_of(key);
         let what_now = match key {
-            JobKey::Load(_) => "Nothing was loaded; choose another file or fix this one",
+            JobKey::Load(_) | JobKey::LoadFurther(_) => {
+                "Nothing was loaded; choose another file or fix this one"
+            }
+            JobKey::PlaceFurther => FURTHER_WITHOUT_POSE,
             JobKey::Export => "Nothing was written; choose another place",
             _ => "Parts and pose are as they were",
         };
@@ -199,9 +246,12 @@ impl AppState {
         let text = format!("{first}{}. {what_now}", letters.as_str());
         self.work()
             .log_at(NoticeLevel::Error, step, role, text, Some(elapsed));
-        if key == JobKey::Match {
-            let (work, topics) = self.split();
-            topics.matching.match_failed(&work, message);
+        let (work, topics) = self.split();
+        match key {
+            JobKey::Match => topics.matching.match_failed(&work, message),
+            JobKey::LoadFurther(revision) => topics.mapping.load_failed(revision, message),
+            JobKey::PlaceFurther => topics.mapping.place_failed(message),
+            _ => {}
         }
     }
 
@@ -243,6 +293,8 @@ fn step_of(key: JobKey) -> (&'static str, Option<Role>) {
         JobKey::Verdict => ("judge", None),
         JobKey::Measure | JobKey::Overlap => ("measure", None),
         JobKey::Compare => ("compare", None),
+        JobKey::LoadFurther(_) => ("load", Some(Role::Stamped)),
+        JobKey::PlaceFurther => ("match", None),
         JobKey::Map | JobKey::CompareMapping => ("map", None),
         JobKey::Sweep => ("sweep", None),
         JobKey::OpenProject => ("project", None),

@@ -6,8 +6,8 @@ use super::follow_up::FollowUp;
 use super::view::Scene;
 use super::work::Work;
 use super::{
-    Document, FreeWindow, History, InspectState, JobBoard, LogState, MatchState, MovingState,
-    PairsState, PartsState, Previews, ProjectState, ReduceState, Settings, ViewState,
+    Document, FreeWindow, History, InspectState, JobBoard, LogState, MappingState, MatchState,
+    MovingState, PairsState, PartsState, Previews, ProjectState, ReduceState, Settings, ViewState,
 };
 use crate::geometry::Similarity;
 
@@ -33,6 +33,8 @@ pub struct AppState {
     pub reduce: ReduceState,
     /// Alignment, match and sweep.
     pub matching: MatchState,
+    /// Further stamped files that are read and matched.
+    pub mapping: MappingState,
     /// Moves by hand.
     pub moving: MovingState,
     /// Picked pairs of points.
@@ -52,6 +54,7 @@ pub(super) struct Topics<'a> {
     pub parts: &'a mut PartsState,
     pub reduce: &'a mut ReduceState,
     pub matching: &'a mut MatchState,
+    pub mapping: &'a mut MappingState,
     pub moving: &'a mut MovingState,
     pub pairs: &'a mut PairsState,
     pub inspect: &'a mut InspectState,
@@ -86,6 +89,7 @@ impl AppState {
             parts,
             reduce,
             matching,
+            mapping,
             moving,
             pairs,
             inspect,
@@ -106,6 +110,7 @@ impl AppState {
             parts,
             reduce,
             matching,
+            mapping,
             moving,
             pairs,
             inspect,

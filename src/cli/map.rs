@@ -19,7 +19,6 @@ use super::{
     UsageError, check_outputs, json_target, print, progress, takes_stdout, warn_of_tools,
     write_json, write_output,
 };
-use crate::assess::Verdict;
 use crate::formats::{ReadOptions, Selection};
 use crate::geometry::Similarity;
 use crate::mapping::{MapOptions, Quantities, RuleKind};
@@ -28,15 +27,16 @@ use crate::pipeline::find_parts::find_parts;
 use crate::pipeline::load::{LoadSettings, LoadedPart, load, prepare};
 use crate::pipeline::map::{
     DefaultThickness, MapFiles, MapOutput, MapRecipe, MapRecord, OtherResult, PlacedPart,
-    deck_comments, element_table, elements_path, map_parts, map_record, map_report, unmapped_sets,
-    write_mapping,
+    deck_comments, element_table, elements_path, map_parts, map_record, map_report,
+    place as place_part, placing_recipe, pose_warning, unmapped_sets, write_mapping,
 };
 use crate::pipeline::map_car::CarReason;
-use crate::pipeline::match_parts::{MatchRecipe, match_parts};
+use crate::pipeline::match_parts::MatchRecipe;
 use crate::pipeline::outputs::{Content, Target};
 use crate::pipeline::project::Project;
 use crate::registration::Hand;
 use crate::role::{PerRole, Role};
+use crate::text::counted;
 
 /// Exit status where a gate such as `--require` is not met; the files are written all the same.
 const EXIT_GATE: u8 = 1;
@@ -67,10 +67,11 @@ struct MapChoice {
     /// shell-set:ID, node-set:ID. Where the parts are matched first, it is found if not given.
     #[arg(long, value_name = "PART")]
     crash_part: Option<String>,
-    /// Part of the stamped files, written as for --crash-part, or all. Without it, the sheet: parts that are
-    /// rigid, or have no forming results where others have them, are tools and left out.
+    /// Part of the stamped files, written as for --crash-part, or all, or sheet. Give one for all files or
+    /// one for each. Without it, the sheet: parts that are rigid, or have no forming results where others
+    /// have them, are tools and left out.
     #[arg(long, value_name = "PART")]
-    stamped_part: Option<String>,
+    stamped_part: Vec<String>,
     /// Factor on the stamped coordinates and thicknesses, for files in another length unit.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     stamped_length_factor: f64,
@@ -89,7 +90,7 @@ struct MapChoice {
     /// Give one for each stamped file. Without it the parts are matched first.
     #[arg(long, value_name = "FILE|NUMBERS", allow_hyphen_values = true)]
     pose: Vec<String>,
-    /// Take the pose from a .shapematch project.
+    /// Take the poses from a .shapematch project, in the order of its stamped files.
     #[arg(long, value_name = "FILE", conflicts_with = "pose")]
     project: Option<PathBuf>,
     /// The parts already lie on each other.
@@ -356,9 +357,10 @@ fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
             "{n_poses} poses for {n_files} stamped files; give one for each"
         ));
     }
-    if args.choice.project.is_some() && n_files != 1 {
+    let n_parts = args.choice.stamped_part.len();
+    if n_parts > 1 && n_parts != n_files {
         return refuse(format!(
-            "a project holds the pose of one stamped part, but {n_files} are named"
+            "{n_parts} stamped parts for {n_files} stamped files; give one for all or one for each"
         ));
     }
     let has_pose = args.choice.identity || args.choice.project.is_some() || n_poses > 0;
@@ -424,15 +426,20 @@ fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Ve
         &settings(Role::Crash, choice.crash_part.as_deref(), 1.0),
         monitor,
     )?;
-    let of_stamped = settings(
-        Role::Stamped,
-        choice.stamped_part.as_deref(),
-        choice.stamped_length_factor,
-    );
-    let stamped = args
-        .stamped
-        .iter()
-        .map(|path| load(path, &of_stamped, monitor));
+    let part_of = |file: usize| {
+        let parts = &choice.stamped_part;
+        // One for all, or one for each.
+        let part = parts.get(file).or_else(|| parts.first());
+        part.map(String::as_str)
+    };
+    let stamped = args.stamped.iter().enumerate().map(|(file, path)| {
+        let factor = choice.stamped_length_factor;
+        load(
+            path,
+            &settings(Role::Stamped, part_of(file), factor),
+            monitor,
+        )
+    });
     let stamped: Vec<LoadedPart> = stamped.collect::<Result<_, _>>()?;
     for part in &stamped {
         warn_of_tools(part);
@@ -472,15 +479,30 @@ fn place(
         for note in notes {
             log::warn!("{}: {note}", path.display());
         }
-        return given(crash, vec![project.pose]);
+        let poses = project.stamped_poses();
+        let (n_poses, n_files) = (poses.len(), stamped.len());
+        let poses: Option<Vec<Similarity>> = poses.into_iter().collect();
+        return match poses.filter(|_| n_poses == n_files) {
+            Some(poses) => given(crash, poses),
+            None if n_poses == n_files => Err(UsageError(format!(
+                "a stamped file of {} has no pose yet; match it in the window",
+                path.display()
+            ))
+            .into()),
+            None => Err(UsageError(format!(
+                "{} holds {}, but {n_files} are named",
+                path.display(),
+                counted(n_poses, "stamped file")
+            ))
+            .into()),
+        };
     }
     if !args.choice.pose.is_empty() {
         let poses: anyhow::Result<Vec<Similarity>> =
             args.choice.pose.iter().map(|text| pose(text)).collect();
         return given(crash, poses?);
     }
-    let mut recipe = MatchRecipe::default();
-    recipe.settings.hand = args.choice.hand();
+    let recipe = placing_recipe(args.choice.hand());
     if args.choice.crash_part.is_none() && crash.chosen_part_ids().len() > 1 {
         if let Some(placed) = on_found_parts(&crash, stamped, &recipe, monitor)? {
             return Ok(placed);
@@ -494,15 +516,12 @@ fn place(
     let mut is_poor = false;
     for part in stamped {
         let parts = PerRole::new(&crash, part);
-        let start = Similarity::identity();
-        let run = match_parts(parts, None, &recipe, &start, monitor)
-            .with_context(|| format!("cannot match {}", part.path.display()))?;
-        if run.assessment.verdict == Verdict::Poor {
+        let file = part.path.display().to_string();
+        let run =
+            place_part(parts, &recipe, monitor).with_context(|| format!("cannot match {file}"))?;
+        if let Some(warning) = pose_warning(run.assessment.verdict, &file) {
             is_poor = true;
-            log::warn!(
-                "the pose of {} is poor; look at it before the mapping is used",
-                part.path.display()
-            );
+            log::warn!("{warning}");
         }
         poses.push(run.crash_from_stamped);
     }

@@ -22,12 +22,10 @@ pub fn open(path: &Path, monitor: &Monitor) -> anyhow::Result<(Asked, PerRole<Lo
     };
     let found = open_project(request, monitor)?;
     warn(path, &found.notes);
-    for (_, missing) in found.missing.iter() {
-        if let Some(file) = missing {
-            anyhow::bail!(
-                "a file of the project was not found at its path or beside the project: {file:?}"
-            );
-        }
+    if let Some((_, file)) = found.missing.first() {
+        anyhow::bail!(
+            "a file of the project was not found at its path or beside the project: {file:?}"
+        );
     }
     let project = found.project;
     let entries = project.parts.as_ref().map(Option::as_ref).all();

@@ -43,6 +43,10 @@ pub enum JobKey {
     Measure,
     /// Deviation of every node.
     Compare,
+    /// Reading a further stamped file, by the number it is to have.
+    LoadFurther(u64),
+    /// The pose of a further stamped file.
+    PlaceFurther,
     /// Forming results onto the crash part.
     Map,
     /// Another mapper's result beside the mapping.
@@ -82,6 +86,8 @@ impl JobKey {
             Self::Verdict => "Judging the match",
             Self::Measure => "Measuring distances",
             Self::Compare => "Measuring the deviation",
+            Self::LoadFurther(_) => "Reading a stamped file",
+            Self::PlaceFurther => "Matching a stamped file",
             Self::Map => "Mapping the forming results",
             Self::CompareMapping => "Comparing with the other result",
             Self::Overlap => "Measuring the overlap",
@@ -208,15 +214,45 @@ pub struct CompareInput {
     pub crash_from_stamped: Similarity,
 }
 
+/// A further stamped file to be read.
+#[derive(Debug, Clone)]
+pub struct FurtherInput {
+    /// The number it is to have.
+    pub revision: u64,
+    /// The number of the file that it takes the place of, where one is read again.
+    pub replaces: Option<u64>,
+    /// Where it lies.
+    pub file: PathBuf,
+    /// Unit and chosen parts.
+    pub settings: LoadSettings,
+}
+
+/// Input of the match of a further stamped file.
+#[derive(Debug, Clone)]
+pub struct PlaceInput {
+    /// Number of the file.
+    pub revision: u64,
+    /// Number of the crash part.
+    pub crash_revision: u64,
+    /// The two parts.
+    pub parts: PerRole<Arc<LoadedPart>>,
+    /// What its lengths are to be multiplied by.
+    pub length_factor: f64,
+    /// How it is matched; `None` if it lies as the first stamped part does.
+    pub recipe: Option<MatchRecipe>,
+}
+
 /// Input of a mapping.
 #[derive(Debug, Clone)]
 pub struct MapInput {
-    /// The two parts.
+    /// The crash part, and the first of the stamped ones.
     pub parts: PerRole<Arc<LoadedPart>>,
     /// Quantities, method, limits.
     pub recipe: MapRecipe,
     /// Where the stamped part lies.
     pub crash_from_stamped: Similarity,
+    /// Further stamped files with their poses.
+    pub further: Vec<(Arc<LoadedPart>, Similarity)>,
 }
 
 /// Input of a comparison of a mapping with another mapper's result.
@@ -267,6 +303,10 @@ pub enum JobKind {
     Measure(MeasureInput),
     /// Deviation of every node.
     Compare(CompareInput),
+    /// Reads a further stamped file.
+    LoadFurther(FurtherInput),
+    /// Finds the pose of a further stamped file.
+    PlaceFurther(PlaceInput),
     /// Forming results onto the crash part.
     Map(MapInput),
     /// Another mapper's result beside the mapping.
@@ -294,6 +334,8 @@ impl JobKind {
             Self::Verdict(_) => JobKey::Verdict,
             Self::Measure(_) => JobKey::Measure,
             Self::Compare(_) => JobKey::Compare,
+            Self::LoadFurther(input) => JobKey::LoadFurther(input.revision),
+            Self::PlaceFurther(_) => JobKey::PlaceFurther,
             Self::Map(_) => JobKey::Map,
             Self::CompareMapping(_) => JobKey::CompareMapping,
             Self::Overlap(_) => JobKey::Overlap,
@@ -359,6 +401,26 @@ pub enum JobOutput {
     Measured(Arc<Coverage>),
     /// Deviation of every node.
     Compared(Arc<Comparison>),
+    /// A further stamped file was read.
+    FurtherLoaded {
+        /// The number it is to have.
+        revision: u64,
+        /// The number of the file that it takes the place of.
+        replaces: Option<u64>,
+        /// The part as it was read.
+        part: Arc<LoadedPart>,
+    },
+    /// The pose of a further stamped file.
+    FurtherPlaced {
+        /// Number of the file.
+        revision: u64,
+        /// Number of the crash part.
+        crash_revision: u64,
+        /// The part in the unit it was asked for.
+        part: Arc<LoadedPart>,
+        /// The match, if one was asked for.
+        run: Option<Arc<MatchRun>>,
+    },
     /// Forming results onto the crash part.
     Mapped {
         /// Values, statuses, checks.
@@ -367,6 +429,8 @@ pub enum JobOutput {
         record: Arc<MapRecord>,
         /// Elements to look at.
         lists: Arc<ElementLists>,
+        /// The stamped parts that it was made from beside the first one.
+        further: Vec<Arc<LoadedPart>>,
     },
     /// Another mapper's result was read.
     MappingCompared {

@@ -18,9 +18,9 @@ pub use event::{JobEvent, JobStage};
 pub use export::{Destination, ExportRequest, Exported};
 pub use facts::PartFacts;
 pub use job::{
-    CompareInput, CompareMappingInput, FoundCrash, JobId, JobKey, JobKind, JobOutput, MapInput,
-    MatchInput, MeasureInput, MeasureLevelInput, MeasuredLevel, Recording, ReduceInput, Stamp,
-    SweepInput, VerdictInput,
+    CompareInput, CompareMappingInput, FoundCrash, FurtherInput, JobId, JobKey, JobKind, JobOutput,
+    MapInput, MatchInput, MeasureInput, MeasureLevelInput, MeasuredLevel, PlaceInput, Recording,
+    ReduceInput, Stamp, SweepInput, VerdictInput,
 };
 pub use live::{Live, LiveIteration, LiveSlot};
 pub use project::{OpenedPart, OpenedProject};
@@ -29,4 +29,4 @@ pub use sweep_rows::SweepRows;
 pub use worker::{Waker, Worker};
 
 pub use crate::pipeline::load::PartSource;
-pub use crate::pipeline::project::{Located, ProjectRequest};
+pub use crate::pipeline::project::{Located, ProjectFile, ProjectRequest};

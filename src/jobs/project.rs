@@ -7,7 +7,9 @@ use super::run::reduce_part;
 use super::{JobError, MeasuredLevel, PartFacts, PartSource, Recording};
 use crate::monitor::Monitor;
 use crate::pipeline::load::LoadedPart;
-use crate::pipeline::project::{self, FoundPart, FoundProject, PartEntry, Project, ProjectRequest};
+use crate::pipeline::project::{
+    self, FoundPart, FoundProject, PartEntry, Project, ProjectFile, ProjectRequest,
+};
 use crate::role::{PerRole, Role};
 
 /// A project with everything it needs.
@@ -21,8 +23,10 @@ pub struct OpenedProject {
     pub notes: Vec<String>,
     /// Its parts at their levels.
     pub parts: PerRole<Option<OpenedPart>>,
+    /// The further stamped files; none for one that is done without.
+    pub further: Vec<Option<FoundPart>>,
     /// Files that are neither where the project says nor beside it; nothing was loaded then.
-    pub missing: PerRole<Option<PathBuf>>,
+    pub missing: Vec<(ProjectFile, PathBuf)>,
 }
 
 /// A part of a project.
@@ -50,6 +54,7 @@ pub(super) fn open_project(
         project,
         notes,
         mut parts,
+        further,
         missing,
     } = project::open_project(request, monitor)?;
     let mut opened = PerRole::default();
@@ -64,6 +69,7 @@ pub(super) fn open_project(
         project,
         notes,
         parts: opened,
+        further,
         missing,
     })
 }

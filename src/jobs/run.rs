@@ -5,7 +5,8 @@ use std::sync::{Arc, OnceLock};
 use super::export::export;
 use super::project::open_project;
 use super::{
-    CompareInput, CompareMappingInput, MapInput, MatchInput, MeasureInput, SweepInput, VerdictInput,
+    CompareInput, CompareMappingInput, FurtherInput, MapInput, MatchInput, MeasureInput,
+    PlaceInput, SweepInput, VerdictInput,
 };
 use super::{
     FoundCrash, JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource,
@@ -18,13 +19,13 @@ use crate::pipeline::find_parts::find_parts;
 use crate::pipeline::inspect::compare_parts;
 use crate::pipeline::load::{self, LoadedPart};
 use crate::pipeline::map::{
-    OtherResult, PlacedPart, compare_with, element_lists, map_parts, map_record,
+    OtherResult, PlacedPart, compare_with, element_lists, map_parts, map_record, place,
 };
 use crate::pipeline::match_parts::{self, match_parts};
 use crate::pipeline::reduce::Levels;
 use crate::pipeline::sweep::sweep;
 use crate::registration::MatchMonitor;
-use crate::role::Role;
+use crate::role::{PerRole, Role};
 use crate::simplify::SimplifySettings;
 
 /// How a job ended without a result.
@@ -114,6 +115,8 @@ impl Runner for PipelineRunner {
             JobKind::Verdict(input) => judge(&input, monitor),
             JobKind::Measure(input) => measure(&input, monitor),
             JobKind::Compare(input) => compare(&input, monitor),
+            JobKind::LoadFurther(input) => load_further(&input, monitor),
+            JobKind::PlaceFurther(input) => place_further(input, match_monitor),
             JobKind::Map(input) => map(&input, monitor),
             JobKind::CompareMapping(input) => compare_mapping(input, monitor),
             JobKind::Overlap(input) => overlap(&input),
@@ -259,20 +262,58 @@ fn compare(input: &CompareInput, monitor: &Monitor) -> Result<JobOutput, JobErro
     Ok(JobOutput::Compared(Arc::new(comparison)))
 }
 
+fn load_further(input: &FurtherInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
+    let part = load::load(&input.file, &input.settings, monitor)?;
+    Ok(JobOutput::FurtherLoaded {
+        revision: input.revision,
+        replaces: input.replaces,
+        part: Arc::new(part),
+    })
+}
+
+fn place_further(input: PlaceInput, monitor: MatchMonitor<'_>) -> Result<JobOutput, JobError> {
+    let PerRole { crash, mut stamped } = input.parts;
+    if stamped.settings.length_factor != input.length_factor {
+        let mut settings = stamped.settings.clone();
+        settings.length_factor = input.length_factor;
+        let model = Arc::clone(&stamped.model);
+        let again = load::prepare(&stamped.path, model, &settings, monitor.monitor)?;
+        stamped = Arc::new(again);
+    }
+    let matched = |recipe| place(PerRole::new(&crash, &stamped), recipe, monitor);
+    let run = input.recipe.as_ref().map(matched).transpose()?;
+    Ok(JobOutput::FurtherPlaced {
+        revision: input.revision,
+        crash_revision: input.crash_revision,
+        part: stamped,
+        run: run.map(Arc::new),
+    })
+}
+
 fn map(input: &MapInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
-    let placed = PlacedPart {
-        part: &input.parts.stamped,
-        crash_from_stamped: input.crash_from_stamped,
-    };
-    let run = map_parts(&input.parts.crash, &[placed], &input.recipe, monitor)?;
+    let first = (&*input.parts.stamped, input.crash_from_stamped);
+    let further = input.further.iter().map(|(part, pose)| (&**part, *pose));
+    let stamped: Vec<PlacedPart<'_>> = std::iter::once(first)
+        .chain(further)
+        .map(|(part, crash_from_stamped)| PlacedPart {
+            part,
+            crash_from_stamped,
+        })
+        .collect();
+    let run = map_parts(&input.parts.crash, &stamped, &input.recipe, monitor)?;
     monitor.check()?;
-    let record = map_record(&run, &input.parts.crash, &[placed], None, None);
+    let record = map_record(&run, &input.parts.crash, &stamped, None, None);
     monitor.check()?;
     let lists = element_lists(&run, &input.parts.crash);
     Ok(JobOutput::Mapped {
         run: Arc::new(run),
         record: Arc::new(record),
         lists: Arc::new(lists),
+        further: input
+            .further
+            .iter()
+            .map(|(part, _)| Arc::clone(part))
+            .collect(),
     })
 }
 

@@ -98,7 +98,7 @@ pub fn histogram_distance(a: &Histogram, b: &Histogram) -> f64 {
     0.5 * pairs.map(|(a, b)| (a - b).abs()).sum::<f64>()
 }
 
-/// What comes back when the mapped values are mapped onto the source again. Two mappings lie
+/// What comes back when the mapped values are mapped onto the sources again. Two mappings lie
 /// between the values compared, so the error of one is about half.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapBack {
@@ -106,23 +106,24 @@ pub struct MapBack {
     pub thickness_rms: f64,
     /// 95 % of the area differ by less.
     pub thickness_p95: f64,
-    /// The source's 95th less its 5th percentile, to compare with.
+    /// The sources' 95th less their 5th percentile, to compare with.
     pub thickness_range: f64,
     /// The same for the plastic strain, mean over the layers.
     pub plastic_rms: f64,
     /// 95 % of the area differ by less.
     pub plastic_p95: f64,
-    /// The source's 95th less its 5th percentile.
+    /// The sources' 95th less their 5th percentile.
     pub plastic_range: f64,
-    /// Share of the source's area that the way back reached.
+    /// Share of the sources' area that the way back reached.
     pub coverage: f64,
-    /// For each source element whether the way back reached it.
-    pub is_covered: Vec<bool>,
+    /// For each element of each source whether the way back reached it. Where several sources overlap, it
+    /// reaches the one that the values were taken from.
+    pub is_covered: Vec<Vec<bool>>,
 }
 
-/// Maps `mapped` back onto `source` and compares thickness and plastic strain.
+/// Maps `mapped` back onto its sources and compares thickness and plastic strain.
 pub fn map_back(
-    source: &PlacedSource<'_>,
+    sources: &[PlacedSource<'_>],
     target: &TargetPart,
     mapped: &Mapped,
     options: &MapOptions,
@@ -157,17 +158,6 @@ pub fn map_back(
         history: SourceHistory::default(),
         laws: BTreeMap::new(),
     };
-    let rules = target.rules.clone();
-    let moved = source.part.mesh.moved(&source.target_from_source);
-    monitor.check()?;
-    let as_target = TargetPart {
-        rule_of: vec![0; moved.len()],
-        n_plane: vec![1; moved.len()],
-        nominal_thickness: vec![f64::NAN; moved.len()],
-        laws: BTreeMap::new(),
-        rules: rules.into_iter().take(1).collect(),
-        mesh: moved,
-    };
     let options = MapOptions {
         quantities: Quantities::USUAL,
         fill_rings: 0,
@@ -178,72 +168,129 @@ pub fn map_back(
         part: &as_source,
         target_from_source: Similarity::identity(),
     };
-    let back = map(&[placed], &as_target, &options, monitor)?;
-    Ok(compare_back(source.part, &as_target, &back, monitor)?)
+    let mut compared = Compared::default();
+    for (number, source) in sources.iter().enumerate() {
+        let moved = source.part.mesh.moved(&source.target_from_source);
+        monitor.check()?;
+        let as_target = TargetPart {
+            rule_of: vec![0; moved.len()],
+            n_plane: vec![1; moved.len()],
+            nominal_thickness: vec![f64::NAN; moved.len()],
+            laws: BTreeMap::new(),
+            rules: target.rules.iter().take(1).cloned().collect(),
+            mesh: moved,
+        };
+        let back = map(&[placed], &as_target, &options, monitor)?;
+        // What another source gave says nothing of this one.
+        let is_own = |element: usize| {
+            let partner = back.elements[element].partner;
+            let giver = partner.and_then(|there| mapped.elements[there.element as usize].partner);
+            giver.is_none_or(|giver| giver.source as usize == number)
+        };
+        compared.add(source.part, &as_target, (&back, &is_own), monitor)?;
+    }
+    Ok(compared.summary(monitor)?)
 }
 
 /// Values with the area each stands for.
 type Weighted = Vec<(f64, f64)>;
 
-fn compare_back(
-    source: &SourcePart,
-    as_target: &TargetPart,
-    back: &Mapped,
+/// Values of the sources and what the way back leaves of them.
+#[derive(Default)]
+struct Compared {
+    thickness: (Weighted, Weighted),
+    plastic: (Weighted, Weighted),
+    is_covered: Vec<Vec<bool>>,
+    covered_area: f64,
+    area: f64,
+}
+
+impl Compared {
+    fn add(
+        &mut self,
+        source: &SourcePart,
+        as_target: &TargetPart,
+        (back, is_own): (&Mapped, &dyn Fn(usize) -> bool),
+        monitor: &Monitor,
+    ) -> Result<(), Cancelled> {
+        let areas = as_target.mesh.areas();
+        let (thickness, plastic) = (&mut self.thickness, &mut self.plastic);
+        let mut is_covered = Vec::with_capacity(areas.len());
+        for_chunks(areas.len(), monitor, |range| {
+            for element in range {
+                let area = areas[element];
+                let has_values = back.elements[element].status.has_values();
+                let is_here = is_own(element);
+                is_covered.push(has_values && is_here);
+                if !is_here {
+                    continue;
+                }
+                let own = source.mean_thickness(element);
+                let returned = back.thickness.get(element).copied().unwrap_or(f64::NAN);
+                if own.is_finite() && returned.is_finite() {
+                    thickness.0.push((own, area));
+                    thickness.1.push(((returned - own).abs(), area));
+                }
+                let own = source.mean_plastic_strain(element);
+                let returned = back.mean_plastic_strain(as_target, element);
+                if own.is_finite() && returned.is_finite() {
+                    plastic.0.push((own, area));
+                    plastic.1.push(((returned - own).abs(), area));
+                }
+            }
+        })?;
+        let covered = is_covered
+            .iter()
+            .zip(areas)
+            .filter(|(covered, _)| **covered);
+        self.covered_area += covered.map(|(_, area)| area).sum::<f64>();
+        self.area += as_target.mesh.area();
+        self.is_covered.push(is_covered);
+        Ok(())
+    }
+
+    fn summary(self, monitor: &Monitor) -> Result<MapBack, Cancelled> {
+        let Self {
+            thickness,
+            plastic,
+            is_covered,
+            covered_area,
+            area,
+        } = self;
+        let (thickness, plastic) = (spread(thickness, monitor)?, spread(plastic, monitor)?);
+        Ok(MapBack {
+            thickness_rms: thickness.0,
+            thickness_p95: thickness.1,
+            thickness_range: thickness.2,
+            plastic_rms: plastic.0,
+            plastic_p95: plastic.1,
+            plastic_range: plastic.2,
+            coverage: covered_area / area,
+            is_covered,
+        })
+    }
+}
+
+/// Root mean square and 95th percentile of the differences, and the range of the values.
+fn spread(
+    (own, differences): (Weighted, Weighted),
     monitor: &Monitor,
-) -> Result<MapBack, Cancelled> {
-    let areas = as_target.mesh.areas();
-    let mut thickness = (Vec::new(), Vec::new());
-    let mut plastic = (Vec::new(), Vec::new());
-    for_chunks(areas.len(), monitor, |range| {
-        for element in range {
-            let area = areas[element];
-            let own = source.mean_thickness(element);
-            let returned = back.thickness.get(element).copied().unwrap_or(f64::NAN);
-            if own.is_finite() && returned.is_finite() {
-                thickness.0.push((own, area));
-                thickness.1.push(((returned - own).abs(), area));
-            }
-            let own = source.mean_plastic_strain(element);
-            let returned = back.mean_plastic_strain(as_target, element);
-            if own.is_finite() && returned.is_finite() {
-                plastic.0.push((own, area));
-                plastic.1.push(((returned - own).abs(), area));
-            }
-        }
-    })?;
-    let compared = |(own, differences): (Weighted, Weighted)| {
-        let range =
-            distribution(own.into_iter()).map_or(0.0, |d| d.percentiles[2] - d.percentiles[0]);
-        monitor.check()?;
-        let squares = differences
-            .iter()
-            .map(|(d, area)| d * d * area)
-            .sum::<f64>();
-        let area: f64 = differences.iter().map(|(_, area)| area).sum();
-        let p95 = distribution(differences.into_iter()).map_or(0.0, |d| d.percentiles[2]);
-        let rms = if area > 0.0 {
-            (squares / area).sqrt()
-        } else {
-            0.0
-        };
-        monitor.check()?;
-        Ok((rms, p95, range))
+) -> Result<(f64, f64, f64), Cancelled> {
+    let range = distribution(own.into_iter()).map_or(0.0, |d| d.percentiles[2] - d.percentiles[0]);
+    monitor.check()?;
+    let squares = differences
+        .iter()
+        .map(|(d, area)| d * d * area)
+        .sum::<f64>();
+    let area: f64 = differences.iter().map(|(_, area)| area).sum();
+    let p95 = distribution(differences.into_iter()).map_or(0.0, |d| d.percentiles[2]);
+    let rms = if area > 0.0 {
+        (squares / area).sqrt()
+    } else {
+        0.0
     };
-    let (thickness, plastic) = (compared(thickness)?, compared(plastic)?);
-    Ok(MapBack {
-        thickness_rms: thickness.0,
-        thickness_p95: thickness.1,
-        thickness_range: thickness.2,
-        plastic_rms: plastic.0,
-        plastic_p95: plastic.1,
-        plastic_range: plastic.2,
-        coverage: back.mapped_area(&as_target.mesh),
-        is_covered: back
-            .elements
-            .iter()
-            .map(|report| report.status.has_values())
-            .collect(),
-    })
+    monitor.check()?;
+    Ok((rms, p95, range))
 }
 
 #[cfg(test)]

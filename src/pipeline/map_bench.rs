@@ -209,7 +209,7 @@ fn with_truth(
         target_from_source: run.poses[0],
     };
     let back = map_back(
-        &placed,
+        &[placed],
         &run.target,
         &run.mapped,
         &run.recipe.options,

@@ -84,12 +84,14 @@ impl CommandLine<'_> {
 /// Everything a mapping depends on.
 #[derive(Debug, Clone, Copy)]
 pub struct MapCommandLine<'a> {
-    /// The two files.
+    /// The crash file, and the first of the stamped ones.
     pub sides: PerRole<CommandSide<'a>>,
     /// Further folders for included files.
     pub read: &'a ReadOptions,
     /// Where the stamped part lies (crash from stamped).
     pub pose: &'a Similarity,
+    /// Further stamped files with their poses. Their lengths have the factor of the first.
+    pub further: &'a [(CommandSide<'a>, Similarity)],
     /// Quantities, method, limits.
     pub options: &'a MapOptions,
     /// Layers of the crash elements, the rule through their thickness, and points in the plane, where they
@@ -102,24 +104,50 @@ pub struct MapCommandLine<'a> {
 }
 
 impl MapCommandLine<'_> {
+    /// What is taken from each stamped file, where they differ in it; else nothing but the first.
+    fn stamped_parts(&self) -> Vec<String> {
+        let further = self.further.iter().map(|(side, _)| side);
+        let typed = |side: &CommandSide<'_>| {
+            let usual = PartSelection::Sheet;
+            side.selection.unwrap_or(&usual).typed()
+        };
+        let all = std::iter::once(&self.sides.stamped).chain(further);
+        let mut parts: Vec<String> = all.map(typed).collect();
+        if parts.iter().all(|part| *part == parts[0]) {
+            parts.truncate(1);
+        }
+        parts
+    }
+
     /// The line to paste into a shell. What is the default is left out.
     pub fn line(&self) -> String {
         let mut words = Words(vec!["shapematch".into(), "map".into()]);
         for (_, side) in self.sides.iter() {
             words.0.push(file_word(side.path));
         }
+        for (side, _) in self.further {
+            words.0.push(file_word(side.path));
+        }
+        let parts = self.stamped_parts();
         for (role, side) in self.sides.iter() {
             // A mapping takes factors, not units.
-            words.side(
-                role,
-                &CommandSide {
-                    units: None,
-                    ..*side
-                },
-            );
+            let mut side = CommandSide {
+                units: None,
+                ..*side
+            };
+            if role == Role::Stamped && parts.len() > 1 {
+                for part in &parts {
+                    words.option("stamped-part", part.clone());
+                }
+                side.selection = None;
+            }
+            words.side(role, &side);
         }
         words.folders(self.read);
         words.option("pose", pose_word(self.pose));
+        for (_, pose) in self.further {
+            words.option("pose", pose_word(pose));
+        }
         let mut quantities = self.options.quantities;
         if quantities != MapOptions::default().quantities {
             let chosen = quantities.named().into_iter().filter(|(_, is_on)| **is_on);

@@ -14,7 +14,7 @@ use super::theme::{Palette, UNIT};
 use super::widgets::{caption, large_button, paragraph};
 use crate::app::{Command, ExportCommand, FileCommand, MapCommand, PictureChoice, ProjectCommand};
 use crate::formats::Format;
-use crate::jobs::{Located, ProjectRequest};
+use crate::jobs::{Located, ProjectFile, ProjectRequest};
 use crate::pipeline::outputs::Output;
 use crate::pipeline::project::EXTENSION;
 use crate::role::Role;
@@ -28,7 +28,9 @@ enum Question {
     Open(Role),
     OpenProject,
     /// A file of a project.
-    Locate(Role),
+    Locate(ProjectFile),
+    /// One more stamped file to map from.
+    Further,
     /// Another mapper's result.
     OtherMapping,
     /// Where to write the project, beginning there.
@@ -179,8 +181,13 @@ impl Dialogs {
     }
 
     /// Asks for a file of a project.
-    pub fn ask_locate(&mut self, role: Role, ctx: &egui::Context) {
-        self.ask(Question::Locate(role), ctx);
+    pub fn ask_locate(&mut self, file: ProjectFile, ctx: &egui::Context) {
+        self.ask(Question::Locate(file), ctx);
+    }
+
+    /// Asks for one more stamped file.
+    pub fn ask_further(&mut self, ctx: &egui::Context) {
+        self.ask(Question::Further, ctx);
     }
 
     /// Asks for another mapper's result.
@@ -460,7 +467,10 @@ fn prompt_content(ui: &mut egui::Ui, prompt: &mut Prompt) -> Option<PromptAnswer
         if large_button(ui, "Cancel", false).clicked() {
             answer = Some(PromptAnswer::Close);
         }
-        if matches!(prompt.question, Question::Open(_) | Question::Locate(_)) {
+        if matches!(
+            prompt.question,
+            Question::Open(_) | Question::Locate(_) | Question::Further
+        ) {
             caption(ui, formats());
         }
     });
@@ -488,7 +498,8 @@ fn answered(question: &Question, path: PathBuf) -> Command {
             };
             ProjectCommand::Open(request).into()
         }
-        Question::Locate(role) => ProjectCommand::Locate(role, Located::At(path)).into(),
+        Question::Locate(file) => ProjectCommand::Locate(file, Located::At(path)).into(),
+        Question::Further => MapCommand::AddFurther(path).into(),
         Question::OtherMapping => MapCommand::CompareWith(path).into(),
         Question::SaveProject(_) => ProjectCommand::Write(path).into(),
         Question::Save { kind, .. } => ExportCommand::Write { kind, path }.into(),
@@ -549,8 +560,12 @@ fn modal(ctx: &egui::Context, name: &str) -> egui::Modal {
 fn titles(question: &Question) -> (&'static str, &'static str) {
     match question {
         Question::OpenProject => ("Open a project", "Open"),
-        Question::Locate(Role::Crash) => ("Find the crash model of the project", "Use"),
-        Question::Locate(Role::Stamped) => ("Find the stamped part of the project", "Use"),
+        Question::Locate(file) => match file {
+            ProjectFile::Part(Role::Crash) => ("Find the crash model of the project", "Use"),
+            ProjectFile::Part(Role::Stamped) => ("Find the stamped part of the project", "Use"),
+            ProjectFile::Further(_) => ("Find the further stamped file of the project", "Use"),
+        },
+        Question::Further => ("Add a stamped file", "Add"),
         Question::SaveProject(_) => ("Save the project", "Save"),
         Question::Open(Role::Crash) => ("Open the crash model", "Open"),
         Question::Open(Role::Stamped) => ("Open the stamped part", "Open"),

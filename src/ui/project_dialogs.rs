@@ -5,7 +5,7 @@ use egui::{Align2, Button, Frame, Margin, RichText, Stroke, Ui, vec2};
 use super::theme::{Palette, ROW, UNIT};
 use super::widgets::{caption, paragraph, role_mark, secondary};
 use crate::app::{AppState, Command, ProjectCommand, ViewCommand};
-use crate::jobs::Located;
+use crate::jobs::{Located, ProjectFile};
 
 /// Least width of the buttons that answer.
 const BUTTON: f32 = 104.0;
@@ -43,27 +43,29 @@ pub fn missing_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     ui.heading("Files of the project are not found");
     paragraph(ui, request.path.display().to_string());
-    for (role, path) in missing.iter() {
-        let Some(path) = path else { continue };
+    for (file, path) in missing {
         ui.add_space(UNIT);
         ui.horizontal(|ui| {
-            role_mark(ui, role);
+            role_mark(ui, file.role());
             ui.add(egui::Label::new(path.display().to_string()).truncate());
         });
         ui.horizontal(|ui| {
-            let word = role.word();
+            let what = match file {
+                ProjectFile::Part(role) => format!("the {} part", role.word()),
+                ProjectFile::Further(n) => format!("stamped file {}", n + 2),
+            };
             if plain(ui, "Find it…")
-                .accessible_name(format!("Find the {word} part"))
+                .accessible_name(format!("Find {what}"))
                 .clicked()
             {
-                commands.push(ProjectCommand::AskLocate(role).into());
+                commands.push(ProjectCommand::AskLocate(*file).into());
             }
             let without = plain(ui, "Open without it");
             if without
-                .accessible_name(format!("Open without the {word} part"))
+                .accessible_name(format!("Open without {what}"))
                 .clicked()
             {
-                commands.push(ProjectCommand::Locate(role, Located::Without).into());
+                commands.push(ProjectCommand::Locate(*file, Located::Without).into());
             }
         });
     }

@@ -16,12 +16,12 @@ use crate::app::{
     AppState, Clock, Command, Document, Effect, FileCommand, NoticeCommand, NoticeLevel,
     PictureChoice, PictureSize, ProjectCommand, Settings, StartupOptions, Theme,
 };
-use crate::jobs::{JobEvent, JobStage, Live, PartSource, PipelineRunner, Worker};
+use crate::jobs::{JobEvent, JobStage, Live, PipelineRunner, Worker};
 use crate::pipeline::autosave::{Autosave, AutosaveEvent};
 use crate::pipeline::file_watch::{FileWatch, PAUSE};
 use crate::pipeline::preferences::PreferencesFile;
 use crate::report::picture::Picture;
-use crate::role::{PerRole, Role};
+use crate::role::Role;
 
 /// Least size of the window, in points.
 const MIN_SIZE: [f32; 2] = [800.0, 540.0];
@@ -94,7 +94,7 @@ pub struct Shell {
     autosave: Autosave<Box<Document>>,
     watch: FileWatch,
     /// The parts whose files are watched.
-    watched: PerRole<u64>,
+    watched: Vec<u64>,
     /// Files that were dropped before it was known where.
     drop: Option<PendingDrop>,
     place: Option<WindowPlace>,
@@ -137,7 +137,7 @@ impl Shell {
             preferences: files.preferences,
             autosave,
             watch,
-            watched: PerRole::default(),
+            watched: Vec::new(),
             drop: None,
             place: preferences.window,
             is_unsaved: false,
@@ -219,7 +219,8 @@ impl Shell {
             Effect::AskOpen(role) => self.dialogs.ask_open(role, ctx),
             Effect::AskSave { kind, name } => self.dialogs.ask_save(kind, name, ctx),
             Effect::AskOpenProject => self.dialogs.ask_open_project(ctx),
-            Effect::AskLocate(role) => self.dialogs.ask_locate(role, ctx),
+            Effect::AskLocate(file) => self.dialogs.ask_locate(file, ctx),
+            Effect::AskFurther => self.dialogs.ask_further(ctx),
             Effect::AskOtherMapping => self.dialogs.ask_other_mapping(ctx),
             Effect::AskSaveProject(path) => self.dialogs.ask_save_project(path, ctx),
             Effect::WriteProject {
@@ -344,13 +345,10 @@ impl Shell {
     /// Keeps an eye on the files of the present parts; what was noticed about them.
     fn changed_files(&mut self) -> Option<Command> {
         let document = &self.state.document;
-        let parts = document.stamp().parts;
+        let parts = document.revisions();
         if parts != self.watched {
             self.watched = parts;
-            let parts = document.parts.iter().filter_map(|(_, part)| part.as_ref());
-            let from_disk = parts.filter(|part| matches!(part.source, PartSource::File(_)));
-            let files = from_disk.flat_map(|part| part.loaded.model.files.clone());
-            self.watch.watch(files.collect());
+            self.watch.watch(document.files_read());
         }
         let changed = self.watch.news()?;
         Some(FileCommand::ChangedOnDisk(changed).into())

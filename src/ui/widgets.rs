@@ -2,6 +2,7 @@
 
 use super::theme::{Palette, ROW, TALL, UNIT};
 use crate::app::{Action, AppState, Command, NoticeLevel, typed_count, typed_length, typed_number};
+use crate::assess::Verdict;
 use crate::role::Role;
 use crate::text::Lengths;
 pub use crate::text::{grouped, length, percent, signed};
@@ -354,6 +355,15 @@ pub fn large_button(ui: &mut Ui, label: &str, is_usual: bool) -> Response {
         Button::new(label)
     };
     ui.add(button.min_size(size))
+}
+
+/// The colour of a verdict.
+pub fn verdict_color(palette: &Palette, verdict: Verdict) -> Color32 {
+    match verdict {
+        Verdict::Good => palette.good,
+        Verdict::Check => palette.check,
+        Verdict::Poor => palette.poor,
+    }
 }
 
 /// Colour and sign of a level of loudness.

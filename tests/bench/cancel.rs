@@ -248,6 +248,7 @@ fn matches(parts: &PerRole<Arc<LoadedPart>>, try_one: &impl Fn(&str, &JobKind)) 
         parts: parts.clone(),
         recipe,
         crash_from_stamped,
+        further: Vec::new(),
     });
     try_one("map", &map);
     let JobOutput::Mapped { run: mapping, .. } = whole(&map).0 else {

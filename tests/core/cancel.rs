@@ -1,6 +1,7 @@
 //! Cancel ends the work at whatever it has come to: every job is cancelled at its points of progress.
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -15,7 +16,7 @@ use shapematch::jobs::{
 use shapematch::monitor::{Monitor, Observer, Progress};
 use shapematch::pipeline::map::WriteKind;
 use shapematch::pipeline::outputs::Output;
-use shapematch::pipeline::project::{Located, ProjectRequest};
+use shapematch::pipeline::project::ProjectRequest;
 use shapematch::pipeline::sweep::SweepSettings;
 use shapematch::role::{PerRole, Role};
 use shapematch::samples::SampleVariant;
@@ -105,10 +106,13 @@ fn jobs(folder: &Path) -> Vec<JobKind> {
         max_triangles: 500,
     });
     window.apply(MatchCommand::Align);
-    for action in [Action::MatchOrStop, Action::MapOrCancel] {
-        let command = action.command(&window.state).unwrap();
-        window.apply(command);
-    }
+    window.act(Action::MatchOrStop);
+    // The same bracket once more, from another file.
+    let more = folder.join("more.dynain");
+    std::fs::copy(folder.join("stamped.dynain"), &more).unwrap();
+    window.apply(MapCommand::AddFurther(more));
+    let command = Action::MapOrCancel.command(&window.state).unwrap();
+    window.apply(command);
     let mut display = window.state.view.display.clone();
     display.color_by = ColorBy::Deviation;
     window.apply(ViewCommand::SetDisplay(Box::new(display)));
@@ -159,7 +163,7 @@ fn written(window: &mut Window, folder: &Path) -> Vec<JobKind> {
     }
     vec![JobKind::OpenProject(ProjectRequest {
         path,
-        located: PerRole::both(Located::AsStored),
+        located: BTreeMap::new(),
         is_autosave: false,
     })]
 }
@@ -185,6 +189,8 @@ fn name(kind: &JobKind) -> String {
     match kind {
         JobKind::FindParts(_) => "FindParts".to_owned(),
         JobKind::Export(request) => format!("Export {:?}", request.output),
+        // Their numbers tell files apart.
+        JobKind::LoadFurther(_) => "LoadFurther".to_owned(),
         other => format!("{:?}", other.key()),
     }
 }
@@ -257,6 +263,7 @@ fn a_cancel_at_any_point_ends_the_work() {
         .filter(|what| what.starts_with("Export"))
         .count();
     assert!(n_outputs > 15, "{tried:?}");
+    assert!(tried.contains(&"LoadFurther".to_owned()), "{tried:?}");
     for key in [
         JobKey::Load(Role::Crash),
         JobKey::Load(Role::Stamped),
@@ -264,6 +271,7 @@ fn a_cancel_at_any_point_ends_the_work() {
         JobKey::MeasureLevel(Role::Crash),
         JobKey::Align,
         JobKey::Match,
+        JobKey::PlaceFurther,
         JobKey::Map,
         JobKey::Compare,
         JobKey::Measure,

@@ -4,6 +4,7 @@
 
 mod app;
 mod app_exports;
+mod app_further;
 mod app_mapping;
 mod app_mapping_look;
 mod assess;

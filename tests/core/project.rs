@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use shapematch::app::*;
 use shapematch::assess::{Reason, Verdict};
 use shapematch::geometry::Similarity;
-use shapematch::jobs::{Located, PipelineRunner, ProjectRequest, Runner as _};
+use shapematch::jobs::{Located, PipelineRunner, ProjectFile, ProjectRequest, Runner as _};
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::match_parts::MatchRecipe;
 use shapematch::pipeline::project::{PartEntry, Project};
@@ -215,17 +215,17 @@ fn a_missing_file_is_asked_for_or_done_without() {
     let mut asked = open(&path);
     assert_eq!(asked.state.view.dialog, Some(Dialog::MissingFiles));
     let (_, missing) = asked.state.project.missing.clone().unwrap();
-    assert_eq!(missing.crash, None);
-    assert_eq!(missing.stamped, Some(stamped));
+    let of_stamped = ProjectFile::Part(Role::Stamped);
+    assert_eq!(missing, [(of_stamped, stamped)]);
     assert!(asked.state.document.part(Role::Crash).is_none());
-    asked.apply(ProjectCommand::Locate(Role::Stamped, Located::Without));
+    asked.apply(ProjectCommand::Locate(of_stamped, Located::Without));
     assert!(asked.state.document.part(Role::Crash).is_some());
     assert!(asked.state.document.part(Role::Stamped).is_none());
     assert!(asked.state.document.current_result().is_none());
 
     let mut asked = open(&path);
     // A dynain is known by its content, whatever its name.
-    asked.apply(ProjectCommand::Locate(Role::Stamped, Located::At(hidden)));
+    asked.apply(ProjectCommand::Locate(of_stamped, Located::At(hidden)));
     assert_eq!(asked.state.view.dialog, None);
     assert!(asked.state.document.current_result().is_some());
 }
@@ -524,7 +524,7 @@ impl Window {
 #[test]
 fn a_request_finds_files_beside_the_project() {
     let request = ProjectRequest::default();
-    assert_eq!(request.located.crash, Located::AsStored);
+    assert!(request.located.is_empty());
     let (folder, [crash, ..]) = folder();
     let entry = PartEntry {
         file: Some(PathBuf::from("/gone").join(crash.file_name().unwrap())),

@@ -4,7 +4,9 @@ use std::process::Command as Process;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use shapematch::app::{BottomTab, ColorBy, ExportCommand, FileCommand, MapCommand, ViewCommand};
+use shapematch::app::{
+    Action, BottomTab, ColorBy, ExportCommand, FileCommand, FurtherPose, MapCommand, ViewCommand,
+};
 use shapematch::pipeline::map::WriteKind;
 use shapematch::pipeline::outputs::Output;
 use shapematch::role::Role;
@@ -149,7 +151,7 @@ fn type_into(window: &mut Harness<'static, Shell>, field: &str, text: &str) {
 
 #[test]
 fn settings_of_a_mapping_are_changed_undone_and_mark_the_result() {
-    use shapematch::app::{Action, Section};
+    use shapematch::app::Section;
     let mut window = matched();
     click(&mut window, "Map");
     finish(&mut window);
@@ -261,4 +263,84 @@ fn what_the_window_writes_is_what_the_command_line_writes_byte_for_byte() {
             assert!(a == b && a.len() > 1000, "{here:?} is not {there:?}");
         }
     }
+}
+
+#[test]
+fn several_stamped_files_stand_in_a_list_and_are_mapped_from() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let pair = samples::generate(&SampleSettings {
+        part: SamplePart::Bracket,
+        ..SampleSettings::default()
+    });
+    for file in samples::files(&pair) {
+        std::fs::write(at(file.name), file.bytes).expect("a folder");
+    }
+    std::fs::copy(at("stamped.dynain"), at("second_blank.dynain")).expect("a folder");
+    let mut window = window();
+    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
+        let (paths, role) = (vec![at(name)], Some(role));
+        run(&mut window, FileCommand::Open { paths, role });
+    }
+    click(&mut window, "Match the parts");
+    finish(&mut window);
+    let n_files = |window: &Harness<'static, Shell>| window.state().state().stamped_rows().len();
+    let has = |window: &Harness<'static, Shell>, label: &str| {
+        let all = window.query_all_by_label(label);
+        all.count() > 0
+    };
+    assert_eq!(n_files(&window), 1);
+    assert!(has(&window, "Add stamped file…") && !has(&window, "Remove stamped.dynain"));
+    click(&mut window, "Mapping settings");
+    assert!(!has(&window, "Overlap"), "one file overlaps no other");
+    run(
+        &mut window,
+        MapCommand::AddFurther(at("second_blank.dynain")),
+    );
+    run(&mut window, MapCommand::AddFurther(at("not_there.dynain")));
+    assert_eq!(n_files(&window), 3);
+    for label in [
+        "second_blank.dynain",
+        "Pose of second_blank.dynain",
+        "Remove second_blank.dynain",
+        "GOOD",
+        "not read",
+        "Overlap",
+    ] {
+        assert!(has(&window, label), "no {label}");
+    }
+    click(&mut window, "Remove not_there.dynain");
+    click(&mut window, "Pose of second_blank.dynain");
+    window.run_steps(3);
+    click(&mut window, "As the first");
+    let pose = |window: &Harness<'static, Shell>| {
+        let further = &window.state().state().document.mapping.further;
+        further[0].pose
+    };
+    assert_eq!(pose(&window), FurtherPose::AsFirst);
+    let undo = Action::Undo.command(window.state().state());
+    run(&mut window, undo.expect("a step"));
+    assert_eq!(pose(&window), FurtherPose::Matched);
+    click(&mut window, "Map");
+    finish(&mut window);
+    assert!(window.state().state().document.current_mapping().is_some());
+    // The probe names the file that gave the values.
+    run(&mut window, MapCommand::Probe(Some(7)));
+    window.run_steps(2);
+    let named = window.query_all_by(|node| {
+        let label = node.label().or_else(|| node.value());
+        label.is_some_and(|label| label.contains(" of stamped.dynain · "))
+    });
+    assert!(named.count() > 0, "the probe names no file");
+    dismiss_toasts(&mut window);
+    for size in [[1400.0, 900.0], [1280.0, 720.0], [853.0, 480.0]] {
+        window.set_size(egui::Vec2::from(size));
+        window.run_steps(3);
+        let found = faults(&window);
+        assert!(found.is_empty(), "{size:?}: {}", found.join("\n"));
+    }
+    window.set_size(egui::vec2(1400.0, 900.0));
+    window.run_steps(3);
+    click(&mut window, "Remove second_blank.dynain");
+    assert_eq!(n_files(&window), 1);
 }

@@ -30,12 +30,8 @@ pub(super) fn any_part_unlocked(state: &AppState) -> Result<(), Reason> {
 /// A file of a part has changed on disk, and no job holds the inputs.
 pub(super) fn any_changed_unlocked(state: &AppState) -> Result<(), Reason> {
     any_part_unlocked(state)?;
-    let mut roles = Role::ALL.into_iter();
-    if roles.any(|role| state.has_changed_on_disk(role)) {
-        Ok(())
-    } else {
-        Err(Reason("No file has changed on disk."))
-    }
+    let has_changed = state.has_any_changed_on_disk();
+    require(has_changed, "No file has changed on disk.")
 }
 
 /// The part is loaded and no job holds the inputs.

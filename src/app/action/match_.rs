@@ -18,6 +18,15 @@ pub(super) const GROUPS: &[MenuGroup] = &[
 
 const MAP: &[ActionRow] = &[
     ActionRow {
+        action: Action::AddStamped,
+        label: "Add stamped file…",
+        tooltip: "One more stamped file for the same crash part, for example of a patch or of the other \
+                  half: it is matched by itself, and mapped from with the others",
+        keys: Keys::NONE,
+        enabled: |state| state.document.has_both_parts(),
+        command: |_| some(MapCommand::AskFurther),
+    },
+    ActionRow {
         action: Action::MapOrCancel,
         label: "Map",
         tooltip: "Carry thickness, strain and stress of the stamped part onto the crash part; while it \

@@ -116,6 +116,8 @@ actions! {
     Preferences,
     /// Close the program.
     Quit,
+    /// Choose one more stamped file to map from.
+    AddStamped,
     /// Map the forming results, or give the running mapping up.
     MapOrCancel,
     /// Write the crash deck with the mapped results.

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::{CopyForm, ExportCommand, PictureChoice, PicturePlace};
 use crate::app::work::Work;
-use crate::app::{Effect, NoticeLevel, Settings};
+use crate::app::{Effect, NoticeLevel, Settings, Shared};
 use crate::jobs::{Destination, ExportRequest, Exported, JobKind};
 use crate::pipeline::outputs::{MeshOutput, Output, OutputInput};
 use crate::report::MatrixForm;
@@ -154,6 +154,11 @@ impl Work<'_> {
                 .document
                 .current_mapping()
                 .map(|result| result.run.to_arc()),
+            further_stamped: self
+                .document
+                .current_mapping()
+                .map(|result| result.further.iter().map(Shared::to_arc).collect())
+                .unwrap_or_default(),
             pins: self.document.mapping.pins.clone(),
             other: self
                 .document

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::app::{Document, Part, Reason};
 use crate::formats::Selection;
+use crate::geometry::Similarity;
 use crate::jobs::PartSource;
 use crate::registration::StartMethod;
 use crate::report::command_line::{CommandLine, CommandSide, MapCommandLine};
@@ -87,8 +88,8 @@ impl Document {
         Ok(())
     }
 
-    /// The line that maps with the present files, parts, pose and choices, bit for bit; `None` without
-    /// both parts.
+    /// The line that maps with the present files, parts, poses and choices, bit for bit; `None` without
+    /// both parts, and while a stamped file has no pose.
     pub fn map_command_line(&self) -> Option<String> {
         let both = self.both()?;
         let paths = both.map(path);
@@ -97,10 +98,18 @@ impl Document {
             path: paths.get(role),
             ..both.get(role).loaded.command_side()
         };
+        let further: Vec<(CommandSide<'_>, Similarity)> = self
+            .mapping
+            .further
+            .iter()
+            .map(|further| further.loaded.command_side())
+            .zip(self.further_poses().ok()?)
+            .collect();
         let line = MapCommandLine {
             sides: PerRole::from_fn(side),
             read: &both.crash.loaded.settings.read,
             pose: self.crash_from_stamped(),
+            further: &further,
             options: &recipe.options,
             layers: (recipe.n_layers, recipe.rule, recipe.n_plane),
             stress_factor: recipe.stress_factor,

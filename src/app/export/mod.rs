@@ -13,6 +13,7 @@ pub use picture::{PictureChoice, PicturePlace, PictureSize, PictureWindows};
 use super::{AppState, Document};
 use crate::pipeline::outputs::{Needs, Output};
 use crate::report::{CardForm, MatrixForm};
+use crate::role::Role;
 
 /// What "Copy" puts on the clipboard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,13 +79,11 @@ impl Document {
         }
     }
 
-    /// The files of both parts with their includes, which no output may overwrite.
+    /// The files of all parts with their includes, which no output may overwrite.
     pub fn files(&self) -> Vec<PathBuf> {
-        let parts = self.parts.iter();
-        parts
-            .filter_map(|(_, part)| part.as_ref())
-            .flat_map(|part| part.loaded.files())
-            .collect()
+        let crash = self.part(Role::Crash).map(|part| &part.loaded);
+        let parts = crash.into_iter().chain(self.all_stamped());
+        parts.flat_map(|part| part.files()).collect()
     }
 
     /// A file name to start from, made of the name of the part's file.

@@ -65,7 +65,11 @@ impl StepKind {
             let result = document.result.as_ref();
             result.map(|result| Arc::as_ptr(&result.run.outcome))
         };
-        if differs(|old, new| old.source != new.source) {
+        let further = |document: &Document| -> Vec<u64> {
+            let all = document.mapping.further.iter();
+            all.map(|further| further.revision).collect()
+        };
+        if differs(|old, new| old.source != new.source) || further(before) != further(after) {
             Self::Files
         } else if after.result.is_some() && run(before) != run(after) {
             Self::Match

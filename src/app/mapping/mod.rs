@@ -1,26 +1,33 @@
 //! Carrying the forming results onto the crash part: what was chosen, what came out, and how it is
 //! looked at.
 
+mod further;
 mod picture;
 mod probe;
+mod stamped_rows;
 
+pub(super) use further::{FURTHER_WITHOUT_POSE, NewFurther, tell_dropped};
+pub use further::{Further, MappingState, Placing};
 pub use picture::{MapDisplay, MapPicture};
 pub use probe::ProbeReport;
+pub use stamped_rows::{StampedRow, StampedState};
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use self::further::set_pose;
 use super::follow_up::FollowUp;
 use super::work::Work;
 use super::{AppState, ColorBy, Document, Effect, NoticeLevel, Reason, Shared};
 use crate::jobs::{CompareMappingInput, JobKey, JobKind, MapInput, Stamp};
 use crate::mapping::{MapOptions, Quantities};
 use crate::pipeline::forming_values::{FormingValue, has_forming_value, nominal_thickness};
+use crate::pipeline::load::LoadedPart;
 use crate::pipeline::map::{
     ComparisonRecord, ElementLists, MapRecipe, MapRecord, MapRun, OtherResult,
 };
-pub use crate::pipeline::map::{DoubtfulElement, UnmappedElement};
+pub use crate::pipeline::map::{DoubtfulElement, FurtherPose, UnmappedElement};
 use crate::role::Role;
 use crate::text::{capital, counted, percent};
 
@@ -29,6 +36,8 @@ use crate::text::{capital, counted, percent};
 pub struct Mapping {
     /// Quantities, method, limits.
     pub recipe: MapRecipe,
+    /// Stamped files beside the first one, in the order of the list.
+    pub further: Vec<Further>,
     /// The other mapper's file that every mapping is compared with.
     pub compare_with: Option<PathBuf>,
     /// The last mapping.
@@ -50,6 +59,8 @@ pub struct MapResult {
     pub lists: Shared<ElementLists>,
     /// Parts and pose.
     pub stamp: Stamp,
+    /// The stamped parts that it was made from beside the first one; their poses are the run's.
+    pub further: Vec<Shared<LoadedPart>>,
     /// Another mapper's result for the same elements.
     pub other: Option<Shared<OtherResult>>,
 }
@@ -61,6 +72,18 @@ pub enum MapCommand {
     SetRecipe(Box<MapRecipe>),
     /// Another method or limit; several in a row are one step, as a drag sends them.
     SetOptions(Box<MapOptions>),
+    /// Ask for a further stamped file.
+    AskFurther,
+    /// Read a further stamped file and match it with the crash part.
+    AddFurther(PathBuf),
+    /// Take a further stamped file out of the list, or give its reading up.
+    RemoveFurther(u64),
+    /// Where the pose of a further stamped file comes from.
+    SetFurtherPose(u64, FurtherPose),
+    /// Match a further stamped file anew.
+    MatchFurther(u64),
+    /// End the running match of a further stamped file with the best pose so far.
+    StopFurther,
     /// Map, or give the running mapping up.
     MapOrCancel,
     /// Look at an element of the current mapping closely, or no longer.
@@ -82,13 +105,24 @@ impl Document {
         result.filter(|result| result.stamp == self.stamp())
     }
 
-    /// True if quantities or options were changed after the current mapping was made.
+    /// True if quantities, options or stamped files were changed after the current mapping was made.
     pub fn is_mapping_out_of_date(&self) -> bool {
-        let result = self.current_mapping();
-        result.is_some_and(|result| result.run.recipe != self.wanted_mapping())
+        self.mapping_changes().is_some()
     }
 
-    /// What a mapping would be asked with now: without the quantities that the stamped part lacks.
+    /// What was changed after the current mapping was made; `None` if nothing was.
+    pub(super) fn mapping_changes(&self) -> Option<&'static str> {
+        let result = self.current_mapping()?;
+        if result.run.recipe != self.wanted_mapping() {
+            Some("the options changed after the mapping")
+        } else if !self.has_same_stamped(result) {
+            Some("the stamped files changed after the mapping")
+        } else {
+            None
+        }
+    }
+
+    /// What a mapping would be asked with now: without the quantities that all stamped parts lack.
     pub fn wanted_mapping(&self) -> MapRecipe {
         let mut recipe = self.mapping.recipe.clone();
         for quantity in Quantity::ALL {
@@ -101,42 +135,61 @@ impl Document {
 
     /// `Ok` if the forming results can be mapped now.
     pub fn can_map(&self) -> Result<(), Reason> {
-        self.has_both_parts()?;
-        let Some(both) = self.both() else {
-            return Err(Reason("Load both parts first."));
-        };
-        let model = &both.stamped.loaded.model;
-        if model.forming.is_empty() && model.shell_extras.is_empty() {
-            return Err(Reason("The stamped file holds no forming results."));
-        }
-        Ok(())
+        self.has_forming_results()?;
+        self.further_poses().map(|_| ())
     }
 
-    /// Why the stamped part lacks a quantity; `None` if it has it.
-    pub fn lacks_quantity(&self, quantity: Quantity) -> Option<&'static str> {
-        let part = self.part(Role::Stamped)?;
-        let forming = &part.loaded.model.forming;
-        let (has, reason) = match quantity {
-            Quantity::Thickness => (
-                part.loaded.mean_thickness().is_some(),
-                "neither elements nor sections of the stamped file have a thickness",
-            ),
-            Quantity::PlasticStrain | Quantity::Stress => (
-                forming.n_stress() > 0,
-                "the stamped file has no *INITIAL_STRESS_SHELL",
-            ),
-            Quantity::Strain => (
-                forming.n_strain() > 0,
-                "the stamped file has no *INITIAL_STRAIN_SHELL",
-            ),
-            Quantity::History => (
-                forming
-                    .stresses()
-                    .any(|stress| stress.n_history + stress.n_tensors > 0),
-                "the stamped file has no history variables",
-            ),
+    /// `Ok` if there is something to map.
+    pub fn has_forming_results(&self) -> Result<(), Reason> {
+        self.has_both_parts()?;
+        let has_any = |part: &Shared<LoadedPart>| {
+            !part.model.forming.is_empty() || !part.model.shell_extras.is_empty()
         };
-        (!has).then_some(reason)
+        if self.all_stamped().any(has_any) {
+            return Ok(());
+        }
+        Err(Reason(if self.mapping.further.is_empty() {
+            "The stamped file holds no forming results."
+        } else {
+            "None of the stamped files holds forming results."
+        }))
+    }
+
+    /// Why no stamped part has a quantity; `None` if one has it.
+    pub fn lacks_quantity(&self, quantity: Quantity) -> Option<&'static str> {
+        self.part(Role::Stamped)?;
+        let has = |part: &Shared<LoadedPart>| {
+            let forming = &part.model.forming;
+            match quantity {
+                Quantity::Thickness => part.mean_thickness().is_some(),
+                Quantity::PlasticStrain | Quantity::Stress => forming.n_stress() > 0,
+                Quantity::Strain => forming.n_strain() > 0,
+                Quantity::History => {
+                    let mut stresses = forming.stresses();
+                    stresses.any(|stress| stress.n_history + stress.n_tensors > 0)
+                }
+            }
+        };
+        let [of_one, of_several] = match quantity {
+            Quantity::Thickness => [
+                "neither elements nor sections of the stamped file have a thickness",
+                "neither elements nor sections of a stamped file have a thickness",
+            ],
+            Quantity::PlasticStrain | Quantity::Stress => [
+                "the stamped file has no *INITIAL_STRESS_SHELL",
+                "no stamped file has *INITIAL_STRESS_SHELL",
+            ],
+            Quantity::Strain => [
+                "the stamped file has no *INITIAL_STRAIN_SHELL",
+                "no stamped file has *INITIAL_STRAIN_SHELL",
+            ],
+            Quantity::History => [
+                "the stamped file has no history variables",
+                "no stamped file has history variables",
+            ],
+        };
+        let is_one = self.mapping.further.is_empty();
+        (!self.all_stamped().any(has)).then_some(if is_one { of_one } else { of_several })
     }
 }
 
@@ -263,40 +316,53 @@ impl AppState {
     }
 }
 
-pub(super) fn apply(work: &mut Work<'_>, command: MapCommand) -> Vec<Effect> {
-    match command {
-        MapCommand::SetRecipe(recipe) => {
-            work.commit("Mapping options", |document| {
-                document.mapping.recipe = *recipe;
-            });
-        }
-        MapCommand::SetOptions(options) => {
-            let name = "Mapping settings";
-            let gesture = work.history.series(name);
-            work.commit_in(name, Some(gesture), |document| {
-                document.mapping.recipe.options = *options;
-            });
-        }
-        MapCommand::MapOrCancel if work.jobs.is_active(JobKey::Map) => {
-            return work.cancel(JobKey::Map);
-        }
-        MapCommand::MapOrCancel => return start(work),
-        MapCommand::AskOther if work.jobs.is_active(JobKey::CompareMapping) => {
-            return work.cancel(JobKey::CompareMapping);
-        }
-        MapCommand::AskOther => return vec![Effect::AskOtherMapping],
-        MapCommand::CompareWith(file) => return compare_with(work, file).into_iter().collect(),
-        MapCommand::EndComparison => end_comparison(work),
-        MapCommand::TogglePin(id) => toggle_pin(work, id),
-        MapCommand::Probe(element) => {
-            if work.document.mapping.probe != element {
-                work.commit("Probe an element", |document| {
-                    document.mapping.probe = element;
+impl MappingState {
+    pub(super) fn apply(&mut self, work: &mut Work<'_>, command: MapCommand) -> Vec<Effect> {
+        match command {
+            MapCommand::SetRecipe(recipe) => {
+                work.commit("Mapping options", |document| {
+                    document.mapping.recipe = *recipe;
                 });
             }
+            MapCommand::SetOptions(options) => {
+                let name = "Mapping settings";
+                let gesture = work.history.series(name);
+                work.commit_in(name, Some(gesture), |document| {
+                    document.mapping.recipe.options = *options;
+                });
+            }
+            MapCommand::AskFurther => return vec![Effect::AskFurther],
+            MapCommand::AddFurther(file) => return self.add(work, file),
+            MapCommand::RemoveFurther(revision) => return self.remove(work, revision),
+            MapCommand::SetFurtherPose(revision, pose) => set_pose(work, revision, pose),
+            MapCommand::MatchFurther(revision) => self.match_again(work, revision),
+            MapCommand::StopFurther => {
+                work.jobs.ending(JobKey::PlaceFurther, false);
+                return vec![Effect::StopJob(JobKey::PlaceFurther)];
+            }
+            MapCommand::MapOrCancel if work.jobs.is_active(JobKey::Map) => {
+                return work.cancel(JobKey::Map);
+            }
+            MapCommand::MapOrCancel => return start(work),
+            MapCommand::AskOther if work.jobs.is_active(JobKey::CompareMapping) => {
+                return work.cancel(JobKey::CompareMapping);
+            }
+            MapCommand::AskOther => return vec![Effect::AskOtherMapping],
+            MapCommand::CompareWith(file) => {
+                return compare_with(work, file).into_iter().collect();
+            }
+            MapCommand::EndComparison => end_comparison(work),
+            MapCommand::TogglePin(id) => toggle_pin(work, id),
+            MapCommand::Probe(element) => {
+                if work.document.mapping.probe != element {
+                    work.commit("Probe an element", |document| {
+                        document.mapping.probe = element;
+                    });
+                }
+            }
         }
+        Vec::new()
     }
-    Vec::new()
 }
 
 fn toggle_pin(work: &mut Work<'_>, id: u64) {
@@ -325,11 +391,17 @@ fn start(work: &mut Work<'_>) -> Vec<Effect> {
     let Some(both) = work.document.both() else {
         return Vec::new();
     };
+    let Ok(poses) = work.document.further_poses() else {
+        return Vec::new();
+    };
     let recipe = work.document.wanted_mapping();
+    let further = work.document.mapping.further.iter();
+    let further = further.map(|further| further.loaded.to_arc());
     let input = MapInput {
         parts: both.map(|part| part.loaded.to_arc()),
         recipe,
         crash_from_stamped: *work.document.crash_from_stamped(),
+        further: further.zip(poses).collect(),
     };
     vec![work.start(JobKind::Map(input))]
 }
@@ -400,6 +472,7 @@ pub fn file_names(paths: &[String]) -> String {
 pub(super) fn take_mapped(
     work: &mut Work<'_>,
     (run, record, lists): (Arc<MapRun>, Arc<MapRecord>, Arc<ElementLists>),
+    further: Vec<Arc<LoadedPart>>,
     took: Duration,
 ) -> Vec<Effect> {
     let other = work.document.mapping.compare_with.clone();
@@ -425,6 +498,7 @@ pub(super) fn take_mapped(
             record: record.into(),
             lists: lists.into(),
             stamp,
+            further: further.into_iter().map(Shared::from).collect(),
             other: None,
         });
     });

@@ -21,6 +21,8 @@ pub struct ProbeReport {
     pub status: Status,
     /// Number of the stamped element it took its values from.
     pub stamped_id: Option<u64>,
+    /// The file of that element, where several were mapped from.
+    pub stamped_file: Option<String>,
     /// Distance of the sheets along the normal, angle in degrees, coverage, confidence; NaN without a
     /// partner.
     pub facts: [f64; 4],
@@ -33,7 +35,8 @@ pub struct ProbeReport {
 }
 
 impl Document {
-    /// The element of the current mapping that a shell of a part is, or that took its values from it.
+    /// The element of the current mapping that a shell of a part is, or that took its values from it. The
+    /// stamped part is the first one, which is shown.
     pub fn mapped_element(&self, role: Role, shell_id: u64) -> Option<usize> {
         let both = self.both()?;
         let run = &self.current_mapping()?.run;
@@ -44,9 +47,9 @@ impl Document {
                 let shells = run.source_shells.first()?;
                 let own = shells.iter().position(|&s| id_of(role, s) == shell_id)?;
                 let elements = run.mapped.elements.iter();
-                elements
-                    .map(|report| report.partner)
-                    .position(|partner| partner.is_some_and(|p| p.element as usize == own))
+                elements.map(|report| report.partner).position(|partner| {
+                    partner.is_some_and(|p| p.source == 0 && p.element as usize == own)
+                })
             }
         }
     }
@@ -54,7 +57,7 @@ impl Document {
 
 impl AppState {
     /// Where the probed element lies on the crash part, and the one it took its values from on the
-    /// stamped part, each in its own model.
+    /// stamped part, each in its own model. An element of a further stamped file is not shown.
     pub fn probed_places(&self) -> Vec<(Role, Point3)> {
         let probed = self.document.mapping.probe;
         let Some((element, result)) = probed.zip(self.document.current_mapping()) else {
@@ -64,7 +67,7 @@ impl AppState {
         let own = run.target.mesh.centroids().get(element);
         let report = run.mapped.elements.get(element);
         let theirs = report.and_then(|report| {
-            let partner = report.partner?;
+            let partner = report.partner.filter(|partner| partner.source == 0)?;
             let source = run.sources.get(partner.source as usize)?;
             source.mesh.centroids().get(partner.element as usize)
         });
@@ -80,11 +83,19 @@ impl AppState {
         let result = self.document.current_mapping()?;
         let run = &result.run;
         let report = run.mapped.elements.get(element)?;
-        let stamped_id = report.partner.and_then(|partner| {
-            let shells = run.source_shells.get(partner.source as usize)?;
-            let shell = *shells.get(partner.element as usize)? as usize;
-            Some(both.stamped.loaded.model.shells.get(shell)?.id)
+        let giver = report.partner.and_then(|partner| {
+            let source = partner.source as usize;
+            let shell = *run
+                .source_shells
+                .get(source)?
+                .get(partner.element as usize)? as usize;
+            let part = match source.checked_sub(1) {
+                None => &both.stamped.loaded,
+                Some(further) => result.further.get(further)?,
+            };
+            Some((part.model.shells.get(shell)?.id, part.file_name()))
         });
+        let (stamped_id, stamped_file) = giver.unzip();
         let quantities = self.mapped_quantities();
         let values = quantities.iter().map(|&by| {
             let shown = self.shown_value(by);
@@ -102,6 +113,7 @@ impl AppState {
             center: run.target.mesh.centroids()[element],
             status: report.status,
             stamped_id,
+            stamped_file: stamped_file.filter(|_| !result.further.is_empty()),
             facts: [
                 report.normal_distance,
                 report.angle_deg,

@@ -2,41 +2,47 @@
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::PartsState;
 use crate::app::work::Work;
 use crate::app::{Action, AppState, Document, NoticeLevel};
+use crate::pipeline::load::LoadedPart;
 use crate::role::Role;
 use crate::text::counted;
 
 impl PartsState {
     /// True if a file of this part has another content now than was read from it.
     pub(in crate::app) fn has_changed_on_disk(&self, document: &Document, role: Role) -> bool {
+        document
+            .part(role)
+            .is_some_and(|part| self.is_changed(&part.loaded))
+    }
+
+    fn is_changed(&self, part: &LoadedPart) -> bool {
         let is_changed = |file: &PathBuf| self.changed_on_disk.contains(file);
-        !self.changed_on_disk.is_empty()
-            && document
-                .part(role)
-                .is_some_and(|part| part.loaded.files().iter().any(is_changed))
+        !self.changed_on_disk.is_empty() && part.files().iter().any(is_changed)
     }
 
     /// The work goes on with what was read; whoever wants the new content is one click away from it.
     pub(super) fn tell_changed(&mut self, work: &mut Work<'_>, changed: BTreeSet<PathBuf>) {
         let before = std::mem::replace(&mut self.changed_on_disk, changed);
-        for role in Role::ALL {
-            let Some(part) = work.document.part(role) else {
-                continue;
-            };
+        let crash = work.document.part(Role::Crash);
+        let crash = crash.map(|part| (Role::Crash, part.loaded.to_arc()));
+        let stamped = work.document.all_stamped();
+        let stamped = stamped.map(|part| (Role::Stamped, part.to_arc()));
+        let parts: Vec<(Role, Arc<LoadedPart>)> = crash.into_iter().chain(stamped).collect();
+        for (role, part) in parts {
             let is_news =
                 |file: &PathBuf| self.changed_on_disk.contains(file) && !before.contains(file);
-            let files: BTreeSet<PathBuf> =
-                part.loaded.files().into_iter().filter(is_news).collect();
-            let main = part.loaded.file_name();
+            let files: BTreeSet<PathBuf> = part.files().into_iter().filter(is_news).collect();
+            let main = part.file_name();
             let what = match files.len() {
                 0 => continue,
-                _ if files.contains(&part.loaded.path) => main,
+                _ if files.contains(&part.path) => main,
                 n => format!("{main}: {}", counted(n, "included file")),
             };
-            let verb = if files.len() == 1 || files.contains(&part.loaded.path) {
+            let verb = if files.len() == 1 || files.contains(&part.path) {
                 "has"
             } else {
                 "have"
@@ -51,7 +57,7 @@ impl PartsState {
     }
 
     /// These files are known in their new content.
-    pub(super) fn was_read_again(&mut self, work: &mut Work<'_>, files: &[PathBuf]) {
+    pub(in crate::app) fn was_read_again(&mut self, work: &mut Work<'_>, files: &[PathBuf]) {
         for file in files {
             self.changed_on_disk.remove(file);
         }
@@ -67,6 +73,14 @@ impl PartsState {
 }
 
 impl AppState {
+    /// True if a file of any part has another content now than was read from it.
+    pub fn has_any_changed_on_disk(&self) -> bool {
+        let document = &self.document;
+        let crash = document.part(Role::Crash).map(|part| &part.loaded);
+        let mut parts = crash.into_iter().chain(document.all_stamped());
+        parts.any(|part| self.parts.is_changed(part))
+    }
+
     /// True if a file of this part has another content now than was read from it.
     pub fn has_changed_on_disk(&self, role: Role) -> bool {
         self.parts.has_changed_on_disk(&self.document, role)

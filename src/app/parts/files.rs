@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use super::{FileCommand, Guess, PartsState};
 use crate::app::follow_up::FollowUp;
+use crate::app::mapping::tell_dropped;
 use crate::app::work::Work;
 use crate::app::{Action, Effect, NoticeLevel, Part, Settings, StampedPose, facts};
 use crate::formats::ReadOptions;
@@ -47,15 +48,20 @@ impl PartsState {
                 self.open_example(work, &PartSource::RealisticExample)
             }
             FileCommand::Reload(role) => self.reload(work, role),
-            FileCommand::ReloadAll => Role::ALL
-                .into_iter()
-                .flat_map(|role| self.reload(work, role))
-                .collect(),
+            FileCommand::ReloadAll => {
+                work.follow(FollowUp::ReadFurtherAgain(None));
+                Role::ALL
+                    .into_iter()
+                    .flat_map(|role| self.reload(work, role))
+                    .collect()
+            }
             FileCommand::ReloadChanged => {
                 let changed = Role::ALL
                     .into_iter()
                     .filter(|&role| self.has_changed_on_disk(work.document, role));
                 let changed: Vec<Role> = changed.collect();
+                let files = self.changed_on_disk.clone();
+                work.follow(FollowUp::ReadFurtherAgain(Some(files)));
                 let reloads = changed.into_iter();
                 reloads.flat_map(|role| self.reload(work, role)).collect()
             }
@@ -170,14 +176,19 @@ impl PartsState {
         let name = format!("Close the {} part", role.word());
         let revision = work.history.next_revision();
         work.previews.drop_all();
+        let mut n_dropped = 0;
         work.commit(name, |document| {
             *document.parts.get_mut(role) = None;
             document.result = None;
+            if role == Role::Crash {
+                n_dropped = document.drop_further();
+            }
             document.pose = StampedPose {
                 revision,
                 ..StampedPose::default()
             };
         });
+        tell_dropped(work, n_dropped);
         Vec::new()
     }
 
@@ -189,10 +200,12 @@ impl PartsState {
     fn exchange(&mut self, work: &mut Work<'_>) {
         let revision = work.history.next_revision();
         work.previews.drop_all();
+        let mut n_dropped = 0;
         let has_swapped = work.commit("Swap the parts", |document| {
             if document.parts.crash.is_some() || document.parts.stamped.is_some() {
                 document.parts.swap();
                 document.result = None;
+                n_dropped = document.drop_further();
                 document.pose = StampedPose {
                     revision,
                     ..StampedPose::default()
@@ -203,6 +216,7 @@ impl PartsState {
             self.selected.clear();
             work.follow(FollowUp::PartsSwapped);
             work.log_step("load", None, "crash and stamped part exchanged", None);
+            tell_dropped(work, n_dropped);
         }
     }
 
@@ -349,6 +363,7 @@ impl PartsState {
         let (revision, pose_revision) =
             (work.history.next_revision(), work.history.next_revision());
         work.previews.drop_all();
+        let mut n_dropped = 0;
         work.commit(name, |document| {
             let old = document.parts.get_mut(role);
             let same = old.take().filter(|old| old.source == source);
@@ -364,9 +379,14 @@ impl PartsState {
                     revision: pose_revision,
                     ..StampedPose::default()
                 };
+                // Further stamped files stand for the crash part that they were added to.
+                if role == Role::Crash {
+                    n_dropped = document.drop_further();
+                }
             }
             *document.parts.get_mut(role) = Some(new);
         });
+        tell_dropped(work, n_dropped);
     }
 
     /// Both files are there: the one that looks more like the end of a forming simulation is the

@@ -6,7 +6,7 @@ use super::{ProjectCommand, ProjectState};
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
 use crate::app::{Dialog, Document, Effect, NoticeLevel};
-use crate::jobs::{JobKind, Located, ProjectRequest};
+use crate::jobs::{JobKind, Located, ProjectFile, ProjectRequest};
 use crate::pipeline::project::{EXTENSION, is_project};
 use crate::role::Role;
 
@@ -29,8 +29,8 @@ impl ProjectState {
                 };
                 self.open(work, request, dialog)
             }
-            ProjectCommand::AskLocate(role) => vec![Effect::AskLocate(role)],
-            ProjectCommand::Locate(role, located) => self.locate(work, role, located, dialog),
+            ProjectCommand::AskLocate(file) => vec![Effect::AskLocate(file)],
+            ProjectCommand::Locate(file, located) => self.locate(work, file, located, dialog),
             ProjectCommand::GiveUp => {
                 self.missing = None;
                 *dialog = None;
@@ -117,16 +117,16 @@ impl ProjectState {
     fn locate(
         &mut self,
         work: &mut Work<'_>,
-        role: Role,
+        file: ProjectFile,
         located: Located,
         dialog: &mut Option<Dialog>,
     ) -> Vec<Effect> {
         let Some((mut request, mut missing)) = self.missing.take() else {
             return Vec::new();
         };
-        *request.located.get_mut(role) = located;
-        *missing.get_mut(role) = None;
-        if missing.iter().any(|(_, missing)| missing.is_some()) {
+        request.located.insert(file, located);
+        missing.retain(|(missing, _)| *missing != file);
+        if !missing.is_empty() {
             self.missing = Some((request, missing));
             return Vec::new();
         }

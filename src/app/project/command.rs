@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use crate::app::Document;
-use crate::jobs::{Located, ProjectRequest};
+use crate::jobs::{Located, ProjectFile, ProjectRequest};
 use crate::pipeline::autosave::RecoveredSession;
-use crate::role::Role;
 
 /// Projects: files that hold the work.
 #[derive(Debug, Clone)]
@@ -17,9 +16,9 @@ pub enum ProjectCommand {
     /// Open an autosaved session.
     Restore(PathBuf),
     /// Ask where a file of the project is that was not found.
-    AskLocate(Role),
+    AskLocate(ProjectFile),
     /// A file of the project is there, or is done without.
-    Locate(Role, Located),
+    Locate(ProjectFile, Located),
     /// Do not open the project whose files are missing.
     GiveUp,
     /// Write the project to its file, or ask where to.

@@ -11,12 +11,14 @@ pub use command::ProjectCommand;
 use serde_json::{Map, Value};
 
 use self::window::WindowEntry;
-use super::{AppState, Document, Effect, Mapping, MatchResult, Part, age_text, clock_text};
+use super::{
+    AppState, Document, Effect, Further, Mapping, MatchResult, Part, age_text, clock_text,
+};
 use crate::formats::Selection;
-use crate::jobs::{PartSource, ProjectRequest};
+use crate::jobs::{PartSource, ProjectFile, ProjectRequest};
 use crate::pipeline::autosave::RecoveredSession;
 use crate::pipeline::match_parts::MatchRecipe;
-use crate::pipeline::project::{PartEntry, Project, ResultEntry};
+use crate::pipeline::project::{FurtherEntry, PartEntry, PlacingEntry, Project, ResultEntry};
 use crate::role::{PerRole, Role};
 
 /// The project that is worked on.
@@ -27,7 +29,7 @@ pub struct ProjectState {
     /// Sessions of the last runs, newest first.
     pub sessions: Vec<RecoveredSession>,
     /// Its files that were not found, and what was asked for.
-    pub missing: Option<(ProjectRequest, PerRole<Option<PathBuf>>)>,
+    pub missing: Option<(ProjectRequest, Vec<(ProjectFile, PathBuf)>)>,
     /// The document as it was saved or opened.
     saved: Option<Document>,
     /// The document and whether there was a sweep when the session was autosaved last.
@@ -63,6 +65,7 @@ impl AppState {
             pose: *document.crash_from_stamped(),
             recipe: document.recipe.clone(),
             mapping: document.mapping.recipe.clone(),
+            further_stamped: document.further_entries(),
             mapping_compared_with: document.mapping.compare_with.as_deref().map(absolute),
             mapping_pins: document.mapping.pins.clone(),
             result: document.result.as_ref().map(|result| ResultEntry {
@@ -160,6 +163,23 @@ impl AppState {
             title += result.run.assessment.verdict.label();
         }
         title
+    }
+}
+
+impl Document {
+    fn further_entries(&self) -> Vec<FurtherEntry> {
+        let crash = self.part(Role::Crash).map(|crash| crash.revision);
+        let entry = |further: &Further| FurtherEntry {
+            part: PartEntry::of(&further.loaded, Some(absolute(&further.loaded.path))),
+            pose: further.pose,
+            placing: further.placing.as_ref().map(|placing| PlacingEntry {
+                is_current: Some(placing.crash_revision) == crash,
+                crash_from_stamped: placing.crash_from_stamped,
+                verdict: placing.verdict,
+                line: placing.line.clone(),
+            }),
+        };
+        self.mapping.further.iter().map(entry).collect()
     }
 }
 

@@ -6,11 +6,13 @@ use std::time::Duration;
 
 use super::window::WindowEntry;
 use crate::app::{
-    AppState, Dialog, Document, Effect, Mapping, MatchResult, NoticeLevel, Part, PointPairs,
-    ShownGeometry, StampedPose,
+    AppState, Dialog, Document, Effect, Further, Mapping, MatchResult, NoticeLevel, Part, Placing,
+    PointPairs, ShownGeometry, StampedPose,
 };
 use crate::jobs::{JobKind, MeasureLevelInput, OpenedPart, OpenedProject, ProjectRequest, Stamp};
-use crate::pipeline::project::{PartEntry, Project, ResultEntry};
+use crate::pipeline::project::{
+    FoundPart, FurtherEntry, PartEntry, PlacingEntry, Project, ResultEntry,
+};
 use crate::role::{PerRole, Role};
 
 impl AppState {
@@ -19,7 +21,7 @@ impl AppState {
         opened: OpenedProject,
         took: Duration,
     ) -> Vec<Effect> {
-        if opened.missing.iter().any(|(_, missing)| missing.is_some()) {
+        if !opened.missing.is_empty() {
             self.project.missing = Some((opened.request, opened.missing));
             self.view.dialog = Some(Dialog::MissingFiles);
             return Vec::new();
@@ -29,6 +31,7 @@ impl AppState {
             project,
             notes,
             parts,
+            further,
             ..
         } = opened;
         let name = if request.is_autosave {
@@ -41,10 +44,11 @@ impl AppState {
             self.work()
                 .log_at(NoticeLevel::Note, "project", None, text, None);
         }
-        self.tell_changed_files(&parts);
+        self.tell_changed_files(&parts, &further);
         self.previews.drop_all();
         let window = self.read_window(&project);
-        let effects = self.place_project(&name, &project, &parts, window.as_ref());
+        let parts = (&parts, &further[..]);
+        let effects = self.place_project(&name, &project, parts, window.as_ref());
         self.show_project(&project, window);
         let filed = self.file_project(request, &project);
         let text = format!("opened {name}: {}", self.work_title());
@@ -55,17 +59,27 @@ impl AppState {
         all
     }
 
-    fn tell_changed_files(&mut self, parts: &PerRole<Option<OpenedPart>>) {
-        for (role, part) in parts.iter() {
-            if let Some(part) = part.as_ref().filter(|part| part.is_changed) {
-                let text = format!(
-                    "{} has changed since the project was saved; poses are kept, results are out \
-                     of date",
-                    part.part.file_name()
-                );
-                self.work()
-                    .log_at(NoticeLevel::Warning, "project", Some(role), text, None);
-            }
+    fn tell_changed_files(
+        &mut self,
+        parts: &PerRole<Option<OpenedPart>>,
+        further: &[Option<FoundPart>],
+    ) {
+        let changed = |(role, part): (Role, &Option<OpenedPart>)| {
+            let part = part.as_ref().filter(|part| part.is_changed)?;
+            Some((role, part.part.file_name(), "poses are kept"))
+        };
+        let further = further.iter().flatten().filter(|part| part.is_changed);
+        let further = further.map(|found| {
+            let name = found.part.file_name();
+            (Role::Stamped, name, "it is matched anew")
+        });
+        let changed: Vec<_> = parts.iter().filter_map(changed).chain(further).collect();
+        for (role, name, what) in changed {
+            let text = format!(
+                "{name} has changed since the project was saved; {what}, results are out of date"
+            );
+            self.work()
+                .log_at(NoticeLevel::Warning, "project", Some(role), text, None);
         }
     }
 
@@ -74,7 +88,7 @@ impl AppState {
         &mut self,
         name: &str,
         project: &Project,
-        parts: &PerRole<Option<OpenedPart>>,
+        (parts, further): (&PerRole<Option<OpenedPart>>, &[Option<FoundPart>]),
         window: Option<&WindowEntry>,
     ) -> Vec<Effect> {
         let mut effects = Vec::new();
@@ -82,6 +96,7 @@ impl AppState {
             recipe: project.recipe.clone(),
             mapping: Mapping {
                 recipe: project.mapping.clone(),
+                further: Vec::new(),
                 compare_with: project.mapping_compared_with.clone(),
                 result: None,
                 probe: None,
@@ -117,6 +132,13 @@ impl AppState {
         };
         let PerRole { crash, stamped } = project.parts.as_ref().map(Option::as_ref);
         let is_same = is_complete(&parts.crash, crash) && is_complete(&parts.stamped, stamped);
+        // Poses of further files stand for the crash part as it was.
+        let is_crash_same = is_complete(&parts.crash, crash);
+        document.mapping.further = self.further_of(project, further, |placing| {
+            let crash = document.part(Role::Crash).map(|part| part.revision);
+            let is_current = placing.is_current && is_crash_same;
+            crash.filter(|_| is_current).unwrap_or_default()
+        });
         document.result = project.result.clone().map(|entry| {
             let stamp = result_stamp(&entry, document.stamp(), is_same);
             MatchResult::restored(entry, stamp)
@@ -138,6 +160,34 @@ impl AppState {
             .commit(format!("Open {name}"), |old| *old = document);
         let mut work = self.work();
         effects.into_iter().map(|kind| work.start(kind)).collect()
+    }
+
+    /// The further stamped files, each with a number of its own; `crash_of` says with which crash part it was
+    /// matched.
+    fn further_of(
+        &mut self,
+        project: &Project,
+        further: &[Option<FoundPart>],
+        crash_of: impl Fn(&PlacingEntry) -> u64,
+    ) -> Vec<Further> {
+        let entries = project.further_stamped.iter().zip(further);
+        let known = entries.filter_map(|(entry, found)| Some((entry, found.as_ref()?)));
+        let of = |(entry, found): (&FurtherEntry, &FoundPart)| Further {
+            loaded: Arc::new(found.part.clone()).into(),
+            revision: self.history.next_revision(),
+            pose: entry.pose,
+            placing: entry.placing.as_ref().map(|placing| Placing {
+                crash_from_stamped: placing.crash_from_stamped,
+                verdict: placing.verdict,
+                line: placing.line.clone(),
+                crash_revision: if found.is_changed {
+                    0
+                } else {
+                    crash_of(placing)
+                },
+            }),
+        };
+        known.map(of).collect()
     }
 
     /// The window looks as it did; what is missing in the project stays.

@@ -77,10 +77,8 @@ impl AppState {
         let result = self.document.mapping.result.as_ref()?;
         if result.stamp != self.document.stamp() {
             Some("parts or pose changed after the mapping")
-        } else if self.document.is_mapping_out_of_date() {
-            Some("the options changed after the mapping")
         } else {
-            None
+            self.document.mapping_changes()
         }
     }
 

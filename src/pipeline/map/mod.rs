@@ -6,6 +6,7 @@ mod default_thickness;
 mod lists;
 mod output;
 mod peak;
+mod place;
 mod probe;
 mod ready;
 mod record;
@@ -24,6 +25,7 @@ pub use convert::TargetLayers;
 pub use default_thickness::DefaultThickness;
 pub use lists::{DoubtfulElement, ElementLists, UnmappedElement, element_lists};
 pub use output::{MapFiles, MapOutput, WriteKind, deck_comments, elements_path, write_mapping};
+pub use place::{FurtherPose, place, placing_recipe, pose_warning};
 pub use probe::{ProbeRecord, ProbedValue, probe_records};
 pub use record::{DistributionRecord, MapRecord, PairRecord, element_table, map_record};
 pub use report::map_report;
@@ -77,11 +79,11 @@ pub struct PlacedPart<'a> {
 /// Means, percentiles and the way back: is the mapping right?
 #[derive(Debug, Clone, Default)]
 pub struct MapChecks {
-    /// Thickness of the covered stamped elements and of the mapped crash elements.
+    /// Thickness of the covered elements of all stamped parts and of the mapped crash elements.
     pub thickness: Option<(Distribution, Distribution)>,
     /// The same for the plastic strain, mean over the layers.
     pub plastic_strain: Option<(Distribution, Distribution)>,
-    /// What comes back when the values are mapped onto the first stamped part again.
+    /// What comes back when the values are mapped onto the stamped parts again.
     pub map_back: Option<MapBack>,
 }
 
@@ -149,7 +151,7 @@ impl MapRun {
     }
 
     /// Mean thickness over that of the section where that is unusual: another gauge or another unit.
-    /// Known where one stamped part was mapped onto sections with a thickness.
+    /// Known for sections with a thickness.
     pub fn unusual_thickness(&self) -> Option<f64> {
         let (thickness, _) = self.checks.thickness.as_ref()?;
         let nominal = self.target.nominal_thickness.iter().copied();
@@ -299,43 +301,47 @@ fn check(
     monitor: &Monitor,
 ) -> Result<MapChecks, PipelineError> {
     let mut checks = MapChecks::default();
-    let Some(first) = placed.first() else {
-        return Ok(checks);
-    };
-    let back = match mapping::map_back(first, target, mapped, options, monitor) {
+    let back = match mapping::map_back(placed, target, mapped, options, monitor) {
         Ok(back) => back,
         Err(mapping::MappingError::Cancelled(cancelled)) => return Err(cancelled.into()),
         // Nothing was mapped, which the counts say.
         Err(_) => return Ok(checks),
     };
-    if placed.len() == 1 {
-        let covered = |element: &usize| back.is_covered[*element];
-        let source = first.part;
-        monitor.check()?;
-        let thickness = (0..source.mesh.len())
-            .filter(covered)
-            .map(|element| (source.mean_thickness(element), source.mesh.areas()[element]));
-        let plastic = (0..source.mesh.len()).filter(covered).map(|element| {
-            (
-                source.mean_plastic_strain(element),
-                source.mesh.areas()[element],
-            )
-        });
-        let on_target = |value: &dyn Fn(usize) -> f64| {
-            let all = 0..target.mesh.len();
-            distribution(all.map(|element| (value(element), target.mesh.areas()[element])))
-        };
-        let mapped_thickness = |element: usize| {
-            mapped
-                .thickness
-                .get(element)
-                .map_or(f64::NAN, |t| t / options.thickness_scale)
-        };
-        let mapped_plastic = |element: usize| mapped.mean_plastic_strain(target, element);
-        checks.thickness = distribution(thickness).zip(on_target(&mapped_thickness));
-        monitor.check()?;
-        checks.plastic_strain = distribution(plastic).zip(on_target(&mapped_plastic));
-    }
+    monitor.check()?;
+    let sources = placed.iter().map(|placed| placed.part);
+    let on_sources = |value: &dyn Fn(&SourcePart, usize) -> f64| {
+        covered_values(sources.clone().zip(&back.is_covered), value)
+    };
+    let on_target = |value: &dyn Fn(usize) -> f64| {
+        let all = 0..target.mesh.len();
+        distribution(all.map(|element| (value(element), target.mesh.areas()[element])))
+    };
+    let thickness = on_sources(&SourcePart::mean_thickness);
+    let mapped_thickness = |element: usize| {
+        mapped
+            .thickness
+            .get(element)
+            .map_or(f64::NAN, |t| t / options.thickness_scale)
+    };
+    checks.thickness = distribution(thickness.into_iter()).zip(on_target(&mapped_thickness));
+    monitor.check()?;
+    let plastic = on_sources(&SourcePart::mean_plastic_strain);
+    let mapped_plastic = |element: usize| mapped.mean_plastic_strain(target, element);
+    checks.plastic_strain = distribution(plastic.into_iter()).zip(on_target(&mapped_plastic));
     checks.map_back = Some(back);
     Ok(checks)
+}
+
+/// Values of the covered elements of all stamped parts, with the area each stands for.
+fn covered_values<'a>(
+    sources: impl Iterator<Item = (&'a SourcePart, &'a Vec<bool>)>,
+    value: impl Fn(&SourcePart, usize) -> f64,
+) -> Vec<(f64, f64)> {
+    let mut values = Vec::new();
+    for (source, is_covered) in sources {
+        let areas = source.mesh.areas().iter().zip(is_covered).enumerate();
+        let covered = areas.filter(|(_, (_, is_covered))| **is_covered);
+        values.extend(covered.map(|(element, (area, _))| (value(source, element), *area)));
+    }
+    values
 }

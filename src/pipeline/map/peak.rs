@@ -26,8 +26,7 @@ fn largest(run: &MapRun) -> Option<(usize, usize)> {
     let back = run.checks.map_back.as_ref();
     let mut best: Option<(f64, usize, usize)> = None;
     for (part, source) in run.sources.iter().enumerate() {
-        // The way back tells of the first part alone.
-        let covered = back.map(|back| &back.is_covered).filter(|_| part == 0);
+        let covered = back.map(|back| &back.is_covered[part]);
         for element in 0..source.mesh.len() {
             let is_covered = covered.is_none_or(|covered| covered[element]);
             let value = source.mean_plastic_strain(element);

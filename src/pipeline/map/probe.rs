@@ -24,6 +24,9 @@ pub struct ProbeRecord {
     pub element: u64,
     /// Id of the stamped element that gave it values.
     pub stamped_element: Option<u64>,
+    /// The file of that element, where several were mapped from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stamped_file: Option<String>,
     /// What became of it.
     pub status: Status,
     /// Signed distance of the stamped sheet along the element's normal, in the crash deck's unit; NaN
@@ -60,12 +63,13 @@ pub fn probe_records(
     let elements = ids.iter().filter_map(place);
     let record = |element: usize| {
         let report = &run.mapped.elements[element];
-        let stamped_element = report.partner.and_then(|partner| {
+        let giver = report.partner.and_then(|partner| {
             let shells = run.source_shells.get(partner.source as usize)?;
             let shell = *shells.get(partner.element as usize)? as usize;
             let part = stamped.get(partner.source as usize)?.part;
-            Some(part.model.shells.get(shell)?.id)
+            Some((part.model.shells.get(shell)?.id, part.file_name()))
         });
+        let (stamped_element, stamped_file) = giver.unzip();
         let value = |value: Option<FormingValue>| {
             let shown = ShownValue::usual(value);
             let found = ProbedValue {
@@ -78,6 +82,7 @@ pub fn probe_records(
         ProbeRecord {
             element: id_of(run.shells[element]),
             stamped_element,
+            stamped_file: stamped_file.filter(|_| stamped.len() > 1),
             status: report.status,
             normal_distance: report.normal_distance,
             angle_deg: report.angle_deg,

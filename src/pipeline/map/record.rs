@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::compare::{ComparisonRecord, OtherResult, compare_with, largest_von_mises};
 use super::verdict::{CheckRecord, checks_of};
-use super::{MapFiles, MapRun, PlacedPart, ProbeRecord};
+use super::{MapFiles, MapRun, PlacedPart, ProbeRecord, covered_values};
 use crate::mapping::{
     Distribution, Histogram, SourcePart, Status, distribution, histogram_distance,
 };
@@ -231,13 +231,12 @@ pub fn map_record(
     record
 }
 
-/// Largest von Mises stress of both sides, where stresses were mapped from one part.
+/// Largest von Mises stress of both sides, where stresses were mapped.
 fn von_mises(run: &MapRun) -> Option<PairRecord> {
     if !run.recipe.options.quantities.stress || run.checks.plastic_strain.is_none() {
         return None;
     }
-    let source = |element: usize| von_mises_of(&run.sources[0], element);
-    pair_of(&both_sides(run, source, |element| {
+    pair_of(&both_sides(run, von_mises_of, |element| {
         run.largest_von_mises(element)
     }))
 }
@@ -253,27 +252,14 @@ pub(super) type BothSides = [Vec<(f64, f64)>; 2];
 
 fn both_sides(
     run: &MapRun,
-    on_source: impl Fn(usize) -> f64,
+    on_source: impl Fn(&SourcePart, usize) -> f64,
     on_target: impl Fn(usize) -> f64,
 ) -> BothSides {
-    let covered = run
-        .checks
-        .map_back
-        .as_ref()
-        .map(|back| &back.is_covered[..])
-        .unwrap_or_default();
-    let of_source = run
-        .sources
-        .first()
-        .map(|source| source.mesh.areas())
-        .unwrap_or_default();
-    let source = covered.iter().zip(of_source).enumerate();
-    let source = source.filter(|(_, (covered, _))| **covered);
+    let back = run.checks.map_back.as_ref();
+    let covered = back.map(|back| &back.is_covered[..]).unwrap_or_default();
     let target = run.target.mesh.areas().iter().enumerate();
     [
-        source
-            .map(|(element, (_, area))| (on_source(element), *area))
-            .collect(),
+        covered_values(run.sources.iter().zip(covered), on_source),
         target
             .map(|(element, area)| (on_target(element), *area))
             .collect(),
@@ -282,19 +268,15 @@ fn both_sides(
 
 fn thickness_values(run: &MapRun) -> BothSides {
     let scale = run.recipe.options.thickness_scale;
-    both_sides(
-        run,
-        |element| run.sources[0].mean_thickness(element),
-        |element| run.thickness(element) / scale,
-    )
+    both_sides(run, SourcePart::mean_thickness, |element| {
+        run.thickness(element) / scale
+    })
 }
 
 fn plastic_values(run: &MapRun) -> BothSides {
-    both_sides(
-        run,
-        |element| run.sources[0].mean_plastic_strain(element),
-        |element| run.mapped.mean_plastic_strain(&run.target, element),
-    )
+    both_sides(run, SourcePart::mean_plastic_strain, |element| {
+        run.mapped.mean_plastic_strain(&run.target, element)
+    })
 }
 
 /// The distributions of both sides with their distance; `None` if one side has no values.

@@ -160,9 +160,11 @@ fn probe_rows(probe: &ProbeRecord) -> Vec<[String; 10]> {
         let difference = value.crash - value.stamped;
         [
             probe.element.to_string(),
-            probe
-                .stamped_element
-                .map_or_else(|| "–".to_owned(), |id| id.to_string()),
+            match (probe.stamped_element, &probe.stamped_file) {
+                (Some(id), Some(file)) => format!("{id} ({file})"),
+                (Some(id), None) => id.to_string(),
+                (None, _) => "–".to_owned(),
+            },
             probe.status.label().to_owned(),
             finite(probe.normal_distance, signed(probe.normal_distance)),
             finite(probe.angle_deg, fixed(probe.angle_deg, 1)),

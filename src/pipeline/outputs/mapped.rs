@@ -20,11 +20,21 @@ fn mapped(input: &OutputInput) -> Result<(&MapRun, PerRole<&LoadedPart>), Pipeli
     Ok((run.ok_or(PipelineError::Lacks("a mapping"))?, parts))
 }
 
-fn placed<'a>(run: &MapRun, parts: PerRole<&'a LoadedPart>) -> PlacedPart<'a> {
-    PlacedPart {
-        part: parts.stamped,
-        crash_from_stamped: run.poses[0],
-    }
+/// The stamped parts as the run was made from them.
+fn placed<'a>(
+    run: &MapRun,
+    parts: PerRole<&'a LoadedPart>,
+    input: &'a OutputInput,
+) -> Vec<PlacedPart<'a>> {
+    let further = input.further_stamped.iter().map(|part| &**part);
+    let stamped = std::iter::once(parts.stamped).chain(further);
+    stamped
+        .zip(&run.poses)
+        .map(|(part, pose)| PlacedPart {
+            part,
+            crash_from_stamped: *pose,
+        })
+        .collect()
 }
 
 /// The other result it was compared with.
@@ -47,7 +57,7 @@ pub(super) fn deck_files(
         is_large: true,
         default_thickness: DefaultThickness::Section,
     };
-    let comments = deck_comments(parts.crash, &[placed(run, parts)]);
+    let comments = deck_comments(parts.crash, &placed(run, parts, input));
     write_mapping(run, parts.crash, &output, &comments, monitor)
 }
 
@@ -95,7 +105,7 @@ pub(super) fn deck(
 pub(super) fn report(input: &OutputInput, monitor: &Monitor) -> Result<String, PipelineError> {
     let (run, parts) = mapped(input)?;
     let other = other(input);
-    let placed = [placed(run, parts)];
+    let placed = placed(run, parts, input);
     let mut record = map_record(run, parts.crash, &placed, None, other);
     record.probes = probe_records(run, parts.crash, &placed, &input.pins);
     map_report(run, &record, parts.crash, other, monitor)
@@ -103,6 +113,6 @@ pub(super) fn report(input: &OutputInput, monitor: &Monitor) -> Result<String, P
 
 pub(super) fn table(input: &OutputInput) -> Result<String, PipelineError> {
     let (run, parts) = mapped(input)?;
-    let placed = placed(run, parts);
-    Ok(element_table(run, parts.crash, &[placed], other(input)))
+    let placed = placed(run, parts, input);
+    Ok(element_table(run, parts.crash, &placed, other(input)))
 }

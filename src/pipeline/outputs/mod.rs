@@ -144,6 +144,8 @@ pub struct OutputInput {
     pub reduced: PerRole<Option<Arc<TriMesh>>>,
     /// The mapping of the forming results at this pose.
     pub mapping: Option<Arc<MapRun>>,
+    /// The stamped parts that it was made from beside the loaded one.
+    pub further_stamped: Vec<Arc<LoadedPart>>,
     /// Ids of the crash elements that the report of the mapping tells of one by one.
     pub pins: Vec<u64>,
     /// Another mapper's result that stands beside it.
@@ -470,7 +472,8 @@ impl OutputInput {
     /// The files that the parts were read from, with all their includes.
     pub fn files(&self) -> Vec<PathBuf> {
         let parts = self.parts.iter().filter_map(|(_, part)| part.as_deref());
-        parts.flat_map(LoadedPart::files).collect()
+        let further = self.further_stamped.iter().map(|part| &**part);
+        parts.chain(further).flat_map(LoadedPart::files).collect()
     }
 }
 

@@ -12,12 +12,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::text;
+use crate::assess::Verdict;
 use crate::formats::{Disk, FileHash, FileSource as _, ReadOptions, Selection};
 use crate::geometry::Similarity;
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::{LoadSettings, LoadedPart};
-use crate::pipeline::map::MapRecipe;
+use crate::pipeline::map::{FurtherPose, MapRecipe};
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun};
 use crate::pipeline::sweep::Sweep;
 use crate::pipeline::write_file::{write_file, write_file_in_new_folder};
@@ -130,6 +131,50 @@ impl PartEntry {
     }
 }
 
+/// A further stamped file that is mapped from.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FurtherEntry {
+    /// Its file and what is taken from it.
+    pub part: PartEntry,
+    /// Where its pose comes from.
+    pub pose: FurtherPose,
+    /// Its last match.
+    pub placing: Option<PlacingEntry>,
+}
+
+/// The match of a further stamped file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlacingEntry {
+    /// True if the crash part was not changed after the match.
+    pub is_current: bool,
+    /// `crash = c · R · stamped + t`.
+    pub crash_from_stamped: Similarity,
+    /// Whether the pose can be used.
+    pub verdict: Verdict,
+    /// The match in a line.
+    pub line: String,
+}
+
+/// A file of a project.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ProjectFile {
+    /// One of the two parts.
+    Part(Role),
+    /// A further stamped file, by its place in the list.
+    Further(usize),
+}
+
+impl ProjectFile {
+    /// The part it is read as.
+    pub fn role(self) -> Role {
+        match self {
+            Self::Part(role) => role,
+            Self::Further(_) => Role::Stamped,
+        }
+    }
+}
+
 /// A match and whether it still stood for parts and pose when the project was saved.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct ResultEntry {
@@ -157,6 +202,8 @@ pub struct Project {
     pub recipe: MatchRecipe,
     /// Every choice of the mapping.
     pub mapping: MapRecipe,
+    /// Further stamped files that are mapped from, in the order of the list.
+    pub further_stamped: Vec<FurtherEntry>,
     /// The other mapper's file that mappings are compared with.
     pub mapping_compared_with: Option<PathBuf>,
     /// Ids of the crash elements that the report of a mapping tells of one by one.
@@ -182,6 +229,8 @@ struct Written<'a> {
     pose: &'a Similarity,
     recipe: &'a MatchRecipe,
     mapping: &'a MapRecipe,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    further_stamped: Vec<FurtherEntry>,
     #[serde(skip_serializing_if = "Option::is_none")]
     mapping_compared_with: Option<PathBuf>,
     #[serde(skip_serializing_if = "<[u64]>::is_empty")]
@@ -306,6 +355,7 @@ impl Project {
             saved_at: reader.take_or_tell("saved_at").unwrap_or_default(),
             recipe: reader.take_or_tell("recipe").unwrap_or_default(),
             mapping: reader.take_or_tell("mapping").unwrap_or_default(),
+            further_stamped: reader.take_or_tell("further_stamped").unwrap_or_default(),
             mapping_compared_with: reader.take_or_tell("mapping_compared_with"),
             mapping_pins: reader.take_or_tell("mapping_pins").unwrap_or_default(),
             result: reader.take_or_tell("result"),
@@ -328,6 +378,9 @@ impl Project {
                 entry.make_absolute(folder_of(path));
             }
         }
+        for further in &mut project.further_stamped {
+            further.part.make_absolute(folder_of(path));
+        }
         if let Some(other) = &mut project.mapping_compared_with {
             *other = absolute(other, folder_of(path));
         }
@@ -341,6 +394,10 @@ impl Project {
             entry.make_relative(folder_of(path));
             Some(entry)
         });
+        let mut further_stamped = self.further_stamped.clone();
+        for further in &mut further_stamped {
+            further.part.make_relative(folder_of(path));
+        }
         text::pretty(&Written {
             schema: format!("{SCHEMA}{VERSION}"),
             program: build_id(),
@@ -350,6 +407,7 @@ impl Project {
             pose: &self.pose,
             recipe: &self.recipe,
             mapping: &self.mapping,
+            further_stamped,
             mapping_compared_with: self
                 .mapping_compared_with
                 .as_deref()
@@ -370,6 +428,19 @@ impl Project {
     /// [`Project::write`] into a folder that is made if need be.
     pub fn write_in_new_folder(&self, path: &Path) -> Result<(), PipelineError> {
         write_file_in_new_folder(path, self.to_text(path).as_bytes())
+    }
+
+    /// Where its stamped files lie, the first one first; `None` for one that has no pose.
+    pub fn stamped_poses(&self) -> Vec<Option<Similarity>> {
+        let further = self.further_stamped.iter();
+        let further = further.map(|entry| match entry.pose {
+            FurtherPose::AsFirst => Some(self.pose),
+            FurtherPose::Matched => {
+                let placing = entry.placing.as_ref().filter(|placing| placing.is_current);
+                placing.map(|placing| placing.crash_from_stamped)
+            }
+        });
+        std::iter::once(Some(self.pose)).chain(further).collect()
     }
 
     /// The files of the project and what was done with them, in one line.

@@ -4,5 +4,8 @@ mod file;
 mod open;
 mod text;
 
-pub use file::{EXTENSION, PartEntry, Project, ProjectError, ResultEntry, is_project};
+pub use file::{
+    EXTENSION, FurtherEntry, PartEntry, PlacingEntry, Project, ProjectError, ProjectFile,
+    ResultEntry, is_project,
+};
 pub use open::{FoundPart, FoundProject, Located, ProjectRequest, open_project};

@@ -1,8 +1,9 @@
 //! A project with its files, wherever they are now.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::{PartEntry, Project};
+use super::{PartEntry, Project, ProjectFile};
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::{LoadedPart, PartSource};
@@ -25,8 +26,8 @@ pub enum Located {
 pub struct ProjectRequest {
     /// Path of the project file.
     pub path: PathBuf,
-    /// Where its files are.
-    pub located: PerRole<Located>,
+    /// Where its files are, as far as they are not where it says.
+    pub located: BTreeMap<ProjectFile, Located>,
     /// True for an autosaved session: it has no file of its own.
     pub is_autosave: bool,
 }
@@ -42,8 +43,10 @@ pub struct FoundProject {
     pub notes: Vec<String>,
     /// Its parts at full resolution.
     pub parts: PerRole<Option<FoundPart>>,
+    /// The further stamped files; none for one that is done without.
+    pub further: Vec<Option<FoundPart>>,
     /// Files that are neither where the project says nor beside it; nothing was loaded then.
-    pub missing: PerRole<Option<PathBuf>>,
+    pub missing: Vec<(ProjectFile, PathBuf)>,
 }
 
 /// A part of a project.
@@ -57,24 +60,34 @@ pub struct FoundPart {
     pub is_changed: bool,
 }
 
-/// Reads a project and both of its parts, at the same time.
+/// Reads a project and its parts, both of the match at the same time.
 pub fn open_project(
     request: ProjectRequest,
     monitor: &Monitor,
 ) -> Result<FoundProject, PipelineError> {
     let (project, notes) = Project::read(&request.path).map_err(Box::new)?;
-    let sources = PerRole::from_fn(|role| match project.parts.get(role) {
-        Some(entry) => source(entry, request.located.get(role), &request.path),
-        None => Ok(None),
+    let mut missing = Vec::new();
+    let mut source_of = |file: ProjectFile, entry: &PartEntry| {
+        let usual = Located::AsStored;
+        let located = request.located.get(&file).unwrap_or(&usual);
+        source(entry, located, &request.path).unwrap_or_else(|path| {
+            missing.push((file, path));
+            None
+        })
+    };
+    let sources = PerRole::from_fn(|role| {
+        let entry = project.parts.get(role).as_ref()?;
+        source_of(ProjectFile::Part(role), entry)
     });
-    let missing = sources
-        .as_ref()
-        .map(|source| source.as_ref().err().cloned());
-    let parts = if missing.iter().any(|(_, missing)| missing.is_some()) {
-        PerRole::default()
-    } else {
+    let further = project.further_stamped.iter().enumerate();
+    let further: Vec<Option<PartSource>> = further
+        .map(|(n, entry)| source_of(ProjectFile::Further(n), &entry.part))
+        .collect();
+    let mut parts = PerRole::default();
+    let mut further_parts = Vec::new();
+    if missing.is_empty() {
         let load = |role| {
-            let source = sources.get(role).clone().ok().flatten();
+            let source = sources.get(role).clone();
             let entry = project.parts.get(role).as_ref();
             entry
                 .zip(source)
@@ -82,13 +95,18 @@ pub fn open_project(
                 .transpose()
         };
         let (crash, stamped) = rayon::join(|| load(Role::Crash), || load(Role::Stamped));
-        PerRole::new(crash?, stamped?)
-    };
+        parts = PerRole::new(crash?, stamped?);
+        for (entry, source) in project.further_stamped.iter().zip(further) {
+            let load = |source| load_part(Role::Stamped, &entry.part, source, monitor);
+            further_parts.push(source.map(load).transpose()?);
+        }
+    }
     Ok(FoundProject {
         request,
         project,
         notes,
         parts,
+        further: further_parts,
         missing,
     })
 }

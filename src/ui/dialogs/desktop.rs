@@ -28,7 +28,7 @@ pub(super) fn file_dialog(
             dialog = dialog.add_filter(keyword.label(), keyword.extensions());
             dialog = dialog.add_filter("All files", &["*"]);
         }
-        Question::Open(_) | Question::Locate(_) => {
+        Question::Open(_) | Question::Locate(_) | Question::Further => {
             let all: Vec<&str> = Format::ALL
                 .iter()
                 .flat_map(|f| f.extensions())

@@ -4,6 +4,7 @@ use egui::{Align, Layout, Ui, vec2};
 
 use super::section::section_ui;
 use super::setting_form::{Gear, setting_ui};
+use super::stamped_files::{add_stamped_ui, stamped_files_ui};
 use crate::app::{
     Action, AppState, BottomTab, ColorBy, Command, DoubtfulElement, InspectCommand, MapCommand,
     MapPicture, MapResult, Quantity, Section, UnmappedElement, ViewCommand,
@@ -34,11 +35,17 @@ pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         &summary,
         commands,
         |ui, commands| {
-            if let Err(reason) = state.document.can_map() {
+            let ready = state.document.has_forming_results();
+            // One file that can be mapped from needs no list; the way to a second stands beside the gear.
+            let has_list = state.stamped_rows().len() > 1 || ready.is_err();
+            if has_list && state.document.both().is_some() {
+                stamped_files_ui(ui, state, commands);
+            }
+            if let Err(reason) = ready {
                 paragraph(ui, reason.to_string());
                 return;
             }
-            quantities_ui(ui, state, commands);
+            quantities_ui(ui, state, has_list, commands);
             options_ui(ui, state, commands);
             run_ui(ui, state, commands);
             if let Some(result) = state.document.current_mapping() {
@@ -59,7 +66,7 @@ fn summary(state: &AppState) -> String {
 }
 
 /// What is mapped; what the stamped file lacks is greyed with its reason.
-fn quantities_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+fn quantities_ui(ui: &mut Ui, state: &AppState, has_list: bool, commands: &mut Vec<Command>) {
     let mut recipe = state.document.mapping.recipe.clone();
     // What may be greyed has a part of the window of its own, which a wrapped row would not break.
     let has_own = has_own_options(&recipe.options);
@@ -83,6 +90,9 @@ fn quantities_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             if is_last {
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     GEAR.ui(ui, has_own);
+                    if !has_list {
+                        add_stamped_ui(ui, state, "Add file…", commands);
+                    }
                 });
             }
         });
@@ -106,7 +116,9 @@ fn options_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let before = &state.document.mapping.recipe.options;
     let mut options = before.clone();
     card(ui, |ui| {
-        for setting in MAP_SETTINGS.iter().filter(|row| row.option != OVERLAP) {
+        let has_several = !state.document.mapping.further.is_empty();
+        let is_shown = |row: &&Setting<MapOptions>| has_several || row.option != OVERLAP;
+        for setting in MAP_SETTINGS.iter().filter(is_shown) {
             setting_ui(ui, state, setting, (&mut options, &MapOptions::default()));
         }
     });
@@ -115,7 +127,7 @@ fn options_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-/// The window maps one stamped part, which no other overlaps.
+/// One stamped part alone is overlapped by no other.
 const OVERLAP: &str = "overlap";
 
 /// True if a setting behind the gear is not the usual one.

@@ -17,6 +17,7 @@ pub mod reduce;
 pub mod result;
 pub mod section;
 mod setting_form;
+pub mod stamped_files;
 pub mod top_bar;
 pub mod units;
 

@@ -1,6 +1,6 @@
 //! The verdict card and the matrix.
 
-use egui::{Button, Color32, RichText, Ui, vec2};
+use egui::{Button, RichText, Ui, vec2};
 
 use super::explain;
 use crate::app::{
@@ -16,7 +16,7 @@ use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, card, chip, figure, length_field, paragraph, percent,
-    plain_action, square, tight,
+    plain_action, square, tight, verdict_color,
 };
 
 /// Verdict, figures, alternatives, matrix.
@@ -117,14 +117,6 @@ fn outdated_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &m
         }
         plain_action(ui, state, Action::Refine, commands);
     });
-}
-
-fn verdict_color(palette: &Palette, verdict: Verdict) -> Color32 {
-    match verdict {
-        Verdict::Good => palette.good,
-        Verdict::Check => palette.check,
-        Verdict::Poor => palette.poor,
-    }
 }
 
 fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mut Vec<Command>) {

@@ -135,8 +135,10 @@ fn facts(state: &AppState, probe: &ProbeReport) -> String {
     let Some(stamped) = probe.stamped_id else {
         return format!("{status} · no stamped element gave it values");
     };
+    let file = probe.stamped_file.as_ref();
+    let file = file.map_or_else(String::new, |file| format!(" of {file}"));
     format!(
-        "{status} from ▲ {stamped} · {} · {angle:.0}° · {} covered · confidence {confidence:.2}",
+        "{status} from ▲ {stamped}{file} · {} · {angle:.0}° · {} covered · confidence {confidence:.2}",
         state.lengths().signed_of(distance),
         percent(coverage),
     )

@@ -221,6 +221,10 @@ fn facts(over: &Overlay<'_>, role: Role) -> String {
     if n_parts > 1 {
         facts += &format!(" · {n_parts} parts");
     }
+    let n_files = 1 + state.document.mapping.further.len();
+    if role == Role::Stamped && n_files > 1 {
+        facts += &format!(" · first of {n_files} files");
+    }
     match state.units_of(role) {
         Some(known) => facts + " · " + known.units.length.symbol(),
         None => facts + " · unit unknown",

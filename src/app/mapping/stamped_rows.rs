@@ -1,0 +1,130 @@
+//! The list of stamped files as section 4 shows it.
+
+use std::path::PathBuf;
+
+use super::further::file_name;
+use super::{Further, FurtherPose, MappingState};
+use crate::app::{AppState, Part, facts};
+use crate::assess::Verdict;
+use crate::jobs::JobKey;
+use crate::role::PerRole;
+
+/// A row of the list of stamped files.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StampedRow {
+    /// The file's name.
+    pub name: String,
+    /// Where it lies.
+    pub path: PathBuf,
+    /// Its number, and where its pose comes from; `None` for the first one, and for one that is not read.
+    pub further: Option<(u64, FurtherPose)>,
+    /// What is known of it.
+    pub state: StampedState,
+    /// The command that takes it from the list; the first one stays.
+    pub removed_by: Option<u64>,
+}
+
+/// What is known of a stamped file.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StampedState {
+    /// It is being read, or waits for that.
+    Reading,
+    /// It could not be read.
+    NotRead(String),
+    /// Its match waits for something.
+    Waiting(&'static str),
+    /// It is being matched.
+    Matching,
+    /// The match ended without a pose, for this reason if it was not given up.
+    NotMatched(Option<String>),
+    /// It was matched; the verdict and the match in a line.
+    Matched(Verdict, String),
+    /// It lies as the first one.
+    AsFirst,
+    /// The first one lies where it was put by hand.
+    ByHand,
+    /// The first one lies where its file has it.
+    AsLoaded,
+}
+
+impl AppState {
+    /// The list of stamped files: the first one, the further ones, those that are being read, those that
+    /// could not be.
+    pub fn stamped_rows(&self) -> Vec<StampedRow> {
+        let Some(both) = self.document.both() else {
+            return Vec::new();
+        };
+        let first = &both.stamped.loaded;
+        let mut rows = vec![StampedRow {
+            name: first.file_name(),
+            path: first.path.clone(),
+            further: None,
+            state: self.first_state(),
+            removed_by: None,
+        }];
+        let further = self.document.mapping.further.iter();
+        rows.extend(further.map(|further| StampedRow {
+            name: further.loaded.file_name(),
+            path: further.loaded.path.clone(),
+            further: Some((further.revision, further.pose)),
+            state: self.further_state(further, both),
+            removed_by: Some(further.revision),
+        }));
+        let unread = |(revision, path, state): (u64, &PathBuf, StampedState)| StampedRow {
+            name: file_name(path),
+            path: path.clone(),
+            further: None,
+            state,
+            removed_by: Some(revision),
+        };
+        let MappingState {
+            reading,
+            unread: failed,
+            ..
+        } = &self.mapping;
+        let reading = reading.iter();
+        rows.extend(reading.map(|(number, path)| unread((*number, path, StampedState::Reading))));
+        let failed = failed.iter();
+        rows.extend(failed.map(|(number, (path, reason))| {
+            unread((*number, path, StampedState::NotRead(reason.clone())))
+        }));
+        rows
+    }
+
+    fn first_state(&self) -> StampedState {
+        match self.document.current_result() {
+            Some(result) if result.alternative.is_none() => {
+                let verdict = result.run.assessment.verdict;
+                StampedState::Matched(verdict, facts::match_line(&result.run, self.lengths()))
+            }
+            _ if self.document.has_pose() => StampedState::ByHand,
+            _ => StampedState::AsLoaded,
+        }
+    }
+
+    fn further_state(&self, further: &Further, both: PerRole<&Part>) -> StampedState {
+        let Some(task) = further.task(both) else {
+            return match &further.placing {
+                Some(placing) if further.pose == FurtherPose::Matched => {
+                    StampedState::Matched(placing.verdict, placing.line.clone())
+                }
+                _ => StampedState::AsFirst,
+            };
+        };
+        if self.mapping.placing == Some(task) {
+            return match self.jobs.running() {
+                Some(job) if job.key == JobKey::PlaceFurther => StampedState::Matching,
+                _ => StampedState::Waiting("waits for the task that runs"),
+            };
+        }
+        let mut given_up = self.mapping.unplaced.iter();
+        if let Some((_, reason)) = given_up.find(|(given_up, _)| *given_up == task) {
+            return StampedState::NotMatched(reason.clone());
+        }
+        StampedState::Waiting(if self.is_part_open() {
+            "waits for the match of the first one, which finds the crash part"
+        } else {
+            "waits for its turn"
+        })
+    }
+}

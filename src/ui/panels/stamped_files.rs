@@ -1,0 +1,153 @@
+//! The stamped files that a mapping takes its values from: each with its verdict and its pose.
+
+use egui::{Align, Button, Layout, RichText, Ui, vec2};
+
+use crate::app::{Action, AppState, Command, FurtherPose, MapCommand, StampedRow, StampedState};
+use crate::assess::Verdict;
+use crate::pipeline::map::pose_warning;
+use crate::role::Role;
+use crate::text::sentence;
+use crate::ui::theme::{Palette, ROW};
+use crate::ui::widgets::{Look, action_button, caption, icon_button, role_mark, verdict_color};
+
+/// The list of stamped files, and the way to one more.
+pub fn stamped_files_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let rows = state.stamped_rows();
+    ui.horizontal(|ui| {
+        caption(ui, "Stamped files");
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            add_stamped_ui(ui, state, "Add…", commands);
+        });
+    });
+    for row in &rows {
+        row_ui(ui, row, commands);
+        if let Some(problem) = problem(row) {
+            let color = Palette::of(ui).poor;
+            let text = RichText::new(problem).small().color(color);
+            ui.add(egui::Label::new(text).wrap());
+        }
+    }
+}
+
+/// The way to one more stamped file.
+pub fn add_stamped_ui(ui: &mut Ui, state: &AppState, label: &str, commands: &mut Vec<Command>) {
+    let look = (label, Look::Plain, vec2(0.0, ROW));
+    let button = action_button(ui, state, Action::AddStamped, look, commands);
+    button.accessible_name(Action::AddStamped.row().label);
+}
+
+/// Name, verdict, pose, and the way out of the list.
+fn row_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 5.0;
+        role_mark(ui, Role::Stamped);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if let Some(revision) = row.removed_by {
+                let name = match row.state {
+                    StampedState::Reading => format!("Stop reading {}", row.name),
+                    _ => format!("Remove {}", row.name),
+                };
+                if icon_button(ui, "✖", &name, true).clicked() {
+                    commands.push(MapCommand::RemoveFurther(revision).into());
+                }
+            }
+            pose_ui(ui, row, commands);
+            state_ui(ui, &row.state);
+            let left = Layout::left_to_right(Align::Center).with_main_align(Align::Min);
+            ui.with_layout(left, |ui| {
+                let name = ui.add(egui::Label::new(&row.name).truncate());
+                name.on_hover_text(row.path.display().to_string());
+            });
+        });
+    });
+}
+
+/// Where the pose of a further file comes from; while it is matched, the way to end that.
+fn pose_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
+    let Some((revision, pose)) = row.further else {
+        return;
+    };
+    if row.state == StampedState::Matching {
+        let stop = ui.add(Button::new("Stop").min_size(vec2(0.0, ROW)));
+        let stop = stop.on_hover_text("End the match with the best pose so far");
+        let name = format!("Stop the match of {}", row.name);
+        if stop.accessible_name(name).clicked() {
+            commands.push(MapCommand::StopFurther.into());
+        }
+        return;
+    }
+    let label = format!("{} ▾", pose.label());
+    let button = Button::new(RichText::new(label).small()).min_size(vec2(0.0, ROW));
+    let menu = egui::containers::menu::MenuButton::from_button(button);
+    let (button, _) = menu.ui(ui, |ui| {
+        for choice in FurtherPose::ALL {
+            let item = ui.selectable_label(choice == pose, choice.label());
+            if item.on_hover_text(choice.help()).clicked() {
+                commands.push(MapCommand::SetFurtherPose(revision, choice).into());
+                ui.close();
+            }
+        }
+        ui.separator();
+        if ui.button("Match again").clicked() {
+            commands.push(MapCommand::MatchFurther(revision).into());
+            ui.close();
+        }
+    });
+    let button = button.on_hover_text(pose.help());
+    button.accessible_name(format!("Pose of {}", row.name));
+}
+
+/// What is known of a file, in a word.
+fn state_ui(ui: &mut Ui, state: &StampedState) {
+    let palette = Palette::of(ui);
+    let (word, color, more) = match state {
+        StampedState::Reading => ("reading …", palette.secondary, None),
+        StampedState::NotRead(_) => ("not read", palette.poor, None),
+        StampedState::Waiting(why) => ("waits", palette.secondary, Some(sentence(why))),
+        StampedState::Matching => ("matching …", palette.secondary, None),
+        StampedState::NotMatched(Some(_)) => ("not matched", palette.poor, None),
+        StampedState::NotMatched(None) => (
+            "not matched",
+            palette.check,
+            Some("The match was given up".to_owned()),
+        ),
+        StampedState::Matched(verdict, line) => (
+            verdict.label(),
+            verdict_color(&palette, *verdict),
+            Some(line.clone()),
+        ),
+        StampedState::AsFirst => return,
+        StampedState::ByHand => (
+            "by hand",
+            palette.secondary,
+            Some("It lies where it was put".to_owned()),
+        ),
+        StampedState::AsLoaded => (
+            "as loaded",
+            palette.secondary,
+            Some("It lies where its file has it".to_owned()),
+        ),
+    };
+    let label = ui.label(RichText::new(word).small().color(color));
+    if let Some(more) = more {
+        label.on_hover_text(more);
+    }
+}
+
+/// What is wrong with a file, and what to do.
+fn problem(row: &StampedRow) -> Option<String> {
+    match &row.state {
+        StampedState::NotRead(reason) => Some(format!(
+            "{} Add another file or fix this one.",
+            sentence(reason)
+        )),
+        StampedState::NotMatched(Some(reason)) => Some(format!(
+            "{} Let it lie as the first one, or remove it.",
+            sentence(reason)
+        )),
+        StampedState::Matched(verdict, _) if row.further.is_some() || *verdict != Verdict::Poor => {
+            pose_warning(*verdict, &row.name).map(|warning| sentence(&warning))
+        }
+        _ => None,
+    }
+}
