@@ -113,7 +113,7 @@ fn state_ui(ui: &mut Ui, state: &StampedState) {
         ),
         StampedState::Matched(verdict, line) => (
             verdict.label(),
-            verdict_color(&palette, *verdict),
+            verdict_color(palette, *verdict),
             Some(line.clone()),
         ),
         StampedState::AsFirst => return,
