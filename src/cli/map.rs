@@ -268,7 +268,14 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let other = (!compare.is_empty())
         .then(|| OtherResult::read(compare, &run, &crash, &monitor))
         .transpose()?;
-    let record = map_record(&run, &crash, &placed, files.as_ref(), other.as_ref());
+    let record = map_record(
+        &run,
+        &crash,
+        &placed,
+        files.as_ref(),
+        other.as_ref(),
+        &monitor,
+    )?;
     let is_withheld = args.output.strict && is_short(&args.output, &record);
     let files = files.filter(|_| !is_withheld);
     let mut written: Vec<(PathBuf, Vec<u8>)> = Vec::new();
@@ -277,7 +284,7 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     }
     let outputs = &args.output;
     if let Some(path) = &outputs.csv {
-        let table = element_table(&run, &crash, &placed, other.as_ref());
+        let table = element_table(&run, &crash, &placed, other.as_ref(), &monitor)?;
         written.push((path.clone(), table.into_bytes()));
     }
     if let Some(path) = &outputs.unmapped {

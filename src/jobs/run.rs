@@ -302,7 +302,7 @@ fn map(input: &MapInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
         .collect();
     let run = map_parts(&input.parts.crash, &stamped, &input.recipe, monitor)?;
     monitor.check()?;
-    let record = map_record(&run, &input.parts.crash, &stamped, None, None);
+    let record = map_record(&run, &input.parts.crash, &stamped, None, None, monitor)?;
     monitor.check()?;
     let lists = element_lists(&run, &input.parts.crash);
     Ok(JobOutput::Mapped {

@@ -40,10 +40,9 @@ pub fn class_word(class: OverlapClass) -> &'static str {
     }
 }
 
-/// A table with `comments` before it, each behind `#`. Numbers read back to the same bits; where
-/// there is no value the cell is empty.
-pub fn deviation_table(comments: &[String], rows: &[NodeDeviation]) -> String {
-    let mut text = String::with_capacity(96 * rows.len());
+/// The head of a table of so many rows: `comments`, each behind `#`, and the names of the columns.
+pub fn deviation_head(comments: &[String], n_rows: usize) -> String {
+    let mut text = String::with_capacity(96 * n_rows);
     for comment in comments.iter().flat_map(|comment| comment.lines()) {
         text += "# ";
         text += comment;
@@ -51,6 +50,11 @@ pub fn deviation_table(comments: &[String], rows: &[NodeDeviation]) -> String {
     }
     text += DEVIATION_COLUMNS;
     text.push('\n');
+    text
+}
+
+/// Writes rows of the table. Numbers read back to the same bits; where there is no value the cell is empty.
+pub fn add_deviations(text: &mut String, rows: &[NodeDeviation]) {
     for row in rows {
         let [x, y, z] = [row.at.x, row.at.y, row.at.z].map(number);
         let distance = if row.distance.is_finite() {
@@ -69,7 +73,6 @@ pub fn deviation_table(comments: &[String], rows: &[NodeDeviation]) -> String {
             "{part},{node},{x},{y},{z},{distance},{class},{element},{uncertainty}"
         );
     }
-    text
 }
 
 #[cfg(test)]
@@ -94,7 +97,8 @@ mod tests {
             pose_uncertainty: None,
             ..near
         };
-        let text = deviation_table(&["a\nb".to_owned()], &[near, far]);
+        let mut text = deviation_head(&["a\nb".to_owned()], 2);
+        add_deviations(&mut text, &[near, far]);
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines[..3], ["# a", "# b", DEVIATION_COLUMNS]);
         let cells: Vec<&str> = lines[3].split(',').collect();

@@ -10,6 +10,7 @@ use super::{MapFiles, MapRun, PlacedPart, ProbeRecord, covered_values};
 use crate::mapping::{
     Distribution, Histogram, SourcePart, Status, distribution, histogram_distance,
 };
+use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::PairUnits;
 use crate::report::{DIRECTION, build_id};
@@ -176,7 +177,8 @@ pub fn map_record(
     stamped: &[PlacedPart<'_>],
     files: Option<&MapFiles>,
     other: Option<&OtherResult>,
-) -> MapRecord {
+    monitor: &Monitor,
+) -> Result<MapRecord, Cancelled> {
     let counts = run.mapped.counts();
     let statuses = Status::ALL.iter().zip(counts).filter(|(_, n)| *n > 0);
     let statuses = statuses.map(|(&status, n_elements)| StatusRecord {
@@ -185,6 +187,17 @@ pub fn map_record(
         area_share: run.mapped.area_share(status, &run.target.mesh),
     });
     let checks = &run.checks;
+    monitor.check()?;
+    let thickness = checks
+        .thickness
+        .map(|pair| pair_record(pair, &thickness_values(run)));
+    monitor.check()?;
+    let plastic_strain = checks
+        .plastic_strain
+        .map(|pair| pair_record(pair, &plastic_values(run)));
+    monitor.check()?;
+    let von_mises = von_mises(run);
+    monitor.check()?;
     let mut record = MapRecord {
         build: build_id(),
         schema: 1,
@@ -202,13 +215,9 @@ pub fn map_record(
         statuses: statuses.collect(),
         mapped_area: run.mapped.mapped_area(&run.target.mesh),
         median_offset: run.mapped.median_offset,
-        thickness: checks
-            .thickness
-            .map(|pair| pair_record(pair, &thickness_values(run))),
-        plastic_strain: checks
-            .plastic_strain
-            .map(|pair| pair_record(pair, &plastic_values(run))),
-        von_mises: von_mises(run),
+        thickness,
+        plastic_strain,
+        von_mises,
         checks: Vec::new(),
         map_back: checks.map_back.as_ref().map(|back| MapBackRecord {
             thickness_rms: back.thickness_rms,
@@ -228,7 +237,7 @@ pub fn map_record(
     let first = stamped.first().map(|placed| placed.part);
     let units = PairUnits::of(PerRole::new(Some(crash), first));
     record.checks = checks_of(run, &record, Lengths::new(units.lengths));
-    record
+    Ok(record)
 }
 
 /// Largest von Mises stress of both sides, where stresses were mapped.
@@ -367,6 +376,9 @@ fn warnings(run: &MapRun, files: Option<&MapFiles>) -> Vec<String> {
     warnings
 }
 
+/// Rows of the table that are written between two looks whether they are still wanted.
+const ROWS_BETWEEN_LOOKS: usize = 4096;
+
 /// One row for each crash element: id, part, status, distances, angle, coverage, confidence, source,
 /// thickness and mean plastic strain; with another result also its thickness and plastic strain.
 pub fn element_table(
@@ -374,7 +386,8 @@ pub fn element_table(
     crash: &LoadedPart,
     stamped: &[PlacedPart<'_>],
     other: Option<&OtherResult>,
-) -> String {
+    monitor: &Monitor,
+) -> Result<String, Cancelled> {
     let mut table = String::from(
         "element,part,status,normal_distance,tangential_distance,angle_deg,coverage,confidence,\
          source,source_element,thickness,plastic_strain",
@@ -391,6 +404,9 @@ pub fn element_table(
         }
     };
     for (element, (report, &shell)) in run.mapped.elements.iter().zip(&run.shells).enumerate() {
+        if element.is_multiple_of(ROWS_BETWEEN_LOOKS) {
+            monitor.check()?;
+        }
         let shell = &crash.model.shells[shell as usize];
         let partner = report.partner.map(|partner| {
             let shells = &run.source_shells[partner.source as usize];
@@ -421,5 +437,5 @@ pub fn element_table(
         }
         table.push('\n');
     }
-    table
+    Ok(table)
 }

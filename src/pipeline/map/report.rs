@@ -36,9 +36,9 @@ pub fn map_report(
     monitor: &Monitor,
 ) -> Result<String, PipelineError> {
     let painter = Painter::new(run, crash, monitor)?;
-    let quantities = painter.quantities(record, monitor)?;
+    let quantities = painter.quantities(record)?;
     monitor.progress("draw", 2, Some(3));
-    let compared = painter.compared(record, other, monitor)?;
+    let compared = painter.compared(record, other)?;
     let present = record.statuses.iter().map(|row| row.status);
     let report = MapReport {
         build: record.build.clone(),
@@ -65,7 +65,7 @@ pub fn map_report(
                 ]
             })
             .collect(),
-        status_figures: vec![painter.statuses()],
+        status_figures: vec![painter.statuses()?],
         status_colors: present
             .map(|status| {
                 (
@@ -236,6 +236,7 @@ fn hex([r, g, b]: Rgb) -> String {
 /// Draws elements in one colour each, both sides under one camera.
 struct Painter<'a> {
     run: &'a MapRun,
+    monitor: &'a Monitor,
     camera: Camera,
     target: ElementMesh,
     sources: Vec<ElementMesh>,
@@ -271,7 +272,7 @@ impl ElementMesh {
 }
 
 impl<'a> Painter<'a> {
-    fn new(run: &'a MapRun, crash: &LoadedPart, monitor: &Monitor) -> Result<Self, Cancelled> {
+    fn new(run: &'a MapRun, crash: &LoadedPart, monitor: &'a Monitor) -> Result<Self, Cancelled> {
         let view = view_of(&crash.surface, From::Front);
         let units = PairUnits::of(PerRole::new(Some(crash), None));
         let target = ElementMesh::new(&run.target.mesh, monitor)?;
@@ -280,6 +281,7 @@ impl<'a> Painter<'a> {
         let sources = sources.map(|source| ElementMesh::new(&source.mesh, monitor));
         Ok(Self {
             run,
+            monitor,
             camera: fitted(view, target.mesh.positions(), &still, SIZE),
             target,
             lengths: Lengths::new(units.lengths),
@@ -288,38 +290,31 @@ impl<'a> Painter<'a> {
     }
 
     /// Every quantity with statistics, before and after.
-    fn quantities(
-        &self,
-        record: &MapRecord,
-        monitor: &Monitor,
-    ) -> Result<Vec<QuantityReport>, PipelineError> {
+    fn quantities(&self, record: &MapRecord) -> Result<Vec<QuantityReport>, Cancelled> {
         let run = self.run;
         let mut quantities = Vec::new();
-        monitor.progress("draw", 0, Some(3));
+        self.monitor.progress("draw", 0, Some(3));
         let scale = run.recipe.options.thickness_scale;
         if let Some(pair) = &record.thickness {
             let on_source = |part: &SourcePart, element| scale * part.mean_thickness(element);
             let on_target = |element: usize| run.thickness(element);
             let name = self.lengths.axis("Thickness");
-            quantities.push(self.quantity(&name, pair, &on_source, &on_target));
+            quantities.push(self.quantity(&name, pair, &on_source, &on_target)?);
         }
-        monitor.check()?;
-        monitor.progress("draw", 1, Some(3));
+        self.monitor.progress("draw", 1, Some(3));
         if let Some(pair) = &record.plastic_strain {
             let on_source = |part: &SourcePart, element| part.mean_plastic_strain(element);
             let on_target = |element: usize| run.plastic_strain(element);
             let name = "Effective plastic strain, mean over the layers";
-            quantities.push(self.quantity(name, pair, &on_source, &on_target));
+            quantities.push(self.quantity(name, pair, &on_source, &on_target)?);
         }
-        monitor.check()?;
         if let Some(pair) = &record.von_mises {
             let shown = ShownValue::usual(Some(FormingValue::VonMises));
             let on_source = |part: &SourcePart, element| von_mises_of(part, element);
             let on_target = |element: usize| run.shown(element, &shown);
             let name = "Largest von Mises stress of the layers";
-            quantities.push(self.quantity(name, pair, &on_source, &on_target));
+            quantities.push(self.quantity(name, pair, &on_source, &on_target)?);
         }
-        monitor.check()?;
         Ok(quantities)
     }
 
@@ -330,17 +325,17 @@ impl<'a> Painter<'a> {
         pair: &PairRecord,
         on_source: &dyn Fn(&SourcePart, usize) -> f64,
         on_target: &dyn Fn(usize) -> f64,
-    ) -> QuantityReport {
+    ) -> Result<QuantityReport, Cancelled> {
         let scale = values_scale(&pair.stamped, &pair.crash);
         let before = self.draw_sources(|source, element| {
             color(&scale, on_source(&self.run.sources[source], element))
-        });
-        let after = self.draw_target(|element| color(&scale, on_target(element)));
+        })?;
+        let after = self.draw_target(|element| color(&scale, on_target(element)))?;
         let (apart, signed) = self.draw_difference(&scale, |element| {
             on_target(element) - self.run.at_partner(element, on_source)
-        });
+        })?;
         let figure = |png, title, caption| map_figure(png, SIZE, title, caption);
-        QuantityReport {
+        Ok(QuantityReport {
             name: name.to_owned(),
             rows: vec![
                 ("▲ stamped, covered".to_owned(), number_row(&pair.stamped)),
@@ -357,7 +352,7 @@ impl<'a> Painter<'a> {
             scales: [scale, signed],
             sides: ["▲ stamped, where it is covered", "■ crash, mapped"],
             difference: "difference, mapped less stamped",
-        }
+        })
     }
 
     /// Every quantity that both this mapping and another result have.
@@ -365,8 +360,7 @@ impl<'a> Painter<'a> {
         &self,
         record: &MapRecord,
         other: Option<&OtherResult>,
-        monitor: &Monitor,
-    ) -> Result<Vec<QuantityReport>, PipelineError> {
+    ) -> Result<Vec<QuantityReport>, Cancelled> {
         let mut quantities = Vec::new();
         let Some((comparison, other)) = record.comparison.as_ref().zip(other) else {
             return Ok(quantities);
@@ -379,13 +373,13 @@ impl<'a> Painter<'a> {
             Some(FormingValue::MinorStrain),
         ];
         for ((name, found), value) in comparison.rows().into_iter().zip(values) {
-            monitor.check()?;
             let shown = ShownValue::usual(value);
             let name = match value {
                 None => self.lengths.axis(name),
                 Some(_) => name.to_owned(),
             };
-            quantities.extend(found.map(|found| self.beside(&name, found, other, &shown)));
+            let beside = found.map(|found| self.beside(&name, found, other, &shown));
+            quantities.extend(beside.transpose()?);
         }
         Ok(quantities)
     }
@@ -397,15 +391,15 @@ impl<'a> Painter<'a> {
         found: &DifferenceRecord,
         other: &OtherResult,
         shown: &ShownValue,
-    ) -> QuantityReport {
+    ) -> Result<QuantityReport, Cancelled> {
         let scale = values_scale(&found.here, &found.other);
-        let here = self.draw_target(|element| color(&scale, self.run.shown(element, shown)));
-        let there = self.draw_target(|element| color(&scale, other.shown(element, shown)));
+        let here = self.draw_target(|element| color(&scale, self.run.shown(element, shown)))?;
+        let there = self.draw_target(|element| color(&scale, other.shown(element, shown)))?;
         let (apart, signed) = self.draw_difference(&scale, |element| {
             self.run.difference_to(other, element, shown)
-        });
+        })?;
         let figure = |png, title, caption| map_figure(png, SIZE, title, caption);
-        QuantityReport {
+        Ok(QuantityReport {
             name: name.to_owned(),
             rows: vec![
                 ("this mapping".to_owned(), number_row(&found.here)),
@@ -422,7 +416,7 @@ impl<'a> Painter<'a> {
             scales: [scale, signed],
             sides: ["this mapping", "the other result"],
             difference: "difference, this mapping less the other result",
-        }
+        })
     }
 
     /// The crash part in the colours of a difference, and these colours.
@@ -430,7 +424,7 @@ impl<'a> Painter<'a> {
         &self,
         values: &ColorScale,
         difference: impl Fn(usize) -> f64,
-    ) -> (Vec<u8>, ColorScale) {
+    ) -> Result<(Vec<u8>, ColorScale), Cancelled> {
         let areas = self.run.target.mesh.areas();
         let all = (0..areas.len()).map(|e| (difference(e).abs(), areas[e]));
         let spread = crate::mapping::distribution(all);
@@ -441,34 +435,39 @@ impl<'a> Painter<'a> {
             1e-3 * values.max.abs().max(1e-9)
         };
         let signed = ColorScale::symmetric(limit, 0.0);
-        let png = self.draw_target(|element| color(&signed, difference(element)));
-        (png, signed)
+        let png = self.draw_target(|element| color(&signed, difference(element)))?;
+        Ok((png, signed))
     }
 
-    fn statuses(&self) -> Figure {
+    fn statuses(&self) -> Result<Figure, Cancelled> {
         let elements = &self.run.mapped.elements;
         let scale = ColorScale::statuses();
         let number = |element: usize| f64::from(elements[element].status as u8);
-        let png = self.draw_target(|element| scale.color(number(element)));
-        map_figure(png, SIZE, "■ Crash part,", "status of the elements.")
+        let png = self.draw_target(|element| scale.color(number(element)))?;
+        let caption = "status of the elements.";
+        Ok(map_figure(png, SIZE, "■ Crash part,", caption))
     }
 
-    fn draw_target(&self, color: impl Fn(usize) -> Rgb) -> Vec<u8> {
+    fn draw_target(&self, color: impl Fn(usize) -> Rgb) -> Result<Vec<u8>, Cancelled> {
         let still = Similarity::identity();
+        self.monitor.check()?;
         let colors = self.target.colors(color);
+        self.monitor.check()?;
         let mesh = PictureMesh {
             mesh: &self.target.mesh,
             world_from_mesh: &still,
             paint: Paint::PerVertex(&colors),
         };
-        picture(SIZE, &self.camera, None, &[mesh]).to_png()
+        Ok(picture(SIZE, &self.camera, None, &[mesh]).to_png())
     }
 
-    fn draw_sources(&self, color: impl Fn(usize, usize) -> Rgb) -> Vec<u8> {
+    fn draw_sources(&self, color: impl Fn(usize, usize) -> Rgb) -> Result<Vec<u8>, Cancelled> {
+        self.monitor.check()?;
         let numbered = self.sources.iter().enumerate();
         let colors: Vec<Vec<Rgb>> = numbered
             .map(|(source, mesh)| mesh.colors(|element| color(source, element)))
             .collect();
+        self.monitor.check()?;
         let all = self.sources.iter().zip(&self.run.poses).zip(&colors);
         let meshes: Vec<PictureMesh<'_>> = all
             .map(|((source, pose), colors)| PictureMesh {
@@ -477,6 +476,6 @@ impl<'a> Painter<'a> {
                 paint: Paint::PerVertex(colors),
             })
             .collect();
-        picture(SIZE, &self.camera, None, &meshes).to_png()
+        Ok(picture(SIZE, &self.camera, None, &meshes).to_png())
     }
 }

@@ -306,7 +306,7 @@ impl Group<'_> {
         };
         let comments = deck_comments(&crash, &placed);
         let files = write_mapping(&run, &crash, &output, &comments, monitor)?;
-        let record = map_record(&run, &crash, &placed, Some(&files), None);
+        let record = map_record(&run, &crash, &placed, Some(&files), None, monitor)?;
         for (path, bytes) in &files.files {
             write_file(path, bytes)?;
         }

@@ -106,13 +106,14 @@ pub(super) fn report(input: &OutputInput, monitor: &Monitor) -> Result<String, P
     let (run, parts) = mapped(input)?;
     let other = other(input);
     let placed = placed(run, parts, input);
-    let mut record = map_record(run, parts.crash, &placed, None, other);
+    let mut record = map_record(run, parts.crash, &placed, None, other, monitor)?;
     record.probes = probe_records(run, parts.crash, &placed, &input.pins);
     map_report(run, &record, parts.crash, other, monitor)
 }
 
-pub(super) fn table(input: &OutputInput) -> Result<String, PipelineError> {
+pub(super) fn table(input: &OutputInput, monitor: &Monitor) -> Result<String, PipelineError> {
     let (run, parts) = mapped(input)?;
     let placed = placed(run, parts, input);
-    Ok(element_table(run, parts.crash, &placed, other(input)))
+    let other = other(input);
+    Ok(element_table(run, parts.crash, &placed, other, monitor)?)
 }

@@ -372,7 +372,7 @@ impl Output {
             }
             Self::Mapped(kind) => return mapped::deck(kind, input, monitor),
             Self::MapReport => (mapped::report(input, monitor)?, Vec::new()),
-            Self::MapTable => (mapped::table(input)?, Vec::new()),
+            Self::MapTable => (mapped::table(input, monitor)?, Vec::new()),
             Self::Log => (input.log.clone(), Vec::new()),
             Self::Picture => return Err(PipelineError::Lacks("a window")),
         };

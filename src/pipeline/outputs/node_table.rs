@@ -11,10 +11,13 @@ use crate::pipeline::id_map::NodeVertex;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::PairUnits;
 use crate::registration::Surface;
-use crate::report::csv::{NodeDeviation, deviation_table};
+use crate::report::csv::{NodeDeviation, add_deviations, deviation_head};
 use crate::report::{DIRECTION, build_id};
 use crate::role::{PerRole, Role};
 use crate::search::{SearchLimits, SurfaceHit, closest_many};
+
+/// Rows that are written between two looks whether the table is still wanted.
+const ROWS_BETWEEN_LOOKS: usize = 4096;
 
 /// Measures both directions: first the nodes of the stamped part, then those of the crash part, in
 /// the order of their files. `uncertainty` is that of the pose, where it is known. O(n · log n) in the
@@ -120,5 +123,10 @@ pub fn node_table(
             .to_owned(),
         build_id(),
     ]);
-    Ok(deviation_table(&comments, &rows))
+    let mut table = deviation_head(&comments, rows.len());
+    for rows in rows.chunks(ROWS_BETWEEN_LOOKS) {
+        monitor.check()?;
+        add_deviations(&mut table, rows);
+    }
+    Ok(table)
 }
