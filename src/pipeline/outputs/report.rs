@@ -49,13 +49,13 @@ pub fn report(
         })
         .collect();
     let lengths = Lengths::new(record.units.length);
-    let renderer = FigureRenderer::new(parts, *pose, &deviation, scale, lengths);
+    let renderer = FigureRenderer::new(parts, *pose, &deviation, scale, lengths, monitor);
     let mut figures = draw(&renderer, run, &groups, monitor)?;
-    figures.rivals = rivals(&renderer, run, source, lengths, monitor)?;
+    figures.rivals = rivals(&renderer, run, source, lengths)?;
     let stated = run.assessment.uncertainty();
     let uncertainty_scale = stated.map(uncertainty_scale);
     if let (Some(stated), Some(scale)) = (stated, uncertainty_scale) {
-        figures.uncertainty = renderer.uncertainty(stated, &scale);
+        figures.uncertainty = renderer.uncertainty(stated, &scale)?;
     }
     let cards = cards_of(run, parts);
     let report = Report {
@@ -84,16 +84,14 @@ fn rivals(
     run: &MatchRun,
     source: &Surface,
     lengths: Lengths,
-    monitor: &Monitor,
 ) -> Result<Vec<Figure>, PipelineError> {
     let mut figures = Vec::new();
     for other in Ambiguity::near(&run.outcome.alternatives) {
-        monitor.check()?;
         let pose = &other.target_from_source;
         let twin = Twin::of(source, &run.crash_from_stamped, pose);
         let title = format!("{}: {}", figures.len() + 2, twin.words(lengths));
         let caption = format!("({}).", error_beside(other.score_ratio));
-        figures.push(renderer.rival(pose, title, caption));
+        figures.push(renderer.rival(pose, title, caption)?);
     }
     Ok(figures)
 }
@@ -118,19 +116,14 @@ fn draw(
 ) -> Result<Figures, PipelineError> {
     let mut figures = Figures::default();
     monitor.progress("draw", 0, None);
-    figures.parts = renderer.parts();
-    monitor.check()?;
-    figures.overlays = renderer.overlays();
-    monitor.check()?;
-    figures.maps = renderer.maps();
-    monitor.check()?;
-    figures.spots = renderer.spots();
+    figures.parts = renderer.parts()?;
+    figures.overlays = renderer.overlays()?;
+    figures.maps = renderer.maps()?;
+    figures.spots = renderer.spots()?;
     for group in groups.iter().take(N_PICTURED_GROUPS) {
-        monitor.check()?;
         let pose = &run.outcome.starts[group.best()].last;
-        figures
-            .starts
-            .push(renderer.start(pose, figures.starts.len() + 1));
+        let number = figures.starts.len() + 1;
+        figures.starts.push(renderer.start(pose, number)?);
     }
     Ok(figures)
 }

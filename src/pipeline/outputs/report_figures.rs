@@ -4,6 +4,7 @@ use crate::assess::PoseUncertainty;
 use crate::assess::deviation::Deviation;
 use crate::colormap::{ColorScale, Rgb, UNMATCHED};
 use crate::geometry::{Camera, Matrix3, Point3, Rotation, Similarity, Vector3};
+use crate::monitor::{Cancelled, Monitor};
 use crate::palette::ROLES_ON_DARK;
 use crate::pipeline::load::LoadedPart;
 use crate::registration::Surface;
@@ -31,6 +32,7 @@ pub(super) struct FigureRenderer<'a> {
     lengths: Lengths,
     front: Rotation,
     back: Rotation,
+    monitor: &'a Monitor,
 }
 
 /// From which side a sheet is seen.
@@ -47,6 +49,7 @@ impl<'a> FigureRenderer<'a> {
         deviation: &'a Deviation,
         scale: ColorScale,
         lengths: Lengths,
+        monitor: &'a Monitor,
     ) -> Self {
         let fields = PerRole {
             crash: &deviation.target_on_source.field,
@@ -69,11 +72,12 @@ impl<'a> FigureRenderer<'a> {
             lengths,
             front: view(From::Front),
             back: view(From::Back),
+            monitor,
         }
     }
 
     /// Each part in its own frame, as its file has it.
-    pub(super) fn parts(&self) -> Vec<Figure> {
+    pub(super) fn parts(&self) -> Result<Vec<Figure>, Cancelled> {
         let still = Similarity::identity();
         let stamped_view = view_of(&self.parts.stamped.surface, From::Front);
         let sides = [
@@ -89,35 +93,40 @@ impl<'a> FigureRenderer<'a> {
                 paint: Paint::Plain(*COLORS.get(role)),
             };
             let n = crate::text::grouped(part.mesh.n_triangles());
-            let drawn = picture(SIZE, &camera, None, &[mesh]);
-            self.figure(
+            let drawn = self.drawn(SIZE, &camera, mesh)?;
+            Ok(self.figure(
                 &drawn,
                 title.to_owned(),
                 format!("As {} has it, {n} triangles.", part.file_name()),
                 format!("The {} part alone, seen at an angle", role.word()),
-            )
+            ))
         };
         sides.into_iter().map(figure).collect()
     }
 
     /// Both parts at the pose, from both sides.
-    pub(super) fn overlays(&self) -> Vec<Figure> {
+    pub(super) fn overlays(&self) -> Result<Vec<Figure>, Cancelled> {
         let views = [(self.front, "from the front"), (self.back, "from behind")];
         let figure = |(view, words): (Rotation, &str)| {
-            let drawn = self.both(view, &self.pose, SIZE);
+            let drawn = self.both(view, &self.pose, SIZE)?;
             let drawn = drawn.stamped.chequered(&drawn.crash, SIZE[1] / 12);
-            self.figure(
+            Ok(self.figure(
                 &drawn,
                 "▲ on ■ after the match,".to_owned(),
                 format!("{words}; both parts in turn, square by square."),
                 format!("Both parts in the matched pose, seen {words}"),
-            )
+            ))
         };
         views.into_iter().map(figure).collect()
     }
 
     /// Crash and stamped part under one camera.
-    fn both(&self, view: Rotation, pose: &Similarity, size: [usize; 2]) -> PerRole<Picture> {
+    fn both(
+        &self,
+        view: Rotation,
+        pose: &Similarity,
+        size: [usize; 2],
+    ) -> Result<PerRole<Picture>, Cancelled> {
         let still = Similarity::identity();
         let mut camera = fitted(view, self.parts.crash.mesh.positions(), &still, size);
         let moved = fitted(view, self.parts.stamped.mesh.positions(), pose, size);
@@ -127,7 +136,7 @@ impl<'a> FigureRenderer<'a> {
         } else {
             camera.height * 1.3
         };
-        PerRole::from_fn(|role| {
+        let draw = |role| {
             let mesh = PictureMesh {
                 mesh: &self.parts.get(role).mesh,
                 world_from_mesh: match role {
@@ -136,12 +145,16 @@ impl<'a> FigureRenderer<'a> {
                 },
                 paint: Paint::Plain(*COLORS.get(role)),
             };
-            picture(size, &camera, None, &[mesh])
+            self.drawn(size, &camera, mesh)
+        };
+        Ok(PerRole {
+            crash: draw(Role::Crash)?,
+            stamped: draw(Role::Stamped)?,
         })
     }
 
     /// Both parts in the colours of their deviation.
-    pub(super) fn maps(&self) -> Vec<Figure> {
+    pub(super) fn maps(&self) -> Result<Vec<Figure>, Cancelled> {
         let on_crash = PictureMesh {
             mesh: &self.parts.crash.mesh,
             world_from_mesh: &Similarity::identity(),
@@ -162,9 +175,9 @@ impl<'a> FigureRenderer<'a> {
                 mesh.world_from_mesh,
                 SIZE,
             );
-            let drawn = picture(SIZE, &camera, None, &[mesh]);
+            let drawn = self.drawn(SIZE, &camera, mesh)?;
             let alt = format!("Map of the distances. {title} {caption}");
-            self.figure(&drawn, title.to_owned(), caption.to_owned(), alt)
+            Ok(self.figure(&drawn, title.to_owned(), caption.to_owned(), alt))
         };
         sides.into_iter().map(figure).collect()
     }
@@ -178,7 +191,7 @@ impl<'a> FigureRenderer<'a> {
     }
 
     /// The largest deviations from near.
-    pub(super) fn spots(&self) -> Vec<Figure> {
+    pub(super) fn spots(&self) -> Result<Vec<Figure>, Cancelled> {
         let normals = self.parts.stamped.mesh.vertex_normals();
         let [edge, _] = self.deviation.mean_edge_lengths;
         let size = self.parts.stamped.mesh.aabb().diagonal() * self.pose.scale;
@@ -202,21 +215,25 @@ impl<'a> FigureRenderer<'a> {
             let value = minus(&self.lengths.of(spot.value));
             let node = self.parts.stamped.node_id(spot.vertex);
             let node = node.map_or_else(String::new, |id| format!(" at node {id}"));
-            Figure {
+            Ok(Figure {
                 is_marked: true,
                 ..self.figure(
-                    &picture(SPOT_SIZE, &camera, None, &[self.map_mesh()]),
+                    &self.drawn(SPOT_SIZE, &camera, self.map_mesh())?,
                     format!("{number}: {value}"),
                     format!("{node}."),
                     format!("Place {number} of the largest deviations from near, {value}"),
                 )
-            }
+            })
         };
         spots.enumerate().map(figure).collect()
     }
 
     /// The stamped part in the colours of how far the pose may be off.
-    pub(super) fn uncertainty(&self, stated: &PoseUncertainty, scale: &ColorScale) -> Vec<Figure> {
+    pub(super) fn uncertainty(
+        &self,
+        stated: &PoseUncertainty,
+        scale: &ColorScale,
+    ) -> Result<Vec<Figure>, Cancelled> {
         let positions = self.parts.stamped.mesh.positions();
         let values = stated.field(positions, &self.pose);
         let colors: Vec<Rgb> = values.iter().map(|&value| scale.color(value)).collect();
@@ -226,28 +243,44 @@ impl<'a> FigureRenderer<'a> {
         };
         let camera = fitted(self.front, positions, &self.pose, SIZE);
         let largest = self.lengths.of(stated.largest);
-        vec![self.figure(
-            &picture(SIZE, &camera, None, &[mesh]),
+        Ok(vec![self.figure(
+            &self.drawn(SIZE, &camera, mesh)?,
             "▲ Stamped part,".to_owned(),
             format!("how far each node may be off, at most ± {largest}."),
             format!("Map of the uncertainty of the pose, at most {largest}"),
-        )]
+        )])
     }
 
     /// Both parts at another pose.
-    pub(super) fn rival(&self, pose: &Similarity, title: String, caption: String) -> Figure {
-        let drawn = self.both(self.front, pose, SPOT_SIZE);
+    pub(super) fn rival(
+        &self,
+        pose: &Similarity,
+        title: String,
+        caption: String,
+    ) -> Result<Figure, Cancelled> {
+        let drawn = self.both(self.front, pose, SPOT_SIZE)?;
         let drawn = drawn.stamped.chequered(&drawn.crash, SPOT_SIZE[1] / 12);
         let alt = format!("Both parts at pose {title}");
-        self.figure(&drawn, title, caption, alt)
+        Ok(self.figure(&drawn, title, caption, alt))
     }
 
     /// Where a start ended.
-    pub(super) fn start(&self, pose: &Similarity, number: usize) -> Figure {
-        let drawn = self.both(self.front, pose, THUMB_SIZE);
+    pub(super) fn start(&self, pose: &Similarity, number: usize) -> Result<Figure, Cancelled> {
+        let drawn = self.both(self.front, pose, THUMB_SIZE)?;
         let drawn = drawn.stamped.mixed(&drawn.crash);
         let alt = format!("Both parts as pose {number} has them");
-        self.figure(&drawn, String::new(), String::new(), alt)
+        Ok(self.figure(&drawn, String::new(), String::new(), alt))
+    }
+
+    /// One mesh in a picture, unless the report was given up.
+    fn drawn(
+        &self,
+        size: [usize; 2],
+        camera: &Camera,
+        mesh: PictureMesh<'_>,
+    ) -> Result<Picture, Cancelled> {
+        self.monitor.check()?;
+        Ok(picture(size, camera, None, &[mesh]))
     }
 
     fn figure(&self, drawn: &Picture, title: String, caption: String, alt: String) -> Figure {
