@@ -1,5 +1,6 @@
 //! Section 4 through the real window: map, look at each picture, follow a check, probe an element.
 
+use std::path::Path;
 use std::process::Command as Process;
 
 use egui_kittest::Harness;
@@ -202,24 +203,30 @@ fn settings_of_a_mapping_are_changed_undone_and_mark_the_result() {
     }
 }
 
-#[test]
-fn what_the_window_writes_is_what_the_command_line_writes_byte_for_byte() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let at = |name: &str| folder.path().join(name);
+/// The bracket as decks in a folder, opened and matched.
+fn matched_bracket(folder: &Path) -> Harness<'static, Shell> {
     let pair = samples::generate(&SampleSettings {
         part: SamplePart::Bracket,
         ..SampleSettings::default()
     });
     for file in samples::files(&pair) {
-        std::fs::write(at(file.name), file.bytes).expect("a folder");
+        std::fs::write(folder.join(file.name), file.bytes).expect("a folder");
     }
     let mut window = window();
     for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
-        let (paths, role) = (vec![at(name)], Some(role));
+        let (paths, role) = (vec![folder.join(name)], Some(role));
         run(&mut window, FileCommand::Open { paths, role });
     }
     click(&mut window, "Match the parts");
     finish(&mut window);
+    window
+}
+
+#[test]
+fn what_the_window_writes_is_what_the_command_line_writes_byte_for_byte() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let mut window = matched_bracket(folder.path());
     click(&mut window, "Strain");
     click(&mut window, "Stress");
     // Settings that are not the usual ones, as they are typed.
@@ -269,21 +276,8 @@ fn what_the_window_writes_is_what_the_command_line_writes_byte_for_byte() {
 fn several_stamped_files_stand_in_a_list_and_are_mapped_from() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name);
-    let pair = samples::generate(&SampleSettings {
-        part: SamplePart::Bracket,
-        ..SampleSettings::default()
-    });
-    for file in samples::files(&pair) {
-        std::fs::write(at(file.name), file.bytes).expect("a folder");
-    }
+    let mut window = matched_bracket(folder.path());
     std::fs::copy(at("stamped.dynain"), at("second_blank.dynain")).expect("a folder");
-    let mut window = window();
-    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
-        let (paths, role) = (vec![at(name)], Some(role));
-        run(&mut window, FileCommand::Open { paths, role });
-    }
-    click(&mut window, "Match the parts");
-    finish(&mut window);
     let n_files = |window: &Harness<'static, Shell>| window.state().state().stamped_rows().len();
     let has = |window: &Harness<'static, Shell>, label: &str| {
         let all = window.query_all_by_label(label);

@@ -83,13 +83,8 @@ impl AppState {
         let result = self.document.current_mapping()?;
         let run = &result.run;
         let report = run.mapped.elements.get(element)?;
-        let giver = report.partner.and_then(|partner| {
-            let source = partner.source as usize;
-            let shell = *run
-                .source_shells
-                .get(source)?
-                .get(partner.element as usize)? as usize;
-            let part = match source.checked_sub(1) {
+        let giver = run.giver(element).and_then(|(number, shell)| {
+            let part = match number.checked_sub(1) {
                 None => &both.stamped.loaded,
                 Some(further) => result.further.get(further)?,
             };

@@ -113,6 +113,15 @@ pub struct MapRun {
 }
 
 impl MapRun {
+    /// The stamped part that gave an element its values, and the shell of its model that did; `None` if none
+    /// did. Both are numbers in the order of the parts and of the model.
+    pub fn giver(&self, element: usize) -> Option<(usize, usize)> {
+        let partner = self.mapped.elements.get(element)?.partner?;
+        let shells = self.source_shells.get(partner.source as usize)?;
+        let shell = *shells.get(partner.element as usize)?;
+        Some((partner.source as usize, shell as usize))
+    }
+
     /// Mapped thickness of an element; NaN if it has none.
     pub fn thickness(&self, element: usize) -> f64 {
         let value = self.mapped.thickness.get(element);

@@ -63,10 +63,8 @@ pub fn probe_records(
     let elements = ids.iter().filter_map(place);
     let record = |element: usize| {
         let report = &run.mapped.elements[element];
-        let giver = report.partner.and_then(|partner| {
-            let shells = run.source_shells.get(partner.source as usize)?;
-            let shell = *shells.get(partner.element as usize)? as usize;
-            let part = stamped.get(partner.source as usize)?.part;
+        let giver = run.giver(element).and_then(|(number, shell)| {
+            let part = stamped.get(number)?.part;
             Some((part.model.shells.get(shell)?.id, part.file_name()))
         });
         let (stamped_element, stamped_file) = giver.unzip();

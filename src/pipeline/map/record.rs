@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::compare::{ComparisonRecord, OtherResult, compare_with, largest_von_mises};
 use super::verdict::{CheckRecord, checks_of};
 use super::{MapFiles, MapRun, PlacedPart, ProbeRecord, covered_values};
+use crate::geometry::chunks::for_chunks;
 use crate::mapping::{
     Distribution, Histogram, SourcePart, Status, distribution, histogram_distance,
 };
@@ -376,9 +377,6 @@ fn warnings(run: &MapRun, files: Option<&MapFiles>) -> Vec<String> {
     warnings
 }
 
-/// Rows of the table that are written between two looks whether they are still wanted.
-const ROWS_BETWEEN_LOOKS: usize = 4096;
-
 /// One row for each crash element: id, part, status, distances, angle, coverage, confidence, source,
 /// thickness and mean plastic strain; with another result also its thickness and plastic strain.
 pub fn element_table(
@@ -403,39 +401,36 @@ pub fn element_table(
             String::new()
         }
     };
-    for (element, (report, &shell)) in run.mapped.elements.iter().zip(&run.shells).enumerate() {
-        if element.is_multiple_of(ROWS_BETWEEN_LOOKS) {
-            monitor.check()?;
+    for_chunks(run.shells.len(), monitor, |elements| {
+        for element in elements {
+            let report = &run.mapped.elements[element];
+            let shell = &crash.model.shells[run.shells[element] as usize];
+            let giver = run.giver(element);
+            let (source, source_element) =
+                giver.map_or_else(Default::default, |(number, shell)| {
+                    let id = stamped[number].part.model.shells[shell].id;
+                    ((number + 1).to_string(), id.to_string())
+                });
+            let _ = write!(
+                table,
+                "{},{},{},{},{},{},{},{},{source},{source_element},{},{}",
+                shell.id,
+                crash.model.parts[shell.part as usize].id,
+                report.status.name(),
+                number(report.normal_distance),
+                number(report.tangential_distance),
+                number(report.angle_deg),
+                number(report.coverage),
+                number(report.confidence),
+                number(run.thickness(element)),
+                number(run.plastic_strain(element)),
+            );
+            if let Some(other) = other {
+                let values = [other.thickness[element], other.plastic_strain(element)];
+                let _ = write!(table, ",{},{}", number(values[0]), number(values[1]));
+            }
+            table.push('\n');
         }
-        let shell = &crash.model.shells[shell as usize];
-        let partner = report.partner.map(|partner| {
-            let shells = &run.source_shells[partner.source as usize];
-            let own = shells[partner.element as usize] as usize;
-            let id = stamped[partner.source as usize].part.model.shells[own].id;
-            (partner.source + 1, id)
-        });
-        let (source, source_element) = partner.map_or_else(Default::default, |(source, id)| {
-            (source.to_string(), id.to_string())
-        });
-        let _ = write!(
-            table,
-            "{},{},{},{},{},{},{},{},{source},{source_element},{},{}",
-            shell.id,
-            crash.model.parts[shell.part as usize].id,
-            report.status.name(),
-            number(report.normal_distance),
-            number(report.tangential_distance),
-            number(report.angle_deg),
-            number(report.coverage),
-            number(report.confidence),
-            number(run.thickness(element)),
-            number(run.plastic_strain(element)),
-        );
-        if let Some(other) = other {
-            let values = [other.thickness[element], other.plastic_strain(element)];
-            let _ = write!(table, ",{},{}", number(values[0]), number(values[1]));
-        }
-        table.push('\n');
-    }
+    })?;
     Ok(table)
 }

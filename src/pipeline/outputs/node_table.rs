@@ -4,6 +4,7 @@ use crate::assess::PoseUncertainty;
 use crate::assess::deviation::{
     DeviationField, DeviationSettings, source_on_target, target_on_source,
 };
+use crate::geometry::chunks::for_chunks;
 use crate::geometry::{Point3, Similarity};
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
@@ -15,9 +16,6 @@ use crate::report::csv::{NodeDeviation, add_deviations, deviation_head};
 use crate::report::{DIRECTION, build_id};
 use crate::role::{PerRole, Role};
 use crate::search::{SearchLimits, SurfaceHit, closest_many};
-
-/// Rows that are written between two looks whether the table is still wanted.
-const ROWS_BETWEEN_LOOKS: usize = 4096;
 
 /// Measures both directions: first the nodes of the stamped part, then those of the crash part, in
 /// the order of their files. `uncertainty` is that of the pose, where it is known. O(n · log n) in the
@@ -124,9 +122,8 @@ pub fn node_table(
         build_id(),
     ]);
     let mut table = deviation_head(&comments, rows.len());
-    for rows in rows.chunks(ROWS_BETWEEN_LOOKS) {
-        monitor.check()?;
-        add_deviations(&mut table, rows);
-    }
+    for_chunks(rows.len(), monitor, |some| {
+        add_deviations(&mut table, &rows[some]);
+    })?;
     Ok(table)
 }

@@ -3,7 +3,6 @@
 use egui::{Align, Button, Layout, RichText, Ui, vec2};
 
 use crate::app::{Action, AppState, Command, FurtherPose, MapCommand, StampedRow, StampedState};
-use crate::assess::Verdict;
 use crate::pipeline::map::pose_warning;
 use crate::role::Role;
 use crate::text::sentence;
@@ -145,7 +144,8 @@ fn problem(row: &StampedRow) -> Option<String> {
             "{} Let it lie as the first one, or remove it.",
             sentence(reason)
         )),
-        StampedState::Matched(verdict, _) if row.further.is_some() || *verdict != Verdict::Poor => {
+        // Section 3 tells of the first one.
+        StampedState::Matched(verdict, _) if row.further.is_some() => {
             pose_warning(*verdict, &row.name).map(|warning| sentence(&warning))
         }
         _ => None,
