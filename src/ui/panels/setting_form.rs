@@ -126,6 +126,9 @@ fn help_ui<R>(ui: &Ui, at: Rect, setting: &Setting<R>) {
 /// The way back to the usual value of a setting that was changed; true if it was taken.
 fn back_ui<R>(ui: &mut Ui, at: Rect, setting: &Setting<R>) -> bool {
     let button = egui::Button::new("⟲").frame_when_inactive(false);
+    // A button is never lower than this, and would hang out below.
+    let size = vec2(at.width(), ui.spacing().interact_size.y);
+    let at = Rect::from_center_size(at.center(), size);
     let response = tight(ui, |ui| ui.place(at, button));
     let name = format!("Reset {}", setting.label);
     response
