@@ -23,6 +23,11 @@ const MOST_SLID: usize = 8;
 const N_NODES: usize = 2000;
 /// Of all these so many, with the best rims, are moved until they fit.
 const MOST_SETTLED: usize = 8;
+/// Where the rims of one pose lie together, those of others that lie apart by more than so many times as much,
+/// and by more than this share of the distance within which rims are looked for, belong elsewhere: no step
+/// brings them together.
+const FAR_BEHIND: f64 = 10.0;
+const NOT_BESIDE: f64 = 0.3;
 /// Poses turned over or turned round, from which the search along the free motion begins as well.
 const MOST_ROOTS: usize = 3;
 /// Poses looked at for that.
@@ -90,7 +95,7 @@ pub fn held_by_rims(
     };
     monitor.check()?;
     let pair = Pair::new(source, target, found.scale, settings);
-    let Some(result) = pair.settle(found) else {
+    let Some(result) = pair.settle(found, Least::Facets) else {
         return Ok(None);
     };
     monitor.check()?;
@@ -112,18 +117,11 @@ pub fn held_by_rims(
         poses.extend(slid(source, target, root, free, MOST_SLID));
     }
     poses.extend(&others);
-    let apart = |pose: &Similarity| {
-        monitor.check()?;
-        Ok((pair.rims_apart(pose), *pose))
-    };
-    let by_rims: Result<Vec<(f64, Similarity)>, Cancelled> = poses.par_iter().map(apart).collect();
-    let mut by_rims = by_rims?;
-    by_rims.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let by_rims = pair.apart_from_each_other(by_rims);
+    let by_rims = pair.by_rims(&poses, monitor)?;
     let settle = |pose: &Similarity| {
         monitor.check()?;
         let is_likely = pair.lies_on(pose, &result);
-        Ok(is_likely.then(|| pair.settle(pose)).flatten())
+        Ok(is_likely.then(|| pair.settle(pose, Least::Any)).flatten())
     };
     let settled: Result<Vec<Option<Settled>>, Cancelled> = by_rims.par_iter().map(settle).collect();
     let settled: Vec<Settled> = settled?.into_iter().flatten().collect();
@@ -145,10 +143,14 @@ pub fn held_by_rims(
     let winner = choice.unwrap_or(result);
     let exactly = Settling::new([source, target], found.scale, settings, MAX_NODES);
     let alternatives = pair.alternatives(&winner, choice.is_some(), &rivals, outcome);
+    // What was found along the free motion has not been fitted to the surfaces.
+    let least = if choice.is_some() {
+        Least::Any
+    } else {
+        Least::Facets
+    };
     Ok(Some(HeldPose {
-        target_from_source: exactly
-            .settled(&winner.pose, Least::Facets)
-            .unwrap_or(winner.pose),
+        target_from_source: exactly.settled(&winner.pose, least).unwrap_or(winner.pose),
         alternatives,
     }))
 }
@@ -161,26 +163,39 @@ pub fn hand_by_rims(
     target: &Surface,
     outcome: &MatchOutcome,
     settings: &AssessSettings,
-) -> Option<f64> {
+    monitor: &Monitor,
+) -> Result<Option<f64>, Cancelled> {
     let check = &outcome.mirror_check;
-    let mirrored = check.target_from_source.as_ref()?;
-    check
+    let is_near = check
         .score_ratio
-        .filter(|ratio| *ratio < OPPOSITE_IS_CLEAR)?;
+        .is_some_and(|ratio| ratio < OPPOSITE_IS_CLEAR);
+    let Some(mirrored) = check.target_from_source.as_ref().filter(|_| is_near) else {
+        return Ok(None);
+    };
     let scale = outcome.target_from_source.scale;
     let pair = Pair::new(source, target, scale, settings);
-    let result = pair.measured(outcome.target_from_source)?;
+    let Some(result) = pair.measured(outcome.target_from_source) else {
+        return Ok(None);
+    };
     let limit = free_limit(source, target, settings);
     let free = weak_motion(source, target, &outcome.target_from_source, limit);
     let slid = free.map_or_else(Vec::new, |free| {
         slid(source, target, mirrored, &free, MOST_SLID)
     });
     let poses: Vec<Similarity> = slid.into_iter().chain([*mirrored]).collect();
-    let opposite = poses
-        .par_iter()
-        .filter_map(|pose| pair.settle(pose))
-        .filter(|other| other.is_as_close_as(&result, &pair))
-        .max_by(|a, b| a.held.total_cmp(&b.held))?;
+    let by_rims = pair.by_rims(&poses, monitor)?;
+    let settle = |pose: &Similarity| {
+        monitor.check()?;
+        Ok(pair.settle(pose, Least::Any))
+    };
+    let settled: Result<Vec<Option<Settled>>, Cancelled> = by_rims.par_iter().map(settle).collect();
+    let close = settled?
+        .into_iter()
+        .flatten()
+        .filter(|other| other.is_as_close_as(&result, &pair));
+    let Some(opposite) = close.max_by(|a, b| a.held.total_cmp(&b.held)) else {
+        return Ok(None);
+    };
     let fits_as_well = result.gap <= AS_CLOSE * opposite.gap;
     let behind = result.held - opposite.held;
     let ratio = ratio_by_rims(apart(behind, SAME_SHARE));
@@ -190,7 +205,7 @@ pub fn hand_by_rims(
     } else {
         0.0
     };
-    fits_as_well.then(|| ratio.max(least))
+    Ok(fits_as_well.then(|| ratio.max(least)))
 }
 
 /// Distance within which surfaces leave a motion free: what overlaps, and what springback explains.
@@ -302,8 +317,8 @@ impl<'a> Pair<'a> {
         }
     }
 
-    fn settle(&self, pose: &Similarity) -> Option<Settled> {
-        let least = Least::Facets;
+    /// A pose after its last step, which moves it by at least so much.
+    fn settle(&self, pose: &Similarity, least: Least) -> Option<Settled> {
         let pose = self.roughly.settled(pose, least).unwrap_or(*pose);
         self.measured(self.finely.settled(&pose, least).unwrap_or(pose))
     }
@@ -335,18 +350,32 @@ impl<'a> Pair<'a> {
         best.map(|best| **best)
     }
 
-    /// The first of poses that would settle as one.
-    fn apart_from_each_other(&self, sorted: Vec<(f64, Similarity)>) -> Vec<Similarity> {
+    /// The poses whose rims lie beside each other, best first: of those that would settle as one the first.
+    fn by_rims(
+        &self,
+        poses: &[Similarity],
+        monitor: &Monitor,
+    ) -> Result<Vec<Similarity>, Cancelled> {
+        let apart = |pose: &Similarity| {
+            monitor.check()?;
+            Ok((self.rims_apart(pose), *pose))
+        };
+        let sorted: Result<Vec<(f64, Similarity)>, Cancelled> =
+            poses.par_iter().map(apart).collect();
+        let mut sorted = sorted?;
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let closest = sorted.first().map_or(0.0, |(apart, _)| *apart);
+        let farthest = (FAR_BEHIND * closest).max(NOT_BESIDE * self.near);
         let corners = self.source.mesh().aabb().corners();
         let mut kept: Vec<Similarity> = Vec::new();
-        for (_, pose) in sorted {
+        for (apart, pose) in sorted {
             let is_near =
                 |other: &Similarity| pose.max_displacement(other, &corners) < 0.5 * self.near;
-            if kept.len() < MOST_SETTLED && !kept.iter().any(is_near) {
+            if kept.len() < MOST_SETTLED && apart <= farthest && !kept.iter().any(is_near) {
                 kept.push(pose);
             }
         }
-        kept
+        Ok(kept)
     }
 
     /// How well a pose fits.

@@ -7,6 +7,7 @@ pub mod deviation;
 mod held;
 mod pose;
 mod reason;
+mod rim;
 mod rims;
 mod settle;
 mod shape;

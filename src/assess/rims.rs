@@ -3,8 +3,9 @@
 
 use super::contact::robust_weights;
 use super::is_source_smaller;
+use super::rim::{Place, Rim, along, ragged, rims_of};
 use super::shape::ShapeTolerance;
-use crate::geometry::{Border, Point3, Similarity, Vector3};
+use crate::geometry::{Point3, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::{ClosestPoint, PointTree};
 
@@ -53,7 +54,10 @@ pub(super) enum RimKind {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RimHole {
     pub(super) center: Point3,
+    /// Mean distance of its rim from the centre.
     pub(super) radius: f64,
+    /// Of its rim.
+    length: f64,
     /// Of the sheet around it.
     pub(super) normal: Vector3,
 }
@@ -84,17 +88,6 @@ pub(super) struct Rims {
     ragged: f64,
     /// Length of all rims of the smaller part.
     length: f64,
-}
-
-/// One rim in its part's own frame.
-#[derive(Debug, Clone)]
-struct Rim {
-    points: Vec<Point3>,
-    normals: Vec<Vector3>,
-    /// Its middle by length.
-    center: Point3,
-    length: f64,
-    is_hole: bool,
 }
 
 /// The rims of two parts, ready to be compared under one pose after another.
@@ -299,9 +292,7 @@ impl Rims {
     /// part.
     pub(super) fn missing_share(&self) -> f64 {
         let missing = self.missing.iter().flatten();
-        let length: f64 = missing
-            .map(|hole| hole.radius * std::f64::consts::TAU)
-            .sum();
+        let length: f64 = missing.map(|hole| hole.length).sum();
         if self.length > 0.0 {
             length / self.length
         } else {
@@ -389,115 +380,13 @@ fn solid_at(
 }
 
 fn hole(rim: &Rim, target_from_rim: &Similarity) -> RimHole {
-    let normal: Vector3 = rim.normals.iter().sum();
+    let normal = rim.normal().try_normalize(0.0).unwrap_or_default();
     RimHole {
         center: target_from_rim.apply(&rim.center),
-        radius: rim.length / std::f64::consts::TAU * target_from_rim.scale,
-        normal: target_from_rim.rotate(&normal.try_normalize(0.0).unwrap_or_default()),
+        radius: rim.radius() * target_from_rim.scale,
+        length: rim.length * target_from_rim.scale,
+        normal: target_from_rim.rotate(&normal),
     }
-}
-
-/// A place along a rim.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
-    pub(super) point: Point3,
-    pub(super) tangent: Vector3,
-    /// Of the sheet.
-    pub(super) normal: Vector3,
-    is_hole: bool,
-}
-
-/// About `n` places in the target's frame along those rims of a part that are wanted: of holes or of
-/// trims.
-pub(super) fn places(
-    (surface, target_from_surface): (&Surface, &Similarity),
-    n: usize,
-    is_wanted: impl Fn(bool) -> bool,
-) -> Vec<Place> {
-    let mut rims = rims_of(surface);
-    rims.retain(|rim| is_wanted(rim.is_hole));
-    let length: f64 = rims.iter().map(|rim| rim.length).sum();
-    if length <= 0.0 {
-        return Vec::new();
-    }
-    let found = along(&rims, length / n as f64).into_iter();
-    found
-        .map(|place| place.moved(target_from_surface))
-        .collect()
-}
-
-impl Place {
-    fn moved(self, pose: &Similarity) -> Self {
-        // A mirror turns the sense in which a rim is walked along.
-        let sense = if pose.is_mirrored() { -1.0 } else { 1.0 };
-        Self {
-            point: pose.apply(&self.point),
-            tangent: pose.rotate(&self.tangent) * sense,
-            normal: pose.rotate(&self.normal),
-            ..self
-        }
-    }
-}
-
-fn along(rims: &[Rim], spacing: f64) -> Vec<Place> {
-    let mut places = Vec::new();
-    let mut until_next = 0.5 * spacing;
-    for rim in rims {
-        let n = rim.points.len();
-        for i in 0..n {
-            let (a, b) = (rim.points[i], rim.points[(i + 1) % n]);
-            let length = (b - a).norm();
-            let mut at = until_next;
-            while at < length {
-                let t = at / length;
-                places.push(Place {
-                    point: a + (b - a) * t,
-                    tangent: (b - a) / length,
-                    normal: rim.normals[i],
-                    is_hole: rim.is_hole,
-                });
-                at += spacing;
-            }
-            until_next = at - length;
-        }
-    }
-    places
-}
-
-/// The closed borders. A chain that ends where two sheets touch is none that the parts must share.
-fn rims_of(surface: &Surface) -> Vec<Rim> {
-    let closed = surface.borders().iter();
-    let closed = closed.filter(|border| border.closed && border.vertices.len() > 2);
-    let rim = |border: &Border| {
-        let vertices = border.vertices.iter().map(|&v| v as usize);
-        Rim {
-            points: vertices
-                .clone()
-                .map(|v| surface.mesh().positions()[v])
-                .collect(),
-            normals: vertices.map(|v| surface.vertex_normals()[v]).collect(),
-            center: border.center,
-            length: border.length,
-            is_hole: border.is_hole,
-        }
-    };
-    closed.map(rim).collect()
-}
-
-/// Median distance of a rim's node from the middle between its neighbours; next to nothing along straight
-/// and smoothly curved rims, whatever folds and corners they have.
-fn ragged(rims: &[Rim], unit: f64) -> f64 {
-    let mut steps = Vec::new();
-    for rim in rims {
-        let count = rim.points.len();
-        for (i, p) in rim.points.iter().enumerate() {
-            let [before, after] = [(i + count - 1) % count, (i + 1) % count];
-            let middle = nalgebra::center(&rim.points[before], &rim.points[after]);
-            steps.push(unit * (p - middle).norm());
-        }
-    }
-    steps.sort_unstable_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]
@@ -507,9 +396,16 @@ mod tests {
 
     /// A sheet of `n` by 20 cells of one millimetre without the cells in rows and columns 4 to 7.
     fn sheet(n: usize, hole_at: usize) -> Surface {
+        noisy_sheet(n, hole_at, 0.0)
+    }
+
+    /// The same, every node up to `noise` above or below.
+    fn noisy_sheet(n: usize, hole_at: usize, noise: f64) -> Surface {
         let points = (0..=20 * (n + 1) + n).map(|i| {
             let (x, y) = (i % (n + 1), i / (n + 1));
-            Point3::new(x as f64, y as f64, 0.0)
+            // Digits of a sine that have nothing to do with each other.
+            let height = 2.0 * (43_758.545 * (12.99 * i as f64).sin()).rem_euclid(1.0) - 1.0;
+            Point3::new(x as f64, y as f64, noise * height)
         });
         let cells = (0..n * 20).map(|i| (i % n, i / n));
         let is_hole =
@@ -536,6 +432,19 @@ mod tests {
         let hole = Rims::find(&plain, &moved, &still, 3.0);
         assert_eq!(hole.holes.len(), 1);
         assert!((hole.holes[0].off + Vector3::x()).norm() < 1e-9);
+    }
+
+    #[test]
+    fn noise_that_bends_every_edge_hides_no_rim_and_widens_no_hole() {
+        let still = Similarity::identity();
+        let (plain, noisy) = (sheet(30, 5), noisy_sheet(30, 5, 0.8));
+        for pair in [[&plain, &noisy], [&noisy, &plain]] {
+            let rims = Rims::find(pair[0], pair[1], &still, 3.0);
+            assert!(rims.share() > 0.95, "{}", rims.share());
+            assert!(rims.pairs.iter().all(|p| p.gap.abs() < 0.6));
+            assert_eq!(rims.holes.len(), 1);
+            assert!(rims.holes[0].wider < 0.15, "{}", rims.holes[0].wider);
+        }
     }
 
     #[test]

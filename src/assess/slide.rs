@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::contact::solve;
 use super::is_source_smaller;
-use super::rims::{Place, places};
+use super::rim::{Place, places};
 use super::sliding::{FreeMotion, FreeMotionKind};
 use crate::geometry::{Aabb, Point3, Rotation, Similarity, Vector3};
 use crate::registration::Surface;

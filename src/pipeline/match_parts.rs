@@ -267,7 +267,7 @@ pub(super) fn settle(
         outcome.target_from_source = pose;
     }
     monitor.check()?;
-    if let Some(ratio) = assess::hand_by_rims(source, target, outcome, check) {
+    if let Some(ratio) = assess::hand_by_rims(source, target, outcome, check, monitor)? {
         outcome.mirror_check.score_ratio = Some(ratio);
     }
     Ok(())

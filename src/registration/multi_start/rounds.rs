@@ -73,6 +73,9 @@ const WITHIN_SIGHT: f64 = 1.5;
 /// Nor if its score rose by this share since the last look: it slides along a part that does not hold it,
 /// away from the best pose it had.
 const SLIDES_OFF: f64 = 0.01;
+/// Nor, but for the best one, if its score fell by less than this share: it slides or turns as the surfaces leave it
+/// free to, and ten more steps tell as little.
+const LITTLE_GAIN: f64 = 0.01;
 /// Iterations of a closer look at candidates that do not resemble the model.
 const LOOK_ITERATIONS: usize = 20;
 
@@ -304,14 +307,17 @@ fn end_without_gain(candidates: &mut [Candidate], n_left: usize) {
         return;
     };
     let limit = WITHIN_SIGHT * candidates[best].run.score;
-    for candidate in candidates.iter_mut().filter(|c| c.is_alive()) {
+    let alive = candidates.iter_mut().enumerate();
+    for (i, candidate) in alive.filter(|(_, candidate)| candidate.is_alive()) {
         let run = &mut candidate.run;
         let Some(gain) = run.gain(PRUNE_AFTER - 1) else {
             continue;
         };
         let slides_off = gain < -SLIDES_OFF * run.score;
+        let gains_little = i != best && gain < LITTLE_GAIN * run.score;
         let could_gain = gain.max(0.0) * n_left as f64 / PRUNE_AFTER as f64;
-        if run.termination.is_none() && (slides_off || run.score - could_gain > limit) {
+        let is_behind = run.score - could_gain > limit;
+        if run.termination.is_none() && (slides_off || gains_little || is_behind) {
             run.end_at_best();
         }
     }

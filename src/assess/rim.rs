@@ -1,0 +1,226 @@
+//! The rims of one part: its closed borders, with places along them, and the size of its holes.
+
+use crate::geometry::{Border, Point3, Similarity, Vector3};
+use crate::registration::Surface;
+
+/// Edges to each side that give a ragged rim its direction, as far as they are an eighth of it.
+const SMOOTHED: usize = 2;
+/// A rim is ragged if most of its edges turn from the one before by so much more than around a circle: noise of
+/// a tenth of their length, which hides their direction. In degrees.
+const RAGGED_TURN: f64 = 10.0;
+
+/// One rim in its part's own frame.
+#[derive(Debug, Clone)]
+pub(super) struct Rim {
+    points: Vec<Point3>,
+    normals: Vec<Vector3>,
+    /// Its middle by length.
+    pub(super) center: Point3,
+    pub(super) length: f64,
+    pub(super) is_hole: bool,
+}
+
+/// A place along a rim.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) point: Point3,
+    pub(super) tangent: Vector3,
+    /// Of the sheet.
+    pub(super) normal: Vector3,
+    pub(super) is_hole: bool,
+}
+
+/// About `n` places in the target's frame along those rims of a part that are wanted: of holes or of
+/// trims.
+pub(super) fn places(
+    (surface, target_from_surface): (&Surface, &Similarity),
+    n: usize,
+    is_wanted: impl Fn(bool) -> bool,
+) -> Vec<Place> {
+    let mut rims = rims_of(surface);
+    rims.retain(|rim| is_wanted(rim.is_hole));
+    let length: f64 = rims.iter().map(|rim| rim.length).sum();
+    if length <= 0.0 {
+        return Vec::new();
+    }
+    let found = along(&rims, length / n as f64).into_iter();
+    found
+        .map(|place| place.moved(target_from_surface))
+        .collect()
+}
+
+impl Place {
+    pub(super) fn moved(self, pose: &Similarity) -> Self {
+        // A mirror turns the sense in which a rim is walked along.
+        let sense = if pose.is_mirrored() { -1.0 } else { 1.0 };
+        Self {
+            point: pose.apply(&self.point),
+            tangent: pose.rotate(&self.tangent) * sense,
+            normal: pose.rotate(&self.normal),
+            ..self
+        }
+    }
+}
+
+impl Rim {
+    /// Mean distance from its middle. Noise makes a rim longer, and hardly changes this.
+    pub(super) fn radius(&self) -> f64 {
+        let n = self.points.len();
+        let (mut sum, mut length) = (0.0, 0.0);
+        for (i, a) in self.points.iter().enumerate() {
+            let b = &self.points[(i + 1) % n];
+            // Simpson's rule on both halves.
+            let arms = [1.0, 4.0, 2.0, 4.0, 1.0].iter().enumerate();
+            let arms = arms.map(|(k, weight)| {
+                let at = a + (b - a) * (0.25 * k as f64);
+                weight / 12.0 * (at - self.center).norm()
+            });
+            let edge = (b - a).norm();
+            sum += edge * arms.sum::<f64>();
+            length += edge;
+        }
+        if length > 0.0 { sum / length } else { 0.0 }
+    }
+
+    /// Normal of the sheet around it, not of unit length.
+    pub(super) fn normal(&self) -> Vector3 {
+        self.normals.iter().sum()
+    }
+
+    /// Edges to each side that an edge's direction is taken from.
+    fn smoothed(&self) -> usize {
+        let n = self.points.len();
+        let edge = |i: usize| self.points[(i + 1) % n] - self.points[i % n];
+        let mut turns: Vec<f64> = (0..n).map(|i| edge(i).angle(&edge(i + 1))).collect();
+        let median = *turns.select_nth_unstable_by(n / 2, f64::total_cmp).1;
+        let is_ragged = median.to_degrees() > 360.0 / n as f64 + RAGGED_TURN;
+        if is_ragged { SMOOTHED.min(n / 8) } else { 0 }
+    }
+
+    /// Unit direction of an edge and the sheet's normal there, over `reach` edges more to each side.
+    fn directions(&self, edge: usize, reach: usize) -> (Vector3, Vector3) {
+        let n = self.points.len();
+        let [first, last] = [edge + n - reach, edge + n + reach + 1];
+        let tangent = self.points[last % n] - self.points[first % n];
+        let normal = if reach == 0 {
+            self.normals[edge]
+        } else {
+            let around = (first..=last).map(|i| self.normals[i % n]);
+            around
+                .sum::<Vector3>()
+                .try_normalize(0.0)
+                .unwrap_or(self.normals[edge])
+        };
+        (tangent.try_normalize(0.0).unwrap_or_default(), normal)
+    }
+}
+
+pub(super) fn along(rims: &[Rim], spacing: f64) -> Vec<Place> {
+    let mut places = Vec::new();
+    let mut until_next = 0.5 * spacing;
+    for rim in rims {
+        let n = rim.points.len();
+        let reach = rim.smoothed();
+        for i in 0..n {
+            let (a, b) = (rim.points[i], rim.points[(i + 1) % n]);
+            let length = (b - a).norm();
+            let (tangent, normal) = rim.directions(i, reach);
+            let mut at = until_next;
+            while at < length {
+                let t = at / length;
+                places.push(Place {
+                    point: a + (b - a) * t,
+                    tangent,
+                    normal,
+                    is_hole: rim.is_hole,
+                });
+                at += spacing;
+            }
+            until_next = at - length;
+        }
+    }
+    places
+}
+
+/// The closed borders. A chain that ends where two sheets touch is none that the parts must share.
+pub(super) fn rims_of(surface: &Surface) -> Vec<Rim> {
+    let closed = surface.borders().iter();
+    let closed = closed.filter(|border| border.closed && border.vertices.len() > 2);
+    let rim = |border: &Border| {
+        let vertices = border.vertices.iter().map(|&v| v as usize);
+        Rim {
+            points: vertices
+                .clone()
+                .map(|v| surface.mesh().positions()[v])
+                .collect(),
+            normals: vertices.map(|v| surface.vertex_normals()[v]).collect(),
+            center: border.center,
+            length: border.length,
+            is_hole: border.is_hole,
+        }
+    };
+    closed.map(rim).collect()
+}
+
+/// Median distance of a rim's node from the middle between its neighbours; next to nothing along straight
+/// and smoothly curved rims, whatever folds and corners they have.
+pub(super) fn ragged(rims: &[Rim], unit: f64) -> f64 {
+    let mut steps = Vec::new();
+    for rim in rims {
+        let count = rim.points.len();
+        for (i, p) in rim.points.iter().enumerate() {
+            let [before, after] = [(i + count - 1) % count, (i + 1) % count];
+            let middle = nalgebra::center(&rim.points[before], &rim.points[after]);
+            steps.push(unit * (p - middle).norm());
+        }
+    }
+    steps.sort_unstable_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A hole in a plane, its nodes so far from the middle.
+    fn hole(points: Vec<Point3>) -> Rim {
+        Rim {
+            normals: vec![Vector3::z(); points.len()],
+            points,
+            center: Point3::origin(),
+            length: 0.0,
+            is_hole: true,
+        }
+    }
+
+    #[test]
+    fn the_radius_is_the_same_however_a_hole_is_meshed() {
+        let square = |n: usize| {
+            let corner = |k: usize| {
+                let angle = (k as f64 + 0.5) * std::f64::consts::FRAC_PI_2;
+                Point3::new(angle.cos(), angle.sin(), 0.0)
+            };
+            let side = |k: usize| {
+                let (a, b) = (corner(k), corner(k + 1));
+                (0..n).map(move |i| a + (b - a) * (i as f64 / n as f64))
+            };
+            hole((0..4).flat_map(side).collect()).radius()
+        };
+        assert!((square(1) / square(12) - 1.0).abs() < 2e-3);
+        let circle = |noise: f64| {
+            let node = |k: u32| {
+                let angle = f64::from(k) / 60.0 * std::f64::consts::TAU;
+                let up = if k.is_multiple_of(2) { noise } else { -noise };
+                Point3::new(10.0 * angle.cos(), 10.0 * angle.sin(), up)
+            };
+            hole((0..60).map(node).collect())
+        };
+        assert!((circle(0.4).radius() / circle(0.0).radius() - 1.0).abs() < 1e-3);
+        assert_eq!(
+            [circle(0.0).smoothed(), circle(0.4).smoothed()],
+            [0, SMOOTHED]
+        );
+        let (direction, normal) = circle(0.4).directions(0, SMOOTHED);
+        assert!(direction.y > 0.98 && normal == Vector3::z());
+    }
+}
