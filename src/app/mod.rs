@@ -55,9 +55,9 @@ pub use log::{
     age_text, clock_text, duration_text,
 };
 pub use mapping::{
-    DoubtfulElement, Further, FurtherPose, MapCommand, MapDisplay, MapPicture, MapResult, Mapping,
-    MappingState, Placing, ProbeReport, Quantity, StampedRow, StampedState, UnmappedElement,
-    file_names,
+    DoubtfulElement, FileShare, Further, FurtherPose, MapCommand, MapDisplay, MapPicture,
+    MapResult, Mapping, MappingState, Placing, ProbeReport, Quantity, ShownFile, StampedRow,
+    StampedState, UnmappedElement, file_names,
 };
 pub use matching::{
     Cause, LiveStarts, MatchCommand, MatchState, Preview, PreviewCommand, Previews, Starts,

@@ -136,6 +136,7 @@ impl AppState {
             pose: self.shown_pose(),
             document: &self.document,
             selected: &self.parts.selected,
+            further: self.shown_further(),
         };
         look(&mut self.view, &scene)
     }

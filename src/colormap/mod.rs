@@ -32,6 +32,8 @@ pub enum ColorMap {
     Classes,
     /// One colour for each status of a mapped element, in equal steps.
     Statuses,
+    /// One colour for each stamped file, in equal steps.
+    Files,
 }
 
 impl ColorMap {
@@ -54,6 +56,7 @@ impl ColorMap {
             Self::Rainbow => "Rainbow, like LS-PrePost",
             Self::Classes => "Two classes",
             Self::Statuses => "Statuses",
+            Self::Files => "Files",
         }
     }
 
@@ -77,9 +80,16 @@ impl ColorMap {
                 let n = tables::STATUSES.len();
                 tables::STATUSES[((t * n as f64) as usize).min(n - 1)]
             }
+            Self::Files => {
+                let place = (t * f64::from(N_FILES)) as usize;
+                tables::FILES[place.min(N_FILES as usize - 1) % tables::FILES.len()]
+            }
         }
     }
 }
+
+/// Looks of stamped files: each colour plain, then each with lines over it.
+const N_FILES: u32 = 2 * tables::FILES.len() as u32;
 
 fn between_stops(stops: &[Rgb], t: f64) -> Rgb {
     let place = t * (stops.len() - 1) as f64;

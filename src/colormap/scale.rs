@@ -1,6 +1,6 @@
 //! From a value to a place on a colour map.
 
-use super::{ColorMap, Rgb};
+use super::{ColorMap, N_FILES, Rgb};
 
 /// Colour of values inside the tolerance band: the middle of the diverging map.
 pub const NEUTRAL: Rgb = [221, 221, 221];
@@ -78,6 +78,16 @@ impl ColorScale {
         Self::new(ColorMap::Statuses, -0.5, N_STATUSES - 0.5)
     }
 
+    /// The stamped files, counted from 0 as [`ColorScale::file_value`] says.
+    pub fn files() -> Self {
+        Self::new(ColorMap::Files, -0.5, f64::from(N_FILES) - 0.5)
+    }
+
+    /// The value of a stamped file on the scale of the files, by its number; looks return after the last.
+    pub fn file_value(number: usize) -> f64 {
+        (number % N_FILES as usize) as f64
+    }
+
     /// The diverging map from `-limit` to `limit` with a neutral band of ± `tolerance`.
     pub fn symmetric(limit: f64, tolerance: f64) -> Self {
         Self {
@@ -133,6 +143,14 @@ impl ColorScale {
         if self.map == ColorMap::Statuses {
             let status = (self.position(value) * N_STATUSES) as usize;
             return STATUS_PATTERNS[status.min(STATUS_PATTERNS.len() - 1)];
+        }
+        if self.map == ColorMap::Files {
+            let is_plain = self.position(value) < 0.5 || value.is_nan();
+            return if is_plain {
+                Pattern::Plain
+            } else {
+                Pattern::Rising
+            };
         }
         if self.map == ColorMap::Classes {
             return if self.position(value) < 0.5 || value.is_nan() {
@@ -277,6 +295,22 @@ mod tests {
         let reasons: Vec<Pattern> = looks[5..].iter().map(|look| look.1).collect();
         assert!((0..4).all(|i| !reasons[..i].contains(&reasons[i])));
         assert_eq!(looks[0].1, Pattern::Plain);
+    }
+
+    #[test]
+    fn each_stamped_file_has_a_look_of_its_own_until_looks_return() {
+        let scale = ColorScale::files();
+        let look = |number| {
+            let value = ColorScale::file_value(number);
+            (scale.color(value), scale.pattern(value))
+        };
+        let looks: Vec<_> = (0..N_FILES as usize).map(look).collect();
+        for (i, look) in looks.iter().enumerate() {
+            assert!(!looks[..i].contains(look), "{i}");
+        }
+        assert_eq!(look(0).1, Pattern::Plain);
+        assert_eq!(look(N_FILES as usize), look(0));
+        assert_eq!(scale.color(f64::NAN), UNMATCHED);
     }
 
     #[test]

@@ -87,6 +87,19 @@ pub(super) const RAINBOW: &[[u8; 3]] = &[
     [255, 0, 0],
 ];
 
+/// Stamped files that are told apart, the first one first: away from the blue of the crash part, and from one
+/// to the next in lightness too.
+pub(super) const FILES: [[u8; 3]; 8] = [
+    [240, 176, 58],
+    [27, 140, 112],
+    [204, 138, 190],
+    [178, 60, 70],
+    [190, 212, 90],
+    [120, 86, 170],
+    [242, 190, 190],
+    [120, 84, 50],
+];
+
 /// What became of the elements of a mapping, from best to worst (mapped, partly, filled, near two sheets,
 /// on two parts, too far, wrong normal, outside, without results): blues and greens carry values.
 pub(super) const STATUSES: [[u8; 3]; 9] = [

@@ -8,6 +8,7 @@ use super::background::Behind;
 use super::dialogs::Dialogs;
 use super::keyboard::Keyboard;
 use super::no_window::explained;
+use super::panels::drop::DropTarget;
 use super::pictures::{Pictures, Wanted};
 use super::preferences::{Preferences, UserFiles, WindowPlace};
 use super::viewport::Viewports;
@@ -309,7 +310,7 @@ impl Shell {
 
     /// Files that were dropped. One over a 3D window is meant for it; where that was is told by the pointer,
     /// which some desktops give back only after the drop.
-    fn dropped(&mut self, ctx: &egui::Context) -> Option<Command> {
+    fn dropped(&mut self, ctx: &egui::Context) -> Vec<Command> {
         let files = ctx.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<_> = files
             .iter()
@@ -319,7 +320,7 @@ impl Shell {
         if let [path] = paths.as_slice()
             && self.dialogs.take_dropped(path, ctx)
         {
-            return None;
+            return Vec::new();
         }
         if !paths.is_empty() {
             self.drop = Some(PendingDrop {
@@ -327,19 +328,17 @@ impl Shell {
                 since: Instant::now(),
             });
         }
-        let drop = self.drop.take()?;
+        let Some(drop) = self.drop.take() else {
+            return Vec::new();
+        };
         let is_placed = drop.paths.len() > 1 || ctx.pointer_latest_pos().is_some();
         if !is_placed && drop.since.elapsed() < POINTER_BACK {
             ctx.request_repaint_after(POINTER_BACK / 4);
             self.drop = Some(drop);
-            return None;
+            return Vec::new();
         }
-        let role = match drop.paths.len() {
-            1 => panels::graphics::role_under_pointer(ctx),
-            _ => None,
-        };
-        let paths = drop.paths;
-        Some(FileCommand::Open { paths, role }.into())
+        let target = DropTarget::under_pointer(ctx, &self.state, drop.paths.len());
+        target.commands(drop.paths)
     }
 
     /// Keeps an eye on the files of the present parts; what was noticed about them.

@@ -276,6 +276,38 @@ pub fn focus_ring(ui: &Ui, rect: Rect, response: &Response) {
     }
 }
 
+/// An eye that is open or struck out: the switch that shows something in 3D.
+pub fn eye(ui: &Ui, rect: Rect, response: &Response, (is_open, name): (bool, &str)) {
+    let palette = Palette::of(ui);
+    focus_ring(ui, rect, response);
+    let color = if is_open {
+        palette.text
+    } else {
+        palette.secondary
+    };
+    let stroke = Stroke::new(1.2, color);
+    let c = rect.center();
+    let lid = |up: f32| {
+        let points = [
+            c + vec2(-6.5, 0.0),
+            c + vec2(-3.0, up),
+            c + vec2(3.0, up),
+            c + vec2(6.5, 0.0),
+        ];
+        let clear = Color32::TRANSPARENT;
+        egui::epaint::CubicBezierShape::from_points_stroke(points, false, clear, stroke)
+    };
+    ui.painter().add(lid(-5.5));
+    ui.painter().add(lid(5.5));
+    if is_open {
+        ui.painter().circle_filled(c, 2.2, color);
+    } else {
+        let line = [c + vec2(-6.0, 5.0), c + vec2(6.0, -5.0)];
+        ui.painter().line_segment(line, stroke);
+    }
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, is_open, name));
+}
+
 /// A chip: one of several choices side by side.
 pub fn chip(ui: &mut Ui, label: &str, is_on: bool) -> Response {
     let palette = Palette::of(ui);

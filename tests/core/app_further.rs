@@ -75,15 +75,15 @@ fn half(deck: &str, is_kept: impl Fn(f64) -> bool, motion: &Similarity) -> Strin
 
 /// The crash bracket, and its stamped part as two files: one half as it was formed, the other somewhere
 /// else.
-struct Halves {
+pub(super) struct Halves {
     folder: tempfile::TempDir,
     crash: PathBuf,
-    stamped: [PathBuf; 2],
+    pub(super) stamped: [PathBuf; 2],
     crash_from_first: Similarity,
 }
 
 impl Halves {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
         let pair = write_bracket(folder.path(), SampleVariant::Plain);
         let whole = std::fs::read_to_string(folder.path().join("stamped.dynain")).unwrap();
@@ -102,7 +102,7 @@ impl Halves {
     }
 
     /// A window with the first half at its known pose.
-    fn window(&self) -> Window {
+    pub(super) fn window(&self) -> Window {
         let mut window = Window::new();
         window.runner = Some(real);
         window.open(self.crash.to_str().unwrap(), Role::Crash);
@@ -115,7 +115,7 @@ impl Halves {
     }
 
     /// A window with both halves.
-    fn with_both(&self) -> Window {
+    pub(super) fn with_both(&self) -> Window {
         let mut window = self.window();
         window.apply(MapCommand::AddFurther(self.stamped[1].clone()));
         assert_eq!(window.state.document.mapping.further.len(), 1);
@@ -136,7 +136,7 @@ fn verdicts(window: &Window) -> Vec<Option<Verdict>> {
     states(window).into_iter().map(verdict).collect()
 }
 
-fn first_further(window: &Window) -> u64 {
+pub(super) fn first_further(window: &Window) -> u64 {
     window.state.document.mapping.further[0].revision
 }
 
@@ -475,8 +475,16 @@ fn a_probe_names_the_file_that_gave_the_values() {
         let probe = window.state.probe().unwrap();
         assert_eq!(probe.stamped_id, Some(id));
         assert_eq!(probe.stamped_file.as_deref(), Some(name));
-        // Only the first stamped part is shown, where the element can be ringed.
-        assert_eq!(window.state.probed_places().len(), 2 - number as usize);
+        // Both elements can be ringed, each on its own part.
+        let places = window.state.probed_places();
+        let ringed: Vec<_> = places
+            .iter()
+            .map(|(role, file, _)| (*role, *file))
+            .collect();
+        let file = number as usize;
+        assert_eq!(ringed, [(Role::Crash, 0), (Role::Stamped, file)]);
+        let center = run.sources[file].mesh.centroids()[partner.element as usize];
+        assert_eq!(places[1].2, center);
     }
 }
 

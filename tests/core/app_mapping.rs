@@ -282,13 +282,13 @@ fn a_probe_tells_both_sides_of_an_element_and_is_one_step() {
     let element = run.shells.len() / 2;
     let id = crash.model.shells[run.shells[element] as usize].id;
     let document = &window.state.document;
-    assert_eq!(document.mapped_element(Role::Crash, id), Some(element));
-    assert_eq!(document.mapped_element(Role::Crash, u64::MAX), None);
+    assert_eq!(document.mapped_element(id), Some(element));
+    assert_eq!(document.mapped_element(u64::MAX), None);
     let partner = run.mapped.elements[element].partner.unwrap();
     let shell = run.source_shells[0][partner.element as usize] as usize;
     let stamped_id = stamped.model.shells[shell].id;
     // A stamped element leads to an element that took its values from it.
-    let found = document.mapped_element(Role::Stamped, stamped_id).unwrap();
+    let found = document.element_mapped_from(&stamped, stamped_id).unwrap();
     let of_found = run.mapped.elements[found].partner.unwrap();
     assert_eq!(of_found.element, partner.element);
 

@@ -5,6 +5,7 @@
 mod app;
 mod app_exports;
 mod app_further;
+mod app_further_look;
 mod app_mapping;
 mod app_mapping_look;
 mod assess;

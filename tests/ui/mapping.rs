@@ -15,6 +15,7 @@ use shapematch::samples::{self, SamplePart, SampleSettings};
 use shapematch::ui::Shell;
 
 use super::layout::{dismiss_toasts, faults};
+use super::project::{drawn, picture};
 use super::story::{click, finish, matched, window};
 
 fn color_by(window: &Harness<'static, Shell>) -> ColorBy {
@@ -205,6 +206,14 @@ fn settings_of_a_mapping_are_changed_undone_and_mark_the_result() {
 
 /// The bracket as decks in a folder, opened and matched.
 fn matched_bracket(folder: &Path) -> Harness<'static, Shell> {
+    matched_bracket_in(window(), folder)
+}
+
+/// The same in a window of one's own.
+fn matched_bracket_in(
+    mut window: Harness<'static, Shell>,
+    folder: &Path,
+) -> Harness<'static, Shell> {
     let pair = samples::generate(&SampleSettings {
         part: SamplePart::Bracket,
         ..SampleSettings::default()
@@ -212,7 +221,6 @@ fn matched_bracket(folder: &Path) -> Harness<'static, Shell> {
     for file in samples::files(&pair) {
         std::fs::write(folder.join(file.name), file.bytes).expect("a folder");
     }
-    let mut window = window();
     for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
         let (paths, role) = (vec![folder.join(name)], Some(role));
         run(&mut window, FileCommand::Open { paths, role });
@@ -337,4 +345,84 @@ fn several_stamped_files_stand_in_a_list_and_are_mapped_from() {
     window.run_steps(3);
     click(&mut window, "Remove second_blank.dynain");
     assert_eq!(n_files(&window), 1);
+}
+
+/// How much of the right 3D window has the green of the second stamped file.
+fn green(window: &mut Harness<'static, Shell>) -> usize {
+    finish(window);
+    let picture = picture(window);
+    let pixels = picture.rgba.chunks(4).enumerate();
+    let right = pixels.filter(|(at, _)| at % picture.width > picture.width / 2);
+    let is_green = |pixel: &[u8]| {
+        let [r, g, b] = [0, 1, 2].map(|i| f32::from(pixel[i]));
+        g > 50.0 && g > 2.0 * r && g > 1.1 * b && b > 0.5 * g
+    };
+    right.filter(|(_, pixel)| is_green(pixel)).count()
+}
+
+#[test]
+fn files_are_told_apart_in_both_windows_and_can_be_hidden() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let mut window = drawn(1.0);
+    window.set_size(egui::vec2(1400.0, 900.0));
+    window.run_steps(3);
+    let mut window = matched_bracket_in(window, folder.path());
+    std::fs::copy(at("stamped.dynain"), at("second_blank.dynain")).expect("a folder");
+    click(&mut window, "Map");
+    finish(&mut window);
+    assert!(window.query_by_label("From file").is_none(), "one file");
+    assert!(window.query_by_label("Show stamped.dynain").is_none());
+    run(
+        &mut window,
+        MapCommand::AddFurther(at("second_blank.dynain")),
+    );
+    // So both lie in each other.
+    click(&mut window, "Pose of second_blank.dynain");
+    window.run_steps(3);
+    click(&mut window, "As the first");
+    click(&mut window, "Map");
+    finish(&mut window);
+    click(&mut window, "From file");
+    assert_eq!(color_by(&window), ColorBy::MapFile);
+    finish(&mut window);
+    // The legend has a row for each file that gave something.
+    for share in window.state().state().map_files() {
+        let n = shapematch::text::grouped(share.n_elements);
+        let begin = format!("{}: {n} elements, ", share.name);
+        let row = window.query_by(|node| {
+            let label = node.label();
+            label.is_some_and(|label| label.starts_with(&begin))
+        });
+        assert_eq!(row.is_some(), share.first.is_some(), "{begin}");
+    }
+    // Where both lie in each other, the first is seen; without it the second is, in its colour.
+    let behind = green(&mut window);
+    click(&mut window, "Show stamped.dynain");
+    let alone = green(&mut window);
+    assert!(alone > 5000, "{alone} pixels");
+    assert!(10 * behind < alone, "{behind} of {alone} pixels");
+    // Beside the mapped part in one window as well.
+    run(&mut window, ViewCommand::ToggleMoveOver);
+    assert!(green(&mut window) > 5000);
+    click(&mut window, "Show second_blank.dynain");
+    let none = green(&mut window);
+    assert!(none < 200, "{none} pixels");
+    run(&mut window, ViewCommand::ToggleMoveOver);
+    // The colours of a quantity are those of one legend.
+    click(&mut window, "Show second_blank.dynain");
+    click(&mut window, "Values");
+    assert!(green(&mut window) < alone / 2);
+    dismiss_toasts(&mut window);
+    for name in ["From file", "Values"] {
+        click(&mut window, name);
+        for size in [[1400.0, 900.0], [1280.0, 720.0], [853.0, 480.0]] {
+            window.set_size(egui::Vec2::from(size));
+            window.run_steps(3);
+            let found = faults(&window);
+            assert!(found.is_empty(), "{size:?}: {}", found.join("\n"));
+        }
+        window.set_size(egui::vec2(1400.0, 900.0));
+        window.run_steps(3);
+    }
 }

@@ -27,7 +27,7 @@ fn run(window: &mut Window, command: impl Into<Command>) {
 }
 
 /// A window with a graphics adapter in which a step takes so many seconds.
-fn drawn(step_secs: f32) -> Window {
+pub(super) fn drawn(step_secs: f32) -> Window {
     let mut window = Harness::builder()
         .with_size([900.0, 600.0])
         .with_step_dt(step_secs)
@@ -41,7 +41,7 @@ fn drawn(step_secs: f32) -> Window {
 }
 
 /// What both windows show as soon as all of it is made.
-fn picture(window: &mut Window) -> Picture {
+pub(super) fn picture(window: &mut Window) -> Picture {
     let begin = Instant::now();
     loop {
         window.run_steps(2);

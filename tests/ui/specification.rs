@@ -9,12 +9,14 @@ use egui::accesskit::{Live, Role as Kind};
 use egui::{Event, Key, Modifiers, Shape, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use shapematch::app::{Action, Command, Settings};
+use shapematch::app::{Action, Command, MoveCommand, Section, Settings, ViewCommand};
+use shapematch::geometry::{Similarity, Vector3};
 use shapematch::jobs::{JobKey, PartSource};
 use shapematch::role::Role;
 use shapematch::samples::{self, SamplePart, SampleSettings};
 use shapematch::ui::Shell;
 
+use super::layout::texts;
 use super::story::{click, finish, window};
 
 type Window = Harness<'static, Shell>;
@@ -96,6 +98,81 @@ fn two_files_dropped_the_wrong_way_round_find_their_places() {
         );
     }
     assert_eq!(part_of(&window, Role::Crash), expected[1]);
+}
+
+#[test]
+fn a_file_that_is_dropped_on_section_4_is_one_more_stamped_file_once_a_pose_stands() {
+    let folder = tempfile::tempdir().unwrap();
+    let [crash, stamped] = files(folder.path());
+    let more = ["second.dynain", "third.dynain"].map(|name| folder.path().join(name));
+    for file in &more {
+        std::fs::copy(&stamped, file).unwrap();
+    }
+    let mut window = window();
+    drop_files(&mut window, &[&stamped, &crash]);
+    finish(&mut window);
+    act(
+        &mut window,
+        vec![ViewCommand::UseSection(Section::Map).into()],
+    );
+    let map = |window: &Window| {
+        let header = window.get_by_role_and_label(Kind::Button, "4 Map");
+        header.rect().center()
+    };
+    let at = map(&window);
+    window.event(Event::PointerMoved(at));
+    window.run_steps(1);
+    let hovered = |window: &mut Window, n: usize| {
+        let files = &mut window.input_mut().hovered_files;
+        *files = vec![egui::HoveredFile::default(); n];
+        window.run_steps(1);
+        let painted = texts(window);
+        let mut said = painted.iter().map(|text| text.text.clone());
+        let said = said.find(|text| text.starts_with("Drop as"));
+        window.input_mut().hovered_files.clear();
+        said
+    };
+    // Without a pose the file is opened as before.
+    assert_ne!(
+        hovered(&mut window, 1).as_deref(),
+        Some("Drop as one more stamped file")
+    );
+    let pose = Similarity {
+        translation: Vector3::new(0.0, 0.0, 1.0),
+        ..Similarity::identity()
+    };
+    let name = "Known pose".to_owned();
+    let set = MoveCommand::SetPose {
+        crash_from_stamped: pose,
+        name,
+    };
+    act(&mut window, vec![set.into()]);
+    let at = map(&window);
+    window.event(Event::PointerMoved(at));
+    window.run_steps(1);
+    for (n, words) in [
+        (1, "Drop as one more stamped file"),
+        (2, "Drop as more stamped files"),
+    ] {
+        assert_eq!(hovered(&mut window, n).as_deref(), Some(words));
+    }
+    drop_files(&mut window, &[&more[0], &more[1]]);
+    finish(&mut window);
+    let rows = window.state().state().stamped_rows();
+    let names: Vec<&str> = rows.iter().map(|row| row.name.as_str()).collect();
+    assert_eq!(names, ["stamped.dynain", "second.dynain", "third.dynain"]);
+    assert_eq!(
+        part_of(&window, Role::Stamped),
+        Some(PartSource::File(stamped.clone())),
+        "the first one stays"
+    );
+    // Over a 3D window it is the part of that window.
+    window.event(Event::PointerMoved(pos2(1200.0, 300.0)));
+    window.run_steps(1);
+    assert_eq!(
+        hovered(&mut window, 1).as_deref(),
+        Some("Drop as the stamped part")
+    );
 }
 
 #[test]

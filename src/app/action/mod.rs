@@ -204,6 +204,8 @@ actions! {
     ShowMapConfidence,
     /// What became of the mapped elements.
     ShowMapStatus,
+    /// Which stamped file gave the values.
+    ShowMapFile,
     /// Colours of mapped less another mapper's result.
     ShowMapOther,
     /// Another quantity of the mapping.

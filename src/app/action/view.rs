@@ -207,6 +207,18 @@ const MAPPING: &[ActionRow] = &[
         command: |state| mapping_picture(state, Some(MapPicture::Status)),
     },
     ActionRow {
+        action: Action::ShowMapFile,
+        label: "Mapping from file",
+        tooltip: "Show which stamped file gave each element its values",
+        keys: Keys::NONE,
+        enabled: |state| {
+            has_mapping(state)?;
+            let is_missing = state.missing_for(ColorBy::MapFile).is_some();
+            require(!is_missing, "Map from several stamped files first.")
+        },
+        command: |state| mapping_picture(state, Some(MapPicture::File)),
+    },
+    ActionRow {
         action: Action::ShowMapOther,
         label: "Mapping against other result",
         tooltip: "Colour the crash part by the mapped value less that of the file it was compared with",

@@ -105,6 +105,20 @@ impl Further {
             is_as_first: self.pose == FurtherPose::AsFirst,
         })
     }
+
+    /// Its own pose on these parts, `Some(None)` if it lies as the first one; `None` while it has none.
+    pub(super) fn place(&self, both: PerRole<&Part>) -> Option<Option<Similarity>> {
+        if self.task(both).is_some() {
+            return None;
+        }
+        match self.pose {
+            FurtherPose::AsFirst => Some(None),
+            FurtherPose::Matched => {
+                let own = self.placing.as_ref()?;
+                Some(Some(own.crash_from_stamped))
+            }
+        }
+    }
 }
 
 impl Document {
@@ -120,16 +134,11 @@ impl Document {
             return Err(Reason("Load both parts first."));
         };
         let pose = |further: &Further| {
-            let is_ready = further.task(both).is_none();
-            let own = further.placing.as_ref().filter(|_| is_ready);
-            match further.pose {
-                FurtherPose::AsFirst if is_ready => Ok(*self.crash_from_stamped()),
-                FurtherPose::Matched if let Some(own) = own => Ok(own.crash_from_stamped),
-                _ => Err(Reason(
-                    "A stamped file has no pose yet: wait for its match, let it lie as the first one, \
-                     or remove it.",
-                )),
-            }
+            let place = further.place(both).ok_or(Reason(
+                "A stamped file has no pose yet: wait for its match, let it lie as the first one, \
+                 or remove it.",
+            ))?;
+            Ok(place.unwrap_or(*self.crash_from_stamped()))
         };
         self.mapping.further.iter().map(pose).collect()
     }

@@ -4,12 +4,14 @@
 mod further;
 mod picture;
 mod probe;
+mod shown_files;
 mod stamped_rows;
 
 pub(super) use further::{FURTHER_WITHOUT_POSE, NewFurther, tell_dropped};
 pub use further::{Further, MappingState, Placing};
 pub use picture::{MapDisplay, MapPicture};
 pub use probe::ProbeReport;
+pub use shown_files::{FileShare, ShownFile};
 pub use stamped_rows::{StampedRow, StampedState};
 
 use std::path::{Path, PathBuf};
@@ -64,6 +66,9 @@ pub struct MapResult {
     /// Another mapper's result for the same elements.
     pub other: Option<Shared<OtherResult>>,
 }
+
+/// Why there is no picture of the files.
+pub(super) const FROM_ONE_FILE: &str = "nothing is mapped from several stamped files";
 
 /// Commands of section 4.
 #[derive(Debug, Clone)]
@@ -293,6 +298,11 @@ impl AppState {
             let result = self.document.current_mapping();
             let has_other = result.is_some_and(|result| result.other.is_some());
             return (!has_other).then_some("the mapping was compared with no other file yet");
+        }
+        if by == ColorBy::MapFile {
+            let result = self.document.current_mapping();
+            let has_several = result.is_some_and(MapResult::has_several_files);
+            return (!has_several).then_some(FROM_ONE_FILE);
         }
         if by.map_picture().is_some() {
             let has_mapping = self.document.current_mapping().is_some();

@@ -23,18 +23,21 @@ pub enum MapPicture {
     Confidence,
     /// What became of the elements.
     Status,
+    /// Which stamped file gave them their values.
+    File,
     /// Mapped less what another mapper's result has.
     Other,
 }
 
 impl MapPicture {
     /// All, in the order of the choice.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Difference,
         Self::Distance,
         Self::Angle,
         Self::Confidence,
         Self::Status,
+        Self::File,
         Self::Other,
     ];
 
@@ -46,6 +49,7 @@ impl MapPicture {
             Self::Angle => "Angle",
             Self::Confidence => "Confidence",
             Self::Status => "Status",
+            Self::File => "From file",
             Self::Other => "Other result",
         }
     }
@@ -58,6 +62,7 @@ impl MapPicture {
             Self::Angle => ColorBy::MapAngle,
             Self::Confidence => ColorBy::MapConfidence,
             Self::Status => ColorBy::MapStatus,
+            Self::File => ColorBy::MapFile,
             Self::Other => ColorBy::MapOther,
         }
     }
@@ -157,11 +162,11 @@ impl AppState {
         Some(chosen.unwrap_or(LayerChoice::usual(value)))
     }
 
-    /// The layer of the stamped part that lies where a layer of the crash part does.
-    pub fn stamped_layer(&self) -> Option<LayerChoice> {
+    /// The layer of a stamped file that lies where a layer of the crash part does; by the file's number.
+    pub fn stamped_layer(&self, file: usize) -> Option<LayerChoice> {
         let layer = self.view.display.mapped.layer?;
         let run = self.document.current_mapping().map(|result| &result.run);
-        let is_flipped = run.is_some_and(|run| run.mapped.senses.first() == Some(&Some(true)));
+        let is_flipped = run.is_some_and(|run| run.mapped.senses.get(file) == Some(&Some(true)));
         Some(if is_flipped {
             layer.turned_over()
         } else {

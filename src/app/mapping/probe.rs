@@ -5,6 +5,7 @@ use super::picture::layered;
 use crate::app::{AppState, ColorBy, Document};
 use crate::geometry::Point3;
 use crate::mapping::Status;
+use crate::pipeline::load::LoadedPart;
 use crate::pipeline::map::Profile;
 use crate::role::Role;
 
@@ -35,45 +36,51 @@ pub struct ProbeReport {
 }
 
 impl Document {
-    /// The element of the current mapping that a shell of a part is, or that took its values from it. The
-    /// stamped part is the first one, which is shown.
-    pub fn mapped_element(&self, role: Role, shell_id: u64) -> Option<usize> {
-        let both = self.both()?;
-        let run = &self.current_mapping()?.run;
-        let id_of = |role: Role, shell: u32| both.get(role).loaded.model.shells[shell as usize].id;
-        match role {
-            Role::Crash => run.shells.iter().position(|&s| id_of(role, s) == shell_id),
-            Role::Stamped => {
-                let shells = run.source_shells.first()?;
-                let own = shells.iter().position(|&s| id_of(role, s) == shell_id)?;
-                let elements = run.mapped.elements.iter();
-                elements.map(|report| report.partner).position(|partner| {
-                    partner.is_some_and(|p| p.source == 0 && p.element as usize == own)
-                })
-            }
-        }
+    /// The element of the current mapping that a shell of the crash part is.
+    pub fn mapped_element(&self, shell_id: u64) -> Option<usize> {
+        let crash = &self.part(Role::Crash)?.loaded.model;
+        let shells = &self.current_mapping()?.run.shells;
+        let mut ids = shells.iter().map(|&shell| crash.shells[shell as usize].id);
+        ids.position(|id| id == shell_id)
+    }
+
+    /// The first element of the current mapping that took its values from a shell of a stamped part.
+    pub fn element_mapped_from(&self, part: &LoadedPart, shell_id: u64) -> Option<usize> {
+        let result = self.current_mapping()?;
+        let first = self.part(Role::Stamped).map(|part| &part.loaded);
+        let mut parts = first.into_iter().chain(&result.further);
+        let number = parts.position(|known| std::ptr::eq(&raw const **known, part))?;
+        let run = &result.run;
+        let shells = run.source_shells.get(number)?;
+        let id_of = |shell: u32| part.model.shells[shell as usize].id;
+        let own = shells.iter().position(|&shell| id_of(shell) == shell_id)?;
+        let elements = run.mapped.elements.iter();
+        elements.map(|report| report.partner).position(|partner| {
+            partner.is_some_and(|p| p.source as usize == number && p.element as usize == own)
+        })
     }
 }
 
 impl AppState {
-    /// Where the probed element lies on the crash part, and the one it took its values from on the
-    /// stamped part, each in its own model. An element of a further stamped file is not shown.
-    pub fn probed_places(&self) -> Vec<(Role, Point3)> {
+    /// Where the probed element lies on the crash part, and the one it took its values from on its
+    /// stamped part, each in its own model, with the part's number among the stamped files.
+    pub fn probed_places(&self) -> Vec<(Role, usize, Point3)> {
         let probed = self.document.mapping.probe;
         let Some((element, result)) = probed.zip(self.document.current_mapping()) else {
             return Vec::new();
         };
         let run = &result.run;
         let own = run.target.mesh.centroids().get(element);
+        let own = own.map(|place| (Role::Crash, 0, *place));
         let report = run.mapped.elements.get(element);
         let theirs = report.and_then(|report| {
-            let partner = report.partner.filter(|partner| partner.source == 0)?;
-            let source = run.sources.get(partner.source as usize)?;
-            source.mesh.centroids().get(partner.element as usize)
+            let partner = report.partner?;
+            let number = partner.source as usize;
+            let source = run.sources.get(number)?;
+            let place = source.mesh.centroids().get(partner.element as usize)?;
+            Some((Role::Stamped, number, *place))
         });
-        let places = [(Role::Crash, own), (Role::Stamped, theirs)];
-        let there = |(role, place): (Role, Option<&Point3>)| Some((role, *place?));
-        places.into_iter().filter_map(there).collect()
+        own.into_iter().chain(theirs).collect()
     }
 
     /// The probed element, if the mapping is still the one it belongs to.
@@ -83,14 +90,13 @@ impl AppState {
         let result = self.document.current_mapping()?;
         let run = &result.run;
         let report = run.mapped.elements.get(element)?;
-        let giver = run.giver(element).and_then(|(number, shell)| {
-            let part = match number.checked_sub(1) {
-                None => &both.stamped.loaded,
-                Some(further) => result.further.get(further)?,
-            };
-            Some((part.model.shells.get(shell)?.id, part.file_name()))
+        let giver = run.giver(element);
+        let stamped_id = giver.and_then(|(number, shell)| {
+            let part = self.document.mapped_file(number)?;
+            Some(part.model.shells.get(shell)?.id)
         });
-        let (stamped_id, stamped_file) = giver.unzip();
+        let stamped_file =
+            giver.and_then(|(number, _)| Some(self.document.mapped_file(number)?.file_name()));
         let quantities = self.mapped_quantities();
         let values = quantities.iter().map(|&by| {
             let shown = self.shown_value(by);
@@ -108,7 +114,7 @@ impl AppState {
             center: run.target.mesh.centroids()[element],
             status: report.status,
             stamped_id,
-            stamped_file: stamped_file.filter(|_| !result.further.is_empty()),
+            stamped_file: stamped_file.filter(|_| result.has_several_files()),
             facts: [
                 report.normal_distance,
                 report.angle_deg,

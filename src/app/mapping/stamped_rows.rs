@@ -20,6 +20,10 @@ pub struct StampedRow {
     pub further: Option<(u64, FurtherPose)>,
     /// What is known of it.
     pub state: StampedState,
+    /// Its number among the stamped files, which its colour follows; `None` for one that is not read.
+    pub number: Option<usize>,
+    /// It is drawn where there is a picture of it.
+    pub is_shown: bool,
     /// The command that takes it from the list; the first one stays.
     pub removed_by: Option<u64>,
 }
@@ -60,6 +64,8 @@ impl AppState {
             path: first.path.clone(),
             further: None,
             state: self.first_state(),
+            number: Some(0),
+            is_shown: !self.is_file_hidden(&first.path),
             removed_by: None,
         }];
         let further = self.document.mapping.further.iter();
@@ -68,6 +74,8 @@ impl AppState {
             path: further.loaded.path.clone(),
             further: Some((further.revision, further.pose)),
             state: self.further_state(further, both),
+            number: self.document.file_number(further.revision),
+            is_shown: !self.is_file_hidden(&further.loaded.path),
             removed_by: Some(further.revision),
         }));
         let unread = |(revision, path, state): (u64, &PathBuf, StampedState)| StampedRow {
@@ -75,6 +83,8 @@ impl AppState {
             path: path.clone(),
             further: None,
             state,
+            number: None,
+            is_shown: true,
             removed_by: Some(revision),
         };
         let MappingState {

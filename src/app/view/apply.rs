@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 
 use super::{BottomTab, ViewCommand, ViewRoom, ViewState};
-use crate::app::{AppState, Document, PartRef};
+use crate::app::{AppState, Document, PartRef, ShownFile};
 use crate::geometry::{Aabb, Camera, Point3, Similarity, Vector3};
+use crate::pipeline::load::LoadedPart;
 use crate::role::Role;
 
 /// Nodes that a camera is fitted to at most; those between them lie within the margin.
@@ -18,6 +19,8 @@ pub(in crate::app) struct Scene<'a> {
     /// The pose the stamped part is drawn at.
     pub pose: Similarity,
     pub selected: &'a BTreeSet<PartRef>,
+    /// The further stamped files that are drawn with the first one.
+    pub further: Vec<ShownFile>,
     /// The right window shows something with the camera of the left one.
     pub is_beside: bool,
 }
@@ -37,6 +40,13 @@ impl ViewState {
             ViewCommand::SetPivot(role, pivot) => *self.pivot.get_mut(role) = pivot,
             ViewCommand::SetFocus(role) => self.focus = role,
             ViewCommand::SetRoom(role, room) => self.set_room(role, room, scene),
+            ViewCommand::ShowFile(file, is_shown) => {
+                if is_shown {
+                    self.hidden_files.remove(&file);
+                } else {
+                    self.hidden_files.insert(file);
+                }
+            }
             ViewCommand::ToggleMoveOver => self.toggle_move_over(scene),
             ViewCommand::SetShown(shown) => self.shown = shown,
             ViewCommand::SetBlinking(is_blinking) => self.is_blinking = is_blinking,
@@ -151,9 +161,12 @@ impl ViewState {
                     Role::Crash => Similarity::identity(),
                     Role::Stamped => scene.pose,
                 };
-                let positions = part.loaded.mesh.positions();
-                let step = positions.len().div_ceil(MAX_FITTED).max(1);
-                points.extend(positions.iter().step_by(step).map(|p| pose.apply(p)));
+                points.extend(spread(&part.loaded, pose));
+            }
+        }
+        if self.shown_in(role).contains(&Role::Stamped) {
+            for file in &scene.further {
+                points.extend(spread(&file.loaded, file.own_pose.unwrap_or(scene.pose)));
             }
         }
         let room = self.room(role, scene);
@@ -262,6 +275,11 @@ impl AppState {
         }
         if role == Role::Stamped || is_over {
             bounds = bounds.union(&self.bounds_of(Role::Stamped));
+            for file in self.shown_further() {
+                let pose = file.own_pose.unwrap_or_else(|| self.shown_pose());
+                let points: Vec<Point3> = spread(&file.loaded, pose).collect();
+                bounds = bounds.union(&Aabb::of_points(&points));
+            }
         }
         bounds
     }
@@ -275,6 +293,16 @@ impl AppState {
             Role::Stamped => moved_box(&part.bounds(), &self.shown_pose()),
         }
     }
+}
+
+/// Points spread over a part, where it is drawn.
+fn spread(part: &LoadedPart, pose: Similarity) -> impl Iterator<Item = Point3> {
+    let positions = part.mesh.positions();
+    let step = positions.len().div_ceil(MAX_FITTED).max(1);
+    positions
+        .iter()
+        .step_by(step)
+        .map(move |point| pose.apply(point))
 }
 
 /// Box around a moved box.

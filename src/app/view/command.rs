@@ -1,5 +1,7 @@
 //! What can happen to cameras, windows and panels.
 
+use std::path::PathBuf;
+
 use super::{BottomTab, Dialog, Display, FreeWindow, Section, ShownGeometry, ViewRoom};
 use crate::geometry::camera::{OrbitStyle, StandardView};
 use crate::geometry::{Camera, Point3};
@@ -32,6 +34,8 @@ pub enum ViewCommand {
     SetRoom(Role, ViewRoom),
     /// The window that keys act on.
     SetFocus(Role),
+    /// Draw a stamped file or not.
+    ShowFile(PathBuf, bool),
     /// Move over or back.
     ToggleMoveOver,
     /// Reduced or detailed.

@@ -58,6 +58,8 @@ pub enum ColorBy {
     MapConfidence,
     /// What became of the elements of the mapping.
     MapStatus,
+    /// Which stamped file gave the mapped elements their values.
+    MapFile,
     /// Mapped less what another mapper's result has.
     MapOther,
 }
@@ -77,7 +79,7 @@ impl From<FormingValue> for ColorBy {
 
 impl ColorBy {
     /// All, in the order of the menu.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Role,
         Self::Part,
         Self::Thickness,
@@ -96,6 +98,7 @@ impl ColorBy {
         Self::MapAngle,
         Self::MapConfidence,
         Self::MapStatus,
+        Self::MapFile,
         Self::MapOther,
     ];
 
@@ -144,6 +147,7 @@ impl ColorBy {
             Self::MapAngle => "Mapping: angle",
             Self::MapConfidence => "Mapping: confidence",
             Self::MapStatus => "Mapping: status",
+            Self::MapFile => "Mapping: stamped file",
             Self::MapOther => "Mapping: other result",
         }
     }

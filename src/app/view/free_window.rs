@@ -109,6 +109,8 @@ impl AppState {
         let chosen = self.shown_colors();
         match self.free_window().filter(|_| window == Role::Stamped) {
             Some(FreeWindow::Deviation) => ColorBy::Deviation,
+            // Which file is which is told by the files themselves.
+            _ if chosen == ColorBy::MapFile => chosen,
             // Beside a picture of the mapping the stamped part shows the quantity itself.
             _ if window == Role::Stamped && chosen.map_picture().is_some() => self.map_quantity(),
             _ => chosen,
@@ -125,6 +127,9 @@ impl AppState {
             (Some(_), None) => self.view.display.mapped.quantity,
             (Some(MapPicture::Other), Some(result)) if result.other.is_none() => {
                 ColorBy::MapDifference
+            }
+            (Some(MapPicture::File), Some(result)) if !result.has_several_files() => {
+                self.view.display.mapped.quantity
             }
             (Some(_), Some(_)) => chosen,
         }

@@ -7,6 +7,9 @@ mod free_window;
 mod sections;
 mod status;
 
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
 pub use command::ViewCommand;
 pub use display::{BottomTab, ColorBy, Dialog, Display, ShownGeometry};
 pub use free_window::FreeWindow;
@@ -50,6 +53,8 @@ pub struct ViewState {
     pub is_blinking: bool,
     /// Plain choices about the picture.
     pub display: Display,
+    /// Stamped files that are not drawn.
+    pub hidden_files: BTreeSet<PathBuf>,
     /// The tab of the bottom pane.
     pub tab: BottomTab,
     /// Only the 3D windows are shown.
@@ -81,6 +86,7 @@ impl Default for ViewState {
             shown: ShownGeometry::default(),
             is_blinking: false,
             display: Display::default(),
+            hidden_files: BTreeSet::new(),
             tab: BottomTab::default(),
             is_graphics_only: false,
             is_narrow: false,

@@ -24,6 +24,19 @@ pub struct ElementLists {
     pub doubtful: Vec<DoubtfulElement>,
     /// The first element of each status there is, by its place in the run.
     pub first_of: Vec<(Status, usize)>,
+    /// What each stamped part gave, in their order.
+    pub givers: Vec<GiverShare>,
+}
+
+/// The elements that took their values from one stamped part.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GiverShare {
+    /// How many elements.
+    pub n_elements: usize,
+    /// Their share of the area.
+    pub area_share: f64,
+    /// The first of them, by its place in the run.
+    pub first: Option<usize>,
 }
 
 /// An element of the crash part that carries no values.
@@ -98,5 +111,23 @@ pub fn element_lists(run: &MapRun, crash: &LoadedPart) -> ElementLists {
             })
             .collect(),
         first_of,
+        givers: givers(run),
     }
+}
+
+/// What each stamped part gave. O(elements).
+fn givers(run: &MapRun) -> Vec<GiverShare> {
+    let mut givers = vec![GiverShare::default(); run.sources.len()];
+    let areas = run.target.mesh.areas();
+    let whole: f64 = areas.iter().sum();
+    for (element, area) in areas.iter().enumerate() {
+        let Some(part) = run.values_from(element) else {
+            continue;
+        };
+        let giver = &mut givers[part];
+        giver.n_elements += 1;
+        giver.area_share += area / whole;
+        giver.first = giver.first.or(Some(element));
+    }
+    givers
 }

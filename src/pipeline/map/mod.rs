@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 pub use compare::{ComparisonRecord, DifferenceRecord, OtherResult, compare_with};
 pub use convert::TargetLayers;
 pub use default_thickness::DefaultThickness;
-pub use lists::{DoubtfulElement, ElementLists, UnmappedElement, element_lists};
+pub use lists::{DoubtfulElement, ElementLists, GiverShare, UnmappedElement, element_lists};
 pub use output::{MapFiles, MapOutput, WriteKind, deck_comments, elements_path, write_mapping};
 pub use place::{FurtherPose, place, placing_recipe, pose_warning};
 pub use probe::{ProbeRecord, ProbedValue, probe_records};
@@ -120,6 +120,13 @@ impl MapRun {
         let shells = self.source_shells.get(partner.source as usize)?;
         let shell = *shells.get(partner.element as usize)?;
         Some((partner.source as usize, shell as usize))
+    }
+
+    /// The stamped part whose values an element carries; `None` if it carries none.
+    pub fn values_from(&self, element: usize) -> Option<usize> {
+        let report = self.mapped.elements.get(element)?;
+        let partner = report.partner.filter(|_| report.status.has_values())?;
+        Some(partner.source as usize)
     }
 
     /// Mapped thickness of an element; NaN if it has none.

@@ -2,6 +2,7 @@
 
 use egui::{Align, CursorIcon, Layout, Rect, RichText, Sense, Shape, Stroke, Ui, UiBuilder, vec2};
 
+use super::drop::{self, DropTarget};
 use crate::app::{
     Action, AppState, Command, FileCommand, FreeWindow, PictureWindows, Settings, age_text,
 };
@@ -95,7 +96,7 @@ pub fn graphics_ui(
         data.insert_temp(egui::Id::unique("graphics place"), Place { crash, stamped });
     });
     ui.advance_cursor_after_rect(room);
-    drop_hint(ui, crash, stamped);
+    drop_hint(ui, state, crash, stamped);
 }
 
 /// The line between the windows can be dragged; a double click puts it back.
@@ -391,9 +392,10 @@ fn centered(ui: &mut Ui, rect: Rect, size: egui::Vec2, add: impl FnOnce(&mut Ui)
 }
 
 /// While a file hangs over the window: where it would go.
-fn drop_hint(ui: &Ui, crash: Rect, stamped: Rect) {
-    let n_files = ui.input(|input| input.raw.hovered_files.len());
-    if n_files == 0 {
+fn drop_hint(ui: &Ui, state: &AppState, crash: Rect, stamped: Rect) {
+    let n_files = drop::n_hovered(ui);
+    let target = DropTarget::under_pointer(ui.ctx(), state, n_files);
+    if n_files == 0 || target == DropTarget::StampedFiles {
         return;
     }
     let palette = Palette::of(ui);
@@ -406,16 +408,7 @@ fn drop_hint(ui: &Ui, crash: Rect, stamped: Rect) {
                 1 => format!("Drop as the {} part", role.word()),
                 _ => "Drop: the content tells which is which".to_owned(),
             };
-            ui.painter()
-                .rect_filled(rect, 0.0, color.gamma_multiply(0.12));
-            let stroke = Stroke::new(2.0, color);
-            let painter = ui.painter();
-            painter.rect_stroke(rect.shrink(2.0), 4.0, stroke, egui::StrokeKind::Inside);
-            let font = egui::FontId::proportional(18.0);
-            let galley = painter.layout(text, font, palette.text, rect.width() - 48.0);
-            let plate = Rect::from_center_size(rect.center(), galley.size() + vec2(32.0, 20.0));
-            painter.rect_filled(plate, 8.0, palette.card);
-            painter.galley(plate.min + vec2(16.0, 10.0), galley, palette.text);
+            drop::hint(ui, rect, color, text);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use egui::{Align, Layout, Ui, vec2};
 
+use super::drop;
 use super::section::section_ui;
 use super::setting_form::{Gear, setting_ui};
 use super::stamped_files::{add_stamped_ui, stamped_files_ui};
@@ -53,6 +54,7 @@ pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
         },
     );
+    drop::section_hint(ui, state);
 }
 
 fn summary(state: &AppState) -> String {

@@ -1,6 +1,7 @@
 //! The panels of the window and how they share its space.
 
 pub mod bottom;
+pub mod drop;
 pub mod explain;
 pub mod graphics;
 pub mod load;

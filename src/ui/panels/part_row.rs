@@ -10,7 +10,7 @@ use crate::formats::PartSummary;
 use crate::role::Role;
 use crate::text::whole_percent;
 use crate::ui::theme::{Palette, ROW, color};
-use crate::ui::widgets::{focus_ring, grouped, paint_role_mark};
+use crate::ui::widgets::{eye, focus_ring, grouped, paint_role_mark};
 
 /// Space between two columns.
 const GAP: f32 = 6.0;
@@ -348,38 +348,9 @@ fn part_color(ui: &Ui, row: &Row<'_>, state: &AppState) -> Color32 {
 
 /// An eye that is open or struck out.
 fn eye_ui(ui: &Ui, rect: Rect, row: &Row<'_>, name: &str) -> Response {
-    let palette = Palette::of(ui);
     let is_visible = row.part.is_visible(row.summary.id);
     let response = ui.interact(rect, row.widget().with("eye"), Sense::click());
-    focus_ring(ui, rect, &response);
-    let color = if is_visible {
-        palette.text
-    } else {
-        palette.secondary
-    };
-    let stroke = Stroke::new(1.2, color);
-    let c = rect.center();
-    let lid = |up: f32| {
-        let points = [
-            c + vec2(-6.5, 0.0),
-            c + vec2(-3.0, up),
-            c + vec2(3.0, up),
-            c + vec2(6.5, 0.0),
-        ];
-        let clear = Color32::TRANSPARENT;
-        egui::epaint::CubicBezierShape::from_points_stroke(points, false, clear, stroke)
-    };
-    ui.painter().add(lid(-5.5));
-    ui.painter().add(lid(5.5));
-    if is_visible {
-        ui.painter().circle_filled(c, 2.2, color);
-    } else {
-        let line = [c + vec2(-6.0, 5.0), c + vec2(6.0, -5.0)];
-        ui.painter().line_segment(line, stroke);
-    }
-    let label = format!("Show {name}");
-    response
-        .widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, is_visible, &label));
+    eye(ui, rect, &response, (is_visible, &format!("Show {name}")));
     response.on_hover_text("Show or hide. With Ctrl: show only this")
 }
 

@@ -21,6 +21,8 @@ pub fn section_ui(
     let mut fold = Fold::read(ui);
     let is_open = fold.shown[section.index()];
     let opened = egui::Id::unique("section that was opened");
+    let top = ui.cursor().top();
+    keep_place(ui, section, top);
     if header_ui(ui, state, section, (is_open, summary)) {
         commands.push(ViewCommand::OpenSection(section, !is_open).into());
         ui.data_mut(|data| data.insert_temp(opened, (section.index(), !is_open)));
@@ -43,6 +45,7 @@ pub fn section_ui(
     body(&mut inner, commands);
     let height = inner.min_rect().height() + margin.sum().y;
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
+    keep_place(ui, section, top);
     if ui.data(|data| data.get_temp(opened)) == Some((section.index(), true)) {
         ui.data_mut(|data| data.remove::<(usize, bool)>(opened));
         if rect.bottom() > ui.clip_rect().bottom() {
@@ -60,6 +63,24 @@ pub fn section_ui(
     if (is_pressed || has_unfolded) && state.view.sections.in_use() != section {
         commands.push(ViewCommand::UseSection(section).into());
     }
+}
+
+/// Where a section is, header and body, as far as it is seen; `None` while the column is away.
+pub fn place_of(ctx: &egui::Context, section: Section) -> Option<Rect> {
+    let (drawn, place) = ctx.data(|data| data.get_temp::<(u64, Rect)>(place_id(section)))?;
+    let is_there = ctx.cumulative_pass_nr() <= drawn + 1;
+    Some(place).filter(|place| is_there && place.is_positive())
+}
+
+fn keep_place(ui: &Ui, section: Section, top: f32) {
+    let (x, bottom) = (ui.max_rect().x_range(), ui.cursor().top().max(top + TALL));
+    let place = Rect::from_x_y_ranges(x, top..=bottom).intersect(ui.clip_rect());
+    let drawn = ui.ctx().cumulative_pass_nr();
+    ui.data_mut(|data| data.insert_temp(place_id(section), (drawn, place)));
+}
+
+fn place_id(section: Section) -> egui::Id {
+    egui::Id::unique(("place of a section", section.title()))
 }
 
 /// A body that grows by so much was unfolded by someone, with the pointer or without.

@@ -1,13 +1,18 @@
 //! The stamped files that a mapping takes its values from: each with its verdict and its pose.
 
-use egui::{Align, Button, Layout, RichText, Ui, vec2};
+use egui::{Align, Button, Layout, Rect, RichText, Sense, Stroke, Ui, Vec2, vec2};
 
-use crate::app::{Action, AppState, Command, FurtherPose, MapCommand, StampedRow, StampedState};
+use crate::app::{
+    Action, AppState, Command, FurtherPose, MapCommand, StampedRow, StampedState, ViewCommand,
+};
+use crate::colormap::{ColorScale, Pattern};
 use crate::pipeline::map::pose_warning;
 use crate::role::Role;
 use crate::text::sentence;
-use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::{Look, action_button, caption, icon_button, role_mark, verdict_color};
+use crate::ui::theme::{Palette, ROW, color, ink};
+use crate::ui::widgets::{
+    Look, action_button, caption, eye, icon_button, role_mark, verdict_color,
+};
 
 /// The list of stamped files, and the way to one more.
 pub fn stamped_files_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -39,7 +44,7 @@ pub fn add_stamped_ui(ui: &mut Ui, state: &AppState, label: &str, commands: &mut
 fn row_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 5.0;
-        role_mark(ui, Role::Stamped);
+        sight_ui(ui, row, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(revision) = row.removed_by {
                 let name = match row.state {
@@ -59,6 +64,42 @@ fn row_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
             });
         });
     });
+}
+
+/// The switch that shows a file in 3D, and its colour there; the mark of a stamped part while it is not read.
+fn sight_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
+    let Some(number) = row.number else {
+        role_mark(ui, Role::Stamped);
+        return;
+    };
+    let (place, switch) = ui.allocate_exact_size(vec2(16.0, ROW), Sense::click());
+    eye(
+        ui,
+        place,
+        &switch,
+        (row.is_shown, &format!("Show {}", row.name)),
+    );
+    if switch
+        .on_hover_text("Show or hide this file in 3D")
+        .clicked()
+    {
+        commands.push(ViewCommand::ShowFile(row.path.clone(), !row.is_shown).into());
+    }
+    let (place, swatch) = ui.allocate_exact_size(vec2(12.0, ROW), Sense::hover());
+    let square = Rect::from_center_size(place.center(), Vec2::splat(11.0));
+    file_swatch(ui.painter(), square, number);
+    swatch
+        .on_hover_text("Its colour in the picture From file, and where the colours tell the parts");
+}
+
+/// Colour and pattern of a stamped file.
+fn file_swatch(painter: &egui::Painter, rect: Rect, number: usize) {
+    let (scale, value) = (ColorScale::files(), ColorScale::file_value(number));
+    painter.rect_filled(rect, 2.0, color(scale.color(value)));
+    if scale.pattern(value) != Pattern::Plain {
+        let line = [rect.left_bottom(), rect.right_top()];
+        painter.line_segment(line, Stroke::new(1.4, ink(170)));
+    }
 }
 
 /// Where the pose of a further file comes from; while it is matched, the way to end that.

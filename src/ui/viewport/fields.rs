@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::map_fields;
 use super::meshes::{MeshKey, ShownMesh};
+use super::visible_parts::PartInstance;
 use crate::app::{AppState, ColorBy, MapPicture};
 use crate::assess::Assessment;
 use crate::colormap::{ColorMap, ColorScale};
@@ -102,6 +103,8 @@ pub(super) struct FieldStore {
     failed: Vec<FieldKey>,
     /// Ranges of what each window shows, so that both have one scale.
     ranges: PerRole<Option<(FieldKind, [f64; 2])>>,
+    /// How many parts each window shows.
+    n_shown: PerRole<usize>,
 }
 
 impl FieldStore {
@@ -111,6 +114,7 @@ impl FieldStore {
             ready: Vec::new(),
             failed: Vec::new(),
             ranges: PerRole::default(),
+            n_shown: PerRole::default(),
         }
     }
 
@@ -119,17 +123,19 @@ impl FieldStore {
         &mut self,
         window: Role,
         state: &AppState,
-        meshes: &[(Role, Arc<ShownMesh>)],
+        drawn: &[(Arc<ShownMesh>, PartInstance)],
         wake: &egui::Context,
     ) -> Vec<Option<FieldLook>> {
         let kind = FieldKind::of(state.color_by(window));
         if let Some(kind @ (FieldKind::Deviation | FieldKind::Overlap)) = kind {
-            let of = |(role, mesh): &(Role, Arc<ShownMesh>)| compared(kind, state, *role, mesh);
-            return meshes.iter().map(of).collect();
+            let of = |(mesh, instance): &(Arc<ShownMesh>, PartInstance)| {
+                compared(kind, state, instance.role, mesh)
+            };
+            return drawn.iter().map(of).collect();
         }
-        let orders: Vec<_> = meshes
+        let orders: Vec<_> = drawn
             .iter()
-            .map(|(role, mesh)| Order::new(kind?, state, *role, mesh))
+            .map(|(mesh, instance)| Order::new(kind?, state, instance, mesh))
             .collect();
         let is_missing = |order: &&Order| {
             let is_ready = self.ready.iter().any(|(key, _)| *key == order.key);
@@ -147,7 +153,9 @@ impl FieldStore {
         let found: Vec<_> = found.collect();
         let ranges = found.iter().flatten().map(|field| field.range);
         *self.ranges.get_mut(window) = kind.zip(ranges.reduce(union));
-        let n = self.ready.len().saturating_sub(KEPT);
+        *self.n_shown.get_mut(window) = drawn.len();
+        let n_shown = self.n_shown.crash + self.n_shown.stamped;
+        let n = self.ready.len().saturating_sub(KEPT + n_shown);
         self.ready.drain(..n);
         let scale = self.scale(window, state);
         let look = |field: Arc<Field>| {
@@ -173,6 +181,7 @@ impl FieldStore {
             FieldKind::Deviation => return Some(coloring.deviation_scale(state.comparison()?)),
             FieldKind::Overlap => return Some(ColorScale::new(ColorMap::Classes, 0.0, 1.0)),
             FieldKind::Map(MapPicture::Status) => return Some(ColorScale::statuses()),
+            FieldKind::Map(MapPicture::File) => return Some(ColorScale::files()),
             FieldKind::Map(MapPicture::Confidence) => {
                 return Some(coloring.on_scale(ColorScale::new(ColorMap::Viridis, 0.0, 1.0)));
             }
@@ -216,9 +225,18 @@ impl FieldStore {
 }
 
 /// True if a part is to be coloured by a field in a window.
-pub(super) fn is_wanted(state: &AppState, window: Role, role: Role) -> bool {
+pub(super) fn is_wanted(state: &AppState, window: Role, instance: &PartInstance) -> bool {
     let display = &state.view.display;
-    match FieldKind::of(state.color_by(window)) {
+    let (role, kind) = (instance.role, FieldKind::of(state.color_by(window)));
+    if let Some(file) = &instance.further {
+        return match kind {
+            Some(FieldKind::Forming(value)) => {
+                has_forming_value(&file.loaded, value, state.flat_thickness()).is_ok()
+            }
+            kind => kind == Some(FieldKind::Thickness),
+        };
+    }
+    match kind {
         Some(FieldKind::Deviation) => *display.coloring.on.get(role) && has_both(state),
         Some(FieldKind::Overlap) => has_both(state),
         Some(FieldKind::Map(MapPicture::Other)) => {
@@ -239,6 +257,11 @@ pub(super) fn is_wanted(state: &AppState, window: Role, role: Role) -> bool {
         Some(_) => true,
         None => false,
     }
+}
+
+/// True for what a part carries by itself.
+fn is_of_part(kind: FieldKind) -> bool {
+    matches!(kind, FieldKind::Thickness | FieldKind::Forming(_))
 }
 
 fn has_both(state: &AppState) -> bool {
@@ -288,7 +311,16 @@ struct Order {
 type Stated = (Arc<Assessment>, Similarity);
 
 impl Order {
-    fn new(kind: FieldKind, state: &AppState, role: Role, mesh: &Arc<ShownMesh>) -> Option<Self> {
+    fn new(
+        kind: FieldKind,
+        state: &AppState,
+        instance: &PartInstance,
+        mesh: &Arc<ShownMesh>,
+    ) -> Option<Self> {
+        let role = instance.role;
+        if instance.further.is_some() && !is_of_part(kind) {
+            return None;
+        }
         let part = state.document.part(role)?;
         let other = match kind {
             FieldKind::ReductionError => {
@@ -320,7 +352,7 @@ impl Order {
         let shown = by.map(|by| ShownValue {
             layer: match role {
                 Role::Crash => state.view.display.mapped.layer,
-                Role::Stamped => state.stamped_layer(),
+                Role::Stamped => state.stamped_layer(instance.number()),
             },
             ..state.shown_value(by)
         });

@@ -3,6 +3,7 @@
 
 use super::meshes::ShownMesh;
 use crate::app::MapPicture;
+use crate::colormap::ColorScale;
 use crate::pipeline::map::{MapRun, OtherResult, ShownValue};
 
 /// The numbers of a picture at the corners of a mesh, three for each triangle; NaN where there is none.
@@ -40,6 +41,10 @@ fn number(
         MapPicture::Confidence if report.status.has_values() => report.confidence,
         MapPicture::Confidence => f64::NAN,
         MapPicture::Status => f64::from(report.status as u8),
+        MapPicture::File => {
+            let part = run.values_from(element);
+            part.map_or(f64::NAN, ColorScale::file_value)
+        }
         MapPicture::Other => {
             other.map_or(f64::NAN, |other| run.difference_to(other, element, value))
         }

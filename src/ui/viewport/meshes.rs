@@ -7,7 +7,7 @@ use crate::geometry::{Point3, TriMesh};
 use crate::jobs::MeasuredLevel;
 use crate::pipeline::load::LoadedPart;
 use crate::render::{MeshInput, RenderMesh};
-use crate::role::Role;
+use crate::role::{PerRole, Role};
 use crate::search::{Bvh, RayHit};
 use crate::ui::background::{Background, Task};
 
@@ -29,6 +29,11 @@ impl MeshSource {
             part: part.loaded.to_arc(),
             level: level.map(|level| level.to_arc()),
         }
+    }
+
+    /// The full mesh of what was read.
+    pub fn full(part: Arc<LoadedPart>) -> Self {
+        Self { part, level: None }
     }
 
     pub fn mesh(&self) -> &Arc<TriMesh> {
@@ -154,6 +159,8 @@ pub(super) struct MeshStore {
     /// Most recently used last.
     ready: Vec<Arc<ShownMesh>>,
     failed: Vec<MeshKey>,
+    /// How many each window shows.
+    n_shown: PerRole<usize>,
 }
 
 impl MeshStore {
@@ -162,6 +169,7 @@ impl MeshStore {
             background: Background::new("meshes"),
             ready: Vec::new(),
             failed: Vec::new(),
+            n_shown: PerRole::default(),
         }
     }
 
@@ -189,6 +197,7 @@ impl MeshStore {
         }
         let found = sources.iter().map(|source| self.take(source.key()));
         let found = found.collect();
+        *self.n_shown.get_mut(role) = sources.len();
         self.forget();
         found
     }
@@ -211,7 +220,8 @@ impl MeshStore {
     }
 
     fn forget(&mut self) {
-        let n = self.ready.len().saturating_sub(KEPT);
+        let n_shown = self.n_shown.crash + self.n_shown.stamped;
+        let n = self.ready.len().saturating_sub(KEPT + n_shown);
         self.ready.drain(..n);
     }
 }

@@ -32,7 +32,7 @@ use crate::ui::theme::Look;
 use fields::{FieldKind, FieldStore};
 use frame::{FrameContext, ViewFrame};
 use gpu::{Gpu, ViewCallback};
-use meshes::{MeshSource, MeshStore, ShownMesh};
+use meshes::{MeshStore, ShownMesh};
 use motion::{Crossing, SmoothPose};
 pub use overlay::free_choice;
 use picture::{Layer, Picture};
@@ -211,39 +211,36 @@ impl Viewports {
     fn picture_of(&mut self, ui: &Ui, view: &ViewFrame, state: &AppState, look: &Look) -> Picture {
         let instances: Vec<_> = visible_parts::visible_parts(state, view)
             .into_iter()
-            .filter_map(|instance| Some((state.document.part(instance.role)?, instance)))
+            .filter_map(|instance| Some((instance.source(state)?, instance)))
             .collect();
-        let sources: Vec<_> = instances
-            .iter()
-            .map(|(part, instance)| MeshSource::of(part, instance.is_detailed))
-            .collect();
+        let sources: Vec<_> = instances.iter().map(|(source, _)| source.clone()).collect();
         let ready = self.meshes.get(view.window, &sources, ui.ctx());
         let shown = &mut self.windows.get_mut(view.window).shown;
         let drawn = ready
             .into_iter()
             .zip(instances)
-            .filter_map(|(mesh, (part, instance))| {
+            .filter_map(|(mesh, (source, instance))| {
+                if instance.further.is_some() {
+                    return Some((mesh?, instance));
+                }
                 let last = shown.get_mut(instance.role);
                 if mesh.is_some() {
                     last.clone_from(&mesh);
                 }
-                let loaded = part.loaded.to_arc();
-                let is_same_part = |mesh: &&Arc<ShownMesh>| Arc::ptr_eq(&mesh.source.part, &loaded);
+                let is_same_part =
+                    |mesh: &&Arc<ShownMesh>| Arc::ptr_eq(&mesh.source.part, &source.part);
                 let mesh = mesh.or_else(|| last.as_ref().filter(is_same_part).cloned())?;
                 Some((mesh, instance))
             });
         let drawn: Vec<_> = drawn.collect();
-        let meshes: Vec<_> = drawn
-            .iter()
-            .map(|(mesh, instance)| (instance.role, Arc::clone(mesh)))
-            .collect();
         let placed: Vec<_> = drawn
             .iter()
+            .filter(|(_, instance)| instance.further.is_none())
             .map(|(mesh, instance)| (instance.role, Arc::clone(mesh), instance.world_from_part))
             .collect();
         self.sections.update(view.window, state, &placed, ui.ctx());
         let cuts = self.sections.cuts(state);
-        let fields = self.fields.get(view.window, state, &meshes, ui.ctx());
+        let fields = self.fields.get(view.window, state, &drawn, ui.ctx());
         let layers = drawn
             .into_iter()
             .zip(fields)
@@ -251,7 +248,7 @@ impl Viewports {
                 role: instance.role,
                 mesh,
                 field,
-                wants_field: fields::is_wanted(state, view.window, instance.role),
+                wants_field: fields::is_wanted(state, view.window, &instance),
                 instance,
             });
         let layers = layers.collect();

@@ -6,7 +6,8 @@ use super::frame::ViewFrame;
 use super::meshes::ShownMesh;
 use super::sections::{self, Cut};
 use super::visible_parts::{self, PartInstance};
-use crate::app::{AppState, PartRef};
+use crate::app::{AppState, ColorBy, PartRef, ShownFile};
+use crate::colormap::{ColorScale, Rgb};
 use crate::geometry::camera::{ScreenSize, ViewRay};
 use crate::geometry::{Aabb, Camera, Plane, Point3, Similarity, Vector3};
 use crate::render::{Drawable, FieldLook, PartLook, Scene, Section, Sheet};
@@ -17,6 +18,8 @@ use crate::ui::theme::Look;
 /// the chord heights of two meshes of one curved sheet.
 const PUSH_BACK_PIXELS: f32 = 0.5;
 const PUSH_BACK_ELEMENTS: f64 = 0.02;
+/// Further stamped files lie so far between the first one and the crash part.
+const FURTHER_BACK: f64 = 0.5;
 /// Shares of the thickness and of the element size within which sheets coincide.
 const COINCIDENT_THICKNESS: f64 = 0.5;
 const COINCIDENT_ELEMENTS: f64 = 0.04;
@@ -69,6 +72,13 @@ pub(super) struct Layer {
     pub instance: PartInstance,
 }
 
+impl Layer {
+    /// True for a further stamped file.
+    fn is_further(&self) -> bool {
+        self.instance.further.is_some()
+    }
+}
+
 /// What lies under the cursor.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Hit {
@@ -83,6 +93,8 @@ pub(super) struct Hit {
     /// The nearest corner, and its number in the deck if it is a node.
     pub node: Point3,
     pub node_id: Option<u64>,
+    /// The further stamped file it belongs to.
+    pub further: Option<ShownFile>,
     /// Shown value at the hit.
     pub value: Option<f64>,
 }
@@ -133,7 +145,7 @@ impl Picture {
         };
         let frame = plane.rectangle(&self.bounds);
         let mut overlay = sections::frame(look, &frame);
-        for layer in &self.layers {
+        for layer in self.layers.iter().filter(|layer| !layer.is_further()) {
             if let Some(cut) = cuts.get(layer.role) {
                 let color = *look.roles.get(layer.role);
                 overlay.polylines.extend(sections::outline(
@@ -161,8 +173,7 @@ impl Picture {
 
     /// Where a point of a part's own frame is drawn; `None` if the part is not in this window.
     pub fn world_of(&self, role: Role, point: &Point3) -> Option<Point3> {
-        let layer = self.layers.iter().find(|layer| layer.role == role)?;
-        Some(layer.instance.world_from_part.apply(point) + layer.instance.offset)
+        Some(self.place_of(role)?.to_window(point))
     }
 
     /// The parts that are drawn, each once, crash first.
@@ -173,7 +184,13 @@ impl Picture {
 
     /// Where a part lies in this window, if it is drawn.
     pub fn place_of(&self, role: Role) -> Option<Place> {
-        let layer = self.layers.iter().find(|layer| layer.role == role)?;
+        self.place_of_file(role, 0)
+    }
+
+    /// Where the crash part or a stamped file lies in this window, if it is drawn.
+    pub fn place_of_file(&self, role: Role, number: usize) -> Option<Place> {
+        let is_it = |layer: &&Layer| layer.role == role && layer.instance.number() == number;
+        let layer = self.layers.iter().find(is_it)?;
         Some(Place {
             window_from_part: layer.instance.world_from_part,
             offset: layer.instance.offset,
@@ -191,7 +208,7 @@ impl Picture {
         self.hit_of(None, camera, pixel, screen)
     }
 
-    /// [`Picture::hit`] on one part, whatever lies before it, or on all.
+    /// [`Picture::hit`] on the crash part or the first stamped one, whatever lies before it, or on all.
     pub fn hit_of(
         &self,
         only: Option<Role>,
@@ -206,7 +223,7 @@ impl Picture {
             .map(|share| pixel[0] < f64::from(share) * screen.width);
         let layers = self.layers.iter().zip(&self.scene.drawables);
         let hits = layers
-            .filter(|(layer, _)| only.is_none_or(|role| layer.role == role))
+            .filter(|(layer, _)| only.is_none_or(|role| layer.role == role && !layer.is_further()))
             .filter(|(_, drawable)| drawable.opacity > PICKED_OPACITY)
             .filter(|(_, drawable)| is_on_side(drawable.wipe, is_left))
             .filter_map(|(layer, drawable)| {
@@ -257,7 +274,14 @@ fn drawable(state: &AppState, view: &ViewFrame, look: &Look, layer: &Layer) -> D
     } else {
         Role::Crash
     };
-    let (push_back, push_back_length) = if role == behind {
+    let (push_back, push_back_length) = if layer.is_further() {
+        // Where stamped files overlap, the first one is seen.
+        let first = state.document.part(role);
+        let element = first.map_or(0.0, |part| part.facts.edge_length);
+        let share = FURTHER_BACK;
+        let length = PUSH_BACK_ELEMENTS * element;
+        (share as f32 * PUSH_BACK_PIXELS, share * length)
+    } else if role == behind {
         let part = state.document.part(role);
         let element = part.map_or(0.0, |part| part.facts.edge_length);
         (PUSH_BACK_PIXELS, PUSH_BACK_ELEMENTS * element)
@@ -266,10 +290,10 @@ fn drawable(state: &AppState, view: &ViewFrame, look: &Look, layer: &Layer) -> D
     };
     let color = match layer.instance.is_ghost {
         true => look.ghost(role),
-        false => *look.surfaces.get(role),
+        false => surface_color(state, view, look, layer),
     };
     let part = state.document.part(role);
-    let part = part.filter(|_| !layer.instance.is_ghost);
+    let part = part.filter(|_| !layer.instance.is_ghost && !layer.is_further());
     let parts = part.map(|part| Arc::from(visible_parts::part_looks(state, part, role, look)));
     Drawable {
         world_from_mesh: layer.instance.world_from_part,
@@ -286,6 +310,26 @@ fn drawable(state: &AppState, view: &ViewFrame, look: &Look, layer: &Layer) -> D
             Role::Stamped => Sheet::Second,
         }),
         ..Drawable::new(Arc::clone(&layer.mesh.drawn), color)
+    }
+}
+
+/// Colour of a part where no field colours it: a stamped file has its own while files are told apart, and a
+/// further one is grey beside colours that say something else.
+fn surface_color(state: &AppState, view: &ViewFrame, look: &Look, layer: &Layer) -> Rgb {
+    let role = layer.role;
+    let by = state.color_by(view.window);
+    let is_stamped = role == Role::Stamped;
+    let is_told = match by {
+        ColorBy::MapFile => is_stamped,
+        ColorBy::Role | ColorBy::Part => layer.is_further(),
+        _ if layer.is_further() => return look.ghost(role),
+        _ => false,
+    };
+    if is_told {
+        let value = ColorScale::file_value(layer.instance.number());
+        ColorScale::files().color(value)
+    } else {
+        *look.surfaces.get(role)
     }
 }
 
@@ -317,10 +361,12 @@ fn hit_layer(
                 role: layer.role,
                 in_part: hit.point,
                 element: element.flatten(),
-                part: part.map(|id| PartRef {
+                // Parts that are chosen and hidden are those of the two decks.
+                part: part.filter(|_| !layer.is_further()).map(|id| PartRef {
                     role: layer.role,
                     id,
                 }),
+                further: layer.instance.further.clone(),
                 node: pose.apply(&node),
                 node_id,
                 value: value_at(layer, &hit),

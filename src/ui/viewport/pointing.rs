@@ -7,6 +7,7 @@ use super::picture::Hit;
 use crate::app::{
     BottomTab, ColorBy, Command, InspectCommand, MapCommand, PartCommand, PartRef, ViewCommand,
 };
+use crate::role::Role;
 
 /// What a window remembers about the pointer.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -61,7 +62,7 @@ impl Pointing {
             commands.push(PartCommand::Select(part).into());
             commands.push(ViewCommand::Focus(frame.camera_role()).into());
         } else if frame.response.clicked()
-            && let Some(hit) = hit.filter(|hit| pins(ui, frame, hit))
+            && let Some(hit) = hit.filter(|hit| hit.further.is_none() && pins(ui, frame, hit))
         {
             commands.push(InspectCommand::Pin(hit.role, hit.in_part).into());
         } else if frame.response.clicked()
@@ -102,6 +103,13 @@ impl Pointing {
 
     fn menu(&self, ui: &mut Ui, frame: &FrameContext<'_>, commands: &mut Vec<Command>) {
         let role = frame.camera_role();
+        let file = self.menu.as_ref().and_then(|hit| hit.further.as_ref());
+        if let Some(file) = file {
+            ui.weak(file.loaded.file_name());
+            let hide = ViewCommand::ShowFile(file.loaded.path.clone(), false);
+            entry(ui, "Hide", commands, hide);
+            ui.separator();
+        }
         if let Some(part) = self.menu.as_ref().and_then(|hit| hit.part) {
             ui.weak(format!("Part {}", part.id));
             entry(ui, "Hide", commands, PartCommand::SetVisible(part, false));
@@ -153,7 +161,15 @@ fn probed(ui: &Ui, frame: &FrameContext<'_>, hit: &Hit) -> Option<usize> {
     if is_toggling || !frame.state.is_mapping_shown() {
         return None;
     }
-    frame.state.document.mapped_element(hit.role, hit.element?)
+    let (document, id) = (&frame.state.document, hit.element?);
+    match (hit.role, &hit.further) {
+        (Role::Crash, _) => document.mapped_element(id),
+        (Role::Stamped, Some(file)) => document.element_mapped_from(&file.loaded, id),
+        (Role::Stamped, None) => {
+            let first = &document.part(Role::Stamped)?.loaded;
+            document.element_mapped_from(first, id)
+        }
+    }
 }
 
 fn hit(frame: &FrameContext<'_>) -> Option<Hit> {

@@ -1,7 +1,8 @@
 //! Which parts a window shows, where, and how they look: from the state, without a mesh in sight.
 
 use super::frame::ViewFrame;
-use crate::app::{AppState, ColorBy, FreeWindow, Part, PartRef, ShownGeometry};
+use super::meshes::MeshSource;
+use crate::app::{AppState, ColorBy, FreeWindow, Part, PartRef, ShownFile, ShownGeometry};
 use crate::geometry::{Similarity, Vector3};
 use crate::render::{PartLook, Style, WipeSide};
 use crate::role::Role;
@@ -18,6 +19,8 @@ const PREVIEW: f32 = 0.62;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PartInstance {
     pub role: Role,
+    /// The further stamped file that it is; `None` for the crash part and the first stamped part.
+    pub further: Option<ShownFile>,
     pub world_from_part: Similarity,
     /// Shift for display only.
     pub offset: Vector3,
@@ -26,6 +29,22 @@ pub(super) struct PartInstance {
     pub wipe: WipeSide,
     /// Grey, so that its own colour is not taken for one of the map.
     pub is_ghost: bool,
+}
+
+impl PartInstance {
+    /// Its mesh; `None` if it is not loaded. A further stamped file has no levels.
+    pub fn source(&self, state: &AppState) -> Option<MeshSource> {
+        if let Some(file) = &self.further {
+            return Some(MeshSource::full(file.loaded.to_arc()));
+        }
+        let part = state.document.part(self.role)?;
+        Some(MeshSource::of(part, self.is_detailed))
+    }
+
+    /// Its number among the stamped files; the crash part has that of the first too.
+    pub fn number(&self) -> usize {
+        self.further.as_ref().map_or(0, |file| file.number)
+    }
 }
 
 /// What a line across the window separates.
@@ -82,9 +101,10 @@ pub(super) fn visible_parts(state: &AppState, view: &ViewFrame) -> Vec<PartInsta
         parts.push(crash(state));
     }
     if is_blinked_away || is_apart && state.mapped_wipe().is_some() {
-        parts.push(full(Role::Stamped, view.pose));
+        parts.extend(all_files(state, full(Role::Stamped, view.pose)));
     } else if state.document.part(Role::Stamped).is_some() && !is_apart {
-        parts.extend(stamped(state, view));
+        let first = stamped(state, view).into_iter();
+        parts.extend(first.flat_map(|first| all_files(state, first)));
     }
     let is_shared = view.window == Role::Crash && state.view.is_moved_over;
     if is_shared && state.color_by(view.window) == ColorBy::Deviation {
@@ -97,6 +117,17 @@ pub(super) fn visible_parts(state: &AppState, view: &ViewFrame) -> Vec<PartInsta
     if is_shared && state.color_by(view.window) == ColorBy::Uncertainty {
         // Only the stamped part has one; the crash part would hide half of it.
         for instance in parts.iter_mut().filter(|part| part.role == Role::Crash) {
+            instance.is_ghost = true;
+            instance.opacity = instance.opacity.min(GHOST);
+        }
+    }
+    // Distances are those of the first stamped part, and so is the uncertainty of its pose.
+    let is_measured = matches!(
+        state.color_by(view.window),
+        ColorBy::Deviation | ColorBy::Overlap | ColorBy::Uncertainty
+    );
+    for instance in parts.iter_mut().filter(|part| part.further.is_some()) {
+        if is_measured {
             instance.is_ghost = true;
             instance.opacity = instance.opacity.min(GHOST);
         }
@@ -142,13 +173,39 @@ fn beside(state: &AppState, view: &ViewFrame, free: FreeWindow) -> Vec<PartInsta
         FreeWindow::Stamped => instance.role == Role::Stamped,
         FreeWindow::FullMesh | FreeWindow::SecondPose => true,
     };
-    parts.filter(is_shown).collect()
+    let parts = parts.filter(is_shown);
+    match free {
+        FreeWindow::FullMesh | FreeWindow::Stamped => parts
+            .flat_map(|instance| match instance.role {
+                Role::Crash => vec![instance],
+                Role::Stamped => all_files(state, instance),
+            })
+            .collect(),
+        // Another pose of the first one, and what is measured from it.
+        _ => parts.collect(),
+    }
+}
+
+/// The first stamped part as it is drawn and the further files beside it, each at its own pose; without
+/// those that are hidden.
+fn all_files(state: &AppState, first: PartInstance) -> Vec<PartInstance> {
+    let further = state.shown_further().into_iter();
+    let further = further.map(|file| PartInstance {
+        world_from_part: file.own_pose.unwrap_or(first.world_from_part),
+        is_detailed: true,
+        further: Some(file),
+        ..first.clone()
+    });
+    let further: Vec<_> = further.collect();
+    let first = Some(first).filter(|_| !state.is_first_file_hidden());
+    first.into_iter().chain(further).collect()
 }
 
 /// A part as full mesh, as it is.
 fn full(role: Role, world_from_part: Similarity) -> PartInstance {
     PartInstance {
         role,
+        further: None,
         world_from_part,
         offset: Vector3::zeros(),
         opacity: 1.0,
@@ -181,6 +238,7 @@ pub(super) fn crash_opacity(state: &AppState) -> f32 {
 fn crash(state: &AppState) -> PartInstance {
     PartInstance {
         role: Role::Crash,
+        further: None,
         world_from_part: Similarity::identity(),
         offset: Vector3::zeros(),
         opacity: crash_opacity(state),
@@ -224,6 +282,7 @@ fn stamped(state: &AppState, view: &ViewFrame) -> Option<PartInstance> {
     };
     Some(PartInstance {
         role: Role::Stamped,
+        further: None,
         world_from_part,
         offset,
         opacity,

@@ -106,7 +106,7 @@ fn pins_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         caption(ui, "Pinned for the report");
         for &id in pins {
             ui.horizontal(|ui| {
-                let element = state.document.mapped_element(Role::Crash, id);
+                let element = state.document.mapped_element(id);
                 let name = format!("Element {id}");
                 let go = ui.add_enabled(element.is_some(), egui::Button::new(name));
                 if go.clicked() {

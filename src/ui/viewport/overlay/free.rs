@@ -78,16 +78,24 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     let weak = over.frame.look.weak;
     // A narrow window has the legend beside it.
     let beside = if room < NARROW { LEGEND } else { 8.0 };
-    let text = fitted(&painter, says(free).to_owned(), 11.5, (weak, room - beside));
+    let text = fitted(
+        &painter,
+        says(over.frame.state, free).to_owned(),
+        11.5,
+        (weak, room - beside),
+    );
     let plate = Rect::from_min_size(corner, text.size() + vec2(16.0, 8.0));
     painter.rect_filled(plate, CornerRadius::same(6), over.frame.look.plate);
     painter.galley(corner + vec2(8.0, 4.0), text, weak);
 }
 
-fn says(free: FreeWindow) -> &'static str {
+fn says(state: &AppState, free: FreeWindow) -> &'static str {
     match free {
         FreeWindow::Nothing | FreeWindow::Section => "",
         FreeWindow::Deviation => "distance between the parts · same camera",
+        FreeWindow::Stamped if !state.shown_further().is_empty() => {
+            "stamped files at their poses · same camera"
+        }
         FreeWindow::Stamped => "stamped part at its pose · same camera",
         FreeWindow::FullMesh => "both parts without reduction · same camera",
         FreeWindow::SecondPose => "the next best pose of the match · same camera",

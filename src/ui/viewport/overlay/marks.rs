@@ -5,6 +5,7 @@ use egui::{CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use super::{MARGIN, Overlay, cube};
 use crate::app::{AppState, ColorBy, MapPicture};
 use crate::assess::deviation::OverlapClass;
+use crate::colormap::ColorScale;
 use crate::geometry::camera::scale_bar;
 use crate::mapping::Status;
 use crate::pipeline::forming_values::FormingValue;
@@ -98,6 +99,7 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rec
     {
         pieces.push(format!("part {}", part.id));
     }
+    pieces.extend(file_name(over.frame.state, hit));
     pieces.extend(hit.node_id.map(|id| format!("node {id}")));
     let place = hit.node_id.map_or(&hit.point, |_| &hit.node);
     pieces.push(format!("({:.1}, {:.1}, {:.1})", place.x, place.y, place.z));
@@ -135,6 +137,18 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rec
     }
     painter.rect_filled(ground, CornerRadius::same(5), over.frame.look.plate);
     painter.galley(ground.min + vec2(7.0, 4.0), galley, over.frame.look.text);
+}
+
+/// The stamped file under the cursor, where there are several.
+fn file_name(state: &AppState, hit: &Hit) -> Option<String> {
+    let has_several = !state.document.mapping.further.is_empty();
+    match (&hit.further, hit.role) {
+        (Some(file), _) => Some(file.loaded.file_name()),
+        (None, Role::Stamped) if has_several => {
+            Some(state.document.part(hit.role)?.loaded.file_name())
+        }
+        (None, _) => None,
+    }
 }
 
 /// What the colour under the cursor says.
@@ -177,6 +191,15 @@ fn map_text(state: &AppState, picture: MapPicture, value: Option<f64>) -> Option
         MapPicture::Distance => format!("distance {}", state.lengths().signed_of(number)),
         MapPicture::Angle => format!("angle {}°", fixed(number, 1)),
         MapPicture::Confidence => format!("confidence {}", fixed(number, 2)),
+        MapPicture::File => {
+            // Beyond the looks there are, a value stands for several files.
+            let run = &state.document.current_mapping()?.run;
+            let last = run.sources.len() - 1;
+            let is_told = ColorScale::file_value(last) == last as f64;
+            let number = Some(number.round() as usize).filter(|_| is_told)?;
+            let file = state.document.mapped_file(number)?;
+            format!("from {}", file.file_name())
+        }
         MapPicture::Status => Status::ALL.get(number.round() as usize)?.label().to_owned(),
     })
 }
@@ -263,8 +286,8 @@ pub(super) fn probe(ui: &Ui, over: &Overlay<'_>) {
         return;
     }
     let places = state.probed_places();
-    for (role, point) in places {
-        let shown = over.frame.picture.place_of(role);
+    for (role, number, point) in places {
+        let shown = over.frame.picture.place_of_file(role, number);
         let point = shown.map(|shown| shown.to_window(&point));
         let at = point.and_then(|point| pos_of(over.frame.rect(), &over.frame.view.camera, &point));
         if let Some(at) = at {

@@ -2,6 +2,7 @@
 
 mod bar;
 mod deviation;
+mod files;
 mod menu;
 mod overlap;
 mod status;
@@ -49,6 +50,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     let classes: Option<Classes> = match kind {
         FieldKind::Overlap => Some(overlap::show),
         FieldKind::Map(MapPicture::Status) => Some(status::show),
+        FieldKind::Map(MapPicture::File) => Some(files::show),
         _ => None,
     };
     if let Some(classes) = classes {
@@ -151,7 +153,7 @@ pub(super) fn beside_names(over: &Overlay<'_>) -> f32 {
     let is_wide_one = over.kind.is_none_or(|kind| {
         matches!(
             kind,
-            FieldKind::Overlap | FieldKind::Map(MapPicture::Status)
+            FieldKind::Overlap | FieldKind::Map(MapPicture::Status | MapPicture::File)
         )
     });
     let is_beside = is_narrow(over) && top(over) == Some(MARGIN);
@@ -192,7 +194,8 @@ fn title(over: &Overlay<'_>, kind: FieldKind) -> String {
 fn unit(over: &Overlay<'_>, kind: FieldKind) -> Option<String> {
     let state = over.frame.state;
     let value = match kind {
-        FieldKind::Overlap | FieldKind::Map(MapPicture::Confidence | MapPicture::Status) => {
+        FieldKind::Overlap
+        | FieldKind::Map(MapPicture::Confidence | MapPicture::Status | MapPicture::File) => {
             return None;
         }
         FieldKind::Map(MapPicture::Angle) => return Some("°".to_owned()),

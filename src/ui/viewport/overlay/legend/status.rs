@@ -5,7 +5,6 @@ use egui::{Align, Layout, Rect, RichText, Sense, Stroke, Ui, vec2};
 use super::bar;
 use crate::app::{Command, InspectCommand, MapPicture};
 use crate::colormap::ColorScale;
-use crate::mapping::Status;
 use crate::role::Role;
 use crate::text::grouped;
 use crate::ui::theme::color;
@@ -18,8 +17,19 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     ui.label(title.color(over.frame.look.text));
     ui.add_space(3.0);
     for (status, n, share, first) in over.frame.state.map_statuses() {
-        row(ui, over, (status, n, share, first), commands);
+        let class = Class {
+            name: status.label(),
+            size: (n, share),
+            first: Some(first),
+            look: (ColorScale::statuses(), f64::from(status as u8)),
+        };
+        row(ui, over, &class, commands);
     }
+    sizes(ui, over);
+}
+
+/// What the numbers of the rows are.
+pub(super) fn sizes(ui: &mut Ui, over: &Overlay<'_>) {
     ui.label(
         RichText::new("elements and share of the area")
             .size(11.0)
@@ -27,28 +37,41 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     );
 }
 
-fn row(
-    ui: &mut Ui,
-    over: &Overlay<'_>,
-    (status, n, share, first): (Status, usize, f64, usize),
-    commands: &mut Vec<Command>,
-) {
+/// The elements of one class.
+pub(super) struct Class<'a> {
+    /// What they have in common.
+    pub name: &'a str,
+    /// How many there are, and their share of the area.
+    pub size: (usize, f64),
+    /// The first of them, by its place in the run.
+    pub first: Option<usize>,
+    /// Their value on a scale.
+    pub look: (ColorScale, f64),
+}
+
+/// Look, name and size of a class; a click flies to its first element.
+pub(super) fn row(ui: &mut Ui, over: &Overlay<'_>, class: &Class<'_>, commands: &mut Vec<Command>) {
+    let (n, share) = class.size;
     let place = ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(18.0, 14.0), Sense::hover());
-        swatch(ui, rect, status, over);
+        swatch(ui, rect, class.look, over);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
-            ui.label(RichText::new(status.label()).size(12.0));
+            let name = RichText::new(class.name).size(12.0);
+            ui.add(egui::Label::new(name).truncate());
             let numbers = RichText::new(format!("{} · {}", grouped(n), percent(share)));
             ui.label(numbers.size(11.0).color(over.frame.look.weak));
         });
         ui.with_layout(Layout::right_to_left(Align::Center), |_| {});
     });
-    let id = ui.make_persistent_id(("status", status.name(), over.role().word()));
+    let Some(first) = class.first else {
+        return;
+    };
+    let id = ui.make_persistent_id(("class", class.name, over.role().word()));
     let response = ui.interact(place.response.rect, id, Sense::click());
     let name = format!(
         "{}: {} elements, {}",
-        status.label(),
+        class.name,
         grouped(n),
         percent(share)
     );
@@ -60,19 +83,17 @@ fn row(
         let look = InspectCommand::LookAt {
             role: Role::Crash,
             point: result.run.target.mesh.centroids()[first],
-            text: status.label().to_owned(),
+            text: class.name.to_owned(),
         };
         commands.push(look.into());
     }
 }
 
 /// Colour and pattern as on the part.
-fn swatch(ui: &Ui, rect: Rect, status: Status, over: &Overlay<'_>) {
-    let scale = ColorScale::statuses();
-    let number = f64::from(status as u8);
+fn swatch(ui: &Ui, rect: Rect, (scale, value): (ColorScale, f64), over: &Overlay<'_>) {
     let painter = ui.painter().with_clip_rect(rect);
-    painter.rect_filled(rect, 2.0, color(scale.color(number)));
-    bar::patterns(&painter, rect, |_| scale.pattern(number));
+    painter.rect_filled(rect, 2.0, color(scale.color(value)));
+    bar::patterns(&painter, rect, |_| scale.pattern(value));
     let stroke = Stroke::new(1.0, over.frame.look.plate_line);
     ui.painter()
         .rect_stroke(rect, 2.0, stroke, egui::StrokeKind::Outside);
