@@ -25,7 +25,7 @@ pub use clean::CleanMesh;
 pub use landmarks::{Hole, Landmarks};
 pub use merged::MergedMesh;
 pub use mesh::{MeshError, TriMesh};
-pub use normals::{CornerNormals, VertexFans, corner_normals, face_normals, vertex_normals};
+pub use normals::{CornerNormals, VertexFans, corner_normals, face_normals};
 pub use sampling::{SurfaceSample, sample_surface};
 pub use section::{
     Gap, OutlineGap, OutlineGaps, Plane, SectionLine, gap_at, nearest_on_lines, outline_gaps,

@@ -9,6 +9,8 @@ use crate::monitor::{Cancelled, Monitor};
 /// Corners around a vertex beyond which it has no common normal: a spike of that many triangles is
 /// no sheet, and comparing each with each would take for ever.
 const MAX_FAN: usize = 1024;
+/// Chunks of vertices whose normals are found before they are put together.
+const CHUNKS_PER_WAVE: usize = 8;
 
 /// Unit normal of each triangle; zero without area. O(triangles).
 pub fn face_normals(mesh: &TriMesh, monitor: &Monitor) -> Result<Vec<Vector3>, Cancelled> {
@@ -62,16 +64,24 @@ impl VertexFans {
     }
 }
 
-/// Unit normals at the corners of triangles, each stored once for all corners of a vertex that
-/// share it.
+/// Unit normals at the vertices and at the corners of triangles. Where the surface is smooth at a vertex,
+/// its corners have the vertex's normal, which is stored once.
 #[derive(Debug, Clone)]
 pub struct CornerNormals {
+    /// Those of the vertices, then those that only some corners of a vertex have.
     normals: Vec<Vector3>,
+    n_vertices: usize,
     /// Place in `normals` of each corner.
     of_corner: Vec<[u32; 3]>,
 }
 
 impl CornerNormals {
+    /// Unit normal at each vertex, triangles weighted by their angle at the vertex; zero where a vertex
+    /// has no triangle with area. The same as [`TriMesh::vertex_normals`].
+    pub fn of_vertices(&self) -> &[Vector3] {
+        &self.normals[..self.n_vertices]
+    }
+
     /// The normals at the three corners of a triangle.
     #[inline]
     pub fn of_triangle(&self, triangle: usize) -> [Vector3; 3] {
@@ -79,9 +89,9 @@ impl CornerNormals {
     }
 }
 
-/// Normal at each corner of each triangle: the mean of the triangles around the vertex that turn by
-/// at most `max_angle` (radians) against this one, weighted by their angle at the vertex (Thürmer
-/// and Wüthrich 1998). Flat areas do not depend on how they are cut, and sharp edges stay sharp.
+/// Normal at each vertex, and at each corner of each triangle the mean of the triangles around the vertex
+/// that turn by at most `max_angle` (radians) against this one, all weighted by their angle at the vertex
+/// (Thürmer and Wüthrich 1998). Flat areas do not depend on how they are cut, and sharp edges stay sharp.
 ///
 /// `faces` are the [`face_normals`]. O(triangles) for fans of a bounded size.
 pub fn corner_normals(
@@ -92,115 +102,99 @@ pub fn corner_normals(
     monitor: &Monitor,
 ) -> Result<CornerNormals, Cancelled> {
     let min_cos = max_angle.cos();
-    let n_chunks = fans.n_vertices().div_ceil(CHUNK);
-    let chunks: Vec<FanNormals> = (0..n_chunks)
-        .into_par_iter()
-        .map(|chunk| {
-            monitor.check()?;
-            let mut found = FanNormals::default();
-            for vertex in chunk * CHUNK..fans.n_vertices().min((chunk + 1) * CHUNK) {
-                found.add(mesh, faces, fans.around(vertex), min_cos);
+    let n_vertices = fans.n_vertices();
+    let n_chunks = n_vertices.div_ceil(CHUNK);
+    let mut normals = Vec::with_capacity(n_vertices);
+    let mut of_some = Vec::new();
+    let mut of_corner = mesh.triangles().to_vec();
+    // A few chunks at a time, because what they found is held twice until it is joined.
+    for start in (0..n_chunks).step_by(CHUNKS_PER_WAVE) {
+        let wave = start..n_chunks.min(start + CHUNKS_PER_WAVE);
+        let chunks: Vec<FanNormals> = wave
+            .into_par_iter()
+            .map(|chunk| {
+                monitor.check()?;
+                let mut found = FanNormals::default();
+                for vertex in chunk * CHUNK..n_vertices.min((chunk + 1) * CHUNK) {
+                    found.add(mesh, faces, fans.around(vertex), min_cos);
+                }
+                Ok(found)
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        for chunk in chunks {
+            let before = n_vertices + of_some.len();
+            for (corner, place) in chunk.own {
+                let (triangle, i) = (corner as usize / 3, corner as usize % 3);
+                of_corner[triangle][i] = (before + place) as u32;
             }
-            Ok(found)
-        })
-        .collect::<Result<_, Cancelled>>()?;
-    let mut normals = Vec::with_capacity(chunks.iter().map(|chunk| chunk.normals.len()).sum());
-    let mut of_corner = vec![[0; 3]; mesh.n_triangles()];
-    let mut corners = fans.corners.iter();
-    for chunk in chunks {
-        monitor.check()?;
-        let before = normals.len() as u32;
-        for (place, &corner) in chunk.of_corner.iter().zip(&mut corners) {
-            of_corner[corner as usize / 3][corner as usize % 3] = before + place;
+            normals.extend(chunk.of_vertices);
+            of_some.extend(chunk.of_some);
         }
-        normals.extend(chunk.normals);
     }
-    Ok(CornerNormals { normals, of_corner })
+    normals.extend(of_some);
+    Ok(CornerNormals {
+        normals,
+        n_vertices,
+        of_corner,
+    })
 }
 
 /// Normals of consecutive fans.
 #[derive(Default)]
 struct FanNormals {
-    normals: Vec<Vector3>,
-    /// For each corner, fan by fan, its place in `normals`.
-    of_corner: Vec<u32>,
+    of_vertices: Vec<Vector3>,
+    /// Those that only some corners of a vertex have.
+    of_some: Vec<Vector3>,
+    /// The corners without their vertex's normal, each with the place of its own in `of_some`.
+    own: Vec<(u32, usize)>,
 }
 
 impl FanNormals {
     fn add(&mut self, mesh: &TriMesh, faces: &[Vector3], fan: &[u32], min_cos: f64) {
-        let first = self.normals.len();
         let face = |corner: u32| faces[corner as usize / 3];
-        let weighted = |corner: u32| face(corner) * corner_angle(mesh, corner);
+        let weighted = |&corner: &u32| face(corner) * corner_angle(mesh, corner);
+        let of_vertex = fan.iter().map(weighted).sum::<Vector3>().try_normalize(0.0);
+        self.of_vertices.push(of_vertex.unwrap_or_default());
         let all_agree = fan.len() <= MAX_FAN
             && fan.iter().enumerate().all(|(i, &a)| {
                 let own = face(a);
                 fan[i..].iter().all(|&b| face(b).dot(&own) >= min_cos)
             });
-        if all_agree {
+        if all_agree && of_vertex.is_some() {
             // The common case: one smooth sheet.
-            let sum = fan
-                .iter()
-                .fold(Vector3::zeros(), |sum, &c| sum + weighted(c));
-            if let Some(normal) = sum.try_normalize(0.0) {
-                self.normals.push(normal);
-                let place = first as u32;
-                self.of_corner.extend(fan.iter().map(|_| place));
-                return;
-            }
+            return;
         }
+        let first = self.of_some.len();
         for &corner in fan {
             let own = face(corner);
             let agreeing = fan
                 .iter()
                 .filter(|&&other| face(other).dot(&own) >= min_cos);
             let normal = if fan.len() <= MAX_FAN {
-                let sum = agreeing.fold(Vector3::zeros(), |sum, &c| sum + weighted(c));
+                let sum: Vector3 = agreeing.map(weighted).sum();
                 sum.try_normalize(0.0).unwrap_or(own)
             } else {
                 own
             };
-            let known = self.normals[first..].iter().position(|&n| n == normal);
-            let place = known.unwrap_or_else(|| {
-                self.normals.push(normal);
-                self.normals.len() - 1 - first
-            });
-            self.of_corner.push((first + place) as u32);
+            let known = self.of_some[first..].iter().position(|&n| n == normal);
+            let place = known.map_or(self.of_some.len(), |place| first + place);
+            if known.is_none() {
+                self.of_some.push(normal);
+            }
+            self.own.push((corner, place));
         }
     }
 }
 
-/// Unit normal at each vertex, triangles weighted by their angle at the vertex; zero where a vertex
-/// has no triangle with area. The same as [`TriMesh::vertex_normals`], on all threads.
-pub fn vertex_normals(
-    mesh: &TriMesh,
-    faces: &[Vector3],
-    fans: &VertexFans,
-    monitor: &Monitor,
-) -> Result<Vec<Vector3>, Cancelled> {
-    map_chunks(mesh.n_vertices(), monitor, |vertex| {
-        let weighted = |&corner: &u32| {
-            let [u, v] = corner_sides(mesh, corner);
-            faces[corner as usize / 3] * u.angle(&v)
-        };
-        let sum: Vector3 = fans.around(vertex).iter().map(weighted).sum();
-        sum.try_normalize(0.0).unwrap_or_default()
-    })
-}
-
-/// Both sides of a triangle that start at a corner.
-fn corner_sides(mesh: &TriMesh, corner: u32) -> [Vector3; 2] {
-    let (triangle, i) = (corner as usize / 3, corner as usize % 3);
-    let points: [Point3; 3] = mesh.corners(triangle);
-    [
-        points[(i + 1) % 3] - points[i],
-        points[(i + 2) % 3] - points[i],
-    ]
-}
-
 /// Inner angle of a triangle at a corner; zero where a side has no length.
 fn corner_angle(mesh: &TriMesh, corner: u32) -> f64 {
-    let [u, v] = corner_sides(mesh, corner);
-    u.cross(&v).norm().atan2(u.dot(&v))
+    let (triangle, i) = (corner as usize / 3, corner as usize % 3);
+    let points: [Point3; 3] = mesh.corners(triangle);
+    let (u, v) = (
+        points[(i + 1) % 3] - points[i],
+        points[(i + 2) % 3] - points[i],
+    );
+    u.angle(&v)
 }
 
 #[cfg(test)]
@@ -273,12 +267,17 @@ mod tests {
 
     #[test]
     fn vertices_have_the_normals_of_the_plain_loop_to_the_last_bit() {
-        let mesh = strip(&[0.1, 0.9, 0.3, -0.5]);
-        let monitor = Monitor::silent();
-        let faces = face_normals(&mesh, &monitor).unwrap();
-        let fans = VertexFans::of(&mesh, &monitor).unwrap();
-        let found = vertex_normals(&mesh, &faces, &fans, &monitor).unwrap();
-        assert_eq!(found, mesh.vertex_normals());
+        // The second has more vertices than a wave.
+        for mesh in [
+            strip(&[0.1, 0.9, 0.3, -0.5]),
+            strip(&[0.1, 0.9, 0.3].repeat(25_000)),
+        ] {
+            let monitor = Monitor::silent();
+            let faces = face_normals(&mesh, &monitor).unwrap();
+            let fans = VertexFans::of(&mesh, &monitor).unwrap();
+            let found = corner_normals(&mesh, &faces, &fans, 0.6, &monitor).unwrap();
+            assert_eq!(found.of_vertices(), mesh.vertex_normals());
+        }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::RegistrationError;
 use crate::geometry::chunks::{for_chunks, map_chunks};
 use crate::geometry::{
     Border, CleanMesh, CornerNormals, Matrix3, Point3, Similarity, Topology, TriMesh, Vector3,
-    VertexFans, corner_normals, vertex_normals,
+    VertexFans, corner_normals,
 };
 use crate::monitor::{Cancelled, Monitor};
 use crate::search::{Bvh, Feature, PointTree, SurfaceHit};
@@ -25,9 +25,8 @@ pub struct Surface {
     /// The tree for nearest nodes, made when first asked for.
     nodes: OnceLock<PointTree>,
     vertex_of: Vec<u32>,
-    vertex_normals: Vec<Vector3>,
+    normals: CornerNormals,
     vertex_areas: Vec<f64>,
-    corner_normals: CornerNormals,
     border_edges: Vec<u8>,
     border_vertices: Vec<bool>,
     /// Trims and holes, found when first asked for.
@@ -83,32 +82,40 @@ impl Surface {
         side: &'static str,
         monitor: &Monitor,
     ) -> Result<Self, RegistrationError> {
-        let CleanMesh { mesh, topology, .. } = clean;
+        let CleanMesh {
+            mesh,
+            topology,
+            vertex_of,
+            triangle_of,
+            ..
+        } = clean;
+        drop((vertex_of, triangle_of));
         let vectors = map_chunks(mesh.n_triangles(), monitor, |t| mesh.area_vector(t))?;
         let area: f64 = vectors.iter().map(Vector3::norm).sum();
         if area <= 0.0 || !area.is_finite() {
             return Err(RegistrationError::EmptyMesh { side });
         }
         let mesh = Arc::new(mesh);
-        let (bvh, (normals, measures)) = rayon::join(
-            || Bvh::build_for(mesh.clone(), monitor),
+        // The tree last, so that one thread has given up `vectors` before it makes the tree.
+        let ((normals, measures), bvh) = rayon::join(
             || {
+                let vectors = vectors;
                 rayon::join(
-                    || Normals::of(&mesh, &vectors, monitor),
+                    || normals_and_areas(&mesh, &vectors, monitor),
                     || measures(&mesh, &topology, (&vectors, area), monitor),
                 )
             },
+            || Bvh::build_for(mesh.clone(), monitor),
         );
-        let (normals, measures) = (normals?, measures?);
+        let ((normals, vertex_areas), measures) = (normals?, measures?);
         monitor.check()?;
         let (border_edges, border_vertices) = borders(&mesh, &topology);
         Ok(Self {
             bvh: Arc::new(bvh?),
             nodes: OnceLock::new(),
             vertex_of: (0..mesh.n_vertices() as u32).collect(),
-            vertex_normals: normals.of_vertices,
-            vertex_areas: normals.areas,
-            corner_normals: normals.of_corners,
+            normals,
+            vertex_areas,
             border_edges,
             border_vertices,
             borders: OnceLock::new(),
@@ -168,7 +175,7 @@ impl Surface {
 
     /// Unit normals of the vertices.
     pub fn vertex_normals(&self) -> &[Vector3] {
-        &self.vertex_normals
+        self.normals.of_vertices()
     }
 
     /// A third of the area around each vertex.
@@ -179,7 +186,7 @@ impl Surface {
     /// The unit normal at a hit, interpolated between the triangle's corners; across sharp edges
     /// the corners do not share their normals.
     pub fn normal_at(&self, hit: &SurfaceHit) -> Vector3 {
-        let normals = self.corner_normals.of_triangle(hit.triangle as usize);
+        let normals = self.normals.of_triangle(hit.triangle as usize);
         let sum: Vector3 = (0..3).map(|i| normals[i] * hit.barycentric[i]).sum();
         sum.try_normalize(0.0)
             .unwrap_or_else(|| self.mesh.normal(hit.triangle as usize))
@@ -190,7 +197,7 @@ impl Surface {
     /// tessellation, Boubekeur and Alexa 2008, with α = ½). Corners stay where they are.
     pub fn curved_point(&self, hit: &SurfaceHit) -> Point3 {
         let corners = self.mesh.corners(hit.triangle as usize);
-        let normals = self.corner_normals.of_triangle(hit.triangle as usize);
+        let normals = self.normals.of_triangle(hit.triangle as usize);
         let pull: Vector3 = (0..3)
             .map(|i| {
                 let normal = normals[i];
@@ -216,7 +223,7 @@ impl Surface {
     /// Trims and holes.
     pub fn borders(&self) -> &[Border] {
         self.borders
-            .get_or_init(|| Border::all(&self.mesh, &self.topology, &self.vertex_normals))
+            .get_or_init(|| Border::all(&self.mesh, &self.topology, self.vertex_normals()))
     }
 
     /// The vertex closest to `query` within `max_distance`, as (vertex, squared distance).
@@ -243,30 +250,23 @@ impl std::fmt::Debug for Surface {
     }
 }
 
-/// Normals of vertices and corners.
-struct Normals {
-    of_vertices: Vec<Vector3>,
-    of_corners: CornerNormals,
-    /// A third of the area around each vertex.
-    areas: Vec<f64>,
-}
-
-impl Normals {
-    fn of(mesh: &TriMesh, vectors: &[Vector3], monitor: &Monitor) -> Result<Self, Cancelled> {
-        let faces = map_chunks(vectors.len(), monitor, |t| {
-            vectors[t].try_normalize(0.0).unwrap_or_default()
-        })?;
-        let fans = VertexFans::of(mesh, monitor)?;
-        let sharp = SHARP_EDGE_DEG.to_radians();
-        Ok(Self {
-            of_vertices: vertex_normals(mesh, &faces, &fans, monitor)?,
-            of_corners: corner_normals(mesh, &faces, &fans, sharp, monitor)?,
-            areas: map_chunks(mesh.n_vertices(), monitor, |vertex| {
-                let around = fans.around(vertex).iter();
-                around.map(|&c| vectors[c as usize / 3].norm() / 3.0).sum()
-            })?,
-        })
-    }
+/// Normals of vertices and corners, and a third of the area around each vertex.
+fn normals_and_areas(
+    mesh: &TriMesh,
+    vectors: &[Vector3],
+    monitor: &Monitor,
+) -> Result<(CornerNormals, Vec<f64>), Cancelled> {
+    let faces = map_chunks(vectors.len(), monitor, |t| {
+        vectors[t].try_normalize(0.0).unwrap_or_default()
+    })?;
+    let fans = VertexFans::of(mesh, monitor)?;
+    let sharp = SHARP_EDGE_DEG.to_radians();
+    let normals = corner_normals(mesh, &faces, &fans, sharp, monitor)?;
+    let areas = map_chunks(mesh.n_vertices(), monitor, |vertex| {
+        let around = fans.around(vertex).iter();
+        around.map(|&c| vectors[c as usize / 3].norm() / 3.0).sum()
+    })?;
+    Ok((normals, areas))
 }
 
 /// Per triangle a bit for each border edge, and which vertices lie on a border.
