@@ -3,14 +3,22 @@
 use std::fmt::Write as _;
 use std::process::ExitCode;
 
+use anyhow::bail;
+
 use super::args::BenchArgs;
 use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
-use crate::pipeline::map_bench::{MapBench, map_bench};
+use crate::pipeline::map_bench::{MapBench, map_bench, table_names};
 use crate::text::{fixed, grouped};
 
 /// Measures and prints the tables.
 pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     check_outputs(json_target(args.json.as_deref()), &[])?;
+    if let Some(only) = &args.only
+        && !table_names().iter().any(|name| name.contains(only))
+    {
+        let names = table_names().join(", ");
+        bail!("no table has {only:?} in its name; the tables are: {names}");
+    }
     let monitor = progress::monitor(quiet);
     let bench = map_bench(args.only.as_deref(), &monitor)?;
     drop(monitor);

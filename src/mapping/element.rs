@@ -66,7 +66,7 @@ impl Context<'_> {
     /// Maps elements that lie near each other: first all partners, then the fields around these, then
     /// the values.
     pub fn map_elements(&self, elements: &[u32], scratch: &mut Scratch) -> Buffers {
-        let mut out = Buffers::default();
+        let mut out = self.buffers(elements);
         let Scratch {
             search,
             partners,
@@ -108,6 +108,31 @@ impl Context<'_> {
             }
         }
         out
+    }
+
+    /// Empty buffers with room for the elements' values.
+    fn buffers(&self, elements: &[u32]) -> Buffers {
+        let n = elements.len();
+        let layers =
+            |element: usize| self.target.rules[self.target.rule_of[element] as usize].len();
+        let all =
+            |values: &dyn Fn(usize) -> usize| elements.iter().map(|&e| values(e as usize)).sum();
+        let wanted = self.options.quantities;
+        let n_states = all(&|element| layers(element) * self.target.planes(element));
+        let n_strains = all(&|element| {
+            if self.strains_at_surfaces {
+                2
+            } else {
+                layers(element)
+            }
+        });
+        Buffers {
+            reports: Vec::with_capacity(n),
+            limits: Vec::with_capacity(n),
+            thickness: Vec::with_capacity(n),
+            states: MappedLayers::with_room(n, if wanted.needs_states() { n_states } else { 0 }),
+            strains: MappedLayers::with_room(n, if wanted.strain { n_strains } else { 0 }),
+        }
     }
 
     /// Number of the rule at whose layers the strains of an element stand.

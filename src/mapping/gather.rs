@@ -217,7 +217,9 @@ impl Context<'_> {
         found.in_conflict |= n_inside > 1;
         if let Some(partner) = best {
             found.covered += point.area;
-            self.add_to_group(&partner, point, &mut found.groups);
+            // A quadrant matters only where it is a point of its own.
+            let quadrant = (self.target.planes(element) == 4).then_some(point.quadrant);
+            self.add_to_group(&partner, (point, quadrant), &mut found.groups);
         } else if is_beyond_border {
             found.outside += point.area;
         } else if self.any_sheet_within(&point.position, reach) {
@@ -266,10 +268,14 @@ impl Context<'_> {
         }
     }
 
-    fn add_to_group(&self, partner: &Centre, point: &ElementPoint, groups: &mut Vec<Group>) {
+    fn add_to_group(
+        &self,
+        partner: &Centre,
+        (point, quadrant): (&ElementPoint, Option<u8>),
+        groups: &mut Vec<Group>,
+    ) {
         let source = &self.sources[partner.source as usize];
         let at = &partner.point;
-        let quadrant = Some(point.quadrant);
         if self.options.method == MapMethod::Shape {
             around_nodes(source, at, |element, is_flipped, weight| {
                 let area = weight * point.area;

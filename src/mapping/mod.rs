@@ -54,7 +54,7 @@ use points::PointRules;
 use source::{PartnerFilter, PreparedSource};
 
 /// Target elements that are mapped between two questions for a cancel, and the unit of parallel work.
-const CHUNK: usize = 512;
+const CHUNK: usize = 1024;
 /// Share of the area that must agree for normals to have a sign.
 const SIGNED_SHARE: f64 = 0.9;
 /// Stamped parts that overlap on less than this share of the target touch by chance.

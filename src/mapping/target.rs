@@ -100,11 +100,17 @@ impl<const N: usize> Default for MappedLayers<N> {
 impl<const N: usize> MappedLayers<N> {
     /// The values of elements, in their order.
     pub(super) fn of_elements<'a>(elements: impl Iterator<Item = &'a [[f64; N]]> + Clone) -> Self {
-        let mut layers = Self::default();
-        layers.starts.reserve_exact(elements.size_hint().0);
         let n_values = elements.clone().map(<[_]>::len).sum();
-        layers.values.reserve_exact(n_values);
+        let mut layers = Self::with_room(elements.size_hint().0, n_values);
         elements.for_each(|values| layers.push(values));
+        layers
+    }
+
+    /// Room for that many elements with that many values in all.
+    pub(super) fn with_room(n_elements: usize, n_values: usize) -> Self {
+        let mut layers = Self::default();
+        layers.starts.reserve_exact(n_elements);
+        layers.values.reserve_exact(n_values);
         layers
     }
 

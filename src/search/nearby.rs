@@ -3,7 +3,7 @@
 use super::bvh::Bvh;
 use super::pack::TrianglePack;
 use super::traverse::{OUT_OF_SIGHT, Walk, reach_of};
-use super::wide::{Link, Node, Pack, Query, WIDTH};
+use super::wide::{Link, Node, Query, WIDTH};
 use super::{NormalFilter, SurfaceHit};
 use crate::geometry::Point3;
 
@@ -74,8 +74,8 @@ impl Bvh {
                 Err(_) => return nearby.waiting.push(link),
             };
             let pack = &self.tree.packs[leaf];
-            let within = pack.distance_sq(&query).cmple(limit).bitmask();
-            let marked = self.admitted(filter, pack, within);
+            // Those out of reach are passed over by their boxes later; asking for their distance costs more.
+            let marked = self.admitted(filter, pack, pack.used());
             if marked != 0 {
                 nearby.push(&mut n_leaves, parent, (link, marked));
             }

@@ -52,6 +52,12 @@ impl TrianglePack {
         self.ids.into_iter().filter(|&id| id != u32::MAX)
     }
 
+    /// Bit per place that holds a triangle.
+    pub(super) fn used(&self) -> u32 {
+        let bit = |slot: usize| u32::from(self.ids[slot] != u32::MAX) << slot;
+        (0..WIDTH).map(bit).sum()
+    }
+
     /// Index of the triangle in a place.
     pub(super) fn id(&self, slot: usize) -> u32 {
         self.ids[slot]

@@ -380,6 +380,13 @@ fn wrong_usage_and_missing_files_have_their_own_status() {
     let missing = shapematch(&["info", "no-such-file.k"]);
     assert_eq!(missing.status.code(), Some(1));
     assert!(text(&missing.stderr).contains("no-such-file.k"));
+    let unknown = shapematch(&["bench", "--mapping", "--only", "no-such-part"]);
+    assert_eq!(unknown.status.code(), Some(1));
+    let message = text(&unknown.stderr);
+    assert!(
+        message.contains("floor") && message.contains("speed"),
+        "{message}"
+    );
     let pair = Pair::bundled();
     let wide = pair.run(&["--angle-segment", "90"]);
     assert_eq!(wide.status.code(), Some(2));
