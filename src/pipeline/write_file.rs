@@ -7,7 +7,10 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 use super::PipelineError;
+use crate::monitor::{Cancelled, Monitor};
 
+/// Bytes that are written and flushed between two questions for a cancel.
+const PIECE: usize = 8 << 20;
 /// Links that are followed before a path counts as a loop.
 const MAX_LINKS: usize = 40;
 
@@ -17,6 +20,30 @@ const MAX_LINKS: usize = 40;
 /// are written directly.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), PipelineError> {
     write_with(path, |file| file.write_all(bytes)).map_err(failed(path))
+}
+
+/// [`write_file`] that ends soon after `monitor` is cancelled, the old content kept.
+pub fn write_file_unless_cancelled(
+    path: &Path,
+    bytes: &[u8],
+    monitor: &Monitor,
+) -> Result<(), PipelineError> {
+    let write = |file: &mut File| {
+        let is_flushed = bytes.len() > PIECE && file.metadata()?.is_file();
+        for piece in bytes.chunks(PIECE) {
+            monitor.check().map_err(io::Error::other)?;
+            file.write_all(piece)?;
+            // A flush cannot be ended, so none may have much to do.
+            if is_flushed {
+                file.sync_data()?;
+            }
+        }
+        monitor.check().map_err(io::Error::other)
+    };
+    write_with(path, write).map_err(|error| match error.downcast::<Cancelled>() {
+        Ok(cancelled) => cancelled.into(),
+        Err(error) => failed(path)(error),
+    })
 }
 
 /// [`write_file`] for a file that must not be there yet; `false` if it is, which changes nothing.
@@ -167,6 +194,21 @@ mod tests {
     }
 
     #[test]
+    fn a_cancelled_write_keeps_the_old_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.k");
+        let new: Vec<u8> = (0..2 * PIECE + 5).map(|i| i as u8).collect();
+        let monitor = Monitor::silent();
+        write_file_unless_cancelled(&path, &new, &monitor).unwrap();
+        assert!(fs::read(&path).unwrap() == new);
+        monitor.request_cancel();
+        let cancelled = write_file_unless_cancelled(&path, b"newer", &monitor).unwrap_err();
+        assert!(matches!(cancelled, PipelineError::Cancelled(_)));
+        assert!(fs::read(&path).unwrap() == new);
+        assert_eq!(names(folder.path()), ["a.k"], "nothing is left behind");
+    }
+
+    #[test]
     fn a_file_that_is_there_is_replaced_or_left_alone() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.k");
@@ -207,6 +249,8 @@ mod tests {
     #[cfg(target_os = "linux")]
     fn devices_are_written_directly() {
         write_file(Path::new("/dev/null"), b"x").unwrap();
+        let (many, monitor) = (vec![b'x'; PIECE + 1], Monitor::silent());
+        write_file_unless_cancelled(Path::new("/dev/null"), &many, &monitor).unwrap();
         let full = write_file(Path::new("/dev/full"), b"x").unwrap_err();
         assert!(full.to_string().contains("/dev/full"), "{full}");
         assert!(!fs::metadata("/dev/null").unwrap().is_file());

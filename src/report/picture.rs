@@ -3,7 +3,9 @@
 
 use crate::colormap::Rgb;
 use crate::geometry::camera::ScreenSize;
+use crate::geometry::chunks::{for_chunks, map_chunks};
 use crate::geometry::{Camera, Similarity, TriMesh, Vector3};
+use crate::monitor::{Cancelled, Monitor};
 
 /// Samples per pixel along each side; their mean smooths the edges.
 const SAMPLES: usize = 2;
@@ -49,13 +51,14 @@ pub struct Picture {
 }
 
 /// Draws meshes with their outlines. Without a background the rest is transparent. Where two meshes lie
-/// in one place the later one is seen. O(triangles + pixels covered).
+/// in one place the later one is seen. O(triangles + pixels covered); an error if `monitor` is cancelled.
 pub fn picture(
     [width, height]: [usize; 2],
     camera: &Camera,
     background: Option<Rgb>,
     meshes: &[PictureMesh<'_>],
-) -> Picture {
+    monitor: &Monitor,
+) -> Result<Picture, Cancelled> {
     let (width, height) = (width.max(1), height.max(1));
     let mut canvas = Canvas::new(width * SAMPLES, height * SAMPLES);
     let screen = ScreenSize {
@@ -65,10 +68,10 @@ pub fn picture(
     for (place, item) in meshes.iter().enumerate() {
         // Coinciding sheets would show through each other in spots.
         let lift = place as f64 * 0.001 * camera.height;
-        canvas.draw(item, camera, screen, lift);
+        canvas.draw(item, (camera, screen), lift, monitor)?;
     }
     canvas.outline(OUTLINE * camera.height);
-    canvas.finish(width, height, background)
+    Ok(canvas.finish(width, height, background))
 }
 
 impl Picture {
@@ -155,7 +158,13 @@ impl Canvas {
         }
     }
 
-    fn draw(&mut self, item: &PictureMesh<'_>, camera: &Camera, screen: ScreenSize, lift: f64) {
+    fn draw(
+        &mut self,
+        item: &PictureMesh<'_>,
+        (camera, screen): (&Camera, ScreenSize),
+        lift: f64,
+        monitor: &Monitor,
+    ) -> Result<(), Cancelled> {
         let plain = match item.paint {
             Paint::Plain(color) => Some(color),
             Paint::PerVertex(_) => None,
@@ -174,26 +183,29 @@ impl Canvas {
                 color: color.map(f64::from),
             })
         };
-        let corners: Vec<Option<Corner>> = (0..item.mesh.n_vertices()).map(corner).collect();
+        let corners: Vec<Option<Corner>> = map_chunks(item.mesh.n_vertices(), monitor, corner)?;
         let is_mirrored = item.world_from_mesh.rotation.determinant() < 0.0;
-        for triangle in item.mesh.triangles() {
-            let [Some(a), Some(b), Some(c)] = triangle.map(|vertex| corners[vertex as usize])
-            else {
-                continue;
-            };
-            let facing = facing([a, b, c], camera.height / screen.height);
-            let is_back = (facing < 0.0) != is_mirrored;
-            let full = match plain {
-                Some(_) => AMBIENT + (1.0 - AMBIENT) * facing.abs(),
-                None => 0.9 + 0.1 * facing.abs(),
-            };
-            let light = if is_back && plain.is_some() {
-                full * BACK
-            } else {
-                full
-            };
-            self.fill([a, b, c], light);
-        }
+        let triangles = item.mesh.triangles();
+        for_chunks(triangles.len(), monitor, |range| {
+            for triangle in &triangles[range] {
+                let [Some(a), Some(b), Some(c)] = triangle.map(|vertex| corners[vertex as usize])
+                else {
+                    continue;
+                };
+                let facing = facing([a, b, c], camera.height / screen.height);
+                let is_back = (facing < 0.0) != is_mirrored;
+                let full = match plain {
+                    Some(_) => AMBIENT + (1.0 - AMBIENT) * facing.abs(),
+                    None => 0.9 + 0.1 * facing.abs(),
+                };
+                let light = if is_back && plain.is_some() {
+                    full * BACK
+                } else {
+                    full
+                };
+                self.fill([a, b, c], light);
+            }
+        })
     }
 
     /// Every sample inside the triangle that nothing nearer covers.
@@ -323,6 +335,15 @@ mod tests {
         }
     }
 
+    fn silently(
+        size: [usize; 2],
+        camera: &Camera,
+        background: Option<Rgb>,
+        meshes: &[PictureMesh<'_>],
+    ) -> Picture {
+        picture(size, camera, background, meshes, &Monitor::silent()).unwrap()
+    }
+
     fn pixel(picture: &Picture, x: usize, y: usize) -> [u8; 4] {
         let at = 4 * (y * picture.width + x);
         std::array::from_fn(|k| picture.rgba[at + k])
@@ -338,11 +359,11 @@ mod tests {
             paint: Paint::Plain(color),
         };
         let meshes = [mesh(&high, [200, 0, 0]), mesh(&low, [0, 0, 200])];
-        let drawn = picture([40, 40], &from_above(), Some([9, 9, 9]), &meshes);
+        let drawn = silently([40, 40], &from_above(), Some([9, 9, 9]), &meshes);
         assert_eq!(pixel(&drawn, 1, 1), [9, 9, 9, 255]);
         assert_eq!(pixel(&drawn, 20, 20), [200, 0, 0, 255]);
         assert_eq!(pixel(&drawn, 12, 20), [0, 0, 200, 255]);
-        let clear = picture([40, 40], &from_above(), None, &meshes);
+        let clear = silently([40, 40], &from_above(), None, &meshes);
         assert_eq!(pixel(&clear, 1, 1)[3], 0);
         assert_eq!(pixel(&clear, 20, 20), [200, 0, 0, 255]);
     }
@@ -358,7 +379,7 @@ mod tests {
                 world_from_mesh: &still,
                 paint,
             };
-            pixel(&picture([40, 40], &from_above(), None, &[item]), 20, 20)
+            pixel(&silently([40, 40], &from_above(), None, &[item]), 20, 20)
         };
         let plain = Paint::Plain([200, 200, 200]);
         assert_eq!(shown(&sheet, plain)[0], 200);
@@ -404,7 +425,7 @@ mod tests {
             world_from_mesh: &still,
             paint: Paint::Plain([10, 120, 200]),
         };
-        let drawn = picture([31, 17], &from_above(), None, &[item]);
+        let drawn = silently([31, 17], &from_above(), None, &[item]);
         let bytes = drawn.to_png();
         let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
             .read_info()
@@ -417,7 +438,7 @@ mod tests {
 
     #[test]
     fn a_png_tells_what_it_shows() {
-        let drawn = picture([4, 4], &from_above(), None, &[]);
+        let drawn = silently([4, 4], &from_above(), None, &[]);
         let texts = [
             ("Pose", "ä → 1 0\n0 1".to_owned()),
             ("Software", "x".to_owned()),
@@ -443,7 +464,21 @@ mod tests {
         };
         let mut camera = from_above();
         camera.projection = crate::geometry::camera::Projection::perspective();
-        let drawn = picture([8, 8], &camera, None, &[item]);
+        let drawn = silently([8, 8], &camera, None, &[item]);
         assert!(drawn.rgba.iter().all(|&byte| byte == 0));
+    }
+
+    #[test]
+    fn a_cancel_ends_a_picture() {
+        let monitor = Monitor::silent();
+        monitor.request_cancel();
+        let square = square(0.0, 1.0);
+        let item = PictureMesh {
+            mesh: &square,
+            world_from_mesh: &Similarity::identity(),
+            paint: Paint::Plain([200, 100, 50]),
+        };
+        let drawn = picture([8, 8], &from_above(), None, &[item], &monitor);
+        assert_eq!(drawn, Err(Cancelled));
     }
 }

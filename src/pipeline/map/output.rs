@@ -10,6 +10,7 @@ use crate::formats::keyword::exchange::{Exchange, ExchangedDeck, exchange_thickn
 use crate::formats::keyword::source_file::SourceFile;
 use crate::formats::keyword::state_cards::{ShellState, StateFormat, write_states};
 use crate::formats::{self, Memory, Model, ReadOptions};
+use crate::geometry::chunks::{CHUNK, for_chunks};
 use crate::mapping::Status;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
@@ -97,7 +98,7 @@ pub fn write_mapping(
     monitor: &Monitor,
 ) -> Result<MapFiles, PipelineError> {
     let factor = crash.settings.length_factor;
-    let mut thickness = thickness_by_id(run, &crash.model, factor);
+    let mut thickness = thickness_by_id(run, &crash.model, factor, monitor)?;
     let n_mapped = thickness.len();
     for (element, value) in output.default_thickness.of(run) {
         if !is_composite(run, &crash.model, element) {
@@ -141,11 +142,9 @@ pub fn write_mapping(
         WriteKind::Include => writer.include(&head, &decks, &output.path)?,
         WriteKind::Part => vec![(output.path.clone(), writer.part(&head, &decks)?)],
         WriteKind::Deck => {
-            let holders: Vec<&(PathBuf, ExchangedDeck)> = decks
-                .iter()
-                .filter(|(_, deck)| deck.n_exchanged > 0)
-                .collect();
-            let [(path, deck)] = holders[..] else {
+            let mut holders = decks;
+            holders.retain(|(_, deck)| deck.n_exchanged > 0);
+            if holders.len() != 1 {
                 let names = holders.iter().map(|(path, _)| path.display().to_string());
                 let names: Vec<String> = names.collect();
                 return Err(PipelineError::MapOutput(format!(
@@ -153,11 +152,13 @@ pub fn write_mapping(
                     names.len(),
                     names.join(", ")
                 )));
-            };
-            replaces = Some(path.clone());
-            vec![(output.path.clone(), deck.bytes.clone())]
+            }
+            let (path, deck) = holders.swap_remove(0);
+            replaces = Some(path);
+            vec![(output.path.clone(), deck.bytes)]
         }
     };
+    monitor.check()?;
     let mut files = MapFiles {
         files,
         n_thickness,
@@ -188,18 +189,28 @@ pub fn deck_comments(crash: &LoadedPart, placed: &[PlacedPart<'_>]) -> Vec<Strin
 }
 
 /// New corner thicknesses of the mapped elements in the deck's own unit, by element id.
-fn thickness_by_id(run: &MapRun, model: &Model, length_factor: f64) -> HashMap<u64, [f64; 4]> {
+fn thickness_by_id(
+    run: &MapRun,
+    model: &Model,
+    length_factor: f64,
+    monitor: &Monitor,
+) -> Result<HashMap<u64, [f64; 4]>, Cancelled> {
     let corners = |element: usize, mean: f64| {
         let own = run.mapped.corners.get(element).copied();
         own.unwrap_or([mean; 4]).map(|t| t / length_factor)
     };
-    let values = run.shells.iter().zip(&run.mapped.thickness).enumerate();
-    values
-        .filter(|(element, (_, thickness))| {
-            thickness.is_finite() && !is_composite(run, model, *element)
-        })
-        .map(|(element, (&shell, mean))| (model.shells[shell as usize].id, corners(element, *mean)))
-        .collect()
+    let means = &run.mapped.thickness;
+    let mut by_id = HashMap::with_capacity(means.len());
+    for_chunks(means.len(), monitor, |range| {
+        for element in range {
+            let mean = means[element];
+            if mean.is_finite() && !is_composite(run, model, element) {
+                let id = model.shells[run.shells[element] as usize].id;
+                by_id.insert(id, corners(element, mean));
+            }
+        }
+    })?;
+    Ok(by_id)
 }
 
 /// True if an element has plies, which are its layers, whatever its section says.
@@ -227,15 +238,15 @@ impl MapWriter<'_> {
         if self.thickness.is_empty() && kind == WriteKind::Include {
             return Ok(Vec::new());
         }
-        let of_part: HashMap<u64, ()> = self
-            .run
-            .shells
-            .iter()
-            .map(|&shell| (self.model.shells[shell as usize].id, ()))
-            .collect();
+        // A file of all elements has those without values too.
+        let of_part = if kind == WriteKind::Part {
+            self.elements_by_id()?
+        } else {
+            HashMap::new()
+        };
         let exchange = |id: u64| match self.thickness.get(&id) {
             Some(&thickness) => Exchange::Thickness(thickness),
-            None if kind == WriteKind::Part && of_part.contains_key(&id) => Exchange::Listed,
+            None if of_part.contains_key(&id) => Exchange::Listed,
             None => Exchange::Other,
         };
         let states = |layout| -> Result<Vec<u8>, Cancelled> {
@@ -254,6 +265,16 @@ impl MapWriter<'_> {
             decks.push((file.path.clone(), deck));
         }
         Ok(decks)
+    }
+
+    /// The number of each element in the run by its id in the deck.
+    fn elements_by_id(&self) -> Result<HashMap<u64, usize>, Cancelled> {
+        let shells = &self.run.shells;
+        let mut by_id = HashMap::with_capacity(shells.len());
+        for_chunks(shells.len(), self.monitor, |range| {
+            by_id.extend(range.map(|n| (self.model.shells[shells[n] as usize].id, n)));
+        })?;
+        Ok(by_id)
     }
 
     fn head(&self, comments: &[String], n_default: usize) -> String {
@@ -410,7 +431,7 @@ impl MapWriter<'_> {
             };
             n_stress += read.forming.n_stress();
             n_strain += read.forming.n_strain();
-            largest = largest.max(self.stress_error(&read));
+            largest = largest.max(self.stress_error(&read)?);
             if files.replaces.is_none() {
                 n_thickness += read.shell_extras.len();
             }
@@ -457,19 +478,17 @@ impl MapWriter<'_> {
     }
 
     /// Largest difference of a stress or plastic strain, relative to the largest of its kind.
-    fn stress_error(&self, read: &Model) -> f64 {
+    fn stress_error(&self, read: &Model) -> Result<f64, Cancelled> {
         let Some(states) = &self.run.mapped.states else {
-            return 0.0;
+            return Ok(0.0);
         };
-        let ids = self
-            .run
-            .shells
-            .iter()
-            .map(|&shell| self.model.shells[shell as usize].id);
-        let element_of: HashMap<u64, usize> = ids.zip(0..).collect();
+        let element_of = self.elements_by_id()?;
         let (mut stress, mut plastic) = ([0.0_f64; 2], [0.0_f64; 2]);
         let (mut values, mut tensors) = ([0.0_f64; 2], [0.0_f64; 2]);
-        for card in read.forming.stresses() {
+        for (n_before, card) in read.forming.stresses().enumerate() {
+            if n_before % CHUNK == 0 {
+                self.monitor.check()?;
+            }
             let Some(&element) = element_of.get(&card.element_id) else {
                 continue;
             };
@@ -502,7 +521,7 @@ impl MapWriter<'_> {
         let relative =
             |[difference, size]: [f64; 2]| if size > 0.0 { difference / size } else { 0.0 };
         let kinds = [stress, plastic, values, tensors].map(relative);
-        kinds.into_iter().fold(0.0, f64::max)
+        Ok(kinds.into_iter().fold(0.0, f64::max))
     }
 }
 

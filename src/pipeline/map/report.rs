@@ -6,7 +6,8 @@ use super::{
     ProbedValue, ShownValue,
 };
 use crate::colormap::{ColorMap, ColorScale, Rgb, UNMATCHED};
-use crate::geometry::{Camera, Point3, Similarity, TriMesh};
+use crate::geometry::chunks::{for_chunks, map_chunks};
+use crate::geometry::{Camera, Similarity, TriMesh};
 use crate::mapping::{ShellMesh, SourcePart};
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::FormingValue;
@@ -246,6 +247,7 @@ struct Painter<'a> {
 /// A mesh whose elements share no corner, so that each has its own colour.
 struct ElementMesh {
     mesh: TriMesh,
+    n_elements: usize,
     element_of_vertex: Vec<u32>,
 }
 
@@ -253,21 +255,34 @@ impl ElementMesh {
     fn new(shells: &ShellMesh, monitor: &Monitor) -> Result<Self, Cancelled> {
         let (triangles, element_of) = shells.triangles(monitor)?;
         monitor.check()?;
-        let corners = triangles.triangles().iter().flatten();
-        let positions: Vec<Point3> = corners
-            .map(|&corner| triangles.positions()[corner as usize])
-            .collect();
-        let split = (0..triangles.n_triangles() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
-        let mesh = TriMesh::new(positions, split.collect());
+        let n = triangles.n_triangles();
+        let positions = map_chunks(3 * n, monitor, |corner| {
+            let node = triangles.triangles()[corner / 3][corner % 3];
+            triangles.positions()[node as usize]
+        })?;
+        let split = map_chunks(n, monitor, |t| [0, 1, 2].map(|i| 3 * t as u32 + i))?;
+        let mesh = TriMesh::new(positions, split);
+        monitor.check()?;
         Ok(Self {
             mesh: mesh.expect("corners count the positions, which were checked"),
-            element_of_vertex: element_of.iter().flat_map(|&e| [e, e, e]).collect(),
+            n_elements: shells.len(),
+            element_of_vertex: map_chunks(3 * n, monitor, |corner| element_of[corner / 3])?,
         })
     }
 
-    fn colors(&self, color: impl Fn(usize) -> Rgb) -> Vec<Rgb> {
-        let elements = self.element_of_vertex.iter();
-        elements.map(|&element| color(element as usize)).collect()
+    /// The colour of each vertex from those of the elements.
+    fn colors(
+        &self,
+        color: impl Fn(usize) -> Rgb,
+        monitor: &Monitor,
+    ) -> Result<Vec<Rgb>, Cancelled> {
+        let mut of_elements = Vec::with_capacity(self.n_elements);
+        for_chunks(self.n_elements, monitor, |range| {
+            of_elements.extend(range.map(&color));
+        })?;
+        map_chunks(self.element_of_vertex.len(), monitor, |vertex| {
+            of_elements[self.element_of_vertex[vertex] as usize]
+        })
     }
 }
 
@@ -282,7 +297,7 @@ impl<'a> Painter<'a> {
         Ok(Self {
             run,
             monitor,
-            camera: fitted(view, target.mesh.positions(), &still, SIZE),
+            camera: fitted(view, target.mesh.positions(), &still, SIZE, monitor)?,
             target,
             lengths: Lengths::new(units.lengths),
             sources: sources.collect::<Result<_, Cancelled>>()?,
@@ -450,24 +465,20 @@ impl<'a> Painter<'a> {
 
     fn draw_target(&self, color: impl Fn(usize) -> Rgb) -> Result<Vec<u8>, Cancelled> {
         let still = Similarity::identity();
-        self.monitor.check()?;
-        let colors = self.target.colors(color);
-        self.monitor.check()?;
+        let colors = self.target.colors(color, self.monitor)?;
         let mesh = PictureMesh {
             mesh: &self.target.mesh,
             world_from_mesh: &still,
             paint: Paint::PerVertex(&colors),
         };
-        Ok(picture(SIZE, &self.camera, None, &[mesh]).to_png())
+        Ok(picture(SIZE, &self.camera, None, &[mesh], self.monitor)?.to_png())
     }
 
     fn draw_sources(&self, color: impl Fn(usize, usize) -> Rgb) -> Result<Vec<u8>, Cancelled> {
-        self.monitor.check()?;
         let numbered = self.sources.iter().enumerate();
-        let colors: Vec<Vec<Rgb>> = numbered
-            .map(|(source, mesh)| mesh.colors(|element| color(source, element)))
-            .collect();
-        self.monitor.check()?;
+        let colors = numbered
+            .map(|(source, mesh)| mesh.colors(|element| color(source, element), self.monitor))
+            .collect::<Result<Vec<_>, Cancelled>>()?;
         let all = self.sources.iter().zip(&self.run.poses).zip(&colors);
         let meshes: Vec<PictureMesh<'_>> = all
             .map(|((source, pose), colors)| PictureMesh {
@@ -476,6 +487,6 @@ impl<'a> Painter<'a> {
                 paint: Paint::PerVertex(colors),
             })
             .collect();
-        Ok(picture(SIZE, &self.camera, None, &meshes).to_png())
+        Ok(picture(SIZE, &self.camera, None, &meshes, self.monitor)?.to_png())
     }
 }

@@ -18,7 +18,7 @@ use super::map::{
     deck_comments, elements_path, map_parts, map_record, map_report, write_mapping,
 };
 use super::match_parts::MatchRecipe;
-use super::write_file::write_file;
+use super::write_file::{write_file, write_file_unless_cancelled};
 use crate::assess::Verdict;
 use crate::formats::Selection;
 use crate::geometry::Similarity;
@@ -308,12 +308,12 @@ impl Group<'_> {
         let files = write_mapping(&run, &crash, &output, &comments, monitor)?;
         let record = map_record(&run, &crash, &placed, Some(&files), None, monitor)?;
         for (path, bytes) in &files.files {
-            write_file(path, bytes)?;
+            write_file_unless_cancelled(path, bytes, monitor)?;
         }
         let page = recipe.has_pages.then(|| format!("{}.html", self.stem));
         if let Some(name) = &page {
             let page = map_report(&run, &record, &crash, None, monitor)?;
-            write_file(&recipe.folder.join(name), page.as_bytes())?;
+            write_file_unless_cancelled(&recipe.folder.join(name), page.as_bytes(), monitor)?;
         }
         let ids = crash.chosen_part_ids();
         let named = crash.model.parts.iter().find(|part| ids.contains(&part.id));

@@ -11,7 +11,7 @@ use super::load::LoadedPart;
 use super::map::{MapRun, OtherResult, WriteKind, elements_path};
 use super::match_parts::{MatchRun, with_alternative};
 use super::units::PairUnits;
-use super::write_file::write_file;
+use super::write_file::write_file_unless_cancelled;
 use crate::formats::Format;
 use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::Monitor;
@@ -393,9 +393,8 @@ impl Output {
             Self::Mapped(kind) => {
                 let made = mapped::deck_files(kind, input, path, monitor)?;
                 let mut notes = vec![mapped::note(&made)];
-                monitor.check()?;
                 for (index, (path, bytes)) in made.files.iter().enumerate() {
-                    write_file(path, bytes)?;
+                    write_file_unless_cancelled(path, bytes, monitor)?;
                     if index > 0 {
                         notes.push(format!(
                             "written beside: {}, whose elements take the place of those in the crash deck",
@@ -408,8 +407,7 @@ impl Output {
             _ => None,
         };
         let made = self.make(input, format, monitor)?;
-        monitor.check()?;
-        write_file(path, &made.bytes)?;
+        write_file_unless_cancelled(path, &made.bytes, monitor)?;
         Ok(made.notes)
     }
 

@@ -49,7 +49,7 @@ pub fn report(
         })
         .collect();
     let lengths = Lengths::new(record.units.length);
-    let renderer = FigureRenderer::new(parts, *pose, &deviation, scale, lengths, monitor);
+    let renderer = FigureRenderer::new(parts, *pose, &deviation, scale, lengths, monitor)?;
     let mut figures = draw(&renderer, run, &groups, monitor)?;
     figures.rivals = rivals(&renderer, run, source, lengths)?;
     let stated = run.assessment.uncertainty();

@@ -1,8 +1,9 @@
 //! The pictures of the report, drawn without a graphics card.
 
 use crate::assess::PoseUncertainty;
-use crate::assess::deviation::Deviation;
+use crate::assess::deviation::{Deviation, DeviationField};
 use crate::colormap::{ColorScale, Rgb, UNMATCHED};
+use crate::geometry::chunks::map_chunks;
 use crate::geometry::{Camera, Matrix3, Point3, Rotation, Similarity, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::palette::ROLES_ON_DARK;
@@ -50,30 +51,31 @@ impl<'a> FigureRenderer<'a> {
         scale: ColorScale,
         lengths: Lengths,
         monitor: &'a Monitor,
-    ) -> Self {
+    ) -> Result<Self, Cancelled> {
         let fields = PerRole {
             crash: &deviation.target_on_source.field,
             stamped: &deviation.source_on_target.field,
         };
-        let colors = fields.map(|field| {
-            let color = |v| {
-                field
-                    .compared(v)
-                    .map_or(UNMATCHED, |value| scale.color(value))
-            };
-            (0..field.signed.len()).map(color).collect()
-        });
+        let colors = |field: &DeviationField| {
+            map_chunks(field.signed.len(), monitor, |v| {
+                let value = field.compared(v);
+                value.map_or(UNMATCHED, |value| scale.color(value))
+            })
+        };
         let view = |from| view_of(&parts.crash.surface, from);
-        Self {
+        Ok(Self {
             parts,
             pose,
             deviation,
-            colors,
+            colors: PerRole {
+                crash: colors(fields.crash)?,
+                stamped: colors(fields.stamped)?,
+            },
             lengths,
             front: view(From::Front),
             back: view(From::Back),
             monitor,
-        }
+        })
     }
 
     /// Each part in its own frame, as its file has it.
@@ -86,7 +88,7 @@ impl<'a> FigureRenderer<'a> {
         ];
         let figure = |(role, view, title): (Role, Rotation, &str)| {
             let part = self.parts.get(role);
-            let camera = fitted(view, part.mesh.positions(), &still, SIZE);
+            let camera = self.fitted(view, part.mesh.positions(), &still, SIZE)?;
             let mesh = PictureMesh {
                 mesh: &part.mesh,
                 world_from_mesh: &still,
@@ -128,8 +130,8 @@ impl<'a> FigureRenderer<'a> {
         size: [usize; 2],
     ) -> Result<PerRole<Picture>, Cancelled> {
         let still = Similarity::identity();
-        let mut camera = fitted(view, self.parts.crash.mesh.positions(), &still, size);
-        let moved = fitted(view, self.parts.stamped.mesh.positions(), pose, size);
+        let mut camera = self.fitted(view, self.parts.crash.mesh.positions(), &still, size)?;
+        let moved = self.fitted(view, self.parts.stamped.mesh.positions(), pose, size)?;
         let is_near = (camera.target - moved.target).norm() < 0.5 * camera.height;
         camera.height = if is_near {
             camera.height.max(moved.height) * 1.04
@@ -169,12 +171,12 @@ impl<'a> FigureRenderer<'a> {
             (on_crash, "■ Crash part,", "distance to the stamped part."),
         ];
         let figure = |(mesh, title, caption): (PictureMesh<'_>, &str, &str)| {
-            let camera = fitted(
+            let camera = self.fitted(
                 self.front,
                 mesh.mesh.positions(),
                 mesh.world_from_mesh,
                 SIZE,
-            );
+            )?;
             let drawn = self.drawn(SIZE, &camera, mesh)?;
             let alt = format!("Map of the distances. {title} {caption}");
             Ok(self.figure(&drawn, title.to_owned(), caption.to_owned(), alt))
@@ -192,13 +194,16 @@ impl<'a> FigureRenderer<'a> {
 
     /// The largest deviations from near.
     pub(super) fn spots(&self) -> Result<Vec<Figure>, Cancelled> {
-        let normals = self.parts.stamped.mesh.vertex_normals();
+        let surface = &self.parts.stamped.surface;
         let [edge, _] = self.deviation.mean_edge_lengths;
         let size = self.parts.stamped.mesh.aabb().diagonal() * self.pose.scale;
         let spots = self.deviation.source_on_target.spots.iter().take(N_SPOTS);
         let figure = |(i, spot): (usize, &crate::assess::deviation::Spot)| {
             let vertex = spot.vertex as usize;
-            let normal = self.pose.rotate(&normals[vertex]);
+            let normal = surface
+                .vertex_normals()
+                .get(surface.vertex_of()[vertex] as usize);
+            let normal = self.pose.rotate(normal.unwrap_or(&Vector3::zeros()));
             let toward = self.front * Vector3::z();
             let normal = if normal.dot(&toward) < 0.0 {
                 -normal
@@ -241,7 +246,7 @@ impl<'a> FigureRenderer<'a> {
             paint: Paint::PerVertex(&colors),
             ..self.map_mesh()
         };
-        let camera = fitted(self.front, positions, &self.pose, SIZE);
+        let camera = self.fitted(self.front, positions, &self.pose, SIZE)?;
         let largest = self.lengths.of(stated.largest);
         Ok(vec![self.figure(
             &self.drawn(SIZE, &camera, mesh)?,
@@ -279,8 +284,17 @@ impl<'a> FigureRenderer<'a> {
         camera: &Camera,
         mesh: PictureMesh<'_>,
     ) -> Result<Picture, Cancelled> {
-        self.monitor.check()?;
-        Ok(picture(size, camera, None, &[mesh]))
+        picture(size, camera, None, &[mesh], self.monitor)
+    }
+
+    fn fitted(
+        &self,
+        view: Rotation,
+        points: &[Point3],
+        pose: &Similarity,
+        size: [usize; 2],
+    ) -> Result<Camera, Cancelled> {
+        fitted(view, points, pose, size, self.monitor)
     }
 
     fn figure(&self, drawn: &Picture, title: String, caption: String, alt: String) -> Figure {
@@ -301,14 +315,15 @@ pub(in crate::pipeline) fn fitted(
     points: &[Point3],
     pose: &Similarity,
     [width, height]: [usize; 2],
-) -> Camera {
-    let moved: Vec<Point3> = points.iter().map(|point| pose.apply(point)).collect();
+    monitor: &Monitor,
+) -> Result<Camera, Cancelled> {
+    let moved = map_chunks(points.len(), monitor, |i| pose.apply(&points[i]))?;
     let mut camera = Camera {
         world_from_view: view,
         ..Camera::default()
     };
     camera.fit_to_points(&moved, width as f64 / height as f64);
-    camera
+    Ok(camera)
 }
 
 /// A view on the broad side of a sheet, from a little below and aside; upright where the part is.

@@ -7,6 +7,7 @@ use egui::{Color32, ColorImage, Context, Rect, Sense, TextureHandle, TextureOpti
 
 use crate::app::{AppState, Part};
 use crate::geometry::{Camera, MergedMesh, Similarity, TriMesh};
+use crate::monitor::Monitor;
 use crate::pipeline::load::LoadedPart;
 use crate::report::picture::{Paint, Picture, PictureMesh, picture};
 use crate::role::{PerRole, Role};
@@ -217,5 +218,6 @@ fn draw(
             paint: Paint::Plain(stamped_color),
         },
     ];
-    picture(SIZE, &camera, None, &meshes)
+    let drawn = picture(SIZE, &camera, None, &meshes, &Monitor::silent());
+    drawn.expect("a silent monitor is never cancelled")
 }
