@@ -72,9 +72,8 @@ struct MapChoice {
     /// have them, are tools and left out.
     #[arg(long, value_name = "PART")]
     stamped_part: Vec<String>,
-    /// Factor on the stamped coordinates and thicknesses, for files in another length unit.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
-    stamped_length_factor: f64,
+    #[command(flatten)]
+    lengths: LengthFactors,
     /// Factor on the stamped stresses, for files in another unit of stress. Without it stresses that are
     /// clearly in another unit than the crash deck's are refused.
     #[arg(long, value_name = "FACTOR")]
@@ -105,6 +104,45 @@ struct MapChoice {
     /// plane, as --hand opposite does. Tensors are mirrored with it.
     #[arg(long, value_enum, default_value = "none")]
     mirror: MirrorName,
+}
+
+/// Factors on the lengths of stamped files.
+#[derive(Debug, Args)]
+pub(super) struct LengthFactors {
+    /// Factor on the stamped coordinates and thicknesses, for files in another length unit. Give one for all
+    /// files or one for each.
+    #[arg(long, value_name = "FACTOR")]
+    stamped_length_factor: Vec<f64>,
+}
+
+impl LengthFactors {
+    /// Refuses more or fewer factors than files.
+    pub(super) fn check(&self, n_files: usize) -> anyhow::Result<()> {
+        one_or_each(self.stamped_length_factor.len(), "length factor", n_files)
+    }
+
+    /// The factor of a file.
+    pub(super) fn of(&self, file: usize) -> f64 {
+        let factor = of_file(&self.stamped_length_factor, file);
+        factor.copied().unwrap_or(1.0)
+    }
+}
+
+/// Refuses a number of values that is neither one for all stamped files nor one for each.
+fn one_or_each(n_values: usize, what: &str, n_files: usize) -> anyhow::Result<()> {
+    if n_values < 2 || n_values == n_files {
+        return Ok(());
+    }
+    let text = format!(
+        "{n_values} {what}s for {}; give one for all or one for each",
+        counted(n_files, "stamped file")
+    );
+    Err(UsageError(text).into())
+}
+
+/// What was given for a file: one value for all, or one for each.
+fn of_file<T>(values: &[T], file: usize) -> Option<&T> {
+    values.get(file).or_else(|| values.first())
 }
 
 /// Quantities and how they pass over.
@@ -365,11 +403,8 @@ fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
         ));
     }
     let n_parts = args.choice.stamped_part.len();
-    if n_parts > 1 && n_parts != n_files {
-        return refuse(format!(
-            "{n_parts} stamped parts for {n_files} stamped files; give one for all or one for each"
-        ));
-    }
+    one_or_each(n_parts, "stamped part", n_files)?;
+    args.choice.lengths.check(n_files)?;
     let has_pose = args.choice.identity || args.choice.project.is_some() || n_poses > 0;
     if args.choice.mirror == MirrorName::Free && has_pose {
         return refuse(
@@ -434,13 +469,11 @@ fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Ve
         monitor,
     )?;
     let part_of = |file: usize| {
-        let parts = &choice.stamped_part;
-        // One for all, or one for each.
-        let part = parts.get(file).or_else(|| parts.first());
+        let part = of_file(&choice.stamped_part, file);
         part.map(String::as_str)
     };
     let stamped = args.stamped.iter().enumerate().map(|(file, path)| {
-        let factor = choice.stamped_length_factor;
+        let factor = choice.lengths.of(file);
         load(
             path,
             &settings(Role::Stamped, part_of(file), factor),

@@ -20,6 +20,7 @@ use shapematch::pipeline::project::Project;
 use shapematch::registration::Hand;
 use shapematch::role::{PerRole, Role};
 use shapematch::samples::SampleVariant;
+use shapematch::units::{LengthUnit, Units};
 
 use super::app::{Window, write_bracket};
 use super::app_mapping::real;
@@ -71,6 +72,34 @@ fn half(deck: &str, is_kept: impl Fn(f64) -> bool, motion: &Similarity) -> Strin
         lines.push(line.to_owned());
     }
     lines.join("\n") + "\n"
+}
+
+/// The same deck in metres: coordinates and thicknesses, which alone have sixteen columns.
+fn in_metres(deck: &str) -> String {
+    let mut keyword = "";
+    let mut n_of_block = 0;
+    let lines = deck.lines().map(|line| {
+        n_of_block += 1;
+        if line.starts_with('*') {
+            keyword = line;
+            n_of_block = 0;
+        }
+        let (first, is_length) = match keyword {
+            "*NODE" => (8, true),
+            "*ELEMENT_SHELL_THICKNESS" => (0, n_of_block % 2 == 0),
+            _ => (0, false),
+        };
+        if !is_length || line.starts_with(['$', '*']) {
+            return line.to_owned();
+        }
+        let mut scaled = line[..first].to_owned();
+        for at in (first..line.len()).step_by(16) {
+            let number: f64 = line[at..(at + 16).min(line.len())].trim().parse().unwrap();
+            scaled += &format!("{:16.9e}", number / 1000.0);
+        }
+        scaled
+    });
+    lines.collect::<Vec<_>>().join("\n") + "\n"
 }
 
 /// The crash bracket, and its stamped part as two files: one half as it was formed, the other somewhere
@@ -292,6 +321,120 @@ fn the_deck_of_several_files_is_that_of_the_command_line() {
     let before = std::fs::read(&halves.stamped[1]).unwrap();
     let after = written(&mut window, Output::MapTable, &halves.stamped[1]);
     assert!(before == after);
+}
+
+#[test]
+fn each_stamped_file_may_have_a_unit_of_its_own() {
+    let halves = Halves::new();
+    let right = &halves.stamped[1];
+    let metres = in_metres(&std::fs::read_to_string(right).unwrap());
+    std::fs::write(right, metres).unwrap();
+    let mut window = halves.with_both();
+    let factor = |window: &Window| {
+        let further = &window.state.document.mapping.further[0];
+        further.loaded.settings.length_factor
+    };
+    // As it is, it fits nowhere, and the list says why.
+    assert_eq!(factor(&window), 1.0);
+    assert_ne!(verdicts(&window)[1], Some(Verdict::Good));
+    let hint = window.state.stamped_rows()[1].unit_hint.unwrap();
+    assert!(hint.words().contains("1000 × smaller"), "{}", hint.words());
+    assert_eq!(window.state.stamped_rows()[0].unit_hint, None);
+
+    let revision = first_further(&window);
+    let metre = Units::from(LengthUnit::Meter);
+    let set = |units| MapCommand::SetFurtherUnits(revision, units);
+    window.apply(set(Some(metre)));
+    assert_eq!(factor(&window), 1000.0);
+    assert_eq!(verdicts(&window)[1], Some(Verdict::Good));
+    let row = window.state.stamped_rows()[1].clone();
+    assert_eq!((row.own_units, row.unit_hint), (Some(metre), None));
+    assert_eq!(window.part(Role::Stamped).length_factor(), 1.0);
+    // One undo step, which the match that follows belongs to.
+    window.holds = true;
+    assert_eq!(
+        window.state.history.undo_name(),
+        Some("right.dynain is in m")
+    );
+    window.apply(HistoryCommand::Undo);
+    assert_eq!(factor(&window), 1.0);
+    window.apply(HistoryCommand::Redo);
+    assert!(window.held.is_empty(), "its pose comes back with it");
+    window.holds = false;
+    assert_eq!(factor(&window), 1000.0);
+
+    // The deck is that of the command line, which is told the factor of each.
+    window.act(Action::MapOrCancel);
+    let document = &window.state.document;
+    assert!(document.current_mapping().unwrap().record.mapped_area > 0.99);
+    let line = document.map_command_line().unwrap();
+    let told = "--stamped-length-factor 1.0 --stamped-length-factor 1000.0";
+    assert!(line.contains(told), "{line}");
+    let [path, other] = ["window", "line"].map(|folder| {
+        let folder = halves.folder.path().join(folder);
+        std::fs::create_dir_all(&folder).unwrap();
+        folder.join("mapped.k")
+    });
+    for kind in WriteKind::ALL {
+        let own = written(&mut window, Output::Mapped(kind), &path);
+        let more = ["--write", kind.name(), "--out", other.to_str().unwrap()];
+        let done = run_line(&line, &more);
+        assert!(done.status.success(), "{done:?}");
+        assert!(own == std::fs::read(&other).unwrap(), "{kind:?}");
+        let text = String::from_utf8(own).unwrap();
+        assert!(text.contains("its lengths multiplied by 1000") || kind == WriteKind::Deck);
+    }
+    let path = halves.folder.path().join("window.html");
+    let page = String::from_utf8(written(&mut window, Output::MapReport, &path)).unwrap();
+    assert!(page.contains("right.dynain, lengths × 1000"));
+    // Naming the unit of the first one, which is what it was taken for, changes no values.
+    let millimetre = Some(LengthUnit::Millimeter.into());
+    window.apply(FileCommand::SetUnits {
+        role: Role::Stamped,
+        units: millimetre,
+    });
+    assert_eq!(window.state.stale(Section::Map), None);
+
+    // A project keeps it, and the file does when it is added again.
+    let path = halves.folder.path().join("work.shapematch");
+    save(&mut window, &path);
+    let again = open(&path);
+    assert_eq!(factor(&again), 1000.0);
+    assert_eq!(again.state.document.map_command_line(), Some(line));
+    window.apply(MapCommand::RemoveFurther(revision));
+    window.apply(MapCommand::AddFurther(right.clone()));
+    assert_eq!(factor(&window), 1000.0);
+    assert_eq!(verdicts(&window)[1], Some(Verdict::Good));
+    let revision = first_further(&window);
+    window.apply(MapCommand::SetFurtherUnits(revision, None));
+    assert_eq!(factor(&window), 1.0, "as the first");
+}
+
+#[test]
+fn as_many_length_factors_as_stamped_files() {
+    let halves = Halves::new();
+    let refused = |program: &str, files: &[&PathBuf], n_factors: usize| {
+        let mut process = Process::new(env!("CARGO_BIN_EXE_shapematch"));
+        process.arg(program).arg(&halves.crash).args(files);
+        process.args(vec!["--stamped-length-factor=2"; n_factors]);
+        if program == "map-car" {
+            process.arg("--out").arg(halves.folder.path());
+        }
+        let done = process.output().unwrap();
+        assert_eq!(done.status.code(), Some(2), "{done:?}");
+        String::from_utf8(done.stderr).unwrap()
+    };
+    let [left, right] = &halves.stamped;
+    for program in ["map", "map-car"] {
+        let told = refused(program, &[left, right], 3);
+        let expected = "3 length factors for 2 stamped files; give one for all or one for each";
+        assert!(told.contains(expected), "{told}");
+        let told = refused(program, &[left], 2);
+        assert!(
+            told.contains("2 length factors for 1 stamped file;"),
+            "{told}"
+        );
+    }
 }
 
 #[test]

@@ -54,7 +54,9 @@ impl Document {
         let mapped = mapped.map_or(&[][..], |result| &result.further);
         let mut next = mapped.len();
         let mut number = |further: &Further| {
-            let known = mapped.iter().position(|part| *part == further.loaded);
+            let known = mapped
+                .iter()
+                .position(|part| part.is_same_surface(&further.loaded));
             1 + known.unwrap_or_else(|| {
                 next += 1;
                 next - 1

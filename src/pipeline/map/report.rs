@@ -17,7 +17,7 @@ use crate::report::MatrixForm;
 use crate::report::html::{CheckReport, Figure, MapReport, NumberRow, QuantityReport, map_figure};
 use crate::report::picture::{Paint, PictureMesh, picture};
 use crate::role::PerRole;
-use crate::text::{Lengths, fixed, grouped, length, millis, minus, percent, signed};
+use crate::text::{Lengths, factor_note, fixed, grouped, length, millis, minus, percent, signed};
 
 /// Pixels of a picture.
 const SIZE: [usize; 2] = [560, 380];
@@ -86,7 +86,10 @@ pub fn map_report(
             .poses
             .iter()
             .zip(&record.stamped)
-            .map(|(pose, stamped)| (file_name(&stamped.file), MatrixForm::Rows.write(pose)))
+            .map(|(pose, stamped)| {
+                let name = file_name(&stamped.file) + &factor_note(stamped.length_factor);
+                (name, MatrixForm::Rows.write(pose))
+            })
             .collect(),
     };
     Ok(report.write())

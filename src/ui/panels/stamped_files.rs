@@ -2,6 +2,7 @@
 
 use egui::{Align, Button, Layout, Rect, RichText, Sense, Stroke, Ui, Vec2, vec2};
 
+use super::units;
 use crate::app::{
     Action, AppState, Command, FurtherPose, MapCommand, StampedRow, StampedState, ViewCommand,
 };
@@ -24,7 +25,7 @@ pub fn stamped_files_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
         });
     });
     for row in &rows {
-        row_ui(ui, row, commands);
+        row_ui(ui, row, state, commands);
         if let Some(problem) = problem(row) {
             let color = Palette::of(ui).poor;
             let text = RichText::new(problem).small().color(color);
@@ -41,7 +42,7 @@ pub fn add_stamped_ui(ui: &mut Ui, state: &AppState, label: &str, commands: &mut
 }
 
 /// Name, verdict, pose, and the way out of the list.
-fn row_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
+fn row_ui(ui: &mut Ui, row: &StampedRow, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 5.0;
         sight_ui(ui, row, commands);
@@ -55,8 +56,13 @@ fn row_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
                     commands.push(MapCommand::RemoveFurther(revision).into());
                 }
             }
-            pose_ui(ui, row, commands);
+            pose_ui(ui, row, state, commands);
             state_ui(ui, &row.state);
+            if let Some(units) = row.own_units {
+                let label = RichText::new(units.label()).small();
+                let label = ui.label(label.color(Palette::of(ui).secondary));
+                label.on_hover_text("The unit of this file; the menu of its pose sets it");
+            }
             let left = Layout::left_to_right(Align::Center).with_main_align(Align::Min);
             ui.with_layout(left, |ui| {
                 let name = ui.add(egui::Label::new(&row.name).truncate());
@@ -102,8 +108,8 @@ fn file_swatch(painter: &egui::Painter, rect: Rect, number: usize) {
     }
 }
 
-/// Where the pose of a further file comes from; while it is matched, the way to end that.
-fn pose_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
+/// Where the pose of a further file comes from, and its unit; while it is matched, the way to end that.
+fn pose_ui(ui: &mut Ui, row: &StampedRow, state: &AppState, commands: &mut Vec<Command>) {
     let Some((revision, pose)) = row.further else {
         return;
     };
@@ -132,6 +138,9 @@ fn pose_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
             commands.push(MapCommand::MatchFurther(revision).into());
             ui.close();
         }
+        ui.menu_button("Units", |ui| {
+            units::further_units_ui(ui, revision, state, commands);
+        });
     });
     let button = button.on_hover_text(pose.help());
     button.accessible_name(format!("Pose of {}", row.name));
@@ -176,6 +185,17 @@ fn state_ui(ui: &mut Ui, state: &StampedState) {
 
 /// What is wrong with a file, and what to do.
 fn problem(row: &StampedRow) -> Option<String> {
+    if let Some(hint) = &row.unit_hint
+        && matches!(
+            row.state,
+            StampedState::NotMatched(Some(_)) | StampedState::Matched(..)
+        )
+    {
+        let words = hint.words();
+        return Some(format!(
+            "The file {words}. The menu of its pose sets its unit."
+        ));
+    }
     match &row.state {
         StampedState::NotRead(reason) => Some(format!(
             "{} Add another file or fix this one.",
