@@ -323,6 +323,24 @@ fn several_stamped_files_stand_in_a_list_and_are_mapped_from() {
     let undo = Action::Undo.command(window.state().state());
     run(&mut window, undo.expect("a step"));
     assert_eq!(pose(&window), FurtherPose::Matched);
+    // The same menu says in which unit the file is.
+    let factor = |window: &Harness<'static, Shell>| {
+        let further = &window.state().state().document.mapping.further;
+        further[0].loaded.settings.length_factor
+    };
+    let first = window.state().state().units_of(Role::Stamped);
+    let first = first.map_or("unknown", |known| known.units.label());
+    let as_first = format!("As the first: {first}");
+    for (unit, expected) in [("m, metres", 1000.0), (&*as_first, 1.0)] {
+        click(&mut window, "Pose of second_blank.dynain");
+        window.run_steps(3);
+        // That of the file's row in section 1 is behind another menu.
+        click(&mut window, "Units");
+        window.run_steps(3);
+        click(&mut window, unit);
+        finish(&mut window);
+        assert_eq!(factor(&window), expected, "{unit}");
+    }
     click(&mut window, "Map");
     finish(&mut window);
     assert!(window.state().state().document.current_mapping().is_some());
