@@ -6,7 +6,7 @@ use std::process::Command as Process;
 
 use shapematch::app::{
     Action, Command, Dialog, FileCommand, FurtherPose, HistoryCommand, MapCommand, MatchCommand,
-    MoveCommand, NoticeLevel, ProjectCommand, Reason, Section, StampedState,
+    MoveCommand, NoticeLevel, ProjectCommand, Reason, Section, StampedState, ViewCommand,
 };
 use shapematch::assess::Verdict;
 use shapematch::geometry::{Point3, Similarity, Vector3};
@@ -732,6 +732,37 @@ fn a_project_keeps_further_files() {
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(!text.contains("further_stamped"));
     assert_eq!(open(&path).state.stamped_rows().len(), 1);
+}
+
+#[test]
+fn a_project_keeps_which_stamped_files_are_hidden() {
+    let halves = Halves::new();
+    let mut window = halves.with_both();
+    let shown = |window: &Window| {
+        let rows = window.state.stamped_rows().into_iter();
+        rows.map(|row| row.is_shown).collect::<Vec<_>>()
+    };
+    let path = halves.folder.path().join("work.shapematch");
+    for hidden in 0..2 {
+        let show = |is_shown| ViewCommand::ShowFile(halves.stamped[hidden].clone(), is_shown);
+        window.apply(show(false));
+        save(&mut window, &path);
+        let mut again = open(&path);
+        assert_eq!(shown(&again), [hidden != 0, hidden != 1]);
+        assert_eq!(again.state.is_first_file_hidden(), hidden == 0);
+        assert_eq!(again.state.shown_further().len(), usize::from(hidden != 1));
+        again.apply(show(true));
+        assert_eq!(shown(&again), [true, true]);
+        window.apply(show(true));
+    }
+    // What was hidden in the work before is not hidden in the one that is opened.
+    save(&mut window, &path);
+    window.apply(ViewCommand::ShowFile(halves.stamped[1].clone(), false));
+    window.apply(ProjectCommand::Open(ProjectRequest {
+        path,
+        ..ProjectRequest::default()
+    }));
+    assert_eq!(shown(&window), [true, true]);
 }
 
 #[test]

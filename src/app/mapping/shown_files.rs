@@ -113,7 +113,7 @@ impl AppState {
     }
 
     /// True if a stamped file was hidden. One file alone has no list in which it could be shown again.
-    pub(super) fn is_file_hidden(&self, file: &Path) -> bool {
+    pub(in crate::app) fn is_file_hidden(&self, file: &Path) -> bool {
         !self.document.mapping.further.is_empty() && self.view.hidden_files.contains(file)
     }
 

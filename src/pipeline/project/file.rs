@@ -62,6 +62,8 @@ pub struct PartEntry {
     pub is_realistic_example: bool,
     /// The ceiling it was reduced to; `None` for the full mesh.
     pub max_triangles: Option<usize>,
+    /// A stamped file that is not drawn, where several are.
+    pub is_hidden: bool,
     /// Ids of hidden parts of the deck.
     pub hidden: BTreeSet<u64>,
     /// Colours that were given to parts of the deck, sRGB.
@@ -81,6 +83,7 @@ impl Default for PartEntry {
             read_limit: ReadOptions::USUAL_LIMIT,
             is_realistic_example: false,
             max_triangles: None,
+            is_hidden: false,
             hidden: BTreeSet::new(),
             colors: BTreeMap::new(),
         }
