@@ -9,6 +9,7 @@ use shapematch::app::{
     MoveCommand, NoticeLevel, ProjectCommand, Reason, Section, StampedState, ViewCommand,
 };
 use shapematch::assess::Verdict;
+use shapematch::colormap::ColorScale;
 use shapematch::geometry::{Point3, Similarity, Vector3};
 use shapematch::jobs::{JobKey, Located, ProjectFile, ProjectRequest};
 use shapematch::mapping::Overlap;
@@ -317,6 +318,14 @@ fn the_deck_of_several_files_is_that_of_the_command_line() {
     let page = written(&mut window, Output::MapReport, &path);
     let page = String::from_utf8(page).unwrap();
     assert!(page.contains("left.dynain") && page.contains("right.dynain"));
+    // And of what each gave, with the colours of the picture.
+    assert!(page.contains("Which stamped file gave the elements their values"));
+    let scale = ColorScale::files();
+    for (number, name) in ["left.dynain", "right.dynain"].into_iter().enumerate() {
+        let [r, g, b] = scale.color(ColorScale::file_value(number));
+        let row = format!("background:#{r:02x}{g:02x}{b:02x}\"></i>{name}");
+        assert!(page.contains(&row), "{row}");
+    }
     // No output takes the place of a further file.
     let before = std::fs::read(&halves.stamped[1]).unwrap();
     let after = written(&mut window, Output::MapTable, &halves.stamped[1]);

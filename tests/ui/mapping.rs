@@ -371,11 +371,43 @@ fn green(window: &mut Harness<'static, Shell>) -> usize {
     let picture = picture(window);
     let pixels = picture.rgba.chunks(4).enumerate();
     let right = pixels.filter(|(at, _)| at % picture.width > picture.width / 2);
-    let is_green = |pixel: &[u8]| {
-        let [r, g, b] = [0, 1, 2].map(|i| f32::from(pixel[i]));
-        g > 50.0 && g > 2.0 * r && g > 1.1 * b && b > 0.5 * g
-    };
     right.filter(|(_, pixel)| is_green(pixel)).count()
+}
+
+/// True if a pixel has the green of the second stamped file.
+fn is_green(pixel: &[u8]) -> bool {
+    let [r, g, b] = [0, 1, 2].map(|i| f32::from(pixel[i]));
+    g > 50.0 && g > 2.0 * r && g > 1.1 * b && b > 0.5 * g
+}
+
+#[test]
+fn the_section_cuts_every_stamped_file_that_is_shown() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut window = drawn(1.0);
+    window.set_size(egui::vec2(1400.0, 900.0));
+    window.run_steps(3);
+    let mut window = matched_bracket_in(window, folder.path());
+    let second = folder.path().join("second_blank.dynain");
+    std::fs::copy(folder.path().join("stamped.dynain"), &second).expect("a folder");
+    run(&mut window, MapCommand::AddFurther(second));
+    let section = Action::ToggleSection.command(window.state().state());
+    run(&mut window, section.expect("parts to cut"));
+    let green_outlines = |window: &mut Harness<'static, Shell>| {
+        finish(window);
+        let plot = window.get_by_label("Outlines in the section plane").rect();
+        let picture = picture(window);
+        let is_in_plot = |at: usize| {
+            let [x, y] = [at % picture.width, at / picture.width];
+            plot.contains(egui::pos2(x as f32, y as f32))
+        };
+        let pixels = picture.rgba.chunks(4).enumerate();
+        let green = pixels.filter(|(at, pixel)| is_in_plot(*at) && is_green(pixel));
+        green.count()
+    };
+    let shown = green_outlines(&mut window);
+    assert!(shown > 100, "{shown} pixels");
+    click(&mut window, "Show second_blank.dynain");
+    assert_eq!(green_outlines(&mut window), 0);
 }
 
 #[test]
