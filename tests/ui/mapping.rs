@@ -323,24 +323,6 @@ fn several_stamped_files_stand_in_a_list_and_are_mapped_from() {
     let undo = Action::Undo.command(window.state().state());
     run(&mut window, undo.expect("a step"));
     assert_eq!(pose(&window), FurtherPose::Matched);
-    // The same menu says in which unit the file is.
-    let factor = |window: &Harness<'static, Shell>| {
-        let further = &window.state().state().document.mapping.further;
-        further[0].loaded.settings.length_factor
-    };
-    let first = window.state().state().units_of(Role::Stamped);
-    let first = first.map_or("unknown", |known| known.units.label());
-    let as_first = format!("As the first: {first}");
-    for (unit, expected) in [("m, metres", 1000.0), (&*as_first, 1.0)] {
-        click(&mut window, "Pose of second_blank.dynain");
-        window.run_steps(3);
-        // That of the file's row in section 1 is behind another menu.
-        click(&mut window, "Units");
-        window.run_steps(3);
-        click(&mut window, unit);
-        finish(&mut window);
-        assert_eq!(factor(&window), expected, "{unit}");
-    }
     click(&mut window, "Map");
     finish(&mut window);
     assert!(window.state().state().document.current_mapping().is_some());
@@ -363,6 +345,34 @@ fn several_stamped_files_stand_in_a_list_and_are_mapped_from() {
     window.run_steps(3);
     click(&mut window, "Remove second_blank.dynain");
     assert_eq!(n_files(&window), 1);
+}
+
+#[test]
+fn the_menu_of_a_stamped_file_says_its_unit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut window = matched_bracket(folder.path());
+    let second = folder.path().join("second_blank.dynain");
+    std::fs::copy(folder.path().join("stamped.dynain"), &second).expect("a folder");
+    run(&mut window, MapCommand::AddFurther(second));
+    let factor = |window: &Harness<'static, Shell>| {
+        let further = &window.state().state().document.mapping.further;
+        further[0].loaded.settings.length_factor
+    };
+    let first = window.state().state().units_of(Role::Stamped);
+    let first = first.map_or("unknown", |known| known.units.label());
+    let as_first = format!("As the first: {first}");
+    for (unit, expected) in [("m, metres", 1000.0), (&*as_first, 1.0)] {
+        click(&mut window, "Pose of second_blank.dynain");
+        window.run_steps(3);
+        click(&mut window, "Units");
+        window.run_steps(3);
+        click(&mut window, unit);
+        finish(&mut window);
+        assert_eq!(factor(&window), expected, "{unit}");
+        // The row tells a unit that is not that of the first one.
+        let is_told = window.query_by_label("m").is_some();
+        assert_eq!(is_told, expected != 1.0, "{unit}");
+    }
 }
 
 /// How much of the right 3D window has the green of the second stamped file.
@@ -390,24 +400,25 @@ fn the_section_cuts_every_stamped_file_that_is_shown() {
     let second = folder.path().join("second_blank.dynain");
     std::fs::copy(folder.path().join("stamped.dynain"), &second).expect("a folder");
     run(&mut window, MapCommand::AddFurther(second));
+    // Only the outlines have the colours of their files then.
+    let mut display = window.state().state().view.display.clone();
+    display.color_by = ColorBy::Deviation;
+    run(&mut window, ViewCommand::SetDisplay(Box::new(display)));
+    let before = green(&mut window);
     let section = Action::ToggleSection.command(window.state().state());
     run(&mut window, section.expect("parts to cut"));
-    let green_outlines = |window: &mut Harness<'static, Shell>| {
-        finish(window);
-        let plot = window.get_by_label("Outlines in the section plane").rect();
-        let picture = picture(window);
-        let is_in_plot = |at: usize| {
-            let [x, y] = [at % picture.width, at / picture.width];
-            plot.contains(egui::pos2(x as f32, y as f32))
-        };
-        let pixels = picture.rgba.chunks(4).enumerate();
-        let green = pixels.filter(|(at, pixel)| is_in_plot(*at) && is_green(pixel));
-        green.count()
+    let shown = green(&mut window);
+    assert!(shown > before + 50, "{before}, {shown} pixels");
+    // The drawing names the colours.
+    let swatches = |window: &Harness<'static, Shell>| {
+        let named = window.query_all_by_label("second_blank.dynain");
+        named.count()
     };
-    let shown = green_outlines(&mut window);
-    assert!(shown > 100, "{shown} pixels");
+    let n_named = swatches(&window);
     click(&mut window, "Show second_blank.dynain");
-    assert_eq!(green_outlines(&mut window), 0);
+    let hidden = green(&mut window);
+    assert!(hidden < before + 10, "{before}, {hidden} pixels");
+    assert_eq!(swatches(&window), n_named - 1);
 }
 
 #[test]

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::{FurtherPose, MapResult};
+use crate::app::follow_up::FollowUp;
 use crate::app::parts::length_factor_of;
 use crate::app::work::Work;
 use crate::app::{Document, Effect, NoticeLevel, Part, Reason, Shared, UnitHint, facts};
@@ -247,6 +248,7 @@ impl MappingState {
         if !task.is_some_and(|task| is_it(&task) && wanted(work.document).contains(&task)) {
             return;
         }
+        work.follow(FollowUp::FurtherPlaced);
         let placing = run.map(|run| {
             (
                 facts::match_level(&run),

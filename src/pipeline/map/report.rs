@@ -342,6 +342,10 @@ impl<'a> Painter<'a> {
             on_target(element) - self.run.at_partner(element, on_source)
         })?;
         let figure = |png, title, caption| map_figure(png, SIZE, title, caption);
+        let [stamped, moved] = match self.run.sources.len() {
+            1 => ["▲ Stamped part,", "before, moved by the pose."],
+            _ => ["▲ Stamped parts,", "before, each moved by its pose."],
+        };
         Ok(QuantityReport {
             name: name.to_owned(),
             rows: vec![
@@ -352,7 +356,7 @@ impl<'a> Painter<'a> {
             range: range_of(&pair.stamped, &pair.crash),
             histogram_distance: pair.histogram_distance,
             figures: vec![
-                figure(before, "▲ Stamped part,", "before, moved by the pose."),
+                figure(before, stamped, moved),
                 figure(after, "■ Crash part,", "mapped; grey has no value."),
                 figure(apart, "Difference,", "mapped less the stamped element."),
             ],

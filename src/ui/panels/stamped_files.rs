@@ -1,18 +1,17 @@
 //! The stamped files that a mapping takes its values from: each with its verdict and its pose.
 
-use egui::{Align, Button, Layout, Rect, RichText, Sense, Stroke, Ui, Vec2, vec2};
+use egui::{Align, Button, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
 
 use super::units;
 use crate::app::{
     Action, AppState, Command, FurtherPose, MapCommand, StampedRow, StampedState, ViewCommand,
 };
-use crate::colormap::{ColorScale, Pattern};
 use crate::pipeline::map::pose_warning;
 use crate::role::Role;
 use crate::text::sentence;
-use crate::ui::theme::{Palette, ROW, color, ink};
+use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{
-    Look, action_button, caption, eye, icon_button, role_mark, verdict_color,
+    Look, action_button, caption, eye, file_swatch, icon_button, role_mark, verdict_color,
 };
 
 /// The list of stamped files, and the way to one more.
@@ -96,16 +95,6 @@ fn sight_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
     file_swatch(ui.painter(), square, number);
     swatch
         .on_hover_text("Its colour in the picture From file, and where the colours tell the parts");
-}
-
-/// Colour and pattern of a stamped file.
-fn file_swatch(painter: &egui::Painter, rect: Rect, number: usize) {
-    let (scale, value) = (ColorScale::files(), ColorScale::file_value(number));
-    painter.rect_filled(rect, 2.0, color(scale.color(value)));
-    if scale.pattern(value) != Pattern::Plain {
-        let line = [rect.left_bottom(), rect.right_top()];
-        painter.line_segment(line, Stroke::new(1.4, ink(170)));
-    }
 }
 
 /// Where the pose of a further file comes from, and its unit; while it is matched, the way to end that.

@@ -11,7 +11,7 @@ use crate::geometry::{Gap, Plane, Point3, SectionLine, Vector3, gap_at, nearest_
 use crate::role::Role;
 use crate::text::capital;
 use crate::ui::theme::{Look, UNIT, color};
-use crate::ui::widgets::{nothing_yet, paint_role_mark, segments};
+use crate::ui::widgets::{file_swatch, nothing_yet, paint_role_mark, segments};
 
 /// Clicks this near to an outline take a point of it.
 const SNAP: f64 = 12.0;
@@ -151,6 +151,13 @@ impl Drawing<'_> {
             paint_role_mark(ui.painter(), rect, role, self.look.role(role));
             ui.label(RichText::new(role.word()).size(12.0));
             ui.add_space(6.0);
+        }
+        for file in self.state.shown_further() {
+            let (rect, swatch) = ui.allocate_exact_size(Vec2::splat(11.0), Sense::hover());
+            file_swatch(ui.painter(), rect, file.number);
+            let name = file.loaded.file_name();
+            swatch.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &name));
+            swatch.on_hover_text(name);
         }
         ui.spacing_mut().item_spacing.x = 6.0;
     }
