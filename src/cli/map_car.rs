@@ -7,8 +7,9 @@ use anyhow::Context as _;
 use clap::builder::BoolishValueParser;
 use clap::{ArgAction, Args};
 
-use super::map::{LengthFactors, MapValues};
+use super::map::MapValues;
 use super::map_choices::{HandName, default_thickness};
+use super::of_each::LengthFactors;
 use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
 use crate::formats::ReadOptions;
 use crate::pipeline::load::{LoadSettings, load, usual_selection};
