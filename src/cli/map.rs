@@ -485,7 +485,10 @@ fn place(
         let (n_poses, n_files) = (poses.len(), stamped.len());
         let poses: Option<Vec<Similarity>> = poses.into_iter().collect();
         return match poses.filter(|_| n_poses == n_files) {
-            Some(poses) => given(crash, poses),
+            Some(poses) => {
+                args.choice.lengths.check_project(&project, path)?;
+                given(crash, poses)
+            }
             None if n_poses == n_files => Err(UsageError(format!(
                 "a stamped file of {} has no pose yet; match it in the window",
                 path.display()

@@ -1,8 +1,12 @@
 //! Options that are given once for all stamped files or once for each.
 
+use std::path::Path;
+
 use clap::Args;
 
 use super::UsageError;
+use crate::pipeline::project::Project;
+use crate::settings::exact;
 use crate::text::counted;
 
 /// Factors on the lengths of stamped files.
@@ -18,6 +22,23 @@ impl LengthFactors {
     /// Refuses more or fewer factors than files.
     pub(super) fn check(&self, n_files: usize) -> anyhow::Result<()> {
         one_or_each(self.stamped_length_factor.len(), "length factor", n_files)
+    }
+
+    /// Refuses factors that are not those of a project whose poses are taken.
+    pub(super) fn check_project(&self, project: &Project, path: &Path) -> anyhow::Result<()> {
+        let expected = project.stamped_length_factors();
+        let differs = |(file, factor): (usize, &f64)| self.of(file) != *factor;
+        if !expected.iter().enumerate().any(differs) {
+            return Ok(());
+        }
+        let option = |factor: &f64| format!("--stamped-length-factor {}", exact(*factor));
+        let options: Vec<String> = expected.iter().map(option).collect();
+        let text = format!(
+            "the poses of {} stand for {}",
+            path.display(),
+            options.join(" ")
+        );
+        Err(UsageError(text).into())
     }
 
     /// The factor of a file.

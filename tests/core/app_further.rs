@@ -332,17 +332,30 @@ fn the_deck_of_several_files_is_that_of_the_command_line() {
     assert!(before == after);
 }
 
-#[test]
-fn each_stamped_file_may_have_a_unit_of_its_own() {
+/// The halves, of which the second file is in metres.
+fn one_in_metres() -> Halves {
     let halves = Halves::new();
     let right = &halves.stamped[1];
     let metres = in_metres(&std::fs::read_to_string(right).unwrap());
     std::fs::write(right, metres).unwrap();
+    halves
+}
+
+/// What the lengths of the further file are multiplied by.
+fn factor(window: &Window) -> f64 {
+    let further = &window.state.document.mapping.further[0];
+    further.loaded.settings.length_factor
+}
+
+fn set_units(window: &mut Window, units: Option<Units>) {
+    let revision = first_further(window);
+    window.apply(MapCommand::SetFurtherUnits(revision, units));
+}
+
+#[test]
+fn each_stamped_file_may_have_a_unit_of_its_own() {
+    let halves = one_in_metres();
     let mut window = halves.with_both();
-    let factor = |window: &Window| {
-        let further = &window.state.document.mapping.further[0];
-        further.loaded.settings.length_factor
-    };
     // As it is, it fits nowhere, and the list says why.
     assert_eq!(factor(&window), 1.0);
     assert_ne!(verdicts(&window)[1], Some(Verdict::Good));
@@ -350,10 +363,8 @@ fn each_stamped_file_may_have_a_unit_of_its_own() {
     assert!(hint.words().contains("1000 × smaller"), "{}", hint.words());
     assert_eq!(window.state.stamped_rows()[0].unit_hint, None);
 
-    let revision = first_further(&window);
     let metre = Units::from(LengthUnit::Meter);
-    let set = |units| MapCommand::SetFurtherUnits(revision, units);
-    window.apply(set(Some(metre)));
+    set_units(&mut window, Some(metre));
     assert_eq!(factor(&window), 1000.0);
     assert_eq!(verdicts(&window)[1], Some(Verdict::Good));
     let row = window.state.stamped_rows()[1].clone();
@@ -372,7 +383,21 @@ fn each_stamped_file_may_have_a_unit_of_its_own() {
     window.holds = false;
     assert_eq!(factor(&window), 1000.0);
 
-    // The deck is that of the command line, which is told the factor of each.
+    // The file keeps it when it is added again.
+    let revision = first_further(&window);
+    window.apply(MapCommand::RemoveFurther(revision));
+    window.apply(MapCommand::AddFurther(halves.stamped[1].clone()));
+    assert_eq!(factor(&window), 1000.0);
+    assert_eq!(verdicts(&window)[1], Some(Verdict::Good));
+    set_units(&mut window, None);
+    assert_eq!(factor(&window), 1.0, "as the first");
+}
+
+#[test]
+fn the_deck_of_files_in_two_units_is_that_of_the_command_line() {
+    let halves = one_in_metres();
+    let mut window = halves.with_both();
+    set_units(&mut window, Some(LengthUnit::Meter.into()));
     window.act(Action::MapOrCancel);
     let document = &window.state.document;
     assert!(document.current_mapping().unwrap().record.mapped_area > 0.99);
@@ -404,19 +429,25 @@ fn each_stamped_file_may_have_a_unit_of_its_own() {
     });
     assert_eq!(window.state.stale(Section::Map), None);
 
-    // A project keeps it, and the file does when it is added again.
+    // A project keeps it.
     let path = halves.folder.path().join("work.shapematch");
     save(&mut window, &path);
     let again = open(&path);
     assert_eq!(factor(&again), 1000.0);
     assert_eq!(again.state.document.map_command_line(), Some(line));
-    window.apply(MapCommand::RemoveFurther(revision));
-    window.apply(MapCommand::AddFurther(right.clone()));
-    assert_eq!(factor(&window), 1000.0);
-    assert_eq!(verdicts(&window)[1], Some(Verdict::Good));
-    let revision = first_further(&window);
-    window.apply(MapCommand::SetFurtherUnits(revision, None));
-    assert_eq!(factor(&window), 1.0, "as the first");
+    // Its poses are those of these lengths alone.
+    let map = |factors: &[&str]| {
+        let mut process = Process::new(env!("CARGO_BIN_EXE_shapematch"));
+        process.arg("map").arg(&halves.crash).args(&halves.stamped);
+        process.arg("--project").arg(&path).args(factors);
+        process.output().unwrap()
+    };
+    let done = map(&[]);
+    assert_eq!(done.status.code(), Some(2), "{done:?}");
+    let stderr = String::from_utf8(done.stderr).unwrap();
+    assert!(stderr.contains(told), "{stderr}");
+    let done = map(&told.split(' ').collect::<Vec<_>>());
+    assert!(done.status.success(), "{done:?}");
 }
 
 #[test]

@@ -446,6 +446,15 @@ impl Project {
         std::iter::once(Some(self.pose)).chain(further).collect()
     }
 
+    /// What the lengths of its stamped files are multiplied by, the first one first; its poses stand for that.
+    pub fn stamped_length_factors(&self) -> Vec<f64> {
+        let first = self.parts.stamped.as_ref();
+        let first = first.map_or(1.0, |entry| entry.length_factor);
+        let further = self.further_stamped.iter();
+        let further = further.map(|entry| entry.part.length_factor);
+        std::iter::once(first).chain(further).collect()
+    }
+
     /// The files of the project and what was done with them, in one line.
     pub fn title(&self) -> String {
         let PerRole { crash, stamped } = self.parts.as_ref().map(Option::as_ref);
