@@ -148,6 +148,14 @@ pub fn sentence(text: &str) -> String {
     capital(text) + end
 }
 
+/// What follows the name of a file whose lengths are multiplied: `", lengths × 1000"`; nothing for 1.
+pub fn factor_note(length_factor: f64) -> String {
+    if length_factor == 1.0 {
+        return String::new();
+    }
+    format!(", lengths × {length_factor}")
+}
+
 /// How lengths are written: their unit, where it is known, and their decimals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Lengths {

@@ -8,7 +8,7 @@ use crate::jobs::{MeasuredLevel, PartFacts};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::MatchRun;
 use crate::role::PerRole;
-use crate::text::{Lengths, percent};
+use crate::text::{Lengths, factor_note, percent};
 pub(super) use crate::text::{counted, grouped};
 use std::time::Duration;
 
@@ -25,9 +25,7 @@ pub(super) fn load_line(part: &LoadedPart, facts: &PartFacts) -> String {
     if report.n_turned > 0 {
         line += &format!(", {} turned", grouped(report.n_turned));
     }
-    if part.settings.length_factor != 1.0 {
-        line += &format!(", lengths × {}", part.settings.length_factor);
-    }
+    line += &factor_note(part.settings.length_factor);
     match part.units() {
         Some(known) => line + "; " + &known.words(),
         None => line + "; unit unknown",

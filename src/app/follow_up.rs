@@ -37,6 +37,8 @@ pub(super) enum FollowUp {
         /// What came out, in a line.
         line: String,
     },
+    /// A further stamped file lies at a pose, and is seen there.
+    FurtherPlaced,
     /// A mapping was taken over.
     Mapped,
     /// Another mapper's result stands beside the mapping.
@@ -100,6 +102,9 @@ impl AppState {
                 }
                 self.view.sections.unfold(Section::Map);
                 self.follow_far_move(before);
+            }
+            FollowUp::FurtherPlaced => {
+                self.with_scene(|view, scene| view.keep_whole(Role::Stamped, scene));
             }
             FollowUp::SectionToggled => self.show_section(),
             FollowUp::Mapped => {

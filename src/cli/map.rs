@@ -13,6 +13,7 @@ use super::map_choices::{
     HandName, KindName, MirrorName, RuleName, default_thickness, law, quantities,
 };
 use super::map_text::summary;
+use super::of_each::{LengthFactors, of_file, one_or_each};
 use super::recipe::{pose, selection};
 use super::setting_args::MapSettingArgs;
 use super::{
@@ -72,9 +73,8 @@ struct MapChoice {
     /// have them, are tools and left out.
     #[arg(long, value_name = "PART")]
     stamped_part: Vec<String>,
-    /// Factor on the stamped coordinates and thicknesses, for files in another length unit.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
-    stamped_length_factor: f64,
+    #[command(flatten)]
+    lengths: LengthFactors,
     /// Factor on the stamped stresses, for files in another unit of stress. Without it stresses that are
     /// clearly in another unit than the crash deck's are refused.
     #[arg(long, value_name = "FACTOR")]
@@ -365,11 +365,8 @@ fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
         ));
     }
     let n_parts = args.choice.stamped_part.len();
-    if n_parts > 1 && n_parts != n_files {
-        return refuse(format!(
-            "{n_parts} stamped parts for {n_files} stamped files; give one for all or one for each"
-        ));
-    }
+    one_or_each(n_parts, "stamped part", n_files)?;
+    args.choice.lengths.check(n_files)?;
     let has_pose = args.choice.identity || args.choice.project.is_some() || n_poses > 0;
     if args.choice.mirror == MirrorName::Free && has_pose {
         return refuse(
@@ -434,13 +431,11 @@ fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Ve
         monitor,
     )?;
     let part_of = |file: usize| {
-        let parts = &choice.stamped_part;
-        // One for all, or one for each.
-        let part = parts.get(file).or_else(|| parts.first());
+        let part = of_file(&choice.stamped_part, file);
         part.map(String::as_str)
     };
     let stamped = args.stamped.iter().enumerate().map(|(file, path)| {
-        let factor = choice.stamped_length_factor;
+        let factor = choice.lengths.of(file);
         load(
             path,
             &settings(Role::Stamped, part_of(file), factor),
@@ -490,7 +485,10 @@ fn place(
         let (n_poses, n_files) = (poses.len(), stamped.len());
         let poses: Option<Vec<Similarity>> = poses.into_iter().collect();
         return match poses.filter(|_| n_poses == n_files) {
-            Some(poses) => given(crash, poses),
+            Some(poses) => {
+                args.choice.lengths.check_project(&project, path)?;
+                given(crash, poses)
+            }
             None if n_poses == n_files => Err(UsageError(format!(
                 "a stamped file of {} has no pose yet; match it in the window",
                 path.display()

@@ -9,6 +9,7 @@ use clap::{ArgAction, Args};
 
 use super::map::MapValues;
 use super::map_choices::{HandName, default_thickness};
+use super::of_each::LengthFactors;
 use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
 use crate::formats::ReadOptions;
 use crate::pipeline::load::{LoadSettings, load, usual_selection};
@@ -42,9 +43,8 @@ pub struct MapCarArgs {
     /// Whether stamped parts are the crash parts' own hand, the opposite one (left for right), or either.
     #[arg(long, value_enum, default_value = "same")]
     hand: HandName,
-    /// Factor on the stamped coordinates and thicknesses, for files in another length unit.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
-    stamped_length_factor: f64,
+    #[command(flatten)]
+    lengths: LengthFactors,
     /// Factor on the stamped stresses, for files in another unit of stress.
     #[arg(long, value_name = "FACTOR")]
     stress_factor: Option<f64>,
@@ -73,6 +73,7 @@ Exit status: 0 every stamped part is mapped, 1 failed or one of them is not, 2 w
 /// Reads, finds, maps, writes, and prints the table.
 pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     args.values.check()?;
+    args.lengths.check(args.stamped.len())?;
     let monitor = progress::monitor(quiet);
     let read = ReadOptions {
         include_folders: args.include_folder.clone(),
@@ -87,9 +88,10 @@ pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let stamped: Vec<StampedFile> = args
         .stamped
         .iter()
-        .map(|path| StampedFile {
+        .enumerate()
+        .map(|(file, path)| StampedFile {
             path: path.clone(),
-            settings: settings(Role::Stamped, args.stamped_length_factor),
+            settings: settings(Role::Stamped, args.lengths.of(file)),
         })
         .collect();
     make_folder(&args.out)?;

@@ -14,6 +14,7 @@ mod map_choices;
 mod map_text;
 mod match_text;
 mod matching;
+mod of_each;
 mod progress;
 mod project;
 mod recipe;

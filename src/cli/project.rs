@@ -12,7 +12,7 @@ use crate::pipeline::load::LoadedPart;
 use crate::pipeline::project::{PartEntry, Project, ProjectRequest, open_project};
 use crate::role::PerRole;
 use crate::settings::Choice as _;
-use crate::text::{capital, counted, grouped, length, percent};
+use crate::text::{capital, counted, factor_note, grouped, length, percent};
 
 /// Reads a project and its parts, and what its match is to be run with.
 pub fn open(path: &Path, monitor: &Monitor) -> anyhow::Result<(Asked, PerRole<LoadedPart>)> {
@@ -92,6 +92,9 @@ fn describe(project: &Project, path: &Path) -> String {
             let _ = writeln!(text, "{role:<8} {}", describe_part(entry, path));
         }
     }
+    for further in &project.further_stamped {
+        let _ = writeln!(text, "Stamped  {}", describe_part(&further.part, path));
+    }
     let pose = &project.pose;
     let shift: [f64; 3] = pose.translation.into();
     let angle = pose.angle_to(&crate::geometry::Similarity::identity());
@@ -143,9 +146,7 @@ fn describe_part(entry: &PartEntry, project: &Path) -> String {
     if let Some(units) = entry.units {
         let _ = write!(text, ", in {}", units.label());
     }
-    if entry.length_factor != 1.0 {
-        let _ = write!(text, ", lengths × {}", entry.length_factor);
-    }
+    text += &factor_note(entry.length_factor);
     let state = match entry.locate(project) {
         None => "not found",
         Some(found) => match FileHash::of_file(&Disk, &found, &Monitor::silent()) {

@@ -199,6 +199,11 @@ impl LoadedPart {
         part
     }
 
+    /// True if the other part is this one: the units may have been named since.
+    pub fn is_same_surface(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.surface, &other.surface)
+    }
+
     /// File, parts and unit as the command line has to be told.
     pub fn command_side(&self) -> CommandSide<'_> {
         let selection = &self.settings.selection;

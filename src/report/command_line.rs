@@ -90,7 +90,7 @@ pub struct MapCommandLine<'a> {
     pub read: &'a ReadOptions,
     /// Where the stamped part lies (crash from stamped).
     pub pose: &'a Similarity,
-    /// Further stamped files with their poses. Their lengths have the factor of the first.
+    /// Further stamped files with their poses.
     pub further: &'a [(CommandSide<'a>, Similarity)],
     /// Quantities, method, limits.
     pub options: &'a MapOptions,
@@ -104,19 +104,15 @@ pub struct MapCommandLine<'a> {
 }
 
 impl MapCommandLine<'_> {
-    /// What is taken from each stamped file, where they differ in it; else nothing but the first.
-    fn stamped_parts(&self) -> Vec<String> {
+    /// A word about each stamped file, where they differ in it; else nothing.
+    fn of_each_stamped(&self, word: impl Fn(&CommandSide<'_>) -> String) -> Vec<String> {
         let further = self.further.iter().map(|(side, _)| side);
-        let typed = |side: &CommandSide<'_>| {
-            let usual = PartSelection::Sheet;
-            side.selection.unwrap_or(&usual).typed()
-        };
         let all = std::iter::once(&self.sides.stamped).chain(further);
-        let mut parts: Vec<String> = all.map(typed).collect();
-        if parts.iter().all(|part| *part == parts[0]) {
-            parts.truncate(1);
+        let mut words: Vec<String> = all.map(word).collect();
+        if words.iter().all(|word| *word == words[0]) {
+            words.clear();
         }
-        parts
+        words
     }
 
     /// The line to paste into a shell. What is the default is left out.
@@ -128,18 +124,24 @@ impl MapCommandLine<'_> {
         for (side, _) in self.further {
             words.0.push(file_word(side.path));
         }
-        let parts = self.stamped_parts();
+        let parts = self.of_each_stamped(|side| {
+            let usual = PartSelection::Sheet;
+            side.selection.unwrap_or(&usual).typed()
+        });
+        let factors = self.of_each_stamped(|side| exact(side.length_factor));
         for (role, side) in self.sides.iter() {
             // A mapping takes factors, not units.
             let mut side = CommandSide {
                 units: None,
                 ..*side
             };
-            if role == Role::Stamped && parts.len() > 1 {
-                for part in &parts {
-                    words.option("stamped-part", part.clone());
-                }
+            if role == Role::Stamped && !parts.is_empty() {
+                words.repeated("stamped-part", &parts);
                 side.selection = None;
+            }
+            if role == Role::Stamped && !factors.is_empty() {
+                words.repeated("stamped-length-factor", &factors);
+                side.length_factor = 1.0;
             }
             words.side(role, &side);
         }
@@ -238,6 +240,12 @@ impl Words {
     fn option(&mut self, name: &str, value: String) {
         self.flag(name);
         self.0.push(value);
+    }
+
+    fn repeated(&mut self, name: &str, values: &[String]) {
+        for value in values {
+            self.option(name, value.clone());
+        }
     }
 
     fn folders(&mut self, read: &ReadOptions) {

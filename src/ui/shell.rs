@@ -337,7 +337,7 @@ impl Shell {
             self.drop = Some(drop);
             return Vec::new();
         }
-        let target = DropTarget::under_pointer(ctx, &self.state, drop.paths.len());
+        let target = DropTarget::under_pointer(ctx, &self.state, &drop.paths);
         target.commands(drop.paths)
     }
 

@@ -1,8 +1,9 @@
 //! Small pieces that every panel uses, so that they look alike everywhere.
 
-use super::theme::{Palette, ROW, TALL, UNIT};
+use super::theme::{Palette, ROW, TALL, UNIT, color, ink};
 use crate::app::{Action, AppState, Command, NoticeLevel, typed_count, typed_length, typed_number};
 use crate::assess::Verdict;
+use crate::colormap::{ColorScale, Pattern};
 use crate::role::Role;
 use crate::text::Lengths;
 pub use crate::text::{grouped, length, percent, signed};
@@ -426,6 +427,16 @@ pub fn nothing_yet(ui: &mut Ui, title: &str, hint: &str) {
         ui.label(title);
         caption(ui, hint);
     });
+}
+
+/// Colour and pattern of a stamped file.
+pub fn file_swatch(painter: &egui::Painter, rect: Rect, number: usize) {
+    let (scale, value) = (ColorScale::files(), ColorScale::file_value(number));
+    painter.rect_filled(rect, 2.0, color(scale.color(value)));
+    if scale.pattern(value) != Pattern::Plain {
+        let line = [rect.left_bottom(), rect.right_top()];
+        painter.line_segment(line, Stroke::new(1.4, ink(170)));
+    }
 }
 
 #[cfg(test)]

@@ -6,9 +6,10 @@ use std::process::Command as Process;
 
 use shapematch::app::{
     Action, Command, Dialog, FileCommand, FurtherPose, HistoryCommand, MapCommand, MatchCommand,
-    MoveCommand, NoticeLevel, ProjectCommand, Reason, Section, StampedState,
+    MoveCommand, NoticeLevel, ProjectCommand, Reason, Section, StampedState, ViewCommand,
 };
 use shapematch::assess::Verdict;
+use shapematch::colormap::ColorScale;
 use shapematch::geometry::{Point3, Similarity, Vector3};
 use shapematch::jobs::{JobKey, Located, ProjectFile, ProjectRequest};
 use shapematch::mapping::Overlap;
@@ -20,6 +21,7 @@ use shapematch::pipeline::project::Project;
 use shapematch::registration::Hand;
 use shapematch::role::{PerRole, Role};
 use shapematch::samples::SampleVariant;
+use shapematch::units::{LengthUnit, Units};
 
 use super::app::{Window, write_bracket};
 use super::app_mapping::real;
@@ -71,6 +73,34 @@ fn half(deck: &str, is_kept: impl Fn(f64) -> bool, motion: &Similarity) -> Strin
         lines.push(line.to_owned());
     }
     lines.join("\n") + "\n"
+}
+
+/// The same deck in metres: coordinates and thicknesses, which alone have sixteen columns.
+fn in_metres(deck: &str) -> String {
+    let mut keyword = "";
+    let mut n_of_block = 0;
+    let lines = deck.lines().map(|line| {
+        n_of_block += 1;
+        if line.starts_with('*') {
+            keyword = line;
+            n_of_block = 0;
+        }
+        let (first, is_length) = match keyword {
+            "*NODE" => (8, true),
+            "*ELEMENT_SHELL_THICKNESS" => (0, n_of_block % 2 == 0),
+            _ => (0, false),
+        };
+        if !is_length || line.starts_with(['$', '*']) {
+            return line.to_owned();
+        }
+        let mut scaled = line[..first].to_owned();
+        for at in (first..line.len()).step_by(16) {
+            let number: f64 = line[at..(at + 16).min(line.len())].trim().parse().unwrap();
+            scaled += &format!("{:16.9e}", number / 1000.0);
+        }
+        scaled
+    });
+    lines.collect::<Vec<_>>().join("\n") + "\n"
 }
 
 /// The crash bracket, and its stamped part as two files: one half as it was formed, the other somewhere
@@ -288,10 +318,163 @@ fn the_deck_of_several_files_is_that_of_the_command_line() {
     let page = written(&mut window, Output::MapReport, &path);
     let page = String::from_utf8(page).unwrap();
     assert!(page.contains("left.dynain") && page.contains("right.dynain"));
+    // And of what each gave, with the colours of the picture.
+    assert!(page.contains("Which stamped file gave the elements their values"));
+    let scale = ColorScale::files();
+    for (number, name) in ["left.dynain", "right.dynain"].into_iter().enumerate() {
+        let [r, g, b] = scale.color(ColorScale::file_value(number));
+        let row = format!("background:#{r:02x}{g:02x}{b:02x}\"></i>{name}");
+        assert!(page.contains(&row), "{row}");
+    }
     // No output takes the place of a further file.
     let before = std::fs::read(&halves.stamped[1]).unwrap();
     let after = written(&mut window, Output::MapTable, &halves.stamped[1]);
     assert!(before == after);
+}
+
+/// The halves, of which the second file is in metres.
+fn one_in_metres() -> Halves {
+    let halves = Halves::new();
+    let right = &halves.stamped[1];
+    let metres = in_metres(&std::fs::read_to_string(right).unwrap());
+    std::fs::write(right, metres).unwrap();
+    halves
+}
+
+/// What the lengths of the further file are multiplied by.
+fn factor(window: &Window) -> f64 {
+    let further = &window.state.document.mapping.further[0];
+    further.loaded.settings.length_factor
+}
+
+fn set_units(window: &mut Window, units: Option<Units>) {
+    let revision = first_further(window);
+    window.apply(MapCommand::SetFurtherUnits(revision, units));
+}
+
+#[test]
+fn each_stamped_file_may_have_a_unit_of_its_own() {
+    let halves = one_in_metres();
+    let mut window = halves.with_both();
+    // As it is, it fits nowhere, and the list says why.
+    assert_eq!(factor(&window), 1.0);
+    assert_ne!(verdicts(&window)[1], Some(Verdict::Good));
+    let hint = window.state.stamped_rows()[1].unit_hint.unwrap();
+    assert!(hint.words().contains("1000 × smaller"), "{}", hint.words());
+    assert_eq!(window.state.stamped_rows()[0].unit_hint, None);
+
+    let metre = Units::from(LengthUnit::Meter);
+    set_units(&mut window, Some(metre));
+    assert_eq!(factor(&window), 1000.0);
+    assert_eq!(verdicts(&window)[1], Some(Verdict::Good));
+    let row = window.state.stamped_rows()[1].clone();
+    assert_eq!((row.own_units, row.unit_hint), (Some(metre), None));
+    assert_eq!(window.part(Role::Stamped).length_factor(), 1.0);
+    // One undo step, which the match that follows belongs to.
+    window.holds = true;
+    assert_eq!(
+        window.state.history.undo_name(),
+        Some("right.dynain is in m")
+    );
+    window.apply(HistoryCommand::Undo);
+    assert_eq!(factor(&window), 1.0);
+    window.apply(HistoryCommand::Redo);
+    assert!(window.held.is_empty(), "its pose comes back with it");
+    window.holds = false;
+    assert_eq!(factor(&window), 1000.0);
+
+    // The file keeps it when it is added again.
+    let revision = first_further(&window);
+    window.apply(MapCommand::RemoveFurther(revision));
+    window.apply(MapCommand::AddFurther(halves.stamped[1].clone()));
+    assert_eq!(factor(&window), 1000.0);
+    assert_eq!(verdicts(&window)[1], Some(Verdict::Good));
+    set_units(&mut window, None);
+    assert_eq!(factor(&window), 1.0, "as the first");
+}
+
+#[test]
+fn the_deck_of_files_in_two_units_is_that_of_the_command_line() {
+    let halves = one_in_metres();
+    let mut window = halves.with_both();
+    set_units(&mut window, Some(LengthUnit::Meter.into()));
+    window.act(Action::MapOrCancel);
+    let document = &window.state.document;
+    assert!(document.current_mapping().unwrap().record.mapped_area > 0.99);
+    let line = document.map_command_line().unwrap();
+    let told = "--stamped-length-factor 1.0 --stamped-length-factor 1000.0";
+    assert!(line.contains(told), "{line}");
+    let [path, other] = ["window", "line"].map(|folder| {
+        let folder = halves.folder.path().join(folder);
+        std::fs::create_dir_all(&folder).unwrap();
+        folder.join("mapped.k")
+    });
+    for kind in WriteKind::ALL {
+        let own = written(&mut window, Output::Mapped(kind), &path);
+        let more = ["--write", kind.name(), "--out", other.to_str().unwrap()];
+        let done = run_line(&line, &more);
+        assert!(done.status.success(), "{done:?}");
+        assert!(own == std::fs::read(&other).unwrap(), "{kind:?}");
+        let text = String::from_utf8(own).unwrap();
+        assert!(text.contains("its lengths multiplied by 1000") || kind == WriteKind::Deck);
+    }
+    let path = halves.folder.path().join("window.html");
+    let page = String::from_utf8(written(&mut window, Output::MapReport, &path)).unwrap();
+    assert!(page.contains("right.dynain, lengths × 1000"));
+    // Naming the unit of the first one, which is what it was taken for, changes no values.
+    let millimetre = Some(LengthUnit::Millimeter.into());
+    window.apply(FileCommand::SetUnits {
+        role: Role::Stamped,
+        units: millimetre,
+    });
+    assert_eq!(window.state.stale(Section::Map), None);
+
+    // A project keeps it.
+    let path = halves.folder.path().join("work.shapematch");
+    save(&mut window, &path);
+    let again = open(&path);
+    assert_eq!(factor(&again), 1000.0);
+    assert_eq!(again.state.document.map_command_line(), Some(line));
+    // Its poses are those of these lengths alone.
+    let map = |factors: &[&str]| {
+        let mut process = Process::new(env!("CARGO_BIN_EXE_shapematch"));
+        process.arg("map").arg(&halves.crash).args(&halves.stamped);
+        process.arg("--project").arg(&path).args(factors);
+        process.output().unwrap()
+    };
+    let done = map(&[]);
+    assert_eq!(done.status.code(), Some(2), "{done:?}");
+    let stderr = String::from_utf8(done.stderr).unwrap();
+    assert!(stderr.contains(told), "{stderr}");
+    let done = map(&told.split(' ').collect::<Vec<_>>());
+    assert!(done.status.success(), "{done:?}");
+}
+
+#[test]
+fn as_many_length_factors_as_stamped_files() {
+    let halves = Halves::new();
+    let refused = |program: &str, files: &[&PathBuf], n_factors: usize| {
+        let mut process = Process::new(env!("CARGO_BIN_EXE_shapematch"));
+        process.arg(program).arg(&halves.crash).args(files);
+        process.args(vec!["--stamped-length-factor=2"; n_factors]);
+        if program == "map-car" {
+            process.arg("--out").arg(halves.folder.path());
+        }
+        let done = process.output().unwrap();
+        assert_eq!(done.status.code(), Some(2), "{done:?}");
+        String::from_utf8(done.stderr).unwrap()
+    };
+    let [left, right] = &halves.stamped;
+    for program in ["map", "map-car"] {
+        let told = refused(program, &[left, right], 3);
+        let expected = "3 length factors for 2 stamped files; give one for all or one for each";
+        assert!(told.contains(expected), "{told}");
+        let told = refused(program, &[left], 2);
+        assert!(
+            told.contains("2 length factors for 1 stamped file;"),
+            "{told}"
+        );
+    }
 }
 
 #[test]
@@ -589,6 +772,37 @@ fn a_project_keeps_further_files() {
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(!text.contains("further_stamped"));
     assert_eq!(open(&path).state.stamped_rows().len(), 1);
+}
+
+#[test]
+fn a_project_keeps_which_stamped_files_are_hidden() {
+    let halves = Halves::new();
+    let mut window = halves.with_both();
+    let shown = |window: &Window| {
+        let rows = window.state.stamped_rows().into_iter();
+        rows.map(|row| row.is_shown).collect::<Vec<_>>()
+    };
+    let path = halves.folder.path().join("work.shapematch");
+    for hidden in 0..2 {
+        let show = |is_shown| ViewCommand::ShowFile(halves.stamped[hidden].clone(), is_shown);
+        window.apply(show(false));
+        save(&mut window, &path);
+        let mut again = open(&path);
+        assert_eq!(shown(&again), [hidden != 0, hidden != 1]);
+        assert_eq!(again.state.is_first_file_hidden(), hidden == 0);
+        assert_eq!(again.state.shown_further().len(), usize::from(hidden != 1));
+        again.apply(show(true));
+        assert_eq!(shown(&again), [true, true]);
+        window.apply(show(true));
+    }
+    // What was hidden in the work before is not hidden in the one that is opened.
+    save(&mut window, &path);
+    window.apply(ViewCommand::ShowFile(halves.stamped[1].clone(), false));
+    window.apply(ProjectCommand::Open(ProjectRequest {
+        path,
+        ..ProjectRequest::default()
+    }));
+    assert_eq!(shown(&window), [true, true]);
 }
 
 #[test]

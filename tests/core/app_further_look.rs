@@ -68,6 +68,26 @@ fn each_further_file_is_seen_at_its_own_pose_unless_it_is_hidden() {
 }
 
 #[test]
+fn a_window_that_showed_the_whole_shows_a_file_that_comes_too() {
+    let halves = Halves::new();
+    let right = || MapCommand::AddFurther(halves.stamped[1].clone());
+    let height = |window: &Window| window.state.view.cameras.stamped.height;
+    let mut window = halves.window();
+    window.apply(ViewCommand::FitAll(Role::Stamped));
+    let alone = height(&window);
+    window.apply(right());
+    assert!(height(&window) > 1.2 * alone, "{alone}");
+    // Where one has gone closer, the view stays.
+    let mut window = halves.window();
+    window.apply(ViewCommand::FitAll(Role::Stamped));
+    let mut camera = window.state.view.cameras.stamped;
+    camera.height *= 0.5;
+    window.apply(ViewCommand::SetCamera(Role::Stamped, camera));
+    window.apply(right());
+    assert_eq!(window.state.view.cameras.stamped, camera);
+}
+
+#[test]
 fn further_files_are_not_seen_before_the_first_one_was_brought_to_the_crash_part() {
     let halves = Halves::new();
     let mut window = halves.with_both();

@@ -347,17 +347,78 @@ fn several_stamped_files_stand_in_a_list_and_are_mapped_from() {
     assert_eq!(n_files(&window), 1);
 }
 
+#[test]
+fn the_menu_of_a_stamped_file_says_its_unit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut window = matched_bracket(folder.path());
+    let second = folder.path().join("second_blank.dynain");
+    std::fs::copy(folder.path().join("stamped.dynain"), &second).expect("a folder");
+    run(&mut window, MapCommand::AddFurther(second));
+    let factor = |window: &Harness<'static, Shell>| {
+        let further = &window.state().state().document.mapping.further;
+        further[0].loaded.settings.length_factor
+    };
+    let first = window.state().state().units_of(Role::Stamped);
+    let first = first.map_or("unknown", |known| known.units.label());
+    let as_first = format!("As the first: {first}");
+    for (unit, expected) in [("m, metres", 1000.0), (&*as_first, 1.0)] {
+        click(&mut window, "Pose of second_blank.dynain");
+        window.run_steps(3);
+        click(&mut window, "Units");
+        window.run_steps(3);
+        click(&mut window, unit);
+        finish(&mut window);
+        assert_eq!(factor(&window), expected, "{unit}");
+        // The row tells a unit that is not that of the first one.
+        let is_told = window.query_by_label("m").is_some();
+        assert_eq!(is_told, expected != 1.0, "{unit}");
+    }
+}
+
 /// How much of the right 3D window has the green of the second stamped file.
 fn green(window: &mut Harness<'static, Shell>) -> usize {
     finish(window);
     let picture = picture(window);
     let pixels = picture.rgba.chunks(4).enumerate();
     let right = pixels.filter(|(at, _)| at % picture.width > picture.width / 2);
-    let is_green = |pixel: &[u8]| {
-        let [r, g, b] = [0, 1, 2].map(|i| f32::from(pixel[i]));
-        g > 50.0 && g > 2.0 * r && g > 1.1 * b && b > 0.5 * g
-    };
     right.filter(|(_, pixel)| is_green(pixel)).count()
+}
+
+/// True if a pixel has the green of the second stamped file.
+fn is_green(pixel: &[u8]) -> bool {
+    let [r, g, b] = [0, 1, 2].map(|i| f32::from(pixel[i]));
+    g > 50.0 && g > 2.0 * r && g > 1.1 * b && b > 0.5 * g
+}
+
+#[test]
+fn the_section_cuts_every_stamped_file_that_is_shown() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut window = drawn(1.0);
+    window.set_size(egui::vec2(1400.0, 900.0));
+    window.run_steps(3);
+    let mut window = matched_bracket_in(window, folder.path());
+    let second = folder.path().join("second_blank.dynain");
+    std::fs::copy(folder.path().join("stamped.dynain"), &second).expect("a folder");
+    run(&mut window, MapCommand::AddFurther(second));
+    // Only the outlines have the colours of their files then.
+    let mut display = window.state().state().view.display.clone();
+    display.color_by = ColorBy::Deviation;
+    run(&mut window, ViewCommand::SetDisplay(Box::new(display)));
+    let before = green(&mut window);
+    let section = Action::ToggleSection.command(window.state().state());
+    run(&mut window, section.expect("parts to cut"));
+    let shown = green(&mut window);
+    assert!(shown > before + 50, "{before}, {shown} pixels");
+    // The drawing names the colours.
+    let swatches = |window: &Harness<'static, Shell>| {
+        let named = window.query_all_by_label("second_blank.dynain");
+        named.count()
+    };
+    let n_named = swatches(&window);
+    click(&mut window, "Show second_blank.dynain");
+    let hidden = green(&mut window);
+    assert!(hidden < before + 10, "{before}, {hidden} pixels");
+    assert_eq!(swatches(&window), n_named - 1);
 }
 
 #[test]

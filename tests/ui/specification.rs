@@ -100,70 +100,87 @@ fn two_files_dropped_the_wrong_way_round_find_their_places() {
     assert_eq!(part_of(&window, Role::Crash), expected[1]);
 }
 
-#[test]
-fn a_file_that_is_dropped_on_section_4_is_one_more_stamped_file_once_a_pose_stands() {
-    let folder = tempfile::tempdir().unwrap();
-    let [crash, stamped] = files(folder.path());
-    let more = ["second.dynain", "third.dynain"].map(|name| folder.path().join(name));
+/// Moves the pointer to the header of section 4.
+fn point_at_map(window: &mut Window) {
+    let header = window.get_by_role_and_label(Kind::Button, "4 Map");
+    let at = header.rect().center();
+    window.event(Event::PointerMoved(at));
+    window.run_steps(1);
+}
+
+/// What is said while files hang over the window.
+fn said_of(window: &mut Window, files: Vec<egui::HoveredFile>) -> Option<String> {
+    window.input_mut().hovered_files = files;
+    window.run_steps(1);
+    let painted = texts(window);
+    window.input_mut().hovered_files.clear();
+    let mut said = painted.into_iter().map(|text| text.text);
+    said.find(|text| text.starts_with("Drop "))
+}
+
+/// Both parts with section 4 open, and two more stamped files.
+fn with_section_4(folder: &Path) -> (Window, [PathBuf; 3]) {
+    let [crash, stamped] = files(folder);
+    let more = ["second.dynain", "third.dynain"].map(|name| folder.join(name));
     for file in &more {
         std::fs::copy(&stamped, file).unwrap();
     }
     let mut window = window();
     drop_files(&mut window, &[&stamped, &crash]);
     finish(&mut window);
-    act(
-        &mut window,
-        vec![ViewCommand::UseSection(Section::Map).into()],
-    );
-    let map = |window: &Window| {
-        let header = window.get_by_role_and_label(Kind::Button, "4 Map");
-        header.rect().center()
+    let open = ViewCommand::UseSection(Section::Map);
+    act(&mut window, vec![open.into()]);
+    point_at_map(&mut window);
+    let [second, third] = more;
+    (window, [stamped, second, third])
+}
+
+fn set_pose(window: &mut Window) {
+    let set = MoveCommand::SetPose {
+        crash_from_stamped: Similarity {
+            translation: Vector3::new(0.0, 0.0, 1.0),
+            ..Similarity::identity()
+        },
+        name: "Known pose".to_owned(),
     };
-    let at = map(&window);
-    window.event(Event::PointerMoved(at));
-    window.run_steps(1);
+    act(window, vec![set.into()]);
+    point_at_map(window);
+}
+
+fn stamped_names(window: &Window) -> Vec<String> {
+    let rows = window.state().state().stamped_rows();
+    rows.into_iter().map(|row| row.name).collect()
+}
+
+#[test]
+fn a_file_that_is_dropped_on_section_4_is_one_more_stamped_file_once_a_pose_stands() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut window, [stamped, second, third]) = with_section_4(folder.path());
     let hovered = |window: &mut Window, n: usize| {
-        let files = &mut window.input_mut().hovered_files;
-        *files = vec![egui::HoveredFile::default(); n];
-        window.run_steps(1);
-        let painted = texts(window);
-        let mut said = painted.iter().map(|text| text.text.clone());
-        let said = said.find(|text| text.starts_with("Drop as"));
-        window.input_mut().hovered_files.clear();
-        said
+        let files = vec![egui::HoveredFile::default(); n];
+        said_of(window, files)
     };
     // Without a pose the file is opened as before.
     assert_ne!(
         hovered(&mut window, 1).as_deref(),
         Some("Drop as one more stamped file")
     );
-    let pose = Similarity {
-        translation: Vector3::new(0.0, 0.0, 1.0),
-        ..Similarity::identity()
-    };
-    let name = "Known pose".to_owned();
-    let set = MoveCommand::SetPose {
-        crash_from_stamped: pose,
-        name,
-    };
-    act(&mut window, vec![set.into()]);
-    let at = map(&window);
-    window.event(Event::PointerMoved(at));
-    window.run_steps(1);
+    set_pose(&mut window);
     for (n, words) in [
         (1, "Drop as one more stamped file"),
         (2, "Drop as more stamped files"),
     ] {
         assert_eq!(hovered(&mut window, n).as_deref(), Some(words));
     }
-    drop_files(&mut window, &[&more[0], &more[1]]);
+    drop_files(&mut window, &[&second, &third]);
     finish(&mut window);
-    let rows = window.state().state().stamped_rows();
-    let names: Vec<&str> = rows.iter().map(|row| row.name.as_str()).collect();
-    assert_eq!(names, ["stamped.dynain", "second.dynain", "third.dynain"]);
+    assert_eq!(
+        stamped_names(&window),
+        ["stamped.dynain", "second.dynain", "third.dynain"]
+    );
     assert_eq!(
         part_of(&window, Role::Stamped),
-        Some(PartSource::File(stamped.clone())),
+        Some(PartSource::File(stamped)),
         "the first one stays"
     );
     // Over a 3D window it is the part of that window.
@@ -173,6 +190,37 @@ fn a_file_that_is_dropped_on_section_4_is_one_more_stamped_file_once_a_pose_stan
         hovered(&mut window, 1).as_deref(),
         Some("Drop as the stamped part")
     );
+}
+
+#[test]
+fn a_project_that_is_dropped_on_section_4_is_opened() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut window, [_, second, _]) = with_section_4(folder.path());
+    set_pose(&mut window);
+    let project = folder.path().join("work.shapematch");
+    window
+        .state()
+        .state()
+        .to_project(0)
+        .write(&project)
+        .unwrap();
+    drop_files(&mut window, &[&second]);
+    finish(&mut window);
+    assert_eq!(stamped_names(&window), ["stamped.dynain", "second.dynain"]);
+    point_at_map(&mut window);
+    let file = egui::HoveredFile {
+        path: Some(project.clone()),
+        ..egui::HoveredFile::default()
+    };
+    assert_eq!(
+        said_of(&mut window, vec![file]).as_deref(),
+        Some("Drop to open the project")
+    );
+    drop_files(&mut window, &[&project]);
+    finish(&mut window);
+    let opened = window.state().state().project.path.clone();
+    assert_eq!(opened, Some(project));
+    assert_eq!(stamped_names(&window), ["stamped.dynain"]);
 }
 
 #[test]

@@ -6,8 +6,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::{FurtherPose, MapResult};
+use crate::app::follow_up::FollowUp;
+use crate::app::parts::length_factor_of;
 use crate::app::work::Work;
-use crate::app::{Document, Effect, NoticeLevel, Part, Reason, Shared, facts};
+use crate::app::{Document, Effect, NoticeLevel, Part, Reason, Shared, UnitHint, facts};
 use crate::assess::Verdict;
 use crate::geometry::Similarity;
 use crate::jobs::{FurtherInput, JobKey, JobKind, PlaceInput};
@@ -16,6 +18,7 @@ use crate::pipeline::map::{placing_recipe, pose_warning};
 use crate::pipeline::match_parts::MatchRun;
 use crate::role::{PerRole, Role};
 use crate::text::{counted, grouped};
+use crate::units::Units;
 
 /// What can be done about a further stamped file that has no pose.
 pub(in crate::app) const FURTHER_WITHOUT_POSE: &str =
@@ -69,7 +72,7 @@ pub(super) struct Task {
     crash_revision: u64,
     /// What its lengths are multiplied by.
     length_factor: f64,
-    /// It lies as the first one, and is only to be brought into its unit.
+    /// It lies as the first one, and is only to be brought into the unit of lengths.
     is_as_first: bool,
 }
 
@@ -86,9 +89,25 @@ pub(in crate::app) struct NewFurther {
 }
 
 impl Further {
+    /// What its lengths are to be multiplied by: as its own unit asks for, else as those of the first file.
+    fn length_factor(&self, both: PerRole<&Part>) -> f64 {
+        let own = length_factor_of(&both.crash.loaded, &self.loaded);
+        own.unwrap_or(both.stamped.length_factor())
+    }
+
+    /// How its size differs from the crash part's by the factor between two units, where no good pose speaks
+    /// for the unit it is taken to be in.
+    pub(super) fn unit_hint(&self, both: PerRole<&Part>) -> Option<UnitHint> {
+        let is_good = |placing: &Placing| placing.verdict != Verdict::Poor;
+        let is_open =
+            self.loaded.settings.units.is_none() && !self.placing.as_ref().is_some_and(is_good);
+        let hint = || UnitHint::of_parts(&both.crash.loaded, &self.loaded);
+        is_open.then(hint).flatten()
+    }
+
     /// The match that it still needs on these parts.
     pub(super) fn task(&self, both: PerRole<&Part>) -> Option<Task> {
-        let length_factor = both.stamped.length_factor();
+        let length_factor = self.length_factor(both);
         let crash_revision = both.crash.revision;
         let is_placed = match self.pose {
             FurtherPose::AsFirst => true,
@@ -152,9 +171,12 @@ impl Document {
 
     /// True if a mapping was made from the stamped files as they are now.
     pub(super) fn has_same_stamped(&self, result: &MapResult) -> bool {
-        let further = self.mapping.further.iter().map(|further| &further.loaded);
+        let further = &self.mapping.further;
+        let mut pairs = further.iter().zip(&result.further);
+        let is_same = further.len() == result.further.len()
+            && pairs.all(|(further, mapped)| further.loaded.is_same_surface(mapped));
         let poses = self.further_poses();
-        further.eq(&result.further) && poses.is_ok_and(|poses| result.run.poses[1..] == poses)
+        is_same && poses.is_ok_and(|poses| result.run.poses[1..] == poses)
     }
 
     /// Takes the further stamped files out, which stand for the crash part; how many there were.
@@ -226,6 +248,7 @@ impl MappingState {
         if !task.is_some_and(|task| is_it(&task) && wanted(work.document).contains(&task)) {
             return;
         }
+        work.follow(FollowUp::FurtherPlaced);
         let placing = run.map(|run| {
             (
                 facts::match_level(&run),
@@ -335,6 +358,12 @@ impl MappingState {
         } = new;
         self.reading.remove(&revision);
         let role = Some(Role::Stamped);
+        // A file of which the user once said the unit keeps it.
+        let memory = &work.settings.unit_memory;
+        let part = match memory.units(&part.path, part.hash()) {
+            Some(units) if replaces.is_none() => Arc::new(part.with_units(Some(units))),
+            _ => part,
+        };
         let name = part.file_name();
         let line = format!(
             "{name}: {}, one more stamped file",
@@ -429,6 +458,32 @@ pub(super) fn set_pose(work: &mut Work<'_>, revision: u64, pose: FurtherPose) {
         FurtherPose::AsFirst => format!("Pose of {} as the first", further.loaded.file_name()),
     };
     change(work, name, revision, |further| further.pose = pose);
+}
+
+/// Says which units a file is in, and what its lengths are multiplied by with it; `None`: as the first one.
+pub(super) fn set_units(work: &mut Work<'_>, revision: u64, units: Option<Units>) -> Vec<Effect> {
+    let Some(further) = work.document.further(revision) else {
+        return Vec::new();
+    };
+    let loaded = further.loaded.to_arc();
+    if loaded.settings.units == units {
+        return Vec::new();
+    }
+    let name = loaded.file_name();
+    let step = match units {
+        Some(units) => format!("{name} is in {}", units.label()),
+        None => format!("{name} is in the unit of the first"),
+    };
+    change(work, step.clone(), revision, |further| {
+        further.loaded = Arc::new(loaded.with_units(units)).into();
+    });
+    work.log_step("units", Some(Role::Stamped), step, None);
+    let Some(hash) = loaded.hash() else {
+        return Vec::new();
+    };
+    let memory = &mut work.settings.unit_memory;
+    memory.set_units(&loaded.path, hash, units);
+    vec![Effect::SaveSettings]
 }
 
 fn change(work: &mut Work<'_>, step: String, revision: u64, change: impl FnOnce(&mut Further)) {

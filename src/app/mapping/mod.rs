@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use self::further::set_pose;
+use self::further::{set_pose, set_units};
 use super::follow_up::FollowUp;
 use super::work::Work;
 use super::{AppState, ColorBy, Document, Effect, NoticeLevel, Reason, Shared};
@@ -32,6 +32,7 @@ use crate::pipeline::map::{
 pub use crate::pipeline::map::{DoubtfulElement, FurtherPose, UnmappedElement};
 use crate::role::Role;
 use crate::text::{capital, counted, percent};
+use crate::units::Units;
 
 /// What undo covers of the mapping.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -85,6 +86,8 @@ pub enum MapCommand {
     RemoveFurther(u64),
     /// Where the pose of a further stamped file comes from.
     SetFurtherPose(u64, FurtherPose),
+    /// The units of a further stamped file, or that its lengths are those of the first one.
+    SetFurtherUnits(u64, Option<Units>),
     /// Match a further stamped file anew.
     MatchFurther(u64),
     /// End the running match of a further stamped file with the best pose so far.
@@ -345,6 +348,9 @@ impl MappingState {
             MapCommand::AddFurther(file) => return self.add(work, file),
             MapCommand::RemoveFurther(revision) => return self.remove(work, revision),
             MapCommand::SetFurtherPose(revision, pose) => set_pose(work, revision, pose),
+            MapCommand::SetFurtherUnits(revision, units) => {
+                return set_units(work, revision, units);
+            }
             MapCommand::MatchFurther(revision) => self.match_again(work, revision),
             MapCommand::StopFurther => {
                 work.jobs.ending(JobKey::PlaceFurther, false);

@@ -54,7 +54,9 @@ impl Document {
         let mapped = mapped.map_or(&[][..], |result| &result.further);
         let mut next = mapped.len();
         let mut number = |further: &Further| {
-            let known = mapped.iter().position(|part| *part == further.loaded);
+            let known = mapped
+                .iter()
+                .position(|part| part.is_same_surface(&further.loaded));
             1 + known.unwrap_or_else(|| {
                 next += 1;
                 next - 1
@@ -111,7 +113,7 @@ impl AppState {
     }
 
     /// True if a stamped file was hidden. One file alone has no list in which it could be shown again.
-    pub(super) fn is_file_hidden(&self, file: &Path) -> bool {
+    pub(in crate::app) fn is_file_hidden(&self, file: &Path) -> bool {
         !self.document.mapping.further.is_empty() && self.view.hidden_files.contains(file)
     }
 

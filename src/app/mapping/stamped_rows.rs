@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use super::further::file_name;
 use super::{Further, FurtherPose, MappingState};
-use crate::app::{AppState, Part, facts};
+use crate::app::{AppState, Part, UnitHint, facts};
 use crate::assess::Verdict;
 use crate::jobs::JobKey;
 use crate::role::PerRole;
+use crate::units::Units;
 
 /// A row of the list of stamped files.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +25,10 @@ pub struct StampedRow {
     pub number: Option<usize>,
     /// It is drawn where there is a picture of it.
     pub is_shown: bool,
+    /// Its units, where a further file has its own.
+    pub own_units: Option<Units>,
+    /// A further file whose pose is not good looks as if it were in another unit than the crash part.
+    pub unit_hint: Option<UnitHint>,
     /// The command that takes it from the list; the first one stays.
     pub removed_by: Option<u64>,
 }
@@ -66,6 +71,8 @@ impl AppState {
             state: self.first_state(),
             number: Some(0),
             is_shown: !self.is_file_hidden(&first.path),
+            own_units: None,
+            unit_hint: None,
             removed_by: None,
         }];
         let further = self.document.mapping.further.iter();
@@ -76,6 +83,8 @@ impl AppState {
             state: self.further_state(further, both),
             number: self.document.file_number(further.revision),
             is_shown: !self.is_file_hidden(&further.loaded.path),
+            own_units: further.loaded.settings.units,
+            unit_hint: further.unit_hint(both),
             removed_by: Some(further.revision),
         }));
         let unread = |(revision, path, state): (u64, &PathBuf, StampedState)| StampedRow {
@@ -85,6 +94,8 @@ impl AppState {
             state,
             number: None,
             is_shown: true,
+            own_units: None,
+            unit_hint: None,
             removed_by: Some(revision),
         };
         let MappingState {

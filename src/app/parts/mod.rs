@@ -18,6 +18,7 @@ pub(super) use files::NewPart;
 pub use likeness::{LikeWhat, Likeness, MoreAlike};
 pub use unit_memory::UnitMemory;
 pub use units::UnitHint;
+pub(super) use units::length_factor_of;
 
 use super::{Document, GestureId};
 use crate::role::{PerRole, Role};

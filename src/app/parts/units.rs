@@ -2,7 +2,7 @@
 
 use super::PartsState;
 use crate::app::{AppState, Document, Settings};
-use crate::geometry::Aabb;
+use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::PairUnits;
 use crate::role::{PerRole, Role};
 use crate::text::Lengths;
@@ -24,7 +24,7 @@ pub struct UnitHint {
 
 impl UnitHint {
     /// Compares the diagonals of the two boxes; `None` if they are alike or differ otherwise.
-    pub fn of_sizes(crash: &Aabb, stamped: &Aabb) -> Option<Self> {
+    fn of_sizes(crash: f64, stamped: f64) -> Option<Self> {
         let ratio = size_ratio(crash, stamped)?;
         let both_ways = FACTORS.iter().flat_map(|&f| [f, 1.0 / f]);
         let nearest = both_ways.min_by(|a, b| off(ratio, *a).total_cmp(&off(ratio, *b)))?;
@@ -45,13 +45,35 @@ impl UnitHint {
         })
     }
 
+    /// What the units of two parts say where both are known, else their sizes.
+    pub(in crate::app) fn of_parts(crash: &LoadedPart, stamped: &LoadedPart) -> Option<Self> {
+        let firm = |known: Option<KnownUnits>| known.filter(|known| known.origin.is_firm());
+        let (of_crash, of_stamped) = (crash.units(), stamped.units());
+        let applied = stamped.settings.length_factor;
+        let size = |part: &LoadedPart| part.surface.measures().diagonal;
+        let (target, source) = (size(crash), size(stamped));
+        if let (Some(a), Some(b)) = (firm(of_crash), firm(of_stamped)) {
+            let ratio = size_ratio(target, source)?;
+            return Self::of_units(a.units.length, b.units.length, ratio, applied);
+        }
+        let mut hint = Self::of_sizes(target, source)?;
+        let of_crash = of_crash.map(|known| known.units.length);
+        hint.unit = of_crash.and_then(|unit| unit.times(applied * hint.factor));
+        Some(hint)
+    }
+
     /// The hint in words: "Stamped looks 1000 × smaller than crash".
     pub fn text(&self) -> String {
+        format!("Stamped {}", self.words())
+    }
+
+    /// The same of a file that is named before: "looks 1000 × smaller than crash".
+    pub fn words(&self) -> String {
         if self.factor >= 1.0 {
-            format!("Stamped looks {} × smaller than crash", tidy(self.factor))
+            format!("looks {} × smaller than crash", tidy(self.factor))
         } else {
             let factor = tidy(1.0 / self.factor);
-            format!("Stamped looks {factor} × larger than crash")
+            format!("looks {factor} × larger than crash")
         }
     }
 }
@@ -61,8 +83,8 @@ fn tidy(factor: f64) -> f64 {
     (factor * 1e6).round() / 1e6
 }
 
-fn size_ratio(crash: &Aabb, stamped: &Aabb) -> Option<f64> {
-    let ratio = crash.diagonal() / stamped.diagonal();
+fn size_ratio(crash: f64, stamped: f64) -> Option<f64> {
+    let ratio = crash / stamped;
     (ratio.is_finite() && ratio > 0.0).then_some(ratio)
 }
 
@@ -76,6 +98,13 @@ impl Document {
     pub fn units(&self) -> PairUnits {
         let part = |role| self.part(role).map(|part| &*part.loaded);
         PairUnits::of(PerRole::from_fn(part))
+    }
+
+    /// The units of a further stamped file, before its factor was applied.
+    pub fn further_units(&self, further: &LoadedPart) -> Option<KnownUnits> {
+        let crash = self.part(Role::Crash).map(|part| &*part.loaded);
+        let units = PairUnits::of(PerRole::new(crash, Some(further)));
+        units.files.stamped
     }
 
     /// The unit of every length in the window, if it is known.
@@ -96,10 +125,15 @@ impl Document {
     /// The factor that the stamped file's lengths need, where the user said its unit.
     pub(super) fn wanted_length_factor(&self) -> Option<f64> {
         let PerRole { crash, stamped } = self.both()?;
-        let of_crash = crash.loaded.units()?.units.length;
-        let of_stamped = stamped.loaded.settings.units?.length;
-        Some(of_stamped.factor_to(of_crash))
+        length_factor_of(&crash.loaded, &stamped.loaded)
     }
+}
+
+/// The factor that a stamped file's lengths need on a crash part, where the user said the file's unit.
+pub(in crate::app) fn length_factor_of(crash: &LoadedPart, stamped: &LoadedPart) -> Option<f64> {
+    let of_crash = crash.units()?.units.length;
+    let of_stamped = stamped.settings.units?.length;
+    Some(of_stamped.factor_to(of_crash))
 }
 
 impl AppState {
@@ -133,17 +167,7 @@ impl PartsState {
         if self.is_unit_question_answered(document, settings) {
             return None;
         }
-        let firm = |known: Option<KnownUnits>| known.filter(|known| known.origin.is_firm());
-        let (of_crash, of_stamped) = (crash.loaded.units(), stamped.loaded.units());
-        let applied = stamped.length_factor();
-        if let (Some(a), Some(b)) = (firm(of_crash), firm(of_stamped)) {
-            let ratio = size_ratio(&crash.bounds(), &stamped.bounds())?;
-            return UnitHint::of_units(a.units.length, b.units.length, ratio, applied);
-        }
-        let mut hint = UnitHint::of_sizes(&crash.bounds(), &stamped.bounds())?;
-        let of_crash = of_crash.map(|known| known.units.length);
-        hint.unit = of_crash.and_then(|unit| unit.times(applied * hint.factor));
-        Some(hint)
+        UnitHint::of_parts(&crash.loaded, &stamped.loaded)
     }
 
     fn is_unit_question_answered(&self, document: &Document, settings: &Settings) -> bool {
@@ -163,24 +187,19 @@ impl PartsState {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Point3;
-
-    fn cube(size: f64) -> Aabb {
-        Aabb::of_points(&[Point3::origin(), Point3::new(size, size, size)])
-    }
 
     #[test]
     fn sees_metres_inches_and_nothing_where_nothing_is() {
-        let hint = UnitHint::of_sizes(&cube(900.0), &cube(1.0)).unwrap();
+        let factor = |crash, stamped| {
+            let hint = UnitHint::of_sizes(crash, stamped)?;
+            Some(hint.factor)
+        };
+        let hint = UnitHint::of_sizes(900.0, 1.0).unwrap();
         assert_eq!(hint.factor, 1000.0);
         assert_eq!(hint.text(), "Stamped looks 1000 × smaller than crash");
-        assert_eq!(
-            UnitHint::of_sizes(&cube(1.0), &cube(26.0)).unwrap().factor,
-            1.0 / 25.4
-        );
-        assert_eq!(UnitHint::of_sizes(&cube(1.0), &cube(1.3)), None);
-        assert_eq!(UnitHint::of_sizes(&cube(1.0), &cube(3.0)), None);
-        assert_eq!(UnitHint::of_sizes(&cube(1.0), &cube(0.0)), None);
-        assert_eq!(UnitHint::of_sizes(&Aabb::empty(), &cube(1.0)), None);
+        assert_eq!(factor(1.0, 26.0), Some(1.0 / 25.4));
+        for [crash, stamped] in [[1.0, 1.3], [1.0, 3.0], [1.0, 0.0], [0.0, 1.0]] {
+            assert_eq!(factor(crash, stamped), None);
+        }
     }
 }

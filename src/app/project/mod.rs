@@ -57,7 +57,13 @@ impl AppState {
     /// The work as a project; `saved_at` is in seconds since 1970.
     pub fn to_project(&self, saved_at: u64) -> Project {
         let document = &self.document;
-        let entry = |role| document.part(role).map(part_entry);
+        let entry = |role| {
+            let part = document.part(role)?;
+            Some(PartEntry {
+                is_hidden: role == Role::Stamped && self.is_file_hidden(&part.loaded.path),
+                ..part_entry(part)
+            })
+        };
         Project {
             program: String::new(),
             saved_at,
@@ -65,7 +71,7 @@ impl AppState {
             pose: *document.crash_from_stamped(),
             recipe: document.recipe.clone(),
             mapping: document.mapping.recipe.clone(),
-            further_stamped: document.further_entries(),
+            further_stamped: self.further_entries(),
             mapping_compared_with: document.mapping.compare_with.as_deref().map(absolute),
             mapping_pins: document.mapping.pins.clone(),
             result: document.result.as_ref().map(|result| ResultEntry {
@@ -164,13 +170,15 @@ impl AppState {
         }
         title
     }
-}
 
-impl Document {
     fn further_entries(&self) -> Vec<FurtherEntry> {
-        let crash = self.part(Role::Crash).map(|crash| crash.revision);
+        let document = &self.document;
+        let crash = document.part(Role::Crash).map(|crash| crash.revision);
         let entry = |further: &Further| FurtherEntry {
-            part: PartEntry::of(&further.loaded, Some(absolute(&further.loaded.path))),
+            part: PartEntry {
+                is_hidden: self.is_file_hidden(&further.loaded.path),
+                ..PartEntry::of(&further.loaded, Some(absolute(&further.loaded.path)))
+            },
             pose: further.pose,
             placing: further.placing.as_ref().map(|placing| PlacingEntry {
                 is_current: Some(placing.crash_revision) == crash,
@@ -179,7 +187,7 @@ impl Document {
                 line: placing.line.clone(),
             }),
         };
-        self.mapping.further.iter().map(entry).collect()
+        document.mapping.further.iter().map(entry).collect()
     }
 }
 

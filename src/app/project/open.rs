@@ -1,5 +1,6 @@
 //! Opening of a project, which replaces what every topic knows.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -50,6 +51,7 @@ impl AppState {
         let parts = (&parts, &further[..]);
         let effects = self.place_project(&name, &project, parts, window.as_ref());
         self.show_project(&project, window);
+        self.view.hidden_files = hidden_files(&project, parts);
         let filed = self.file_project(request, &project);
         let text = format!("opened {name}: {}", self.work_title());
         self.work().log_step("project", None, text, Some(took));
@@ -242,6 +244,21 @@ impl AppState {
         }
         Vec::new()
     }
+}
+
+/// The stamped files that were not drawn, where they lie now.
+fn hidden_files(
+    project: &Project,
+    (parts, further): (&PerRole<Option<OpenedPart>>, &[Option<FoundPart>]),
+) -> BTreeSet<PathBuf> {
+    let first = project.parts.stamped.as_ref().zip(parts.stamped.as_ref());
+    let first = first.map(|(entry, opened)| (entry, &opened.part.path));
+    let entries = project.further_stamped.iter().zip(further);
+    let further =
+        entries.filter_map(|(entry, found)| Some((&entry.part, &found.as_ref()?.part.path)));
+    let hidden = first.into_iter().chain(further);
+    let hidden = hidden.filter(|(entry, _)| entry.is_hidden);
+    hidden.map(|(_, path)| path.clone()).collect()
 }
 
 fn file_name(path: &Path) -> String {

@@ -137,6 +137,11 @@ impl ViewState {
     /// Takes over the shape of a window and what lies over it; what was seen whole stays so.
     fn set_room(&mut self, role: Role, room: ViewRoom, scene: &Scene<'_>) {
         *self.rooms.get_mut(role) = room;
+        self.keep_whole(role, scene);
+    }
+
+    /// What a window shows whole stays so, once it shows more.
+    pub(in crate::app) fn keep_whole(&mut self, role: Role, scene: &Scene<'_>) {
         let of = if self.is_moved_over {
             Role::Crash
         } else {

@@ -116,7 +116,7 @@ pub fn element_lists(run: &MapRun, crash: &LoadedPart) -> ElementLists {
 }
 
 /// What each stamped part gave. O(elements).
-fn givers(run: &MapRun) -> Vec<GiverShare> {
+pub(super) fn givers(run: &MapRun) -> Vec<GiverShare> {
     let mut givers = vec![GiverShare::default(); run.sources.len()];
     let areas = run.target.mesh.areas();
     let whole: f64 = areas.iter().sum();

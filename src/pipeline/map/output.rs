@@ -184,6 +184,10 @@ pub fn deck_comments(crash: &LoadedPart, placed: &[PlacedPart<'_>]) -> Vec<Strin
         for row in placed.crash_from_stamped.to_rows() {
             lines.push(format!("  {} {} {} {}", row[0], row[1], row[2], row[3]));
         }
+        let factor = placed.part.settings.length_factor;
+        if factor != 1.0 {
+            lines.push(format!("  its lengths multiplied by {factor}"));
+        }
     }
     lines
 }

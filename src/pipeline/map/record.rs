@@ -90,6 +90,8 @@ impl MapRecord {
 pub struct StampedRecord {
     /// Path of the file.
     pub file: String,
+    /// What its lengths were multiplied by.
+    pub length_factor: f64,
     /// Its pose, rows of the 4×4 matrix.
     pub crash_from_stamped: [[f64; 4]; 4],
 }
@@ -209,6 +211,7 @@ pub fn map_record(
             .iter()
             .map(|placed| StampedRecord {
                 file: placed.part.path.display().to_string(),
+                length_factor: placed.part.settings.length_factor,
                 crash_from_stamped: placed.crash_from_stamped.to_rows(),
             })
             .collect(),

@@ -1,5 +1,6 @@
 //! The report of a mapping: draws the pictures and collects what [`crate::report::html`] lays out.
 
+use super::lists::givers;
 use super::record::{DistributionRecord, MapRecord, PairRecord, von_mises_of};
 use super::{
     CheckReason, CheckRecord, DifferenceRecord, MapRun, OtherResult, PipelineError, ProbeRecord,
@@ -15,10 +16,12 @@ use crate::pipeline::load::LoadedPart;
 use crate::pipeline::outputs::report_figures::{From, fitted, view_of};
 use crate::pipeline::units::PairUnits;
 use crate::report::MatrixForm;
-use crate::report::html::{CheckReport, Figure, MapReport, NumberRow, QuantityReport, map_figure};
+use crate::report::html::{
+    CheckReport, Figure, FilesReport, MapReport, NumberRow, QuantityReport, map_figure,
+};
 use crate::report::picture::{Paint, PictureMesh, picture};
 use crate::role::PerRole;
-use crate::text::{Lengths, fixed, grouped, length, millis, minus, percent, signed};
+use crate::text::{Lengths, factor_note, fixed, grouped, length, millis, minus, percent, signed};
 
 /// Pixels of a picture.
 const SIZE: [usize; 2] = [560, 380];
@@ -75,6 +78,7 @@ pub fn map_report(
                 )
             })
             .collect(),
+        files: painter.files(record)?,
         quantities,
         probes: record.probes.iter().flat_map(probe_rows).collect(),
         comparison: comparison_rows(record),
@@ -87,7 +91,10 @@ pub fn map_report(
             .poses
             .iter()
             .zip(&record.stamped)
-            .map(|(pose, stamped)| (file_name(&stamped.file), MatrixForm::Rows.write(pose)))
+            .map(|(pose, stamped)| {
+                let name = file_name(&stamped.file) + &factor_note(stamped.length_factor);
+                (name, MatrixForm::Rows.write(pose))
+            })
             .collect(),
     };
     Ok(report.write())
@@ -350,6 +357,10 @@ impl<'a> Painter<'a> {
             on_target(element) - self.run.at_partner(element, on_source)
         })?;
         let figure = |png, title, caption| map_figure(png, SIZE, title, caption);
+        let [stamped, moved] = match self.run.sources.len() {
+            1 => ["▲ Stamped part,", "before, moved by the pose."],
+            _ => ["▲ Stamped parts,", "before, each moved by its pose."],
+        };
         Ok(QuantityReport {
             name: name.to_owned(),
             rows: vec![
@@ -360,7 +371,7 @@ impl<'a> Painter<'a> {
             range: range_of(&pair.stamped, &pair.crash),
             histogram_distance: pair.histogram_distance,
             figures: vec![
-                figure(before, "▲ Stamped part,", "before, moved by the pose."),
+                figure(before, stamped, moved),
                 figure(after, "■ Crash part,", "mapped; grey has no value."),
                 figure(apart, "Difference,", "mapped less the stamped element."),
             ],
@@ -461,6 +472,42 @@ impl<'a> Painter<'a> {
         let png = self.draw_target(|element| scale.color(number(element)))?;
         let caption = "status of the elements.";
         Ok(map_figure(png, SIZE, "■ Crash part,", caption))
+    }
+
+    /// Which stamped file gave each element its values; `None` where there is one file alone.
+    fn files(&self, record: &MapRecord) -> Result<Option<FilesReport>, Cancelled> {
+        if self.run.sources.len() < 2 {
+            return Ok(None);
+        }
+        let scale = ColorScale::files();
+        let of_file = |file: usize| scale.color(ColorScale::file_value(file));
+        let png = self.draw_target(|element| {
+            let file = self.run.values_from(element);
+            file.map_or(UNMATCHED, of_file)
+        })?;
+        let shares = givers(self.run);
+        let row =
+            |name: String, n_elements: usize, area: f64| [name, grouped(n_elements), percent(area)];
+        let named = record.stamped.iter().zip(&shares).enumerate();
+        let mut rows: Vec<(String, [String; 3])> = named
+            .map(|(file, (stamped, share))| {
+                let name = file_name(&stamped.file);
+                let row = row(name, share.n_elements, share.area_share);
+                (hex(of_file(file)), row)
+            })
+            .collect();
+        let n_given: usize = shares.iter().map(|share| share.n_elements).sum();
+        if n_given < record.n_elements {
+            let given: f64 = shares.iter().map(|share| share.area_share).sum();
+            let n = record.n_elements - n_given;
+            let row = row("no values".to_owned(), n, (1.0 - given).max(0.0));
+            rows.push((hex(UNMATCHED), row));
+        }
+        let caption = "in the colour of the file that gave each element its values.";
+        Ok(Some(FilesReport {
+            figure: map_figure(png, SIZE, "■ Crash part,", caption),
+            rows,
+        }))
     }
 
     fn draw_target(&self, color: impl Fn(usize) -> Rgb) -> Result<Vec<u8>, Cancelled> {

@@ -62,6 +62,8 @@ pub struct PartEntry {
     pub is_realistic_example: bool,
     /// The ceiling it was reduced to; `None` for the full mesh.
     pub max_triangles: Option<usize>,
+    /// A stamped file that is not drawn, where several are.
+    pub is_hidden: bool,
     /// Ids of hidden parts of the deck.
     pub hidden: BTreeSet<u64>,
     /// Colours that were given to parts of the deck, sRGB.
@@ -81,6 +83,7 @@ impl Default for PartEntry {
             read_limit: ReadOptions::USUAL_LIMIT,
             is_realistic_example: false,
             max_triangles: None,
+            is_hidden: false,
             hidden: BTreeSet::new(),
             colors: BTreeMap::new(),
         }
@@ -441,6 +444,15 @@ impl Project {
             }
         });
         std::iter::once(Some(self.pose)).chain(further).collect()
+    }
+
+    /// What the lengths of its stamped files are multiplied by, the first one first; its poses stand for that.
+    pub fn stamped_length_factors(&self) -> Vec<f64> {
+        let first = self.parts.stamped.as_ref();
+        let first = first.map_or(1.0, |entry| entry.length_factor);
+        let further = self.further_stamped.iter();
+        let further = further.map(|entry| entry.part.length_factor);
+        std::iter::once(first).chain(further).collect()
     }
 
     /// The files of the project and what was done with them, in one line.

@@ -45,6 +45,15 @@ pub struct CheckReport {
     pub reason: Option<&'static str>,
 }
 
+/// Which of several stamped files gave the elements their values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FilesReport {
+    /// The elements in the colours of the files.
+    pub figure: Figure,
+    /// The colour of each file, and its name, elements, share of the area; what has no values last.
+    pub rows: Vec<(String, [String; 3])>,
+}
+
 /// Everything the report of a mapping shows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapReport {
@@ -64,6 +73,8 @@ pub struct MapReport {
     pub status_figures: Vec<Figure>,
     /// Colours of the statuses that occur.
     pub status_colors: Vec<(String, String)>,
+    /// Where the values come from, if from several stamped files.
+    pub files: Option<FilesReport>,
     /// Thickness, plastic strain …
     pub quantities: Vec<QuantityReport>,
     /// Pinned elements, a row for each quantity: crash and stamped element, status, distance, angle,
@@ -146,6 +157,9 @@ impl MapReport {
         html! {
             (section("checks", "Checks", &self.check_table()))
             (section("elements", "Elements", &self.elements()))
+            @if let Some(files) = &self.files {
+                (section("files", "From file", &files.content()))
+            }
             @for (i, quantity) in self.quantities.iter().enumerate() {
                 (section(&format!("quantity-{i}"), &quantity.name, &quantity.content()))
             }
@@ -199,11 +213,7 @@ impl MapReport {
         html! {
             (table("What became of the elements of the crash part", &columns, &rows))
             (pictures(&self.status_figures))
-            ul.legend {
-                @for (name, color) in &self.status_colors {
-                    li { i style={ "background:" (color) } {} (name) }
-                }
-            }
+            (color_legend(self.status_colors.iter().map(|(name, color)| (&**name, &**color))))
         }
     }
 
@@ -252,6 +262,34 @@ impl MapReport {
                 p { "crash = c · R · stamped + t for " (printable(name)) ", by rows:" }
                 (block("the matrix by rows", rows, false))
             }
+        }
+    }
+}
+
+/// What the colours of a picture mean: names with their colours.
+fn color_legend<'a>(rows: impl Iterator<Item = (&'a str, &'a str)>) -> Markup {
+    html! {
+        ul.legend {
+            @for (name, color) in rows {
+                li { i style={ "background:" (color) } {} (printable(name)) }
+            }
+        }
+    }
+}
+
+impl FilesReport {
+    fn content(&self) -> Markup {
+        let row = |(_, row): &(String, [String; 3])| row.iter().map(cell).collect();
+        let rows: Vec<Vec<Markup>> = self.rows.iter().map(row).collect();
+        let columns = [
+            Column::text("Stamped file"),
+            Column::number("Elements"),
+            Column::number("Area"),
+        ];
+        html! {
+            (table("Which stamped file gave the elements their values", &columns, &rows))
+            (pictures(std::slice::from_ref(&self.figure)))
+            (color_legend(self.rows.iter().map(|(color, [name, ..])| (&**name, &**color))))
         }
     }
 }

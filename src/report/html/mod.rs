@@ -12,7 +12,7 @@ mod tables;
 use maud::html;
 
 pub use car_page::CarReport;
-pub use map_page::{CheckReport, MapReport, NumberRow, QuantityReport, map_figure};
+pub use map_page::{CheckReport, FilesReport, MapReport, NumberRow, QuantityReport, map_figure};
 
 use self::page::{document, printable};
 use super::MatchRecord;

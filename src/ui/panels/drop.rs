@@ -6,12 +6,15 @@ use egui::{Color32, FontId, Rect, Stroke, Ui, vec2};
 
 use super::{graphics, section};
 use crate::app::{AppState, Command, FileCommand, MapCommand, Section};
+use crate::pipeline::project::is_project;
 use crate::role::Role;
 use crate::ui::theme::{Palette, TALL};
 
 /// Where files go that are dropped now.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DropTarget {
+    /// A project is among them, which is opened wherever it falls.
+    Project,
     /// Into a window of its own part; without one their content tells what they are.
     Part(Option<Role>),
     /// Into the list of stamped files, in section 4.
@@ -19,15 +22,18 @@ pub enum DropTarget {
 }
 
 impl DropTarget {
-    /// The target under the pointer.
-    pub fn under_pointer(ctx: &egui::Context, state: &AppState, n_files: usize) -> Self {
+    /// The target of these files under the pointer.
+    pub fn under_pointer(ctx: &egui::Context, state: &AppState, files: &[PathBuf]) -> Self {
+        if files.iter().any(|file| is_project(file)) {
+            return Self::Project;
+        }
         let at = ctx.pointer_latest_pos();
         let section = section::place_of(ctx, Section::Map);
         let is_over = |rect: Rect| at.is_some_and(|at| rect.contains(at));
         if state.document.is_stamped_placed() && section.is_some_and(is_over) {
             return Self::StampedFiles;
         }
-        Self::Part(match n_files {
+        Self::Part(match files.len() {
             1 => graphics::role_under_pointer(ctx),
             _ => None,
         })
@@ -36,6 +42,7 @@ impl DropTarget {
     /// What follows from the drop.
     pub fn commands(self, paths: Vec<PathBuf>) -> Vec<Command> {
         match self {
+            Self::Project => vec![FileCommand::Open { paths, role: None }.into()],
             Self::Part(role) => vec![FileCommand::Open { paths, role }.into()],
             Self::StampedFiles => {
                 let add = |path| MapCommand::AddFurther(path).into();
@@ -45,20 +52,25 @@ impl DropTarget {
     }
 }
 
-/// How many files hang over the window.
-pub fn n_hovered(ui: &Ui) -> usize {
-    ui.input(|input| input.raw.hovered_files.len())
+/// The files that hang over the window. Not every desktop names them before they fall.
+pub fn hovered(ui: &Ui) -> Vec<PathBuf> {
+    ui.input(|input| {
+        let files = input.raw.hovered_files.iter();
+        files
+            .map(|file| file.path.clone().unwrap_or_default())
+            .collect()
+    })
 }
 
 /// While files hang over section 4: that they go into its list.
 pub fn section_hint(ui: &Ui, state: &AppState) {
-    let n_files = n_hovered(ui);
-    if n_files == 0
-        || DropTarget::under_pointer(ui.ctx(), state, n_files) != DropTarget::StampedFiles
+    let files = hovered(ui);
+    if files.is_empty()
+        || DropTarget::under_pointer(ui.ctx(), state, &files) != DropTarget::StampedFiles
     {
         return;
     }
-    let text = match n_files {
+    let text = match files.len() {
         1 => "Drop as one more stamped file",
         _ => "Drop as more stamped files",
     };

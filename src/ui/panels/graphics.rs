@@ -393,12 +393,18 @@ fn centered(ui: &mut Ui, rect: Rect, size: egui::Vec2, add: impl FnOnce(&mut Ui)
 
 /// While a file hangs over the window: where it would go.
 fn drop_hint(ui: &Ui, state: &AppState, crash: Rect, stamped: Rect) {
-    let n_files = drop::n_hovered(ui);
-    let target = DropTarget::under_pointer(ui.ctx(), state, n_files);
+    let files = drop::hovered(ui);
+    let n_files = files.len();
+    let target = DropTarget::under_pointer(ui.ctx(), state, &files);
     if n_files == 0 || target == DropTarget::StampedFiles {
         return;
     }
     let palette = Palette::of(ui);
+    if target == DropTarget::Project {
+        let text = "Drop to open the project".to_owned();
+        drop::hint(ui, crash.union(stamped), palette.text, text);
+        return;
+    }
     let at = ui.ctx().pointer_latest_pos();
     for (role, rect) in [(Role::Crash, crash), (Role::Stamped, stamped)] {
         let is_meant = n_files > 1 || at.is_none_or(|at| rect.contains(at));

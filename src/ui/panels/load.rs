@@ -209,7 +209,7 @@ fn file_menu_ui(
     }
     ui.add_enabled_ui(is_free, |ui| {
         ui.menu_button("Units", |ui| {
-            units::units_menu_ui(ui, role, state, commands);
+            units::part_units_ui(ui, role, state, commands);
         });
     });
     ui.separator();

@@ -1,17 +1,17 @@
 //! The stamped files that a mapping takes its values from: each with its verdict and its pose.
 
-use egui::{Align, Button, Layout, Rect, RichText, Sense, Stroke, Ui, Vec2, vec2};
+use egui::{Align, Button, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
 
+use super::units;
 use crate::app::{
     Action, AppState, Command, FurtherPose, MapCommand, StampedRow, StampedState, ViewCommand,
 };
-use crate::colormap::{ColorScale, Pattern};
 use crate::pipeline::map::pose_warning;
 use crate::role::Role;
 use crate::text::sentence;
-use crate::ui::theme::{Palette, ROW, color, ink};
+use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{
-    Look, action_button, caption, eye, icon_button, role_mark, verdict_color,
+    Look, action_button, caption, eye, file_swatch, icon_button, role_mark, verdict_color,
 };
 
 /// The list of stamped files, and the way to one more.
@@ -24,7 +24,7 @@ pub fn stamped_files_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
         });
     });
     for row in &rows {
-        row_ui(ui, row, commands);
+        row_ui(ui, row, state, commands);
         if let Some(problem) = problem(row) {
             let color = Palette::of(ui).poor;
             let text = RichText::new(problem).small().color(color);
@@ -41,7 +41,7 @@ pub fn add_stamped_ui(ui: &mut Ui, state: &AppState, label: &str, commands: &mut
 }
 
 /// Name, verdict, pose, and the way out of the list.
-fn row_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
+fn row_ui(ui: &mut Ui, row: &StampedRow, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 5.0;
         sight_ui(ui, row, commands);
@@ -55,8 +55,13 @@ fn row_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
                     commands.push(MapCommand::RemoveFurther(revision).into());
                 }
             }
-            pose_ui(ui, row, commands);
+            pose_ui(ui, row, state, commands);
             state_ui(ui, &row.state);
+            if let Some(units) = row.own_units {
+                let label = RichText::new(units.label()).small();
+                let label = ui.label(label.color(Palette::of(ui).secondary));
+                label.on_hover_text("The unit of this file; the menu of its pose sets it");
+            }
             let left = Layout::left_to_right(Align::Center).with_main_align(Align::Min);
             ui.with_layout(left, |ui| {
                 let name = ui.add(egui::Label::new(&row.name).truncate());
@@ -92,18 +97,8 @@ fn sight_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
         .on_hover_text("Its colour in the picture From file, and where the colours tell the parts");
 }
 
-/// Colour and pattern of a stamped file.
-fn file_swatch(painter: &egui::Painter, rect: Rect, number: usize) {
-    let (scale, value) = (ColorScale::files(), ColorScale::file_value(number));
-    painter.rect_filled(rect, 2.0, color(scale.color(value)));
-    if scale.pattern(value) != Pattern::Plain {
-        let line = [rect.left_bottom(), rect.right_top()];
-        painter.line_segment(line, Stroke::new(1.4, ink(170)));
-    }
-}
-
-/// Where the pose of a further file comes from; while it is matched, the way to end that.
-fn pose_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
+/// Where the pose of a further file comes from, and its unit; while it is matched, the way to end that.
+fn pose_ui(ui: &mut Ui, row: &StampedRow, state: &AppState, commands: &mut Vec<Command>) {
     let Some((revision, pose)) = row.further else {
         return;
     };
@@ -132,6 +127,9 @@ fn pose_ui(ui: &mut Ui, row: &StampedRow, commands: &mut Vec<Command>) {
             commands.push(MapCommand::MatchFurther(revision).into());
             ui.close();
         }
+        ui.menu_button("Units", |ui| {
+            units::further_units_ui(ui, revision, state, commands);
+        });
     });
     let button = button.on_hover_text(pose.help());
     button.accessible_name(format!("Pose of {}", row.name));
@@ -176,6 +174,17 @@ fn state_ui(ui: &mut Ui, state: &StampedState) {
 
 /// What is wrong with a file, and what to do.
 fn problem(row: &StampedRow) -> Option<String> {
+    if let Some(hint) = &row.unit_hint
+        && matches!(
+            row.state,
+            StampedState::NotMatched(Some(_)) | StampedState::Matched(..)
+        )
+    {
+        let words = hint.words();
+        return Some(format!(
+            "The file {words}. The menu of its pose sets its unit."
+        ));
+    }
     match &row.state {
         StampedState::NotRead(reason) => Some(format!(
             "{} Add another file or fix this one.",

@@ -2,33 +2,62 @@
 
 use egui::{Label, RichText, Ui};
 
-use crate::app::{AppState, Command, FileCommand};
+use crate::app::{AppState, Command, FileCommand, MapCommand};
 use crate::role::Role;
+use crate::text::factor_note;
 use crate::ui::theme::Palette;
 use crate::ui::widgets::{caption, card};
-use crate::units::{LengthUnit, UnitSystem, Units};
+use crate::units::{KnownUnits, LengthUnit, UnitSystem, Units};
 
-/// What is known of a file's units, and every choice.
-pub fn units_menu_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
+/// What is known of a part's units, and every choice.
+pub fn part_units_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Command>) {
     let Some(part) = state.document.part(role) else {
         return;
     };
+    let guess = part.loaded.guessed_units;
+    let unset = format!("As guessed: {}", label_of(guess));
+    let (known, by_user) = (state.units_of(role), part.loaded.settings.units);
+    if let Some(units) = units_menu_ui(ui, known, by_user, unset) {
+        commands.push(FileCommand::SetUnits { role, units }.into());
+    }
+}
+
+/// The same of a further stamped file.
+pub fn further_units_ui(ui: &mut Ui, revision: u64, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(further) = state.document.further(revision) else {
+        return;
+    };
+    let unset = format!("As the first: {}", label_of(state.units_of(Role::Stamped)));
+    let known = state.document.further_units(&further.loaded);
+    if let Some(units) = units_menu_ui(ui, known, further.loaded.settings.units, unset) {
+        commands.push(MapCommand::SetFurtherUnits(revision, units).into());
+    }
+}
+
+fn label_of(known: Option<KnownUnits>) -> &'static str {
+    known.map_or("unknown", |known| known.units.label())
+}
+
+/// What is known, and every choice, the first of which leaves the units open. What was chosen.
+fn units_menu_ui(
+    ui: &mut Ui,
+    known: Option<KnownUnits>,
+    by_user: Option<Units>,
+    unset: String,
+) -> Option<Option<Units>> {
     ui.set_min_width(216.0);
-    let known = state.units_of(role);
     caption(
         ui,
         known.map_or_else(|| "Unit unknown".to_owned(), |k| k.words()),
     );
-    let by_user = part.loaded.settings.units;
+    let mut chosen = None;
     let mut choice = |ui: &mut Ui, label: String, units: Option<Units>| {
         if ui.radio(by_user == units, label).clicked() {
-            commands.push(FileCommand::SetUnits { role, units }.into());
+            chosen = Some(units);
             ui.close();
         }
     };
-    let guess = part.loaded.guessed_units;
-    let guess = guess.map_or("unknown", |known| known.units.label());
-    choice(ui, format!("As guessed: {guess}"), None);
+    choice(ui, unset, None);
     ui.separator();
     for unit in LengthUnit::ALL {
         let label = format!("{unit}, {}", unit.plural());
@@ -39,6 +68,7 @@ pub fn units_menu_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut V
         let label = format!("{}, stress in {}", system.label(), system.stress());
         choice(ui, label, Some(system.into()));
     }
+    chosen
 }
 
 /// The sizes or the units of the two files hint at a factor between them.
@@ -90,9 +120,7 @@ pub fn window_unit_ui(ui: &mut Ui, state: &AppState) {
                 let known = state.units_of(role);
                 let words = known.map_or_else(|| "unit unknown".to_owned(), |k| k.words());
                 let mut text = format!("{} {}: {words}", role.mark(), part.loaded.file_name());
-                if part.length_factor() != 1.0 {
-                    text += &format!(", lengths × {}", part.length_factor());
-                }
+                text += &factor_note(part.length_factor());
                 ui.label(text);
             }
         }

@@ -1,18 +1,17 @@
-//! The section laid flat, in a window or tab of its own: the outlines of both parts, axes of equal
+//! The section laid flat, in a window or tab of its own: the outlines of all parts, axes of equal
 //! scale, distances between clicked points, the gap at the cursor, and gaps drawn ten times as wide.
-
-use std::sync::Arc;
 
 use egui::{Align, Button, Color32, Layout, RichText, Sense, Ui, Vec2, WidgetInfo, vec2};
 use egui_plot::{Line, LineStyle, Plot, PlotBounds, PlotPoints, PlotUi, Points};
 
-use super::sections::{Cut, Gaps};
+use super::sections::{self, Cuts, Gaps};
 use crate::app::{Action, AppState, Command, InspectCommand, SectionView};
+use crate::colormap::Rgb;
 use crate::geometry::{Gap, Plane, Point3, SectionLine, Vector3, gap_at, nearest_on_lines};
-use crate::role::{PerRole, Role};
+use crate::role::Role;
 use crate::text::capital;
-use crate::ui::theme::{Look, UNIT};
-use crate::ui::widgets::{nothing_yet, paint_role_mark, segments};
+use crate::ui::theme::{Look, UNIT, color};
+use crate::ui::widgets::{file_swatch, nothing_yet, paint_role_mark, segments};
 
 /// Clicks this near to an outline take a point of it.
 const SNAP: f64 = 12.0;
@@ -40,9 +39,16 @@ pub(super) struct Drawing<'a> {
     pub state: &'a AppState,
     pub look: &'a Look,
     pub plane: Plane,
-    pub cuts: &'a PerRole<Option<Arc<Cut>>>,
+    pub cuts: &'a Cuts,
     /// From the crash outline to the stamped one, once they are worked out.
     pub gaps: Option<&'a Gaps>,
+}
+
+/// A line of an outline in the axes of the plane.
+struct Outline {
+    role: Role,
+    rgb: Rgb,
+    points: Vec<[f64; 2]>,
 }
 
 /// What the user chose, kept while the program runs.
@@ -145,6 +151,13 @@ impl Drawing<'_> {
             paint_role_mark(ui.painter(), rect, role, self.look.role(role));
             ui.label(RichText::new(role.word()).size(12.0));
             ui.add_space(6.0);
+        }
+        for file in self.state.shown_further() {
+            let (rect, swatch) = ui.allocate_exact_size(Vec2::splat(11.0), Sense::hover());
+            file_swatch(ui.painter(), rect, file.number);
+            let name = file.loaded.file_name();
+            swatch.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &name));
+            swatch.on_hover_text(name);
         }
         ui.spacing_mut().item_spacing.x = 6.0;
     }
@@ -265,7 +278,7 @@ impl Drawing<'_> {
                 if let Some(bounds) = zoom {
                     plot.set_plot_bounds(bounds);
                 }
-                self.lines(plot, outlines);
+                Self::lines(plot, outlines);
                 zoom_by_wheel(plot);
                 self.measured(plot, &choices.picked);
                 self.look_at(plot, &mut seen);
@@ -280,20 +293,30 @@ impl Drawing<'_> {
     }
 
     /// The outlines in the axes of the plane, the crash part's first so that it lies below.
-    fn outlines(&self, is_exaggerated: bool) -> Vec<(Role, Vec<[f64; 2]>)> {
+    fn outlines(&self, is_exaggerated: bool) -> Vec<Outline> {
         let mut outlines = Vec::new();
         let wide = self.gaps.filter(|_| is_exaggerated);
-        for role in Role::ALL {
-            let cut = match wide {
-                Some(gaps) => Some(gaps.cuts.get(role)),
-                None => self.cuts.get(role).as_ref(),
-            };
-            let lines = cut.map_or(&[][..], |cut| &cut.lines);
-            for (index, line) in lines.iter().enumerate() {
+        let cuts = match wide {
+            // Gaps are measured to the first stamped file alone.
+            Some(gaps) => {
+                let of_both = gaps.cuts.iter();
+                let color = |role| sections::color(self.look, role, 0);
+                of_both
+                    .map(|(role, cut)| (role, color(role), cut))
+                    .collect()
+            }
+            None => self.cuts.colored(self.look),
+        };
+        for (role, rgb, cut) in cuts {
+            for (index, line) in cut.lines.iter().enumerate() {
                 let ways = wide
                     .filter(|_| role == Role::Stamped)
                     .and_then(|gaps| gaps.found.ways.get(index));
-                outlines.push((role, self.flat(line, ways)));
+                outlines.push(Outline {
+                    role,
+                    rgb,
+                    points: self.flat(line, ways),
+                });
             }
         }
         outlines
@@ -312,14 +335,9 @@ impl Drawing<'_> {
     }
 
     /// What is seen after a zoom.
-    fn bounds(
-        &self,
-        zoom: Zoom,
-        outlines: &[(Role, Vec<[f64; 2]>)],
-        size: Vec2,
-    ) -> Option<PlotBounds> {
+    fn bounds(&self, zoom: Zoom, outlines: &[Outline], size: Vec2) -> Option<PlotBounds> {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for point in outlines.iter().flat_map(|(_, points)| points) {
+        for point in outlines.iter().flat_map(|outline| &outline.points) {
             for i in 0..2 {
                 low[i] = low[i].min(point[i]);
                 high[i] = high[i].max(point[i]);
@@ -350,14 +368,15 @@ impl Drawing<'_> {
         Some(PlotBounds::from_min_max(corner(-1.0), corner(1.0)))
     }
 
-    fn lines(&self, plot: &mut PlotUi<'_>, outlines: Vec<(Role, Vec<[f64; 2]>)>) {
-        for (role, points) in outlines {
+    fn lines(plot: &mut PlotUi<'_>, outlines: Vec<Outline>) {
+        for outline in outlines {
+            let Outline { role, rgb, points } = outline;
             let width = match role {
                 Role::Crash => BELOW,
                 Role::Stamped => ABOVE,
             };
             let line = Line::new(role.word(), PlotPoints::from(points))
-                .color(self.look.role(role))
+                .color(color(rgb))
                 .width(width)
                 .allow_hover(false);
             plot.line(line);
@@ -392,8 +411,9 @@ impl Drawing<'_> {
         let query = self.plane.point_at([pointer.x, pointer.y]);
         let nearest = self
             .cuts
-            .iter()
-            .filter_map(|(_, cut)| nearest_on_lines(&cut.as_ref()?.lines, &query))
+            .colored(self.look)
+            .into_iter()
+            .filter_map(|(_, _, cut)| nearest_on_lines(&cut.lines, &query))
             .map(|found| found.point)
             .min_by(|a, b| distance(a, &query).total_cmp(&distance(b, &query)));
         let is_near = |point: &Point3| distance(point, &query) < SNAP * per_point;
@@ -408,7 +428,8 @@ impl Drawing<'_> {
                 .allow_hover(false);
             plot.points(point);
         }
-        let (Some(crash), Some(stamped)) = (&self.cuts.crash, &self.cuts.stamped) else {
+        let both = &self.cuts.parts;
+        let (Some(crash), Some(stamped)) = (&both.crash, &both.stamped) else {
             return;
         };
         let normal = |triangle| crash.normal(triangle);

@@ -235,8 +235,10 @@ impl Viewports {
         let drawn: Vec<_> = drawn.collect();
         let placed: Vec<_> = drawn
             .iter()
-            .filter(|(_, instance)| instance.further.is_none())
-            .map(|(mesh, instance)| (instance.role, Arc::clone(mesh), instance.world_from_part))
+            .map(|(mesh, instance)| {
+                let pose = instance.world_from_part;
+                (instance.role, instance.number(), Arc::clone(mesh), pose)
+            })
             .collect();
         self.sections.update(view.window, state, &placed, ui.ctx());
         let cuts = self.sections.cuts(state);

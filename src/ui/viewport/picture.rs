@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use super::frame::ViewFrame;
 use super::meshes::ShownMesh;
-use super::sections::{self, Cut};
+use super::sections::{self, Cuts};
 use super::visible_parts::{self, PartInstance};
 use crate::app::{AppState, ColorBy, PartRef, ShownFile};
 use crate::colormap::{ColorScale, Rgb};
 use crate::geometry::camera::{ScreenSize, ViewRay};
 use crate::geometry::{Aabb, Camera, Plane, Point3, Similarity, Vector3};
 use crate::render::{Drawable, FieldLook, PartLook, Scene, Section, Sheet};
-use crate::role::{PerRole, Role};
+use crate::role::Role;
 use crate::ui::theme::Look;
 
 /// How far the crash sheet lies back when two sheets coincide, in pixels and in element sizes: about
@@ -138,16 +138,17 @@ impl Picture {
     }
 
     /// Adds the section plane and the outlines of the parts in it.
-    pub fn cut(&mut self, state: &AppState, look: &Look, cuts: &PerRole<Option<Arc<Cut>>>) {
+    pub fn cut(&mut self, state: &AppState, look: &Look, cuts: &Cuts) {
         let section = &state.inspect.section;
         let Some(plane) = section.shown().filter(|_| !self.bounds.is_empty()) else {
             return;
         };
         let frame = plane.rectangle(&self.bounds);
         let mut overlay = sections::frame(look, &frame);
-        for layer in self.layers.iter().filter(|layer| !layer.is_further()) {
-            if let Some(cut) = cuts.get(layer.role) {
-                let color = *look.roles.get(layer.role);
+        for layer in &self.layers {
+            let number = layer.instance.number();
+            if let Some(cut) = cuts.of(layer.role, number) {
+                let color = sections::color(look, layer.role, number);
                 overlay.polylines.extend(sections::outline(
                     look,
                     cut,

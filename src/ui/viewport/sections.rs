@@ -1,12 +1,15 @@
 //! Outlines of the parts in the section plane, cut off the frame.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::meshes::{MeshKey, ShownMesh};
-use crate::app::AppState;
+use crate::app::{AppState, Shared};
+use crate::colormap::{ColorScale, Rgb};
 use crate::geometry::{
     Aabb, OutlineGaps, Plane, Point3, SectionLine, Similarity, Vector3, outline_gaps, section,
 };
+use crate::pipeline::load::LoadedPart;
 use crate::render::{DepthMode, Fill, Overlay, Polyline};
 use crate::role::{PerRole, Role};
 use crate::ui::background::{Background, Task};
@@ -16,9 +19,52 @@ use crate::ui::theme::Look;
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct CutKey {
     role: Role,
+    /// The number of a stamped file; 0 for the first and for the crash part.
+    number: usize,
     mesh: MeshKey,
     plane: Plane,
     world_from_mesh: Similarity,
+}
+
+/// A part that is to be cut: whose it is, the number of its file, its mesh, where it lies.
+pub(super) type Uncut = (Role, usize, Arc<ShownMesh>, Similarity);
+
+/// The outlines that are shown.
+#[derive(Default)]
+pub(super) struct Cuts {
+    /// Those of the crash part and of the first stamped file, between which gaps are measured.
+    pub parts: PerRole<Option<Arc<Cut>>>,
+    /// Those of the further stamped files, by their numbers.
+    pub further: BTreeMap<usize, Arc<Cut>>,
+}
+
+impl Cuts {
+    /// The outline of the crash part or of a stamped file.
+    pub fn of(&self, role: Role, number: usize) -> Option<&Arc<Cut>> {
+        match number {
+            0 => self.parts.get(role).as_ref(),
+            _ => self.further.get(&number),
+        }
+    }
+
+    /// All of them with their colours, the crash part's first so that it lies below.
+    pub fn colored(&self, look: &Look) -> Vec<(Role, Rgb, &Arc<Cut>)> {
+        let parts = self.parts.iter();
+        let parts =
+            parts.filter_map(|(role, cut)| Some((role, color(look, role, 0), cut.as_ref()?)));
+        let further = self.further.iter();
+        let further =
+            further.map(|(&number, cut)| (Role::Stamped, color(look, Role::Stamped, number), cut));
+        parts.chain(further).collect()
+    }
+}
+
+/// The colour of an outline: that of the part, and of a further stamped file its own.
+pub(super) fn color(look: &Look, role: Role, number: usize) -> Rgb {
+    match number {
+        0 => *look.roles.get(role),
+        _ => ColorScale::files().color(ColorScale::file_value(number)),
+    }
 }
 
 /// The outline of one part in the plane.
@@ -27,6 +73,12 @@ pub(super) struct Cut {
     pub lines: Vec<SectionLine>,
     mesh: Arc<ShownMesh>,
     world_from_mesh: Similarity,
+}
+
+impl CutKey {
+    fn place(&self) -> (Role, usize) {
+        (self.role, self.number)
+    }
 }
 
 impl Cut {
@@ -93,12 +145,7 @@ pub(super) fn frame(look: &Look, corners: &[Point3; 4]) -> Overlay {
 }
 
 /// The outline of a part in its colour, with a rim.
-pub(super) fn outline(
-    look: &Look,
-    cut: &Cut,
-    color: crate::colormap::Rgb,
-    offset: &Vector3,
-) -> Vec<Polyline> {
+pub(super) fn outline(look: &Look, cut: &Cut, color: Rgb, offset: &Vector3) -> Vec<Polyline> {
     let lines = cut.lines.iter().map(|line| {
         let first = line.points.first().filter(|_| line.is_closed);
         let points = line.points.iter().chain(first);
@@ -115,10 +162,10 @@ pub(super) fn outline(
     drawn.collect()
 }
 
-/// The outlines of both parts.
+/// The outlines of all parts.
 pub(super) struct SectionStore {
     background: Background<CutKey, Cut>,
-    ready: PerRole<Option<(CutKey, Arc<Cut>)>>,
+    ready: BTreeMap<(Role, usize), (CutKey, Arc<Cut>)>,
     failed: Vec<CutKey>,
     measuring: Background<PerRole<CutKey>, Gaps>,
     gaps: Option<(PerRole<CutKey>, Option<Arc<Gaps>>)>,
@@ -128,7 +175,7 @@ impl SectionStore {
     pub fn new() -> Self {
         Self {
             background: Background::new("sections"),
-            ready: PerRole::default(),
+            ready: BTreeMap::new(),
             failed: Vec::new(),
             measuring: Background::new("gaps"),
             gaps: None,
@@ -140,14 +187,15 @@ impl SectionStore {
         &mut self,
         window: Role,
         state: &AppState,
-        meshes: &[(Role, Arc<ShownMesh>, Similarity)],
+        meshes: &[Uncut],
         wake: &egui::Context,
     ) {
         let plane = state.inspect.section.shown();
         let keys = plane.into_iter().flat_map(|plane| {
-            let key = move |(role, mesh, pose): &(Role, Arc<ShownMesh>, Similarity)| {
+            let key = move |(role, number, mesh, pose): &Uncut| {
                 let key = CutKey {
                     role: *role,
+                    number: *number,
                     mesh: mesh.key(),
                     plane,
                     world_from_mesh: *pose,
@@ -157,7 +205,7 @@ impl SectionStore {
             meshes.iter().map(key)
         });
         let is_missing = |key: &CutKey| {
-            let ready = self.ready.get(key.role).as_ref();
+            let ready = self.ready.get(&key.place());
             ready.is_none_or(|(of, _)| of != key) && !self.failed.contains(key)
         };
         let wanted = keys
@@ -169,7 +217,9 @@ impl SectionStore {
         let wanted = wanted.collect();
         for (key, cut) in self.background.exchange(window, wanted, wake) {
             match cut {
-                Some(cut) => *self.ready.get_mut(key.role) = Some((key, Arc::new(cut))),
+                Some(cut) => {
+                    self.ready.insert(key.place(), (key, Arc::new(cut)));
+                }
                 None => self.failed.push(key),
             }
         }
@@ -178,8 +228,9 @@ impl SectionStore {
 
     /// Asks for the gaps between the newest outlines.
     fn measure(&mut self, window: Role, is_shown: bool, wake: &egui::Context) {
-        let (crash, stamped) = (&self.ready.crash, &self.ready.stamped);
-        let both = crash.as_ref().zip(stamped.as_ref()).filter(|_| is_shown);
+        let ready = |role| self.ready.get(&(role, 0));
+        let both = ready(Role::Crash).zip(ready(Role::Stamped));
+        let both = both.filter(|_| is_shown);
         let task = both.and_then(|((crash_key, crash), (stamped_key, stamped))| {
             let key = PerRole::new(*crash_key, *stamped_key);
             let is_one_plane = key.crash.plane == key.stamped.plane;
@@ -203,22 +254,28 @@ impl SectionStore {
         // Another direction has other axes, in which old outlines would be nonsense.
         let is_same = key.crash.plane.normal == plane.normal;
         gaps.clone()
-            .filter(|_| is_same && state.document.both().is_some())
+            .filter(|_| is_same && state.document.both().is_some() && !state.is_first_file_hidden())
     }
 
     /// The newest outlines of the parts that are loaded, while the section is shown.
-    pub fn cuts(&self, state: &AppState) -> PerRole<Option<Arc<Cut>>> {
-        let mut cuts = PerRole::default();
+    pub fn cuts(&self, state: &AppState) -> Cuts {
+        let mut cuts = Cuts::default();
         if state.inspect.section.shown().is_none() {
             return cuts;
         }
-        for (role, ready) in self.ready.iter() {
-            let of_part = |(_, cut): &&(CutKey, Arc<Cut>)| {
-                let part = state.document.part(role);
-                part.is_some_and(|p| Arc::ptr_eq(&p.loaded.to_arc(), &cut.mesh.source.part))
-            };
-            let found = ready.as_ref().filter(of_part);
-            *cuts.get_mut(role) = found.map(|(_, cut)| Arc::clone(cut));
+        let ready = |place, part: &Shared<LoadedPart>| {
+            let (_, cut) = self.ready.get(&place)?;
+            let is_of_part = Arc::ptr_eq(&part.to_arc(), &cut.mesh.source.part);
+            is_of_part.then(|| Arc::clone(cut))
+        };
+        for role in Role::ALL {
+            let is_hidden = role == Role::Stamped && state.is_first_file_hidden();
+            let part = state.document.part(role).filter(|_| !is_hidden);
+            *cuts.parts.get_mut(role) = part.and_then(|part| ready((role, 0), &part.loaded));
+        }
+        for file in state.shown_further() {
+            let found = ready((Role::Stamped, file.number), &file.loaded);
+            cuts.further.extend(found.map(|cut| (file.number, cut)));
         }
         cuts
     }

@@ -1,0 +1,66 @@
+//! Options that are given once for all stamped files or once for each.
+
+use std::path::Path;
+
+use clap::Args;
+
+use super::UsageError;
+use crate::pipeline::project::Project;
+use crate::settings::exact;
+use crate::text::counted;
+
+/// Factors on the lengths of stamped files.
+#[derive(Debug, Args)]
+pub(super) struct LengthFactors {
+    /// Factor on the stamped coordinates and thicknesses, for files in another length unit. Give one for all
+    /// files or one for each.
+    #[arg(long, value_name = "FACTOR")]
+    stamped_length_factor: Vec<f64>,
+}
+
+impl LengthFactors {
+    /// Refuses more or fewer factors than files.
+    pub(super) fn check(&self, n_files: usize) -> anyhow::Result<()> {
+        one_or_each(self.stamped_length_factor.len(), "length factor", n_files)
+    }
+
+    /// Refuses factors that are not those of a project whose poses are taken.
+    pub(super) fn check_project(&self, project: &Project, path: &Path) -> anyhow::Result<()> {
+        let expected = project.stamped_length_factors();
+        let differs = |(file, factor): (usize, &f64)| self.of(file) != *factor;
+        if !expected.iter().enumerate().any(differs) {
+            return Ok(());
+        }
+        let option = |factor: &f64| format!("--stamped-length-factor {}", exact(*factor));
+        let options: Vec<String> = expected.iter().map(option).collect();
+        let text = format!(
+            "the poses of {} stand for {}",
+            path.display(),
+            options.join(" ")
+        );
+        Err(UsageError(text).into())
+    }
+
+    /// The factor of a file.
+    pub(super) fn of(&self, file: usize) -> f64 {
+        let factor = of_file(&self.stamped_length_factor, file);
+        factor.copied().unwrap_or(1.0)
+    }
+}
+
+/// Refuses a number of values that is neither one for all stamped files nor one for each.
+pub(super) fn one_or_each(n_values: usize, what: &str, n_files: usize) -> anyhow::Result<()> {
+    if n_values < 2 || n_values == n_files {
+        return Ok(());
+    }
+    let text = format!(
+        "{n_values} {what}s for {}; give one for all or one for each",
+        counted(n_files, "stamped file")
+    );
+    Err(UsageError(text).into())
+}
+
+/// What was given for a file: one value for all, or one for each.
+pub(super) fn of_file<T>(values: &[T], file: usize) -> Option<&T> {
+    values.get(file).or_else(|| values.first())
+}
