@@ -363,8 +363,15 @@ fn each_stamped_file_may_have_a_unit_of_its_own() {
     assert!(hint.words().contains("1000 × smaller"), "{}", hint.words());
     assert_eq!(window.state.stamped_rows()[0].unit_hint, None);
 
+    let is_warned = |window: &Window| {
+        let mut toasts = window.state.log.notices.toasts();
+        toasts.any(|toast| toast.text.contains("is poor"))
+    };
+    assert!(is_warned(&window));
+
     let metre = Units::from(LengthUnit::Meter);
     set_units(&mut window, Some(metre));
+    assert!(!is_warned(&window), "the warning was of the pose before");
     assert_eq!(factor(&window), 1000.0);
     assert_eq!(verdicts(&window)[1], Some(Verdict::Good));
     let row = window.state.stamped_rows()[1].clone();

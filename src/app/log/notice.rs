@@ -163,6 +163,14 @@ impl Notices {
         }
     }
 
+    /// What a message says is no longer so.
+    pub fn withdraw_text(&mut self, text: &str) {
+        for notice in self.items.iter_mut().filter(|n| n.text == text) {
+            notice.is_toast = false;
+            notice.is_unread = false;
+        }
+    }
+
     /// What an action was offered for is over.
     pub fn withdraw(&mut self, action: Action) {
         for notice in &mut self.items {

@@ -261,9 +261,10 @@ impl MappingState {
             return;
         };
         let name = part.file_name();
-        let warning = placing.as_ref().and_then(|(_, placing)| {
-            pose_warning(placing.verdict, &part.path.display().to_string())
-        });
+        let path = part.path.display().to_string();
+        let warning = placing
+            .as_ref()
+            .and_then(|(_, placing)| pose_warning(placing.verdict, &path));
         if !Arc::ptr_eq(&further.loaded.to_arc(), &part) {
             further.loaded = part.into();
         }
@@ -272,6 +273,10 @@ impl MappingState {
         };
         let line = format!("{name}: {}", placing.line);
         further.placing = Some(placing);
+        // It was said of the pose before.
+        if let Some(before) = pose_warning(Verdict::Poor, &path) {
+            work.log.notices.withdraw_text(&before);
+        }
         match warning {
             Some(warning) => {
                 work.log.push(level, "match", None, line, Some(took));
