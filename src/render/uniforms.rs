@@ -183,7 +183,6 @@ fn other_color(drawable: &Drawable, other: Option<Rgb>, pixel: f64, scale: f32) 
 fn switches(drawable: &Drawable, other_sheet: Option<Rgb>) -> u32 {
     let sheet = drawable.sheet.filter(|_| other_sheet.is_some());
     [
-        drawable.parts.is_some(),
         drawable.field.is_some(),
         drawable.style.shading == Shading::Flat,
         drawable.style.back_hatch,

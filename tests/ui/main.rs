@@ -17,6 +17,7 @@ mod parts;
 mod preferences;
 mod project;
 mod render;
+mod shaders;
 mod specification;
 mod starts;
 mod story;

@@ -1,5 +1,9 @@
 // What every shader shares: the uniforms, the way from view space to the screen, and sRGB.
 // View space is centred at the camera's target, x right, y up, z towards the viewer.
+//
+// What a vertex shader calls must not branch on uniforms alone: Mesa's software driver then puts their
+// values into the code and compiles the shader anew whenever a uniform changes, with every step of the
+// camera. Choose with select(), and join conditions with | and &, which are no branches.
 
 struct Frame {
     clip_from_view: mat4x4<f32>,
@@ -36,19 +40,18 @@ struct Drawable {
     flags: vec4<u32>,
 }
 
-const HAS_PARTS: u32 = 1u;
-const HAS_FIELD: u32 = 2u;
-const FLAT: u32 = 4u;
-const BACK_HATCH: u32 = 8u;
-const MIRRORED: u32 = 16u;
-const CUT: u32 = 32u;
-const WIPE_LEFT: u32 = 64u;
-const WIPE_RIGHT: u32 = 128u;
-const SELECTED: u32 = 256u;
-const HOVERED: u32 = 512u;
-const FIRST_SHEET: u32 = 1024u;
-const SECOND_SHEET: u32 = 2048u;
-const BARE: u32 = 4096u;
+const HAS_FIELD: u32 = 1u;
+const FLAT: u32 = 2u;
+const BACK_HATCH: u32 = 4u;
+const MIRRORED: u32 = 8u;
+const CUT: u32 = 16u;
+const WIPE_LEFT: u32 = 32u;
+const WIPE_RIGHT: u32 = 64u;
+const SELECTED: u32 = 128u;
+const HOVERED: u32 = 256u;
+const FIRST_SHEET: u32 = 512u;
+const SECOND_SHEET: u32 = 1024u;
+const BARE: u32 = 2048u;
 
 // Bits of a part's look in the parts table.
 const PART_VISIBLE: u32 = 1u;
@@ -68,13 +71,16 @@ const PARTS_PER_ROW: u32 = 256u;
 // Outside of the clip volume for every projection.
 const NOWHERE: vec4<f32> = vec4<f32>(2.0, 2.0, 2.0, 1.0);
 
+// Beyond every point of a scene.
+const FAR_AWAY: f32 = 3e38;
+
 fn has(bit: u32) -> bool {
     return (drawable.flags.x & bit) != 0u;
 }
 
 // Colour and state of a part; all of the drawable's own where the table ends.
 fn part_look(part: u32) -> vec4<u32> {
-    if has(HAS_PARTS) && part < drawable.flags.z {
+    if part < drawable.flags.z {
         return textureLoad(parts, vec2<u32>(part % PARTS_PER_ROW, part / PARTS_PER_ROW), 0);
     }
     return vec4<u32>(0u, 0u, 0u, PART_VISIBLE);
@@ -84,19 +90,19 @@ fn view_point(position: vec3<f32>) -> vec3<f32> {
     return (drawable.view_from_mesh * vec4<f32>(position, 1.0)).xyz;
 }
 
+fn is_perspective() -> bool {
+    return frame.eye.y > 0.5;
+}
+
 fn to_eye(p: vec3<f32>) -> vec3<f32> {
-    if frame.eye.y > 0.5 {
-        return normalize(vec3<f32>(0.0, 0.0, frame.eye.x) - p);
-    }
-    return vec3<f32>(0.0, 0.0, 1.0);
+    let towards_eye = normalize(vec3<f32>(0.0, 0.0, frame.eye.x) - p);
+    return select(vec3<f32>(0.0, 0.0, 1.0), towards_eye, is_perspective());
 }
 
 // World length of a pixel at a view point.
 fn pixel_size(p: vec3<f32>) -> f32 {
-    if frame.eye.y > 0.5 {
-        return frame.eye.z * max(frame.eye.x - p.z, 0.0) / frame.eye.x;
-    }
-    return frame.eye.z;
+    let nearness = max(frame.eye.x - p.z, 0.0) / frame.eye.x;
+    return frame.eye.z * select(1.0, nearness, is_perspective());
 }
 
 // A view point moved towards the viewer by some pixels' length, which changes its depth alone.
@@ -164,14 +170,12 @@ struct Segment {
 fn segment_corner(from_view: vec3<f32>, to_view: vec3<f32>, widths: vec2<f32>, corner: u32) -> Segment {
     var a = from_view;
     var b = to_view;
-    if frame.eye.y > 0.5 {
-        // What lies behind the eye is cut off before the division.
-        let limit = frame.eye.x * (1.0 - 1e-4);
-        if a.z > limit && b.z < limit {
-            a = mix(a, b, (a.z - limit) / (a.z - b.z));
-        } else if b.z > limit && a.z < limit {
-            b = mix(b, a, (b.z - limit) / (b.z - a.z));
-        }
+    // What lies behind the eye is cut off before the division.
+    let limit = select(FAR_AWAY, frame.eye.x * (1.0 - 1e-4), is_perspective());
+    if a.z > limit && b.z < limit {
+        a = mix(a, b, (a.z - limit) / (a.z - b.z));
+    } else if b.z > limit && a.z < limit {
+        b = mix(b, a, (b.z - limit) / (b.z - a.z));
     }
     var result: Segment;
     let clip_a = to_clip(a);

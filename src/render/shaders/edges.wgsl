@@ -63,11 +63,11 @@ fn vs_wide(
     out.view = select(from_view, to_view, corner == 1u || corner == 2u || corner == 4u);
     out.place = segment.place;
     out.shape = vec2<f32>(segment.length, segment.half_width);
-    out.color = select(frame.feature_color, frame.border_color, border);
     // Of a clear part its lines are what is seen best, so they carry its colour.
-    if has(BARE) || drawable.color.a < 1.0 {
-        out.color = vec4<f32>(drawable.color.rgb, select(0.8, 1.0, border));
-    }
+    out.color = select(
+        select(frame.feature_color, frame.border_color, border),
+        vec4<f32>(drawable.color.rgb, select(0.8, 1.0, border)),
+        has(BARE) | (drawable.color.a < 1.0));
     return out;
 }
 
