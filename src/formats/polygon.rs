@@ -200,7 +200,7 @@ impl Polygons {
             files: vec![ReadFile {
                 path: self.file.to_path_buf(),
                 n_bytes: n_bytes as u64,
-                hash: None,
+                ..ReadFile::default()
             }],
             ..Model::default()
         }

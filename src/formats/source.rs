@@ -262,6 +262,41 @@ impl FileSource for Memory {
     }
 }
 
+/// The files of another source, one of them with other content.
+#[derive(Clone, Copy)]
+pub struct Replaced<'a> {
+    /// Where the other files are.
+    pub others: &'a dyn FileSource,
+    /// The path under which the file is asked for.
+    pub path: &'a Path,
+    /// What it holds instead.
+    pub bytes: &'a [u8],
+}
+
+impl FileSource for Replaced<'_> {
+    fn open(&self, path: &Path, max_bytes: u64, monitor: &Monitor) -> io::Result<FileBytes> {
+        if tidy(path) != tidy(self.path) {
+            return self.others.open(path, max_bytes, monitor);
+        }
+        if self.bytes.len() as u64 > max_bytes {
+            return Err(io::Error::other(TooLarge { max_bytes }));
+        }
+        Ok(self.bytes.to_vec().into())
+    }
+
+    fn stream(&self, path: &Path) -> io::Result<Box<dyn Read + '_>> {
+        if tidy(path) == tidy(self.path) {
+            Ok(Box::new(self.bytes))
+        } else {
+            self.others.stream(path)
+        }
+    }
+
+    fn find(&self, path: &Path) -> Option<PathBuf> {
+        self.others.find(path)
+    }
+}
+
 /// The path without `.` and with `..` worked out as far as the text allows.
 pub(crate) fn tidy(path: &Path) -> PathBuf {
     let mut tidied = PathBuf::new();

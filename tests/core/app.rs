@@ -124,9 +124,8 @@ fn read(source: &PartSource, settings: &LoadSettings) -> Result<LoadedPartAndFac
 fn stated(mut model: Model, comment: &str, content: &[u8]) -> Model {
     model.stated_units = shapematch::units::of_text(comment);
     model.files.push(shapematch::formats::model::ReadFile {
-        path: PathBuf::new(),
-        n_bytes: 0,
         hash: Some(shapematch::formats::FileHash::of(content)),
+        ..Default::default()
     });
     model
 }

@@ -18,6 +18,7 @@ fn read(path: &Path) -> ReadFile {
         path: path.to_owned(),
         n_bytes: bytes.len() as u64,
         hash: Some(FileHash::of(&bytes)),
+        ..ReadFile::default()
     }
 }
 

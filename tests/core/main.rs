@@ -31,6 +31,7 @@ mod layering;
 mod map_car;
 mod map_decks;
 mod map_files;
+mod map_includes;
 mod map_options;
 mod mapping;
 mod mapping_checks;

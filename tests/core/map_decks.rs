@@ -35,7 +35,7 @@ impl Pair {
     }
 
     /// Runs the program on both decks as they lie.
-    fn map(&self, options: &[&str]) -> Output {
+    pub(crate) fn map(&self, options: &[&str]) -> Output {
         self.run(&[&["--identity"], options].concat())
     }
 
@@ -65,16 +65,16 @@ impl Pair {
     }
 }
 
-fn errors(output: &Output) -> &str {
+pub(crate) fn errors(output: &Output) -> &str {
     std::str::from_utf8(&output.stderr).unwrap()
 }
 
-fn model(path: &Path) -> Model {
+pub(crate) fn model(path: &Path) -> Model {
     read(path, &ReadOptions::default(), &Monitor::silent()).unwrap()
 }
 
 /// Nodes of a strip of `n` squares of 10, in fields of the given widths: 1 and 2 at x = 0, then 3 and 4.
-fn strip(n: usize, widths: [usize; 2]) -> String {
+pub(crate) fn strip(n: usize, widths: [usize; 2]) -> String {
     let mut deck = "*NODE\n".to_owned();
     for column in 0..=n {
         for row in 0..2 {
@@ -99,7 +99,7 @@ fn square(id: u64, part: u64, n: u64, width: usize) -> String {
     fields.concat() + "\n"
 }
 
-const SECTION: &str = "\
+pub(crate) const SECTION: &str = "\
 *PART
 sheet
          7         7         5
@@ -109,7 +109,7 @@ sheet
 ";
 
 /// A crash deck of `n` squares (ids from 101) of part 7, with more cards before its elements.
-fn crash(n: u64, cards: &str) -> String {
+pub(crate) fn crash(n: u64, cards: &str) -> String {
     let mut deck = format!("*KEYWORD\n{SECTION}{cards}{}", strip(n as usize, [8, 16]));
     deck += "*ELEMENT_SHELL\n";
     for i in 0..n {
@@ -119,7 +119,7 @@ fn crash(n: u64, cards: &str) -> String {
 }
 
 /// A stamped deck of `n` squares (ids from 1) of part 1, 0.9 thick, with the given results.
-fn stamped(n: u64, results: &str) -> String {
+pub(crate) fn stamped(n: u64, results: &str) -> String {
     let mut deck = format!(
         "*KEYWORD\n{}*ELEMENT_SHELL_THICKNESS\n",
         strip(n as usize, [8, 16])
@@ -143,7 +143,7 @@ fn three_layers(id: u64) -> String {
     card
 }
 
-fn stresses(ids: std::ops::RangeInclusive<u64>) -> String {
+pub(crate) fn stresses(ids: std::ops::RangeInclusive<u64>) -> String {
     let cards: Vec<String> = ids.map(three_layers).collect();
     format!("*INITIAL_STRESS_SHELL\n{}", cards.concat())
 }

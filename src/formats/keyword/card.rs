@@ -42,6 +42,15 @@ impl Layout {
         }
     }
 
+    /// The suffix of a keyword that asks for the layout.
+    pub fn suffix(self) -> u8 {
+        match self {
+            Self::Standard => b'-',
+            Self::I10 => b'%',
+            Self::Long => b'+',
+        }
+    }
+
     /// The layout a suffix of the keyword asks for.
     pub fn of_suffix(suffix: u8) -> Option<Self> {
         match suffix {

@@ -81,6 +81,7 @@ impl Reader<'_> {
             path: file.path().to_path_buf(),
             n_bytes: file.bytes().len() as u64,
             hash: None,
+            included_as: context.included_as(),
         });
         let mut context = context;
         if context.length == 1.0 {

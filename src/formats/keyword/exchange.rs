@@ -1,9 +1,12 @@
 //! Copies a deck with the thickness of some shells exchanged and everything else byte for byte.
 
+use super::super::model::IncludedAs;
 use super::block::{Block, Blocks};
 use super::card::{Card, FIVE_BY_16, Layout, TEN_BY_8};
+use super::exponential::push_int;
 use super::include::layout_of_keyword;
 use super::mesh::{ElementKeyword, ShellCards, element_keyword};
+use super::nodes::shifted;
 use super::source_file::SourceFile;
 use super::state_cards::push_thickness;
 use crate::monitor::{Cancelled, Monitor};
@@ -22,6 +25,20 @@ pub enum Exchange {
     Other,
 }
 
+/// What is exchanged in one file of a deck. Ids and thicknesses are those of the whole deck, whatever an
+/// include adds to the file's own.
+#[derive(Clone, Copy)]
+pub struct ExchangeRules<'a> {
+    /// How the deck reads the file.
+    pub included_as: IncludedAs,
+    /// Width of the fields of the file in which the list will stand; `None` for that of this file.
+    pub list_layout: Option<Layout>,
+    /// What becomes of a shell, by its id.
+    pub exchange_of: &'a dyn Fn(u64) -> Exchange,
+    /// What is put at the end of the file, for fields of a width.
+    pub states: &'a dyn Fn(Layout) -> Result<Vec<u8>, Cancelled>,
+}
+
 /// A deck with exchanged elements.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExchangedDeck {
@@ -29,24 +46,29 @@ pub struct ExchangedDeck {
     pub bytes: Vec<u8>,
     /// Shells whose thickness was set.
     pub n_exchanged: usize,
+    /// Shells that were to be exchanged or listed, with plies or not.
+    pub n_found: usize,
     /// Shells that were to be exchanged but have plies of their own (`_COMPOSITE`), left as they are.
     pub n_composite: usize,
     /// Shell keywords whose cards are not known, left as they are.
     pub n_unknown: usize,
     /// Width of the deck's fields after its last keyword.
     pub layout: Layout,
-    /// The cards of the exchanged and the listed shells alone, below their keywords.
+    /// The cards of the exchanged and the listed shells alone, below their keywords, with the ids and the
+    /// thicknesses of the whole deck.
     pub elements: Vec<u8>,
+    /// Shells that are missing there: what the include changes in their further cards is not known, or
+    /// their ids have more than ten digits.
+    pub n_unlisted: usize,
 }
 
-/// Sets the corner thicknesses of the shells for which `exchange_of` (by element id) has some, and
-/// puts `states` before `*END` (or at the end). Elements change to the keyword with the option
-/// `THICKNESS` where they stand; other options, comments and the order stay. Shells without a new
-/// thickness and all other lines are copied byte for byte. O(bytes).
+/// Sets the corner thicknesses of the shells for which there are some, and puts the states before `*END` (or
+/// at the end). Elements change to the keyword with the option `THICKNESS` where they stand; other options,
+/// comments and the order stay. Shells without a new thickness and all other lines are copied byte for byte.
+/// O(bytes).
 pub fn exchange_thickness(
     deck: &SourceFile,
-    exchange_of: &dyn Fn(u64) -> Exchange,
-    states: &dyn Fn(Layout) -> Result<Vec<u8>, Cancelled>,
+    rules: &ExchangeRules<'_>,
     monitor: &Monitor,
 ) -> Result<ExchangedDeck, Cancelled> {
     let bytes = deck.bytes();
@@ -56,21 +78,24 @@ pub fn exchange_thickness(
         result: ExchangedDeck {
             bytes: Vec::with_capacity(bytes.len() + bytes.len() / 4),
             n_exchanged: 0,
+            n_found: 0,
             n_composite: 0,
             n_unknown: 0,
-            layout: Layout::Standard,
+            layout: rules.included_as.layout,
             elements: Vec::new(),
+            n_unlisted: 0,
         },
-        exchange_of,
+        rules,
         line_end: line_end_of(bytes),
-        listed_below: String::new(),
+        listed_below: Vec::new(),
     };
-    let mut blocks = Blocks::new(deck, Layout::Standard);
+    let mut blocks = Blocks::new(deck, rules.included_as.layout);
     let mut end = None;
     while let Some(block) = blocks.next() {
         monitor.check()?;
         if block.name == "KEYWORD"
             && let Some(layout) = layout_of_keyword(block.remark)
+            && !rules.included_as.layout_is_fixed
         {
             copy.result.layout = layout;
             blocks.set_layout(layout);
@@ -86,7 +111,7 @@ pub fn exchange_thickness(
     }
     copy.up_to(end.unwrap_or(bytes.len()));
     copy.new_line();
-    let states = states(copy.result.layout)?;
+    let states = (rules.states)(copy.result.layout)?;
     copy.result.bytes.extend_from_slice(&states);
     copy.up_to(bytes.len());
     Ok(copy.result)
@@ -105,10 +130,10 @@ struct Copy<'a> {
     /// What lies before was copied or replaced.
     done: usize,
     result: ExchangedDeck,
-    exchange_of: &'a dyn Fn(u64) -> Exchange,
+    rules: &'a ExchangeRules<'a>,
     line_end: &'static [u8],
     /// Keyword line of the last element in `result.elements`.
-    listed_below: String,
+    listed_below: Vec<u8>,
 }
 
 impl Copy<'_> {
@@ -163,7 +188,10 @@ impl Copy<'_> {
             for _ in 0..cards.n_passed_over {
                 lines.next_line();
             }
-            let exchange = id.map_or(Exchange::Other, self.exchange_of);
+            let offset = self.rules.included_as.element_offset;
+            let id = id.map(|id| shifted(id, offset));
+            let exchange = id.map_or(Exchange::Other, self.rules.exchange_of);
+            self.result.n_found += usize::from(exchange != Exchange::Other);
             if cards.plies {
                 // How many plies follow is known to the reader of the keyword alone.
                 self.result.n_composite += usize::from(exchange != Exchange::Other);
@@ -175,6 +203,8 @@ impl Copy<'_> {
                 rest: &self.bytes[rest..lines.offset()],
                 is_quadratic,
                 layout: block.layout,
+                card,
+                cards,
             };
             let needs_thick = matches!(exchange, Exchange::Thickness(_)) || cards.thickness;
             if needs_thick != is_thick {
@@ -184,8 +214,9 @@ impl Copy<'_> {
             }
             match exchange {
                 Exchange::Thickness(new) => {
-                    let card = self.set_thickness(&element, &new);
-                    self.list(&element, &keyword, Some(&card));
+                    let factor = self.rules.included_as.length_factor;
+                    let card = self.set_thickness(&element, &new.map(|t| t / factor));
+                    self.list(&element, &keyword, Some((&new, &card)));
                 }
                 Exchange::Listed => self.list(&element, &keyword, None),
                 Exchange::Other => {}
@@ -220,22 +251,38 @@ impl Copy<'_> {
         card
     }
 
-    /// Adds an element to the list, with its new thickness card or as it stands.
-    fn list(&mut self, element: &Element<'_>, keyword: &Keyword, new: Option<&[u8]>) {
+    /// Adds an element to the list, with its new thicknesses, whose card in the file is given too, or as it
+    /// stands.
+    fn list(&mut self, element: &Element<'_>, keyword: &Keyword, new: Option<(&[f64; 4], &[u8])>) {
+        let place = &self.rules.included_as;
         let old = element.thickness.as_ref().map(|(_, line, _)| *line);
-        let line = keyword.line(new.or(old).is_some());
+        let is_thick = new.is_some() || old.is_some();
+        let (layout, first, thickness) = if place.keeps_numbers() {
+            let thickness = new.map(|(_, card)| card).or(old).map(<[u8]>::to_vec);
+            (element.layout, element.first.0.to_vec(), thickness)
+        } else {
+            let Some(cards) =
+                element.in_whole_deck(place, keyword, new.map(|(new, _)| new), self.line_end)
+            else {
+                self.result.n_unlisted += 1;
+                return;
+            };
+            cards
+        };
+        let list_layout = self.rules.list_layout.unwrap_or(self.result.layout);
+        let line = keyword.listed(is_thick, [element.layout, layout, list_layout]);
         let list = &mut self.result.elements;
         let mut push = |text: &[u8]| {
             list.extend_from_slice(text);
             list.extend_from_slice(self.line_end);
         };
-        if self.listed_below.as_bytes() != line {
-            push(line);
-            self.listed_below = String::from_utf8_lossy(line).into_owned();
+        if self.listed_below != line {
+            push(&line);
+            self.listed_below = line;
         }
-        push(element.first.0);
-        if let Some(card) = new.or(old) {
-            push(card);
+        push(&first);
+        if let Some(card) = thickness {
+            push(&card);
         }
         list.extend_from_slice(element.rest);
     }
@@ -250,6 +297,87 @@ struct Element<'a> {
     rest: &'a [u8],
     is_quadratic: bool,
     layout: Layout,
+    /// Its first card, to be read.
+    card: Card<'a>,
+    /// What its cards are.
+    cards: ShellCards,
+}
+
+impl Element<'_> {
+    /// Its first card and its thickness card with the numbers of the whole deck, and the width of their
+    /// fields. `None` if one of its further cards would change too in a way that is not known here.
+    fn in_whole_deck(
+        &self,
+        place: &IncludedAs,
+        keyword: &Keyword,
+        new: Option<&[f64; 4]>,
+        line_end: &[u8],
+    ) -> Option<(Layout, Vec<u8>, Option<Vec<u8>>)> {
+        let has_other_length = place.length_factor != 1.0;
+        let has_nodes = keyword.has_scalar_nodes && place.node_offset != 0;
+        let has_second_thickness = self.thickness.is_some() && self.is_quadratic;
+        if has_nodes || has_other_length && (self.cards.n_passed_over > 0 || has_second_thickness) {
+            return None;
+        }
+        let mut ids = [0; 10];
+        for (index, id) in ids.iter_mut().enumerate() {
+            let offset = match index {
+                0 => place.element_offset,
+                1 => place.part_offset,
+                _ => place.node_offset,
+            };
+            *id = shifted(self.card.id(TEN_BY_8, index).ok()?, offset);
+        }
+        let layout = match (self.layout, *ids.iter().max()?) {
+            (Layout::Long, _) => Layout::Long,
+            (layout, ..=99_999_999) => layout,
+            // Cards of wider fields than eight stay as they are.
+            (_, ..=9_999_999_999) => Layout::I10,
+            _ => return None,
+        };
+        let n_ids = if self.is_quadratic { 10 } else { 6 };
+        let mut first = Vec::new();
+        for &id in &ids[..n_ids] {
+            push_int(&mut first, id, layout.width(TEN_BY_8[0]));
+        }
+        let old = match &self.thickness {
+            None => None,
+            Some((card, ..)) => {
+                let mut old = [0.0; 4];
+                for (index, t) in old.iter_mut().enumerate() {
+                    *t = card.real_or_zero(FIVE_BY_16, index).ok()? * place.length_factor;
+                }
+                Some(old)
+            }
+        };
+        let Some(corners) = new.copied().or(old) else {
+            return Some((layout, first, None));
+        };
+        let mut text = match &self.thickness {
+            Some((card, line, _)) => replaced_thickness(card, line, &corners, layout),
+            None => {
+                let mut text = Vec::new();
+                push_thickness(&mut text, &corners, layout);
+                text
+            }
+        };
+        if self.thickness.is_none() && self.is_quadratic {
+            text.extend_from_slice(line_end);
+            push_thickness(&mut text, &corners, layout);
+        }
+        // Without BETA the fifth field is a coordinate system.
+        if let Some((card, ..)) = &self.thickness
+            && !self.cards.beta
+            && place.system_offset != 0
+            && !card.is_empty_field(FIVE_BY_16, 4)
+        {
+            let system = shifted(card.id(FIVE_BY_16, 4).ok()?, place.system_offset);
+            text.clear();
+            push_thickness(&mut text, &corners, layout);
+            push_int(&mut text, system, layout.width(FIVE_BY_16[4]));
+        }
+        Some((layout, first, Some(text)))
+    }
 }
 
 /// The new corner thicknesses with what stands behind them on the card, such as a material angle.
@@ -275,6 +403,10 @@ fn replaced_thickness(card: &Card<'_>, line: &[u8], new: &[f64; 4], layout: Layo
 struct Keyword {
     plain: String,
     thick: String,
+    /// True if the line itself says how wide the fields are.
+    has_suffix: bool,
+    /// A card of each shell names scalar nodes (`DOF`).
+    has_scalar_nodes: bool,
 }
 
 impl Keyword {
@@ -288,7 +420,33 @@ impl Keyword {
             let stem = "*ELEMENT_SHELL".len().min(plain.len());
             format!("{}_THICKNESS{}", &plain[..stem], &plain[stem..])
         };
-        Self { plain, thick }
+        Self {
+            plain,
+            thick,
+            has_suffix: block.suffix.is_some(),
+            has_scalar_nodes: block.has_option("DOF"),
+        }
+    }
+
+    /// The line above cards of a width in a file of a width, from the width of the block it stands for.
+    fn listed(&self, is_thick: bool, [of_block, of_cards, of_file]: [Layout; 3]) -> Vec<u8> {
+        let line = self.line(is_thick);
+        let says_width = self.has_suffix || of_block == of_file;
+        if of_cards == of_block && says_width {
+            return line.to_vec();
+        }
+        let end = line.iter().position(|byte| b" \t,$".contains(byte));
+        let mut listed = line[..end.unwrap_or(line.len())].to_vec();
+        if listed
+            .last()
+            .is_some_and(|&last| Layout::of_suffix(last).is_some())
+        {
+            listed.pop();
+        }
+        if of_cards != of_file {
+            listed.push(of_cards.suffix());
+        }
+        listed
     }
 
     fn line(&self, is_thick: bool) -> &[u8] {
@@ -311,8 +469,21 @@ mod tests {
             4 => Exchange::Listed,
             _ => Exchange::Other,
         };
-        let states = |_| Ok(b"*INITIAL_STRESS_SHELL\n".to_vec());
-        exchange_thickness(&file, &exchange, &states, &Monitor::silent()).unwrap()
+        exchanged(&file, IncludedAs::default(), &exchange)
+    }
+
+    fn exchanged(
+        file: &SourceFile,
+        included_as: IncludedAs,
+        exchange_of: &dyn Fn(u64) -> Exchange,
+    ) -> ExchangedDeck {
+        let rules = ExchangeRules {
+            included_as,
+            list_layout: Some(Layout::Standard),
+            exchange_of,
+            states: &|_| Ok(b"*INITIAL_STRESS_SHELL\n".to_vec()),
+        };
+        exchange_thickness(file, &rules, &Monitor::silent()).unwrap()
     }
 
     fn text(deck: &ExchangedDeck) -> String {
@@ -393,5 +564,72 @@ $ between\n\
         let deck = "*ELEMENT_SHELL_COMPOSITE\n       1       1       1       2       3       4\n";
         let found = exchange(deck, &[1]);
         assert_eq!((found.n_exchanged, found.n_composite), (0, 1));
+    }
+
+    #[test]
+    fn the_list_has_the_numbers_of_the_whole_deck() {
+        let deck = "*ELEMENT_SHELL_THICKNESS\n\
+\x20      1       2       3       4       5       6\n\
+\x20            0.5             0.5             0.5            0.75               9\n\
+*ELEMENT_SHELL_OFFSET\n\
+\x20      2       2       3       4       5       5\n\
+\x20            0.3\n";
+        let file = SourceFile::new("a.k", deck);
+        let included_as = IncludedAs {
+            element_offset: 1_000,
+            part_offset: 20,
+            node_offset: 300_000_000,
+            system_offset: 40,
+            ..IncludedAs::default()
+        };
+        let of = |id: u64| match id {
+            1_001 => Exchange::Listed,
+            1_002 => Exchange::Thickness([1.0, 1.25, 1.5, 1.75]),
+            _ => Exchange::Other,
+        };
+        let found = exchanged(&file, included_as, &of);
+        assert_eq!(
+            (found.n_exchanged, found.n_found, found.n_unlisted),
+            (1, 2, 0)
+        );
+        // Nine digits do not fit into eight columns.
+        let expected = format!(
+            "*ELEMENT_SHELL_THICKNESS%\n\
+\x20     1001        22 300000003 300000004 300000005 300000006\n\
+\x20 5.00000000E-01  5.00000000E-01  5.00000000E-01  7.50000000E-01              49\n\
+*ELEMENT_SHELL_THICKNESS_OFFSET%\n\
+\x20     1002        22 300000003 300000004 300000005 300000005\n{CARD}\n\
+\x20            0.3\n"
+        );
+        assert_eq!(String::from_utf8(found.elements).unwrap(), expected);
+        // The copy of the file keeps its own numbers.
+        let copy = String::from_utf8(found.bytes).unwrap();
+        let own = "*ELEMENT_SHELL_OFFSET\n*ELEMENT_SHELL_THICKNESS_OFFSET\n       2       2";
+        assert!(copy.contains(own), "{copy}");
+    }
+
+    #[test]
+    fn a_unit_of_the_include_counts_in_the_copy_and_not_in_the_list() {
+        let deck = "*ELEMENT_SHELL+\n                   1                   2                   3                   4                   5                   6\n";
+        let file = SourceFile::new("a.k", deck);
+        let included_as = IncludedAs {
+            length_factor: 1000.0,
+            ..IncludedAs::default()
+        };
+        let of = |_| Exchange::Thickness([1.0, 1.25, 1.5, 1.75]);
+        let found = exchanged(&file, included_as, &of);
+        let copy = String::from_utf8(found.bytes).unwrap();
+        assert!(
+            copy.contains("      1.00000000E-03      1.25000000E-03"),
+            "{copy}"
+        );
+        let list = String::from_utf8(found.elements).unwrap();
+        assert!(list.starts_with("*ELEMENT_SHELL_THICKNESS+\n"), "{list}");
+        assert!(
+            list.contains("      1.00000000E+00      1.25000000E+00"),
+            "{list}"
+        );
+        let with_offset = SourceFile::new("b.k", &deck.replace("SHELL+", "SHELL_OFFSET+")[..]);
+        assert_eq!(exchanged(&with_offset, included_as, &of).n_unlisted, 1);
     }
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::super::diagnostic::Diagnostics;
+use super::super::model::IncludedAs;
 use super::super::source::{FileSource, tidy};
 use super::block::{Block, Cards};
 use super::card::{Card, EIGHT_BY_10, Layout};
@@ -101,6 +102,20 @@ impl Context {
             part: self.offsets.part,
             element: self.offsets.element,
             node: self.offsets.node,
+        }
+    }
+
+    /// What the model keeps of the circumstances.
+    pub(crate) fn included_as(&self) -> IncludedAs {
+        IncludedAs {
+            layout: self.layout,
+            layout_is_fixed: self.layout_is_fixed,
+            element_offset: self.offsets.element,
+            node_offset: self.offsets.node,
+            part_offset: self.offsets.part,
+            system_offset: self.offsets.define,
+            length_factor: self.length,
+            stress_factor: self.stress,
         }
     }
 

@@ -19,6 +19,7 @@ pub use titles::RawTitles;
 
 use super::diagnostic::{Diagnostics, Position};
 use super::hash::FileHash;
+use super::keyword::card::Layout;
 use crate::geometry::{Matrix4, Point3, TriMesh};
 use crate::units::KnownUnits;
 
@@ -222,8 +223,58 @@ pub struct AppliedMotion {
     pub n_nodes: usize,
 }
 
+/// How the deck reads a file that it includes: what it adds to the ids there, and its factors on numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IncludedAs {
+    /// Width of fields where the file itself says nothing.
+    pub layout: Layout,
+    /// True if the file's own wish for a width does not count.
+    pub layout_is_fixed: bool,
+    /// Added to element ids.
+    pub element_offset: i64,
+    /// Added to node ids.
+    pub node_offset: i64,
+    /// Added to part ids.
+    pub part_offset: i64,
+    /// Added to ids of coordinate systems.
+    pub system_offset: i64,
+    /// Factor on lengths that are not coordinates: thicknesses.
+    pub length_factor: f64,
+    /// Factor on stresses.
+    pub stress_factor: f64,
+}
+
+impl Default for IncludedAs {
+    /// As a file is read that nothing includes.
+    fn default() -> Self {
+        Self {
+            layout: Layout::Standard,
+            layout_is_fixed: false,
+            element_offset: 0,
+            node_offset: 0,
+            part_offset: 0,
+            system_offset: 0,
+            length_factor: 1.0,
+            stress_factor: 1.0,
+        }
+    }
+}
+
+impl IncludedAs {
+    /// True if ids and lengths in the file are those of the whole deck.
+    pub fn keeps_numbers(&self) -> bool {
+        let offsets = [
+            self.element_offset,
+            self.node_offset,
+            self.part_offset,
+            self.system_offset,
+        ];
+        offsets == [0; 4] && self.length_factor == 1.0
+    }
+}
+
 /// A file that was read.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct ReadFile {
     /// The path it was opened under.
     pub path: PathBuf,
@@ -231,6 +282,8 @@ pub struct ReadFile {
     pub n_bytes: u64,
     /// Its content by name; `None` until it is asked for, and for a pipe.
     pub hash: Option<FileHash>,
+    /// How the deck reads it. A file that is included twice is there twice.
+    pub included_as: IncludedAs,
 }
 
 /// Everything that was read from a file and the files it includes.

@@ -8,6 +8,7 @@ mod output;
 mod peak;
 mod place;
 mod probe;
+mod read_back;
 mod ready;
 mod record;
 mod report;

@@ -1,25 +1,22 @@
 //! The mapped state as decks: an include, the part's elements, or a copy of the crash deck.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
-use super::compare::read_beside_nodes;
 use super::{DefaultThickness, MapRun, PipelineError, PlacedPart};
 use crate::formats::keyword::card::Layout;
-use crate::formats::keyword::exchange::{Exchange, ExchangedDeck, exchange_thickness};
+use crate::formats::keyword::exchange::{
+    Exchange, ExchangeRules, ExchangedDeck, exchange_thickness,
+};
 use crate::formats::keyword::source_file::SourceFile;
 use crate::formats::keyword::state_cards::{ShellState, StateFormat, write_states};
-use crate::formats::{self, Memory, Model, ReadOptions};
-use crate::geometry::chunks::{CHUNK, for_chunks};
+use crate::formats::model::{IncludedAs, ReadFile};
+use crate::formats::{self, Model};
+use crate::geometry::chunks::for_chunks;
 use crate::mapping::Status;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
 use crate::report::build_id;
-
-/// Digits of a small card differ from the values by up to this share of the largest.
-const SMALL_ROUNDING: f64 = 5.1e-4;
-/// Digits of a large card differ from the values by up to this share.
-const LARGE_ROUNDING: f64 = 1e-8;
 
 /// Where strains of the two surfaces stand.
 const SURFACES: [f64; 2] = [-1.0, 1.0];
@@ -109,6 +106,7 @@ pub fn write_mapping(
     let n_default = thickness.len() - n_mapped;
     let writer = MapWriter {
         run,
+        crash,
         model: &crash.model,
         is_large: output.is_large,
         thickness,
@@ -124,28 +122,22 @@ pub fn write_mapping(
              would lose; write an include or a deck instead (--write)"
         )));
     }
-    let decks = writer.decks(crash, output.kind)?;
+    let decks = writer.decks(output.kind)?;
     let n_thickness: usize = decks.iter().map(|(_, deck)| deck.n_exchanged).sum();
-    let n_wanted = writer.thickness.len();
-    if n_thickness < n_wanted {
-        let missing = n_wanted - n_thickness;
-        return Err(PipelineError::MapOutput(format!(
-            "{missing} of {n_wanted} elements are not found under their id in {}; are ids shifted by an include \
-             with offsets? Write the states alone (--quantities without thickness) or map onto a deck \
-             without offsets",
-            crash.path.display()
-        )));
-    }
+    writer.check_elements(&decks, output.kind)?;
     let mut replaces = None;
-    let head = writer.head(comments, n_default);
+    let n_old = writer.n_with_old_states()?;
+    let head = writer.head(comments, n_default, n_old);
     let files = match output.kind {
         WriteKind::Include => writer.include(&head, &decks, &output.path)?,
         WriteKind::Part => vec![(output.path.clone(), writer.part(&head, &decks)?)],
         WriteKind::Deck => {
             let mut holders = decks;
-            holders.retain(|(_, deck)| deck.n_exchanged > 0);
+            holders.retain(|(_, deck)| deck.n_found > 0);
             if holders.len() != 1 {
-                let names = holders.iter().map(|(path, _)| path.display().to_string());
+                let names = holders
+                    .iter()
+                    .map(|(file, _)| file.path.display().to_string());
                 let names: Vec<String> = names.collect();
                 return Err(PipelineError::MapOutput(format!(
                     "the elements stand in {} files ({}); write an include instead (--write include)",
@@ -153,8 +145,9 @@ pub fn write_mapping(
                     names.join(", ")
                 )));
             }
-            let (path, deck) = holders.swap_remove(0);
-            replaces = Some(path);
+            let (file, deck) = holders.swap_remove(0);
+            writer.check_copy(file, n_old)?;
+            replaces = Some(file.path.clone());
             vec![(output.path.clone(), deck.bytes)]
         }
     };
@@ -223,56 +216,117 @@ fn is_composite(run: &MapRun, model: &Model, element: usize) -> bool {
     extra.is_some_and(|extra| extra.n_plies > 0)
 }
 
-struct MapWriter<'a> {
-    run: &'a MapRun,
-    model: &'a Model,
-    is_large: bool,
-    thickness: HashMap<u64, [f64; 4]>,
-    monitor: &'a Monitor,
+pub(super) struct MapWriter<'a> {
+    pub(super) run: &'a MapRun,
+    pub(super) crash: &'a LoadedPart,
+    pub(super) model: &'a Model,
+    pub(super) is_large: bool,
+    pub(super) thickness: HashMap<u64, [f64; 4]>,
+    pub(super) monitor: &'a Monitor,
 }
 
 impl MapWriter<'_> {
     /// Every file of the crash deck with its elements exchanged; none if there is no thickness to put in
     /// and no copy is asked for.
-    fn decks(
-        &self,
-        crash: &LoadedPart,
-        kind: WriteKind,
-    ) -> Result<Vec<(PathBuf, ExchangedDeck)>, PipelineError> {
+    fn decks(&self, kind: WriteKind) -> Result<Vec<(&ReadFile, ExchangedDeck)>, PipelineError> {
         if self.thickness.is_empty() && kind == WriteKind::Include {
             return Ok(Vec::new());
         }
-        // A file of all elements has those without values too.
-        let of_part = if kind == WriteKind::Part {
+        // A file of all elements has those without values too, and a copy without thickness is that of
+        // the file with the elements.
+        let of_part = if kind == WriteKind::Part || self.thickness.is_empty() {
             self.elements_by_id()?
         } else {
             HashMap::new()
         };
-        let exchange = |id: u64| match self.thickness.get(&id) {
+        let exchange_of = |id: u64| match self.thickness.get(&id) {
             Some(&thickness) => Exchange::Thickness(thickness),
             None if of_part.contains_key(&id) => Exchange::Listed,
             None => Exchange::Other,
         };
-        let states = |layout| -> Result<Vec<u8>, Cancelled> {
-            if kind == WriteKind::Deck {
-                self.states(layout)
-            } else {
-                Ok(Vec::new())
-            }
-        };
-        let mut decks = Vec::new();
-        let from = crash.file_source();
-        for file in &crash.model.files {
-            let bytes = formats::read_text(&*from, &file.path, &crash.settings.read, self.monitor)?;
+        let mut decks: Vec<(&ReadFile, ExchangedDeck)> = Vec::new();
+        let from = self.crash.file_source();
+        for file in &self.model.files {
+            let read = &self.crash.settings.read;
+            let bytes = formats::read_text(&*from, &file.path, read, self.monitor)?;
             let source = SourceFile::new(&file.path, bytes);
-            let deck = exchange_thickness(&source, &exchange, &states, self.monitor)?;
-            decks.push((file.path.clone(), deck));
+            let states = |layout| -> Result<Vec<u8>, Cancelled> {
+                if kind == WriteKind::Deck {
+                    self.states(layout, &file.included_as)
+                } else {
+                    Ok(Vec::new())
+                }
+            };
+            let rules = ExchangeRules {
+                included_as: file.included_as,
+                list_layout: decks.first().map(|(_, first)| first.layout),
+                exchange_of: &exchange_of,
+                states: &states,
+            };
+            decks.push((file, exchange_thickness(&source, &rules, self.monitor)?));
         }
         Ok(decks)
     }
 
+    /// Every element must be found in the deck, and those that are listed beside it must be known.
+    fn check_elements(
+        &self,
+        decks: &[(&ReadFile, ExchangedDeck)],
+        kind: WriteKind,
+    ) -> Result<(), PipelineError> {
+        let n_found: usize = decks.iter().map(|(_, deck)| deck.n_exchanged).sum();
+        let n_wanted = self.thickness.len();
+        if n_found < n_wanted {
+            let missing = n_wanted - n_found;
+            return Err(PipelineError::MapOutput(format!(
+                "{missing} of {n_wanted} elements are not found in {}, because their cards hold parameters \
+                 or cannot be read; write the states alone (--quantities without thickness)",
+                self.crash.path.display()
+            )));
+        }
+        let n_unlisted: usize = decks.iter().map(|(_, deck)| deck.n_unlisted).sum();
+        if kind != WriteKind::Deck && n_unlisted > 0 {
+            return Err(PipelineError::MapOutput(format!(
+                "{n_unlisted} elements cannot be listed outside of the file they stand in, because \
+                 *INCLUDE_TRANSFORM changes the numbers of their further cards or gives them more than ten \
+                 digits; write a copy of that file (--write deck)"
+            )));
+        }
+        Ok(())
+    }
+
+    /// What an include does to a file must not be done to the states in its copy, nor to another part.
+    fn check_copy(&self, file: &ReadFile, n_old: usize) -> Result<(), PipelineError> {
+        if n_old > 0 {
+            return Err(PipelineError::MapOutput(format!(
+                "{n_old} of the elements have initial stresses or strains in the crash deck already, which \
+                 would count beside the mapped ones; take these cards out of it, or map the thickness alone \
+                 (--quantities thickness)"
+            )));
+        }
+        let refused = |why: String| {
+            let name = file.path.display();
+            let message = format!(
+                "{name} {why}; write an include of the whole deck instead (--write include)"
+            );
+            Err(PipelineError::MapOutput(message))
+        };
+        let same = |other: &&ReadFile| other.path == file.path;
+        let n_times = self.model.files.iter().filter(same).count();
+        if n_times > 1 {
+            return refused(format!(
+                "is included {n_times} times, and its copy would change all of them"
+            ));
+        }
+        let has_stress = self.run.mapped.states.is_some();
+        if has_stress && file.included_as.stress_factor != 1.0 {
+            return refused("has a unit of stress of its own (*INCLUDE_TRANSFORM)".to_owned());
+        }
+        Ok(())
+    }
+
     /// The number of each element in the run by its id in the deck.
-    fn elements_by_id(&self) -> Result<HashMap<u64, usize>, Cancelled> {
+    pub(super) fn elements_by_id(&self) -> Result<HashMap<u64, usize>, Cancelled> {
         let shells = &self.run.shells;
         let mut by_id = HashMap::with_capacity(shells.len());
         for_chunks(shells.len(), self.monitor, |range| {
@@ -281,7 +335,7 @@ impl MapWriter<'_> {
         Ok(by_id)
     }
 
-    fn head(&self, comments: &[String], n_default: usize) -> String {
+    fn head(&self, comments: &[String], n_default: usize, n_old: usize) -> String {
         let mut head = String::new();
         for line in comments.iter().flat_map(|comment| comment.lines()) {
             head.push_str(&format!("$ {line}\n"));
@@ -300,14 +354,34 @@ impl MapWriter<'_> {
                 "$ {n_default} of them carry no values and have the default thickness\n"
             ));
         }
+        if n_old > 0 {
+            head.push_str(&format!(
+                "$ {n_old} of them have initial states in the crash deck already: take those cards out of it\n"
+            ));
+        }
         head.push_str(&format!("$ {}\n", build_id()));
         head
+    }
+
+    /// Elements that get a card of stresses or strains and have one of that kind in the crash deck.
+    fn n_with_old_states(&self) -> Result<usize, Cancelled> {
+        let forming = &self.model.forming;
+        if forming.is_empty() {
+            return Ok(0);
+        }
+        let element_of = self.elements_by_id()?;
+        let state = |id: u64| Some(self.state_of(*element_of.get(&id)?));
+        let stressed = forming.stresses().map(|card| card.element_id);
+        let stressed = stressed.filter(|&id| state(id).is_some_and(|own| !own.states.is_empty()));
+        let strained = forming.strains().map(|card| card.element_id);
+        let strained = strained.filter(|&id| state(id).is_some_and(|own| !own.strains.is_empty()));
+        Ok(stressed.chain(strained).collect::<BTreeSet<u64>>().len())
     }
 
     fn include(
         &self,
         head: &str,
-        decks: &[(PathBuf, ExchangedDeck)],
+        decks: &[(&ReadFile, ExchangedDeck)],
         path: &Path,
     ) -> Result<Vec<(PathBuf, Vec<u8>)>, PipelineError> {
         let layout = decks.first().map_or(self.layout(), |(_, deck)| deck.layout);
@@ -322,7 +396,7 @@ impl MapWriter<'_> {
             );
             states.extend_from_slice(hint.as_bytes());
         }
-        states.extend_from_slice(&self.states(layout)?);
+        states.extend_from_slice(&self.states(layout, &IncludedAs::default())?);
         states.extend_from_slice(b"*END\n");
         let mut files = vec![(path.to_path_buf(), states)];
         if !self.thickness.is_empty() {
@@ -334,17 +408,17 @@ impl MapWriter<'_> {
     fn part(
         &self,
         head: &str,
-        decks: &[(PathBuf, ExchangedDeck)],
+        decks: &[(&ReadFile, ExchangedDeck)],
     ) -> Result<Vec<u8>, PipelineError> {
         let layout = decks.first().map_or(self.layout(), |(_, deck)| deck.layout);
         let mut text = self.elements(head, decks);
         text.truncate(text.len() - b"*END\n".len());
-        text.extend_from_slice(&self.states(layout)?);
+        text.extend_from_slice(&self.states(layout, &IncludedAs::default())?);
         text.extend_from_slice(b"*END\n");
         Ok(text)
     }
 
-    fn elements(&self, head: &str, decks: &[(PathBuf, ExchangedDeck)]) -> Vec<u8> {
+    fn elements(&self, head: &str, decks: &[(&ReadFile, ExchangedDeck)]) -> Vec<u8> {
         let layout = decks.first().map_or(self.layout(), |(_, deck)| deck.layout);
         let mut text = keyword_line(layout).into_bytes();
         text.extend_from_slice(head.as_bytes());
@@ -370,7 +444,7 @@ impl MapWriter<'_> {
     }
 
     /// What is written for an element; no values for one that has plies of its own.
-    fn state_of(&self, element: usize) -> ShellState<'_> {
+    pub(super) fn state_of(&self, element: usize) -> ShellState<'_> {
         let mapped = &self.run.mapped;
         let rule = &self.run.target.rules[self.run.target.rule_of[element] as usize];
         let strain_places = if mapped.strains_are_at_surfaces {
@@ -408,142 +482,20 @@ impl MapWriter<'_> {
         all.filter(|&element| has(&self.state_of(element))).count()
     }
 
-    fn states(&self, layout: Layout) -> Result<Vec<u8>, Cancelled> {
-        let state_of = |element: usize| self.state_of(element);
+    /// The cards as they stand in a file of the deck.
+    fn states(&self, layout: Layout, file: &IncludedAs) -> Result<Vec<u8>, Cancelled> {
+        let state_of = |element: usize| {
+            let state = self.state_of(element);
+            let id = state
+                .id
+                .saturating_add_signed(file.element_offset.saturating_neg());
+            ShellState { id, ..state }
+        };
         let format = StateFormat {
             layout,
             is_large: self.is_large,
         };
         write_states(self.run.shells.len(), state_of, format, self.monitor)
-    }
-
-    /// Reads the states back and compares counts and values.
-    fn read_back(&self, files: &MapFiles) -> Result<f64, PipelineError> {
-        let failed = |what: String| {
-            PipelineError::MapOutput(format!("the written state reads back differently: {what}"))
-        };
-        let mut largest = 0.0_f64;
-        let mut n_stress = 0;
-        let mut n_strain = 0;
-        let mut n_thickness = 0;
-        for (path, bytes) in &files.files {
-            let read = if files.replaces.is_some() {
-                let memory = Memory::new().with(path, bytes.clone());
-                formats::read_from(&memory, path, &ReadOptions::default(), self.monitor)?
-            } else {
-                read_beside_nodes(self.model, bytes, self.monitor)?
-            };
-            n_stress += read.forming.n_stress();
-            n_strain += read.forming.n_strain();
-            largest = largest.max(self.stress_error(&read)?);
-            if files.replaces.is_none() {
-                n_thickness += read.shell_extras.len();
-            }
-        }
-        let kept = if files.replaces.is_some() {
-            self.model.forming.n_stress()
-        } else {
-            0
-        };
-        if n_stress < files.n_stress || n_stress > files.n_stress + kept {
-            return Err(failed(format!(
-                "{n_stress} stress cards instead of {}",
-                files.n_stress
-            )));
-        }
-        let kept = if files.replaces.is_some() {
-            self.model.forming.n_strain()
-        } else {
-            0
-        };
-        if n_strain < files.n_strain || n_strain > files.n_strain + kept {
-            return Err(failed(format!(
-                "{n_strain} strain cards instead of {}",
-                files.n_strain
-            )));
-        }
-        if files.replaces.is_none() && n_thickness < files.n_thickness {
-            let wanted = files.n_thickness;
-            return Err(failed(format!(
-                "{n_thickness} thicknesses instead of {wanted}"
-            )));
-        }
-        let limit = if self.is_large {
-            LARGE_ROUNDING
-        } else {
-            SMALL_ROUNDING
-        };
-        if largest > limit {
-            return Err(failed(format!(
-                "a value is off by {largest:.1e} of the largest"
-            )));
-        }
-        Ok(largest)
-    }
-
-    /// Largest difference of a stress or plastic strain, relative to the largest of its kind.
-    fn stress_error(&self, read: &Model) -> Result<f64, Cancelled> {
-        let Some(states) = &self.run.mapped.states else {
-            return Ok(0.0);
-        };
-        let element_of = self.elements_by_id()?;
-        let (mut stress, mut plastic) = ([0.0_f64; 2], [0.0_f64; 2]);
-        let (mut values, mut tensors) = ([0.0_f64; 2], [0.0_f64; 2]);
-        for (n_before, card) in read.forming.stresses().enumerate() {
-            if n_before % CHUNK == 0 {
-                self.monitor.check()?;
-            }
-            let Some(&element) = element_of.get(&card.element_id) else {
-                continue;
-            };
-            let kept = self.state_of(element);
-            let n_plane = card.n_plane.max(1);
-            compare(
-                &mut values,
-                kept.history,
-                card.n_history,
-                n_plane,
-                card.history,
-            );
-            let n_tensor = 6 * card.n_tensors;
-            let read = card.tensors.as_flattened();
-            compare(
-                &mut tensors,
-                kept.tensors.as_flattened(),
-                n_tensor,
-                n_plane,
-                read,
-            );
-            for (own, point) in states.of(element).iter().zip(card.points) {
-                for (a, b) in own[..6].iter().zip(point.stress) {
-                    stress = [stress[0].max((a - b).abs()), stress[1].max(a.abs())];
-                }
-                let difference = (own[6] - point.plastic_strain).abs();
-                plastic = [plastic[0].max(difference), plastic[1].max(own[6].abs())];
-            }
-        }
-        let relative =
-            |[difference, size]: [f64; 2]| if size > 0.0 { difference / size } else { 0.0 };
-        let kinds = [stress, plastic, values, tensors].map(relative);
-        Ok(kinds.into_iter().fold(0.0, f64::max))
-    }
-}
-
-/// Largest difference and largest value of what each layer has `n` of, against what was read for each
-/// of its `n_plane` points. A wrong number of values is a difference without bound.
-fn compare(largest: &mut [f64; 2], own: &[f64], n: usize, n_plane: usize, read: &[f64]) {
-    if own.len() * n_plane != read.len() {
-        largest[0] = f64::INFINITY;
-        return;
-    }
-    let layers = own.chunks(n.max(1)).zip(read.chunks((n * n_plane).max(1)));
-    for (own, points) in layers {
-        for (a, b) in points
-            .chunks(n.max(1))
-            .flat_map(|point| own.iter().zip(point))
-        {
-            *largest = [largest[0].max((a - b).abs()), largest[1].max(a.abs())];
-        }
     }
 }
 

@@ -1,0 +1,273 @@
+//! `shapematch map` onto decks whose elements stand in a file that is included with offsets, units or a
+//! motion: what is written has to be right when the solver reads it back through the include.
+
+use std::path::Path;
+
+use shapematch::formats::Model;
+
+use crate::map_decks::{Pair, crash, errors, model, stamped, stresses};
+
+/// A pair whose crash deck includes `part.k`, which holds part 7 (elements 101 and 102), by these cards.
+fn pair(include: &str, part: &str) -> Pair {
+    let deck = format!("*KEYWORD\n{include}*END\n");
+    let pair = Pair::new(&deck, &stamped(2, &stresses(1..=2)));
+    std::fs::write(pair.path("part.k"), part).unwrap();
+    pair
+}
+
+/// An include of `part.k` with offsets of nodes, elements and parts, a unit of length and a motion.
+fn include(offsets: [i64; 3], length: f64, motion: u64) -> String {
+    let [node, element, part] = offsets;
+    format!(
+        "*INCLUDE_TRANSFORM\npart.k\n{node:>10}{element:>10}{part:>10}\n\n       1.0       1.0{length:>10}\n{motion:>10}\n"
+    )
+}
+
+/// Elements with a thickness, and the ids of those with stresses of 100 along x.
+fn thickness_and_stress(model: &Model) -> (Vec<(u64, f64)>, Vec<u64>) {
+    let thickness = |extra: &shapematch::formats::model::ShellExtra| {
+        (model.shells[extra.shell as usize].id, extra.thickness[0])
+    };
+    let stresses = model.forming.stresses();
+    let stressed = stresses.filter(|card| (card.points[0].stress[0] - 100.0).abs() < 1e-6);
+    (
+        model.shell_extras.iter().map(thickness).collect(),
+        stressed.map(|card| card.element_id).collect(),
+    )
+}
+
+const FULL: &str = "thickness,plastic,strain,stress";
+
+/// Options for what is written.
+fn options<'a>(kind: &'a str, quantities: &'a str) -> [&'a str; 6] {
+    [
+        "--out",
+        "out.k",
+        "--write",
+        kind,
+        "--quantities",
+        quantities,
+    ]
+}
+
+/// Writes what is asked for; the text of the first file.
+#[track_caller]
+fn written(pair: &Pair, kind: &str, quantities: &str) -> String {
+    let output = pair.map(&options(kind, quantities));
+    assert!(output.status.success(), "{}", errors(&output));
+    std::fs::read_to_string(pair.path("out.k")).unwrap()
+}
+
+/// Why nothing is written.
+#[track_caller]
+fn refused(pair: &Pair, kind: &str) -> String {
+    let output = pair.map(&options(kind, FULL));
+    assert_eq!(output.status.code(), Some(1));
+    assert!(!pair.path("out.k").exists());
+    errors(&output).to_owned()
+}
+
+/// The crash deck with the copy in the place of the included file.
+fn with_copy(pair: &Pair) -> Model {
+    std::fs::rename(pair.path("out.k"), pair.path("part.k")).unwrap();
+    model(&pair.path("crash.k"))
+}
+
+#[test]
+fn a_file_with_offsets_keeps_its_own_numbers_in_a_copy() {
+    let pair = pair(&include([500, 1000, 20], 1.0, 0), &crash(2, ""));
+    let copy = written(&pair, "deck", FULL);
+    assert!(
+        copy.contains("*ELEMENT_SHELL_THICKNESS\n     101       7       1"),
+        "{copy}"
+    );
+    assert!(copy.contains("*INITIAL_STRESS_SHELL\n       101"), "{copy}");
+    let (thickness, stressed) = thickness_and_stress(&with_copy(&pair));
+    assert_eq!(thickness, [(1101, 0.9), (1102, 0.9)]);
+    assert_eq!(stressed, [1101, 1102]);
+}
+
+#[test]
+fn what_stands_beside_the_deck_has_the_numbers_of_the_whole() {
+    let pair = pair(&include([500, 1000, 20], 1.0, 0), &crash(2, ""));
+    let states = written(&pair, "include", FULL);
+    assert!(
+        states.contains("*INITIAL_STRESS_SHELL\n      1101"),
+        "{states}"
+    );
+    let elements = std::fs::read_to_string(pair.path("out_elements.k")).unwrap();
+    let card = "*ELEMENT_SHELL_THICKNESS\n    1101      27     501     503     504     502\n";
+    assert!(elements.contains(card), "{elements}");
+    let part = written(&pair, "part", FULL);
+    assert!(part.contains(card), "{part}");
+    assert!(part.contains("*INITIAL_STRESS_SHELL\n      1101"), "{part}");
+}
+
+#[test]
+fn a_unit_of_the_include_counts_for_thicknesses() {
+    // The file is in metres.
+    let part = crash(2, "").replace(
+        "       1.0       1.0       1.0       1.0",
+        &"     0.001".repeat(4),
+    );
+    let in_metres = |line: &str| match line.len() {
+        56 => {
+            let x = line[8..24].trim().parse::<f64>().unwrap() / 1000.0;
+            let y = line[24..40].trim().parse::<f64>().unwrap() / 1000.0;
+            format!("{}{x:>16.3}{y:>16.3}{}\n", &line[..8], &line[40..])
+        }
+        _ => format!("{line}\n"),
+    };
+    let part: String = part.lines().map(in_metres).collect();
+    let pair = pair(&include([0, 1000, 0], 1000.0, 0), &part);
+    // Stresses would have another unit too.
+    let told = refused(&pair, "deck");
+    assert!(told.contains("has a unit of stress of its own"), "{told}");
+    let copy = written(&pair, "deck", "thickness");
+    assert!(copy.contains("  9.00000000E-04  9.00000000E-04"), "{copy}");
+    let (thickness, _) = thickness_and_stress(&with_copy(&pair));
+    assert_eq!(
+        thickness.iter().map(|(id, _)| *id).collect::<Vec<_>>(),
+        [1101, 1102]
+    );
+    assert!(thickness.iter().all(|(_, t)| (t - 0.9).abs() < 1e-12));
+    // The first run changed the file: its elements have a thickness now, in their own unit.
+    written(&pair, "include", FULL);
+    let elements = std::fs::read_to_string(pair.path("out_elements.k")).unwrap();
+    assert!(
+        elements.contains("  9.00000000E-01  9.00000000E-01"),
+        "{elements}"
+    );
+}
+
+#[test]
+fn states_are_not_put_where_the_deck_would_turn_them() {
+    let turn = "*DEFINE_TRANSFORMATION\n         5\nROTATE           0.0       0.0       1.0       0.0       0.0       0.0      90.0\nROTATE           0.0       0.0       1.0       0.0       0.0       0.0     -30.0\n";
+    let back = "ROTATE           0.0       0.0       1.0       0.0       0.0       0.0     -60.0\n";
+    let include = include([0, 0, 0], 1.0, 5);
+    let lie = |cards: String| pair(&format!("{cards}{include}"), &crash(2, ""));
+    // Two turns and a third one back: nothing is turned in the end but for rounding.
+    let straight = lie(format!("{turn}{back}"));
+    written(&straight, "deck", FULL);
+    assert_eq!(thickness_and_stress(&with_copy(&straight)).1, [101, 102]);
+    let turned = lie(turn.to_owned());
+    // 60 degrees about z as rows.
+    let pose = "0.5 -0.8660254037844386 0 0 0.8660254037844386 0.5 0 0 0 0 1 0 0 0 0 1";
+    let map = |kind: &str| {
+        let options = options(kind, FULL);
+        turned.run(&[&options[..], &["--pose", pose]].concat())
+    };
+    let told = map("deck");
+    assert_eq!(told.status.code(), Some(1));
+    assert!(
+        errors(&told).contains("*INCLUDE_TRANSFORM"),
+        "{}",
+        errors(&told)
+    );
+    let output = map("include");
+    assert!(output.status.success(), "{}", errors(&output));
+    let states = std::fs::read_to_string(turned.path("out.k")).unwrap();
+    assert!(
+        states.contains("*INITIAL_STRESS_SHELL\n       101"),
+        "{states}"
+    );
+}
+
+#[test]
+fn a_file_that_is_included_twice_has_no_copy() {
+    let twice = include([0, 0, 0], 1.0, 0) + &include([500, 1000, 20], 1.0, 5);
+    let move_away =
+        "*DEFINE_TRANSFORMATION\n         5\nTRANSL           0.0       0.0     300.0\n";
+    let pair = pair(&format!("{move_away}{twice}"), &crash(2, ""));
+    let told = refused(&pair, "deck");
+    assert!(told.contains("part.k is included 2 times"), "{told}");
+    written(&pair, "include", FULL);
+    let elements = std::fs::read_to_string(pair.path("out_elements.k")).unwrap();
+    assert!(elements.contains("     101       7       1"), "{elements}");
+    assert!(!elements.contains("1101"), "{elements}");
+}
+
+#[test]
+fn a_file_is_read_with_the_width_of_the_deck_around_it() {
+    // The fields of the part are 20 wide because those of the deck are.
+    let wide = |line: &str| {
+        if line.starts_with('*') || line.starts_with("sheet") {
+            return format!("{line}\n");
+        }
+        let fields = line.split_whitespace();
+        fields
+            .map(|field| format!("{field:>20}"))
+            .collect::<String>()
+            + "\n"
+    };
+    let part = crash(2, "").replace("*KEYWORD\n", "");
+    let part: String = part.lines().map(wide).collect();
+    let deck = "*KEYWORD LONG=Y\n*INCLUDE\npart.k\n*END\n";
+    let pair = Pair::new(deck, &stamped(2, &stresses(1..=2)));
+    std::fs::write(pair.path("part.k"), part).unwrap();
+    written(&pair, "include", FULL);
+    let elements = std::fs::read_to_string(pair.path("out_elements.k")).unwrap();
+    assert!(elements.starts_with("*KEYWORD LONG=Y\n"), "{elements}");
+    assert!(
+        elements.contains("*ELEMENT_SHELL_THICKNESS\n                 101"),
+        "{elements}"
+    );
+    written(&pair, "deck", FULL);
+    let (thickness, stressed) = thickness_and_stress(&with_copy(&pair));
+    assert_eq!(thickness, [(101, 0.9), (102, 0.9)]);
+    assert_eq!(stressed, [101, 102]);
+}
+
+#[test]
+fn a_file_of_another_width_is_listed_with_the_width_of_its_cards() {
+    let part = crash(2, "").replace("*ELEMENT_SHELL\n", "*ELEMENT_SHELL%\n");
+    let ten = |line: &str| {
+        let is_element = line.starts_with("     10") && line.len() == 48;
+        let fields = line.split_whitespace();
+        match is_element {
+            true => {
+                fields
+                    .map(|field| format!("{field:>10}"))
+                    .collect::<String>()
+                    + "\n"
+            }
+            false => format!("{line}\n"),
+        }
+    };
+    let part: String = part.lines().map(ten).collect();
+    let pair = pair("*INCLUDE\npart.k\n", &part);
+    written(&pair, "include", FULL);
+    let elements = std::fs::read_to_string(pair.path("out_elements.k")).unwrap();
+    let card = "*ELEMENT_SHELL_THICKNESS%\n       101         7         1";
+    assert!(elements.contains(card), "{elements}");
+}
+
+#[test]
+fn a_copy_without_thickness_is_that_of_the_file_with_the_elements() {
+    let pair = pair(&include([500, 1000, 20], 1.0, 0), &crash(2, ""));
+    written(&pair, "deck", "stress,plastic");
+    let (thickness, stressed) = thickness_and_stress(&with_copy(&pair));
+    assert_eq!(thickness, []);
+    assert_eq!(stressed, [1101, 1102]);
+    assert!(Path::new(&pair.path("crash.k")).exists());
+}
+
+#[test]
+fn old_states_of_the_elements_are_told() {
+    let old = "*INITIAL_STRESS_SHELL\n       101         1         1\n       0.0      10.0      10.0\n*END\n";
+    let pair = Pair::new(
+        &crash(2, "").replace("*END\n", old),
+        &stamped(2, &stresses(1..=2)),
+    );
+    let told = refused(&pair, "deck");
+    assert!(
+        told.contains("1 of the elements have initial stresses"),
+        "{told}"
+    );
+    written(&pair, "deck", "thickness");
+    let states = written(&pair, "include", FULL);
+    assert!(
+        states.contains("$ 1 of them have initial states in the crash deck"),
+        "{states}"
+    );
+}
