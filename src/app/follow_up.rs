@@ -4,15 +4,33 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use super::{
-    AppState, BottomTab, Effect, FreeWindow, MapPicture, NoticeLevel, Part, Section, Showing,
-    ShownGeometry,
+    AppState, BottomTab, Document, Effect, FreeWindow, MapPicture, NoticeLevel, Part, Section,
+    Showing, ShownGeometry,
 };
-use crate::geometry::Point3;
+use crate::geometry::{Aabb, Point3};
 use crate::jobs::ProjectRequest;
 use crate::role::{PerRole, Role};
 
 /// Moves of the centre up to this share of the part's size leave the cameras alone.
 const NUDGE: f64 = 0.25;
+
+/// Where the parts lie.
+#[derive(Debug, Clone)]
+pub(super) struct Places {
+    /// Of each part, in its own frame.
+    bounds: PerRole<Option<Aabb>>,
+    /// The centre of the stamped part at its pose.
+    stamped_center: Option<Point3>,
+}
+
+impl Places {
+    pub(super) fn of(document: &Document) -> Self {
+        Self {
+            bounds: PerRole::from_fn(|role| document.part(role).map(|part| part.bounds())),
+            stamped_center: document.stamped_center(),
+        }
+    }
+}
 
 /// What happened in one topic that others follow.
 #[derive(Debug, Clone)]
@@ -53,8 +71,8 @@ pub(super) enum FollowUp {
     LookAt(Role, Point3),
     /// The section was turned on or off.
     SectionToggled,
-    /// The document is that of another step.
-    SteppedInHistory,
+    /// The document is that of another step; the parts lay there before.
+    SteppedInHistory(Places),
     /// The project is to be written there.
     WriteProject(PathBuf),
     /// The session is to be kept in case of a crash, if there is something new.
@@ -131,7 +149,10 @@ impl AppState {
             FollowUp::LookAt(role, point) => {
                 self.with_scene(|view, scene| view.look_at(role, &point, scene));
             }
-            FollowUp::SteppedInHistory => self.parts.forget_missing(&self.document),
+            FollowUp::SteppedInHistory(before) => {
+                self.parts.forget_missing(&self.document);
+                self.follow_step(&before);
+            }
             FollowUp::WriteProject(path) => {
                 return vec![Effect::WriteProject {
                     path,
@@ -177,6 +198,19 @@ impl AppState {
             (true, false) => view.tab = tab,
             (false, _) if view.tab == tab => view.tab = BottomTab::Log,
             (false, _) => {}
+        }
+    }
+
+    /// Where a step in the history brings another part or unit, the cameras go there.
+    fn follow_step(&mut self, before: &Places) {
+        let after = Places::of(&self.document);
+        for role in Role::ALL {
+            if before.bounds.get(role) != after.bounds.get(role) {
+                self.with_scene(|view, scene| view.fit_after_load(role, scene));
+            }
+        }
+        if before.bounds.stamped == after.bounds.stamped {
+            self.follow_far_move(before.stamped_center);
         }
     }
 

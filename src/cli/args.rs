@@ -111,10 +111,10 @@ pub struct InputArgs {
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
     pub crash_length_factor: f64,
     /// Maximum triangles of the crash part for the search (overrides --triangles).
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = at_least_one())]
     pub crash_triangles: Option<usize>,
     /// Maximum triangles of the stamped part for the search (overrides --triangles).
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = at_least_one())]
     pub stamped_triangles: Option<usize>,
     /// Another folder to search for included files; may be given several times.
     #[arg(long, value_name = "FOLDER")]
@@ -171,7 +171,7 @@ pub struct OutputArgs {
     #[arg(long, value_name = "FILE")]
     pub crash_mesh: Option<PathBuf>,
     /// Report and write this one of the poses that fit nearly as well: 1 is the best, 2 the next.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = at_least_one())]
     pub pose_number: Option<usize>,
 }
 

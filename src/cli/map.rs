@@ -10,7 +10,7 @@ use clap::builder::BoolishValueParser;
 use clap::{ArgAction, Args};
 
 use super::map_choices::{
-    HandName, KindName, MirrorName, RuleName, default_thickness, law, quantities,
+    HandName, KindName, MirrorName, RuleName, default_thickness, law, positive, quantities,
 };
 use super::map_text::summary;
 use super::of_each::{LengthFactors, of_file, one_or_each};
@@ -77,7 +77,7 @@ struct MapChoice {
     lengths: LengthFactors,
     /// Factor on the stamped stresses, for files in another unit of stress. Without it stresses that are
     /// clearly in another unit than the crash deck's are refused.
-    #[arg(long, value_name = "FACTOR")]
+    #[arg(long, value_name = "FACTOR", value_parser = positive)]
     stress_factor: Option<f64>,
     /// Material law of the stamped parts (24 or PIECEWISE_LINEAR_PLASTICITY), for files that hold none.
     /// History variables go to parts of the same law alone.

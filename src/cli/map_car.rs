@@ -8,7 +8,7 @@ use clap::builder::BoolishValueParser;
 use clap::{ArgAction, Args};
 
 use super::map::MapValues;
-use super::map_choices::{HandName, default_thickness};
+use super::map_choices::{HandName, default_thickness, positive};
 use super::of_each::LengthFactors;
 use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
 use crate::formats::ReadOptions;
@@ -46,7 +46,7 @@ pub struct MapCarArgs {
     #[command(flatten)]
     lengths: LengthFactors,
     /// Factor on the stamped stresses, for files in another unit of stress.
-    #[arg(long, value_name = "FACTOR")]
+    #[arg(long, value_name = "FACTOR", value_parser = positive)]
     stress_factor: Option<f64>,
     /// A further folder for included files; may be given several times.
     #[arg(long, value_name = "FOLDER")]

@@ -107,6 +107,19 @@ pub(super) fn quantities(text: &str) -> Result<Quantities, String> {
     Ok(chosen)
 }
 
+/// A factor above zero.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    let factor: f64 = text
+        .trim()
+        .parse()
+        .map_err(|_| "it is no number".to_owned())?;
+    if factor.is_finite() && factor > 0.0 {
+        Ok(factor)
+    } else {
+        Err("a factor is above 0".to_owned())
+    }
+}
+
 /// A law as its number or its keyword, with or without `MAT_`.
 pub(super) fn law(text: &str) -> Result<String, String> {
     let name = text.trim().to_ascii_uppercase();

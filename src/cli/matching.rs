@@ -25,7 +25,7 @@ use crate::registration::MatchMonitor;
 use crate::report::MatrixForm;
 use crate::report::cards::check_file_name;
 use crate::role::PerRole;
-use crate::text::{counted, parts_by_id};
+use crate::text::counted;
 
 /// Matches and writes what was asked for.
 pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
@@ -34,13 +34,14 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let outputs = outputs(&args.output);
     check_outputs(targets(&outputs), &named_inputs(args))?;
     check_included_name(&outputs, args.stamped.as_deref())?;
+    let mut alike_parts = Vec::new();
     let (mut asked, parts) = match &args.stamped {
         Some(path) => {
             let asked = asked(args)?;
             asked.recipe.settings.check().map_err(PipelineError::from)?;
             let mut parts = load_both(PerRole::new(&args.crash, path), &asked, monitor)?;
             if args.input.crash_part.is_none() && is_part_open(parts.as_ref()) {
-                parts.crash = found_crash(parts.as_ref(), &asked, monitor)?;
+                (parts.crash, alike_parts) = found_crash(parts.as_ref(), &asked, monitor)?;
             }
             (asked, parts)
         }
@@ -64,7 +65,8 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     // Only now are the included files known.
     check_outputs(targets(&outputs), &input.files())?;
     let impossible = impossible(&outputs, parts.as_deref());
-    let run = Arc::new(run_match(&asked, parts.as_deref(), shown.of_match())?);
+    let run = run_match(&asked, parts.as_deref(), shown.of_match())?;
+    let run = Arc::new(MatchRun { alike_parts, ..run });
     let record = match_record(&run, parts.as_deref());
     drop(shown);
     if takes_stdout(args.output.json.as_deref()) {
@@ -213,27 +215,22 @@ fn run_match(
     }
 }
 
-/// The crash model with the parts chosen that the stamped part belongs to.
+/// The crash model with the parts chosen that the stamped part belongs to, and the ids of others that it fits
+/// about as well.
 fn found_crash(
     parts: PerRole<&LoadedPart>,
     asked: &Asked,
     monitor: &Monitor,
-) -> anyhow::Result<LoadedPart> {
+) -> anyhow::Result<(LoadedPart, Vec<u64>)> {
     let stamped = parts.stamped.path.display();
     let Some(found) = find_parts(parts, &asked.recipe, &asked.current, monitor)? else {
         log::warn!(
             "{stamped} fits no part of the crash model alone, so all are matched together; --crash-part names \
              the right one"
         );
-        return Ok(parts.crash.clone());
+        return Ok((parts.crash.clone(), Vec::new()));
     };
-    if !found.rivals.is_empty() {
-        log::warn!(
-            "{stamped} fits {} about as well; --crash-part names the right one",
-            parts_by_id(&found.rivals)
-        );
-    }
-    Ok(found.found.part)
+    Ok((found.found.part, found.rivals))
 }
 
 fn load_both(

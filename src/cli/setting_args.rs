@@ -1,6 +1,8 @@
 //! The options of the settings, made from the tables of settings.
 
-use clap::builder::{BoolishValueParser, PossibleValue, PossibleValuesParser};
+use clap::builder::{
+    BoolishValueParser, PossibleValue, PossibleValuesParser, RangedU64ValueParser,
+};
 use clap::error::Result;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, value_parser};
 
@@ -114,8 +116,11 @@ fn arg<R: Default>(setting: &'static Setting<R>) -> Arg {
             .value_name("YES|NO")
             .hide_possible_values(true)
             .value_parser(BoolishValueParser::new()),
-        Domain::Count(_) | Domain::Limit(_) => {
-            arg.value_name("N").value_parser(value_parser!(usize))
+        Domain::Count(_) => arg.value_name("N").value_parser(value_parser!(usize)),
+        Domain::Limit(range) => {
+            let range = *range.start() as u64..=*range.end() as u64;
+            let parser = RangedU64ValueParser::<usize>::new().range(range);
+            arg.value_name("N").value_parser(parser)
         }
         Domain::Number { unit, .. } => arg
             .value_name(match unit {

@@ -38,6 +38,9 @@ pub(super) fn fill(mapped: &mut Mapped, target: &TargetPart, options: &MapOption
                 filled.push((element, around));
             }
         }
+        if filled.is_empty() {
+            break;
+        }
         for (element, around) in filled {
             let area = |n: &usize| target.mesh.areas()[*n];
             if !mapped.thickness.is_empty() {

@@ -114,13 +114,39 @@ struct Task<'a> {
     monitor: &'a Monitor,
 }
 
+/// How well a stamped part fits.
+#[derive(Debug, Clone, Copy)]
+struct Fit {
+    verdict: Verdict,
+    /// Holes of one part where the other is solid.
+    n_holes_apart: usize,
+    /// RMS of the distances.
+    rmse: f64,
+}
+
+impl Fit {
+    /// Holes tell parts of one surface from each other, which distances do not.
+    fn is_better_than(&self, other: &Self) -> bool {
+        let key = |fit: &Self| (fit.verdict != Verdict::Good, fit.n_holes_apart);
+        let order = key(self).cmp(&key(other));
+        order.then(self.rmse.total_cmp(&other.rmse)).is_lt()
+    }
+
+    /// True if the distances do not tell which of both is right, nor do the holes.
+    fn is_as_good_as(&self, best: &Self) -> bool {
+        self.verdict == best.verdict
+            && self.n_holes_apart <= best.n_holes_apart
+            && self.rmse <= AS_CLOSE * best.rmse
+    }
+}
+
 /// The convincing matches so far.
 #[derive(Default)]
 struct Search {
     /// The best with its likeness.
     best: Option<(f64, Found)>,
-    /// Of every part that was tried alone: id, verdict, RMS of the distances.
-    singles: Vec<(u64, Verdict, f64)>,
+    /// Every part that was tried alone, with how well it fits.
+    singles: Vec<(u64, Fit)>,
 }
 
 impl Search {
@@ -134,15 +160,12 @@ impl Search {
         if !found.is_convincing() {
             return;
         }
+        let fit = found.fit();
         if let [id] = found.part.chosen_part_ids()[..] {
-            let verdict = found.run.assessment.verdict;
-            self.singles.push((id, verdict, found.rmse()));
+            self.singles.push((id, fit));
         }
-        let is_better = |best: &Found| {
-            let is_closer = found.rmse() < best.rmse();
-            (found.is_good() && !best.is_good()) || (found.is_good() == best.is_good() && is_closer)
-        };
-        if self.best.as_ref().is_none_or(|(_, best)| is_better(best)) {
+        let is_better = |(_, best): &(f64, Found)| fit.is_better_than(&best.fit());
+        if self.best.as_ref().is_none_or(is_better) {
             self.best = Some((likeness, found));
         }
     }
@@ -153,9 +176,9 @@ impl Search {
             return Vec::new();
         };
         let own = best.part.chosen_part_ids();
-        let is_rival = |(id, verdict, rmse): &(u64, Verdict, f64)| {
-            let fits = *verdict == best.run.assessment.verdict && *rmse <= AS_CLOSE * best.rmse();
-            (fits && !own.contains(id)).then_some(*id)
+        let of_best = best.fit();
+        let is_rival = |(id, fit): &(u64, Fit)| {
+            (fit.is_as_good_as(&of_best) && !own.contains(id)).then_some(*id)
         };
         self.singles.iter().filter_map(is_rival).collect()
     }
@@ -166,8 +189,14 @@ impl Found {
         self.run.assessment.verdict == Verdict::Good
     }
 
-    fn rmse(&self) -> f64 {
-        self.run.assessment.coverage.rmse()
+    fn fit(&self) -> Fit {
+        let assessment = &self.run.assessment;
+        let rims = assessment.shape.as_ref().map(|shape| &shape.rims);
+        Fit {
+            verdict: assessment.verdict,
+            n_holes_apart: rims.map_or(0, |rims| rims.only_source + rims.only_target),
+            rmse: assessment.coverage.rmse(),
+        }
     }
 
     /// Whether a match that nobody looked at says that the parts belong together: a small flat piece lies

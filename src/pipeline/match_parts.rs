@@ -63,6 +63,9 @@ pub struct MatchRun {
     /// The alternative of the match that this is the run of, as [`with_alternative`] makes it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alternative: Option<usize>,
+    /// Ids of crash parts that were tried too and that the stamped part fits about as well.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub alike_parts: Vec<u64>,
 }
 
 /// Meshes of both parts at a level of reduction that is at hand already.
@@ -162,6 +165,7 @@ pub fn match_parts<'a>(
         assessment: Arc::new(assessment),
         times,
         alternative: None,
+        alike_parts: Vec::new(),
     })
 }
 

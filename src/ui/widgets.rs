@@ -122,21 +122,16 @@ pub fn action_button(
     let palette = Palette::of(ui);
     let enabled = action.enabled(state);
     let mut text = RichText::new(label);
-    let mut widget_fill = None;
-    match look {
-        Look::Plain => {}
-        Look::Primary => {
-            text = text.color(palette.on_accent);
-            widget_fill = Some(palette.accent);
-        }
-        Look::On => {
-            text = text.color(palette.on_accent);
-            widget_fill = Some(palette.accent);
-        }
+    let is_accented = match look {
+        Look::Plain => false,
+        Look::Primary | Look::On => enabled.is_ok(),
+    };
+    if is_accented {
+        text = text.color(palette.on_accent);
     }
     let mut button = Button::new(text).min_size(size);
-    if let Some(fill) = widget_fill.filter(|_| enabled.is_ok()) {
-        button = button.fill(fill);
+    if is_accented {
+        button = button.fill(palette.accent);
     }
     let response = ui.add_enabled(enabled.is_ok(), button);
     let response = match enabled {

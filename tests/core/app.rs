@@ -18,6 +18,7 @@ use shapematch::report::MatrixForm;
 use shapematch::role::{PerRole, Role};
 use shapematch::samples::{self, SamplePair, SamplePart, SampleSettings, SampleVariant};
 
+use super::find_parts::really;
 use super::match_starts::{live_iteration, running_start};
 
 /// A bent strip of n × 4 cells, so that its three sizes differ.
@@ -1508,6 +1509,32 @@ fn the_camera_brings_all_selected_parts_into_view() {
         both > 1.2 * one && both > 1.2 * other,
         "{one} {other} {both}"
     );
+}
+
+#[test]
+fn a_step_back_to_a_part_elsewhere_takes_the_camera_there() {
+    let folder = tempfile::tempdir().unwrap();
+    write_bracket(folder.path(), SampleVariant::Plain);
+    let moved = "*KEYWORD\n*DEFINE_TRANSFORMATION\n       900\nTRANSL       30000.0       0.0       0.0\n\
+                 *INCLUDE_TRANSFORM\ncrash.k\n\n\n\n       900\n*END\n";
+    std::fs::write(folder.path().join("moved.k"), moved).unwrap();
+    let mut window = Window::new();
+    window.runner = Some(really);
+    let is_seen = |window: &Window| {
+        let bounds = window.part(Role::Crash).bounds();
+        let middle = window.state.view.cameras.crash.target;
+        (bounds.center() - middle).norm() < bounds.diagonal()
+    };
+    for name in ["crash.k", "moved.k"] {
+        window.open(folder.path().join(name).to_str().unwrap(), Role::Crash);
+        assert!(is_seen(&window), "{name}");
+    }
+    assert!(window.part(Role::Crash).bounds().center().x > 20_000.0);
+    window.act(Action::Undo);
+    assert!(window.part(Role::Crash).bounds().center().x < 20_000.0);
+    assert!(is_seen(&window));
+    window.act(Action::Redo);
+    assert!(is_seen(&window));
 }
 
 #[test]

@@ -253,6 +253,24 @@ fn a_copy_without_thickness_is_that_of_the_file_with_the_elements() {
 }
 
 #[test]
+fn lines_that_are_put_into_a_copy_end_as_its_own_do() {
+    let deck = crash(2, "").replace('\n', "\r\n");
+    let pair = Pair::new(&deck, &stamped(2, &stresses(1..=2)));
+    let copy = written(&pair, "deck", FULL);
+    assert!(copy.contains("*INITIAL_STRESS_SHELL\r\n"), "{copy}");
+    assert_eq!(copy.matches('\n').count(), copy.matches("\r\n").count());
+}
+
+#[test]
+fn factors_that_are_none_are_wrong_usage() {
+    let pair = Pair::new(&crash(2, ""), &stamped(2, &stresses(1..=2)));
+    for factor in ["0", "-1", "nan", "inf", "x"] {
+        let output = pair.map(&[&format!("--stress-factor={factor}")]);
+        assert_eq!(output.status.code(), Some(2), "{factor}");
+    }
+}
+
+#[test]
 fn old_states_of_the_elements_are_told() {
     let old = "*INITIAL_STRESS_SHELL\n       101         1         1\n       0.0      10.0      10.0\n*END\n";
     let pair = Pair::new(

@@ -611,6 +611,25 @@ fn unmapped_rings_are_filled_and_marked() {
 }
 
 #[test]
+fn filling_ends_where_there_is_nothing_to_fill() {
+    let part = source(Blank::new(5.0).mesh(flat), 2, uniform);
+    let wide = Blank {
+        length: 140.0,
+        width: 60.0,
+        size: 5.0,
+        jitter: 0.0,
+    };
+    let onto = target(wide.mesh(flat), 2);
+    let options = MapOptions {
+        fill_rings: usize::MAX,
+        ..full()
+    };
+    let counts = map_one(&part, Similarity::identity(), &onto, &options).counts();
+    assert!(counts[Status::Filled as usize] > 0);
+    assert_eq!(counts[Status::Outside as usize], 0);
+}
+
+#[test]
 fn elements_without_results_say_so_and_spoil_no_neighbour() {
     let mesh = Blank::new(5.0).mesh(flat);
     let mut part = source(mesh.clone(), 2, uniform);

@@ -1,9 +1,9 @@
 //! Undo, redo, and jumps in the history.
 
 use super::HistoryCommand;
-use crate::app::StampedPose;
-use crate::app::follow_up::FollowUp;
+use crate::app::follow_up::{FollowUp, Places};
 use crate::app::work::Work;
+use crate::app::{Document, StampedPose};
 use crate::role::Role;
 
 impl Work<'_> {
@@ -18,16 +18,14 @@ impl Work<'_> {
 
     fn undo(&mut self) {
         if let Some((name, document)) = self.history.undo(self.document.clone()) {
-            *self.document = document;
-            self.after_jump();
+            self.jump(document);
             self.log_step("undo", None, name, None);
         }
     }
 
     fn redo(&mut self) {
         if let Some((name, document)) = self.history.redo(self.document.clone()) {
-            *self.document = document;
-            self.after_jump();
+            self.jump(document);
             self.log_step("redo", None, name, None);
         }
     }
@@ -42,9 +40,11 @@ impl Work<'_> {
     }
 
     /// What is shown and selected may be gone.
-    fn after_jump(&mut self) {
+    fn jump(&mut self, document: Document) {
+        let before = Places::of(self.document);
+        *self.document = document;
         self.previews.drop_all();
-        self.follow(FollowUp::SteppedInHistory);
+        self.follow(FollowUp::SteppedInHistory(before));
     }
 
     fn reset_all(&mut self) {

@@ -220,6 +220,10 @@ impl AppState {
     }
 
     fn shape_cause(&self, assessment: &Assessment) -> Option<Cause> {
+        if assessment.coverage.better_overlap() < LITTLE_OVERLAP {
+            // What lies elsewhere is not bent.
+            return None;
+        }
         let differ = assessment.reasons.iter().find_map(|reason| match reason {
             Reason::Shape {
                 difference: ShapeReason::Surface { by, .. } | ShapeReason::Bent { by, .. },

@@ -112,7 +112,7 @@ pub fn exchange_thickness(
     copy.up_to(end.unwrap_or(bytes.len()));
     copy.new_line();
     let states = (rules.states)(copy.result.layout)?;
-    copy.result.bytes.extend_from_slice(&states);
+    copy.lines(&states);
     copy.up_to(bytes.len());
     Ok(copy.result)
 }
@@ -155,6 +155,18 @@ impl Copy<'_> {
     fn line(&mut self, text: &[u8]) {
         self.result.bytes.extend_from_slice(text);
         self.result.bytes.extend_from_slice(self.line_end);
+    }
+
+    /// Adds lines that end with `\n` with the line ends of the deck.
+    fn lines(&mut self, text: &[u8]) {
+        if self.line_end == b"\n" {
+            self.result.bytes.extend_from_slice(text);
+            return;
+        }
+        for line in text.split_inclusive(|&byte| byte == b'\n') {
+            let line = line.strip_suffix(b"\n").unwrap_or(line);
+            self.line(line);
+        }
     }
 
     /// One block of shells.
@@ -556,7 +568,7 @@ $ between\n\
     fn nothing_exchanged_is_a_copy_with_the_states_before_the_end() {
         let deck = "*KEYWORD\r\n*ELEMENT_SHELL\r\n1,1,1,2,3,4\r\n*END";
         let found = text(&exchange(deck, &[9]));
-        assert_eq!(found, deck.replace("*END", "*INITIAL_STRESS_SHELL\n*END"));
+        assert_eq!(found, deck.replace("*END", "*INITIAL_STRESS_SHELL\r\n*END"));
     }
 
     #[test]

@@ -208,7 +208,7 @@ fn distance(run: &MapRun, lengths: Lengths) -> CheckRecord {
             Some(reach) => format!("at most {}", lengths.of(reach / 2.0)),
             None => "half an element".to_owned(),
         },
-        is_met: Some(mapped.n_distant == 0),
+        is_met: worst.map(|_| mapped.n_distant == 0),
         reason: None,
         picture: CheckPicture::Distance,
         worst,
@@ -233,12 +233,13 @@ fn confidence(run: &MapRun) -> CheckRecord {
             doubtful += areas[element];
         }
     }
-    let share = if area > 0.0 { doubtful / area } else { 0.0 };
+    // Nothing is said of what is not there.
+    let share = (area > 0.0).then(|| doubtful / area);
     CheckRecord {
         name: format!("Confidence below {}", fixed(DOUBTFUL, 1)),
-        found: percent(share),
+        found: share.map_or_else(|| "–".to_owned(), percent),
         limit: format!("at most {}", percent(DOUBTFUL_AREA)),
-        is_met: Some(share <= DOUBTFUL_AREA),
+        is_met: share.map(|share| share <= DOUBTFUL_AREA),
         reason: None,
         picture: CheckPicture::Confidence,
         worst: largest(run, |element| -of(element)),

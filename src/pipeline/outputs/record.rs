@@ -9,6 +9,7 @@ use crate::report::{
     UnitsRecord,
 };
 use crate::role::PerRole;
+use crate::text::parts_by_id;
 use crate::units::KnownUnits;
 
 /// Problems of each file that are told with the result.
@@ -41,7 +42,7 @@ pub fn match_record(run: &MatchRun, parts: PerRole<&LoadedPart>) -> MatchRecord 
             verify_ms: run.times.verify_ms,
             total_ms: read + run.times.total_ms,
         },
-        warnings: warnings(parts),
+        warnings: warnings(run, parts),
         command_line: command_line(run, parts).line(),
     };
     MatchRecord::new(&run.outcome, &run.assessment, context)
@@ -88,8 +89,15 @@ fn file(part: &LoadedPart, units: Option<KnownUnits>) -> FileRecord {
 }
 
 /// What the user should know about the files.
-fn warnings(parts: PerRole<&LoadedPart>) -> Vec<String> {
+fn warnings(run: &MatchRun, parts: PerRole<&LoadedPart>) -> Vec<String> {
     let mut warnings = Vec::new();
+    if !run.alike_parts.is_empty() {
+        warnings.push(format!(
+            "{} fits {} about as well; --crash-part names the right one",
+            parts.stamped.file_name(),
+            parts_by_id(&run.alike_parts)
+        ));
+    }
     for (_, part) in parts.iter() {
         warnings.extend(problems(part));
         if part.settings.length_factor != 1.0 {
