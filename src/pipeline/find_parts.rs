@@ -341,3 +341,30 @@ fn middle(corners: &[Point3; 3]) -> Point3 {
     let sum: Vector3 = corners.iter().map(|corner| corner.coords).sum();
     Point3::from(sum / 3.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fit(verdict: Verdict, n_holes_apart: usize, rmse: f64) -> Fit {
+        Fit {
+            verdict,
+            n_holes_apart,
+            rmse,
+        }
+    }
+
+    #[test]
+    fn holes_choose_between_parts_of_one_surface() {
+        let own = fit(Verdict::Good, 0, 0.45);
+        let without_holes = fit(Verdict::Good, 3, 0.44);
+        assert!(own.is_better_than(&without_holes) && !without_holes.is_better_than(&own));
+        assert!(!without_holes.is_as_good_as(&own));
+        let copy = fit(Verdict::Good, 0, 0.46);
+        assert!(own.is_better_than(&copy) && copy.is_as_good_as(&own));
+        let far = fit(Verdict::Good, 0, 0.6);
+        assert!(!far.is_as_good_as(&own));
+        let bent = fit(Verdict::Check, 0, 0.1);
+        assert!(without_holes.is_better_than(&bent) && !bent.is_as_good_as(&own));
+    }
+}
