@@ -119,6 +119,8 @@ impl AppState {
                     self.reduce.keep_match_level(&self.document, &result.run);
                 }
                 self.view.sections.unfold(Section::Map);
+                // The verdict is seen, whatever else has to fold for it.
+                self.view.sections.touch(Section::Match);
                 self.follow_far_move(before);
             }
             FollowUp::FurtherPlaced => {
