@@ -118,9 +118,7 @@ impl AppState {
                 if let Some(result) = &self.document.result {
                     self.reduce.keep_match_level(&self.document, &result.run);
                 }
-                self.view.sections.unfold(Section::Map);
-                // The verdict is seen, whatever else has to fold for it.
-                self.view.sections.touch(Section::Match);
+                self.show_verdict();
                 self.follow_far_move(before);
             }
             FollowUp::FurtherPlaced => {
@@ -189,6 +187,12 @@ impl AppState {
             is_muted,
         };
         self.log.notices.push(level, line, showing);
+    }
+
+    /// The verdict is seen, whatever else has to fold for it; the next section comes where there is room.
+    fn show_verdict(&mut self) {
+        self.view.sections.unfold(Section::Map);
+        self.view.sections.touch(Section::Match);
     }
 
     /// The outlines are drawn beside the parts: in the free window, or in a tab where there is none.
