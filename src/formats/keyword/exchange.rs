@@ -1,15 +1,16 @@
 //! Copies a deck with the thickness of some shells exchanged and everything else byte for byte.
 
+mod element;
+
 use super::super::model::IncludedAs;
 use super::block::{Block, Blocks};
-use super::card::{Card, FIVE_BY_16, Layout, TEN_BY_8};
-use super::exponential::push_int;
+use super::card::{Layout, TEN_BY_8};
 use super::include::layout_of_keyword;
 use super::mesh::{ElementKeyword, ShellCards, element_keyword};
 use super::nodes::shifted;
 use super::source_file::SourceFile;
-use super::state_cards::push_thickness;
 use crate::monitor::{Cancelled, Monitor};
+use element::{Element, Keyword};
 
 /// Elements between two questions whether the copy is still wanted.
 const CHUNK: usize = 4096;
@@ -214,7 +215,6 @@ impl Copy<'_> {
                 thickness: thickness.map(|(line, at)| (lines.card(line, at), line, at)),
                 rest: &self.bytes[rest..lines.offset()],
                 is_quadratic,
-                layout: block.layout,
                 card,
                 cards,
             };
@@ -240,25 +240,15 @@ impl Copy<'_> {
     /// Copies the element's first card, then its thickness card, new or replaced, which is returned.
     fn set_thickness(&mut self, element: &Element<'_>, new: &[f64; 4]) -> Vec<u8> {
         self.result.n_exchanged += 1;
-        let card = match &element.thickness {
-            Some((card, line, at)) => {
-                self.up_to(*at);
-                self.done = at + line.len();
-                replaced_thickness(card, line, new, element.layout)
-            }
-            None => {
-                let (first, at) = element.first;
-                self.up_to(at + first.len());
-                self.result.bytes.extend_from_slice(self.line_end);
-                let mut card = Vec::new();
-                push_thickness(&mut card, new, element.layout);
-                if element.is_quadratic {
-                    card.extend_from_slice(self.line_end);
-                    push_thickness(&mut card, new, element.layout);
-                }
-                card
-            }
-        };
+        if let Some((_, line, at)) = &element.thickness {
+            self.up_to(*at);
+            self.done = at + line.len();
+        } else {
+            let (first, at) = element.first;
+            self.up_to(at + first.len());
+            self.result.bytes.extend_from_slice(self.line_end);
+        }
+        let card = element.thickness_card(new, element.card.layout(), self.line_end);
         self.result.bytes.extend_from_slice(&card);
         card
     }
@@ -271,7 +261,7 @@ impl Copy<'_> {
         let is_thick = new.is_some() || old.is_some();
         let (layout, first, thickness) = if place.keeps_numbers() {
             let thickness = new.map(|(_, card)| card).or(old).map(<[u8]>::to_vec);
-            (element.layout, element.first.0.to_vec(), thickness)
+            (element.card.layout(), element.first.0.to_vec(), thickness)
         } else {
             let Some(cards) =
                 element.in_whole_deck(place, keyword, new.map(|(new, _)| new), self.line_end)
@@ -282,7 +272,7 @@ impl Copy<'_> {
             cards
         };
         let list_layout = self.rules.list_layout.unwrap_or(self.result.layout);
-        let line = keyword.listed(is_thick, [element.layout, layout, list_layout]);
+        let line = keyword.listed(is_thick, [element.card.layout(), layout, list_layout]);
         let list = &mut self.result.elements;
         let mut push = |text: &[u8]| {
             list.extend_from_slice(text);
@@ -297,176 +287,6 @@ impl Copy<'_> {
             push(&card);
         }
         list.extend_from_slice(element.rest);
-    }
-}
-
-/// One shell of the deck.
-struct Element<'a> {
-    /// Its first card and where it stands.
-    first: (&'a [u8], usize),
-    thickness: Option<(Card<'a>, &'a [u8], usize)>,
-    /// Its further cards, with their line ends.
-    rest: &'a [u8],
-    is_quadratic: bool,
-    layout: Layout,
-    /// Its first card, to be read.
-    card: Card<'a>,
-    /// What its cards are.
-    cards: ShellCards,
-}
-
-impl Element<'_> {
-    /// Its first card and its thickness card with the numbers of the whole deck, and the width of their
-    /// fields. `None` if one of its further cards would change too in a way that is not known here.
-    fn in_whole_deck(
-        &self,
-        place: &IncludedAs,
-        keyword: &Keyword,
-        new: Option<&[f64; 4]>,
-        line_end: &[u8],
-    ) -> Option<(Layout, Vec<u8>, Option<Vec<u8>>)> {
-        let has_other_length = place.length_factor != 1.0;
-        let has_nodes = keyword.has_scalar_nodes && place.node_offset != 0;
-        let has_second_thickness = self.thickness.is_some() && self.is_quadratic;
-        if has_nodes || has_other_length && (self.cards.n_passed_over > 0 || has_second_thickness) {
-            return None;
-        }
-        let mut ids = [0; 10];
-        for (index, id) in ids.iter_mut().enumerate() {
-            let offset = match index {
-                0 => place.element_offset,
-                1 => place.part_offset,
-                _ => place.node_offset,
-            };
-            *id = shifted(self.card.id(TEN_BY_8, index).ok()?, offset);
-        }
-        let layout = match (self.layout, *ids.iter().max()?) {
-            (Layout::Long, _) => Layout::Long,
-            (layout, ..=99_999_999) => layout,
-            // Cards of wider fields than eight stay as they are.
-            (_, ..=9_999_999_999) => Layout::I10,
-            _ => return None,
-        };
-        let n_ids = if self.is_quadratic { 10 } else { 6 };
-        let mut first = Vec::new();
-        for &id in &ids[..n_ids] {
-            push_int(&mut first, id, layout.width(TEN_BY_8[0]));
-        }
-        let old = match &self.thickness {
-            None => None,
-            Some((card, ..)) => {
-                let mut old = [0.0; 4];
-                for (index, t) in old.iter_mut().enumerate() {
-                    *t = card.real_or_zero(FIVE_BY_16, index).ok()? * place.length_factor;
-                }
-                Some(old)
-            }
-        };
-        let Some(corners) = new.copied().or(old) else {
-            return Some((layout, first, None));
-        };
-        let mut text = match &self.thickness {
-            Some((card, line, _)) => replaced_thickness(card, line, &corners, layout),
-            None => {
-                let mut text = Vec::new();
-                push_thickness(&mut text, &corners, layout);
-                text
-            }
-        };
-        if self.thickness.is_none() && self.is_quadratic {
-            text.extend_from_slice(line_end);
-            push_thickness(&mut text, &corners, layout);
-        }
-        // Without BETA the fifth field is a coordinate system.
-        if let Some((card, ..)) = &self.thickness
-            && !self.cards.beta
-            && place.system_offset != 0
-            && !card.is_empty_field(FIVE_BY_16, 4)
-        {
-            let system = shifted(card.id(FIVE_BY_16, 4).ok()?, place.system_offset);
-            text.clear();
-            push_thickness(&mut text, &corners, layout);
-            push_int(&mut text, system, layout.width(FIVE_BY_16[4]));
-        }
-        Some((layout, first, Some(text)))
-    }
-}
-
-/// The new corner thicknesses with what stands behind them on the card, such as a material angle.
-fn replaced_thickness(card: &Card<'_>, line: &[u8], new: &[f64; 4], layout: Layout) -> Vec<u8> {
-    let mut text = Vec::new();
-    push_thickness(&mut text, new, layout);
-    let width = layout.width(FIVE_BY_16[0]);
-    if card.is_free() {
-        let mut fields = line.splitn(5, |&byte| byte == b',');
-        if let Some(rest) = fields.nth(4) {
-            let plain = new.iter().map(|t| format!("{t:.8E}")).collect::<Vec<_>>();
-            text = plain.join(",").into_bytes();
-            text.push(b',');
-            text.extend_from_slice(rest);
-        }
-    } else if line.len() > 4 * width {
-        text.extend_from_slice(&line[4 * width..]);
-    }
-    text
-}
-
-/// The keyword line of a block and the one with the option `THICKNESS`.
-struct Keyword {
-    plain: String,
-    thick: String,
-    /// True if the line itself says how wide the fields are.
-    has_suffix: bool,
-    /// A card of each shell names scalar nodes (`DOF`).
-    has_scalar_nodes: bool,
-}
-
-impl Keyword {
-    fn of(block: &Block<'_>, cards: ShellCards, bytes: &[u8]) -> Self {
-        let rest = &bytes[block.offset..block.body.start];
-        let plain = String::from_utf8_lossy(rest).trim_end().to_owned();
-        let thick = if cards.thickness {
-            plain.clone()
-        } else {
-            // Behind `*ELEMENT_SHELL`, because the thickness card follows the element's first.
-            let stem = "*ELEMENT_SHELL".len().min(plain.len());
-            format!("{}_THICKNESS{}", &plain[..stem], &plain[stem..])
-        };
-        Self {
-            plain,
-            thick,
-            has_suffix: block.suffix.is_some(),
-            has_scalar_nodes: block.has_option("DOF"),
-        }
-    }
-
-    /// The line above cards of a width in a file of a width, from the width of the block it stands for.
-    fn listed(&self, is_thick: bool, [of_block, of_cards, of_file]: [Layout; 3]) -> Vec<u8> {
-        let line = self.line(is_thick);
-        let says_width = self.has_suffix || of_block == of_file;
-        if of_cards == of_block && says_width {
-            return line.to_vec();
-        }
-        let end = line.iter().position(|byte| b" \t,$".contains(byte));
-        let mut listed = line[..end.unwrap_or(line.len())].to_vec();
-        if listed
-            .last()
-            .is_some_and(|&last| Layout::of_suffix(last).is_some())
-        {
-            listed.pop();
-        }
-        if of_cards != of_file {
-            listed.push(of_cards.suffix());
-        }
-        listed
-    }
-
-    fn line(&self, is_thick: bool) -> &[u8] {
-        if is_thick {
-            self.thick.as_bytes()
-        } else {
-            self.plain.as_bytes()
-        }
     }
 }
 

@@ -53,33 +53,27 @@ impl MapWriter<'_> {
             n_thickness += n;
             largest = largest.max(error);
         }
-        let kept = if files.replaces.is_some() {
-            self.model.forming.n_stress()
-        } else {
-            0
-        };
-        if n_stress < files.n_stress || n_stress > files.n_stress + kept {
-            return Err(failed(format!(
-                "{n_stress} stress cards instead of {}",
-                files.n_stress
-            )));
-        }
-        let kept = if files.replaces.is_some() {
-            self.model.forming.n_strain()
-        } else {
-            0
-        };
-        if n_strain < files.n_strain || n_strain > files.n_strain + kept {
-            return Err(failed(format!(
-                "{n_strain} strain cards instead of {}",
-                files.n_strain
-            )));
-        }
-        if n_thickness < files.n_thickness {
-            let wanted = files.n_thickness;
-            return Err(failed(format!(
-                "{n_thickness} thicknesses instead of {wanted}"
-            )));
+        // A copy keeps the cards of other elements.
+        let kept = |n: usize| if files.replaces.is_some() { n } else { 0 };
+        let forming = &self.model.forming;
+        for (what, found, wanted, kept) in [
+            (
+                "stress cards",
+                n_stress,
+                files.n_stress,
+                kept(forming.n_stress()),
+            ),
+            (
+                "strain cards",
+                n_strain,
+                files.n_strain,
+                kept(forming.n_strain()),
+            ),
+            ("thicknesses", n_thickness, files.n_thickness, 0),
+        ] {
+            if !(wanted..=wanted + kept).contains(&found) {
+                return Err(failed(format!("{found} {what} instead of {wanted}")));
+            }
         }
         let limit = if self.is_large {
             LARGE_ROUNDING
