@@ -58,6 +58,13 @@ fn written(pair: &Pair, kind: &str, quantities: &str) -> String {
     std::fs::read_to_string(pair.path("out.k")).unwrap()
 }
 
+/// Writes an include; the text of its file of elements.
+#[track_caller]
+fn written_elements(pair: &Pair) -> String {
+    written(pair, "include", FULL);
+    std::fs::read_to_string(pair.path("out_elements.k")).unwrap()
+}
+
 /// Why nothing is written.
 #[track_caller]
 fn refused(pair: &Pair, kind: &str) -> String {
@@ -132,8 +139,7 @@ fn a_unit_of_the_include_counts_for_thicknesses() {
     );
     assert!(thickness.iter().all(|(_, t)| (t - 0.9).abs() < 1e-12));
     // The first run changed the file: its elements have a thickness now, in their own unit.
-    written(&pair, "include", FULL);
-    let elements = std::fs::read_to_string(pair.path("out_elements.k")).unwrap();
+    let elements = written_elements(&pair);
     assert!(
         elements.contains("  9.00000000E-01  9.00000000E-01"),
         "{elements}"
@@ -181,8 +187,7 @@ fn a_file_that_is_included_twice_has_no_copy() {
     let pair = pair(&format!("{move_away}{twice}"), &crash(2, ""));
     let told = refused(&pair, "deck");
     assert!(told.contains("part.k is included 2 times"), "{told}");
-    written(&pair, "include", FULL);
-    let elements = std::fs::read_to_string(pair.path("out_elements.k")).unwrap();
+    let elements = written_elements(&pair);
     assert!(elements.contains("     101       7       1"), "{elements}");
     assert!(!elements.contains("1101"), "{elements}");
 }
@@ -205,8 +210,7 @@ fn a_file_is_read_with_the_width_of_the_deck_around_it() {
     let deck = "*KEYWORD LONG=Y\n*INCLUDE\npart.k\n*END\n";
     let pair = Pair::new(deck, &stamped(2, &stresses(1..=2)));
     std::fs::write(pair.path("part.k"), part).unwrap();
-    written(&pair, "include", FULL);
-    let elements = std::fs::read_to_string(pair.path("out_elements.k")).unwrap();
+    let elements = written_elements(&pair);
     assert!(elements.starts_with("*KEYWORD LONG=Y\n"), "{elements}");
     assert!(
         elements.contains("*ELEMENT_SHELL_THICKNESS\n                 101"),
@@ -236,8 +240,7 @@ fn a_file_of_another_width_is_listed_with_the_width_of_its_cards() {
     };
     let part: String = part.lines().map(ten).collect();
     let pair = pair("*INCLUDE\npart.k\n", &part);
-    written(&pair, "include", FULL);
-    let elements = std::fs::read_to_string(pair.path("out_elements.k")).unwrap();
+    let elements = written_elements(&pair);
     let card = "*ELEMENT_SHELL_THICKNESS%\n       101         7         1";
     assert!(elements.contains(card), "{elements}");
 }

@@ -583,16 +583,21 @@ fn elements_without_counterpart_say_why() {
     assert_eq!(mapped.counts()[Status::Mapped as usize], 0);
 }
 
-#[test]
-fn unmapped_rings_are_filled_and_marked() {
-    let part = source(Blank::new(5.0).mesh(flat), 2, uniform);
-    let wide = Blank {
-        length: 120.0,
+/// A flat crash part that is as wide as the stamped blank and so long.
+fn longer_blank(length: f64) -> TargetPart {
+    let blank = Blank {
+        length,
         width: 60.0,
         size: 5.0,
         jitter: 0.0,
     };
-    let onto = target(wide.mesh(flat), 2);
+    target(blank.mesh(flat), 2)
+}
+
+#[test]
+fn unmapped_rings_are_filled_and_marked() {
+    let part = source(Blank::new(5.0).mesh(flat), 2, uniform);
+    let onto = longer_blank(120.0);
     let options = MapOptions {
         fill_rings: 2,
         ..full()
@@ -613,13 +618,7 @@ fn unmapped_rings_are_filled_and_marked() {
 #[test]
 fn filling_ends_where_there_is_nothing_to_fill() {
     let part = source(Blank::new(5.0).mesh(flat), 2, uniform);
-    let wide = Blank {
-        length: 140.0,
-        width: 60.0,
-        size: 5.0,
-        jitter: 0.0,
-    };
-    let onto = target(wide.mesh(flat), 2);
+    let onto = longer_blank(140.0);
     let options = MapOptions {
         fill_rings: usize::MAX,
         ..full()
