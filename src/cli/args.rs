@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand};
 
 use super::map::MapArgs;
 use super::map_car::MapCarArgs;
+use super::numbers::{at_least_one, positive};
 use super::setting_args::SettingArgs;
 use super::words::{card_forms, units};
 use crate::report::CardForm;
@@ -37,7 +38,7 @@ pub struct Cli {
     pub realistic: bool,
 
     /// Number of threads, at most 1024; 0 uses one per core.
-    #[arg(long, global = true, value_name = "N", default_value_t = 0, value_parser = threads())]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = threads())]
     pub threads: usize,
 
     /// Print errors only.
@@ -105,23 +106,33 @@ pub struct InputArgs {
     /// Multiply the stamped coordinates by this before matching, for files in different units (1000 if
     /// the stamped file is in m and the crash file in mm). Stated in the result, never part of the
     /// matrix.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    #[arg(
+        long,
+        value_name = "FACTOR",
+        allow_negative_numbers = true,
+        default_value_t = 1.0
+    )]
     pub stamped_length_factor: f64,
     /// The same for the crash coordinates. All results are then in the multiplied unit.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    #[arg(
+        long,
+        value_name = "FACTOR",
+        allow_negative_numbers = true,
+        default_value_t = 1.0
+    )]
     pub crash_length_factor: f64,
     /// Maximum triangles of the crash part for the search (overrides --triangles).
-    #[arg(long, value_name = "N", value_parser = at_least_one())]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = at_least_one())]
     pub crash_triangles: Option<usize>,
     /// Maximum triangles of the stamped part for the search (overrides --triangles).
-    #[arg(long, value_name = "N", value_parser = at_least_one())]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = at_least_one())]
     pub stamped_triangles: Option<usize>,
     /// Another folder to search for included files; may be given several times.
     #[arg(long, value_name = "FOLDER")]
     pub include_folder: Vec<PathBuf>,
     /// Limit on each file with its includes, unpacked, in GiB; the numbers of files and of ids in
     /// sets are limited in proportion.
-    #[arg(long, value_name = "GIB", default_value_t = 4.0)]
+    #[arg(long, value_name = "GIB", allow_negative_numbers = true, default_value_t = 4.0, value_parser = positive)]
     pub read_limit: f64,
 }
 
@@ -151,7 +162,7 @@ pub struct OutputArgs {
     #[arg(long, value_name = "FILE")]
     pub cards: Option<PathBuf>,
     /// The kind of cards.
-    #[arg(long, value_name = "FORM", default_value = "stamped", value_parser = card_forms())]
+    #[arg(long, value_name = "FORM", requires = "cards", default_value = "stamped", value_parser = card_forms())]
     pub card_form: CardForm,
     /// Write a report with pictures, tables and charts as one HTML file.
     #[arg(long, value_name = "FILE")]
@@ -171,7 +182,7 @@ pub struct OutputArgs {
     #[arg(long, value_name = "FILE")]
     pub crash_mesh: Option<PathBuf>,
     /// Report and write this one of the poses that fit nearly as well: 1 is the best, 2 the next.
-    #[arg(long, value_name = "N", value_parser = at_least_one())]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = at_least_one())]
     pub pose_number: Option<usize>,
 }
 
@@ -181,7 +192,7 @@ pub struct ReduceArgs {
     /// The file to read.
     pub input: PathBuf,
     /// Maximum number of triangles.
-    #[arg(long, short = 'n', value_name = "N", value_parser = at_least_one())]
+    #[arg(long, short = 'n', value_name = "N", allow_negative_numbers = true, value_parser = at_least_one())]
     pub triangles: usize,
     /// File to write; its extension selects the format (.k, .stl, .ply, .obj).
     #[arg(long, short, value_name = "FILE")]
@@ -203,7 +214,7 @@ pub struct InfoArgs {
     /// The file to read.
     pub input: PathBuf,
     /// Limit on the file with its includes, unpacked, in GiB.
-    #[arg(long, value_name = "GIB", default_value_t = 4.0)]
+    #[arg(long, value_name = "GIB", allow_negative_numbers = true, default_value_t = 4.0, value_parser = positive)]
     pub read_limit: f64,
     /// Write the contents as JSON to a file, or to standard output with "-".
     #[arg(long, value_name = "FILE|-")]
@@ -223,7 +234,7 @@ pub struct SampleArgs {
     #[arg(long, value_name = "NAME", default_value = "plain")]
     pub variant: String,
     /// Random seed of the meshes and of the pose.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, allow_negative_numbers = true, default_value_t = 1)]
     pub seed: u64,
     /// Write the bundled pair instead.
     #[arg(long, conflicts_with_all = ["part", "variant", "seed"])]
@@ -264,15 +275,27 @@ pub struct BenchArgs {
     #[arg(
         long,
         value_name = "N",
+        allow_negative_numbers = true,
         default_value_t = 2_000_000,
         requires = "growth"
     )]
     pub largest: usize,
     /// Seed of shapes, placements and disturbances.
-    #[arg(long, default_value_t = 1, requires = "robustness")]
+    #[arg(
+        long,
+        allow_negative_numbers = true,
+        default_value_t = 1,
+        requires = "robustness"
+    )]
     pub seed: u64,
     /// Runs of every scenario on every part.
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "robustness")]
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        default_value_t = 1,
+        requires = "robustness"
+    )]
     pub runs: usize,
     /// Only these parts and scenarios, by the beginnings of their names, separated by commas; of the
     /// mapping one part, or "speed" for the times alone.
@@ -286,10 +309,6 @@ pub struct BenchArgs {
 /// More threads than any machine of today has cores only take its memory.
 fn threads() -> RangedU64ValueParser<usize> {
     RangedU64ValueParser::new().range(0..=1024)
-}
-
-fn at_least_one() -> RangedU64ValueParser<usize> {
-    RangedU64ValueParser::new().range(1..)
 }
 
 const MATCH_HELP: &str = "\

@@ -10,10 +10,11 @@ use clap::builder::BoolishValueParser;
 use clap::{ArgAction, Args};
 
 use super::map_choices::{
-    HandName, KindName, MirrorName, RuleName, default_thickness, law, positive, quantities,
+    HandName, KindName, MirrorName, RuleName, default_thickness, law, quantities,
 };
 use super::map_text::summary;
-use super::of_each::{LengthFactors, of_file, one_or_each};
+use super::numbers::{layers, percent, points_in_plane};
+use super::of_each::{LengthFactors, StressFactors, of_file, one_or_each};
 use super::recipe::{pose, selection};
 use super::setting_args::MapSettingArgs;
 use super::{
@@ -75,10 +76,8 @@ struct MapChoice {
     stamped_part: Vec<String>,
     #[command(flatten)]
     lengths: LengthFactors,
-    /// Factor on the stamped stresses, for files in another unit of stress. Without it stresses that are
-    /// clearly in another unit than the crash deck's are refused.
-    #[arg(long, value_name = "FACTOR", value_parser = positive)]
-    stress_factor: Option<f64>,
+    #[command(flatten)]
+    stresses: StressFactors,
     /// Material law of the stamped parts (24 or PIECEWISE_LINEAR_PLASTICITY), for files that hold none.
     /// History variables go to parts of the same law alone.
     #[arg(long, value_name = "LAW", value_parser = law)]
@@ -112,17 +111,17 @@ struct MapChoice {
 #[command(next_help_heading = "Values")]
 pub(super) struct MapValues {
     /// Quantities, separated by commas: thickness, plastic, strain, stress, history; or usual (thickness,
-    /// plastic), or full.
+    /// plastic), or full, for everything.
     #[arg(long, value_name = "LIST", default_value = "usual", value_parser = quantities)]
     quantities: Quantities,
-    /// Layers of the crash elements; from the section if not given.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
-    layers: Option<u16>,
+    /// Layers of the crash elements, at most 100; from the section if not given.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = layers())]
+    layers: Option<usize>,
     /// Rule through their thickness; from the deck if not given.
     #[arg(long, value_enum)]
     rule: Option<RuleName>,
     /// Points in the plane of each layer; from the element formulation if not given.
-    #[arg(long, value_name = "1|4", value_parser = clap::value_parser!(u8).range(1..=4))]
+    #[arg(long, value_name = "1|4", allow_negative_numbers = true, value_parser = points_in_plane)]
     n_plane: Option<u8>,
     #[command(flatten)]
     options: MapSettingArgs,
@@ -138,17 +137,17 @@ struct MapOutputArgs {
     /// include: states, and the elements with their thickness in a second file; part: all elements of
     /// the part and the states in one file; deck: a copy of the crash file with thickness and states
     /// put in.
-    #[arg(long, value_enum, default_value = "include")]
+    #[arg(long, value_enum, requires = "out", default_value = "include")]
     write: KindName,
     /// 16 columns a number instead of 10.
-    #[arg(long, value_name = "YES|NO", default_value = "yes", action = ArgAction::Set, value_parser = BoolishValueParser::new())]
+    #[arg(long, value_name = "YES|NO", requires = "out", default_value = "yes", action = ArgAction::Set, hide_possible_values = true, value_parser = BoolishValueParser::new())]
     large: bool,
     /// Thickness of elements without values: that of their section, a length, or nearest for that of the
     /// nearest element that has one.
-    #[arg(long, value_name = "section|LENGTH|nearest", default_value = "section", value_parser = default_thickness)]
+    #[arg(long, value_name = "section|LENGTH|nearest", requires = "out", allow_negative_numbers = true, default_value = "section", value_parser = default_thickness)]
     default_thickness: DefaultThickness,
     /// Smallest share of the area that must be mapped, percent; below it the exit status is 1.
-    #[arg(long, value_name = "PERCENT")]
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, value_parser = percent)]
     require: Option<f64>,
     /// Write no deck where less is mapped than --require asks for.
     #[arg(long, requires = "require")]
@@ -193,14 +192,6 @@ impl MapChoice {
 }
 
 impl MapValues {
-    /// Refuses numbers between those that there are.
-    pub(super) fn check(&self) -> anyhow::Result<()> {
-        if self.n_plane.is_some_and(|n| n != 1 && n != 4) {
-            return Err(UsageError("--n-plane is 1 or 4".to_owned()).into());
-        }
-        Ok(())
-    }
-
     /// The recipe with these values, without a factor on stresses and a stamped law.
     pub(super) fn recipe(&self) -> MapRecipe {
         MapRecipe {
@@ -208,7 +199,7 @@ impl MapValues {
                 quantities: self.quantities,
                 ..self.options.options()
             },
-            n_layers: self.layers.map(usize::from),
+            n_layers: self.layers,
             rule: self.rule.map(|rule| match rule {
                 RuleName::Gauss => RuleKind::Gauss,
                 RuleName::Lobatto => RuleKind::Lobatto,
@@ -250,8 +241,9 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         })
         .collect();
     let recipe = MapRecipe {
-        stress_factor: args.choice.stress_factor,
+        stress_factors: args.choice.stresses.checked(args.stamped.len())?.to_vec(),
         stamped_law: args.choice.stamped_material.clone(),
+        least_area: args.output.require.map(|percent| percent / 100.0),
         ..args.values.recipe()
     };
     let run = map_parts(&crash, &placed, &recipe, &monitor)?;
@@ -367,6 +359,7 @@ fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
     let n_parts = args.choice.stamped_part.len();
     one_or_each(n_parts, "stamped part", n_files)?;
     args.choice.lengths.check(n_files)?;
+    args.choice.stresses.checked(n_files)?;
     let has_pose = args.choice.identity || args.choice.project.is_some() || n_poses > 0;
     if args.choice.mirror == MirrorName::Free && has_pose {
         return refuse(
@@ -380,7 +373,7 @@ fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
             "{what}; where the parts are matched first, --hand opposite or --mirror free finds it"
         ));
     }
-    args.values.check()
+    Ok(())
 }
 
 /// Everything that will be written, for the check before the work.
@@ -503,8 +496,12 @@ fn place(
         };
     }
     if !args.choice.pose.is_empty() {
-        let poses: anyhow::Result<Vec<Similarity>> =
-            args.choice.pose.iter().map(|text| pose(text)).collect();
+        let poses: anyhow::Result<Vec<Similarity>> = args
+            .choice
+            .pose
+            .iter()
+            .map(|text| pose("--pose", text))
+            .collect();
         return given(crash, poses?);
     }
     let recipe = placing_recipe(args.choice.hand());

@@ -8,12 +8,12 @@ use clap::builder::BoolishValueParser;
 use clap::{ArgAction, Args};
 
 use super::map::MapValues;
-use super::map_choices::{HandName, default_thickness, positive};
-use super::of_each::LengthFactors;
+use super::map_choices::{HandName, default_thickness};
+use super::of_each::{LengthFactors, StressFactors, of_file};
 use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
 use crate::formats::ReadOptions;
 use crate::pipeline::load::{LoadSettings, load, usual_selection};
-use crate::pipeline::map::{DefaultThickness, MapRecipe};
+use crate::pipeline::map::DefaultThickness;
 use crate::pipeline::map_car::{
     CAR_COLUMNS, CarRecipe, CarRecord, CarRow, CarState, StampedFile, car_files, map_car,
 };
@@ -45,18 +45,17 @@ pub struct MapCarArgs {
     hand: HandName,
     #[command(flatten)]
     lengths: LengthFactors,
-    /// Factor on the stamped stresses, for files in another unit of stress.
-    #[arg(long, value_name = "FACTOR", value_parser = positive)]
-    stress_factor: Option<f64>,
+    #[command(flatten)]
+    stresses: StressFactors,
     /// A further folder for included files; may be given several times.
     #[arg(long, value_name = "FOLDER")]
     include_folder: Vec<PathBuf>,
     /// 16 columns a number instead of 10.
-    #[arg(long, value_name = "YES|NO", default_value = "yes", action = ArgAction::Set, value_parser = BoolishValueParser::new())]
+    #[arg(long, value_name = "YES|NO", default_value = "yes", action = ArgAction::Set, hide_possible_values = true, value_parser = BoolishValueParser::new())]
     large: bool,
     /// Thickness of elements without values: that of their section, a length, or nearest for that of the
     /// nearest element that has one.
-    #[arg(long, value_name = "section|LENGTH|nearest", default_value = "section", value_parser = default_thickness)]
+    #[arg(long, value_name = "section|LENGTH|nearest", allow_negative_numbers = true, default_value = "section", value_parser = default_thickness)]
     default_thickness: DefaultThickness,
 
     #[command(flatten)]
@@ -72,8 +71,8 @@ Exit status: 0 every stamped part is mapped, 1 failed or one of them is not, 2 w
 
 /// Reads, finds, maps, writes, and prints the table.
 pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
-    args.values.check()?;
     args.lengths.check(args.stamped.len())?;
+    let stress_factors = args.stresses.checked(args.stamped.len())?;
     let monitor = progress::monitor(quiet);
     let read = ReadOptions {
         include_folders: args.include_folder.clone(),
@@ -92,6 +91,7 @@ pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         .map(|(file, path)| StampedFile {
             path: path.clone(),
             settings: settings(Role::Stamped, args.lengths.of(file)),
+            stress_factor: of_file(stress_factors, file).copied(),
         })
         .collect();
     make_folder(&args.out)?;
@@ -103,10 +103,7 @@ pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     check_outputs(targets(args, &stamped), &inputs)?;
     let mut recipe = CarRecipe {
         matching: MatchRecipe::default(),
-        map: MapRecipe {
-            stress_factor: args.stress_factor,
-            ..args.values.recipe()
-        },
+        map: args.values.recipe(),
         is_large: args.large,
         default_thickness: args.default_thickness,
         folder: args.out.clone(),

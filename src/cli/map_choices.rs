@@ -84,40 +84,30 @@ pub(super) fn default_thickness(text: &str) -> Result<DefaultThickness, String> 
     }
 }
 
-/// `thickness,plastic` and the two presets.
+/// `thickness,plastic` and the two presets, which stand for their quantities among others too.
 pub(super) fn quantities(text: &str) -> Result<Quantities, String> {
-    match text {
-        "usual" => return Ok(Quantities::USUAL),
-        "full" => return Ok(Quantities::FULL),
-        _ => {}
-    }
     let mut chosen = Quantities::NONE;
     for word in text.split(',') {
         let name = match word.trim() {
             "plastic-strain" => "plastic",
             name => name,
         };
-        let mut all = chosen.named();
-        let Some((_, is_on)) = all.iter_mut().find(|(known, _)| *known == name) else {
-            let names = all.map(|(name, _)| name).join(", ");
-            return Err(format!("{name:?} is none of {names}, usual, full"));
+        let mut preset = match name {
+            "usual" => Quantities::USUAL,
+            "full" => Quantities::FULL,
+            _ => Quantities::NONE,
         };
-        **is_on = true;
+        let mut is_known = preset != Quantities::NONE;
+        for ((known, is_on), (_, is_preset)) in chosen.named().into_iter().zip(preset.named()) {
+            *is_on |= *is_preset || known == name;
+            is_known |= known == name;
+        }
+        if !is_known {
+            let names = chosen.named().map(|(name, _)| name).join(", ");
+            return Err(format!("{name:?} is none of {names}, usual, full"));
+        }
     }
     Ok(chosen)
-}
-
-/// A factor above zero.
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    let factor: f64 = text
-        .trim()
-        .parse()
-        .map_err(|_| "it is no number".to_owned())?;
-    if factor.is_finite() && factor > 0.0 {
-        Ok(factor)
-    } else {
-        Err("a factor is above 0".to_owned())
-    }
 }
 
 /// A law as its number or its keyword, with or without `MAT_`.

@@ -14,6 +14,7 @@ mod map_choices;
 mod map_text;
 mod match_text;
 mod matching;
+mod numbers;
 mod of_each;
 mod progress;
 mod project;
@@ -143,9 +144,12 @@ fn print(text: &str) -> anyhow::Result<()> {
 
 /// Prints to standard output. A reader that has gone away is no error.
 fn print_exactly(text: &str) -> anyhow::Result<()> {
-    match io::stdout().lock().write_all(text.as_bytes()) {
+    let mut out = io::stdout().lock();
+    // What stays in the buffer would be lost without a word.
+    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    match written {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        other => Ok(other?),
+        other => other.context("standard output cannot be written"),
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use clap::Args;
 
 use super::UsageError;
+use super::numbers::positive;
 use crate::pipeline::project::Project;
 use crate::settings::exact;
 use crate::text::counted;
@@ -14,7 +15,7 @@ use crate::text::counted;
 pub(super) struct LengthFactors {
     /// Factor on the stamped coordinates and thicknesses, for files in another length unit. Give one for all
     /// files or one for each.
-    #[arg(long, value_name = "FACTOR")]
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
     stamped_length_factor: Vec<f64>,
 }
 
@@ -45,6 +46,23 @@ impl LengthFactors {
     pub(super) fn of(&self, file: usize) -> f64 {
         let factor = of_file(&self.stamped_length_factor, file);
         factor.copied().unwrap_or(1.0)
+    }
+}
+
+/// Factors on the stresses of stamped files.
+#[derive(Debug, Args)]
+pub(super) struct StressFactors {
+    /// Factor on the stamped stresses, for files in another unit of stress. Without it stresses that are
+    /// clearly in another unit than the crash deck's are refused. Give one for all files or one for each.
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true, value_parser = positive)]
+    stress_factor: Vec<f64>,
+}
+
+impl StressFactors {
+    /// The factors; more or fewer of them than files are refused.
+    pub(super) fn checked(&self, n_files: usize) -> anyhow::Result<&[f64]> {
+        one_or_each(self.stress_factor.len(), "stress factor", n_files)?;
+        Ok(&self.stress_factor)
     }
 }
 

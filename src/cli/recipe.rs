@@ -78,7 +78,8 @@ fn recipe(args: &SettingArgs) -> anyhow::Result<MatchRecipe> {
         let is_set = setting(option).is_some_and(|row| row.set(&mut recipe, value));
         if !is_set {
             let kind = recipe.settings.selection.name();
-            anyhow::bail!("--{option} has no effect with the pair selection {kind}");
+            let text = format!("--{option} has no effect with the pair selection {kind}");
+            return Err(UsageError(text).into());
         }
     }
     Ok(recipe)
@@ -86,8 +87,11 @@ fn recipe(args: &SettingArgs) -> anyhow::Result<MatchRecipe> {
 
 /// Takes the start poses that were typed; the value is the pose the stamped part starts from.
 fn start_poses(args: &SettingArgs, recipe: &mut MatchRecipe) -> anyhow::Result<Similarity> {
-    let poses: anyhow::Result<Vec<Similarity>> =
-        args.start_poses.iter().map(|text| pose(text)).collect();
+    let poses: anyhow::Result<Vec<Similarity>> = args
+        .start_poses
+        .iter()
+        .map(|text| pose("--start-pose", text))
+        .collect();
     let poses = poses?;
     let starts = &mut recipe.settings.starts;
     if args.value("start").is_none() {
@@ -101,23 +105,25 @@ fn start_poses(args: &SettingArgs, recipe: &mut MatchRecipe) -> anyhow::Result<S
         (StartMethod::CurrentPose, []) => {}
         (StartMethod::CurrentPose, [pose]) => return Ok(*pose),
         (StartMethod::CurrentPose, _) => {
-            anyhow::bail!("--start current takes one --start-pose; --start given takes several")
+            let text = "--start current takes one --start-pose; --start given takes several";
+            return Err(UsageError(text.to_owned()).into());
         }
         (StartMethod::SurfaceNormals, [_, ..]) => {
-            anyhow::bail!("--start surface-normal makes its own poses; omit --start-pose")
+            let text = "--start surface-normal makes its own poses; omit --start-pose";
+            return Err(UsageError(text.to_owned()).into());
         }
         _ => starts.poses = poses,
     }
     Ok(Similarity::identity())
 }
 
-/// A pose from the word itself or from the file it names.
-pub(super) fn pose(word: &str) -> anyhow::Result<Similarity> {
+/// A pose from the word of an option itself or from the file it names.
+pub(super) fn pose(option: &str, word: &str) -> anyhow::Result<Similarity> {
     let typed = match parse_matrix(word) {
         Ok(parsed) => return Ok(parsed.motion),
         Err(error) => error,
     };
-    let usage = |error: ParseMatrixError| UsageError(format!("--start-pose {word:?}: {error}"));
+    let usage = |error: ParseMatrixError| UsageError(format!("{option} {word:?}: {error}"));
     let text = match fs::read_to_string(word) {
         Ok(text) => text,
         // Several numbers are no name of a file.

@@ -2,10 +2,10 @@
 
 use std::process::ExitCode;
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 
 use super::args::SampleArgs;
-use super::print;
+use super::{UsageError, print};
 use crate::pipeline::write_file::write_file_in_new_folder;
 use crate::samples::{self, SamplePart, SampleSettings, SampleVariant};
 
@@ -33,16 +33,10 @@ pub fn run(args: &SampleArgs) -> anyhow::Result<ExitCode> {
 
 fn pair(args: &SampleArgs) -> anyhow::Result<samples::SamplePair> {
     let Some(part) = SamplePart::from_name(&args.part) else {
-        bail!(
-            "unknown sample part {:?}; `shapematch sample --list` lists them",
-            args.part
-        );
+        return unknown("sample part", &args.part);
     };
     let Some(variant) = SampleVariant::from_name(&args.variant) else {
-        bail!(
-            "unknown variant {:?}; `shapematch sample --list` lists them",
-            args.variant
-        );
+        return unknown("variant", &args.variant);
     };
     let settings = SampleSettings {
         part,
@@ -51,6 +45,11 @@ fn pair(args: &SampleArgs) -> anyhow::Result<samples::SamplePair> {
         ..SampleSettings::default()
     };
     Ok(samples::generate(&settings))
+}
+
+fn unknown<T>(what: &str, name: &str) -> anyhow::Result<T> {
+    let text = format!("unknown {what} {name:?}; `shapematch sample --list` lists them");
+    Err(UsageError(text).into())
 }
 
 fn list() -> String {

@@ -1,13 +1,16 @@
 //! The options of the settings, made from the tables of settings.
 
+use std::ops::RangeInclusive;
+
 use clap::builder::{
     BoolishValueParser, PossibleValue, PossibleValuesParser, RangedU64ValueParser,
 };
 use clap::error::Result;
-use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
-use crate::mapping::MapOptions;
-use crate::registration::Floor;
+use super::numbers::{number, within};
+use crate::mapping::{MapOptions, limits as map_limits};
+use crate::registration::{Floor, limits};
 use crate::settings::{ChoiceWords, Domain, MAP_SETTINGS, SETTINGS, Setting, Unit, Value};
 use crate::text::trimmed;
 
@@ -105,7 +108,8 @@ fn arg<R: Default>(setting: &'static Setting<R>) -> Arg {
         .long(setting.option)
         .aliases(setting.former.iter().copied())
         .help(help(setting))
-        .help_heading(setting.group.title());
+        .help_heading(setting.group.title())
+        .allow_negative_numbers(true);
     match &setting.domain {
         Domain::Choice(words) => {
             let values: Vec<PossibleValue> = words().iter().map(possible).collect();
@@ -116,25 +120,20 @@ fn arg<R: Default>(setting: &'static Setting<R>) -> Arg {
             .value_name("YES|NO")
             .hide_possible_values(true)
             .value_parser(BoolishValueParser::new()),
-        Domain::Count(_) => arg.value_name("N").value_parser(value_parser!(usize)),
-        Domain::Limit(range) => {
+        Domain::Count(range) | Domain::Limit(range) => {
             let range = *range.start() as u64..=*range.end() as u64;
             let parser = RangedU64ValueParser::<usize>::new().range(range);
             arg.value_name("N").value_parser(parser)
         }
-        Domain::Number { unit, .. } => arg
+        Domain::Number { unit, range, .. } => arg
             .value_name(match unit {
                 Unit::Length => "LENGTH",
                 Unit::Degrees => "DEG",
                 Unit::One | Unit::EdgeLengths => "NUMBER",
             })
-            .allow_negative_numbers(true)
-            .value_parser(value_parser!(f64)),
+            .value_parser(number(range.clone(), sign(*unit))),
         Domain::Floor => arg.value_name("LENGTH|auto|none").value_parser(floor),
-        Domain::Reach => arg
-            .value_name("LENGTH|auto")
-            .allow_negative_numbers(true)
-            .value_parser(reach),
+        Domain::Reach => arg.value_name("LENGTH|auto").value_parser(reach),
         Domain::Poses => arg
             .value_name("FILE|NUMBERS")
             .action(ArgAction::Append)
@@ -154,10 +153,7 @@ fn help<R: Default>(setting: &Setting<R>) -> String {
     if let Domain::Number { unit, range, .. } = &setting.domain
         && *range.end() < f64::MAX
     {
-        let suffix = match unit {
-            Unit::Degrees => "°",
-            _ => "",
-        };
+        let suffix = sign(*unit);
         let [low, high] = [range.start(), range.end()].map(|end| trimmed(*end, 6));
         help += &format!(" [{low}{suffix} to {high}{suffix}]");
     }
@@ -166,6 +162,14 @@ fn help<R: Default>(setting: &Setting<R>) -> String {
     match word {
         Some(word) => help + &format!(" [default: {}]", word.trim_end_matches(".0")),
         None => help,
+    }
+}
+
+/// What follows a number where no unit of length is known.
+fn sign(unit: Unit) -> &'static str {
+    match unit {
+        Unit::Degrees => "°",
+        _ => "",
     }
 }
 
@@ -202,10 +206,7 @@ fn floor(word: &str) -> std::result::Result<Floor, String> {
     match word {
         "auto" => Ok(Floor::Auto),
         "none" => Ok(Floor::None),
-        length => length
-            .parse()
-            .map(Floor::Length)
-            .map_err(|_| "expected a length, auto or none".to_owned()),
+        word => length(word, &limits::LENGTH, "auto or none").map(Floor::Length),
     }
 }
 
@@ -217,7 +218,14 @@ fn reach(word: &str) -> std::result::Result<Reach, String> {
     if word == "auto" {
         return Ok(Reach(None));
     }
-    let number = word.parse();
-    let number = number.map_err(|_| "expected a length or auto".to_owned())?;
-    Ok(Reach(Some(number)))
+    let length = length(word, &map_limits::POSITIVE, "auto")?;
+    Ok(Reach(Some(length)))
+}
+
+/// A length in its range, where a word may stand for it too.
+fn length(word: &str, range: &RangeInclusive<f64>, or: &str) -> std::result::Result<f64, String> {
+    let length = word
+        .parse()
+        .map_err(|_| format!("expected a length, {or}"))?;
+    within(length, range, "")
 }

@@ -117,6 +117,8 @@ pub mod limits {
     /// Largest angle between the normals, in degrees. Above 90° a sheet would take the values of one that
     /// faces away.
     pub const ANGLE_DEG: RangeInclusive<f64> = 1.0..=90.0;
+    /// Layers of a shell. Practice has 2 to 11; the work of a mapping grows with their number.
+    pub const LAYERS: RangeInclusive<usize> = 1..=100;
     /// Rings of elements that are filled.
     pub const RINGS: RangeInclusive<usize> = 0..=usize::MAX;
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::project::ProjectError;
 use crate::formats::{Diagnostic, FormatError, SelectionError};
-use crate::mapping::MappingError;
+use crate::mapping::{MappingError, limits};
 use crate::monitor::Cancelled;
 use crate::registration::RegistrationError;
 use crate::report::CardError;
@@ -90,6 +90,17 @@ pub enum PipelineError {
     UnknownLayers {
         /// Id of the crash part.
         part: u64,
+    },
+    /// More layers than a mapping carries.
+    #[error(
+        "part {part} has {n_layers} layers, but a mapping carries 1 to {}; name fewer (--layers)",
+        limits::LAYERS.end()
+    )]
+    TooManyLayers {
+        /// Id of the crash part.
+        part: u64,
+        /// Layers of its section.
+        n_layers: usize,
     },
     /// The section's layers lie where a rule of the user's puts them.
     #[error(

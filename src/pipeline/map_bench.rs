@@ -171,7 +171,7 @@ pub fn error_rows(
                 method,
                 ..MapOptions::default()
             },
-            stress_factor: Some(1.0),
+            stress_factors: vec![1.0],
             ..MapRecipe::default()
         };
         let placed = PlacedPart {

@@ -48,7 +48,7 @@ pub enum RegistrationError {
         degrees: f64,
     },
     /// There is no start to run.
-    #[error("the chosen start method gives no start (no start poses were passed)")]
+    #[error("the start method takes given poses, but none is given (--start-pose)")]
     NoStarts,
     /// A setting is outside its range.
     #[error("{name} is {value}, but must be {}", range_words(.range))]
@@ -68,7 +68,10 @@ pub enum RegistrationError {
 impl RegistrationError {
     /// True if a setting is to blame and not the parts.
     pub fn is_setting(&self) -> bool {
-        matches!(self, Self::Setting { .. } | Self::AngleSegment { .. })
+        matches!(
+            self,
+            Self::Setting { .. } | Self::AngleSegment { .. } | Self::NoStarts
+        )
     }
 }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::RegistrationError;
 use super::closed_form::Motion;
 use super::icp::{Floor, Metric, PairWith, Selection};
-use super::multi_start::starts::StartSettings;
+use super::multi_start::starts::{StartMethod, StartSettings};
 
 /// The methods by name; each is a choice of pairs, selection, metric and search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -189,6 +189,9 @@ impl MatchSettings {
     /// Says which setting lies outside its range.
     pub(crate) fn check(&self) -> Result<(), RegistrationError> {
         self.starts.n_rotations()?;
+        if self.starts.method == StartMethod::GivenPoses && self.starts.poses.is_empty() {
+            return Err(RegistrationError::NoStarts);
+        }
         let within = |name, value: f64, range: RangeInclusive<f64>| {
             if range.contains(&value) {
                 Ok(())

@@ -97,8 +97,8 @@ pub struct MapCommandLine<'a> {
     /// Layers of the crash elements, the rule through their thickness, and points in the plane, where they
     /// are not the deck's.
     pub layers: (Option<usize>, Option<RuleKind>, Option<u8>),
-    /// Factor on the stamped stresses.
-    pub stress_factor: Option<f64>,
+    /// Factors on the stamped stresses: none, one for all files or one for each.
+    pub stress_factors: &'a [f64],
     /// Material law of the stamped parts.
     pub stamped_law: Option<&'a str>,
 }
@@ -166,18 +166,18 @@ impl MapCommandLine<'_> {
         }
         let (layers, rule, n_plane) = self.layers;
         let rule = rule.map(|rule| rule.name().to_owned());
-        let stress_factor = self.stress_factor.map(exact);
         for (name, word) in [
             ("layers", layers.map(|n| n.to_string())),
             ("rule", rule),
             ("n-plane", n_plane.map(|n| n.to_string())),
-            ("stress-factor", stress_factor),
             ("stamped-material", self.stamped_law.map(str::to_owned)),
         ] {
             if let Some(word) = word {
                 words.option(name, word);
             }
         }
+        let factors: Vec<String> = self.stress_factors.iter().copied().map(exact).collect();
+        words.repeated("stress-factor", &factors);
         shell_line(&words.0)
     }
 }

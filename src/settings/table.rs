@@ -89,7 +89,7 @@ pub static SETTINGS: [Setting; 26] = [
         former: &["initial-pose"],
         key: "start_poses",
         label: "Given poses",
-        help: "A start pose (crash from stamped): a text file, or its numbers, 16 by rows. Several poses are all tried",
+        help: "A start pose (crash from stamped): a text file, or its numbers, 16 by rows. Several poses are all tried. A rigid match keeps the scale of its start",
         group: Group::Starts,
         domain: Domain::Poses,
         access: at!(settings.starts.poses),

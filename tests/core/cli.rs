@@ -373,10 +373,66 @@ fn info_counts_the_forming_results() {
     assert!(text(&people.stdout).contains("FLOOR PAN FRONT"));
 }
 
+/// A number below 0 is answered with what the option takes, not with another way to type it.
+#[test]
+fn numbers_below_zero_are_taken_as_the_value_of_their_option() {
+    use clap::{CommandFactory as _, Parser as _, error::ErrorKind};
+    use shapematch::cli::Cli;
+    let mut n_numbers = 0;
+    for task in Cli::command().get_subcommands() {
+        for option in task.get_opts() {
+            let option = option.get_long().unwrap();
+            let kind = |word: &str| {
+                let words = ["shapematch", task.get_name(), &format!("--{option}"), word];
+                Cli::try_parse_from(words)
+                    .map_or_else(|error| error.kind(), |_| ErrorKind::DisplayHelp)
+            };
+            let is_refused =
+                |kind| matches!(kind, ErrorKind::ValueValidation | ErrorKind::InvalidValue);
+            if is_refused(kind("x")) && !is_refused(kind("4")) {
+                n_numbers += 1;
+                assert_ne!(kind("-5"), ErrorKind::UnknownArgument, "{option}");
+            }
+        }
+    }
+    assert!(n_numbers > 30, "{n_numbers}");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn output_that_cannot_be_written_is_named() {
+    let full = std::fs::File::options()
+        .write(true)
+        .open("/dev/full")
+        .unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_shapematch"))
+        .args(["sample", "--list"])
+        .stdout(full)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("standard output cannot be written"));
+    let folder = tempfile::tempdir().unwrap();
+    let piped = "shapematch sample --list | true";
+    let program = Path::new(env!("CARGO_BIN_EXE_shapematch"))
+        .parent()
+        .unwrap();
+    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
+    let output = Command::new("sh")
+        .args(["-c", piped])
+        .env("PATH", path)
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(text(&output.stderr), "");
+}
+
 #[test]
 fn wrong_usage_and_missing_files_have_their_own_status() {
     assert_eq!(shapematch(&["match", "only-one.k"]).status.code(), Some(2));
     assert_eq!(shapematch(&["no-such-task", "--x"]).status.code(), Some(2));
+    let unknown = shapematch(&["sample", "folder", "--part", "no-such-part"]);
+    assert_eq!(unknown.status.code(), Some(2));
     let missing = shapematch(&["info", "no-such-file.k"]);
     assert_eq!(missing.status.code(), Some(1));
     assert!(text(&missing.stderr).contains("no-such-file.k"));

@@ -210,6 +210,102 @@ fn a_given_pose_is_mirrored_at_a_plane_of_the_crash_model() {
 }
 
 #[test]
+fn values_that_cannot_be_are_wrong_usage() {
+    let strip = Strip::new();
+    let cases: &[(&[&str], &str)] = &[
+        (&["--thickness-scale", "0"], "above 0"),
+        (&["--max-distance", "0"], "above 0"),
+        (&["--max-distance", "-1"], "above 0"),
+        (&["--max-angle", "0"], "from 1° to 90°"),
+        (&["--require", "101"], "from 0 to 100"),
+        (&["--require", "-5"], "from 0 to 100"),
+        (&["--stress-factor", "-5"], "above 0"),
+        (
+            &["--stress-factor=1", "--stress-factor=2"],
+            "2 stress factors for 1 stamped file",
+        ),
+        (&["--layers", "101"], "1..=100"),
+        (&["--n-plane", "2"], "1 or 4"),
+        (&["--quantities", "full,nothing"], "\"nothing\" is none of"),
+        (&["--pose", "1 2 3"], "--pose"),
+    ];
+    for (options, words) in cases {
+        let refused = strip.0.run(options);
+        let told = errors(&refused);
+        assert_eq!(refused.status.code(), Some(2), "{options:?}: {told}");
+        assert!(told.contains(words), "{options:?}: {told}");
+    }
+    for without_out in ["--write=deck", "--large=no", "--default-thickness=2"] {
+        let refused = strip.0.run(&["--identity", without_out]);
+        assert_eq!(refused.status.code(), Some(2), "{without_out}");
+        assert!(
+            errors(&refused).contains("--out <FILE>"),
+            "{}",
+            errors(&refused)
+        );
+    }
+}
+
+#[test]
+fn presets_may_stand_among_quantities() {
+    let strip = Strip::new();
+    let written = |quantities: &str| {
+        let output = strip.map(&["--identity", "--quantities", quantities]);
+        assert!(output.status.success(), "{}", errors(&output));
+        std::fs::read(strip.path("out.k")).unwrap()
+    };
+    assert_eq!(written("usual,stress"), written("thickness,plastic,stress"));
+    assert_eq!(written("thickness,full"), written("full"));
+}
+
+#[test]
+fn the_area_that_is_asked_for_is_the_one_that_is_told() {
+    let strip = Strip::new();
+    let told = |required: &str| {
+        let output = strip.map(&["--identity", "--require", required]);
+        let summary = String::from_utf8(output.stdout.clone()).unwrap();
+        (summary, errors(&output).to_owned())
+    };
+    let (summary, warned) = told("90");
+    assert!(summary.contains("asked for at least 90"), "{summary}");
+    assert!(warned.contains("90 % are required"), "{warned}");
+    let (summary, warned) = told("50");
+    assert!(
+        !summary.contains("asked for at least") && warned.is_empty(),
+        "{summary}{warned}"
+    );
+}
+
+#[test]
+fn each_stamped_file_may_have_a_stress_factor() {
+    let strip = Strip::new();
+    std::fs::copy(strip.path("stamped.dynain"), strip.path("second.dynain")).unwrap();
+    let stress = |factors: &[&str]| {
+        let beside = "1 0 0 20 0 1 0 0 0 0 1 0 0 0 0 1";
+        let on = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
+        let options = [
+            "second.dynain",
+            "--pose",
+            on,
+            "--pose",
+            beside,
+            "--quantities",
+            "stress",
+        ];
+        let output = strip.map(&[&options[..], factors].concat());
+        assert!(output.status.success(), "{}", errors(&output));
+        let model = super::map_decks::model(&strip.path("out.k"));
+        let cards = model.forming.stresses();
+        cards
+            .map(|card| (card.element_id, card.points[0].stress[0]))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(stress(&["--stress-factor=2"]), [(101, 200.0), (103, 200.0)]);
+    let each = ["--stress-factor=2", "--stress-factor=0.5"];
+    assert_eq!(stress(&each), [(101, 200.0), (103, 50.0)]);
+}
+
+#[test]
 fn the_largest_distance_is_a_length_or_the_element_size() {
     let strip = Strip::new();
     let written = |distance: &str| {

@@ -179,6 +179,13 @@ fn settings_that_cannot_be_are_wrong_usage() {
             "rotation",
         ),
         (&["--threads", "100000"], "100000"),
+        (&["--overlap", "2"], "from 0.001 to 1"),
+        (&["--overlap", "0.5"], "no effect"),
+        (&["--lambda", "3", "--method", "icp"], "no effect"),
+        (&["--start", "given"], "--start-pose"),
+        (&["--floor", "-1"], "at least 0"),
+        (&["--card-form", "transform"], "--cards"),
+        (&["--read-limit", "-1"], "above 0"),
     ];
     for (options, words) in cases {
         let args = [&["match", "crash.k", "stamped.dynain"], *options].concat();

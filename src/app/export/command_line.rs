@@ -112,7 +112,7 @@ impl Document {
             further: &further,
             options: &recipe.options,
             layers: (recipe.n_layers, recipe.rule, recipe.n_plane),
-            stress_factor: recipe.stress_factor,
+            stress_factors: &recipe.stress_factors,
             stamped_law: recipe.stamped_law.as_deref(),
         };
         Some(examples(both) + &line.line())

@@ -65,14 +65,14 @@ pub(super) fn part_shells(
 }
 
 /// The forming results of a stamped part. Thickness comes in the crash model's length unit, stress is
-/// multiplied by the recipe's factor. History variables are taken where they are asked for.
+/// multiplied by its factor. History variables are taken where they are asked for.
 pub(super) fn source_part(
     part: &LoadedPart,
     shells: &PartShells,
     recipe: &MapRecipe,
+    stress_factor: f64,
     monitor: &Monitor,
 ) -> Result<SourcePart, Cancelled> {
-    let stress_factor = recipe.stress_factor.unwrap_or(1.0);
     let model = &part.model;
     let factor = part.settings.length_factor;
     let thickness = shells.shells.iter().map(|&shell| {

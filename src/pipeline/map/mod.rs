@@ -40,7 +40,7 @@ use super::{PipelineError, millis_since};
 use crate::geometry::Similarity;
 use crate::mapping::{
     self, Distribution, MapBack, MapOptions, Mapped, PlacedSource, RuleKind, SourcePart,
-    TargetPart, distribution,
+    TargetPart, distribution, limits,
 };
 use crate::monitor::Monitor;
 use convert::{PartShells, part_shells, source_part, target_part};
@@ -60,12 +60,28 @@ pub struct MapRecipe {
     pub rule: Option<RuleKind>,
     /// Points in the plane of each layer, 1 or 4; `None` takes them from the element formulation.
     pub n_plane: Option<u8>,
-    /// Factor on the stresses of the stamped files, where their unit is another one; `None` takes them
-    /// as they are, unless they are clearly in another unit, which is an error then.
-    pub stress_factor: Option<f64>,
+    /// Factors on the stresses of the stamped files, where their unit is another one: one for all, or one
+    /// for each. Without one they are taken as they are, unless they are clearly in another unit, which is
+    /// an error then.
+    pub stress_factors: Vec<f64>,
     /// Material law of the stamped parts ("24"), for files that hold none; history variables are
     /// carried to parts of the same law alone.
     pub stamped_law: Option<String>,
+    /// Share of the area that is to carry values; `None` takes the usual one.
+    pub least_area: Option<f64>,
+}
+
+impl MapRecipe {
+    /// The factor on the stresses of a stamped file, if one was given.
+    pub fn stress_factor(&self, file: usize) -> Option<f64> {
+        let factors = &self.stress_factors;
+        factors.get(file).or_else(|| factors.first()).copied()
+    }
+
+    /// Share of the area that is to carry values.
+    fn wanted_area(&self) -> f64 {
+        self.least_area.unwrap_or(LEAST_AREA)
+    }
 }
 
 /// A stamped part with its pose on the crash part.
@@ -216,15 +232,19 @@ pub fn map_parts(
         shells.push(part_shells(placed.part, monitor)?);
     }
     let mut sources = Vec::with_capacity(stamped.len());
-    for (placed, shells) in stamped.iter().zip(&shells) {
-        sources.push(source_part(placed.part, shells, recipe, monitor)?);
+    for (file, (placed, shells)) in stamped.iter().zip(&shells).enumerate() {
+        let factor = recipe.stress_factor(file).unwrap_or(1.0);
+        sources.push(source_part(placed.part, shells, recipe, factor, monitor)?);
     }
     monitor.check()?;
-    for ((placed, shells), source) in stamped.iter().zip(&shells).zip(&sources) {
+    for (file, ((placed, shells), source)) in stamped.iter().zip(&shells).zip(&sources).enumerate()
+    {
         if wanted.stress || wanted.history {
             ready::check_axes(placed.part, &parts_in_use(shells))?;
         }
-        ready::check_stress_unit(crash, &crash_parts, placed.part, source, recipe)?;
+        if wanted.stress && recipe.stress_factor(file).is_none() {
+            ready::check_stress_unit(crash, &crash_parts, placed.part, source)?;
+        }
     }
     let placed: Vec<PlacedSource<'_>> = sources
         .iter()
@@ -294,6 +314,9 @@ impl Layers<'_> {
             (None, Some(_)) => return Err(PipelineError::OwnLayerRule { part: id }),
             (None, None) => return Err(PipelineError::UnknownLayers { part: id }),
         };
+        if !limits::LAYERS.contains(&n_layers) {
+            return Err(PipelineError::TooManyLayers { part: id, n_layers });
+        }
         let of_deck = if model.shell_control.is_lobatto {
             RuleKind::Lobatto
         } else {

@@ -1,6 +1,6 @@
 //! What must hold before stresses are carried over: global axes on both sides, and one unit.
 
-use super::{MapRecipe, PipelineError};
+use super::PipelineError;
 use crate::geometry::tensor::{Tensor, von_mises};
 use crate::mapping::SourcePart;
 use crate::pipeline::load::LoadedPart;
@@ -40,19 +40,14 @@ pub(super) fn check_axes(part: &LoadedPart, parts: &[u32]) -> Result<(), Pipelin
     }
 }
 
-/// An error if the stresses of a stamped part are clearly in another unit than the crash deck and no
-/// factor was given: from the units that both decks name, else from the size of the stresses beside
+/// An error if the stresses of a stamped part are clearly in another unit than the crash deck: from the units that both decks name, else from the size of the stresses beside
 /// Young's modulus of the crash part.
 pub(super) fn check_stress_unit(
     crash: &LoadedPart,
     crash_parts: &[u32],
     stamped: &LoadedPart,
     source: &SourcePart,
-    recipe: &MapRecipe,
 ) -> Result<(), PipelineError> {
-    if recipe.stress_factor.is_some() || !recipe.options.quantities.stress {
-        return Ok(());
-    }
     let system = |part: &LoadedPart| {
         let known = part.model.stated_units?;
         known.units.system

@@ -18,9 +18,6 @@ use crate::report::{DIRECTION, build_id};
 use crate::role::PerRole;
 use crate::text::Lengths;
 
-/// Below this share of the area a mapping is to be looked at.
-const USUAL_COVERAGE: f64 = 0.95;
-
 /// A mapping as it is kept and exchanged.
 #[derive(Debug, Clone, Serialize)]
 pub struct MapRecord {
@@ -317,7 +314,7 @@ fn warnings(run: &MapRun, files: Option<&MapFiles>) -> Vec<String> {
     let mut warnings = Vec::new();
     let mapped = &run.mapped;
     let area = mapped.mapped_area(&run.target.mesh);
-    if area < USUAL_COVERAGE {
+    if area < run.recipe.wanted_area() {
         warnings.push(format!(
             "only {:.1} % of the crash part's area carries values; the status of the elements says why",
             100.0 * area

@@ -9,7 +9,7 @@ use crate::mapping::Status;
 use crate::pipeline::forming_values::FormingValue;
 use crate::text::{Lengths, counted, fixed, percent};
 
-/// Share of the area that is to carry values.
+/// Share of the area that is to carry values where no other is asked for.
 pub(in crate::pipeline) const LEAST_AREA: f64 = 0.95;
 /// A mean may change by this fraction.
 const MEAN_CHANGE: f64 = 0.005;
@@ -163,8 +163,8 @@ fn area(run: &MapRun, record: &MapRecord) -> CheckRecord {
     CheckRecord {
         name: "Area with values".to_owned(),
         found: percent(record.mapped_area),
-        limit: format!("at least {}", percent(LEAST_AREA)),
-        is_met: Some(record.mapped_area >= LEAST_AREA),
+        limit: format!("at least {}", percent(run.recipe.wanted_area())),
+        is_met: Some(record.mapped_area >= run.recipe.wanted_area()),
         reason: None,
         picture: CheckPicture::Status,
         worst: elements

@@ -38,6 +38,8 @@ pub struct StampedFile {
     pub path: PathBuf,
     /// Parts, unit, folders of includes.
     pub settings: LoadSettings,
+    /// Factor on its stresses, if one was given.
+    pub stress_factor: Option<f64>,
 }
 
 /// How a car is mapped.
@@ -45,7 +47,7 @@ pub struct StampedFile {
 pub struct CarRecipe {
     /// The matches.
     pub matching: MatchRecipe,
-    /// The mappings.
+    /// The mappings; their factors on stresses are those of the stamped files.
     pub map: MapRecipe,
     /// 16 columns a number instead of 10.
     pub is_large: bool,
@@ -287,7 +289,14 @@ impl Group<'_> {
                 crash_from_stamped: claim.pose,
             })
             .collect();
-        let mut run = map_parts(&crash, &placed, &recipe.map, monitor)?;
+        let mut mapping = recipe.map.clone();
+        // They are given for all files or for none.
+        let factors = self
+            .members
+            .iter()
+            .filter_map(|(file, _)| file.stress_factor);
+        mapping.stress_factors = factors.collect();
+        let mut run = map_parts(&crash, &placed, &mapping, monitor)?;
         let is_good = || self.members.iter().map(|(_, claim)| claim.is_good);
         let mut is_displaced = vec![false; placed.len()];
         let differ = is_good().any(|good| good) && !is_good().all(|good| good);
@@ -296,7 +305,11 @@ impl Group<'_> {
             is_displaced = is_good().map(|good| !good).collect();
             let mut good = is_good();
             placed.retain(|_| good.next().unwrap_or(true));
-            run = map_parts(&crash, &placed, &recipe.map, monitor)?;
+            let mut good = is_good();
+            mapping
+                .stress_factors
+                .retain(|_| good.next().unwrap_or(true));
+            run = map_parts(&crash, &placed, &mapping, monitor)?;
         }
         let output = MapOutput {
             kind: WriteKind::Include,

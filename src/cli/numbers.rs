@@ -1,0 +1,68 @@
+//! Numbers as they are typed, each with the range outside of which it is wrong usage.
+
+use std::ops::RangeInclusive;
+
+use clap::builder::RangedU64ValueParser;
+
+use crate::mapping::limits;
+use crate::text::trimmed;
+
+/// Takes numbers in a range; `sign` follows its ends where it is told.
+pub(super) fn number(
+    range: RangeInclusive<f64>,
+    sign: &'static str,
+) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    move |word| {
+        let number = word
+            .trim()
+            .parse()
+            .map_err(|_| "it is no number".to_owned())?;
+        within(number, &range, sign)
+    }
+}
+
+/// A number if it lies in the range, else what it must be.
+pub(super) fn within(number: f64, range: &RangeInclusive<f64>, sign: &str) -> Result<f64, String> {
+    if number.is_finite() && range.contains(&number) {
+        return Ok(number);
+    }
+    let (low, high) = (*range.start(), *range.end());
+    Err(if high < f64::MAX {
+        let [low, high] = [low, high].map(|end| trimmed(end, 6));
+        format!("it must be from {low}{sign} to {high}{sign}")
+    } else if low == f64::MIN_POSITIVE {
+        "it must be above 0".to_owned()
+    } else {
+        format!("it must be at least {}{sign}", trimmed(low, 6))
+    })
+}
+
+/// A factor above zero.
+pub(super) fn positive(word: &str) -> Result<f64, String> {
+    number(limits::POSITIVE, "")(word)
+}
+
+/// A share in percent.
+pub(super) fn percent(word: &str) -> Result<f64, String> {
+    number(0.0..=100.0, "")(word)
+}
+
+/// Points in the plane of a layer.
+pub(super) fn points_in_plane(word: &str) -> Result<u8, String> {
+    match word.trim() {
+        "1" => Ok(1),
+        "4" => Ok(4),
+        _ => Err("it must be 1 or 4".to_owned()),
+    }
+}
+
+/// A number of things.
+pub(super) fn at_least_one() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(1..)
+}
+
+/// Layers of a shell.
+pub(super) fn layers() -> RangedU64ValueParser<usize> {
+    let range = limits::LAYERS;
+    RangedU64ValueParser::new().range(*range.start() as u64..=*range.end() as u64)
+}
