@@ -306,6 +306,29 @@ fn each_stamped_file_may_have_a_stress_factor() {
 }
 
 #[test]
+fn parts_of_the_stamped_file_without_results_are_told() {
+    let section = "*PART\nsheet\n         7         7\n*SECTION_SHELL\n         7         2     0.833         2\n       1.0\n";
+    let silent = "*PART\npatch\n         2         7\n";
+    let crash = squares(4, 101, 7, None);
+    let results = "*INITIAL_STRAIN_SHELL\n         1         1         2\n       0.1       0.0      -0.1       0.0       0.0       0.0      -1.0\n       0.1       0.0      -0.1       0.0       0.0       0.0       1.0\n";
+    let of_two = squares(2, 1, 1, None);
+    let (first, second) = of_two.split_at(of_two.len() - 65);
+    let second = second.replacen("       1", "       2", 1);
+    let of_first = section.replace("sheet\n         7", "sheet\n         1");
+    let pair = Pair::new(
+        &format!("*KEYWORD\n{section}{crash}*END\n"),
+        &format!("*KEYWORD\n{of_first}{silent}{first}{second}{results}*END\n"),
+    );
+    let output = pair.map(&["--stamped-part", "all", "--quantities", "thickness"]);
+    let told = errors(&output);
+    assert!(
+        told.contains("stamped.dynain: no forming results in part 2"),
+        "{told}"
+    );
+    assert!(!told.contains("part 1"), "{told}");
+}
+
+#[test]
 fn the_largest_distance_is_a_length_or_the_element_size() {
     let strip = Strip::new();
     let written = |distance: &str| {

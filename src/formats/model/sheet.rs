@@ -48,8 +48,8 @@ impl Model {
         has
     }
 
-    /// True for parts of which a shell has stresses or strains.
-    fn parts_with_results(&self) -> Vec<bool> {
+    /// For each part whether a shell of it has stresses or strains. O(elements).
+    pub fn parts_with_results(&self) -> Vec<bool> {
         let mut has = vec![false; self.parts.len()];
         let stresses = self.forming.stresses().map(|stress| stress.element_id);
         let strains = self.forming.strains().map(|strain| strain.element_id);

@@ -1,5 +1,6 @@
 //! The mapping in figures: JSON record, element table, and what to warn about.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use serde::Serialize;
@@ -16,7 +17,7 @@ use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::PairUnits;
 use crate::report::{DIRECTION, build_id};
 use crate::role::PerRole;
-use crate::text::Lengths;
+use crate::text::{Lengths, parts_by_id};
 
 /// A mapping as it is kept and exchanged.
 #[derive(Debug, Clone, Serialize)]
@@ -231,7 +232,7 @@ pub fn map_record(
         read_back_error: files.map(|files| files.read_back_error),
         comparison: other.map(|other| compare_with(run, crash, other)),
         probes: Vec::new(),
-        warnings: warnings(run, files),
+        warnings: warnings(run, stamped, files),
         map_ms: run.map_ms,
         check_ms: run.check_ms,
     };
@@ -310,8 +311,34 @@ fn pair_record((stamped, crash): (Distribution, Distribution), values: &BothSide
     }
 }
 
-fn warnings(run: &MapRun, files: Option<&MapFiles>) -> Vec<String> {
-    let mut warnings = Vec::new();
+/// The parts of a stamped file that have neither stresses nor strains, and no thickness but that of their
+/// section; in words.
+fn without_results(placed: &PlacedPart<'_>, shells: &[u32]) -> Option<String> {
+    let model = &placed.part.model;
+    let has_results = model.parts_with_results();
+    let has_thickness =
+        |shell: &&u32| (model.shell_extra(**shell)).is_some_and(|e| e.thickness != [0.0; 4]);
+    let part_of = |shell: &u32| model.shells[*shell as usize].part;
+    let formed = shells.iter().filter(has_thickness).map(part_of);
+    let formed: BTreeSet<u32> = formed.collect();
+    let all: BTreeSet<u32> = shells.iter().map(part_of).collect();
+    let is_silent = |part: &&u32| !has_results[**part as usize] && !formed.contains(part);
+    let silent = all.iter().filter(is_silent);
+    let ids: Vec<u64> = silent.map(|&part| model.parts[part as usize].id).collect();
+    let name = placed.part.file_name();
+    (!ids.is_empty()).then(|| {
+        format!(
+            "{name}: no forming results in {}; crash elements there take the thickness of its section alone",
+            parts_by_id(&ids)
+        )
+    })
+}
+
+fn warnings(run: &MapRun, stamped: &[PlacedPart<'_>], files: Option<&MapFiles>) -> Vec<String> {
+    let sources = stamped.iter().zip(&run.source_shells);
+    let mut warnings: Vec<String> = sources
+        .filter_map(|(placed, shells)| without_results(placed, shells))
+        .collect();
     let mapped = &run.mapped;
     let area = mapped.mapped_area(&run.target.mesh);
     if area < run.recipe.wanted_area() {
