@@ -36,8 +36,8 @@ pub struct ExchangeRules<'a> {
     pub list_layout: Option<Layout>,
     /// What becomes of a shell, by its id.
     pub exchange_of: &'a dyn Fn(u64) -> Exchange,
-    /// What is put at the end of the file, for fields of a width.
-    pub states: &'a dyn Fn(Layout) -> Result<Vec<u8>, Cancelled>,
+    /// What is put at the end of the file, given what was found in it.
+    pub states: &'a dyn Fn(&ExchangedDeck) -> Result<Vec<u8>, Cancelled>,
 }
 
 /// A deck with exchanged elements.
@@ -112,7 +112,7 @@ pub fn exchange_thickness(
     }
     copy.up_to(end.unwrap_or(bytes.len()));
     copy.new_line();
-    let states = (rules.states)(copy.result.layout)?;
+    let states = (rules.states)(&copy.result)?;
     copy.lines(&states);
     copy.up_to(bytes.len());
     Ok(copy.result)
@@ -389,6 +389,31 @@ $ between\n\
         let deck = "*KEYWORD\r\n*ELEMENT_SHELL\r\n1,1,1,2,3,4\r\n*END";
         let found = text(&exchange(deck, &[9]));
         assert_eq!(found, deck.replace("*END", "*INITIAL_STRESS_SHELL\r\n*END"));
+    }
+
+    #[test]
+    fn what_is_put_at_the_end_is_chosen_by_what_was_found() {
+        let deck = "*KEYWORD I10=Y\n*ELEMENT_SHELL\n1,1,1,2,3,4\n*END\n";
+        let seen = |id: u64| {
+            let file = SourceFile::new("a.k", deck);
+            let seen = std::cell::Cell::new(None);
+            let rules = ExchangeRules {
+                included_as: IncludedAs::default(),
+                list_layout: None,
+                exchange_of: &|found| match found == id {
+                    true => Exchange::Listed,
+                    false => Exchange::Other,
+                },
+                states: &|found| {
+                    seen.set(Some((found.layout, found.n_found)));
+                    Ok(Vec::new())
+                },
+            };
+            exchange_thickness(&file, &rules, &Monitor::silent()).unwrap();
+            seen.get()
+        };
+        assert_eq!(seen(1), Some((Layout::I10, 1)));
+        assert_eq!(seen(9), Some((Layout::I10, 0)));
     }
 
     #[test]

@@ -250,9 +250,10 @@ impl MapWriter<'_> {
             let read = &self.crash.settings.read;
             let bytes = formats::read_text(&*from, &file.path, read, self.monitor)?;
             let source = SourceFile::new(&file.path, bytes);
-            let states = |layout| -> Result<Vec<u8>, Cancelled> {
-                if kind == WriteKind::Deck {
-                    self.states(layout, &file.included_as)
+            // Of a copy only the file with the elements is kept.
+            let states = |found: &ExchangedDeck| -> Result<Vec<u8>, Cancelled> {
+                if kind == WriteKind::Deck && found.n_found > 0 {
+                    self.states(found.layout, &file.included_as)
                 } else {
                     Ok(Vec::new())
                 }
