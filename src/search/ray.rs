@@ -42,7 +42,11 @@ impl Bvh {
             return None;
         }
         // Boxes are in local units; a uniform scale leaves the direction as it is.
-        let slabs = Slabs::new(&self.frame.to_local(origin), &direction);
+        let local = self.frame.to_local(origin);
+        if local.amax() > FARTHEST {
+            return self.hit_from_afar(origin, &direction, max_distance);
+        }
+        let slabs = Slabs::new(&local, &direction);
         // A hair beyond, because entries are rounded too.
         let reach = |distance: f64| (distance * self.frame.scale * (1.0 + 1e-6) + 1e-9) as f32;
         let mut limit = reach(max_distance);
@@ -73,6 +77,32 @@ impl Bvh {
         best
     }
 
+    /// The hit of a ray whose origin `f32` cannot hold: it begins beside the mesh instead, at a place that is
+    /// counted from the mesh, because nothing of it would be left as a difference of the origin.
+    fn hit_from_afar(
+        &self,
+        origin: &Point3,
+        direction: &Vector3,
+        max_distance: f64,
+    ) -> Option<RayHit> {
+        let to_middle = self.frame.center - origin;
+        let along = to_middle.dot(direction);
+        let aside = to_middle - direction * along;
+        let before = BESIDE / self.frame.scale;
+        let skipped = along - before;
+        // In local units no corner of the mesh is farther than 1 from its middle on any axis.
+        let passes_by = aside.amax() * self.frame.scale > BESIDE;
+        if passes_by || skipped < 0.0 || skipped > max_distance {
+            return None;
+        }
+        let beside = self.frame.center - aside - direction * before;
+        let hit = self.first_hit_within(&beside, direction, max_distance - skipped)?;
+        Some(RayHit {
+            distance: skipped + hit.distance,
+            ..hit
+        })
+    }
+
     /// Where the ray meets one triangle (Möller and Trumbore 1997).
     fn meet(&self, origin: &Point3, direction: &Vector3, triangle: u32) -> Option<RayHit> {
         let [a, b, c] = self.mesh().corners(triangle as usize);
@@ -98,6 +128,12 @@ impl Bvh {
         })
     }
 }
+
+/// Origins farther from the mesh than so many of its sizes are moved: near the largest `f32` the entries into
+/// its boxes would be infinite.
+const FARTHEST: f64 = 1e30;
+/// Where such a ray begins instead, in mesh sizes from the middle: outside of the box in every direction.
+const BESIDE: f64 = 4.0;
 
 fn nearer(best: Option<RayHit>, hit: Option<RayHit>) -> Option<RayHit> {
     match (best, hit) {
@@ -152,6 +188,36 @@ impl Slabs {
             let slot = within.trailing_zeros() as usize;
             within &= within - 1;
             entered.push(u64::from(from[slot].to_bits()) << 32 | u64::from(node.child[slot].0));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::TriMesh;
+
+    #[test]
+    fn a_ray_from_beyond_the_largest_f32_meets_the_nearer_sheet() {
+        let corner = |y: f64, z: f64| [2.0, 3.0].map(|x| Point3::new(x, y, z));
+        let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(0.0, 1.0)];
+        let positions = corners.as_flattened().to_vec();
+        let mesh = TriMesh::new(positions, vec![[0, 2, 4], [1, 3, 5]]).unwrap();
+        let tree = Bvh::build(mesh);
+        for far in [1e31, 1e35, 1e40, 1e200] {
+            let from = |x: f64| Point3::new(x, 0.0, 0.0);
+            let hit = |x: f64, direction: Vector3| tree.first_hit(&from(x), &direction);
+            let left = hit(-far, Vector3::x()).unwrap();
+            let right = hit(far, -Vector3::x()).unwrap();
+            assert_eq!((left.triangle, right.triangle), (0, 1), "{far}");
+            assert_eq!((left.distance, right.distance), (far, far));
+            assert_eq!(hit(far, Vector3::x()), None);
+            assert_eq!(
+                tree.first_hit(&Point3::new(far, far, 0.0), &-Vector3::x()),
+                None
+            );
+            let within = tree.first_hit_within(&from(far), &-Vector3::x(), far / 2.0);
+            assert_eq!(within, None);
         }
     }
 }

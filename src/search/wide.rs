@@ -29,7 +29,7 @@ pub(super) const FAR_AWAY: f32 = 1e18;
 /// Shift and scale that lay the items into the cube −1 … 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LocalFrame {
-    center: Point3,
+    pub(super) center: Point3,
     /// Local units per unit of length.
     pub(super) scale: f64,
 }
