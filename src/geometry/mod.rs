@@ -28,8 +28,8 @@ pub use mesh::{MeshError, TriMesh};
 pub use normals::{CornerNormals, VertexFans, corner_normals, face_normals};
 pub use sampling::{SurfaceSample, sample_surface};
 pub use section::{
-    Gap, OutlineGap, OutlineGaps, Plane, SectionLine, gap_at, nearest_on_lines, outline_gaps,
-    section,
+    Gap, OutlineGap, OutlineGaps, Plane, SectionLine, gap_at, gap_to_nearest, nearest_on_lines,
+    outline_gaps, section,
 };
 pub use similarity::{MatrixError, Similarity};
 pub use topology::{BorderLoop, Topology, orient_consistently};

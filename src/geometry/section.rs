@@ -105,6 +105,21 @@ pub fn gap_at(
     })
 }
 
+/// [`gap_at`] to the one of several outlines that lies nearest there, the first of equal ones.
+pub fn gap_to_nearest<'a>(
+    first: &[SectionLine],
+    normal_of: impl Fn(u32) -> Vector3,
+    others: impl IntoIterator<Item = &'a [SectionLine]>,
+    plane: &Plane,
+    query: &Point3,
+) -> Option<Gap> {
+    let gaps = others
+        .into_iter()
+        .filter_map(|other| gap_at(first, &normal_of, other, plane, query));
+    let length = |gap: &Gap| (gap.to - gap.from).norm();
+    gaps.min_by(|a, b| length(a).total_cmp(&length(b)))
+}
+
 /// How far the points of one outline lie from another outline.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct OutlineGaps {
@@ -510,6 +525,16 @@ mod tests {
         let beyond = gap(9.0, 1.0);
         assert!((beyond.flush - 2.0).abs() < 1e-12 && (beyond.gap - 0.5).abs() < 1e-12);
         assert!(gap_at(&first, |_| Vector3::z(), &[], &plane, &Point3::origin()).is_none());
+        // Of several outlines the nearest one counts, whichever is named first.
+        let mut far = second.clone();
+        for point in far.iter_mut().flat_map(|line| &mut line.points) {
+            point.z += 1.0;
+        }
+        for others in [[&far[..], &second], [&second, &far]] {
+            let query = Point3::new(3.0, 0.0, 0.0);
+            let found = gap_to_nearest(&first, |_| Vector3::z(), others, &plane, &query).unwrap();
+            assert!((found.gap - 0.5).abs() < 1e-12, "{found:?}");
+        }
     }
 
     #[test]

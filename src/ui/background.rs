@@ -97,7 +97,7 @@ impl<K, T> Shared<K, T> {
     }
 }
 
-impl<K: Copy + PartialEq + Send + 'static, T: Send + 'static> Background<K, T> {
+impl<K: Clone + PartialEq + Send + 'static, T: Send + 'static> Background<K, T> {
     /// Nothing runs until something is asked for.
     pub fn new(name: &'static str) -> Self {
         let queue = Queue {
@@ -170,7 +170,7 @@ impl<K, T> Drop for Background<K, T> {
     }
 }
 
-fn serve<K: Copy + PartialEq, T: Send>(shared: &Shared<K, T>, wake: &egui::Context) {
+fn serve<K: Clone + PartialEq, T: Send>(shared: &Shared<K, T>, wake: &egui::Context) {
     let pool = own_threads();
     while let Some(task) = next(shared) {
         let work = || match &pool {
@@ -196,7 +196,7 @@ fn own_threads() -> Option<rayon::ThreadPool> {
 }
 
 /// Waits for a task; `None` when the window is gone.
-fn next<K: Copy + PartialEq, T>(shared: &Shared<K, T>) -> Option<Task<K, T>> {
+fn next<K: Clone + PartialEq, T>(shared: &Shared<K, T>) -> Option<Task<K, T>> {
     let mut queue = shared.lock();
     loop {
         if queue.is_closed {
@@ -208,7 +208,7 @@ fn next<K: Copy + PartialEq, T>(shared: &Shared<K, T>) -> Option<Task<K, T>> {
             .into_iter()
             .find_map(|list| (!list.is_empty()).then(|| list.remove(0)));
         if let Some(task) = task {
-            queue.making = Some(task.key);
+            queue.making = Some(task.key.clone());
             return Some(task);
         }
         queue = shared

@@ -7,7 +7,7 @@ use egui_plot::{Line, LineStyle, Plot, PlotBounds, PlotPoints, PlotUi, Points};
 use super::sections::{self, Cuts, Gaps};
 use crate::app::{Action, AppState, Command, InspectCommand, SectionView};
 use crate::colormap::Rgb;
-use crate::geometry::{Gap, Plane, Point3, SectionLine, Vector3, gap_at, nearest_on_lines};
+use crate::geometry::{Gap, Plane, Point3, SectionLine, Vector3, gap_to_nearest, nearest_on_lines};
 use crate::role::Role;
 use crate::text::capital;
 use crate::ui::theme::{Look, UNIT, color};
@@ -219,7 +219,7 @@ impl Drawing<'_> {
         if response.clicked() {
             choices.is_exaggerated ^= true;
         }
-        let has_worst = self.gaps.is_some_and(|gaps| gaps.found.worst.is_some());
+        let has_worst = self.gaps.is_some_and(|gaps| gaps.worst().is_some());
         let worst = ui.add_enabled(has_worst, Button::new("Worst gap"));
         if worst.on_hover_text("Zoom to the widest gap").clicked() {
             choices.zoom = Some(Zoom::WorstGap);
@@ -238,7 +238,7 @@ impl Drawing<'_> {
         // Another direction of the plane is another picture, and so is another place.
         let (n, is_high) = (self.plane.normal, size.y > size.x);
         let view = format!("{:.2} {:.2} {:.2} {is_high}", n.x, n.y, n.z);
-        let has_worst = self.gaps.is_some_and(|gaps| gaps.found.worst.is_some());
+        let has_worst = self.gaps.is_some_and(|gaps| gaps.worst().is_some());
         if has_worst && choices.zoomed.as_ref() != Some(&view) {
             choices.zoom = choices.zoom.or(Some(Zoom::WorstGap));
             choices.zoomed = Some(view.clone());
@@ -296,22 +296,25 @@ impl Drawing<'_> {
     fn outlines(&self, is_exaggerated: bool) -> Vec<Outline> {
         let mut outlines = Vec::new();
         let wide = self.gaps.filter(|_| is_exaggerated);
-        let cuts = match wide {
-            // Gaps are measured to the first stamped file alone.
+        let cuts: Vec<_> = match wide {
             Some(gaps) => {
-                let of_both = gaps.cuts.iter();
-                let color = |role| sections::color(self.look, role, 0);
-                of_both
-                    .map(|(role, cut)| (role, color(role), cut))
+                let color = |role, number| sections::color(self.look, role, number);
+                let crash = (Role::Crash, color(Role::Crash, 0), &gaps.crash, None);
+                let stamped = gaps.stamped.iter().map(|file| {
+                    let rgb = color(Role::Stamped, file.number);
+                    (Role::Stamped, rgb, &file.cut, Some(&file.found))
+                });
+                std::iter::once(crash).chain(stamped).collect()
+            }
+            None => {
+                let cuts = self.cuts.colored(self.look).into_iter();
+                cuts.map(|(role, rgb, cut)| (role, rgb, cut, None))
                     .collect()
             }
-            None => self.cuts.colored(self.look),
         };
-        for (role, rgb, cut) in cuts {
+        for (role, rgb, cut, gaps) in cuts {
             for (index, line) in cut.lines.iter().enumerate() {
-                let ways = wide
-                    .filter(|_| role == Role::Stamped)
-                    .and_then(|gaps| gaps.found.ways.get(index));
+                let ways = gaps.and_then(|gaps| gaps.ways.get(index));
                 outlines.push(Outline {
                     role,
                     rgb,
@@ -355,7 +358,7 @@ impl Drawing<'_> {
                 (center, 0.55 * half)
             }
             Zoom::WorstGap => {
-                let worst = self.gaps?.found.worst.as_ref()?;
+                let worst = self.gaps?.worst()?;
                 let [a, b] = [self.plane.flat(&worst.from), self.plane.flat(&worst.to)];
                 let width = (b[0] - a[0]).hypot(b[1] - a[1]);
                 let half = (0.5 * WIDTHS * width).min(0.5 * CLOSE * extent);
@@ -428,12 +431,12 @@ impl Drawing<'_> {
                 .allow_hover(false);
             plot.points(point);
         }
-        let both = &self.cuts.parts;
-        let (Some(crash), Some(stamped)) = (&both.crash, &both.stamped) else {
+        let Some(crash) = &self.cuts.parts.crash else {
             return;
         };
         let normal = |triangle| crash.normal(triangle);
-        let gap = gap_at(&crash.lines, normal, &stamped.lines, &self.plane, &query);
+        let stamped = self.cuts.stamped().map(|cut| &cut.lines[..]);
+        let gap = gap_to_nearest(&crash.lines, normal, stamped, &self.plane, &query);
         seen.gap = gap.filter(|gap| distance(&gap.from, &query) < NEAR * per_point);
         if let Some(gap) = &seen.gap {
             let scale = if seen.is_exaggerated {
@@ -454,7 +457,7 @@ impl Drawing<'_> {
     /// What was measured, the gap at the pointer, the worst one, or what one can do.
     fn foot(&self, ui: &mut Ui, seen: &Seen, picked: &[[f64; 2]]) {
         let lengths = self.state.lengths();
-        let worst = self.gaps.and_then(|gaps| gaps.found.worst.as_ref());
+        let worst = self.gaps.and_then(Gaps::worst);
         let (text, is_fact) = if let [a, b] = picked {
             let [du, dv] = [b[0] - a[0], b[1] - a[1]];
             let whole = lengths.of(du.hypot(dv));

@@ -7,7 +7,8 @@ use super::meshes::{MeshKey, ShownMesh};
 use crate::app::{AppState, Shared};
 use crate::colormap::{ColorScale, Rgb};
 use crate::geometry::{
-    Aabb, OutlineGaps, Plane, Point3, SectionLine, Similarity, Vector3, outline_gaps, section,
+    Aabb, OutlineGap, OutlineGaps, Plane, Point3, SectionLine, Similarity, Vector3, outline_gaps,
+    section,
 };
 use crate::pipeline::load::LoadedPart;
 use crate::render::{DepthMode, Fill, Overlay, Polyline};
@@ -32,7 +33,7 @@ pub(super) type Uncut = (Role, usize, Arc<ShownMesh>, Similarity);
 /// The outlines that are shown.
 #[derive(Default)]
 pub(super) struct Cuts {
-    /// Those of the crash part and of the first stamped file, between which gaps are measured.
+    /// Those of the crash part and of the first stamped file.
     pub parts: PerRole<Option<Arc<Cut>>>,
     /// Those of the further stamped files, by their numbers.
     pub further: BTreeMap<usize, Arc<Cut>>,
@@ -45,6 +46,11 @@ impl Cuts {
             0 => self.parts.get(role).as_ref(),
             _ => self.further.get(&number),
         }
+    }
+
+    /// Those of all stamped files.
+    pub fn stamped(&self) -> impl Iterator<Item = &Arc<Cut>> {
+        self.parts.stamped.iter().chain(self.further.values())
     }
 
     /// All of them with their colours, the crash part's first so that it lies below.
@@ -106,9 +112,16 @@ impl Cut {
     }
 }
 
-/// Both outlines with the gaps between them.
+/// The outlines with the gaps between the crash part's and those of the stamped files.
 pub(super) struct Gaps {
-    pub cuts: PerRole<Arc<Cut>>,
+    pub crash: Arc<Cut>,
+    pub stamped: Vec<FileGaps>,
+}
+
+/// The outline of a stamped file with its gaps.
+pub(super) struct FileGaps {
+    pub number: usize,
+    pub cut: Arc<Cut>,
     pub found: OutlineGaps,
 }
 
@@ -116,11 +129,26 @@ pub(super) struct Gaps {
 const WIDEST: f64 = 0.1;
 
 impl Gaps {
-    fn make(cuts: PerRole<Arc<Cut>>) -> Self {
-        let points = cuts.crash.lines.iter().flat_map(|line| &line.points);
+    fn make(crash: Arc<Cut>, stamped: Vec<(usize, Arc<Cut>)>) -> Self {
+        let points = crash.lines.iter().flat_map(|line| &line.points);
         let size = Aabb::of_points(points).diagonal();
-        let found = outline_gaps(&cuts.crash.lines, &cuts.stamped.lines, WIDEST * size);
-        Self { cuts, found }
+        let measured = stamped.into_iter().map(|(number, cut)| FileGaps {
+            number,
+            found: outline_gaps(&crash.lines, &cut.lines, WIDEST * size),
+            cut,
+        });
+        let stamped = measured.collect();
+        Self { crash, stamped }
+    }
+
+    /// The longest of all ways.
+    pub fn worst(&self) -> Option<&OutlineGap> {
+        let all = self
+            .stamped
+            .iter()
+            .filter_map(|file| file.found.worst.as_ref());
+        let length = |gap: &OutlineGap| (gap.to - gap.from).norm();
+        all.max_by(|a, b| length(a).total_cmp(&length(b)))
     }
 }
 
@@ -162,13 +190,21 @@ pub(super) fn outline(look: &Look, cut: &Cut, color: Rgb, offset: &Vector3) -> V
     drawn.collect()
 }
 
+/// The numbers of the stamped files that are not hidden.
+fn shown_files(state: &AppState) -> Vec<usize> {
+    let first = (!state.is_first_file_hidden()).then_some(0);
+    let further = state.shown_further().into_iter().map(|file| file.number);
+    first.into_iter().chain(further).collect()
+}
+
 /// The outlines of all parts.
 pub(super) struct SectionStore {
     background: Background<CutKey, Cut>,
     ready: BTreeMap<(Role, usize), (CutKey, Arc<Cut>)>,
     failed: Vec<CutKey>,
-    measuring: Background<PerRole<CutKey>, Gaps>,
-    gaps: Option<(PerRole<CutKey>, Option<Arc<Gaps>>)>,
+    /// Of gaps, the key of the crash part's cut first.
+    measuring: Background<Vec<CutKey>, Gaps>,
+    gaps: Option<(Vec<CutKey>, Option<Arc<Gaps>>)>,
 }
 
 impl SectionStore {
@@ -223,28 +259,37 @@ impl SectionStore {
                 None => self.failed.push(key),
             }
         }
-        self.measure(window, plane.is_some(), wake);
+        self.measure(window, state, wake);
     }
 
     /// Asks for the gaps between the newest outlines.
-    fn measure(&mut self, window: Role, is_shown: bool, wake: &egui::Context) {
-        let ready = |role| self.ready.get(&(role, 0));
-        let both = ready(Role::Crash).zip(ready(Role::Stamped));
-        let both = both.filter(|_| is_shown);
-        let task = both.and_then(|((crash_key, crash), (stamped_key, stamped))| {
-            let key = PerRole::new(*crash_key, *stamped_key);
-            let is_one_plane = key.crash.plane == key.stamped.plane;
-            let is_known = self.gaps.as_ref().is_some_and(|(of, _)| *of == key);
-            let cuts = PerRole::new(Arc::clone(crash), Arc::clone(stamped));
-            (is_one_plane && !is_known).then(|| Task {
-                key,
-                work: Box::new(move || Gaps::make(cuts)),
-            })
-        });
-        let wanted = task.into_iter().collect();
-        for (key, gaps) in self.measuring.exchange(window, wanted, wake) {
+    fn measure(&mut self, window: Role, state: &AppState, wake: &egui::Context) {
+        let task = self.ungauged(state).into_iter().collect();
+        for (key, gaps) in self.measuring.exchange(window, task, wake) {
             self.gaps = Some((key, gaps.map(Arc::new)));
         }
+    }
+
+    /// The gaps that are to be measured, if these are not the ones that are known.
+    fn ungauged(&self, state: &AppState) -> Option<Task<Vec<CutKey>, Gaps>> {
+        state.inspect.section.shown()?;
+        let (crash_key, crash) = self.ready.get(&(Role::Crash, 0))?;
+        let mut key = vec![*crash_key];
+        let mut stamped = Vec::new();
+        for number in shown_files(state) {
+            let (of, cut) = self.ready.get(&(Role::Stamped, number))?;
+            if of.plane != crash_key.plane {
+                return None;
+            }
+            key.push(*of);
+            stamped.push((number, Arc::clone(cut)));
+        }
+        let is_known = self.gaps.as_ref().is_some_and(|(of, _)| *of == key);
+        let crash = Arc::clone(crash);
+        (!is_known && !stamped.is_empty()).then(|| Task {
+            key,
+            work: Box::new(move || Gaps::make(crash, stamped)),
+        })
     }
 
     /// The newest gaps, of the outlines that are shown or of those before them.
@@ -252,9 +297,12 @@ impl SectionStore {
         let plane = state.inspect.section.shown()?;
         let (key, gaps) = self.gaps.as_ref()?;
         // Another direction has other axes, in which old outlines would be nonsense.
-        let is_same = key.crash.plane.normal == plane.normal;
-        gaps.clone()
-            .filter(|_| is_same && state.document.both().is_some() && !state.is_first_file_hidden())
+        let is_same = key.first()?.plane.normal == plane.normal;
+        let shown = shown_files(state);
+        gaps.clone().filter(|gaps| {
+            let numbers = gaps.stamped.iter().map(|file| file.number);
+            is_same && state.document.both().is_some() && numbers.eq(shown)
+        })
     }
 
     /// The newest outlines of the parts that are loaded, while the section is shown.
