@@ -178,3 +178,49 @@ fn a_typed_move_takes_a_decimal_comma_and_its_button_stays_under_the_pointer() {
         );
     }
 }
+
+/// Clicks a field of numbers, types, and presses Enter.
+fn type_into(
+    window: &mut egui_kittest::Harness<'static, shapematch::ui::Shell>,
+    field: &str,
+    text: &str,
+) {
+    let role = egui::accesskit::Role::SpinButton;
+    window.get_by_role_and_label(role, field).click();
+    window.run_steps(2);
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.event(egui::Event::Text(text.to_owned()));
+    window.run_steps(2);
+    window.key_press(egui::Key::Enter);
+    window.run_steps(2);
+}
+
+#[test]
+fn a_number_that_cannot_be_is_refused_where_it_is_typed() {
+    let mut window = matched();
+    let level = |window: &egui_kittest::Harness<'static, shapematch::ui::Shell>| {
+        let state = window.state().state();
+        let part = state.document.part(Role::Crash).expect("loaded");
+        (state.settings.max_triangles, part.wanted_level)
+    };
+    click(&mut window, "2 Reduce");
+    window.run_steps(4);
+    let before = level(&window);
+    for (typed, why) in [
+        ("a few", "“a few” is no whole number."),
+        ("0", "A maximum is 4 to 50,000,000 triangles."),
+    ] {
+        type_into(&mut window, "Max triangles", typed);
+        assert!(window.query_by_label(why).is_some(), "{why}");
+        finish(&mut window);
+        assert_eq!(level(&window), before, "{typed}");
+    }
+    type_into(&mut window, "Max triangles", "600");
+    finish(&mut window);
+    assert_eq!(level(&window), (600, Some(600)));
+    let refused = window.query_all_by(|node| {
+        node.value()
+            .is_some_and(|text| text.starts_with("A maximum is"))
+    });
+    assert_eq!(refused.count(), 0);
+}

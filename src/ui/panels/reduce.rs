@@ -1,11 +1,13 @@
 //! Section 2: fewer triangles, at any level, with the full mesh kept.
 
+use std::ops::RangeInclusive;
+
 use egui::{Response, Slider, Ui, vec2};
 
 use super::section::section_ui;
 use crate::app::{
     Action, AppState, ColorBy, Command, LevelResult, Part, ReduceCommand, Section, Settings,
-    ViewCommand, duration_text,
+    ViewCommand, duration_text, typed_count,
 };
 use crate::jobs::{JobKey, MeasuredLevel};
 use crate::role::{PerRole, Role};
@@ -13,7 +15,7 @@ use crate::text::counted;
 use crate::ui::theme::{LABEL, Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, count_field, form_row, grouped, icon_button, paragraph,
-    role_mark, short_count, square, tight,
+    refusal, role_mark, short_count, square, tight, told_field,
 };
 
 /// Draws section 2.
@@ -62,20 +64,37 @@ fn summary(state: &AppState) -> String {
 /// Room for the choice of parts beside the maximum.
 const CHOICE: f32 = 128.0;
 
+/// What a maximum may be.
+const MAX_TRIANGLES: RangeInclusive<usize> = 4..=50_000_000;
+
+/// The maximum that a text says, or why it says none.
+fn read_max_triangles(text: &str) -> Result<f64, String> {
+    let Some(n) = typed_count(text) else {
+        return Err(format!("“{}” is no whole number.", text.trim()));
+    };
+    if MAX_TRIANGLES.contains(&n) {
+        return Ok(n as f64);
+    }
+    let [least, most] = [MAX_TRIANGLES.start(), MAX_TRIANGLES.end()].map(|n| grouped(*n));
+    Err(format!("A maximum is {least} to {most} triangles."))
+}
+
 /// The maximum, what it is for, and the button.
 fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut settings: Settings = state.settings.clone();
     let mut is_entered = false;
+    let mut refused = None;
     form_row(ui, "Max triangles", LABEL, |ui| {
         let field = count_field(&mut settings.max_triangles)
-            .range(4..=50_000_000)
+            .range(MAX_TRIANGLES)
             .speed(20.0)
-            .update_while_editing(false)
             .custom_formatter(|n, _| grouped(n as usize))
             .min_size(vec2((ui.available_width() - CHOICE).clamp(56.0, 98.0), ROW));
-        let field = ui.add(field);
+        let (field, why) = told_field(ui, field, read_max_triangles);
         ui.spacing_mut().button_padding.x = 8.0;
-        is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        let is_left = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        is_entered = is_left && why.is_none();
+        refused = why;
         let roles = settings.reduce_roles;
         for (label, name, chosen) in [
             ("■", "Reduce the crash part", PerRole::new(true, false)),
@@ -91,6 +110,7 @@ fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
         }
     });
+    refusal(ui, refused);
     let roles = settings.reduce_roles;
     let max_triangles = settings.max_triangles;
     if settings != state.settings {

@@ -11,12 +11,12 @@ use crate::registration::{group_starts, limits};
 use crate::report::{PoseRecord, few_agree_words, number, start_counts};
 use crate::role::PerRole;
 use crate::settings::setting;
-use crate::text::{capital, fixed, sentence, vector, whole_percent};
+use crate::text::{Lengths, capital, fixed, sentence, vector, whole_percent};
 use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, card, chip, figure, length_field, paragraph, percent,
-    plain_action, square, tight, verdict_color,
+    plain_action, refusal, square, tight, told_field, verdict_color,
 };
 
 /// Verdict, figures, alternatives, matrix.
@@ -128,6 +128,7 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
         (Some(_), Verdict::Good) => Verdict::Check,
         (_, verdict) => verdict,
     };
+    let mut refused = None;
     ui.horizontal(|ui| {
         let mut text = format!("{} {}", verdict.sign(), verdict.label());
         if let Some(index) = result.alternative {
@@ -141,9 +142,11 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
         // An alternative is told from the best pose, whatever the tolerance.
         if result.alternative.is_none() {
             let right = egui::Layout::right_to_left(egui::Align::Center);
-            ui.with_layout(right, |ui| tolerance_ui(ui, state, result, commands));
+            let field = ui.with_layout(right, |ui| tolerance_ui(ui, state, result, commands));
+            refused = field.inner;
         }
     });
+    refusal(ui, refused);
     if let Some(score_ratio) = score_ratio(result) {
         let text = format!(
             "An alternative: its error is {} higher than that of the best pose.",
@@ -165,14 +168,31 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     }
 }
 
-/// The tolerance the verdict was judged with; another one judges the match anew. From right to left.
-fn tolerance_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mut Vec<Command>) {
+/// The tolerance that a text says, 0 for the automatic one, or why it says none.
+fn read_tolerance(text: &str, lengths: Lengths) -> Result<f64, String> {
+    match (text.trim(), typed_length(text, lengths)) {
+        ("", _) => Ok(0.0),
+        (_, Some(length)) if length >= 0.0 => Ok(length),
+        (_, Some(_)) => Err("A tolerance is not below 0.".to_owned()),
+        (text, None) => Err(format!("“{text}” is no length.")),
+    }
+}
+
+/// The tolerance the verdict was judged with; another one judges the match anew. From right to left. Says why
+/// a typed one was refused.
+fn tolerance_ui(
+    ui: &mut Ui,
+    state: &AppState,
+    result: &MatchResult,
+    commands: &mut Vec<Command>,
+) -> Option<String> {
     let (Some(setting), Some(shape)) = (
         setting("shape-tolerance"),
         result.run.assessment.shape.as_ref(),
     ) else {
-        return;
+        return None;
     };
+    let mut refused = None;
     let mut recipe = state.document.recipe.clone();
     let tolerance = &mut recipe.settings.shape_tolerance;
     let is_automatic = *tolerance == 0.0;
@@ -190,13 +210,10 @@ fn tolerance_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &
             let field = length_field(&mut shown, lengths)
                 .range(limits::LENGTH)
                 .speed(0.01 * usual)
-                .max_decimals(4)
-                .update_while_editing(false)
-                .custom_parser(move |text| match text.trim() {
-                    "" => Some(0.0),
-                    text => typed_length(text, lengths),
-                });
-            let field = ui.add(field).on_hover_text(
+                .max_decimals(4);
+            let (field, why) = told_field(ui, field, |text| read_tolerance(text, lengths));
+            refused = why;
+            let field = field.on_hover_text(
                 "Shape tolerance: how far the shapes may differ besides springback. The verdict follows \
                  at once; the pose stays. An empty field takes the automatic tolerance",
             );
@@ -209,6 +226,7 @@ fn tolerance_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &
     if recipe != state.document.recipe {
         commands.push(MatchCommand::SetRecipe(Box::new(recipe)).into());
     }
+    refused
 }
 
 /// How much worse the shown alternative is than the best pose, 1 = equally good.
@@ -267,7 +285,7 @@ fn coverage_ui(ui: &mut Ui, state: &AppState, coverage: &Coverage) {
         state.lengths().number(coverage.rmse()),
         state.lengths().of(coverage.p95()),
     );
-    figure(ui, "RMS · P95", &format!("{rms} · {p95}"));
+    figure(ui, "RMS · P95 of the overlap", &format!("{rms} · {p95}"));
 }
 
 /// Poses that fit nearly as well: one click or one key away.
@@ -388,4 +406,20 @@ fn moved_ui(ui: &mut Ui, state: &AppState) {
             number(record.scale)
         ),
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::LengthUnit;
+
+    #[test]
+    fn a_tolerance_that_is_none_is_refused_with_the_reason() {
+        let lengths = Lengths::new(Some(LengthUnit::Millimeter));
+        let read = |text| read_tolerance(text, lengths);
+        assert_eq!(read(""), Ok(0.0));
+        assert_eq!(read("0,2 cm"), Ok(2.0));
+        assert!(read("wide").is_err_and(|why| why == "“wide” is no length."));
+        assert!(read("-2").is_err_and(|why| why == "A tolerance is not below 0."));
+    }
 }
