@@ -31,14 +31,27 @@ pub fn parts_by_id(ids: &[u64]) -> String {
     format!("{noun} {}", ids.join(", "))
 }
 
-/// A fraction in percent with one decimal: `87.0 %`.
+/// A fraction in percent with one decimal: `87.0 %`. Less than all never reads as all: `99.9 %`.
 pub fn percent(fraction: f64) -> String {
-    format!("{} %", fixed(100.0 * fraction, 1))
+    in_percent(fraction, 1)
 }
 
 /// A fraction in whole percent, for what changes while it is read: `87 %`.
 pub fn whole_percent(fraction: f64) -> String {
-    format!("{} %", fixed(100.0 * fraction, 0))
+    in_percent(fraction, 0)
+}
+
+/// What sums lose of all in rounding.
+const ALMOST_ALL: f64 = 1.0 - 1e-9;
+
+fn in_percent(fraction: f64, decimals: usize) -> String {
+    let most = 100.0 - 0.1_f64.powi(decimals as i32);
+    let shown = if fraction < ALMOST_ALL {
+        (100.0 * fraction).min(most)
+    } else {
+        100.0 * fraction
+    };
+    format!("{} %", fixed(shown, decimals))
 }
 
 /// A number with so many decimals; what rounds to zero has no sign.
@@ -290,6 +303,10 @@ mod tests {
     fn fractions_and_times_are_short() {
         assert_eq!(percent(0.8704), "87.0 %");
         assert_eq!(whole_percent(0.8704), "87 %");
+        // Less than all is not all; what sums lose is nothing.
+        let read = [0.999_49, 0.999_6, 1.0 - 1e-12, 1.0, 1.05].map(percent);
+        assert_eq!(read, ["99.9 %", "99.9 %", "100.0 %", "100.0 %", "105.0 %"]);
+        assert_eq!(whole_percent(0.997), "99 %");
         assert_eq!(millis(3.12), "3.1 ms");
         assert_eq!(millis(118.6), "119 ms");
     }

@@ -94,7 +94,7 @@ pub enum Reason {
     },
     /// Nothing speaks against the pose.
     InOrder {
-        /// Covered fraction of the part that is covered better.
+        /// Share of the smaller part that meets the other.
         #[serde(with = "any_float")]
         overlap: f64,
         /// Distance that 95 % of the overlap stays below.

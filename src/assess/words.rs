@@ -99,7 +99,7 @@ impl Reason {
                 p95,
                 rivals_sought,
             } => format!(
-                "{} of the smaller part overlaps, 95 % of it within {}, and {}",
+                "the parts meet over {} of the smaller one, 95 % of the overlap lies within {}, and {}",
                 percent(*overlap),
                 lengths.of(*p95),
                 if *rivals_sought {

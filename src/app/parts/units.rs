@@ -2,6 +2,7 @@
 
 use super::PartsState;
 use crate::app::{AppState, Document, Settings};
+use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::PairUnits;
 use crate::role::{PerRole, Role};
@@ -110,6 +111,24 @@ impl Document {
     /// The unit of every length in the window, if it is known.
     pub fn length_unit(&self) -> Option<LengthUnit> {
         self.units().lengths
+    }
+
+    /// Unit of the stresses, if a file says it.
+    pub fn stress_unit(&self) -> Option<&'static str> {
+        let system = Role::ALL
+            .into_iter()
+            .find_map(|role| self.part(role)?.loaded.units()?.units.system);
+        system.map(|system| system.stress())
+    }
+
+    /// The unit of a forming value, with `None` of a length; `None` where it has none or it is not known.
+    pub fn unit_of(&self, value: Option<FormingValue>) -> Option<&'static str> {
+        let unit = match value {
+            Some(value) if value.is_stress() => self.stress_unit()?,
+            Some(_) => return None,
+            None => self.unit_suffix().trim(),
+        };
+        (!unit.is_empty()).then_some(unit)
     }
 
     /// What follows a length: `" mm"`, or nothing where the unit is unknown.

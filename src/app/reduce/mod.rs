@@ -12,7 +12,7 @@ pub use level_result::LevelResult;
 use self::level_result::LevelResults;
 use super::follow_up::FollowUp;
 use super::work::Work;
-use super::{AppState, Document, Effect, Part, Reason, Settings, facts};
+use super::{AppState, Document, Effect, Part, Reason, Settings, ShownGeometry, facts};
 use crate::jobs::{JobKind, MeasureLevelInput, MeasuredLevel, Recording, ReduceInput};
 use crate::role::{PerRole, Role};
 
@@ -29,6 +29,15 @@ impl AppState {
     pub fn can_reduce(&self) -> Result<(), Reason> {
         self.document.has_any_part()?;
         self.jobs.is_unlocked()
+    }
+
+    /// True if the part is drawn reduced.
+    pub fn shows_reduced(&self, role: Role) -> bool {
+        let is_blinking = self.view.is_blinking && !self.view.is_moved_over;
+        let part = self.document.part(role);
+        self.view.shown == ShownGeometry::Reduced
+            && !is_blinking
+            && part.is_some_and(|part| part.level.is_some())
     }
 
     /// The marked levels that chips and keys offer, the finest first.

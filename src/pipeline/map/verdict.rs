@@ -93,6 +93,7 @@ pub struct CheckRecord {
     pub worst: Option<usize>,
 }
 
+/// All checks; those that are not met stand first, where they are seen.
 pub(super) fn checks_of(run: &MapRun, record: &MapRecord, lengths: Lengths) -> Vec<CheckRecord> {
     let mut checks = vec![area(run, record)];
     checks.extend(doubled(run));
@@ -155,6 +156,7 @@ pub(super) fn checks_of(run: &MapRun, record: &MapRecord, lengths: Lengths) -> V
             }
         }
     }
+    checks.sort_by_key(|check| check.is_met != Some(false));
     checks
 }
 

@@ -142,8 +142,9 @@ fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])>
     let mut rows = vec![
         row(&inside, &|s| percent(s.share_inside(tolerance))),
         row("mean", &|s| lengths.signed(s.mean)),
-        row("RMS", &|s| lengths.number(s.rms)),
-        row("P95", &|s| lengths.number(s.p95)),
+        // Beside those of the overlap, which leave out what lies beyond the limit.
+        row("RMS (compared)", &|s| lengths.number(s.rms)),
+        row("P95 (compared)", &|s| lengths.number(s.p95)),
         row("Min", &|s| lengths.signed(s.min)),
         row("Max", &|s| lengths.signed(s.max)),
         row("standard deviation", &|s| lengths.number(s.std)),
@@ -363,9 +364,9 @@ fn csv(state: &AppState, comparison: &Comparison) -> String {
     line("tolerance", [tolerance; 2]);
     line("share inside", both.map(|s| s.share_inside(tolerance)));
     line("mean", both.map(|s| s.mean));
-    line("RMS", both.map(|s| s.rms));
+    line("RMS (compared)", both.map(|s| s.rms));
     line("standard deviation", both.map(|s| s.std));
-    line("P95", both.map(|s| s.p95));
+    line("P95 (compared)", both.map(|s| s.p95));
     line("Min", both.map(|s| s.min));
     line("Max", both.map(|s| s.max));
     for (index, name) in ["matched", "beyond the limit", "on this part only"]

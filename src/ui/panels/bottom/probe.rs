@@ -27,9 +27,9 @@ pub fn probe_ui(ui: &mut Ui, state: &AppState, is_low: bool, commands: &mut Vec<
     let (width, height) = (ui.available_width(), ui.available_height());
     ui.horizontal_top(|ui| {
         column_ui(ui, vec2(0.5 * width, height), |ui| {
-            values_ui(ui, &probe, |_| {});
+            values_ui(ui, state, &probe, |_| {});
         });
-        profile_ui(ui, &probe, vec2(ui.available_width(), height));
+        profile_ui(ui, state, &probe, vec2(ui.available_width(), height));
     });
 }
 
@@ -43,7 +43,7 @@ fn low_probe_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, commands: &m
         if width < THREE {
             column_ui(ui, vec2(0.52 * width, height), |ui| {
                 probe_head_ui(ui, state, probe, commands);
-                values_ui(ui, probe, |ui| facts_ui(ui, state, probe));
+                values_ui(ui, state, probe, |ui| facts_ui(ui, state, probe));
             });
         } else {
             column_ui(ui, vec2(0.34 * width, height), |ui| {
@@ -51,10 +51,10 @@ fn low_probe_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, commands: &m
                 facts_ui(ui, state, probe);
             });
             column_ui(ui, vec2(0.28 * width, height), |ui| {
-                values_ui(ui, probe, |_| {});
+                values_ui(ui, state, probe, |_| {});
             });
         }
-        profile_ui(ui, probe, vec2(ui.available_width(), height));
+        profile_ui(ui, state, probe, vec2(ui.available_width(), height));
     });
 }
 
@@ -144,9 +144,23 @@ fn facts(state: &AppState, probe: &ProbeReport) -> String {
     )
 }
 
+/// Name of a quantity with its unit, where it has one that is known.
+fn with_unit(state: &AppState, by: ColorBy) -> String {
+    match state.document.unit_of(by.forming()) {
+        Some(unit) => format!("{}, {unit}", by.label()),
+        None => by.label().to_owned(),
+    }
+}
+
 /// The values of both sides, below what stands `before` them.
-fn values_ui(ui: &mut Ui, probe: &ProbeReport, before: impl FnOnce(&mut Ui)) {
+fn values_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, before: impl FnOnce(&mut Ui)) {
     let palette = Palette::of(ui);
+    // Names have no room for them.
+    let units = probe.values.iter();
+    let units = units.filter_map(|(by, _)| state.document.unit_of(by.forming()));
+    let mut units: Vec<&str> = units.collect();
+    units.dedup();
+    let units = units.join(", ");
     let number = |value: f64| {
         if value.is_finite() {
             length(value)
@@ -164,7 +178,7 @@ fn values_ui(ui: &mut Ui, probe: &ProbeReport, before: impl FnOnce(&mut Ui)) {
                 .spacing(vec2(8.0, 1.0))
                 .min_row_height(16.0)
                 .show(ui, |ui| {
-                    ui.label("");
+                    ui.label(RichText::new(&units).small().color(palette.secondary));
                     ui.label(RichText::new("▲").small().color(palette.stamped));
                     ui.label(RichText::new("■").small().color(palette.crash));
                     ui.end_row();
@@ -179,7 +193,7 @@ fn values_ui(ui: &mut Ui, probe: &ProbeReport, before: impl FnOnce(&mut Ui)) {
 }
 
 /// Value over T: bottom −1, top +1; points are the layers.
-fn profile_ui(ui: &mut Ui, probe: &ProbeReport, size: egui::Vec2) {
+fn profile_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, size: egui::Vec2) {
     let Some(by) = probe.profile_of else {
         caption(ui, "no quantity with layers was mapped");
         return;
@@ -191,19 +205,20 @@ fn profile_ui(ui: &mut Ui, probe: &ProbeReport, size: egui::Vec2) {
     let crash = upright(&probe.profile.crash);
     let values = stamped.iter().chain(&crash).map(|point| point[0]);
     let range = charts::margined(values);
-    ui.vertical(|ui| profile_plot(ui, by, [stamped, crash], (range, size)));
+    let name = with_unit(state, by);
+    ui.vertical(|ui| profile_plot(ui, &name, [stamped, crash], (range, size)));
 }
 
 /// The line of each side, values to the right.
 fn profile_plot(
     ui: &mut Ui,
-    by: ColorBy,
+    name: &str,
     [stamped, crash]: [Vec<[f64; 2]>; 2],
     (range, size): (Option<[f64; 2]>, egui::Vec2),
 ) {
     let palette = Palette::of(ui);
     let before = ui.cursor().top();
-    caption(ui, format!("{} over T", by.label()));
+    caption(ui, format!("{name} over T"));
     let size = vec2(
         size.x - 16.0,
         (size.y - (ui.cursor().top() - before)).max(40.0),

@@ -8,7 +8,7 @@ use egui::{
 };
 
 use super::{MARGIN, Overlay, grouped, legend};
-use crate::app::{AppState, Command, Preview, ShownGeometry, ViewCommand, short_number};
+use crate::app::{AppState, Command, Preview, ViewCommand, short_number};
 use crate::geometry::camera::StandardView;
 use crate::report::start_kind_words;
 use crate::role::Role;
@@ -158,7 +158,13 @@ fn is_free(over: &Overlay<'_>) -> bool {
 
 /// Name of a part and what becomes of it.
 fn title(painter: &Painter, over: &Overlay<'_>, role: Role) -> [Arc<Galley>; 2] {
+    let state = over.frame.state;
+    let shows_values = || {
+        let is_picture = state.color_by(Role::Crash).map_picture().is_some();
+        state.is_mapping_shown() && !is_picture
+    };
     let (name, what) = match role {
+        Role::Crash if shows_values() => ("CRASH", "mapped"),
         Role::Crash => ("CRASH", "fixed"),
         Role::Stamped => ("STAMPED", "moves"),
     };
@@ -207,8 +213,7 @@ fn facts(over: &Overlay<'_>, role: Role) -> String {
         return "nothing loaded".to_owned();
     };
     let full = grouped(part.loaded.mesh.n_triangles());
-    let is_blinking = state.view.is_blinking && !state.view.is_moved_over;
-    let is_reduced = state.view.shown == ShownGeometry::Reduced && !is_blinking;
+    let is_reduced = state.shows_reduced(role);
     let triangles = match part.level.as_ref().filter(|_| is_reduced) {
         Some(level) => {
             let reduced = grouped(level.level.mesh.n_triangles());

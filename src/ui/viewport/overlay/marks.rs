@@ -210,17 +210,11 @@ fn forming_text(state: &AppState, value: FormingValue, number: f64) -> String {
     if !value.is_stress() {
         return format!("{name} {}", fixed(number, 4));
     }
-    let unit = stress_unit(state).map_or_else(String::new, |unit| format!(" {unit}"));
+    let unit = state
+        .document
+        .stress_unit()
+        .map_or_else(String::new, |unit| format!(" {unit}"));
     format!("{name} {}{unit}", length(number))
-}
-
-/// Unit of the stresses, if a file says it.
-pub(super) fn stress_unit(state: &AppState) -> Option<&'static str> {
-    let system = Role::ALL.into_iter().find_map(|role| {
-        let part = state.document.part(role)?;
-        part.loaded.units()?.units.system
-    });
-    system.map(|system| system.stress())
 }
 
 /// A ring about the point a rotation turns about, and a cross at the picked pivot.

@@ -47,7 +47,9 @@ pub(super) fn paint(painter: &Painter, scale: &ColorScale, bar: Rect, over: &Ove
     let n = bar.height().round().max(1.0) as usize;
     for (i, rgb) in scale.table(n).into_iter().enumerate() {
         let bottom = bar.bottom() - i as f32;
-        let row = Rect::from_min_max(pos2(bar.left(), bottom - 1.0), pos2(bar.right(), bottom));
+        // Below the next one: rows that end between two pixels leave no seam.
+        let top = (bottom - 1.5).max(bar.top());
+        let row = Rect::from_min_max(pos2(bar.left(), top), pos2(bar.right(), bottom));
         painter.rect_filled(row, 0.0, color(rgb));
     }
     patterns(painter, bar, |y| {

@@ -32,6 +32,11 @@ pub(super) fn show(
         return;
     };
     title(ui, over, role, commands);
+    drawn_on(
+        ui,
+        over,
+        "colours of the reduced part,\nnumbers of the full one",
+    );
     freshness(ui, over, commands);
     if over.frame.state.freshness() != Freshness::Current {
         ui.set_opacity(0.45);
@@ -60,6 +65,7 @@ pub(super) fn show(
 /// Says on the folded legend that its colours are old, with the way to new ones.
 pub(super) fn slim_freshness(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
     let state = over.frame.state;
+    drawn_on(ui, over, "reduced part");
     let freshness = state.freshness();
     if freshness == Freshness::Current {
         return;
@@ -454,10 +460,22 @@ fn tolerance(
     });
 }
 
+/// Says that the colours are those of the reduced part, where the numbers are those of the full one.
+fn drawn_on(ui: &mut Ui, over: &Overlay<'_>, words: &str) {
+    let state = over.frame.state;
+    let role = state.deviation_stats().map(|(role, _)| role);
+    if role.is_some_and(|role| state.shows_reduced(role)) {
+        let words = RichText::new(words).size(11.0);
+        let words = egui::Label::new(words.color(over.frame.look.weak));
+        ui.add(words.wrap());
+    }
+}
+
 /// Mean and spread, what is alone, and a constant offset in words.
 fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
     let small = |text: String| RichText::new(text).size(11.0).color(over.frame.look.weak);
     let lengths = over.frame.state.lengths();
+    ui.label(small("of the compared area:".to_owned()));
     let mean = format!(
         "mean {} · RMS {}",
         lengths.signed_of(stats.mean),

@@ -12,7 +12,7 @@ use egui::{
     UiBuilder, Vec2, vec2,
 };
 
-use super::{MARGIN, Overlay, header, marks};
+use super::{MARGIN, Overlay, header};
 use crate::app::{Command, MapPicture, file_names};
 use crate::colormap::ColorScale;
 use crate::pipeline::forming_values::LayerChoice;
@@ -205,12 +205,7 @@ fn unit(over: &Overlay<'_>, kind: FieldKind) -> Option<String> {
         }
         _ => None,
     };
-    let unit = match value {
-        Some(value) if value.is_stress() => marks::stress_unit(state)?,
-        Some(_) => return None,
-        None => state.document.unit_suffix().trim(),
-    };
-    (!unit.is_empty()).then(|| unit.to_owned())
+    state.document.unit_of(value).map(str::to_owned)
 }
 
 fn is_measured(kind: FieldKind) -> bool {
