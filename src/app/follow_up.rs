@@ -190,7 +190,7 @@ impl AppState {
     }
 
     /// The verdict is seen, whatever else has to fold for it; the next section comes where there is room.
-    fn show_verdict(&mut self) {
+    pub(super) fn show_verdict(&mut self) {
         self.view.sections.unfold(Section::Map);
         self.view.sections.touch(Section::Match);
     }

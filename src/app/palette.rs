@@ -140,7 +140,10 @@ impl AppState {
         }
         let locked = why(Action::OpenExample);
         let recent = self.settings.recent.iter();
-        entries.extend(recent.map(|path| file("Open", path, locked)));
+        entries.extend(recent.map(|path| PaletteEntry {
+            label: format!("Open {}", self.settings.recent_name(path)),
+            ..file("Open", path, locked)
+        }));
         let sessions = self.project.sessions.iter().map(|session| PaletteEntry {
             label: format!("Restore {}", session.title),
             does: does(ProjectCommand::Restore(session.path.clone())),

@@ -9,7 +9,7 @@ use super::{NoticeLevel, PictureChoice, UnitMemory};
 use crate::colormap::ColorMap;
 use crate::formats::ReadOptions;
 use crate::jobs::PartSource;
-use crate::role::PerRole;
+use crate::role::{PerRole, Role};
 
 /// Most entries in the list of recent files.
 const MAX_RECENT: usize = 10;
@@ -123,6 +123,8 @@ pub struct Settings {
     pub muted: BTreeSet<NoticeLevel>,
     /// When each recent file was opened last, in seconds since 1970.
     pub opened: BTreeMap<PathBuf, u64>,
+    /// As which part each recent file was opened last.
+    pub opened_as: BTreeMap<PathBuf, Role>,
     /// The log runs under the left column too.
     pub is_log_wide: bool,
     /// Width of the left column and height of the log, in points, as the user dragged them.
@@ -156,6 +158,7 @@ impl Default for Settings {
             picture_folder: None,
             muted: BTreeSet::new(),
             opened: BTreeMap::new(),
+            opened_as: BTreeMap::new(),
             is_log_wide: false,
             pane_sizes: [None, None],
         }
@@ -188,6 +191,40 @@ impl Settings {
     fn trim_recent(&mut self) {
         self.recent.truncate(MAX_RECENT);
         self.opened.retain(|path, _| self.recent.contains(path));
+        self.opened_as.retain(|path, _| self.recent.contains(path));
+    }
+
+    /// Remembers as which part a file is used.
+    pub fn remember_role(&mut self, source: &PartSource, role: Role) {
+        if let PartSource::File(path) = source {
+            self.opened_as.insert(path.clone(), role);
+            self.trim_recent();
+        }
+    }
+
+    /// Name of a recent file, with as much of its folder as tells it from others of that name.
+    pub fn recent_name(&self, path: &Path) -> String {
+        let name = path.file_name().unwrap_or(path.as_os_str());
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let same_name = self.recent.iter().filter(|other| *other != path);
+        let same_name = same_name.filter(|other| other.file_name() == path.file_name());
+        let others: Vec<&Path> = same_name.filter_map(|other| other.parent()).collect();
+        if others.is_empty() {
+            return name.to_string_lossy().into_owned();
+        }
+        let n_folders = folder.components().count();
+        let end_of = |folder: &Path, n: usize| -> PathBuf {
+            let skip = folder.components().count().saturating_sub(n);
+            folder.components().skip(skip).collect()
+        };
+        let is_own = |n: &usize| {
+            others
+                .iter()
+                .all(|other| end_of(other, *n) != end_of(folder, *n))
+        };
+        let n = (1..=n_folders).find(is_own).unwrap_or(n_folders);
+        let folder = end_of(folder, n);
+        format!("{} – {}", name.to_string_lossy(), folder.display())
     }
 
     /// Brings values from a file that someone edited back into their ranges.

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use super::follow_up::FollowUp;
 use super::{
-    Document, Effect, GestureId, History, JobBoard, LogState, NoticeLevel, Previews, Reason,
-    Settings, Showing, StampedPose,
+    Action, Document, Effect, GestureId, History, JobBoard, LogState, NoticeLevel, Previews,
+    Reason, Settings, Showing, StampedPose,
 };
 use crate::geometry::Similarity;
 use crate::jobs::{JobKey, JobKind};
@@ -49,6 +49,8 @@ impl Work<'_> {
         if has_changed {
             self.history
                 .push(name.into(), before, gesture, self.log.now);
+            // Undo would take this step back, not the one that it was offered for.
+            self.log.notices.withdraw(Action::Undo);
         }
         has_changed
     }

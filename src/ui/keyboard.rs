@@ -3,7 +3,8 @@
 use egui::{Event, Modifiers};
 
 use crate::app::{
-    Action, AppState, Axis, Command, Key, KeyMode, ModalInput, MoveCommand, Shortcut, ViewCommand,
+    Action, AppState, Axis, Command, Key, KeyMode, ModalInput, MoveCommand, NoticeCommand,
+    NoticeLevel, Shortcut, ViewCommand,
 };
 
 /// Actions whose keys act while a dialog lies over the window.
@@ -18,6 +19,9 @@ const WITH_DIALOG: [Action; 9] = [
     Action::ScaleDown,
     Action::ScaleReset,
 ];
+
+/// Actions that begin the work itself: where they are not possible, their keys say why.
+const SAY_WHY: [Action; 3] = [Action::MatchOrStop, Action::Refine, Action::MapOrCancel];
 
 /// What the keys of a frame belong to: the topmost thing that is open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,7 +93,12 @@ fn of_event(event: &Event, held: Modifiers, owner: KeyOwner, state: &AppState) -
         return is_new.then(|| ViewCommand::SetBlinking(is_pressed).into());
     }
     let acts = is_pressed && (mode == KeyMode::Repeats || !is_repeat);
-    acts.then(|| action.command(state)).flatten()
+    match action.enabled(state) {
+        Err(reason) if acts && SAY_WHY.contains(&action) => {
+            Some(NoticeCommand::Tell(NoticeLevel::Note, reason.to_string()).into())
+        }
+        _ => acts.then(|| action.command(state)).flatten(),
+    }
 }
 
 /// True if a key that goes down is the window's.

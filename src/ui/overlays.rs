@@ -85,7 +85,7 @@ const OTHER_KEYS: [(&str, &[(&str, &str)]); 3] = [
             ("Arrows", "Rotate"),
             ("Shift+Arrows", "Pan"),
             ("+, −", "Zoom"),
-            ("P", "Rotate about the point under the pointer"),
+            ("P on a part", "Rotate about this point; P again: no longer"),
         ],
     ),
     (

@@ -825,6 +825,88 @@ fn a_match_is_one_step_and_its_alternatives_are_one_key_away() {
 }
 
 #[test]
+fn back_to_the_result_is_in_the_log() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    window.apply(MoveCommand::Flip(Axis::X));
+    window.apply(MatchCommand::ShowAlternative(None));
+    assert_eq!(window.pose(), shifted(1.0));
+    assert_eq!(window.state.log.latest("match").unwrap().text, "Best pose");
+}
+
+#[test]
+fn a_file_that_ends_a_result_says_so_and_offers_the_way_back() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    window.state.tick(Duration::from_secs(1));
+    window.open("car.k", Role::Crash);
+    assert!(window.state.document.result.is_none());
+    let offers = |notice: &&Notice| notice.offer == Some(Action::Undo);
+    let toasts = |window: &Window| window.state.log.notices.toasts().filter(offers).count();
+    assert_eq!(toasts(&window), 1);
+    let told = &window.state.log.latest("load").unwrap().text;
+    assert!(told.contains("ended the result of the match"), "{told}");
+    // After another step, undo would take that one back.
+    window.apply(MoveCommand::Flip(Axis::X));
+    assert_eq!(toasts(&window), 0);
+    for _ in 0..2 {
+        window.act(Action::Undo);
+    }
+    assert!(window.state.document.current_result().is_some());
+}
+
+#[test]
+fn what_is_said_of_a_step_goes_with_it() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    window.state.tick(Duration::from_secs(1));
+    window.apply(NoticeCommand::Tell(
+        NoticeLevel::Warning,
+        "older".to_owned(),
+    ));
+    window.state.tick(Duration::from_secs(2));
+    window.open("car.k", Role::Crash);
+    assert!(window.state.log.notices.toasts().count() > 1);
+    window.state.tick(Duration::from_secs(3));
+    window.act(Action::Undo);
+    let left: Vec<_> = window
+        .state
+        .log
+        .notices
+        .toasts()
+        .map(|n| &*n.text)
+        .collect();
+    assert_eq!(left, ["older"]);
+}
+
+#[test]
+fn recent_files_of_one_name_are_told_apart_by_folder_and_part() {
+    let mut settings = Settings::default();
+    for path in ["/a/run/sheet.k", "/b/run/sheet.k", "/b/car.k"] {
+        settings.remember_path(Path::new(path), 0);
+    }
+    let name = |path: &str| settings.recent_name(Path::new(path));
+    assert_eq!(name("/b/car.k"), "car.k");
+    let folder: PathBuf = ["a", "run"].iter().collect();
+    assert_eq!(
+        name("/a/run/sheet.k"),
+        format!("sheet.k – {}", folder.display())
+    );
+
+    let mut window = Window::with_both();
+    let role = |window: &Window, name: &str| {
+        let roles = &window.state.settings.opened_as;
+        roles.get(Path::new(name)).copied()
+    };
+    assert_eq!(role(&window, "crash.k"), Some(Role::Crash));
+    assert_eq!(role(&window, "stamped.k"), Some(Role::Stamped));
+    window.act(Action::Swap);
+    assert_eq!(role(&window, "crash.k"), Some(Role::Stamped));
+    window.apply(FileCommand::ForgetRecent(PathBuf::from("crash.k")));
+    assert_eq!(role(&window, "crash.k"), None);
+}
+
+#[test]
 fn the_numbers_of_the_result_are_those_of_the_shown_pose() {
     let mut window = Window::with_both();
     window.act(Action::MatchOrStop);

@@ -8,7 +8,7 @@ use shapematch::jobs::{JobKind, JobOutput, PipelineRunner, Runner as _};
 use shapematch::mapping::Status;
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::forming_values::LayerChoice;
-use shapematch::pipeline::map::{CheckReason, MapRun, WriteKind};
+use shapematch::pipeline::map::{CheckReason, CheckRecord, MapRun, WriteKind};
 use shapematch::pipeline::outputs::{Output, OutputInput};
 use shapematch::pipeline::project::Project;
 use shapematch::role::{PerRole, Role};
@@ -45,6 +45,11 @@ pub(super) fn at_the_known_pose_of(variant: SampleVariant) -> (Window, tempfile:
 fn forming_results_are_mapped_shown_written_and_undone() {
     let (mut window, _folder) = at_the_known_pose();
     assert!(Action::SaveMappedDeck.enabled(&window.state).is_err());
+    let reason = Action::CopyMapCommandLine
+        .enabled(&window.state)
+        .err()
+        .unwrap();
+    assert_eq!(reason.0, "Map the forming results first.");
     assert!(window.state.missing_for(ColorBy::PlasticStrain).is_none());
     assert!(window.state.mapped_for(ColorBy::PlasticStrain).is_none());
     window.act(Action::MapOrCancel);
@@ -332,6 +337,9 @@ fn checks_name_their_picture_and_add_up_with_the_mapping() {
     let of = |name: &str| record.checks.iter().find(|c| c.name == name).unwrap();
     let area = of("Area with values");
     assert!(area.is_met == Some(true) && record.mapped_area > 0.95);
+    // Those that are not met are seen first.
+    let is_met = |check: &CheckRecord| check.is_met != Some(false);
+    assert!(record.checks.iter().is_sorted_by_key(is_met));
     // The ways back and the volume are told and not judged.
     assert_eq!(of("Thickness there and back").is_met, None);
     assert_eq!(of("Volume of the sheet").is_met, None);

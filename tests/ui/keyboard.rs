@@ -74,6 +74,17 @@ fn load_reduce_match_and_copy_by_keyboard_alone() {
 }
 
 #[test]
+fn the_key_of_a_match_that_cannot_begin_says_why() {
+    let mut window = window();
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+    window.run_steps(2);
+    let mut told = window.state().state().log.notices.toasts();
+    assert!(told.any(
+        |notice| notice.text == "Load both parts first." || notice.text == "Load a part first."
+    ));
+}
+
+#[test]
 fn what_has_the_keyboard_can_be_told() {
     // Every widget that Tab reaches has a name.
     let mut window = window();

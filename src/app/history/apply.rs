@@ -17,8 +17,12 @@ impl Work<'_> {
     }
 
     fn undo(&mut self) {
+        let done_at = self.history.undo_at();
         if let Some((name, document)) = self.history.undo(self.document.clone()) {
             self.jump(document);
+            if let Some(at) = done_at {
+                self.log.notices.withdraw_from(at);
+            }
             self.log_step("undo", None, name, None);
         }
     }

@@ -229,6 +229,11 @@ impl History {
         self.done.last().map(|s| s.name.as_str())
     }
 
+    /// When the step that undo takes back was done last.
+    pub fn undo_at(&self) -> Option<Duration> {
+        self.done.last().map(|s| s.at)
+    }
+
     /// Name of the step that redo brings back.
     pub fn redo_name(&self) -> Option<&str> {
         self.undone.last().map(|s| s.name.as_str())

@@ -171,6 +171,15 @@ impl Notices {
         }
     }
 
+    /// What was done then was taken back: what was said of it no longer holds. Errors stay until they are closed.
+    pub fn withdraw_from(&mut self, at: Duration) {
+        let is_meant = |n: &&mut Notice| n.at == at && n.level != NoticeLevel::Error;
+        for notice in self.items.iter_mut().filter(is_meant) {
+            notice.is_toast = false;
+            notice.is_unread = false;
+        }
+    }
+
     /// What an action was offered for is over.
     pub fn withdraw(&mut self, action: Action) {
         for notice in &mut self.items {

@@ -10,6 +10,7 @@ use crate::app::{Effect, MatchResult, facts};
 use crate::geometry::Similarity;
 use crate::jobs::Stamp;
 use crate::pipeline::match_parts::MatchRun;
+use crate::role::Role;
 
 /// A run that took longer is worth a word to the desktop.
 const LONG_RUN: Duration = Duration::from_secs(10);
@@ -68,6 +69,7 @@ pub(super) fn show_alternative(work: &mut Work<'_>, alternative: Option<usize>) 
         None => "Best pose".to_owned(),
         Some(index) => format!("Alternative {}", index + 2),
     };
+    work.log_step("match", Some(Role::Stamped), name.clone(), None);
     take_pose_as_result(work, name, crash_from_stamped, |stamp| MatchResult {
         alternative,
         stamp,

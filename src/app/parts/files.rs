@@ -76,6 +76,7 @@ impl PartsState {
             FileCommand::ForgetRecent(path) => {
                 work.settings.recent.retain(|known| *known != path);
                 work.settings.opened.remove(&path);
+                work.settings.opened_as.remove(&path);
                 vec![Effect::SaveSettings]
             }
         }
@@ -216,6 +217,7 @@ impl PartsState {
             self.selected.clear();
             work.follow(FollowUp::PartsSwapped);
             work.log_step("load", None, "crash and stamped part exchanged", None);
+            remember_roles(work);
             tell_dropped(work, n_dropped);
         }
     }
@@ -331,6 +333,7 @@ impl PartsState {
                 self.settle_guess(work);
             }
         }
+        remember_roles(work);
         work.follow(FollowUp::PartLoaded(role));
         self.refresh_likeness(work.document);
         let mut effects = vec![Effect::SaveSettings];
@@ -364,6 +367,8 @@ impl PartsState {
             (work.history.next_revision(), work.history.next_revision());
         work.previews.drop_all();
         let mut n_dropped = 0;
+        let had_result = work.document.result.is_some();
+        let file = part.file_name();
         work.commit(name, |document| {
             let old = document.parts.get_mut(role);
             let same = old.take().filter(|old| old.source == source);
@@ -387,6 +392,14 @@ impl PartsState {
             *document.parts.get_mut(role) = Some(new);
         });
         tell_dropped(work, n_dropped);
+        if had_result && work.document.result.is_none() {
+            let text =
+                format!("{file} ended the result of the match before it; undo brings it back");
+            work.log_step("load", Some(role), text.clone(), None);
+            let showing = work.showing(NoticeLevel::Note);
+            let notices = &mut work.log.notices;
+            notices.offer(NoticeLevel::Note, text, showing, Action::Undo);
+        }
     }
 
     /// Both files are there: the one that looks more like the end of a forming simulation is the
@@ -469,4 +482,13 @@ fn stamped_word(part: &Part) -> i32 {
     let name = part.loaded.file_name().to_lowercase();
     let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
     i32::from(has(&["stamped", "stamping", "dynain", "formed"])) - i32::from(has(&["crash"]))
+}
+
+/// The list of recent files follows what the files are used as.
+fn remember_roles(work: &mut Work<'_>) {
+    for role in Role::ALL {
+        if let Some(part) = work.document.part(role) {
+            work.settings.remember_role(&part.source, role);
+        }
+    }
 }

@@ -202,6 +202,9 @@ impl AppState {
             Some(window) => window.show(self),
             None => self.fit_project(),
         }
+        if self.document.result.is_some() {
+            self.show_verdict();
+        }
     }
 
     /// How the window looked, if the project says it in words that are known.

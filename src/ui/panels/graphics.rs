@@ -1,5 +1,7 @@
 //! The two 3D windows with what stands in them while there is nothing to draw.
 
+use std::path::PathBuf;
+
 use egui::{Align, CursorIcon, Layout, Rect, RichText, Sense, Shape, Stroke, Ui, UiBuilder, vec2};
 
 use super::drop::{self, DropTarget};
@@ -336,8 +338,12 @@ const N_RECENT: usize = 3;
 const CARD: f32 = 136.0;
 
 fn recent_ui(ui: &mut Ui, role: Role, (state, n): (&AppState, usize), commands: &mut Vec<Command>) {
-    let recent = state.settings.recent.iter().take(n);
-    if recent.len() == 0 {
+    // A file that was the other part is offered in the other window.
+    let settings = &state.settings;
+    let is_other = |path: &PathBuf| settings.opened_as.get(path) == Some(&role.other());
+    let recent = settings.recent.iter().filter(|path| !is_other(path));
+    let recent: Vec<&PathBuf> = recent.take(n).collect();
+    if recent.is_empty() {
         return;
     }
     ui.add_space(2.0 * UNIT);
@@ -345,8 +351,7 @@ fn recent_ui(ui: &mut Ui, role: Role, (state, n): (&AppState, usize), commands: 
     let width = 260.0_f32.min(ui.available_width());
     let now = state.log.clock.unix_at(state.log.now);
     for path in recent {
-        let name = path.file_name().unwrap_or(path.as_os_str());
-        let name = name.to_string_lossy().into_owned();
+        let name = settings.recent_name(path);
         let age = state.settings.opened.get(path);
         let age = age.map(|at| age_text(now.saturating_sub(*at)));
         let mut button = egui::Button::new(&name).truncate();

@@ -144,7 +144,8 @@ fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let label = if is_running { "Cancel" } else { "Map" };
     let is_made = state.document.current_mapping().is_some();
     let is_done = is_made && !state.document.is_mapping_out_of_date();
-    let look = if is_running || is_done {
+    let is_matched = state.document.current_result().is_some();
+    let look = if is_running || is_done || !is_matched {
         Look::Plain
     } else {
         Look::Primary
@@ -160,6 +161,8 @@ fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let running = state.jobs.running().filter(|job| job.key == JobKey::Map);
         let words = running.map_or("Waiting for the previous task", |_| "Mapping …");
         secondary(ui, words);
+    } else if !is_matched && !is_made {
+        caption(ui, "This pose does not come from a match");
     }
 }
 

@@ -167,9 +167,9 @@ fn recent_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     use crate::app::FileCommand;
     ui.menu_button("Recent files", |ui| {
         for path in &state.settings.recent {
-            let name = path.file_name().unwrap_or(path.as_os_str());
+            let name = state.settings.recent_name(path);
             if is_project(path) {
-                let open = ui.button(name.to_string_lossy());
+                let open = ui.button(name);
                 if open.on_hover_text(path.display().to_string()).clicked() {
                     let (paths, role) = (vec![path.clone()], None);
                     commands.push(FileCommand::Open { paths, role }.into());
@@ -177,7 +177,11 @@ fn recent_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 }
                 continue;
             }
-            ui.menu_button(name.to_string_lossy(), |ui| {
+            let name = match state.settings.opened_as.get(path) {
+                Some(role) => format!("{} {name}", role.mark()),
+                None => name,
+            };
+            ui.menu_button(name, |ui| {
                 caption(ui, path.display().to_string());
                 for role in Role::ALL {
                     let label = format!("Open as the {} part", role.word());
