@@ -79,14 +79,14 @@ impl Document {
     /// `Ok` if a line can do the mapping that section 4 asks for.
     pub fn can_copy_map_command_line(&self) -> Result<(), Reason> {
         self.can_map()?;
-        if self.current_mapping().is_none() {
-            return Err(Reason("Map the forming results first."));
-        }
         let crash = self.part(Role::Crash);
         if crash.is_some_and(|crash| crash.length_factor() != 1.0) {
             return Err(Reason(
                 "The command line maps in the unit of the crash file, which has a factor here.",
             ));
+        }
+        if self.current_mapping().is_none() {
+            return Err(Reason("Map the forming results first."));
         }
         Ok(())
     }
