@@ -272,8 +272,13 @@ pub(super) fn robust_weights(values: &[f64], areas: &[f64], floor: f64) -> Vec<f
 fn facet_error(model: &Surface, triangle: usize, normal: &Vector3) -> f64 {
     let [a, b, c] = model.mesh().corners(triangle);
     let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
-    let cos = model.mesh().normal(triangle).dot(normal).abs().min(1.0);
-    longest * cos.acos() / 4.0
+    let facet = model.mesh().normal(triangle);
+    let corners = model.mesh().triangles()[triangle].map(|v| &model.vertex_normals()[v as usize]);
+    let cos = corners
+        .into_iter()
+        .chain([normal])
+        .map(|n| facet.dot(n).abs());
+    longest * cos.fold(1.0, f64::min).acos() / 4.0
 }
 
 /// Weighted quantile; sorts. 0 without weight.

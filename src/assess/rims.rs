@@ -14,6 +14,9 @@ const RIM_FACETS: f64 = 0.06;
 /// So many times the median step aside is none either.
 const RAGGED: f64 = 2.5;
 
+/// Share of its weight that a pair of rims keeps at least.
+const LEAST_WEIGHT: f64 = 1e-3;
+
 /// Places along the rims of the smaller part that are compared.
 const N_PLACES: usize = 600;
 /// Rims that run in directions farther apart than this are not the same: cosine of 37°.
@@ -306,7 +309,12 @@ impl Rims {
         // Ragged rims know a place only as well as their steps are small, and all to one side.
         let known = (RIM_FACETS * self.edge / self.unremarkable()).powi(2);
         let areas: Vec<f64> = self.pairs.iter().map(|p| known * p.weight).collect();
-        robust_weights(&gaps, &areas, noise.max(self.unremarkable()))
+        let mut weights = robust_weights(&gaps, &areas, noise.max(self.unremarkable()));
+        for (weight, area) in weights.iter_mut().zip(&areas) {
+            // Where no surface holds the part, rims do, however far apart.
+            *weight = weight.max(LEAST_WEIGHT * area);
+        }
+        weights
     }
 
     fn compare_holes(

@@ -35,7 +35,7 @@ const SHARE_OF_SMALL: f64 = 0.02;
 const REMAINDER_LEAST: f64 = 1.0;
 /// Where fewer of the smaller part's rims lie beside rims of the other, the parts are trimmed differently
 /// and rims say nothing about the shape.
-const LEAST_PAIRED: f64 = 0.4;
+pub(super) const LEAST_PAIRED: f64 = 0.4;
 /// Parts that meet over less than this share of the smaller one are different parts.
 const LEAST_MET: f64 = 0.5;
 /// Parts that meet over less than this share, and differ where they meet, are different parts too: a
@@ -409,11 +409,16 @@ impl ShapeStatement {
     }
 }
 
+/// Distance across the rims that 90 % of them do not exceed.
+fn most_of_rims(rims: &Rims, left: &[f64]) -> f64 {
+    let sizes = left.iter().map(|left| left.abs());
+    let sizes = sizes.zip(rims.pairs().iter().map(|p| p.weight));
+    quantile(&mut sizes.collect::<Vec<_>>(), 0.9)
+}
+
 fn rim_fit(rims: &Rims, fit: &Fit, tolerance: &ShapeTolerance) -> RimFit {
-    let sizes = fit.rims.iter().map(|left| left.abs());
-    let mut sizes: Vec<(f64, f64)> = sizes.zip(rims.pairs().iter().map(|p| p.weight)).collect();
     RimFit {
-        offset: (rims.share() >= LEAST_PAIRED).then(|| quantile(&mut sizes, 0.9)),
+        offset: (rims.share() >= LEAST_PAIRED).then(|| most_of_rims(rims, &fit.rims)),
         other_trim: None,
         apart: trims::farthest_apart(rims, &fit.rims, rims.limit(tolerance)),
         n_holes: fit.holes.len(),
@@ -525,6 +530,10 @@ impl Fit {
             *left = left.signum() * (left.abs() - contact.facet).max(0.0);
         }
         let beside = beside.iter().zip(rims.pairs());
+        let beside: Vec<f64> = beside.map(|(row, p)| p.gap - row.dot(&found)).collect();
+        let as_they_are: Vec<f64> = rims.pairs().iter().map(|p| p.gap).collect();
+        // What throws most rims apart explains none of them.
+        let explains = most_of_rims(rims, &beside) <= most_of_rims(rims, &as_they_are);
         let holes = rims.holes.iter().map(|pair| {
             let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
             let explained = axes.map(|axis| row(&pair.hole.center, &axis, 0.0).dot(&found));
@@ -535,7 +544,7 @@ impl Fit {
         });
         Self {
             smooth: smooth.collect(),
-            rims: beside.map(|(row, p)| p.gap - row.dot(&found)).collect(),
+            rims: if explains { beside } else { as_they_are },
             holes: holes.collect(),
             rigid: found.fixed_rows::<6>(0) + bends.rigid_part(&found, contacts),
             left,

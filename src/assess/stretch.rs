@@ -10,7 +10,7 @@ use super::contact::{
     Contact, ContactSearch, Contacts, MAX_NODES, Six, quantile, robust_weights, solve,
 };
 use super::rims::{HolePair, RimKind, RimPair};
-use super::shape::{Bends, N as N_SMOOTH, ShapeEvidence, ShapeTolerance, explaining};
+use super::shape::{Bends, LEAST_PAIRED, N as N_SMOOTH, ShapeEvidence, ShapeTolerance, explaining};
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 
 /// Unknowns of the fit: those of the statement about the shape, and the stretches.
@@ -56,7 +56,8 @@ pub(super) struct Stretch {
 }
 
 /// The stretch that explains at least half of the gaps between the parts, if it makes one of them longer than
-/// the other by more than what may remain on both sides. O(nodes · log triangles).
+/// the other by more than what may remain on both sides, and neither outlines nor holes speak against it.
+/// O(nodes · log triangles).
 pub(super) fn stretch(evidence: &ShapeEvidence<'_>, tolerance: &ShapeTolerance) -> Option<Stretch> {
     let limit = 2.0 * tolerance.remainder;
     let frame = Frame(Bends::of(evidence));
@@ -87,7 +88,9 @@ pub(super) fn stretch(evidence: &ShapeEvidence<'_>, tolerance: &ShapeTolerance) 
         }
     }
     let (axis, by) = frame.longest(&shares);
-    (after < EXPLAINED * before && by > limit).then_some(Stretch {
+    let rims = evidence.rims.limit(tolerance);
+    let is_longer = after < EXPLAINED * before && by > limit;
+    (is_longer && !frame.misplaces_rims(evidence, &shares, rims)).then_some(Stretch {
         axis: [PartAxis::Length, PartAxis::Width, PartAxis::Height][axis],
         share: shares[axis],
         by,
@@ -137,9 +140,23 @@ impl Frame {
         row
     }
 
-    /// The motion and the stretches that lay the outlines on each other, in robust least squares; `None` where
-    /// none does.
+    /// The motion and the stretches that lay the outlines on each other; `None` where none does.
     fn of_outlines(&self, evidence: &ShapeEvidence<'_>, limit: f64) -> Option<Placed> {
+        let OutlineFit {
+            found,
+            before,
+            after,
+        } = self.fit_outlines(evidence, None);
+        (after <= limit.max(EXPLAINED * before)).then_some(found)
+    }
+
+    /// Lays the outlines on each other in robust least squares: by a motion and the stretches, or by a motion
+    /// where the stretches are given.
+    fn fit_outlines(
+        &self,
+        evidence: &ShapeEvidence<'_>,
+        stretches: Option<[f64; 3]>,
+    ) -> OutlineFit {
         let ShapeEvidence { contacts, rims, .. } = *evidence;
         let outlines = rims.pairs().iter();
         let outlines: Vec<&RimPair> = outlines.filter(|p| p.kind == RimKind::Outlines).collect();
@@ -150,24 +167,49 @@ impl Frame {
             let sizes = left.iter().map(|l| l.abs()).zip(lengths.iter().copied());
             quantile(&mut sizes.collect::<Vec<_>>(), MOSTLY_OF_OUTLINES)
         };
-        let mut left: Vec<f64> = outlines.iter().map(|p| p.gap).collect();
-        let before = at_most(&left);
-        let floor = evidence.noise.max(rims.unremarkable());
+        let left_by = |found: &Placed| -> Vec<f64> {
+            let pairs = outlines.iter().zip(&rows);
+            pairs.map(|(pair, row)| pair.gap - row.dot(found)).collect()
+        };
         let mut found = Placed::zeros();
+        let before = at_most(&left_by(&found));
+        if let Some(stretches) = stretches {
+            found.fixed_rows_mut::<3>(6).copy_from_slice(&stretches);
+        }
+        let floor = evidence.noise.max(rims.unremarkable());
+        let mut left = left_by(&found);
         for _ in 0..ROUNDS {
             let weights = robust_weights(&left, &lengths, floor);
             let mut matrix = SMatrix::<f64, N_PLACED, N_PLACED>::zeros();
             let mut right = Placed::zeros();
-            for ((row, pair), weight) in rows.iter().zip(&outlines).zip(weights) {
+            for ((row, left), weight) in rows.iter().zip(&left).zip(weights) {
                 matrix.ger(weight, row, row, 1.0);
-                right += row * (weight * pair.gap);
+                right += row * (weight * left);
             }
-            found = solve(&matrix, &right);
-            for ((left, row), pair) in left.iter_mut().zip(&rows).zip(&outlines) {
-                *left = pair.gap - row.dot(&found);
+            if stretches.is_some() {
+                matrix.rows_mut(6, 3).fill(0.0);
+                matrix.columns_mut(6, 3).fill(0.0);
+                right.rows_mut(6, 3).fill(0.0);
             }
+            found += solve(&matrix, &right);
+            left = left_by(&found);
         }
-        (at_most(&left) <= limit.max(EXPLAINED * before)).then_some(found)
+        OutlineFit {
+            found,
+            before,
+            after: at_most(&left),
+        }
+    }
+
+    /// Whether outlines that lie beside each other, or a hole, would lie farther off than they do, and farther
+    /// than rims may, if one part were longer by these shares.
+    fn misplaces_rims(&self, evidence: &ShapeEvidence<'_>, shares: &[f64; 3], limit: f64) -> bool {
+        if evidence.rims.share() < LEAST_PAIRED {
+            return false;
+        }
+        let stretches = [0, 1, 2].map(|k| shares[k] * self.0.half[k]);
+        let fit = self.fit_outlines(evidence, Some(stretches));
+        fit.after > limit.max(fit.before) || self.misplaces_holes(evidence, &fit.found, limit)
     }
 
     /// Whether a hole would lie farther off than it does, and farther than rims may.
@@ -214,6 +256,15 @@ impl Frame {
         let axis = (1..3).fold(0, longer);
         (axis, by[axis])
     }
+}
+
+/// How outlines are laid on each other.
+struct OutlineFit {
+    found: Placed,
+    /// Distance of the outlines at most of their length as they are.
+    before: f64,
+    /// What is left of it.
+    after: f64,
 }
 
 /// What a rigid motion and the stretches do to a place.

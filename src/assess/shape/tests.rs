@@ -1,5 +1,7 @@
 //! Statements about shapes whose difference is known.
 
+use std::f64::consts::PI;
+
 use super::super::AssessSettings;
 use super::super::statements;
 use super::*;
@@ -207,6 +209,32 @@ fn facets_do_not_make_an_extruded_piece_longer() {
     let piece = hat(380, |p| wavy(8.0 * 1.03, Point3::new(0.9 * p.x, p.y, p.z)));
     let shape = statement(&piece, &plain);
     assert!(shape.reasons.is_empty(), "{shape:?}");
+}
+
+/// Half a tube of 60 mm diameter and length, whose middle is sprung by up to `most` against its edges.
+fn half_tube(n: usize, most: f64) -> Surface {
+    let place = |i: usize, j: usize| {
+        let (along, angle) = (i as f64 / n as f64, PI * j as f64 / n as f64);
+        let (x, y) = (2.0 * along - 1.0, angle.cos());
+        let sprung = most * (y * y + 0.3 * x * y);
+        Point3::new(30.0 * x, 30.0 * y, 30.0 * angle.sin() + sprung)
+    };
+    let m = n + 1;
+    let points = (0..=n).flat_map(|i| (0..m).map(move |j| place(i, j)));
+    let cells = (0..n).flat_map(|i| (0..n).map(move |j| (i * m + j) as u32));
+    let m = m as u32;
+    let triangles = cells.flat_map(|a| [[a, a + m, a + m + 1], [a, a + m + 1, a + 1]]);
+    let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
+    Surface::new(&mesh, "source").unwrap()
+}
+
+#[test]
+fn edges_hold_half_a_tube_where_its_surface_does_not() {
+    let plain = half_tube(160, 0.0);
+    for most in [-1.2, -0.9, -0.6, -0.3, 0.3, 0.6, 0.9, 1.2] {
+        let shape = statement(&half_tube(140, most), &plain);
+        assert!(shape.reasons.is_empty(), "{most}: {shape:?}");
+    }
 }
 
 #[test]
