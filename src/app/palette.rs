@@ -1,11 +1,11 @@
-//! What the command search offers: every action, recent files, every form of matrix and card.
+//! What the command search offers: every action, recent files, every form of matrix and card, the themes.
 
 use std::path::Path;
 
 use super::fuzzy::Search;
 use super::{
     Action, ActionRow, AppState, Command, CopyForm, ExportCommand, FileCommand, Menu,
-    ProjectCommand, Settings,
+    ProjectCommand, Settings, Theme,
 };
 use crate::pipeline::outputs::{MeshOutput, Output};
 use crate::report::{CardForm, MatrixForm};
@@ -18,6 +18,7 @@ const MAX_RECENT: usize = 6;
 enum Does {
     Action(Action),
     Command(Box<Command>),
+    Theme(Theme),
 }
 
 /// One line of the command search.
@@ -45,7 +46,7 @@ impl PaletteEntry {
     pub fn action(&self) -> Option<Action> {
         match self.does {
             Does::Action(action) => Some(action),
-            Does::Command(_) => None,
+            Does::Command(_) | Does::Theme(_) => None,
         }
     }
 
@@ -54,11 +55,13 @@ impl PaletteEntry {
         if self.reason.is_some() {
             return Vec::new();
         }
-        let mut commands = vec![Command::Settings(Box::new(remembered(
-            &state.settings,
-            &self.label,
-        )))];
+        let mut settings = remembered(&state.settings, &self.label);
+        if let Does::Theme(theme) = self.does {
+            settings.theme = theme;
+        }
+        let mut commands = vec![Command::Settings(Box::new(settings))];
         match &self.does {
+            Does::Theme(_) => {}
             Does::Action(action) => commands.extend(action.command(state)),
             Does::Command(command) => commands.push(Command::clone(command)),
         }
@@ -150,6 +153,16 @@ impl AppState {
             ..file("Restore", &session.path, locked)
         });
         entries.extend(sessions);
+        entries.extend(Theme::ALL.map(|theme| PaletteEntry {
+            label: format!("Theme: {}", theme.label().to_lowercase()),
+            group: "Preferences",
+            help: "Colours of the window".to_owned(),
+            keys: String::new(),
+            reason: None,
+            is_recent: false,
+            letters: Vec::new(),
+            does: Does::Theme(theme),
+        }));
         entries
     }
 
@@ -220,8 +233,21 @@ mod tests {
         assert_eq!(first("save pr"), Some(Action::SaveProject));
         assert_eq!(first("asn"), Some(Action::Align));
         assert_eq!(first("isom"), Some(Action::ViewIsometric));
-        assert_eq!(first("theme"), Some(Action::Preferences), "by its help");
+        assert_eq!(first("notifications"), Some(Action::Preferences), "by its help");
         assert!(first("qzxv").is_none());
+    }
+
+    #[test]
+    fn a_theme_is_chosen_by_its_name() {
+        let mut state = AppState::default();
+        for (typed, theme) in [("light", Theme::Light), ("dark", Theme::Dark)] {
+            let entry = state.palette(typed).remove(0);
+            for command in entry.commands(&state) {
+                state.apply(command);
+            }
+            assert_eq!(state.settings.theme, theme);
+            assert_eq!(state.palette("")[0].label, entry.label);
+        }
     }
 
     #[test]

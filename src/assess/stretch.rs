@@ -258,7 +258,7 @@ impl Frame {
     }
 }
 
-/// How outlines are laid on each other.
+/// How well outlines align.
 struct OutlineFit {
     found: Placed,
     /// Distance of the outlines at most of their length as they are.

@@ -51,8 +51,8 @@ impl Reason {
     pub fn words(&self, lengths: Lengths) -> String {
         match self {
             Self::OppositeHand { score_ratio } => format!(
-                "looks like the opposite-hand part: mirrored, the {}; match it mirrored, or choose \
-                 the other part",
+                "looks like a part of the other hand: with that hand, {}; match with it, or choose the \
+                 other part",
                 error_beside(*score_ratio)
             ),
             Self::NearMirrorImage { score_ratio } => format!(

@@ -235,12 +235,8 @@ const LABEL: f32 = 120.0;
 /// Colours and sizes of the window.
 fn display_ui(ui: &mut Ui, settings: &mut Settings) {
     form_row(ui, "Theme", LABEL, |ui| {
-        for (theme, name) in [
-            (Theme::System, "System"),
-            (Theme::Dark, "Dark"),
-            (Theme::Light, "Light"),
-        ] {
-            if chip(ui, name, settings.theme == theme).clicked() {
+        for theme in Theme::ALL {
+            if chip(ui, theme.label(), settings.theme == theme).clicked() {
                 settings.theme = theme;
             }
         }

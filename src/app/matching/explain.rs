@@ -165,7 +165,7 @@ impl AppState {
         let hand = self.document.recipe.settings.hand;
         (ratio < OTHER_HAND).then(|| Cause {
             title: "Opposite-hand part".to_owned(),
-            evidence: format!("Mirrored, the part fits better: {}.", error_beside(ratio)),
+            evidence: format!("The other hand fits better: {}.", error_beside(ratio)),
             remedy: self.retry("Match the opposite hand", |recipe| {
                 recipe.settings.hand = match hand {
                     Hand::Mirrored => Hand::Same,
