@@ -78,6 +78,9 @@ pub fn vector(components: [f64; 3], decimals: usize) -> String {
     format!("({})", components.map(|x| fixed(x, decimals)).join(", "))
 }
 
+/// Lengths that differ in no decimal up to this one are told as equal.
+const MOST_DECIMALS: usize = 7;
+
 /// A length with three significant digits: 0.0412, 1.35, 128.
 pub fn length(value: f64) -> String {
     // What rounding leaves of nothing is nothing.
@@ -215,6 +218,18 @@ impl Lengths {
         self.number(value) + self.suffix()
     }
 
+    /// Two lengths that are compared, with as many decimals as tell them apart: `15.04 mm` and `15.00 mm`.
+    pub fn compared(self, lengths: [f64; 2]) -> [String; 2] {
+        let usual = lengths.map(|value| self.of(value));
+        if usual[0] != usual[1] {
+            return usual;
+        }
+        (1..=MOST_DECIMALS)
+            .map(|decimals| lengths.map(|value| fixed(value, decimals) + self.suffix()))
+            .find(|words| words[0] != words[1])
+            .unwrap_or(usual)
+    }
+
     /// The number with its sign and the unit: `+0.381 mm`.
     pub fn signed_of(self, value: f64) -> String {
         self.signed(value) + self.suffix()
@@ -257,6 +272,16 @@ mod tests {
         assert_eq!(lengths.of(0.3806), "0.381 mm");
         assert_eq!(lengths.axis("distance"), "distance, mm");
         assert_eq!(Lengths::default().of(0.3806), "0.381");
+    }
+
+    #[test]
+    fn lengths_that_are_compared_are_told_apart() {
+        let lengths = Lengths::new(Some(LengthUnit::Millimeter));
+        let read = [[1.42, 1.2], [15.04, 15.0], [0.041_23, 0.041_21]];
+        assert_eq!(lengths.compared(read[0]), ["1.42 mm", "1.20 mm"]);
+        assert_eq!(lengths.compared(read[1]), ["15.04 mm", "15.00 mm"]);
+        assert_eq!(lengths.compared(read[2]), ["0.04123 mm", "0.04121 mm"]);
+        assert_eq!(lengths.compared([5.0, 5.0]), ["5.00 mm", "5.00 mm"]);
     }
 
     #[test]

@@ -233,7 +233,11 @@ mod tests {
         assert_eq!(first("save pr"), Some(Action::SaveProject));
         assert_eq!(first("asn"), Some(Action::Align));
         assert_eq!(first("isom"), Some(Action::ViewIsometric));
-        assert_eq!(first("notifications"), Some(Action::Preferences), "by its help");
+        assert_eq!(
+            first("notifications"),
+            Some(Action::Preferences),
+            "by its help"
+        );
         assert!(first("qzxv").is_none());
     }
 

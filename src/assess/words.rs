@@ -68,12 +68,11 @@ impl Reason {
                 both_overlaps(*source, *target)
             ),
             Self::Sliding { motion } => motion.words(),
-            Self::Uncertain { by, limit, along } => format!(
-                "the pose may be off by {}, mostly {}, more than {}",
-                lengths.of(*by),
-                along.words(),
-                lengths.of(*limit)
-            ),
+            Self::Uncertain { by, limit, along } => {
+                let [by, limit] = lengths.compared([*by, *limit]);
+                let along = along.words();
+                format!("the pose may be off by {by}, mostly {along}, more than {limit}")
+            }
             Self::Shape { difference } => difference.words(lengths),
             Self::NearAlternative { score_ratio, twin } => format!(
                 "{} the part fits nearly as well ({}): check which pose is meant",
@@ -179,7 +178,7 @@ impl ShapeReason {
             Self::Bent { by, limit }
             | Self::Surface { by, limit, .. }
             | Self::Rims { by, limit, .. }
-            | Self::Hole { by, limit, .. } => [*by, *limit].map(|x| lengths.of(x)),
+            | Self::Hole { by, limit, .. } => lengths.compared([*by, *limit]),
             Self::Stretched { by, .. } => [lengths.of(*by), String::new()],
             Self::HardlyMet { .. } | Self::Holes { .. } => [String::new(), String::new()],
         };
