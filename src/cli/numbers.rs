@@ -16,7 +16,7 @@ pub(super) fn number(
         let number = word
             .trim()
             .parse()
-            .map_err(|_| "it is no number".to_owned())?;
+            .map_err(|_| "it is not a number".to_owned())?;
         within(number, &range, sign)
     }
 }

@@ -207,7 +207,7 @@ fn a_number_that_cannot_be_is_refused_where_it_is_typed() {
     window.run_steps(4);
     let before = level(&window);
     for (typed, why) in [
-        ("a few", "“a few” is no whole number."),
+        ("a few", "“a few” is not a whole number."),
         ("0", "A maximum is 4 to 50,000,000 triangles."),
     ] {
         type_into(&mut window, "Max triangles", typed);

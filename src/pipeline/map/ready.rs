@@ -40,8 +40,8 @@ pub(super) fn check_axes(part: &LoadedPart, parts: &[u32]) -> Result<(), Pipelin
     }
 }
 
-/// An error if the stresses of a stamped part are clearly in another unit than the crash deck: from the units that both decks name, else from the size of the stresses beside
-/// Young's modulus of the crash part.
+/// An error if the stresses of a stamped part are clearly in another unit than the crash deck: from the units
+/// that both decks name, else from the size of the stresses beside Young's modulus of the crash part.
 pub(super) fn check_stress_unit(
     crash: &LoadedPart,
     crash_parts: &[u32],

@@ -328,7 +328,7 @@ fn without_results(placed: &PlacedPart<'_>, shells: &[u32]) -> Option<String> {
     let name = placed.part.file_name();
     (!ids.is_empty()).then(|| {
         format!(
-            "{name}: no forming results in {}; crash elements there take the thickness of its section alone",
+            "{name}: no forming results in {}; crash elements there get the thickness of its section and nothing else",
             parts_by_id(&ids)
         )
     })

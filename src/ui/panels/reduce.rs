@@ -70,7 +70,7 @@ const MAX_TRIANGLES: RangeInclusive<usize> = 4..=50_000_000;
 /// The maximum that a text says, or why it says none.
 fn read_max_triangles(text: &str) -> Result<f64, String> {
     let Some(n) = typed_count(text) else {
-        return Err(format!("“{}” is no whole number.", text.trim()));
+        return Err(format!("“{}” is not a whole number.", text.trim()));
     };
     if MAX_TRIANGLES.contains(&n) {
         return Ok(n as f64);

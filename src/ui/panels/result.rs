@@ -174,7 +174,7 @@ fn read_tolerance(text: &str, lengths: Lengths) -> Result<f64, String> {
         ("", _) => Ok(0.0),
         (_, Some(length)) if length >= 0.0 => Ok(length),
         (_, Some(_)) => Err("A tolerance is not below 0.".to_owned()),
-        (text, None) => Err(format!("“{text}” is no length.")),
+        (text, None) => Err(format!("“{text}” is not a length.")),
     }
 }
 
@@ -419,7 +419,7 @@ mod tests {
         let read = |text| read_tolerance(text, lengths);
         assert_eq!(read(""), Ok(0.0));
         assert_eq!(read("0,2 cm"), Ok(2.0));
-        assert!(read("wide").is_err_and(|why| why == "“wide” is no length."));
+        assert!(read("wide").is_err_and(|why| why == "“wide” is not a length."));
         assert!(read("-2").is_err_and(|why| why == "A tolerance is not below 0."));
     }
 }
