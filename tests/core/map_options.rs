@@ -329,6 +329,27 @@ fn parts_of_the_stamped_file_without_results_are_told() {
 }
 
 #[test]
+fn a_section_with_more_layers_than_a_mapping_carries_is_refused() {
+    let strip = Strip::new();
+    let path = strip.path("crash.k");
+    let deck = std::fs::read_to_string(&path).unwrap();
+    let two = "0.833         2\n";
+    assert!(deck.contains(two));
+    std::fs::write(&path, deck.replace(two, "0.833      1000\n")).unwrap();
+    let asked = ["--identity", "--quantities", "stress"];
+    let refused = strip.map(&asked);
+    let told = errors(&refused);
+    assert_eq!(refused.status.code(), Some(1), "{told}");
+    assert!(
+        told.contains("1000 layers") && told.contains("--layers"),
+        "{told}"
+    );
+    assert!(!strip.path("out.k").exists());
+    let fewer = strip.map(&[&asked[..], &["--layers", "5"]].concat());
+    assert!(fewer.status.success(), "{}", errors(&fewer));
+}
+
+#[test]
 fn the_largest_distance_is_a_length_or_the_element_size() {
     let strip = Strip::new();
     let written = |distance: &str| {
