@@ -12,7 +12,7 @@ use shapematch::geometry::Vector3;
 use shapematch::role::Role;
 
 use super::story::{click, finish, matched};
-use super::viewport::{Desk, area, drag, harness, show};
+use super::viewport::{Desk, area, drag, harness, settle, show};
 
 fn act(desk: &mut Desk, action: Action) {
     if let Some(command) = action.command(&desk.state) {
@@ -167,11 +167,7 @@ fn the_section_has_a_handle_and_a_drawing_and_both_move_the_plane() {
     let mut harness = Harness::builder()
         .with_size(vec2(1000.0, 720.0))
         .build_ui_state(show_with_drawing, desk);
-    harness.run_steps(4);
-    while harness.state().viewports.is_waiting() {
-        std::thread::sleep(std::time::Duration::from_millis(2));
-        harness.step();
-    }
+    settle(&mut harness);
     assert_eq!(starts_with(&harness, "Outlines in the section plane"), 1);
     let plane =
         |harness: &Harness<'_, Desk>| harness.state().state.inspect.section.shown().unwrap();
@@ -246,7 +242,7 @@ fn the_sign_can_be_told_without_colours() {
         let mut camera = desk.camera(Role::Stamped);
         camera.height *= 0.999;
         desk.apply(ViewCommand::SetCamera(Role::Stamped, camera).into());
-        harness.run_steps(4);
+        settle(&mut harness);
         let transparent = PictureChoice {
             is_transparent: true,
             ..PictureChoice::default()

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use eframe::egui_wgpu::{RenderState, RendererOptions};
 use egui::{Event, MouseWheelUnit, PointerButton, Pos2, Rect, Vec2, vec2};
@@ -152,8 +153,20 @@ pub fn harness(desk: Desk) -> Harness<'static, Desk> {
     let mut harness = Harness::builder()
         .with_size(SIZE)
         .build_ui_state(show, desk);
-    harness.run_steps(4);
+    settle(&mut harness);
     harness
+}
+
+/// Draws until nothing that the windows show is still made on another thread.
+pub fn settle(harness: &mut Harness<'_, Desk>) {
+    harness.run_steps(4);
+    let begun = Instant::now();
+    while harness.state().viewports.is_waiting() {
+        assert!(begun.elapsed() < Duration::from_secs(60), "never ready");
+        std::thread::sleep(Duration::from_millis(1));
+        harness.step();
+    }
+    harness.run_steps(2);
 }
 
 fn press(harness: &Harness<'_, Desk>, pos: Pos2, button: PointerButton, pressed: bool) {
@@ -404,7 +417,7 @@ fn drawn() -> Harness<'static, Desk> {
         .with_size(vec2(360.0, 180.0))
         .renderer(renderer);
     let mut harness = builder.build_ui_state(show, desk);
-    harness.run_steps(4);
+    settle(&mut harness);
     harness
 }
 
@@ -501,7 +514,7 @@ fn the_two_parts_are_told_apart_without_colours() {
     let mut harness = drawn();
     for theme in [egui::Theme::Dark, egui::Theme::Light] {
         harness.ctx.set_theme(theme);
-        harness.run_steps(4);
+        settle(&mut harness);
         // The same sheet from the same side in the same light.
         let apart = lightness(&mut harness, Role::Stamped) - lightness(&mut harness, Role::Crash);
         assert!(apart > 10.0, "{theme:?}: {apart:.1} apart");
