@@ -206,7 +206,7 @@ fn floor(word: &str) -> std::result::Result<Floor, String> {
     match word {
         "auto" => Ok(Floor::Auto),
         "none" => Ok(Floor::None),
-        word => length(word, &limits::LENGTH, "auto or none").map(Floor::Length),
+        word => length(word, &limits::LENGTH, "a length, auto or none").map(Floor::Length),
     }
 }
 
@@ -218,14 +218,16 @@ fn reach(word: &str) -> std::result::Result<Reach, String> {
     if word == "auto" {
         return Ok(Reach(None));
     }
-    let length = length(word, &map_limits::POSITIVE, "auto")?;
+    let length = length(word, &map_limits::POSITIVE, "a length or auto")?;
     Ok(Reach(Some(length)))
 }
 
 /// A length in its range, where a word may stand for it too.
-fn length(word: &str, range: &RangeInclusive<f64>, or: &str) -> std::result::Result<f64, String> {
-    let length = word
-        .parse()
-        .map_err(|_| format!("expected a length, {or}"))?;
+fn length(
+    word: &str,
+    range: &RangeInclusive<f64>,
+    expected: &str,
+) -> std::result::Result<f64, String> {
+    let length = word.parse().map_err(|_| format!("expected {expected}"))?;
     within(length, range, "")
 }

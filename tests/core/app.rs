@@ -869,14 +869,13 @@ fn what_is_said_of_a_step_goes_with_it() {
     assert!(window.state.log.notices.toasts().count() > 1);
     window.state.tick(Duration::from_secs(3));
     window.act(Action::Undo);
-    let left: Vec<_> = window
-        .state
-        .log
-        .notices
-        .toasts()
-        .map(|n| &*n.text)
-        .collect();
-    assert_eq!(left, ["older"]);
+    assert_eq!(toasts(&window.state), ["older"]);
+}
+
+/// What the toasts say.
+fn toasts(state: &AppState) -> Vec<&str> {
+    let toasts = state.log.notices.toasts();
+    toasts.map(|notice| &*notice.text).collect()
 }
 
 #[test]
@@ -1122,14 +1121,7 @@ fn equal_messages_count_up_and_short_ones_end() {
     let counts: Vec<usize> = window.state.log.notices.toasts().map(|n| n.count).collect();
     assert_eq!(counts, [1, 12]);
     window.state.tick(Duration::from_secs(5));
-    let texts: Vec<&str> = window
-        .state
-        .log
-        .notices
-        .toasts()
-        .map(|n| &*n.text)
-        .collect();
-    assert_eq!(texts, ["disk full"]);
+    assert_eq!(toasts(&window.state), ["disk full"]);
     assert_eq!(window.state.log.notices.n_unread(), 1);
 }
 

@@ -137,9 +137,15 @@ fn sheet(
         let z = height(x, y);
         Point3::new(factor * x, y, z)
     };
-    let m = n + 1;
-    let points = (0..=2 * n).flat_map(|i| (0..m).map(move |j| place(i, j)));
-    let cells = (0..2 * n).flat_map(|i| (0..n).map(move |j| (i * m + j) as u32));
+    grid([2 * n, n], place)
+}
+
+/// A sheet of so many rows and columns of cells whose corners lie where `place` says.
+fn grid([rows, columns]: [usize; 2], place: impl Fn(usize, usize) -> Point3) -> Surface {
+    let m = columns + 1;
+    let corners = (0..=rows).flat_map(|i| (0..m).map(move |j| (i, j)));
+    let points = corners.map(|(i, j)| place(i, j));
+    let cells = (0..rows).flat_map(|i| (0..columns).map(move |j| (i * m + j) as u32));
     let m = m as u32;
     let triangles = cells.flat_map(|a| [[a, a + m, a + m + 1], [a, a + m + 1, a + 1]]);
     let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
@@ -219,13 +225,7 @@ fn half_tube(n: usize, most: f64) -> Surface {
         let sprung = most * (y * y + 0.3 * x * y);
         Point3::new(30.0 * x, 30.0 * y, 30.0 * angle.sin() + sprung)
     };
-    let m = n + 1;
-    let points = (0..=n).flat_map(|i| (0..m).map(move |j| place(i, j)));
-    let cells = (0..n).flat_map(|i| (0..n).map(move |j| (i * m + j) as u32));
-    let m = m as u32;
-    let triangles = cells.flat_map(|a| [[a, a + m, a + m + 1], [a, a + m + 1, a + 1]]);
-    let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
-    Surface::new(&mesh, "source").unwrap()
+    grid([n, n], place)
 }
 
 #[test]
