@@ -19,6 +19,7 @@ pub mod project_dialogs;
 pub mod shell;
 pub mod theme;
 pub mod toasts;
+pub mod typed;
 pub mod viewport;
 pub mod widgets;
 

@@ -3,7 +3,8 @@
 use egui::Ui;
 
 use super::theme::UNIT;
-use super::widgets::{caption, chip, count_field, form_row, large_button};
+use super::typed::{Takes, refusal, told_field};
+use super::widgets::{caption, chip, form_row, large_button};
 use crate::app::{
     AppState, Command, ExportCommand, PictureChoice, PictureSize, PictureWindows, Settings,
     ViewCommand,
@@ -63,6 +64,7 @@ fn size_ui(ui: &mut Ui, choice: &mut PictureChoice) {
                 }
             }
         });
+        let mut refused = None;
         form_row(ui, "Custom size", LABEL, |ui| {
             let mut sides = match choice.size {
                 PictureSize::Pixels(sides) => sides,
@@ -73,13 +75,17 @@ fn size_ui(ui: &mut Ui, choice: &mut PictureChoice) {
                 .iter_mut()
                 .zip(["Width in pixels", "Height in pixels"])
             {
-                let field = count_field(side).range(PictureSize::SIDES).speed(8.0);
-                ui.name_inputs(name, |ui| ui.add(field));
+                let (least, most) = (*PictureSize::SIDES.start(), *PictureSize::SIDES.end());
+                let takes = Takes::count(name, least as usize..=most as usize);
+                let field = takes.field(side).speed(8.0);
+                let told = told_field(ui, name, field, |text| takes.read(text));
+                refused = refused.take().or(told.1);
             }
             caption(ui, "pixels");
             if sides != before {
                 choice.size = PictureSize::Pixels(sides);
             }
         });
+        refusal(ui, refused);
     });
 }

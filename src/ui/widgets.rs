@@ -1,17 +1,14 @@
 //! Small pieces that every panel uses, so that they look alike everywhere.
 
-use std::cell::RefCell;
-
 use super::theme::{Palette, ROW, TALL, UNIT, color, ink};
-use crate::app::{Action, AppState, Command, NoticeLevel, typed_count, typed_length, typed_number};
+use crate::app::{Action, AppState, Command, NoticeLevel};
 use crate::assess::Verdict;
 use crate::colormap::{ColorScale, Pattern};
 use crate::role::Role;
-use crate::text::Lengths;
 pub use crate::text::{grouped, length, percent, signed};
 use egui::{
-    Align, Button, Color32, CornerRadius, DragValue, Frame, Layout, Margin, Rect, Response,
-    RichText, Sense, Stroke, Ui, Vec2, emath::Numeric, pos2, vec2,
+    Align, Button, Color32, CornerRadius, Frame, Layout, Margin, Rect, Response, RichText, Sense,
+    Stroke, Ui, Vec2, pos2, vec2,
 };
 
 /// A count on a chip: full, 50k, 2k, 500.
@@ -20,67 +17,6 @@ pub fn short_count(n: usize) -> String {
         format!("{}k", n / 1000)
     } else {
         grouped(n)
-    }
-}
-
-/// A field for a number with its unit, as people type it: `12,5`, `-3 °`.
-pub fn number_field<'a, N: Numeric>(value: &'a mut N, unit: &'static str) -> DragValue<'a> {
-    let field = DragValue::new(value).suffix(unit);
-    field.custom_parser(move |text| typed_number(text, unit))
-}
-
-/// A field for a length of the window, which may be typed in another unit: `0.5 in`.
-pub fn length_field(value: &mut f64, lengths: Lengths) -> DragValue<'_> {
-    let field = DragValue::new(value).suffix(lengths.suffix());
-    field.custom_parser(move |text| typed_length(text, lengths))
-}
-
-/// A field for a whole number: `2,000`, `2k`.
-pub fn count_field<N: Numeric>(value: &mut N) -> DragValue<'_> {
-    DragValue::new(value).custom_parser(|text| typed_count(text).map(|count| count as f64))
-}
-
-/// Adds a field that is read when it is left: a text that `read` refuses changes nothing and frames the field
-/// until another is typed. With the response comes why the text was refused.
-pub fn told_field(
-    ui: &mut Ui,
-    field: DragValue<'_>,
-    read: impl Fn(&str) -> Result<f64, String>,
-) -> (Response, Option<String>) {
-    let refused: RefCell<Option<Option<String>>> = RefCell::default();
-    let read = |text: &str| {
-        let value = read(text);
-        refused.replace(Some(value.as_ref().err().cloned()));
-        value.ok()
-    };
-    let field = field.update_while_editing(false).custom_parser(read);
-    let response = ui.add(field);
-    let id = response.id.with("refused");
-    let known: Option<String> = ui.data(|data| data.get_temp(id)).flatten();
-    let now = match refused.take() {
-        Some(now) => now,
-        None if response.gained_focus() || response.changed() => None,
-        None => known.clone(),
-    };
-    if now != known {
-        ui.data_mut(|data| data.insert_temp(id, now.clone()));
-    }
-    if now.is_some() {
-        let frame = Stroke::new(1.5, Palette::of(ui).poor);
-        let inside = egui::StrokeKind::Inside;
-        ui.painter().rect_stroke(response.rect, 4.0, frame, inside);
-    }
-    (response, now)
-}
-
-/// Why a text was refused, below its field.
-pub fn refusal(ui: &mut Ui, why: Option<String>) {
-    if let Some(why) = why {
-        let text = RichText::new(why).small().color(Palette::of(ui).poor);
-        let label = ui.add(egui::Label::new(text).wrap());
-        ui.ctx().accesskit_node_builder(label.id, |node| {
-            node.set_live(egui::accesskit::Live::Polite);
-        });
     }
 }
 

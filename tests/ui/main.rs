@@ -21,4 +21,5 @@ mod shaders;
 mod specification;
 mod starts;
 mod story;
+mod typed;
 mod viewport;

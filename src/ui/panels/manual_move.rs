@@ -1,25 +1,26 @@
 //! Moves by hand: numbers, turn-over, snapping, pasted matrices.
 
-use egui::{CollapsingHeader, DragValue, Key, Modifiers, Ui, vec2};
+use std::ops::RangeInclusive;
+
+use egui::{CollapsingHeader, Key, Modifiers, Ui, vec2};
 
 use crate::app::{
-    Action, AppState, Axis, AxisFrame, Command, MoveCommand, turns_deg, typed_number,
-    with_turns_deg,
+    Action, AppState, Axis, AxisFrame, Command, MoveCommand, turns_deg, with_turns_deg,
 };
 use crate::geometry::Similarity;
 use crate::report::parse_matrix;
 use crate::role::Role;
 use crate::text::fixed;
 use crate::ui::theme::{ROW, UNIT};
+use crate::ui::typed::{Takes, refusal, told_field};
 use crate::ui::widgets::{
-    Look, action_button, caption, chip, form_row, length_field, number_field, plain_action,
-    set_draft,
+    Look, action_button, caption, chip, form_row, plain_action, set_draft,
 };
 
 /// Width of the label column.
 const LABEL: f32 = 76.0;
-/// Largest typed move, angle or coordinate.
-const LARGEST_MOVE: f64 = 1e9;
+/// What a typed move, angle or coordinate may be.
+const MOVES: RangeInclusive<f64> = -1e9..=1e9;
 
 /// The fold "Move by hand".
 pub fn manual_move_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -64,21 +65,19 @@ fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let mut value: f64 =
             ui.data(|data| data.get_temp(id))
                 .unwrap_or(if is_turn { 15.0 } else { 10.0 });
-        form_row(ui, name, LABEL, |ui| {
-            let field = if is_turn {
-                number_field(&mut value, unit).speed(1.0)
+        let refused = form_row(ui, name, LABEL, |ui| {
+            let (takes, speed) = if is_turn {
+                (Takes::number(name, unit, MOVES), 1.0)
             } else {
-                length_field(&mut value, state.lengths()).speed(0.5)
+                (Takes::length(name, state.lengths(), MOVES), 0.5)
             };
-            let field = field
-                .range(-LARGEST_MOVE..=LARGEST_MOVE)
+            let field = takes
+                .field(&mut value)
+                .speed(speed)
                 .max_decimals(6)
                 .min_size(vec2(80.0, ROW));
-            let field = ui.add(field);
-            // A field with a unit is named after the unit otherwise.
-            ui.ctx().accesskit_node_builder(field.id, |node| {
-                node.set_label(format!("{name} by"));
-            });
+            let spoken = format!("{name} by");
+            let (_, refused) = told_field(ui, &spoken, field, |text| takes.read(text));
             for axis in Axis::ALL {
                 let label = format!("{} {}", if value < 0.0 { "−" } else { "+" }, axis.letter());
                 let spoken = format!("{name} by {value}{unit} on {}", axis.letter());
@@ -102,7 +101,9 @@ fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                     commands.push(command.into());
                 }
             }
+            refused
         });
+        refusal(ui, refused);
         ui.data_mut(|data| data.insert_temp(id, value));
     }
 }
@@ -137,12 +138,19 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let pivot = part.bounds().center();
     let at: [f64; 3] = center.coords.into();
     let moved: [f64; 3] = (center - pivot).into();
-    let unit = state.document.unit_suffix();
+    let lengths = state.lengths();
+    let unit = lengths.suffix();
     for (name, what, values) in [
         ("Centre", "Centre", at),
         ("Translation", "Translation since loading,", moved),
     ] {
-        if let Some((axis, by, value)) = fields_ui(ui, name, what, values, unit) {
+        if let Some((axis, by, value)) = fields_ui(
+            ui,
+            (name, what),
+            values,
+            |name| Takes::length(name, lengths, MOVES),
+            unit,
+        ) {
             let mut crash_from_stamped: Similarity = pose;
             crash_from_stamped.translation[axis.index()] += by;
             let name = format!("{name} {} {}{unit}", axis.letter(), fixed(value, 3));
@@ -153,9 +161,13 @@ fn position_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         caption(ui, "The pose is mirrored: no rotation angles");
         return;
     };
-    if let Some((axis, by, value)) =
-        fields_ui(ui, "Rotation", "Rotation since loading,", turns, "°")
-    {
+    if let Some((axis, by, value)) = fields_ui(
+        ui,
+        ("Rotation", "Rotation since loading,"),
+        turns,
+        |name| Takes::number(name, "°", MOVES),
+        "°",
+    ) {
         let mut turns = turns;
         turns[axis.index()] += by;
         let crash_from_stamped = with_turns_deg(&pose, turns, &pivot);
@@ -175,37 +187,42 @@ fn set_pose(crash_from_stamped: Similarity, name: String) -> Command {
 /// Three numbers in a row; the axis that was typed at, by how much it changed, and its new value.
 fn fields_ui(
     ui: &mut Ui,
-    label: &str,
-    spoken: &str,
+    (label, spoken): (&str, &str),
     values: [f64; 3],
-    unit: &'static str,
+    takes: impl Fn(&str) -> Takes<'_>,
+    unit: &str,
 ) -> Option<(Axis, f64, f64)> {
     let mut typed = None;
+    let mut refused = None;
     form_row(ui, label, LABEL, |ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.spacing_mut().button_padding.x = 4.0;
         let width = (ui.available_width() - 8.0) / 3.0;
+        // As wide while it is typed in.
+        ui.spacing_mut().interact_size.x = width;
         for axis in Axis::ALL {
             // What would be shown as −0.000 is nothing.
             let before = values[axis.index()];
             let before = if before.abs() < 5e-4 { 0.0 } else { before };
             let mut value = before;
             // Three have no room for their unit.
-            let field = DragValue::new(&mut value)
-                .custom_parser(move |text| typed_number(text, unit))
-                .range(-LARGEST_MOVE..=LARGEST_MOVE)
+            let name = format!("{spoken} {}", axis.letter());
+            let takes = takes(&name);
+            let field = takes
+                .field(&mut value)
+                .suffix("")
                 .fixed_decimals(3)
                 .speed(0.5)
-                .update_while_editing(false)
                 .min_size(vec2(width, ROW));
-            let name = format!("{spoken} {}", axis.letter());
-            let response = ui.name_inputs(name.clone(), |ui| ui.add_sized(vec2(width, ROW), field));
+            let (response, why) = told_field(ui, &name, field, |text| takes.read(text));
+            refused = refused.take().or(why);
             if response.changed() && value != before {
                 typed = Some((axis, value - before, value));
             }
             response.on_hover_text(format!("{name}: {before}{unit}"));
         }
     });
+    refusal(ui, refused);
     typed
 }
 

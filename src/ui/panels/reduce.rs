@@ -7,15 +7,16 @@ use egui::{Response, Slider, Ui, vec2};
 use super::section::section_ui;
 use crate::app::{
     Action, AppState, ColorBy, Command, LevelResult, Part, ReduceCommand, Section, Settings,
-    ViewCommand, duration_text, typed_count,
+    ViewCommand, duration_text,
 };
 use crate::jobs::{JobKey, MeasuredLevel};
 use crate::role::{PerRole, Role};
 use crate::text::counted;
 use crate::ui::theme::{LABEL, Palette, ROW, UNIT};
+use crate::ui::typed::{Takes, refusal, told_field};
 use crate::ui::widgets::{
-    Look, action_button, caption, chip, count_field, form_row, grouped, icon_button, paragraph,
-    refusal, role_mark, short_count, square, tight, told_field,
+    Look, action_button, caption, chip, form_row, grouped, icon_button, paragraph, role_mark,
+    short_count, square, tight,
 };
 
 /// Draws section 2.
@@ -67,30 +68,19 @@ const CHOICE: f32 = 128.0;
 /// What a maximum may be.
 const MAX_TRIANGLES: RangeInclusive<usize> = 4..=50_000_000;
 
-/// The maximum that a text says, or why it says none.
-fn read_max_triangles(text: &str) -> Result<f64, String> {
-    let Some(n) = typed_count(text) else {
-        return Err(format!("“{}” is not a whole number.", text.trim()));
-    };
-    if MAX_TRIANGLES.contains(&n) {
-        return Ok(n as f64);
-    }
-    let [least, most] = [MAX_TRIANGLES.start(), MAX_TRIANGLES.end()].map(|n| grouped(*n));
-    Err(format!("A maximum is {least} to {most} triangles."))
-}
-
 /// The maximum, what it is for, and the button.
 fn ceiling_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut settings: Settings = state.settings.clone();
     let mut is_entered = false;
     let mut refused = None;
     form_row(ui, "Max triangles", LABEL, |ui| {
-        let field = count_field(&mut settings.max_triangles)
-            .range(MAX_TRIANGLES)
+        let takes = Takes::count("Max triangles", MAX_TRIANGLES);
+        let field = takes
+            .field(&mut settings.max_triangles)
             .speed(20.0)
             .custom_formatter(|n, _| grouped(n as usize))
             .min_size(vec2((ui.available_width() - CHOICE).clamp(56.0, 98.0), ROW));
-        let (field, why) = told_field(ui, field, read_max_triangles);
+        let (field, why) = told_field(ui, "Max triangles", field, |text| takes.read(text));
         ui.spacing_mut().button_padding.x = 8.0;
         let is_left = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         is_entered = is_left && why.is_none();

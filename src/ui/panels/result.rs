@@ -3,20 +3,19 @@
 use egui::{Button, RichText, Ui, vec2};
 
 use super::explain;
-use crate::app::{
-    Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, Section, typed_length,
-};
+use crate::app::{Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, Section};
 use crate::assess::{Ambiguity, Coverage, OneSided, Verdict};
 use crate::registration::{group_starts, limits};
 use crate::report::{PoseRecord, few_agree_words, number, start_counts};
 use crate::role::PerRole;
 use crate::settings::setting;
-use crate::text::{Lengths, capital, fixed, sentence, vector, whole_percent};
+use crate::text::{capital, fixed, sentence, vector, whole_percent};
 use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
+use crate::ui::typed::{Takes, refusal, told_field};
 use crate::ui::widgets::{
-    Look, action_button, caption, card, chip, figure, length_field, paragraph, percent,
-    plain_action, refusal, square, tight, told_field, verdict_color,
+    Look, action_button, caption, card, chip, figure, paragraph, percent, plain_action, square,
+    tight, verdict_color,
 };
 
 /// Verdict, figures, alternatives, matrix.
@@ -168,16 +167,6 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     }
 }
 
-/// The tolerance that a text says, 0 for the automatic one, or why it says none.
-fn read_tolerance(text: &str, lengths: Lengths) -> Result<f64, String> {
-    match (text.trim(), typed_length(text, lengths)) {
-        ("", _) => Ok(0.0),
-        (_, Some(length)) if length >= 0.0 => Ok(length),
-        (_, Some(_)) => Err("A tolerance is not below 0.".to_owned()),
-        (text, None) => Err(format!("“{text}” is not a length.")),
-    }
-}
-
 /// The tolerance the verdict was judged with; another one judges the match anew. From right to left. Says why
 /// a typed one was refused.
 fn tolerance_ui(
@@ -205,13 +194,16 @@ fn tolerance_ui(
         if auto.clicked() {
             *tolerance = 0.0;
         }
-        ui.name_inputs(setting.label, |ui| {
-            let lengths = state.lengths();
-            let field = length_field(&mut shown, lengths)
-                .range(limits::LENGTH)
+            let takes = Takes::length(setting.label, state.lengths(), limits::LENGTH);
+            let field = takes
+                .field(&mut shown)
                 .speed(0.01 * usual)
                 .max_decimals(4);
-            let (field, why) = told_field(ui, field, |text| read_tolerance(text, lengths));
+            let (field, why) = told_field(ui, setting.label, field, |text| match text.trim() {
+                // The automatic one.
+                "" => Ok(0.0),
+                text => takes.read(text),
+            });
             refused = why;
             let field = field.on_hover_text(
                 "Shape tolerance: how far the shapes may differ besides springback. The verdict follows \
@@ -220,7 +212,6 @@ fn tolerance_ui(
             if field.changed() {
                 *tolerance = shown;
             }
-        });
         caption(ui, "within");
     });
     if recipe != state.document.recipe {
@@ -406,20 +397,4 @@ fn moved_ui(ui: &mut Ui, state: &AppState) {
             number(record.scale)
         ),
     );
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::units::LengthUnit;
-
-    #[test]
-    fn a_tolerance_that_is_none_is_refused_with_the_reason() {
-        let lengths = Lengths::new(Some(LengthUnit::Millimeter));
-        let read = |text| read_tolerance(text, lengths);
-        assert_eq!(read(""), Ok(0.0));
-        assert_eq!(read("0,2 cm"), Ok(2.0));
-        assert!(read("wide").is_err_and(|why| why == "“wide” is not a length."));
-        assert!(read("-2").is_err_and(|why| why == "A tolerance is not below 0."));
-    }
 }

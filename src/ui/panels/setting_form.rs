@@ -1,13 +1,17 @@
 //! Settings as rows of a form, each as its row in the table of settings says.
 
-use egui::{ComboBox, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};
+use std::ops::RangeInclusive;
 
-use crate::app::{AppState, typed_length};
-use crate::registration::Floor;
-use crate::settings::{Domain, Setting, Value};
+use egui::{ComboBox, DragValue, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};
+
+use crate::app::AppState;
+use crate::mapping::limits::POSITIVE;
+use crate::registration::{Floor, limits};
+use crate::settings::{Domain, Setting, Unit, Value};
 use crate::text::{Lengths, capital};
 use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::{caption, count_field, form_row, length_field, number_field, tight};
+use crate::ui::typed::{Takes, refusal, told_field};
+use crate::ui::widgets::{caption, form_row, tight};
 
 /// Width of the column of labels.
 const LABEL: f32 = 112.0;
@@ -15,6 +19,10 @@ const LABEL: f32 = 112.0;
 pub const USUAL_LEVEL: usize = 2000;
 /// A length that is left to the program, as the command line calls it.
 const AUTO: &str = "auto";
+/// Name of the field of a floor that is a length.
+const FLOOR_LENGTH: &str = "Length of the floor";
+/// What the form takes as a level of the search.
+const LEVELS: RangeInclusive<usize> = 100..=10_000_000;
 
 /// The button that shows and hides the settings of a section.
 #[derive(Debug, Clone, Copy)]
@@ -89,10 +97,11 @@ pub fn setting_ui<R>(
     });
     let row = row.response.rect;
     if row.height() > 1.0 {
+        // A reason why a text is refused stands below the row.
+        let middle = row.top() + row.height().min(ROW) / 2.0;
         let usual = setting.get(usual).filter(|usual| *usual != value);
         let right = row.left() + room;
-        let at =
-            |x: f32| Rect::from_center_size(pos2(right - x, row.center().y), Vec2::splat(18.0));
+        let at = |x: f32| Rect::from_center_size(pos2(right - x, middle), Vec2::splat(18.0));
         help_ui(ui, at(30.0), setting);
         if let Some(usual) = usual.filter(|_| unused.is_none())
             && back_ui(ui, at(10.0), setting)
@@ -146,22 +155,17 @@ fn value_ui<R>(ui: &mut Ui, state: &AppState, setting: &Setting<R>, value: &mut 
                 .on_hover_text(setting.help);
         }
         (Domain::Count(range), Value::Count(n)) => {
-            form_row(ui, setting.label, LABEL, |ui| {
-                ui.add(count_field(n).range(range.clone()).speed(1.0))
-                    .on_hover_text(setting.help)
-                    .accessible_name(setting.label);
-            });
+            let takes = Takes::count(setting.label, range.clone());
+            let field = takes.field(n).speed(1.0);
+            typed_ui(ui, setting, field, |text| takes.read(text));
         }
         (Domain::Number { unit, range, step }, Value::Number(number)) => {
-            form_row(ui, setting.label, LABEL, |ui| {
-                let field = number_field(number, unit.suffix(lengths))
-                    .range(range.clone())
-                    .speed(*step)
-                    .max_decimals(6);
-                ui.add(field)
-                    .on_hover_text(setting.help)
-                    .accessible_name(setting.label);
-            });
+            let takes = match unit {
+                Unit::Length => Takes::length(setting.label, lengths, range.clone()),
+                _ => Takes::number(setting.label, unit.suffix(lengths), range.clone()),
+            };
+            let field = takes.field(number).speed(*step).max_decimals(6);
+            typed_ui(ui, setting, field, |text| takes.read(text));
         }
         (Domain::Reach, Value::Reach(length)) => reach_ui(ui, setting, length, lengths),
         (Domain::Floor, Value::Floor(floor)) => floor_ui(ui, setting, floor, lengths),
@@ -169,6 +173,21 @@ fn value_ui<R>(ui: &mut Ui, state: &AppState, setting: &Setting<R>, value: &mut 
         // The window takes its poses from the parts and from picked pairs.
         _ => {}
     }
+}
+
+/// A row with a field for a number, and below it why a typed text was refused.
+fn typed_ui<R>(
+    ui: &mut Ui,
+    setting: &Setting<R>,
+    field: DragValue<'_>,
+    read: impl Fn(&str) -> Result<f64, String>,
+) {
+    let refused = form_row(ui, setting.label, LABEL, |ui| {
+        let (response, refused) = told_field(ui, setting.label, field, read);
+        response.on_hover_text(setting.help);
+        refused
+    });
+    refusal(ui, refused);
 }
 
 /// A menu of choices.
@@ -203,7 +222,7 @@ fn floor_ui<R>(ui: &mut Ui, setting: &Setting<R>, floor: &mut Floor, lengths: Le
         };
         ComboBox::from_id_salt(setting.option)
             .selected_text(words(floor))
-            .width(120.0)
+            .width(ui.available_width())
             .show_ui(ui, |ui| {
                 for choice in [Floor::Auto, Floor::Length(0.1), Floor::None] {
                     let is_on = words(&choice) == words(floor);
@@ -214,41 +233,41 @@ fn floor_ui<R>(ui: &mut Ui, setting: &Setting<R>, floor: &mut Floor, lengths: Le
             })
             .response
             .on_hover_text(setting.help);
-        if let Floor::Length(length) = floor {
-            ui.name_inputs("Length of the floor", |ui| {
-                ui.add(length_field(length, lengths).range(0.0..=1e6).speed(0.01));
-            });
-        }
     });
+    // Beside the choice it would lie below the help of the row.
+    if let Floor::Length(length) = floor {
+        let takes = Takes::length(FLOOR_LENGTH, lengths, limits::LENGTH);
+        let refused = form_row(ui, "", LABEL, |ui| {
+            let field = takes.field(length).speed(0.01).max_decimals(6);
+            told_field(ui, FLOOR_LENGTH, field, |text| takes.read(text)).1
+        });
+        refusal(ui, refused);
+    }
 }
 
 /// A length, or "auto", which an empty field says too.
 fn reach_ui<R>(ui: &mut Ui, setting: &Setting<R>, reach: &mut Option<f64>, lengths: Lengths) {
-    form_row(ui, setting.label, LABEL, |ui| {
-        // No length is 0; it stands for the word.
-        let mut length = reach.unwrap_or(0.0);
-        let suffix = reach.map_or("", |_| lengths.suffix());
-        let field = egui::DragValue::new(&mut length)
-            .range(0.0..=f64::MAX)
-            .speed(0.05)
-            .max_decimals(6)
-            .suffix(suffix)
-            .custom_formatter(|length, decimals| {
-                if length > 0.0 {
-                    egui::emath::format_with_decimals_in_range(length, decimals)
-                } else {
-                    AUTO.to_owned()
-                }
-            })
-            .custom_parser(move |text| match text.trim() {
-                "" | AUTO => Some(0.0),
-                text => typed_length(text, lengths),
-            });
-        ui.add(field)
-            .on_hover_text(setting.help)
-            .accessible_name(setting.label);
-        *reach = Some(length).filter(|length| *length > 0.0);
+    // No length is 0; it stands for the word.
+    let mut length = reach.unwrap_or(0.0);
+    let takes = Takes::length(setting.label, lengths, POSITIVE);
+    let field = takes
+        .field(&mut length)
+        .range(0.0..=f64::MAX)
+        .speed(0.05)
+        .max_decimals(6)
+        .suffix(reach.map_or("", |_| lengths.suffix()))
+        .custom_formatter(|length, decimals| {
+            if length > 0.0 {
+                egui::emath::format_with_decimals_in_range(length, decimals)
+            } else {
+                AUTO.to_owned()
+            }
+        });
+    typed_ui(ui, setting, field, |text| match text.trim() {
+        "" | AUTO => Ok(0.0),
+        text => takes.read(text),
     });
+    *reach = Some(length).filter(|length| *length > 0.0);
 }
 
 /// Levels of section 2 come before one of the settings.
@@ -259,16 +278,15 @@ fn limit_ui<R>(ui: &mut Ui, state: &AppState, setting: &Setting<R>, limit: &mut 
         return;
     }
     let mut is_on = limit.is_some();
-    ui.horizontal(|ui| {
+    let refused = ui.horizontal(|ui| {
         ui.checkbox(&mut is_on, "Reduce search to")
             .on_hover_text(setting.help);
         if is_on != limit.is_some() {
             *limit = is_on.then_some(USUAL_LEVEL);
         }
-        if let Some(n) = limit {
-            ui.name_inputs(setting.label, |ui| {
-                ui.add(count_field(n).range(100..=10_000_000).speed(20.0));
-            });
-        }
+        let takes = Takes::count(setting.label, LEVELS);
+        let field = takes.field(limit.as_mut()?).speed(20.0);
+        told_field(ui, setting.label, field, |text| takes.read(text)).1
     });
+    refusal(ui, refused.inner);
 }

@@ -12,8 +12,9 @@ use crate::colormap::ColorScale;
 use crate::role::Role;
 use crate::text::capital;
 use crate::ui::theme::{Palette, color};
+use crate::ui::typed::{Takes, refusal, told_field};
 use crate::ui::viewport::overlay::Overlay;
-use crate::ui::widgets::{length, number_field, paint_role_mark, percent, signed};
+use crate::ui::widgets::{length, paint_role_mark, percent, signed};
 
 /// Width of the histogram beside the bar.
 const HISTOGRAM: f32 = 64.0;
@@ -218,36 +219,55 @@ fn limit_field(
         Limit::Upper => scale.max,
         Limit::Lower => scale.min,
     };
-    ui.horizontal(|ui| {
+    let refused = ui.horizontal(|ui| {
         ui.add_space(HISTOGRAM - 2.0);
-        let field = number_field(&mut value, "")
+        let takes = Takes::number(limit.name(), "", -1e9..=1e9);
+        let field = takes
+            .field(&mut value)
             .speed(0.01 * scale.max.abs().max(scale.min.abs()))
-            .range(-1e9..=1e9)
             .custom_formatter(|value, _| signed(value));
-        let response = ui.add(field);
+        let is_alone = ui.input(|i| i.modifiers.alt);
+        let (response, refused) = told_field(ui, limit.name(), field, |text| {
+            let value = takes.read(text)?;
+            limits_with(scale, limit, value, is_alone)?;
+            Ok(value)
+        });
         response.widget_info(|| {
             let name = format!("{} ({})", limit.name(), over.role().word());
             WidgetInfo::labeled(egui::Role::SpinButton, true, name)
         });
-        if response.changed() {
-            set_limit(ui, scale, limit, value, coloring);
+        if response.changed()
+            && let Ok(limits) = limits_with(scale, limit, value, is_alone)
+        {
+            coloring.limits = Some(limits);
         }
         response.on_hover_text("Drag or type; both ends move together unless Alt is held");
+        refused
     });
+    refusal(ui, refused.inner);
 }
 
-/// A new value at one end; the other end mirrors it while they are symmetric, unless Alt is held.
-fn set_limit(ui: &Ui, scale: &ColorScale, limit: Limit, value: f64, coloring: &mut Coloring) {
-    let is_symmetric = scale.min == -scale.max;
-    let is_alone = ui.input(|i| i.modifiers.alt) || !is_symmetric;
+/// The limits with a new value at one end, which the other end mirrors while they are symmetric, unless the end
+/// is moved alone; or why they are none.
+fn limits_with(
+    scale: &ColorScale,
+    limit: Limit,
+    value: f64,
+    is_alone: bool,
+) -> Result<[f64; 2], String> {
+    let is_alone = is_alone || scale.min != -scale.max;
     let limits = match limit {
         _ if !is_alone && value != 0.0 => [-value.abs(), value.abs()],
         Limit::Upper => [scale.min, value],
         Limit::Lower => [value, scale.max],
     };
     if limits[0] < limits[1] {
-        coloring.limits = Some(limits);
+        return Ok(limits);
     }
+    Err(match limit {
+        Limit::Upper => format!("{}: above {}.", limit.name(), signed(scale.min)),
+        Limit::Lower => format!("{}: below {}.", limit.name(), signed(scale.max)),
+    })
 }
 
 /// Histogram, bar, ticks, and the handles on them.
@@ -371,7 +391,10 @@ fn drag_end(
         } else {
             value + up * DRAG_RATE * span
         };
-        set_limit(ui, scale, limit, value, coloring);
+        let is_alone = ui.input(|i| i.modifiers.alt);
+        if let Ok(limits) = limits_with(scale, limit, value, is_alone) {
+            coloring.limits = Some(limits);
+        }
     }
 }
 
@@ -438,17 +461,18 @@ fn tolerance(
     stats: &DeviationStats,
     coloring: &mut Coloring,
 ) {
-    ui.horizontal(|ui| {
+    let refused = ui.horizontal(|ui| {
         let inside = percent(stats.share_inside(scale.tolerance));
         ui.label(RichText::new(inside).size(15.0).color(over.frame.look.text));
         ui.label(RichText::new("within ±").size(12.0));
         ui.spacing_mut().item_spacing.x = 2.0;
         let mut value = scale.tolerance;
-        let field = number_field(&mut value, "")
+        let takes = Takes::number("Tolerance", "", 0.0..=1e9);
+        let field = takes
+            .field(&mut value)
             .speed(0.01 * scale.max.abs())
-            .range(0.0..=1e9)
             .custom_formatter(|value, _| length(value));
-        let response = ui.add(field);
+        let (response, refused) = told_field(ui, "Tolerance", field, |text| takes.read(text));
         response.widget_info(|| {
             let name = format!("Tolerance ({})", over.role().word());
             WidgetInfo::labeled(egui::Role::SpinButton, true, name)
@@ -457,7 +481,9 @@ fn tolerance(
             coloring.tolerance = Some(value);
         }
         ui.label(RichText::new(over.frame.state.document.unit_suffix()).size(12.0));
+        refused
     });
+    refusal(ui, refused.inner);
 }
 
 /// Says that the colours are those of the reduced part, where the numbers are those of the full one.

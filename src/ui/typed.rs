@@ -1,0 +1,176 @@
+//! Fields for numbers: what they read, and at the field the reason why a typed text is refused.
+
+use std::cell::RefCell;
+use std::ops::RangeInclusive;
+
+use egui::{DragValue, Response, RichText, Stroke, Ui, emath::Numeric};
+
+use super::theme::Palette;
+use crate::app::{typed_count, typed_length, typed_number};
+use crate::text::{Lengths, grouped, minus, trimmed};
+
+/// What a field is called and which values it takes.
+#[derive(Debug, Clone)]
+pub struct Takes<'a> {
+    name: &'a str,
+    kind: Kind,
+    range: RangeInclusive<f64>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Kind {
+    Number(&'static str),
+    Length(Lengths),
+    Count,
+}
+
+impl<'a> Takes<'a> {
+    /// A number with its unit, as people type it: `12,5`, `-3 °`.
+    pub fn number(name: &'a str, unit: &'static str, range: RangeInclusive<f64>) -> Self {
+        let kind = Kind::Number(unit);
+        Self { name, kind, range }
+    }
+
+    /// A length of the window, which may be typed in another unit: `0.5 in`.
+    pub fn length(name: &'a str, lengths: Lengths, range: RangeInclusive<f64>) -> Self {
+        let kind = Kind::Length(lengths);
+        Self { name, kind, range }
+    }
+
+    /// A whole number: `2,000`, `2k`.
+    pub fn count(name: &'a str, range: RangeInclusive<usize>) -> Self {
+        Self {
+            name,
+            kind: Kind::Count,
+            range: *range.start() as f64..=*range.end() as f64,
+        }
+    }
+
+    /// The field of a value, which a drag keeps within the range too.
+    pub fn field<'v, N: Numeric>(&self, value: &'v mut N) -> DragValue<'v> {
+        let (least, most) = (*self.range.start(), *self.range.end());
+        DragValue::new(value)
+            .range(N::from_f64(least)..=N::from_f64(most))
+            .suffix(self.suffix())
+    }
+
+    /// The value that a text says, or why it says none.
+    pub fn read(&self, text: &str) -> Result<f64, String> {
+        let (value, what) = match self.kind {
+            Kind::Number(unit) => (typed_number(text, unit), "number"),
+            Kind::Length(lengths) => (typed_length(text, lengths), "length"),
+            Kind::Count => (typed_count(text).map(|n| n as f64), "whole number"),
+        };
+        match value {
+            Some(value) if self.range.contains(&value) => Ok(value),
+            Some(_) => Err(format!("{}: {}.", self.name, self.range_words())),
+            None => Err(format!("“{}” is not a {what}.", text.trim())),
+        }
+    }
+
+    fn suffix(&self) -> &'static str {
+        match self.kind {
+            Kind::Number(unit) => unit,
+            Kind::Length(lengths) => lengths.suffix(),
+            Kind::Count => "",
+        }
+    }
+
+    /// `1 to 60°`, `0 mm or more`, `above 0 mm`.
+    fn range_words(&self) -> String {
+        let (least, most) = (*self.range.start(), *self.range.end());
+        let unit = self.suffix();
+        let is_above = least == f64::MIN_POSITIVE;
+        match (is_above, most == f64::MAX) {
+            (true, true) => format!("above 0{unit}"),
+            (false, true) => format!("{}{unit} or more", bound(least)),
+            (true, false) => format!("above 0, up to {}{unit}", bound(most)),
+            (false, false) => format!("{} to {}{unit}", bound(least), bound(most)),
+        }
+    }
+}
+
+/// An end of a range.
+fn bound(value: f64) -> String {
+    if value >= 1000.0 && value.fract() == 0.0 {
+        grouped(value as usize)
+    } else {
+        minus(&trimmed(value, 9))
+    }
+}
+
+/// Adds a field that is read when it is left: a text that `read` refuses changes nothing and frames the field
+/// until another is typed. With the response comes why the text was refused.
+pub fn told_field(
+    ui: &mut Ui,
+    name: &str,
+    field: DragValue<'_>,
+    read: impl Fn(&str) -> Result<f64, String>,
+) -> (Response, Option<String>) {
+    let refused: RefCell<Option<Option<String>>> = RefCell::default();
+    let read = |text: &str| {
+        let value = read(text);
+        refused.replace(Some(value.as_ref().err().cloned()));
+        value.ok()
+    };
+    let field = field.update_while_editing(false).custom_parser(read);
+    // A field with a unit is named after the unit otherwise.
+    let response = ui.add(field).accessible_name(name);
+    let id = response.id.with("refused");
+    let known: Option<String> = ui.data(|data| data.get_temp(id)).flatten();
+    let now = match refused.take() {
+        Some(now) => now,
+        None if response.gained_focus() || response.changed() => None,
+        None => known.clone(),
+    };
+    if now != known {
+        ui.data_mut(|data| data.insert_temp(id, now.clone()));
+    }
+    if now.is_some() {
+        let frame = Stroke::new(1.5, Palette::of(ui).poor);
+        let inside = egui::StrokeKind::Inside;
+        ui.painter().rect_stroke(response.rect, 4.0, frame, inside);
+    }
+    (response, now)
+}
+
+/// Why a text was refused, below its field.
+pub fn refusal(ui: &mut Ui, why: Option<String>) {
+    if let Some(why) = why {
+        let text = RichText::new(why).small().color(Palette::of(ui).poor);
+        let label = ui.add(egui::Label::new(text).wrap());
+        ui.ctx().accesskit_node_builder(label.id, |node| {
+            node.set_live(egui::accesskit::Live::Polite);
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::LengthUnit;
+
+    #[test]
+    fn what_a_field_does_not_take_is_told_with_what_it_takes() {
+        let mm = Lengths::new(Some(LengthUnit::Millimeter));
+        let angle = Takes::number("Rotation step", "°", 1.0..=60.0);
+        let reach = Takes::length("Largest distance", mm, f64::MIN_POSITIVE..=f64::MAX);
+        let floor = Takes::length("Floor", mm, 0.0..=f64::MAX);
+        let points = Takes::count("Coarse points", 1..=1_000_000_000);
+        let shift = Takes::number("Move", "", -0.5..=0.5);
+        for (takes, text, read) in [
+            (&angle, "12,5 °", Ok(12.5)),
+            (&angle, "0", Err("Rotation step: 1 to 60°.")),
+            (&angle, "steep", Err("“steep” is not a number.")),
+            (&reach, "0", Err("Largest distance: above 0 mm.")),
+            (&floor, "0,2 cm", Ok(2.0)),
+            (&floor, "-1", Err("Floor: 0 mm or more.")),
+            (&floor, "1 kg", Err("“1 kg” is not a length.")),
+            (&points, "0", Err("Coarse points: 1 to 1,000,000,000.")),
+            (&points, "1.5", Err("“1.5” is not a whole number.")),
+            (&shift, "2", Err("Move: −0.5 to 0.5.")),
+        ] {
+            assert_eq!(takes.read(text), read.map_err(str::to_owned), "{text}");
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! Numbers typed into fields: what no field takes changes nothing and is told at the field.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use shapematch::app::{Command, MatchCommand, ViewCommand};
+use shapematch::mapping::MapOptions;
+use shapematch::registration::{Floor, MatchSettings, Method, Selection};
+use shapematch::role::Role;
+use shapematch::settings::{Domain, MAP_SETTINGS, MatchRecipe, SETTINGS, Setting, Unit};
+use shapematch::ui::Shell;
+
+use super::story::{click, finish, matched, window};
+
+type Window = Harness<'static, Shell>;
+
+fn run(window: &mut Window, command: impl Into<Command>) {
+    let ctx = window.ctx.clone();
+    window.state_mut().run_commands(vec![command.into()], &ctx);
+    window.run_steps(4);
+}
+
+/// Types a text into a field and leaves it with Enter.
+pub(crate) fn type_into(window: &mut Window, field: &str, text: &str) {
+    let role = egui::accesskit::Role::SpinButton;
+    window.get_by_role_and_label(role, field).click();
+    window.run_steps(2);
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.event(egui::Event::Text(text.to_owned()));
+    window.run_steps(2);
+    window.key_press(egui::Key::Enter);
+    window.run_steps(2);
+}
+
+/// Types texts that a field does not take; each is told with its reason.
+fn is_refused(window: &mut Window, field: &str, typed: &[(&str, &str)]) {
+    for (text, why) in typed {
+        type_into(window, field, text);
+        assert!(window.query_by_label(why).is_some(), "{field}: {why}");
+    }
+}
+
+/// The fields of a table that are numbers: their names, and texts that they refuse with the begin of the reason.
+fn numbers<R>(table: &'static [Setting<R>]) -> Vec<(&'static str, [(&'static str, String); 2])> {
+    let told = |row: &'static Setting<R>| {
+        let (what, outside) = match &row.domain {
+            Domain::Count(_) => ("whole number", "1e12"),
+            Domain::Limit(_) => ("whole number", "0"),
+            Domain::Number {
+                unit: Unit::Length, ..
+            }
+            | Domain::Reach
+            | Domain::Floor => ("length", "-1"),
+            Domain::Number { .. } => ("number", "-1"),
+            Domain::Choice(_) | Domain::Switch | Domain::Poses => return None,
+        };
+        let field = match &row.domain {
+            Domain::Floor => "Length of the floor",
+            _ => row.label,
+        };
+        let none = format!("“much” is not a {what}.");
+        Some((field, [("much", none), (outside, format!("{field}: "))]))
+    };
+    table.iter().filter_map(told).collect()
+}
+
+/// Each field of a table that is there refuses what it does not take; the names of those that are there.
+fn walk<R>(window: &mut Window, table: &'static [Setting<R>]) -> Vec<&'static str> {
+    let role = egui::accesskit::Role::SpinButton;
+    let mut seen = Vec::new();
+    for (field, typed) in numbers(table) {
+        if window.query_by_role_and_label(role, field).is_none() {
+            continue;
+        }
+        for (text, why) in typed {
+            type_into(window, field, text);
+            let mut told = window
+                .query_all_by(|node| node.value().is_some_and(|value| value.starts_with(&why)));
+            assert!(told.next().is_some(), "{field}, typed {text}: {why}");
+        }
+        seen.push(field);
+    }
+    seen
+}
+
+#[test]
+fn every_number_of_the_settings_says_at_its_field_why_a_text_is_refused() {
+    let mut window = window();
+    window.set_size(egui::vec2(1400.0, 2400.0));
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    click(&mut window, "Match settings");
+    let mut seen = Vec::new();
+    for selection in [
+        Selection::Fractional {
+            lambda: 3.0,
+            floor: Floor::Length(0.1),
+        },
+        Selection::Trimmed { overlap: 0.9 },
+    ] {
+        let recipe = MatchRecipe {
+            settings: MatchSettings {
+                selection,
+                ..MatchSettings::of(Method::Fractional)
+            },
+            max_triangles: Some(2000),
+        };
+        run(
+            &mut window,
+            MatchCommand::SetRecipe(Box::new(recipe.clone())),
+        );
+        seen.extend(walk(&mut window, &SETTINGS));
+        assert_eq!(window.state().state().document.recipe, recipe);
+    }
+    for (field, _) in numbers(&SETTINGS) {
+        assert!(seen.contains(&field), "{field} is not in the form");
+    }
+    click(&mut window, "4 Map");
+    click(&mut window, "Mapping settings");
+    let seen = walk(&mut window, &MAP_SETTINGS);
+    let names: Vec<_> = numbers(&MAP_SETTINGS)
+        .into_iter()
+        .map(|row| row.0)
+        .collect();
+    assert_eq!(seen, names);
+    let recipe = &window.state().state().document.mapping.recipe;
+    assert_eq!(recipe.options, MapOptions::default());
+}
+
+#[test]
+fn limits_moves_and_sizes_that_cannot_be_are_refused() {
+    let mut window = matched();
+    click(&mut window, "Move over");
+    finish(&mut window);
+    click(&mut window, "Unfold the legend (stamped)");
+    let coloring = |window: &Window| window.state().state().view.display.coloring;
+    let before = coloring(&window);
+    let lower = [("much", "“much” is not a number.")];
+    is_refused(&mut window, "Lower limit (stamped)", &lower);
+    let tolerance = [("-1", "Tolerance: 0 to 1,000,000,000.")];
+    is_refused(&mut window, "Tolerance (stamped)", &tolerance);
+    assert_eq!(coloring(&window), before);
+    let mut display = window.state().state().view.display.clone();
+    display.coloring.limits = Some([0.5, 1.0]);
+    run(&mut window, ViewCommand::SetDisplay(Box::new(display)));
+    is_refused(
+        &mut window,
+        "Upper limit (stamped)",
+        &[("0.25", "Upper limit: above +0.500.")],
+    );
+    assert_eq!(coloring(&window).limits, Some([0.5, 1.0]));
+}
+
+#[test]
+fn a_number_that_cannot_be_is_refused_where_it_is_typed() {
+    let mut window = matched();
+    let level = |window: &Window| {
+        let state = window.state().state();
+        let part = state.document.part(Role::Crash).expect("loaded");
+        (state.settings.max_triangles, part.wanted_level)
+    };
+    click(&mut window, "2 Reduce");
+    window.run_steps(4);
+    let before = level(&window);
+    for (typed, why) in [
+        ("a few", "“a few” is not a whole number."),
+        ("0", "Max triangles: 4 to 50,000,000."),
+    ] {
+        type_into(&mut window, "Max triangles", typed);
+        assert!(window.query_by_label(why).is_some(), "{why}");
+        finish(&mut window);
+        assert_eq!(level(&window), before, "{typed}");
+    }
+    type_into(&mut window, "Max triangles", "600");
+    finish(&mut window);
+    assert_eq!(level(&window), (600, Some(600)));
+    let refused = window.query_all_by(|node| {
+        node.value()
+            .is_some_and(|text| text.starts_with("Max triangles: "))
+    });
+    assert_eq!(refused.count(), 0);
+}
