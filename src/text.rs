@@ -1,7 +1,8 @@
 //! Small pieces of text for people: counts, percentages, lengths, sentences.
 //!
 //! Every surface (window, report, command line, log) writes its numbers with these, so that one number
-//! reads the same everywhere. No text shows a negative zero.
+//! reads the same everywhere. Negative numbers have a minus sign, not a hyphen, and no text shows a
+//! negative zero. What programs read, as matrices, cards and tables, is written with plain formats instead.
 
 use crate::units::LengthUnit;
 
@@ -59,11 +60,20 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
         Some(digits) if digits.chars().all(|c| c == '0' || c == '.') => digits.to_owned(),
-        _ => text,
+        Some(digits) => format!("−{digits}"),
+        None => text,
     }
 }
 
-/// A number with at most so many decimals and no zeros at its end: 0.5, 12, -3.25.
+/// A number on an axis or a scale, with the decimals of its step; zero has none.
+pub fn tick_number(value: f64, decimals: usize) -> String {
+    match fixed(value, decimals) {
+        zero if zero.chars().all(|c| c == '0' || c == '.') => "0".to_owned(),
+        text => text,
+    }
+}
+
+/// A number with at most so many decimals and no zeros at its end: 0.5, 12, −3.25.
 pub fn trimmed(value: f64, most_decimals: usize) -> String {
     let text = fixed(value, most_decimals);
     if text.contains('.') {
@@ -73,7 +83,7 @@ pub fn trimmed(value: f64, most_decimals: usize) -> String {
     }
 }
 
-/// Coordinates or components in parentheses, with so many decimals each: `(1.0, 0.0, -2.5)`.
+/// Coordinates or components in parentheses, with so many decimals each: `(1.0, 0.0, −2.5)`.
 pub fn vector(components: [f64; 3], decimals: usize) -> String {
     format!("({})", components.map(|x| fixed(x, decimals)).join(", "))
 }
@@ -108,18 +118,18 @@ pub fn signed(value: f64) -> String {
     with_sign(value, &length(value))
 }
 
+/// A change in percent with its sign: `+0.12 %`, `−3.00 %`.
+pub fn signed_percent(fraction: f64) -> String {
+    with_sign(fraction, &fixed(100.0 * fraction, 2)) + " %"
+}
+
 /// A number as written, with its sign; what reads as zero has none.
 fn with_sign(value: f64, text: &str) -> String {
     if value > 0.0 && text.chars().any(|c| c.is_ascii_digit() && c != '0') {
         format!("+{text}")
     } else {
-        minus(text)
+        text.to_owned()
     }
-}
-
-/// The text with minus signs in place of hyphens.
-pub fn minus(text: &str) -> String {
-    text.replace('-', "−")
 }
 
 /// Milliseconds: one decimal below 10, none above.
@@ -267,7 +277,7 @@ mod tests {
     #[test]
     fn lengths_have_three_digits() {
         let read = [0.041_23, 1.349, -128.4, 0.0, 0.000_381].map(length);
-        assert_eq!(read, ["0.0412", "1.35", "-128", "0", "0.0003810"]);
+        assert_eq!(read, ["0.0412", "1.35", "−128", "0", "0.0003810"]);
         let lengths = Lengths::new(Some(LengthUnit::Millimeter));
         assert_eq!(lengths.of(0.3806), "0.381 mm");
         assert_eq!(lengths.axis("distance"), "distance, mm");
@@ -291,12 +301,12 @@ mod tests {
             [0.380_64, -128.4, 0.0].map(|value| lengths.of(value))
         };
         let mm = Some(LengthUnit::Millimeter);
-        assert_eq!(written(mm, 2), ["0.38 mm", "-128.40 mm", "0.00 mm"]);
-        assert_eq!(written(mm, 4), ["0.3806 mm", "-128.4000 mm", "0.0000 mm"]);
+        assert_eq!(written(mm, 2), ["0.38 mm", "−128.40 mm", "0.00 mm"]);
+        assert_eq!(written(mm, 4), ["0.3806 mm", "−128.4000 mm", "0.0000 mm"]);
         // A hundredth of a millimetre is the fifth decimal of a metre.
         assert_eq!(written(Some(LengthUnit::Meter), 2)[0], "0.38064 m");
         assert_eq!(written(Some(LengthUnit::Inch), 2)[0], "0.3806 in");
-        assert_eq!(written(None, 2), ["0.381", "-128", "0"]);
+        assert_eq!(written(None, 2), ["0.381", "−128", "0"]);
         let lengths = Lengths::new(mm).with_decimals(Some(2));
         let read = [0.5, -0.5, 0.001, -0.001].map(|value| lengths.signed_of(value));
         assert_eq!(read, ["+0.50 mm", "−0.50 mm", "0.00 mm", "0.00 mm"]);
@@ -308,11 +318,14 @@ mod tests {
         assert_eq!(read, ["+0.500", "−0.500", "0", "0", "0"]);
         let read = [-0.0, -0.000_4, -0.5, 0.4].map(|x| fixed(x, 0));
         assert_eq!(read, ["0", "0", "0", "0"]);
-        assert_eq!(vector([-0.0004, -1.0, 2.0], 2), "(0.00, -1.00, 2.00)");
+        assert_eq!(vector([-0.0004, -1.0, 2.0], 2), "(0.00, −1.00, 2.00)");
         assert_eq!(length(-0.0), "0");
         let read = [-0.000_01, 0.5, 120.0, -3.25].map(|x| trimmed(x, 4));
-        assert_eq!(read, ["0", "0.5", "120", "-3.25"]);
+        assert_eq!(read, ["0", "0.5", "120", "−3.25"]);
         assert_eq!(percent(-1e-9), "0.0 %");
+        assert_eq!([-2.5, -1e-9].map(|x| tick_number(x, 1)), ["−2.5", "0"]);
+        let read = [0.001_2, -0.03, 1e-9].map(signed_percent);
+        assert_eq!(read, ["+0.12 %", "−3.00 %", "0.00 %"]);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::growth::{GrowthRow, GrowthTable};
 use super::robustness_page::{Axis, STYLE};
-use crate::text::{fixed, grouped, length, minus};
+use crate::text::{fixed, grouped, length};
 
 /// The heads of the columns.
 pub const GROWTH_COLUMNS: [&str; 5] = [
@@ -34,7 +34,7 @@ impl GrowthTable {
         let power = |exponent: Option<f64>| {
             exponent.map_or_else(
                 || "not fitted".to_owned(),
-                |p| minus(&format!("n to the power of {p:.2}")),
+                |p| format!("n to the power of {}", fixed(p, 2)),
             )
         };
         format!(

@@ -7,7 +7,7 @@ use egui::{DragValue, Response, RichText, Stroke, Ui, emath::Numeric};
 
 use super::theme::Palette;
 use crate::app::{typed_count, typed_length, typed_number};
-use crate::text::{Lengths, grouped, minus, trimmed};
+use crate::text::{Lengths, grouped, trimmed};
 
 /// What a field is called and which values it takes.
 #[derive(Debug, Clone)]
@@ -95,7 +95,7 @@ fn bound(value: f64) -> String {
     if value >= 1000.0 && value.fract() == 0.0 {
         grouped(value as usize)
     } else {
-        minus(&trimmed(value, 9))
+        trimmed(value, 9)
     }
 }
 

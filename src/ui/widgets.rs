@@ -426,7 +426,7 @@ mod tests {
         assert_eq!(grouped(999), "999");
         assert_eq!(length(0.041_23), "0.0412");
         assert_eq!(length(1.349), "1.35");
-        assert_eq!(length(-128.4), "-128");
+        assert_eq!(length(-128.4), "−128");
         assert_eq!(length(0.0), "0");
         assert_eq!(percent(0.8704), "87.0 %");
         assert_eq!(short_count(50_000), "50k");

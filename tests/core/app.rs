@@ -1511,7 +1511,7 @@ mod modal {
         check("xxx", [3.0, 4.0, 5.0], "Move 7.071");
         check("Z", [3.0, 4.0, 0.0], "Move 5 across Z");
         check("Z10", [6.0, 8.0, 0.0], "Move 10 across Z");
-        check("y-2,5", [0.0, -2.5, 0.0], "Move -2.5 along Y");
+        check("y-2,5", [0.0, -2.5, 0.0], "Move −2.5 along Y");
         check("y25-<<3-", [0.0, 3.0, 0.0], "Move 3 along Y");
         check("12", [12.0, 0.0, 0.0], "Move 12");
         check("xx2", [0.0, 2.0, 0.0], "Move 2 along X (part)");
@@ -1522,7 +1522,7 @@ mod modal {
         for (keys, name) in [
             ("z90", "Rotate 90° about Z"),
             ("Z90", "Rotate 90° about Z"),
-            ("xx-30", "Rotate -30° about X (part)"),
+            ("xx-30", "Rotate −30° about X (part)"),
             ("", "Rotate 28.648° about the view axis"),
         ] {
             let (motion, said) = typed(MotionKind::Rotate, keys);

@@ -21,7 +21,9 @@ use crate::report::html::{
 };
 use crate::report::picture::{Paint, PictureMesh, picture};
 use crate::role::PerRole;
-use crate::text::{Lengths, factor_note, fixed, grouped, length, millis, minus, percent, signed};
+use crate::text::{
+    Lengths, factor_note, fixed, grouped, length, millis, percent, signed, signed_percent,
+};
 
 /// Pixels of a picture.
 const SIZE: [usize; 2] = [560, 380];
@@ -128,7 +130,7 @@ fn facts(record: &MapRecord, lengths: Lengths) -> Vec<[String; 3]> {
     ] {
         if let Some(pair) = pair {
             let change = pair.crash.mean / pair.stamped.mean - 1.0;
-            let note = minus(&format!("{:+.2} % to stamped", 100.0 * change));
+            let note = format!("{} to stamped", signed_percent(change));
             let mean = format!("{}{suffix}", length(pair.crash.mean));
             facts.push([name.to_owned(), mean, note]);
         }

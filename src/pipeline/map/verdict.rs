@@ -7,7 +7,7 @@ use super::record::{MapRecord, PairRecord};
 use super::{MapRun, ShownValue};
 use crate::mapping::Status;
 use crate::pipeline::forming_values::FormingValue;
-use crate::text::{Lengths, counted, fixed, percent};
+use crate::text::{Lengths, counted, fixed, percent, signed_percent};
 
 /// Share of the area that is to carry values where no other is asked for.
 pub(in crate::pipeline) const LEAST_AREA: f64 = 0.95;
@@ -338,10 +338,4 @@ fn largest(run: &MapRun, number: impl Fn(usize) -> f64) -> Option<usize> {
     let finite = numbers.filter(|(_, number)| number.is_finite());
     let first = |best: (usize, f64), next: (usize, f64)| if next.1 > best.1 { next } else { best };
     finite.reduce(first).map(|(element, _)| element)
-}
-
-fn signed_percent(fraction: f64) -> String {
-    let text = fixed(100.0 * fraction, 2).replace('-', "−");
-    let sign = if fraction > 0.0 { "+" } else { "" };
-    format!("{sign}{text} %")
 }

@@ -12,7 +12,7 @@ use crate::registration::Surface;
 use crate::report::html::Figure;
 use crate::report::picture::{Paint, Picture, PictureMesh, picture};
 use crate::role::{PerRole, Role};
-use crate::text::{Lengths, minus};
+use crate::text::Lengths;
 
 /// Colours of the two parts.
 const COLORS: PerRole<Rgb> = ROLES_ON_DARK;
@@ -217,7 +217,7 @@ impl<'a> FigureRenderer<'a> {
                 ..Camera::default()
             };
             let number = i + 1;
-            let value = minus(&self.lengths.of(spot.value));
+            let value = self.lengths.of(spot.value);
             let node = self.parts.stamped.node_id(spot.vertex);
             let node = node.map_or_else(String::new, |id| format!(" at node {id}"));
             Ok(Figure {

@@ -9,7 +9,7 @@ use crate::assess::deviation::{DeviationStats, Histogram};
 use crate::colormap::{ColorMap, ColorScale, Rgb};
 use crate::registration::{MatchOutcome, StartOutcome, StartRecord};
 use crate::role::PerRole;
-use crate::text::{Lengths, minus, percent, trimmed};
+use crate::text::{Lengths, percent, trimmed};
 
 /// Width of the charts and of the legend of the colours.
 const WIDTH: f64 = 960.0;
@@ -323,9 +323,7 @@ fn color_strip(scale: &ColorScale, axes: &Axes) -> Markup {
 
 fn plain_ticks(scale: &ColorScale, n: usize) -> Vec<(f64, String)> {
     let ticks = scale.ticks(n).into_iter();
-    ticks
-        .map(|at| (at, minus(&trimmed(at, DECIMALS))))
-        .collect()
+    ticks.map(|at| (at, trimmed(at, DECIMALS))).collect()
 }
 
 /// Two histograms over one range: the first as bars, the second as a line.

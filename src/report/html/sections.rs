@@ -8,7 +8,7 @@ use crate::geometry::{Matrix3, Similarity, Vector3};
 use crate::report::matrix::number;
 use crate::report::{MatrixForm, PoseRecord};
 use crate::role::PerRole;
-use crate::text::{fixed, minus, percent, sentence, vector};
+use crate::text::{fixed, percent, sentence, vector};
 
 /// The sections with the words of their links.
 const LINKS: [(&str, &str); 9] = [
@@ -131,7 +131,7 @@ impl Report<'_> {
             div.scale { (charts::color_legend(&self.scale, lengths)) }
             @if let Some(offset) = stats.stamped.offset {
                 p {
-                    "Nearly everywhere the parts are " (minus(&lengths.of(offset.value)))
+                    "Nearly everywhere the parts are " (lengths.of(offset.value))
                     " apart, at a thickness of " (lengths.of(offset.thickness))
                     ": that looks like different reference surfaces, not like a bad fit."
                 }
@@ -200,7 +200,6 @@ impl Report<'_> {
     fn motion_table(&self, unit: &str) -> Markup {
         let pose = &self.record.pose;
         let rotation = &pose.rotation_axis_angle;
-        let vector = |components: [f64; 3], decimals| minus(&vector(components, decimals));
         let mut rows = vec![
             (
                 "Translation of the centre",

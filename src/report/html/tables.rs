@@ -9,7 +9,7 @@ use crate::geometry::Point3;
 use crate::report::matrix::number;
 use crate::report::{FileRecord, outcome_words, start_name};
 use crate::settings::{SETTINGS, Setting};
-use crate::text::{fixed, grouped, length, minus, percent};
+use crate::text::{fixed, grouped, length, percent};
 
 /// Groups of starts that are listed.
 const N_GROUPS: usize = 8;
@@ -21,7 +21,7 @@ const N_INCLUDES: usize = 20;
 
 /// A length as a cell.
 fn bare(value: f64) -> Markup {
-    cell(minus(&length(value)))
+    cell(length(value))
 }
 
 impl Report<'_> {
@@ -72,7 +72,7 @@ impl Report<'_> {
             .map(|(i, spot)| {
                 let mut row = vec![cell((i + 1).to_string()), bare(spot.value)];
                 let at = self.on_crash(&spot.position);
-                row.extend(at.map(|x| cell(minus(&fixed(x, 2)))));
+                row.extend(at.map(|x| cell(fixed(x, 2))));
                 row
             })
             .collect();

@@ -392,8 +392,8 @@ fn moved_ui(ui: &mut Ui, state: &AppState) {
     caption(
         ui,
         format!(
-            "det R = {:.9}, c = {}",
-            record.determinant,
+            "det R = {}, c = {}",
+            fixed(record.determinant, 9),
             number(record.scale)
         ),
     );

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use egui::{Ui, Vec2};
 use egui_plot::{GridMark, Plot};
 
-use crate::text::trimmed;
+use crate::text::{tick_number, trimmed};
 use crate::ui::theme::Palette;
 
 /// A chart that shows and does not move: no zoom, no drag, quiet grid.
@@ -19,7 +19,15 @@ pub fn still_chart(ui: &Ui, name: &str, size: Vec2) -> Plot<'static> {
         .allow_zoom(false)
         .allow_boxed_zoom(false)
         .allow_axis_zoom_drag(false)
+        .x_axis_formatter(|mark, _| mark_text(mark))
+        .y_axis_formatter(|mark, _| mark_text(mark))
         .grid_color(Palette::of(ui).line)
+}
+
+/// The number at a mark, with the decimals of its step.
+fn mark_text(mark: GridMark) -> String {
+    let decimals = -mark.step_size.abs().max(1e-12).log10().floor();
+    tick_number(mark.value, decimals.clamp(0.0, 9.0) as usize)
 }
 
 /// A still chart of logarithms, with the numbers themselves along the axes.
@@ -149,7 +157,7 @@ fn inner_marks(bounds: (f64, f64)) -> Vec<GridMark> {
 fn inner_text(value: f64, bounds: (f64, f64)) -> String {
     let (_, step) = inner_ticks(bounds);
     let n_decimals = (-step.log10() + 1e-9).ceil().clamp(0.0, 9.0) as usize;
-    format!("{value:.n_decimals$}")
+    tick_number(value, n_decimals)
 }
 
 /// The range of some values with a margin, for an axis that must not touch its curves.

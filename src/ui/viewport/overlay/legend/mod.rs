@@ -16,6 +16,7 @@ use super::{MARGIN, Overlay, header};
 use crate::app::{Command, MapPicture, file_names};
 use crate::colormap::ColorScale;
 use crate::pipeline::forming_values::LayerChoice;
+use crate::text::tick_number;
 use crate::ui::viewport::fields::FieldKind;
 
 /// Width of what is inside the plate, and of the folded one; air beside it.
@@ -351,16 +352,7 @@ fn tick_text(tick: f64, ticks: &[f64]) -> String {
     let digits = step
         .map_or(3.0, |step| (-step.log10() + 0.3).ceil())
         .clamp(0.0, 9.0);
-    let text = format!("{tick:.0$}", digits as usize);
-    if text
-        .trim_start_matches('-')
-        .chars()
-        .all(|c| c == '0' || c == '.')
-    {
-        "0".to_owned()
-    } else {
-        text.replace('-', "−")
-    }
+    tick_number(tick, digits as usize)
 }
 
 #[cfg(test)]
