@@ -9,7 +9,9 @@ use egui::accesskit::{Live, Role as Kind};
 use egui::{Event, Key, Modifiers, Shape, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use shapematch::app::{Action, Command, MoveCommand, Section, Settings, ViewCommand};
+use shapematch::app::{
+    Action, Axis, AxisFrame, Command, MoveCommand, Section, Settings, ViewCommand,
+};
 use shapematch::geometry::{Similarity, Vector3};
 use shapematch::jobs::{JobKey, PartSource};
 use shapematch::role::Role;
@@ -446,4 +448,45 @@ fn without_motion_everything_is_where_it_belongs_in_the_next_frame() {
     is_at_rest("a menu", &mut |window| click(window, "View"));
     is_at_rest("its end", &mut |window| window.key_press(Key::Escape));
     is_at_rest("moving over", &mut |window| window.key_press(Key::M));
+}
+
+#[test]
+fn a_section_of_parts_that_lie_apart_says_so_and_shows_each() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    let section = action(&window, Action::ToggleSection);
+    act(&mut window, section);
+    let says = |window: &Window, begin: &str| {
+        let mut texts = window.query_all_by(|node| {
+            let value = node.value();
+            value.is_some_and(|value| value.starts_with(begin))
+        });
+        texts.next().is_some()
+    };
+    wait_until(&mut window, "a part alone", |window| {
+        says(window, "The plane meets the crash part alone")
+    });
+    let far = MoveCommand::Translate {
+        axis: Axis::Y,
+        frame: AxisFrame::Global,
+        distance: 5000.0,
+    };
+    act(
+        &mut window,
+        vec![MoveCommand::AlignCenters.into(), far.into()],
+    );
+    wait_until(&mut window, "parts apart", |window| {
+        says(window, "The parts lie ")
+    });
+    window.run_steps(2);
+    assert!(window.query_by_label("Worst gap").is_none());
+    click(&mut window, "Show the outline of the stamped part");
+    click(&mut window, "Match the parts");
+    finish(&mut window);
+    wait_until(&mut window, "the widest gap", |window| {
+        says(window, "Widest gap ")
+    });
+    window.run_steps(2);
+    assert!(window.query_by_label("Worst gap").is_some());
 }

@@ -4,12 +4,12 @@
 use egui::{Align, Button, Color32, Layout, RichText, Sense, Ui, Vec2, WidgetInfo, vec2};
 use egui_plot::{Line, LineStyle, Plot, PlotBounds, PlotPoints, PlotUi, Points};
 
+use super::outlines::{Lie, Outline, around};
 use super::sections::{self, Cuts, Gaps};
 use crate::app::{Action, AppState, Command, InspectCommand, SectionView};
-use crate::colormap::Rgb;
 use crate::geometry::{Gap, Plane, Point3, SectionLine, Vector3, gap_to_nearest, nearest_on_lines};
 use crate::role::Role;
-use crate::text::capital;
+use crate::text::{capital, tick_number};
 use crate::ui::theme::{Look, UNIT, color};
 use crate::ui::widgets::{file_swatch, nothing_yet, paint_role_mark, segments};
 
@@ -29,6 +29,8 @@ const WIDE: f32 = 2.2;
 /// Width of the controls at the side, and of the choice of directions.
 const SIDE: f32 = 190.0;
 const CHOICE: f32 = 172.0;
+/// Room for the numbers of the upright axis.
+const AXIS: f32 = 46.0;
 /// At first so much of the outlines is seen around the worst gap, at most, and so many of its widths,
 /// at least.
 const CLOSE: f64 = 0.2;
@@ -44,13 +46,6 @@ pub(super) struct Drawing<'a> {
     pub gaps: Option<&'a Gaps>,
 }
 
-/// A line of an outline in the axes of the plane.
-struct Outline {
-    role: Role,
-    rgb: Rgb,
-    points: Vec<[f64; 2]>,
-}
-
 /// What the user chose, kept while the program runs.
 #[derive(Debug, Clone, Default)]
 struct Choices {
@@ -60,12 +55,15 @@ struct Choices {
     /// The direction of the plane that was zoomed to its worst gap.
     zoomed: Option<String>,
     zoom: Option<Zoom>,
+    /// How the outlines lay when they were drawn last.
+    lie: Option<Lie>,
 }
 
 /// Where the drawing goes next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Zoom {
     WorstGap,
+    Part(Role),
     All,
 }
 
@@ -211,8 +209,19 @@ impl Drawing<'_> {
 
     /// How the outlines are shown.
     fn zoom_buttons(&self, ui: &mut Ui, choices: &mut Choices) {
+        if matches!(choices.lie, Some(Lie::Apart(_))) {
+            for role in Role::ALL {
+                let button = ui.button(capital(role.word()));
+                let name = format!("Show the outline of the {} part", role.word());
+                if button.on_hover_text(&name).accessible_name(&name).clicked() {
+                    choices.zoom = Some(Zoom::Part(role));
+                }
+            }
+            return Self::all_button(ui, choices);
+        }
         let button = Button::new("×10 gap").selected(choices.is_exaggerated);
-        let response = ui.add_enabled(self.gaps.is_some(), button);
+        let has_gaps = self.gaps.is_some() && choices.lie == Some(Lie::Together);
+        let response = ui.add_enabled(has_gaps, button);
         let response = response.on_hover_text(
             "Draw the stamped outline ten times as far from the crash outline as it is",
         );
@@ -224,6 +233,10 @@ impl Drawing<'_> {
         if worst.on_hover_text("Zoom to the widest gap").clicked() {
             choices.zoom = Some(Zoom::WorstGap);
         }
+        Self::all_button(ui, choices);
+    }
+
+    fn all_button(ui: &mut Ui, choices: &mut Choices) {
         if ui
             .button("All")
             .on_hover_text("Show the whole outlines")
@@ -239,13 +252,24 @@ impl Drawing<'_> {
         let (n, is_high) = (self.plane.normal, size.y > size.x);
         let view = format!("{:.2} {:.2} {:.2} {is_high}", n.x, n.y, n.z);
         let has_worst = self.gaps.is_some_and(|gaps| gaps.worst().is_some());
-        if has_worst && choices.zoomed.as_ref() != Some(&view) {
-            choices.zoom = choices.zoom.or(Some(Zoom::WorstGap));
-            choices.zoomed = Some(view.clone());
-        }
         let outlines = self.outlines(choices.is_exaggerated);
+        let lie = Lie::of(&outlines);
+        if choices.lie.replace(lie) != Some(lie) {
+            // The buttons were drawn for what was seen before.
+            ui.ctx().request_repaint();
+        }
+        let first = match lie {
+            Lie::Apart(_) => Some((format!("{view} apart"), Zoom::Part(Role::Crash))),
+            _ => has_worst.then(|| (view.clone(), Zoom::WorstGap)),
+        };
+        if let Some((place, zoom)) = first
+            && choices.zoomed.as_ref() != Some(&place)
+        {
+            choices.zoom = choices.zoom.or(Some(zoom));
+            choices.zoomed = Some(place);
+        }
         let mut seen = Seen {
-            is_empty: outlines.is_empty(),
+            lie: Some(lie),
             is_exaggerated: choices.is_exaggerated,
             ..Seen::default()
         };
@@ -254,13 +278,30 @@ impl Drawing<'_> {
             .take()
             .and_then(|zoom| self.bounds(zoom, &outlines, size));
         let unit = self.state.document.unit_suffix();
-        let tick = move |mark: egui_plot::GridMark, _: &std::ops::RangeInclusive<f64>| {
+        let number = move |mark: egui_plot::GridMark, _: &std::ops::RangeInclusive<f64>| {
             format!("{}{unit}", tick_text(mark.value, mark.step_size))
         };
-        let ticks = (tick, tick);
+        let (painter, font) = (
+            ui.painter().clone(),
+            egui::TextStyle::Body.resolve(ui.style()),
+        );
+        let width = size.x.max(40.0);
+        // A number that would be cut at the right edge is left out.
+        let tick_across = move |mark: egui_plot::GridMark,
+                                range: &std::ops::RangeInclusive<f64>| {
+            let (from, to) = (range.start(), range.end());
+            let text = number(mark, range);
+            let galley = painter.layout_no_wrap(text.clone(), font.clone(), Color32::WHITE);
+            let share = ((to - mark.value) / (to - from)) as f32;
+            if share * (width - AXIS) < 0.5 * galley.size().x {
+                String::new()
+            } else {
+                text
+            }
+        };
         ui.visuals_mut().extreme_bg_color = Color32::TRANSPARENT;
         let shown = Plot::new(("section", view))
-            .width(size.x.max(40.0))
+            .width(width)
             .height(size.y.max(40.0))
             .data_aspect(1.0)
             .show_background(false)
@@ -268,9 +309,9 @@ impl Drawing<'_> {
             .allow_scroll(false)
             .allow_boxed_zoom(false)
             .allow_axis_zoom_drag(false)
-            .x_axis_formatter(ticks.0)
-            .y_axis_formatter(ticks.1)
-            .y_axis_min_width(46.0)
+            .x_axis_formatter(tick_across)
+            .y_axis_formatter(number)
+            .y_axis_min_width(AXIS)
             .set_margin_fraction(vec2(0.06, 0.06))
             .show_crosshair(false)
             .label_formatter(|_| None)
@@ -339,20 +380,15 @@ impl Drawing<'_> {
 
     /// What is seen after a zoom.
     fn bounds(&self, zoom: Zoom, outlines: &[Outline], size: Vec2) -> Option<PlotBounds> {
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for point in outlines.iter().flat_map(|outline| &outline.points) {
-            for i in 0..2 {
-                low[i] = low[i].min(point[i]);
-                high[i] = high[i].max(point[i]);
-            }
-        }
+        let shown = match zoom {
+            Zoom::Part(role) => Some(role),
+            Zoom::WorstGap | Zoom::All => None,
+        };
+        let [low, high] = around(outlines, shown)?;
         let extent = (high[0] - low[0]).hypot(high[1] - low[1]);
-        if !extent.is_finite() {
-            return None;
-        }
         let aspect = f64::from(size.x / size.y.max(1.0));
         let (center, half) = match zoom {
-            Zoom::All => {
+            Zoom::Part(_) | Zoom::All => {
                 let center = [0, 1].map(|i| 0.5 * (low[i] + high[i]));
                 let half = (high[1] - low[1]).max((high[0] - low[0]) / aspect);
                 (center, 0.55 * half)
@@ -454,6 +490,19 @@ impl Drawing<'_> {
         }
     }
 
+    /// What is said of outlines between which there is nothing to measure.
+    fn lie_words(&self, lie: Lie) -> Option<String> {
+        Some(match lie {
+            Lie::Together => return None,
+            Lie::Apart(distance) => format!(
+                "the parts lie {} from each other · Match or Move by hand brings them together",
+                self.state.lengths().of(distance)
+            ),
+            Lie::Alone(role) => format!("the plane meets the {} part alone", role.word()),
+            Lie::Nowhere => "the plane meets neither part".to_owned(),
+        })
+    }
+
     /// What was measured, the gap at the pointer, the worst one, or what one can do.
     fn foot(&self, ui: &mut Ui, seen: &Seen, picked: &[[f64; 2]]) {
         let lengths = self.state.lengths();
@@ -467,8 +516,8 @@ impl Drawing<'_> {
             let flush = lengths.of(gap.flush);
             let across = lengths.signed_of(gap.gap);
             (format!("gap {across} · flush {flush}"), true)
-        } else if seen.is_empty {
-            ("the plane meets neither part".to_owned(), false)
+        } else if let Some(words) = seen.lie.and_then(|lie| self.lie_words(lie)) {
+            (words, false)
         } else if picked.len() == 1 {
             ("click the second point".to_owned(), false)
         } else if let Some(worst) = worst {
@@ -497,7 +546,7 @@ impl Drawing<'_> {
 struct Seen {
     at: Option<[f64; 2]>,
     gap: Option<Gap>,
-    is_empty: bool,
+    lie: Option<Lie>,
     is_exaggerated: bool,
     clicked: Option<[f64; 2]>,
     is_forgotten: bool,
@@ -519,14 +568,5 @@ fn distance(a: &Point3, b: &Point3) -> f64 {
 /// A coordinate with the digits of its grid.
 fn tick_text(value: f64, step: f64) -> String {
     let digits = (-step.abs().max(1e-12).log10()).ceil().clamp(0.0, 6.0) as usize;
-    let text = format!("{value:.digits$}");
-    if text
-        .trim_start_matches('-')
-        .chars()
-        .all(|c| matches!(c, '0' | '.'))
-    {
-        "0".to_owned()
-    } else {
-        text.replace('-', "−")
-    }
+    tick_number(value, digits)
 }

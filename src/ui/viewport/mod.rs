@@ -9,6 +9,7 @@ mod map_fields;
 mod meshes;
 mod motion;
 mod navigation;
+mod outlines;
 mod overlay;
 mod picking;
 mod picture;

@@ -1,0 +1,93 @@
+//! Outlines laid flat, and how those of the two parts lie to each other.
+
+use crate::colormap::Rgb;
+use crate::role::Role;
+
+/// A line of an outline in the axes of the plane.
+pub(super) struct Outline {
+    pub role: Role,
+    pub rgb: Rgb,
+    pub points: Vec<[f64; 2]>,
+}
+
+/// How the outlines of the two parts lie in the plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Lie {
+    /// Near enough to be compared.
+    Together,
+    /// So far from each other that one picture shows neither.
+    Apart(f64),
+    /// The plane meets this part alone.
+    Alone(Role),
+    /// The plane meets neither.
+    Nowhere,
+}
+
+/// Outlines whose boxes are farther from each other than this share of the larger one are not seen together.
+const APART: f64 = 1.0;
+
+/// A box around the outlines of a part, or of all: its least and its greatest corner.
+pub(super) fn around(outlines: &[Outline], role: Option<Role>) -> Option<[[f64; 2]; 2]> {
+    let of = |outline: &&Outline| role.is_none_or(|role| outline.role == role);
+    let mut points = outlines
+        .iter()
+        .filter(of)
+        .flat_map(|outline| &outline.points);
+    let first = *points.next()?;
+    Some(points.fold([first; 2], |[low, high], point| {
+        [
+            [low[0].min(point[0]), low[1].min(point[1])],
+            [high[0].max(point[0]), high[1].max(point[1])],
+        ]
+    }))
+}
+
+impl Lie {
+    /// How outlines lie to each other.
+    pub fn of(outlines: &[Outline]) -> Self {
+        let boxes = Role::ALL.map(|role| around(outlines, Some(role)));
+        let [[low, high], [other_low, other_high]] = match boxes {
+            [Some(crash), Some(stamped)] => [crash, stamped],
+            [Some(_), None] => return Self::Alone(Role::Crash),
+            [None, Some(_)] => return Self::Alone(Role::Stamped),
+            [None, None] => return Self::Nowhere,
+        };
+        let between = |i: usize| {
+            (other_low[i] - high[i])
+                .max(low[i] - other_high[i])
+                .max(0.0)
+        };
+        let distance = between(0).hypot(between(1));
+        let size = |low: [f64; 2], high: [f64; 2]| (high[0] - low[0]).hypot(high[1] - low[1]);
+        if distance > APART * size(low, high).max(size(other_low, other_high)) {
+            Self::Apart(distance)
+        } else {
+            Self::Together
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(role: Role, left: f64) -> Outline {
+        Outline {
+            role,
+            rgb: [0; 3],
+            points: vec![[left, 0.0], [left + 3.0, 4.0]],
+        }
+    }
+
+    #[test]
+    fn outlines_far_from_each_other_lie_apart() {
+        let crash = || square(Role::Crash, 0.0);
+        let stamped = |left| square(Role::Stamped, left);
+        assert_eq!(Lie::of(&[crash(), stamped(1.0)]), Lie::Together);
+        assert_eq!(Lie::of(&[crash(), stamped(7.0)]), Lie::Together);
+        assert_eq!(Lie::of(&[stamped(-20.0), crash()]), Lie::Apart(17.0));
+        assert_eq!(Lie::of(&[crash()]), Lie::Alone(Role::Crash));
+        assert_eq!(Lie::of(&[]), Lie::Nowhere);
+        assert_eq!(around(&[stamped(1.0)], Some(Role::Crash)), None);
+    }
+}
