@@ -5,6 +5,7 @@ use super::{
     AppState, Command, Dialog, Effect, FreeWindow, MatchCommand, NoticeCommand, Section, Settings,
     ViewCommand,
 };
+use crate::role::Role;
 
 impl AppState {
     /// Changes the state as the command says and returns what has to be done outside. A command
@@ -14,10 +15,14 @@ impl AppState {
         if let Some(section) = Section::of_command(&command) {
             self.view.sections.touch(section);
         }
+        let was_start_shown = self.shown_start().is_some();
         let mut effects = self.apply_one(command);
         while !self.follow_ups.is_empty() {
             let follow_up = self.follow_ups.remove(0);
             effects.extend(self.follow(follow_up));
+        }
+        if self.shown_start().is_some() != was_start_shown {
+            self.with_scene(|view, scene| view.keep_whole(Role::Crash, scene));
         }
         effects.extend(self.keep_measuring());
         effects

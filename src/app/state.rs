@@ -131,9 +131,13 @@ impl AppState {
         look: impl FnOnce(&mut ViewState, &Scene<'_>) -> R,
     ) -> R {
         let beside = self.free_window();
+        let starts = self.matching.starts_of(&self.document);
+        let starts = starts.filter(|_| self.previews.start.is_some());
+        let starts = starts.map_or(&[][..], |starts| starts.poses.as_slice());
         let scene = Scene {
             is_beside: beside.is_some_and(FreeWindow::is_picture),
             pose: self.shown_pose(),
+            starts,
             document: &self.document,
             selected: &self.parts.selected,
             further: self.shown_further(),

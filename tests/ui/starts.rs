@@ -1,7 +1,11 @@
 //! The rows of the starts and the curves of the iterations, by name.
 
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use shapematch::app::Preview;
+use shapematch::geometry::camera::ScreenSize;
+use shapematch::role::Role;
+use shapematch::ui::Shell;
 
 use super::story::{click, finish, window};
 
@@ -37,4 +41,49 @@ fn a_match_leaves_rows_to_take_and_curves_to_step_through() {
     assert_eq!(shown, pose);
     click(&mut window, "Back to the result");
     assert!(!window.state().state().is_preview());
+}
+
+#[test]
+fn one_camera_shows_every_first_pose_whole() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    let camera = |window: &Harness<'static, Shell>| window.state().state().view.cameras.crash;
+    let alone = camera(&window);
+    click(&mut window, "Align surface normals");
+    finish(&mut window);
+    window.run_steps(20);
+    let fitted = camera(&window);
+    let n_starts = window
+        .state()
+        .state()
+        .current_starts()
+        .map(|starts| starts.poses.len());
+    for start in 0..n_starts.expect("first poses") {
+        assert_eq!(camera(&window), fitted, "start {start}");
+        let area = window
+            .get_by(|node| {
+                node.label()
+                    .is_some_and(|label| label.starts_with("Crash part, "))
+            })
+            .rect();
+        let screen = ScreenSize {
+            width: f64::from(area.width()),
+            height: f64::from(area.height()),
+        };
+        let state = window.state().state();
+        let part = state.document.part(Role::Stamped).expect("loaded");
+        for point in part.loaded.mesh.positions() {
+            let point = state.shown_pose().apply(point);
+            let at = fitted.project(&point, screen).expect("before the eye");
+            let at = area.min + egui::vec2(at.x as f32, at.y as f32);
+            assert!(area.contains(at), "start {start}: {at} not in {area}");
+        }
+        click(&mut window, "Next start");
+        window.run_steps(4);
+    }
+    // Without a first pose the crash part fills its window again.
+    click(&mut window, "Back");
+    window.run_steps(20);
+    assert_eq!(camera(&window), alone);
 }

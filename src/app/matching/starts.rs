@@ -63,7 +63,7 @@ impl LiveStarts {
 
 impl MatchState {
     /// The first poses, if they belong to the parts that are loaded.
-    pub(super) fn starts_of(&self, document: &Document) -> Option<&Starts> {
+    pub(in crate::app) fn starts_of(&self, document: &Document) -> Option<&Starts> {
         let parts = document.stamp().parts;
         self.starts.as_ref().filter(|s| s.parts == parts)
     }

@@ -6,6 +6,7 @@ use super::{BottomTab, ViewCommand, ViewRoom, ViewState};
 use crate::app::{AppState, Document, PartRef, ShownFile};
 use crate::geometry::{Aabb, Camera, Point3, Similarity, Vector3};
 use crate::pipeline::load::LoadedPart;
+use crate::registration::starts::Start;
 use crate::role::Role;
 
 /// Nodes that a camera is fitted to at most; those between them lie within the margin.
@@ -18,6 +19,8 @@ pub(in crate::app) struct Scene<'a> {
     pub document: &'a Document,
     /// The pose the stamped part is drawn at.
     pub pose: Similarity,
+    /// The first poses, while one of them is shown.
+    pub starts: &'a [Start],
     pub selected: &'a BTreeSet<PartRef>,
     /// The further stamped files that are drawn with the first one.
     pub further: Vec<ShownFile>,
@@ -173,6 +176,13 @@ impl ViewState {
             for file in &scene.further {
                 points.extend(spread(&file.loaded, file.own_pose.unwrap_or(scene.pose)));
             }
+        }
+        // One camera sees all first poses, and stays where it is from one to the next.
+        let stamped = scene.document.part(Role::Stamped);
+        if let Some(part) = stamped.filter(|_| role == Role::Crash) {
+            let corners = part.bounds().corners();
+            let poses = scene.starts.iter().map(|start| start.target_from_source);
+            points.extend(poses.flat_map(|pose| corners.map(|corner| pose.apply(&corner))));
         }
         let room = self.room(role, scene);
         self.fit(role, &points, &room);
