@@ -3,7 +3,7 @@
 use egui::{Align, Key, Layout, Modifiers, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
 
 use super::theme::{Palette, ROW, UNIT};
-use super::widgets::{caption, draft, secondary, set_draft};
+use super::widgets::{caption, draft, secondary, set_draft, text_field};
 use crate::app::{AppState, Command, PaletteEntry, ViewCommand};
 
 /// Width of the search.
@@ -21,7 +21,7 @@ pub fn palette_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mu
         .hint_text("Search commands, recent files, exports")
         .desired_width(f32::INFINITY)
         .margin(egui::Margin::symmetric(8, 6));
-    let field = ui.add(field).accessible_name("Search commands");
+    let field = text_field(ui, field).accessible_name("Search commands");
     if !field.has_focus() && !field.lost_focus() {
         field.request_focus();
     }

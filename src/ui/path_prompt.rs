@@ -5,6 +5,7 @@ use std::path::{MAIN_SEPARATOR, PathBuf};
 use egui::text::{CCursor, CCursorRange};
 use egui::{Key, Modifiers, ScrollArea, TextEdit, Ui};
 
+use super::widgets::text_border;
 use crate::text::without_error_number;
 
 /// Most names that are listed.
@@ -39,6 +40,7 @@ pub(super) fn field_ui(ui: &mut Ui, text: &mut String, is_proposed: &mut bool) -
         .response
         .clone()
         .accessible_name("Path of the file");
+    text_border(ui, &response);
     if !response.has_focus() && !response.lost_focus() {
         response.request_focus();
     }

@@ -254,6 +254,25 @@ pub fn focus_ring(ui: &Ui, rect: Rect, response: &Response) {
     }
 }
 
+/// Adds a field for text, with its border.
+pub fn text_field(ui: &mut Ui, field: egui::TextEdit<'_>) -> Response {
+    let response = ui.add(field);
+    text_border(ui, &response);
+    response
+}
+
+/// The border of a field for text: on a bright ground its own colour does not tell it from what is around it.
+pub fn text_border(ui: &Ui, response: &Response) {
+    let palette = Palette::of(ui);
+    let border = if response.has_focus() {
+        Stroke::new(1.5, palette.accent_text)
+    } else {
+        Stroke::new(1.0, palette.secondary.gamma_multiply(0.6))
+    };
+    let inside = egui::StrokeKind::Inside;
+    ui.painter().rect_stroke(response.rect, 4.0, border, inside);
+}
+
 /// An eye that is open or struck out: the switch that shows something in 3D.
 pub fn eye(ui: &Ui, rect: Rect, response: &Response, (is_open, name): (bool, &str)) {
     let palette = Palette::of(ui);

@@ -14,7 +14,7 @@ use crate::text::fixed;
 use crate::ui::theme::{ROW, UNIT};
 use crate::ui::typed::{Takes, refusal, told_field};
 use crate::ui::widgets::{
-    Look, action_button, caption, chip, form_row, plain_action, set_draft,
+    Look, action_button, caption, chip, form_row, plain_action, set_draft, text_field,
 };
 
 /// Width of the label column.
@@ -241,7 +241,7 @@ fn paste_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
         .desired_width(f32::INFINITY)
         .margin(egui::Margin::symmetric(8, 4))
         .font(egui::TextStyle::Monospace);
-    ui.add(field).accessible_name("Matrix to paste");
+    text_field(ui, field).accessible_name("Matrix to paste");
     let read = (!text.trim().is_empty()).then(|| parse_matrix(&text));
     let understood = match &read {
         None => "moves stamped onto crash".to_owned(),

@@ -9,7 +9,7 @@ use crate::app::filter::PartFilter;
 use crate::app::{AppState, ColorBy, Command, LikeWhat, PartCommand, PartRef};
 use crate::role::{PerRole, Role};
 use crate::ui::theme::ROW;
-use crate::ui::widgets::{caption, chip, draft, grouped, icon_button, set_draft};
+use crate::ui::widgets::{caption, chip, draft, grouped, icon_button, set_draft, text_field};
 
 /// Most rows that are seen at once; the rest scrolls.
 const MAX_ROWS: f32 = 6.0;
@@ -62,7 +62,7 @@ fn filter_ui(ui: &mut Ui, state: &AppState, n_parts: usize, commands: &mut Vec<C
             .hint_text("2000012, 100-200, pillar, t>1.4")
             .margin(egui::Margin::symmetric(8, 3))
             .desired_width(ui.available_width());
-        ui.add(field)
+        text_field(ui, field)
             .on_hover_text("Ids, a range of ids, words of the name, thickness; a comma means or")
             .accessible_name("Filter parts");
     });

@@ -15,6 +15,7 @@ use crate::role::Role;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, icon_button, nothing_yet, percent, role_mark, signed,
+    text_field,
 };
 
 /// Height of a row.
@@ -336,7 +337,7 @@ fn label_ui(
             let field = TextEdit::singleline(&mut name)
                 .hint_text(&node)
                 .desired_width(f32::INFINITY);
-            let response = ui.add(field).accessible_name(format!("Name of {node}"));
+            let response = text_field(ui, field).accessible_name(format!("Name of {node}"));
             if response.changed() {
                 // One step for one stay in the field.
                 let gesture = GestureId(label.id << 1 | 1 << 62);
