@@ -448,3 +448,28 @@ fn covers_nothing(window: &Window, what: &str, role: Role) {
     let least = if area.height() < 300.0 { 0.35 } else { 0.55 };
     assert!(fills > least, "{what}: {bounds} {area}");
 }
+
+#[test]
+fn the_legend_says_whose_colours_and_whose_numbers_it_shows() {
+    let mut window = window();
+    for button in ["Open the example pair", "Reduce", "Match the parts"] {
+        click(&mut window, button);
+        finish(&mut window);
+    }
+    click(&mut window, "Move over");
+    finish(&mut window);
+    let deviation = Action::ToggleDeviation.command(window.state().state());
+    act(&mut window, deviation.into_iter().collect());
+    finish(&mut window);
+    wait_for(&mut window, "Unfold the legend (crash)");
+    let n_saying = |window: &Window, words: &str| window.query_all_by_label(words).count();
+    assert_eq!(n_saying(&window, "reduced part"), 1);
+    click(&mut window, "Unfold the legend (crash)");
+    window.run_steps(4);
+    let words = "colours of the reduced part,\nnumbers of the full one";
+    assert_eq!(n_saying(&window, words), 1);
+    click(&mut window, "Detailed");
+    finish(&mut window);
+    window.run_steps(4);
+    assert_eq!(n_saying(&window, words), 0);
+}

@@ -6,15 +6,17 @@ use std::process::Command as Process;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{
-    Action, BottomTab, ColorBy, ExportCommand, FileCommand, FurtherPose, MapCommand, ViewCommand,
+    Action, Axis, BottomTab, ColorBy, ExportCommand, FileCommand, FurtherPose, MapCommand,
+    MoveCommand, ViewCommand,
 };
 use shapematch::pipeline::map::WriteKind;
 use shapematch::pipeline::outputs::Output;
 use shapematch::role::Role;
 use shapematch::samples::{self, SamplePart, SampleSettings};
 use shapematch::ui::Shell;
+use shapematch::ui::theme::Palette;
 
-use super::layout::{dismiss_toasts, faults};
+use super::layout::{dismiss_toasts, faults, texts};
 use super::project::{drawn, picture};
 use super::story::{click, finish, matched, window};
 
@@ -486,4 +488,56 @@ fn files_are_told_apart_in_both_windows_and_can_be_hidden() {
         window.set_size(egui::vec2(1400.0, 900.0));
         window.run_steps(3);
     }
+}
+
+/// True if a rectangle in the one accent lies around the middle of a button.
+fn is_primary(window: &Harness<'static, Shell>, button: &str) -> bool {
+    let middle = window.get_by_label(button).rect().center();
+    let accent = Palette::of_visuals(&window.ctx.global_style().visuals).accent;
+    let is_below = |shape: &egui::Shape| match shape {
+        egui::Shape::Rect(rect) => rect.fill == accent && rect.rect.contains(middle),
+        _ => false,
+    };
+    fn any(shape: &egui::Shape, is_it: &dyn Fn(&egui::Shape) -> bool) -> bool {
+        match shape {
+            egui::Shape::Vec(shapes) => shapes.iter().any(|shape| any(shape, is_it)),
+            shape => is_it(shape),
+        }
+    }
+    let shapes = &window.output().shapes;
+    shapes.iter().any(|clipped| any(&clipped.shape, &is_below))
+}
+
+#[test]
+fn mapping_is_the_next_thing_to_do_only_at_a_pose_of_a_match() {
+    let mut window = matched();
+    let note = "This pose does not come from a match";
+    window.run_steps(4);
+    let primary = |window: &Harness<'static, Shell>| {
+        ["Match the parts", "Map"].map(|button| is_primary(window, button))
+    };
+    assert_eq!(primary(&window), [false, true]);
+    assert!(window.query_by_label(note).is_none());
+    run(&mut window, MoveCommand::Flip(Axis::X));
+    window.run_steps(4);
+    assert_eq!(primary(&window), [true, false]);
+    assert!(window.query_by_label(note).is_some());
+}
+
+#[test]
+fn the_left_window_says_that_its_values_are_mapped() {
+    let mut window = matched();
+    let titles = |window: &Harness<'static, Shell>| {
+        let words = ["fixed", "mapped"];
+        let seen: Vec<String> = texts(window).into_iter().map(|text| text.text).collect();
+        words.map(|word| seen.iter().any(|text| text == word))
+    };
+    assert_eq!(titles(&window), [true, false]);
+    click(&mut window, "Map");
+    finish(&mut window);
+    assert_eq!(titles(&window), [false, true]);
+    // The difference is no value of the crash part.
+    click(&mut window, "Difference");
+    finish(&mut window);
+    assert_eq!(titles(&window), [true, false]);
 }

@@ -303,3 +303,32 @@ fn lost_work_is_offered_and_comes_back() {
     assert!(next.state().state().is_unsaved());
     assert!(next.state().state().project.lost_session().is_none());
 }
+
+#[test]
+fn a_restored_project_shows_its_verdict() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let paths = example_on_disk(folder.path());
+    let kept = folder.path().join("kept.shapematch");
+    let mut first = window();
+    open(&mut first, paths);
+    run(&mut first, MatchCommand::Run);
+    finish(&mut first);
+    let verdict = |window: &Window| {
+        let result = window.state().state().document.current_result();
+        let verdict = result.map(|result| result.run.assessment.verdict)?;
+        Some(format!("{} {}", verdict.sign(), verdict.label()))
+    };
+    let before = verdict(&first).expect("a result");
+    save(&mut first, &kept);
+    drop(first);
+    let mut again = window();
+    open(&mut again, vec![kept]);
+    assert_eq!(verdict(&again).as_ref(), Some(&before));
+    assert!(
+        again.query_by_label(&before).is_some(),
+        "{before} is not seen"
+    );
+    let tolerance =
+        again.query_by_role_and_label(egui::accesskit::Role::SpinButton, "Shape tolerance");
+    assert!(tolerance.is_some());
+}

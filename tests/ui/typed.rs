@@ -179,3 +179,27 @@ fn a_number_that_cannot_be_is_refused_where_it_is_typed() {
     });
     assert_eq!(refused.count(), 0);
 }
+
+#[test]
+fn a_tolerance_that_is_none_is_refused_beside_the_verdict() {
+    let mut window = matched();
+    let tolerance = |window: &Window| {
+        let recipe = &window.state().state().document.recipe;
+        recipe.settings.shape_tolerance
+    };
+    let typed = [
+        ("wide", "“wide” is not a length."),
+        ("-1", "Shape tolerance: 0 mm or more."),
+    ];
+    is_refused(&mut window, "Shape tolerance", &typed);
+    assert_eq!(tolerance(&window), 0.0);
+    type_into(&mut window, "Shape tolerance", "0,2 cm");
+    finish(&mut window);
+    assert_eq!(tolerance(&window), 2.0);
+    let refused = typed.map(|(_, why)| why);
+    let is_told = |why: &&str| window.query_by_label(why).is_some();
+    assert_eq!(refused.iter().find(|why| is_told(why)), None);
+    let result = window.state().state().document.current_result();
+    let judged = result.and_then(|result| result.run.assessment.shape.as_ref());
+    assert_eq!(judged.map(|shape| shape.tolerance.remainder), Some(2.0));
+}

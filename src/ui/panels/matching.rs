@@ -170,7 +170,12 @@ fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.add_space(2.0);
     let width = ui.available_width();
     if !state.jobs.is_active(JobKey::Match) {
-        let look = ("▶  Match", Look::Primary, TALL);
+        // At the pose of a match mapping is the next thing to do.
+        let look = match state.document.current_result() {
+            Some(_) => Look::Plain,
+            None => Look::Primary,
+        };
+        let look = ("▶  Match", look, TALL);
         wide_action(ui, state, Action::MatchOrStop, look, commands)
             .widget_info(|| named_button("Match the parts"));
         cancelling_ui(ui, state);
