@@ -204,8 +204,11 @@ fn profile_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, size: egui::Ve
     let stamped = upright(&probe.profile.stamped);
     let crash = upright(&probe.profile.crash);
     let values = stamped.iter().chain(&crash).map(|point| point[0]);
-    let range = charts::margined(values);
     let name = with_unit(state, by);
+    let Some(range) = charts::margined(values) else {
+        caption(ui, format!("{name} over T: no values"));
+        return;
+    };
     ui.vertical(|ui| profile_plot(ui, &name, [stamped, crash], (range, size)));
 }
 
@@ -214,7 +217,7 @@ fn profile_plot(
     ui: &mut Ui,
     name: &str,
     [stamped, crash]: [Vec<[f64; 2]>; 2],
-    (range, size): (Option<[f64; 2]>, egui::Vec2),
+    ([low, high], size): ([f64; 2], egui::Vec2),
 ) {
     let palette = Palette::of(ui);
     let before = ui.cursor().top();
@@ -223,15 +226,13 @@ fn profile_plot(
         size.x - 16.0,
         (size.y - (ui.cursor().top() - before)).max(40.0),
     );
-    let mut plot = charts::still_chart(ui, "profile", size)
+    let plot = charts::still_chart(ui, "profile", size)
         .include_y(-1.1)
         .include_y(1.1)
+        .include_x(low)
+        .include_x(high)
         .y_axis_min_width(26.0);
-    plot = charts::with_inner_numbers(plot);
-    if let Some([low, high]) = range {
-        plot = plot.include_x(low).include_x(high);
-    }
-    plot.show(ui, |plot| {
+    charts::with_inner_numbers(plot).show(ui, |plot| {
         let line = Line::new("▲ stamped", stamped.clone());
         plot.line(line.color(palette.stamped).width(1.5));
         let points = Points::new("▲ stamped", stamped).shape(MarkerShape::Up);
