@@ -112,10 +112,11 @@ pub fn write_mapping(
         thickness,
         monitor,
     };
-    let has_values = |element: &usize| run.mapped.elements[*element].status.has_values();
-    let n_composite = (0..run.shells.len())
-        .filter(|element| has_values(element) && is_composite(run, &crash.model, *element))
-        .count();
+    let Carried {
+        n_composite,
+        n_stress,
+        n_strain,
+    } = writer.carried()?;
     if output.kind == WriteKind::Part && n_composite > 0 {
         return Err(PipelineError::MapOutput(format!(
             "{n_composite} elements have plies of their own (_COMPOSITE), which a file of all elements \
@@ -156,8 +157,8 @@ pub fn write_mapping(
         files,
         n_thickness,
         n_default,
-        n_stress: writer.count(|state| !state.states.is_empty()),
-        n_strain: writer.count(|state| !state.strains.is_empty()),
+        n_stress,
+        n_strain,
         n_composite,
         read_back_error: 0.0,
         replaces,
@@ -214,6 +215,17 @@ fn thickness_by_id(
 fn is_composite(run: &MapRun, model: &Model, element: usize) -> bool {
     let extra = model.shell_extra(run.shells[element]);
     extra.is_some_and(|extra| extra.n_plies > 0)
+}
+
+/// How many elements have values of their own kind.
+#[derive(Debug, Default)]
+struct Carried {
+    /// Mapped, but with plies, so that they are left as they are.
+    n_composite: usize,
+    /// With a card of stresses.
+    n_stress: usize,
+    /// With a card of strains.
+    n_strain: usize,
 }
 
 pub(super) struct MapWriter<'a> {
@@ -478,9 +490,19 @@ impl MapWriter<'_> {
         state
     }
 
-    fn count(&self, has: impl Fn(&ShellState<'_>) -> bool) -> usize {
-        let all = 0..self.run.shells.len();
-        all.filter(|&element| has(&self.state_of(element))).count()
+    fn carried(&self) -> Result<Carried, Cancelled> {
+        let mut carried = Carried::default();
+        for_chunks(self.run.shells.len(), self.monitor, |range| {
+            for element in range {
+                let state = self.state_of(element);
+                let has_values = self.run.mapped.elements[element].status.has_values();
+                let is_composite = has_values && is_composite(self.run, self.model, element);
+                carried.n_composite += usize::from(is_composite);
+                carried.n_stress += usize::from(!state.states.is_empty());
+                carried.n_strain += usize::from(!state.strains.is_empty());
+            }
+        })?;
+        Ok(carried)
     }
 
     /// The cards as they stand in a file of the deck.
