@@ -490,6 +490,14 @@ fn files_are_told_apart_in_both_windows_and_can_be_hidden() {
     }
 }
 
+/// True of a shape, or of one within it.
+fn any_shape(shape: &egui::Shape, is_it: &dyn Fn(&egui::Shape) -> bool) -> bool {
+    match shape {
+        egui::Shape::Vec(shapes) => shapes.iter().any(|shape| any_shape(shape, is_it)),
+        shape => is_it(shape),
+    }
+}
+
 /// True if a rectangle in the one accent lies around the middle of a button.
 fn is_primary(window: &Harness<'static, Shell>, button: &str) -> bool {
     let middle = window.get_by_label(button).rect().center();
@@ -498,14 +506,10 @@ fn is_primary(window: &Harness<'static, Shell>, button: &str) -> bool {
         egui::Shape::Rect(rect) => rect.fill == accent && rect.rect.contains(middle),
         _ => false,
     };
-    fn any(shape: &egui::Shape, is_it: &dyn Fn(&egui::Shape) -> bool) -> bool {
-        match shape {
-            egui::Shape::Vec(shapes) => shapes.iter().any(|shape| any(shape, is_it)),
-            shape => is_it(shape),
-        }
-    }
     let shapes = &window.output().shapes;
-    shapes.iter().any(|clipped| any(&clipped.shape, &is_below))
+    shapes
+        .iter()
+        .any(|clipped| any_shape(&clipped.shape, &is_below))
 }
 
 #[test]
