@@ -492,15 +492,18 @@ impl Drawing<'_> {
 
     /// What is said of outlines between which there is nothing to measure.
     fn lie_words(&self, lie: Lie) -> Option<String> {
-        Some(match lie {
+        let words = match lie {
             Lie::Together => return None,
             Lie::Apart(distance) => format!(
-                "the parts lie {} from each other · Match or Move by hand brings them together",
+                "the parts lie {} from each other",
                 self.state.lengths().of(distance)
             ),
             Lie::Alone(role) => format!("the plane meets the {} part alone", role.word()),
-            Lie::Nowhere => "the plane meets neither part".to_owned(),
-        })
+            Lie::Nowhere => return Some("the plane meets neither part".to_owned()),
+        };
+        let is_matched = self.state.document.current_result().is_some();
+        let hint = " · Match or Move by hand brings the parts together";
+        Some(words + if is_matched { "" } else { hint })
     }
 
     /// What was measured, the gap at the pointer, the worst one, or what one can do.
