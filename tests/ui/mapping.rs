@@ -516,6 +516,8 @@ fn is_primary(window: &Harness<'static, Shell>, button: &str) -> bool {
 fn mapping_is_the_next_thing_to_do_only_at_a_pose_of_a_match() {
     let mut window = matched();
     let note = "This pose does not come from a match";
+    // Room for every section at once.
+    window.set_size(egui::vec2(1400.0, 1800.0));
     window.run_steps(4);
     let primary = |window: &Harness<'static, Shell>| {
         ["Match the parts", "Map"].map(|button| is_primary(window, button))

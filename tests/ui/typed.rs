@@ -57,8 +57,15 @@ fn numbers<R>(table: &'static [Setting<R>]) -> Vec<(&'static str, [(&'static str
             Domain::Floor => "Length of the floor",
             _ => row.label,
         };
-        let none = format!("“much” is not a {what}.");
-        Some((field, [("much", none), (outside, format!("{field}: "))]))
+        let none = |text: &str| format!("“{text}” is not a {what}.");
+        // Where every whole number is taken, a part of one is not.
+        let takes_all = matches!(&row.domain, Domain::Count(range) if *range.end() == usize::MAX);
+        let second = if takes_all {
+            ("1,5", none("1,5"))
+        } else {
+            (outside, format!("{field}: "))
+        };
+        Some((field, [("much", none("much")), second]))
     };
     table.iter().filter_map(told).collect()
 }
