@@ -36,9 +36,10 @@ use crate::pipeline::map_car::CarReason;
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::pipeline::outputs::{Content, Target};
 use crate::pipeline::project::Project;
+use crate::pipeline::units::PairUnits;
 use crate::registration::Hand;
 use crate::role::{PerRole, Role};
-use crate::text::counted;
+use crate::text::{Lengths, counted};
 
 /// Exit status where a gate such as `--require` is not met; the files are written all the same.
 const EXIT_GATE: u8 = 1;
@@ -175,6 +176,7 @@ Examples:
   shapematch map crash.k stamped.dynain --out mapped.k
   shapematch map car.k stamped.dynain --crash-part 2000012 --out mapped.k --quantities full
   shapematch map crash.k left.dynain right.dynain --write deck --out crash_mapped.k
+  shapematch map crash_mapped.k new.dynain --write deck --out crash_2.k --replace-states yes
   shapematch map crash.k stamped.dynain --identity --csv elements.csv --require 95
   shapematch map crash.k stamped.dynain --project work.shapematch --report map.html
   shapematch map crash.k stamped.dynain --compare dyna.inc --json differences.json
@@ -252,10 +254,14 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         path: path.clone(),
         is_large: args.output.large,
         default_thickness: args.output.default_thickness,
+        has_copies: true,
     });
     let comments = deck_comments(&crash, &placed);
     let write = |output: &MapOutput| write_mapping(&run, &crash, output, &comments, &monitor);
     let files = output.as_ref().map(write).transpose()?;
+    if let Some(files) = &files {
+        check_outputs(all_targets(&args.output, files), &inputs)?;
+    }
     let compare = &args.output.compare;
     let other = (!compare.is_empty())
         .then(|| OtherResult::read(compare, &run, &crash, &monitor))
@@ -272,7 +278,8 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let files = files.filter(|_| !is_withheld);
     let mut written: Vec<(PathBuf, Vec<u8>)> = Vec::new();
     if let Some(files) = &files {
-        written.extend(files.files.iter().cloned());
+        let all = files.files.iter();
+        written.extend(all.map(|file| (file.path.clone(), file.bytes.clone())));
     }
     let outputs = &args.output;
     if let Some(path) = &outputs.csv {
@@ -407,6 +414,19 @@ fn targets(output: &MapOutputArgs) -> Vec<Target> {
     targets
 }
 
+/// The same with the copies of crash files, which are known late.
+fn all_targets(output: &MapOutputArgs, files: &MapFiles) -> Vec<Target> {
+    let mut targets = targets(output);
+    let copies = files.files.iter().filter(|file| file.replaces.is_some());
+    let copies = copies.filter(|file| Some(&file.path) != output.out.as_ref());
+    targets.extend(copies.map(|file| Target {
+        name: "--out (copy without old states)".to_owned(),
+        path: file.path.clone(),
+        content: Content::Deck,
+    }));
+    targets
+}
+
 fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Vec<LoadedPart>)> {
     let choice = &args.choice;
     let settings = |role, part: Option<&str>, length_factor: f64| LoadSettings {
@@ -523,7 +543,12 @@ fn place(
             place_part(parts, &recipe, monitor).with_context(|| format!("cannot match {file}"))?;
         if let Some(warning) = pose_warning(run.assessment.verdict, &file) {
             is_poor = true;
-            log::warn!("{warning}");
+            let units = PairUnits::of(parts.map(Some));
+            let why = run.assessment.sentences(Lengths::new(units.lengths));
+            let why = why
+                .first()
+                .map_or_else(String::new, |why| format!(": {why}"));
+            log::warn!("{warning}{why}");
         }
         poses.push(run.crash_from_stamped);
     }

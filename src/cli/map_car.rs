@@ -177,5 +177,8 @@ fn table(record: &CarRecord) -> String {
             text.push_str(&format!("    {reason}\n"));
         }
     }
+    for copy in &record.copies {
+        text.push_str(&format!("{}\n", copy.text()));
+    }
     text
 }

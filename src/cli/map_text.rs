@@ -51,14 +51,18 @@ pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>) -> String {
                 "0 %".to_owned()
             }
         };
-        line(
-            "Map back",
-            format!(
-                "95 % within {} of the thickness range, {} of the plastic strain's",
-                percent(back.thickness_p95, back.thickness_range),
-                percent(back.plastic_p95, back.plastic_range)
-            ),
-        );
+        let thickness = record.thickness.as_ref().map(|_| {
+            let share = percent(back.thickness_p95, back.thickness_range);
+            format!("{share} of the thickness range")
+        });
+        let plastic = record.plastic_strain.as_ref().map(|_| {
+            let share = percent(back.plastic_p95, back.plastic_range);
+            format!("{share} of the range of plastic strain")
+        });
+        let all: Vec<String> = thickness.into_iter().chain(plastic).collect();
+        if !all.is_empty() {
+            line("Map back", format!("95 % within {}", all.join(", ")));
+        }
     }
     for (head, rest) in checked(record) {
         line(head, rest);
@@ -75,10 +79,13 @@ pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>) -> String {
 /// The files with what they hold.
 fn wrote(files: &MapFiles) -> Vec<(&'static str, String)> {
     let mut lines = Vec::new();
-    for (path, bytes) in &files.files {
-        let megabytes = bytes.len() as f64 / 1e6;
-        let text = format!("{} ({megabytes:.1} MB)", path.display());
+    for file in &files.files {
+        let megabytes = file.bytes.len() as f64 / 1e6;
+        let text = format!("{} ({megabytes:.1} MB)", file.path.display());
         lines.push(("Wrote", text));
+        if let Some(replaced) = &file.replaces {
+            lines.push(("", format!("takes the place of {}", replaced.display())));
+        }
     }
     let counts = format!(
         "{} thicknesses, {} stress and {} strain cards, read back within {:.1e}",
@@ -91,9 +98,6 @@ fn wrote(files: &MapFiles) -> Vec<(&'static str, String)> {
     if files.n_default > 0 {
         let n = grouped(files.n_default);
         lines.push(("", format!("{n} of the thicknesses are the default one")));
-    }
-    if let Some(replaced) = &files.replaces {
-        lines.push(("", format!("takes the place of {}", replaced.display())));
     }
     lines
 }

@@ -88,6 +88,13 @@ impl ColorScale {
         (number % N_FILES as usize) as f64
     }
 
+    /// The colour of a stamped file, and whether a pattern tells it from another file of that colour: a hatch on
+    /// surfaces, dashes on lines.
+    pub fn file_look(number: usize) -> (Rgb, bool) {
+        let (scale, value) = (Self::files(), Self::file_value(number));
+        (scale.color(value), scale.pattern(value) != Pattern::Plain)
+    }
+
     /// The diverging map from `-limit` to `limit` with a neutral band of ± `tolerance`.
     pub fn symmetric(limit: f64, tolerance: f64) -> Self {
         Self {
@@ -309,6 +316,11 @@ mod tests {
             assert!(!looks[..i].contains(look), "{i}");
         }
         assert_eq!(look(0).1, Pattern::Plain);
+        let is_same = |number| {
+            let (color, pattern) = look(number);
+            ColorScale::file_look(number) == (color, pattern != Pattern::Plain)
+        };
+        assert!((0..20).all(is_same));
         assert_eq!(look(N_FILES as usize), look(0));
         assert_eq!(scale.color(f64::NAN), UNMATCHED);
     }

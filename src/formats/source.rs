@@ -262,33 +262,38 @@ impl FileSource for Memory {
     }
 }
 
-/// The files of another source, one of them with other content.
+/// The files of another source, some of them with other content.
 #[derive(Clone, Copy)]
 pub struct Replaced<'a> {
     /// Where the other files are.
     pub others: &'a dyn FileSource,
-    /// The path under which the file is asked for.
-    pub path: &'a Path,
-    /// What it holds instead.
-    pub bytes: &'a [u8],
+    /// Paths under which files are asked for, each with what it holds instead.
+    pub files: &'a [(&'a Path, &'a [u8])],
+}
+
+impl<'a> Replaced<'a> {
+    fn of(&self, path: &Path) -> Option<&'a [u8]> {
+        let path = tidy(path);
+        let found = self.files.iter().find(|(own, _)| tidy(own) == path);
+        found.map(|(_, bytes)| *bytes)
+    }
 }
 
 impl FileSource for Replaced<'_> {
     fn open(&self, path: &Path, max_bytes: u64, monitor: &Monitor) -> io::Result<FileBytes> {
-        if tidy(path) != tidy(self.path) {
+        let Some(bytes) = self.of(path) else {
             return self.others.open(path, max_bytes, monitor);
-        }
-        if self.bytes.len() as u64 > max_bytes {
+        };
+        if bytes.len() as u64 > max_bytes {
             return Err(io::Error::other(TooLarge { max_bytes }));
         }
-        Ok(self.bytes.to_vec().into())
+        Ok(bytes.to_vec().into())
     }
 
     fn stream(&self, path: &Path) -> io::Result<Box<dyn Read + '_>> {
-        if tidy(path) == tidy(self.path) {
-            Ok(Box::new(self.bytes))
-        } else {
-            self.others.stream(path)
+        match self.of(path) {
+            Some(bytes) => Ok(Box::new(bytes)),
+            None => self.others.stream(path),
         }
     }
 

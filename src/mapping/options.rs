@@ -149,6 +149,9 @@ pub struct MapOptions {
     pub thickness_scale: f64,
     /// Thickness at each corner instead of one for the element.
     pub corner_thickness: bool,
+    /// What is written takes the place of stresses and strains that the target's deck has of the same
+    /// elements. No value depends on it.
+    pub replace_states: bool,
 }
 
 impl Default for MapOptions {
@@ -164,6 +167,7 @@ impl Default for MapOptions {
             fill_rings: 0,
             thickness_scale: 1.0,
             corner_thickness: false,
+            replace_states: false,
         }
     }
 }

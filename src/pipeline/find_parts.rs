@@ -46,7 +46,8 @@ pub struct Found {
 pub struct FoundParts {
     /// The crash parts and the match on them.
     pub found: Found,
-    /// Ids of other parts that the stamped part fits about as well: copies, or the other side of the car.
+    /// Ids of other parts that the stamped part fits about as well, or lies closer to: copies, or the other side of
+    /// the car.
     pub rivals: Vec<u64>,
 }
 
@@ -132,9 +133,11 @@ impl Fit {
         order.then(self.rmse.total_cmp(&other.rmse)).is_lt()
     }
 
-    /// True if the distances do not tell which of both is right, nor do the holes.
+    /// True if the distances do not tell which of both is right, nor do the holes. A verdict does not either
+    /// where the other part lies clearly closer: something to look at, such as a coarse hole, is no twin.
     fn is_as_good_as(&self, best: &Self) -> bool {
-        self.verdict == best.verdict
+        let is_judged_alike = self.verdict == best.verdict || AS_CLOSE * self.rmse <= best.rmse;
+        is_judged_alike
             && self.n_holes_apart <= best.n_holes_apart
             && self.rmse <= AS_CLOSE * best.rmse
     }
@@ -364,7 +367,10 @@ mod tests {
         assert!(own.is_better_than(&copy) && copy.is_as_good_as(&own));
         let far = fit(Verdict::Good, 0, 0.6);
         assert!(!far.is_as_good_as(&own));
-        let bent = fit(Verdict::Check, 0, 0.1);
+        let bent = fit(Verdict::Check, 0, 0.4);
         assert!(without_holes.is_better_than(&bent) && !bent.is_as_good_as(&own));
+        // The twin of the own part may be judged better, and is told then.
+        let [closer, twin] = [fit(Verdict::Check, 0, 0.35), fit(Verdict::Good, 0, 1.28)];
+        assert!(twin.is_better_than(&closer) && closer.is_as_good_as(&twin));
     }
 }

@@ -15,6 +15,9 @@ const AMBIENT: f64 = 0.38;
 const BACK: f64 = 0.85;
 /// A jump in depth of this share of the picture's height is an outline.
 const OUTLINE: f64 = 0.012;
+/// Pixels from line to line of a hatch, and across a line.
+const HATCH: usize = 8;
+const HATCH_LINE: usize = 2;
 /// Colour of outlines.
 const INK: Rgb = [38, 42, 48];
 
@@ -101,6 +104,19 @@ impl Picture {
             let is_others = (at % width / tile + at / width / tile) % 2 == 1;
             if own[3] == 0 || (is_others && other[3] > 0) {
                 *own = *other;
+            }
+        }
+        self
+    }
+
+    /// Adds lines that rise to the right where `mask`, a picture of the same size, is light.
+    #[must_use]
+    pub fn hatched(mut self, mask: &Self) -> Self {
+        let width = self.width;
+        let pixels = self.rgba.as_chunks_mut::<4>().0.iter_mut();
+        for (at, (own, mask)) in pixels.zip(mask.rgba.as_chunks::<4>().0).enumerate() {
+            if mask[0].min(mask[3]) > 127 && (at % width + at / width) % HATCH < HATCH_LINE {
+                own[..3].copy_from_slice(&INK);
             }
         }
         self
@@ -320,6 +336,24 @@ mod tests {
     use super::*;
     use crate::geometry::Point3;
     use crate::geometry::camera::StandardView;
+
+    #[test]
+    fn a_hatch_covers_what_is_light_in_the_mask() {
+        let picture = |pixel: [u8; 4]| Picture {
+            width: 16,
+            height: 4,
+            rgba: pixel.repeat(64),
+        };
+        let own = picture([200, 100, 50, 255]);
+        for dark in [picture([0, 0, 0, 255]), picture([255, 255, 255, 0])] {
+            assert_eq!(own.clone().hatched(&dark), own);
+        }
+        let hatched = own.hatched(&picture([255; 4]));
+        let pixels = hatched.rgba.as_chunks::<4>().0;
+        let n_inked = pixels.iter().filter(|pixel| pixel[..3] == INK).count();
+        assert_eq!(n_inked, 64 * HATCH_LINE / HATCH);
+        assert!(pixels.iter().all(|pixel| pixel[3] == 255));
+    }
 
     fn square(z: f64, half: f64) -> TriMesh {
         let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];

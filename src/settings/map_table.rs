@@ -5,7 +5,7 @@ use super::{Access, Choice as _, Domain, Group, Setting, Unit};
 use crate::mapping::{MapMethod, MapOptions, NormalSense, Overlap, limits};
 
 /// Every setting of a mapping, in the order of help and form.
-pub static MAP_SETTINGS: [Setting<MapOptions>; 9] = [
+pub static MAP_SETTINGS: [Setting<MapOptions>; 10] = [
     Setting {
         field: "method",
         option: "method",
@@ -112,5 +112,16 @@ pub static MAP_SETTINGS: [Setting<MapOptions>; 9] = [
         group: Group::Values,
         domain: Domain::Switch,
         access: at!(corner_thickness),
+    },
+    Setting {
+        field: "replace_states",
+        option: "replace-states",
+        former: &[],
+        key: "replace_states",
+        label: "Replace old states",
+        help: "Leave initial stresses and strains that the crash deck has of mapped elements already out of its copies",
+        group: Group::Values,
+        domain: Domain::Switch,
+        access: at!(replace_states),
     },
 ];

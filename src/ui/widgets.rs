@@ -3,7 +3,7 @@
 use super::theme::{Palette, ROW, TALL, UNIT, color, ink};
 use crate::app::{Action, AppState, Command, NoticeLevel};
 use crate::assess::Verdict;
-use crate::colormap::{ColorScale, Pattern};
+use crate::colormap::ColorScale;
 use crate::role::Role;
 pub use crate::text::{grouped, length, percent, signed};
 use egui::{
@@ -427,9 +427,9 @@ pub fn nothing_yet(ui: &mut Ui, title: &str, hint: &str) {
 
 /// Colour and pattern of a stamped file.
 pub fn file_swatch(painter: &egui::Painter, rect: Rect, number: usize) {
-    let (scale, value) = (ColorScale::files(), ColorScale::file_value(number));
-    painter.rect_filled(rect, 2.0, color(scale.color(value)));
-    if scale.pattern(value) != Pattern::Plain {
+    let (rgb, is_hatched) = ColorScale::file_look(number);
+    painter.rect_filled(rect, 2.0, color(rgb));
+    if is_hatched {
         let line = [rect.left_bottom(), rect.right_top()];
         painter.line_segment(line, Stroke::new(1.4, ink(170)));
     }

@@ -32,6 +32,7 @@ mod map_car;
 mod map_decks;
 mod map_files;
 mod map_includes;
+mod map_old_states;
 mod map_options;
 mod mapping;
 mod mapping_checks;

@@ -127,6 +127,88 @@ fn stamped_parts_find_their_crash_parts() {
 }
 
 #[test]
+fn stresses_have_the_factors_of_their_files_and_take_the_place_of_old_ones() {
+    let car = Car::new();
+    let path = car.path(CRASH);
+    let crash = model(&path);
+    let of = |part: u64| {
+        let mut shells = crash.shells.iter();
+        let own = shells.find(|shell| crash.parts[shell.part as usize].id == part);
+        own.unwrap().id
+    };
+    let [rail, bracket, other] = [2_000_019, 2_000_040, 2_000_012].map(of);
+    let plain = std::fs::read_to_string(&path).unwrap();
+    let old = |ids: &[u64]| {
+        let card = |id: &u64| format!("{id:>10}\n       0.0      10.0\n");
+        let cards: String = ids.iter().map(card).collect();
+        plain.replace("*END\n", &format!("*INITIAL_STRESS_SHELL\n{cards}*END\n"))
+    };
+    std::fs::write(&path, old(&[rail, other, bracket])).unwrap();
+    let map = |folder: &str, options: &[&str]| {
+        let files = ["map-car", CRASH, STAMPED[0], STAMPED[1], "--json", "-"];
+        let out = ["--quantities", "stress", "--out", folder];
+        let done = car.run(&[&files[..], &out, options].concat());
+        assert!(done.status.success(), "{}", errors(&done));
+        serde_json::from_slice::<Value>(&done.stdout).unwrap()
+    };
+    let record = map(
+        "mapped",
+        &["--stress-factor", "2", "--stress-factor", "0.5"],
+    );
+    let told = serde_json::json!({ "old-states": 1 });
+    for row in record["rows"].as_array().unwrap() {
+        assert!(row["reasons"].as_array().unwrap().contains(&told), "{row}");
+    }
+    assert_eq!(record["copies"], serde_json::json!([]));
+    let record = map(
+        "plain",
+        &["--stress-factor", "1", "--replace-states", "yes"],
+    );
+    for row in record["rows"].as_array().unwrap() {
+        assert_eq!(row["state"], "sure", "{row}");
+    }
+    assert_eq!(record["copies"][0]["file"], "mapped_crash.k");
+    let copy = std::fs::read_to_string(car.path("plain/mapped_crash.k")).unwrap();
+    assert!(copy == old(&[other]));
+    let master = std::fs::read_to_string(car.path("plain/mapped.k")).unwrap();
+    assert!(
+        master.contains("$ mapped_crash.k takes the place of "),
+        "{master}"
+    );
+    // The first file is the rail's, the second the bracket's.
+    for (name, factor) in [("stamped.k", 2.0), ("stamped_2.k", 0.5)] {
+        let [own, plain] = ["mapped", "plain"].map(|folder| model(&car.path(folder).join(name)));
+        assert!(own.forming.n_stress() > 100, "{name}");
+        let both = own.forming.stresses().zip(plain.forming.stresses());
+        for (own, plain) in both {
+            assert_eq!(own.element_id, plain.element_id);
+            for (own, plain) in own.points.iter().zip(plain.points) {
+                for (a, b) in own.stress.iter().zip(plain.stress) {
+                    assert!((a - factor * b).abs() <= 1e-6 * b.abs().max(1.0), "{a} {b}");
+                }
+            }
+        }
+    }
+    // One factor for three files is one for all, two are too few.
+    let files = ["map-car", CRASH, STAMPED[0], STAMPED[1], STAMPED[2]];
+    let few = [
+        "--out",
+        "few",
+        "--stress-factor",
+        "2",
+        "--stress-factor",
+        "1",
+    ];
+    let refused = car.run(&[&files[..], &few].concat());
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        errors(&refused).contains("2 stress factors for 3 stamped files"),
+        "{}",
+        errors(&refused)
+    );
+}
+
+#[test]
 fn a_whole_model_is_mapped_where_the_stamped_part_belongs() {
     let car = Car::new();
     let options = ["map", CRASH, STAMPED[1], "--json", "-"];

@@ -92,7 +92,7 @@ pub(crate) fn strip(n: usize, widths: [usize; 2]) -> String {
 }
 
 /// The card of the `n`-th square, counted from 0.
-fn square(id: u64, part: u64, n: u64, width: usize) -> String {
+pub(crate) fn square(id: u64, part: u64, n: u64, width: usize) -> String {
     let first = 2 * n + 1;
     let fields = [id, part, first, first + 2, first + 3, first + 1];
     let fields = fields.map(|field| format!("{field:>width$}"));
@@ -236,7 +236,7 @@ fn history_and_its_tensors_go_to_the_same_law_alone() {
     assert!(output.status.success(), "{}", errors(&output));
     let told = errors(&output);
     assert!(
-        told.contains("history variables of 1 elements are left out"),
+        told.contains("history variables of 1 element are left out"),
         "{told}"
     );
     assert!(
@@ -389,6 +389,12 @@ fn missing_partial_and_other_layers_are_kept_apart() {
         expected += &three_layers_written(id);
     }
     assert!(written.ends_with(&(expected + "*END\n")), "{written}");
+    let told = pair.map(&[]);
+    assert!(
+        errors(&told).contains("no stresses and plastic strains on 1 element with other values"),
+        "{}",
+        errors(&told)
+    );
     // The one without stresses still has its thickness; without any result it says so.
     let statuses = |options: &[&str]| -> Vec<String> {
         pair.table(options).into_iter().map(|row| row.1).collect()
@@ -403,7 +409,7 @@ fn missing_partial_and_other_layers_are_kept_apart() {
     let none = bare.map(&["--quantities", "stress"]);
     assert_eq!(none.status.code(), Some(1));
     assert!(
-        errors(&none).contains("none of the results"),
+        errors(&none).contains("none of the results that were asked for are in stamped.dynain"),
         "{}",
         errors(&none)
     );
@@ -490,6 +496,15 @@ fn mixed_formulations_get_the_layers_of_their_sections() {
         expected += &format!("{t}{rest}");
     }
     assert!(written.ends_with(&(expected + "*END\n")), "{written}");
+    // Plies are no layers of a section.
+    let plies = "*PART_COMPOSITE\nfirst\n         7        16\n         1       0.5       0.0                   1       0.5\n*PART\nsecond";
+    let plies = deck.replace("*PART\nfirst\n         7         7\n*PART\nsecond", plies);
+    let told = Pair::new(&plies, &stamped(2, &stresses(1..=2))).map(&[]);
+    assert!(
+        errors(&told).contains("part 7 has plies (*PART_COMPOSITE)"),
+        "{}",
+        errors(&told)
+    );
     // Sections with a rule of their own, and none at all, are named.
     let own = deck.replace(
         "     0.833         3\n",

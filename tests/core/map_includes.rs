@@ -272,23 +272,3 @@ fn factors_that_are_none_are_wrong_usage() {
         assert_eq!(output.status.code(), Some(2), "{factor}");
     }
 }
-
-#[test]
-fn old_states_of_the_elements_are_told() {
-    let old = "*INITIAL_STRESS_SHELL\n       101         1         1\n       0.0      10.0      10.0\n*END\n";
-    let pair = Pair::new(
-        &crash(2, "").replace("*END\n", old),
-        &stamped(2, &stresses(1..=2)),
-    );
-    let told = refused(&pair, "deck");
-    assert!(
-        told.contains("1 of the elements have initial stresses"),
-        "{told}"
-    );
-    written(&pair, "deck", "thickness");
-    let states = written(&pair, "include", FULL);
-    assert!(
-        states.contains("$ 1 of them have initial states in the crash deck"),
-        "{states}"
-    );
-}

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position};
 use super::super::model::{
     Material, Part, RawTitles, ReadFile, Section, Shell, ShellControl, ShellExtra, Solid,
+    StampedInclude,
 };
 use super::block::Block;
 use super::card::Layout;
@@ -151,6 +152,7 @@ pub(crate) struct Assembly {
     pub sets: Vec<(Arc<SourceFile>, RawSet)>,
     pub transformations: BTreeMap<u64, Transformation>,
     pub node_thickness: Vec<NodeThickness>,
+    pub stamped_includes: Vec<StampedInclude>,
     pub(super) node_ids: Vec<u64>,
     pub(super) positions: Vec<Point3>,
     pub(super) node_origins: Vec<Origin>,
@@ -275,6 +277,7 @@ impl Assembly {
                 section_id: raw.section_id,
                 material_id: raw.material_id,
                 thickness: raw.thickness.map(|sum| [sum; 4]),
+                has_plies: raw.thickness.is_some(),
                 is_defined: true,
             };
         }
@@ -311,6 +314,7 @@ impl Assembly {
                 section_id: raw.section_id,
                 material_id: raw.material_id,
                 thickness: raw.thickness.map(|sum| [sum; 4]),
+                has_plies: raw.thickness.is_some(),
                 is_defined: true,
             };
         }

@@ -14,7 +14,7 @@ use super::card::Layout;
 use super::forming::{is_forming, read_block};
 use super::include::{
     Context, Include, SearchPath, layout_of_keyword, read_include_transform, read_includes,
-    read_paths,
+    read_paths, read_stamped_include,
 };
 use super::materials::read_material;
 use super::mesh::{ElementKeyword, ShellCards, element_keyword};
@@ -320,6 +320,8 @@ impl Reader<'_> {
                 self.search.folders.extend(paths);
             }
             name => {
+                let stamped = read_stamped_include(&with_parameters, &context.offsets);
+                self.assembly.stamped_includes.extend(stamped);
                 let kind = DiagnosticKind::Unsupported;
                 let message = format!("*{name} is not carried out");
                 self.assembly

@@ -5,6 +5,8 @@ mod element;
 use super::super::model::IncludedAs;
 use super::block::{Block, Blocks};
 use super::card::{Layout, TEN_BY_8};
+pub use super::forming::ResultCards;
+use super::forming::{ResultUnits, result_cards};
 use super::include::layout_of_keyword;
 use super::mesh::{ElementKeyword, ShellCards, element_keyword};
 use super::nodes::shifted;
@@ -36,6 +38,8 @@ pub struct ExchangeRules<'a> {
     pub list_layout: Option<Layout>,
     /// What becomes of a shell, by its id.
     pub exchange_of: &'a dyn Fn(u64) -> Exchange,
+    /// Which results are left out; `None` if all stay.
+    pub leaves_out: Option<&'a dyn Fn(&ResultCards) -> bool>,
     /// What is put at the end of the file, given what was found in it.
     pub states: &'a dyn Fn(&ExchangedDeck) -> Result<Vec<u8>, Cancelled>,
 }
@@ -53,6 +57,10 @@ pub struct ExchangedDeck {
     pub n_composite: usize,
     /// Shell keywords whose cards are not known, left as they are.
     pub n_unknown: usize,
+    /// Shells and sets whose stresses or strains were left out, each kind counted by itself.
+    pub n_left_out: usize,
+    /// Line of the first block of results that are out of step and left as they are.
+    pub unread_results: Option<u64>,
     /// Width of the deck's fields after its last keyword.
     pub layout: Layout,
     /// The cards of the exchanged and the listed shells alone, below their keywords, with the ids and the
@@ -63,8 +71,8 @@ pub struct ExchangedDeck {
     pub n_unlisted: usize,
 }
 
-/// Sets the corner thicknesses of the shells for which there are some, and puts the states before `*END` (or
-/// at the end). Elements change to the keyword with the option `THICKNESS` where they stand; other options,
+/// Sets the corner thicknesses of the shells for which there are some, leaves out the results that the rules
+/// name, with the keyword of a block that has no others, and puts the states before `*END` (or at the end). Elements change to the keyword with the option `THICKNESS` where they stand; other options,
 /// comments and the order stay. Shells without a new thickness and all other lines are copied byte for byte.
 /// O(bytes).
 pub fn exchange_thickness(
@@ -82,6 +90,8 @@ pub fn exchange_thickness(
             n_found: 0,
             n_composite: 0,
             n_unknown: 0,
+            n_left_out: 0,
+            unread_results: None,
             layout: rules.included_as.layout,
             elements: Vec::new(),
             n_unlisted: 0,
@@ -108,12 +118,16 @@ pub fn exchange_thickness(
                 ElementKeyword::Shell(cards) => copy.shells(&block, cards, monitor)?,
                 _ => copy.result.n_unknown += 1,
             }
+        } else if let Some(leaves_out) = rules.leaves_out {
+            copy.results(&block, leaves_out);
         }
     }
     copy.up_to(end.unwrap_or(bytes.len()));
-    copy.new_line();
     let states = (rules.states)(&copy.result)?;
-    copy.lines(&states);
+    if !states.is_empty() {
+        copy.new_line();
+        copy.lines(&states);
+    }
     copy.up_to(bytes.len());
     Ok(copy.result)
 }
@@ -167,6 +181,37 @@ impl Copy<'_> {
         for line in text.split_inclusive(|&byte| byte == b'\n') {
             let line = line.strip_suffix(b"\n").unwrap_or(line);
             self.line(line);
+        }
+    }
+
+    /// One block of results, or of anything else that stays.
+    fn results(&mut self, block: &Block<'_>, leaves_out: &dyn Fn(&ResultCards) -> bool) {
+        let place = &self.rules.included_as;
+        let units = ResultUnits {
+            element: place.element_offset,
+            set: place.set_offset,
+            stress: place.stress_factor,
+        };
+        let cards = match result_cards(block, units) {
+            Ok(cards) => cards,
+            Err(at) => {
+                let line = block.file.position(at).line;
+                self.result.unread_results.get_or_insert(line);
+                return;
+            }
+        };
+        let left_out: Vec<&ResultCards> = cards.iter().filter(|cards| leaves_out(cards)).collect();
+        if left_out.is_empty() {
+            return;
+        }
+        self.result.n_left_out += left_out.len();
+        if left_out.len() == cards.len() {
+            self.up_to(block.offset);
+            self.done = block.body.start;
+        }
+        for cards in left_out {
+            self.up_to(cards.range.start);
+            self.done = cards.range.end;
         }
     }
 
@@ -313,6 +358,7 @@ mod tests {
             included_as,
             list_layout: Some(Layout::Standard),
             exchange_of,
+            leaves_out: None,
             states: &|_| Ok(b"*INITIAL_STRESS_SHELL\n".to_vec()),
         };
         exchange_thickness(file, &rules, &Monitor::silent()).unwrap()
@@ -404,6 +450,7 @@ $ between\n\
                     true => Exchange::Listed,
                     false => Exchange::Other,
                 },
+                leaves_out: None,
                 states: &|found| {
                     seen.set(Some((found.layout, found.n_found)));
                     Ok(Vec::new())
@@ -421,6 +468,61 @@ $ between\n\
         let deck = "*ELEMENT_SHELL_COMPOSITE\n       1       1       1       2       3       4\n";
         let found = exchange(deck, &[1]);
         assert_eq!((found.n_exchanged, found.n_composite), (0, 1));
+    }
+
+    #[test]
+    fn results_that_are_left_out_take_their_keyword_along_and_nothing_else() {
+        let head = "*KEYWORD\r\n*INITIAL_STRESS_SHELL\r\n$ of two shells\r\n";
+        let first = "         1         1         2\r\n-.577\r\n$ between\r\n0.577\r\n";
+        let second = "         2         1         1\r\n  0.0\r\n";
+        let free = "*INITIAL_STRAIN_SHELL\r\n1,1,1,1\r\n1.,2.,3.,4.,5.\r\n6.,0.\r\n$ last\r\n";
+        let set = "*INITIAL_STRESS_SHELL_SET\r\n         1\r\n  0.0\r\n";
+        let deck = [head, first, "$ next\r\n", second, free, set, "*END\r\n"].concat();
+        let file = SourceFile::new("a.k", &deck[..]);
+        let left_out = |leaves_out: &dyn Fn(&ResultCards) -> bool| {
+            let rules = ExchangeRules {
+                included_as: IncludedAs {
+                    element_offset: 10,
+                    ..IncludedAs::default()
+                },
+                list_layout: None,
+                exchange_of: &|_| Exchange::Other,
+                leaves_out: Some(leaves_out),
+                states: &|_| Ok(Vec::new()),
+            };
+            let found = exchange_thickness(&file, &rules, &Monitor::silent()).unwrap();
+            assert_eq!(found.unread_results, None);
+            (text(&found), found.n_left_out)
+        };
+        assert_eq!(left_out(&|_| false), (deck.clone(), 0));
+        let of_shell = |cards: &ResultCards| cards.id == 11 && !cards.is_of_set;
+        let rest = [head, "$ next\r\n", second, "$ last\r\n", set, "*END\r\n"].concat();
+        assert_eq!(left_out(&of_shell), (rest, 2));
+        let strains = |cards: &ResultCards| !cards.is_stress;
+        assert_eq!(
+            left_out(&strains).0,
+            deck.replace(&free[..free.len() - 8], "")
+        );
+        let of_set = |cards: &ResultCards| cards.is_of_set && cards.id == 1;
+        assert_eq!(left_out(&of_set).0, deck.replace(set, ""));
+    }
+
+    #[test]
+    fn results_that_are_out_of_step_stay_and_are_told() {
+        let deck = "*KEYWORD\n*INITIAL_STRESS_SHELL\n         1         1         2\n  0.0\n*END\n";
+        let file = SourceFile::new("a.k", deck);
+        let rules = ExchangeRules {
+            included_as: IncludedAs::default(),
+            list_layout: None,
+            exchange_of: &|_| Exchange::Other,
+            leaves_out: Some(&|_| true),
+            states: &|_| Ok(Vec::new()),
+        };
+        let found = exchange_thickness(&file, &rules, &Monitor::silent()).unwrap();
+        assert_eq!(
+            (text(&found), found.unread_results),
+            (deck.to_owned(), Some(3))
+        );
     }
 
     #[test]

@@ -2,11 +2,12 @@
 //! sets; those of solids and thick shells are read past and counted.
 
 use std::iter::Peekable;
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Forming, StrainPoint, StressPoint};
-use super::block::{Block, Cards};
+use super::block::{Block, Cards, next_line};
 use super::card::{Card, EIGHT_BY_10, FIVE_BY_16, FieldError};
 use super::nodes::shifted;
 use super::source_file::{Place, SourceFile};
@@ -89,15 +90,8 @@ pub(crate) fn read_block(
         }
         return;
     };
-    let mut reader = Reader {
-        block,
-        cards: block.cards().peekable(),
-        units,
-        diagnostics,
-        values: Vec::new(),
-        bad_field: None,
-    };
-    while let Some(card) = reader.cards.next() {
+    let mut reader = Reader::new(block, units, diagnostics);
+    while let Some(card) = reader.next_card() {
         if card.is_blank() {
             continue;
         }
@@ -125,6 +119,59 @@ pub(crate) fn read_block(
     }
 }
 
+/// The cards of the stresses or strains of one shell, or of one set of shells.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ResultCards {
+    /// Stresses, not strains.
+    pub is_stress: bool,
+    /// Those of a set of shells.
+    pub is_of_set: bool,
+    /// Id of the shell or the set in the whole deck.
+    pub id: u64,
+    /// Where they stand in the file, from the first card to the end of the last.
+    pub range: Range<usize>,
+}
+
+/// Finds the cards of each shell and each set in a block of their results; none in blocks of others. `Err`
+/// is where a card stands that is out of step.
+pub(crate) fn result_cards(
+    block: &Block<'_>,
+    units: ResultUnits,
+) -> Result<Vec<ResultCards>, usize> {
+    let (is_stress, is_of_set) = match Results::of_keyword(&block.name) {
+        Some(Results::Stress) => (true, false),
+        Some(Results::Strain) => (false, false),
+        Some(Results::SetStress) => (true, true),
+        Some(Results::SetStrain) => (false, true),
+        _ => return Ok(Vec::new()),
+    };
+    // What cannot be read was told when the deck was read.
+    let mut told = Diagnostics::default();
+    let mut reader = Reader::new(block, units, &mut told);
+    let mut found = Vec::new();
+    while let Some(card) = reader.next_card() {
+        if card.is_blank() {
+            continue;
+        }
+        let mut values = Forming::default();
+        let read = match is_stress {
+            true => reader.stress(&card, 0, &mut values),
+            false => reader.strain(&card, 0, &mut values),
+        };
+        let offset = if is_of_set { units.set } else { units.element };
+        match (read, card.required_id(EIGHT_BY_10, 0)) {
+            (Ok(()), Ok(id)) => found.push(ResultCards {
+                is_stress,
+                is_of_set,
+                id: shifted(id, offset),
+                range: card.offset()..reader.after,
+            }),
+            _ => return Err(card.offset()),
+        }
+    }
+    Ok(found)
+}
+
 /// True for keywords that carry results of an earlier simulation.
 pub(crate) fn is_forming(name: &str) -> bool {
     name.starts_with("INITIAL_STRESS_") || name.starts_with("INITIAL_STRAIN_")
@@ -142,6 +189,8 @@ struct Reader<'a, 'd> {
     values: Vec<f64>,
     /// The first unreadable field of the element at hand.
     bad_field: Option<FieldError>,
+    /// Where the line after the last card begins.
+    after: usize,
 }
 
 /// How the lines of one kind of data are cut.
@@ -164,7 +213,26 @@ const LARGE: Lines = Lines {
     per_line: 5,
 };
 
-impl Reader<'_, '_> {
+impl<'a, 'd> Reader<'a, 'd> {
+    fn new(block: &'a Block<'a>, units: ResultUnits, diagnostics: &'d mut Diagnostics) -> Self {
+        Self {
+            block,
+            cards: block.cards().peekable(),
+            units,
+            diagnostics,
+            values: Vec::new(),
+            bad_field: None,
+            after: block.body.start,
+        }
+    }
+
+    fn next_card(&mut self) -> Option<Card<'a>> {
+        let card = self.cards.next()?;
+        let (bytes, end) = (self.block.file.bytes(), self.block.body.end);
+        self.after = next_line(bytes, card.offset(), end).map_or(end, |(_, _, next)| next);
+        Some(card)
+    }
+
     fn stress(&mut self, head: &Card<'_>, offset: i64, into: &mut Forming) -> Result<(), Stop> {
         let [
             id,
@@ -402,7 +470,7 @@ impl Reader<'_, '_> {
         self.values.clear();
         while self.values.len() < n {
             let expected = lines.per_line.min(n - self.values.len());
-            let Some(card) = self.cards.next() else {
+            let Some(card) = self.next_card() else {
                 let kind = DiagnosticKind::MissingCard;
                 let message = "the results of the last element are cut off";
                 self.diagnostics
@@ -415,7 +483,7 @@ impl Reader<'_, '_> {
             let rest_follows = missing > 0
                 && (self.cards.peek()).is_some_and(|next| next.n_fields(width) == missing);
             if rest_follows {
-                let next = self.cards.next().expect("it was seen just before");
+                let next = self.next_card().expect("it was seen just before");
                 self.append(&next, missing, lines);
             } else {
                 let full = self.values.len() + missing;

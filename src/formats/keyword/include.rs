@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::super::diagnostic::Diagnostics;
-use super::super::model::IncludedAs;
+use super::super::model::{IncludedAs, StampedInclude};
 use super::super::source::{FileSource, tidy};
 use super::block::{Block, Cards};
 use super::card::{Card, EIGHT_BY_10, Layout};
@@ -113,6 +113,7 @@ impl Context {
             element_offset: self.offsets.element,
             node_offset: self.offsets.node,
             part_offset: self.offsets.part,
+            set_offset: self.offsets.set,
             system_offset: self.offsets.define,
             length_factor: self.length,
             stress_factor: self.stress,
@@ -173,6 +174,23 @@ pub(crate) fn read_includes(block: &Block<'_>) -> Vec<Include> {
 /// The folders of an `*INCLUDE_PATH` block.
 pub(crate) fn read_paths(block: &Block<'_>) -> Vec<String> {
     read_includes(block).into_iter().map(|i| i.name).collect()
+}
+
+/// The file of an `*INCLUDE_STAMPED_…` block with the part or set of parts it is mapped onto; `None` for other
+/// blocks.
+pub(crate) fn read_stamped_include(block: &Block<'_>, offsets: &Offsets) -> Option<StampedInclude> {
+    let options = block.name.strip_prefix("INCLUDE_STAMPED_")?;
+    let is_set = options.split('_').any(|option| option == "SET");
+    let mut cards = block.cards();
+    let (file, _) = file_name(&mut cards)?;
+    let id = cards.next()?.required_id(EIGHT_BY_10, 0).ok()?;
+    let offset = if is_set { offsets.set } else { offsets.part };
+    Some(StampedInclude {
+        file,
+        onto: shifted(id, offset),
+        is_set,
+        position: block.position(),
+    })
 }
 
 /// The file of an `*INCLUDE_TRANSFORM` block. Cards at the end may be missing.

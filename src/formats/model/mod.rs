@@ -154,6 +154,8 @@ pub struct Part {
     pub material_id: u64,
     /// Thickness that elements without their own take: at the four corners.
     pub thickness: Option<[f64; 4]>,
+    /// Its thickness is that of plies of its own (`*PART_COMPOSITE`).
+    pub has_plies: bool,
     /// False if elements name the part but no file defines it.
     pub is_defined: bool,
 }
@@ -210,6 +212,19 @@ pub struct Sets {
     pub nodes: BTreeMap<u64, Set>,
 }
 
+/// An `*INCLUDE_STAMPED_PART` or one of its kin: the solver maps the forming results of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StampedInclude {
+    /// The file, as the deck names it.
+    pub file: String,
+    /// The part, or the set of parts, that gets them.
+    pub onto: u64,
+    /// True for a set.
+    pub is_set: bool,
+    /// Where the keyword stands.
+    pub position: Position,
+}
+
 /// A motion of nodes that the deck asked for and that was carried out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AppliedMotion {
@@ -236,6 +251,8 @@ pub struct IncludedAs {
     pub node_offset: i64,
     /// Added to part ids.
     pub part_offset: i64,
+    /// Added to ids of sets.
+    pub set_offset: i64,
     /// Added to ids of coordinate systems.
     pub system_offset: i64,
     /// Factor on lengths that are not coordinates: thicknesses.
@@ -253,6 +270,7 @@ impl Default for IncludedAs {
             element_offset: 0,
             node_offset: 0,
             part_offset: 0,
+            set_offset: 0,
             system_offset: 0,
             length_factor: 1.0,
             stress_factor: 1.0,
@@ -324,6 +342,8 @@ pub struct Model {
     pub forming: Forming,
     /// Motions that includes and `*NODE_TRANSFORM` brought, in the order they were carried out.
     pub motions: Vec<AppliedMotion>,
+    /// Files that the solver maps onto parts of the deck.
+    pub stamped_includes: Vec<StampedInclude>,
     /// What could not be understood.
     pub diagnostics: Diagnostics,
     /// The files that were read, the one asked for first.

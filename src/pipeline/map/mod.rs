@@ -4,6 +4,7 @@ mod compare;
 mod convert;
 mod default_thickness;
 mod lists;
+mod old_states;
 mod output;
 mod peak;
 mod place;
@@ -25,10 +26,15 @@ pub use compare::{ComparisonRecord, DifferenceRecord, OtherResult, compare_with}
 pub use convert::TargetLayers;
 pub use default_thickness::DefaultThickness;
 pub use lists::{DoubtfulElement, ElementLists, GiverShare, UnmappedElement, element_lists};
-pub use output::{MapFiles, MapOutput, WriteKind, deck_comments, elements_path, write_mapping};
+pub use old_states::{NewStates, car_copies, mapped_by_solver};
+pub use output::{
+    MapFile, MapFiles, MapOutput, WriteKind, deck_comments, elements_path, write_mapping,
+};
 pub use place::{FurtherPose, place, placing_recipe, pose_warning};
 pub use probe::{ProbeRecord, ProbedValue, probe_records};
-pub use record::{DistributionRecord, MapRecord, PairRecord, element_table, map_record};
+pub use record::{
+    DistributionRecord, MapRecord, PairRecord, element_table, map_record, unread_line,
+};
 pub use report::map_report;
 pub use unmapped::unmapped_sets;
 pub use values::{Profile, ShownValue};
@@ -254,7 +260,16 @@ pub fn map_parts(
             target_from_source: placed.crash_from_stamped,
         })
         .collect();
-    let mapped = mapping::map(&placed, &target, &recipe.options, monitor)?;
+    let mapped = match mapping::map(&placed, &target, &recipe.options, monitor) {
+        Err(mapping::MappingError::NoResults) => {
+            let names: Vec<String> = stamped
+                .iter()
+                .map(|placed| placed.part.file_name())
+                .collect();
+            return Err(PipelineError::NoResults(names.join(", ")));
+        }
+        other => other?,
+    };
     let map_ms = millis_since(start);
     let start = Instant::now();
     let checks = check(&placed, &target, &mapped, &recipe.options, monitor)?;
@@ -312,6 +327,9 @@ impl Layers<'_> {
             (None, Some(section)) if !section.has_own_rule => section.n_layers as usize,
             (None, _) if !needs_layers => 1,
             (None, Some(_)) => return Err(PipelineError::OwnLayerRule { part: id }),
+            (None, None) if model.parts[part as usize].has_plies => {
+                return Err(PipelineError::PlyLayers { part: id });
+            }
             (None, None) => return Err(PipelineError::UnknownLayers { part: id }),
         };
         if !limits::LAYERS.contains(&n_layers) {

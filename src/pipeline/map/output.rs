@@ -1,12 +1,13 @@
 //! The mapped state as decks: an include, the part's elements, or a copy of the crash deck.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use super::old_states::{LeftOut, NewStates, copies_without_states};
 use super::{DefaultThickness, MapRun, PipelineError, PlacedPart};
 use crate::formats::keyword::card::Layout;
 use crate::formats::keyword::exchange::{
-    Exchange, ExchangeRules, ExchangedDeck, exchange_thickness,
+    Exchange, ExchangeRules, ExchangedDeck, ResultCards, exchange_thickness,
 };
 use crate::formats::keyword::source_file::SourceFile;
 use crate::formats::keyword::state_cards::{ShellState, StateFormat, write_states};
@@ -60,13 +61,27 @@ pub struct MapOutput {
     pub is_large: bool,
     /// Thickness of the elements without values.
     pub default_thickness: DefaultThickness,
+    /// Where old states are replaced: whether files of the crash deck are copied without them, which the
+    /// caller does else.
+    pub has_copies: bool,
+}
+
+/// One of the files.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MapFile {
+    /// Where it goes.
+    pub path: PathBuf,
+    /// What it holds.
+    pub bytes: Vec<u8>,
+    /// The crash file that it is a copy of, whose place it takes.
+    pub replaces: Option<PathBuf>,
 }
 
 /// What was written, read back and compared.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapFiles {
-    /// The files with their bytes, not yet on disk.
-    pub files: Vec<(PathBuf, Vec<u8>)>,
+    /// The files, not yet on disk.
+    pub files: Vec<MapFile>,
     /// Elements that got a thickness.
     pub n_thickness: usize,
     /// Those of them that carry no values and got the default one.
@@ -80,8 +95,12 @@ pub struct MapFiles {
     /// Largest difference between a value and what reading the files gives, relative to the largest
     /// value of its kind.
     pub read_back_error: f64,
-    /// The crash file that the deck copy replaces.
-    pub replaces: Option<PathBuf>,
+    /// Elements with cards of stresses or strains, of which the crash deck has some already.
+    pub n_old_states: usize,
+    /// Elements that have some in the crash deck and keep them, because none are mapped onto them.
+    pub n_kept_states: usize,
+    /// Elements with cards of stresses or strains.
+    pub new_states: NewStates,
 }
 
 /// Makes the files and reads them back. Nothing is written to disk here. An error if an element of the
@@ -112,59 +131,64 @@ pub fn write_mapping(
         thickness,
         monitor,
     };
-    let Carried {
-        n_composite,
-        n_stress,
-        n_strain,
-    } = writer.carried()?;
+    let n_composite = writer.n_composite()?;
     if output.kind == WriteKind::Part && n_composite > 0 {
         return Err(PipelineError::MapOutput(format!(
             "{n_composite} elements have plies of their own (_COMPOSITE), which a file of all elements \
              would lose; write an include or a deck instead (--write)"
         )));
     }
-    let decks = writer.decks(output.kind)?;
+    let new_states = writer.new_states()?;
+    let decks = writer.decks(output.kind, &new_states)?;
     let n_thickness: usize = decks.iter().map(|(_, deck)| deck.n_exchanged).sum();
     writer.check_elements(&decks, output.kind)?;
-    let mut replaces = None;
-    let n_old = writer.n_with_old_states()?;
-    let head = writer.head(comments, n_default, n_old);
-    let files = match output.kind {
+    let n_old_states = new_states.n_old(&crash.model);
+    let head = writer.head(comments, n_default, n_old_states);
+    let mut holder = PathBuf::new();
+    let mut files = match output.kind {
         WriteKind::Include => writer.include(&head, &decks, &output.path)?,
-        WriteKind::Part => vec![(output.path.clone(), writer.part(&head, &decks)?)],
+        WriteKind::Part => vec![new_file(&output.path, writer.part(&head, &decks)?)],
         WriteKind::Deck => {
-            let mut holders = decks;
-            holders.retain(|(_, deck)| deck.n_found > 0);
-            if holders.len() != 1 {
-                let names = holders
-                    .iter()
-                    .map(|(file, _)| file.path.display().to_string());
-                let names: Vec<String> = names.collect();
-                return Err(PipelineError::MapOutput(format!(
-                    "the elements stand in {} files ({}); write an include instead (--write include)",
-                    names.len(),
-                    names.join(", ")
-                )));
-            }
-            let (file, deck) = holders.swap_remove(0);
-            writer.check_copy(file, n_old)?;
-            replaces = Some(file.path.clone());
-            vec![(output.path.clone(), deck.bytes)]
+            let copy = writer.copy(decks, &output.path, n_old_states)?;
+            holder = copy.replaces.clone().unwrap_or_default();
+            vec![copy]
         }
     };
+    if writer.replaces_states() && (output.has_copies || output.kind == WriteKind::Deck) {
+        let taken: Vec<PathBuf> = files.iter().map(|file| file.path.clone()).collect();
+        let places = [&*output.path, &*holder];
+        files.extend(copies_without_states(
+            crash,
+            &new_states,
+            places,
+            &taken,
+            monitor,
+        )?);
+    }
     monitor.check()?;
     let mut files = MapFiles {
         files,
         n_thickness,
         n_default,
-        n_stress,
-        n_strain,
+        n_stress: new_states.stressed.len(),
+        n_strain: new_states.strained.len(),
         n_composite,
         read_back_error: 0.0,
-        replaces,
+        n_old_states,
+        n_kept_states: new_states.n_kept(run, &crash.model),
+        new_states,
     };
-    files.read_back_error = writer.read_back(&files)?;
+    files.read_back_error = writer.read_back(&files, output.kind)?;
     Ok(files)
+}
+
+/// A file that is none of the deck's.
+fn new_file(path: &Path, bytes: Vec<u8>) -> MapFile {
+    MapFile {
+        path: path.to_path_buf(),
+        bytes,
+        replaces: None,
+    }
 }
 
 /// What decks say of where their values come from: the files, and the pose of each stamped part.
@@ -217,17 +241,6 @@ fn is_composite(run: &MapRun, model: &Model, element: usize) -> bool {
     extra.is_some_and(|extra| extra.n_plies > 0)
 }
 
-/// How many elements have values of their own kind.
-#[derive(Debug, Default)]
-struct Carried {
-    /// Mapped, but with plies, so that they are left as they are.
-    n_composite: usize,
-    /// With a card of stresses.
-    n_stress: usize,
-    /// With a card of strains.
-    n_strain: usize,
-}
-
 pub(super) struct MapWriter<'a> {
     pub(super) run: &'a MapRun,
     pub(super) crash: &'a LoadedPart,
@@ -240,7 +253,11 @@ pub(super) struct MapWriter<'a> {
 impl MapWriter<'_> {
     /// Every file of the crash deck with its elements exchanged; none if there is no thickness to put in
     /// and no copy is asked for.
-    fn decks(&self, kind: WriteKind) -> Result<Vec<(&ReadFile, ExchangedDeck)>, PipelineError> {
+    fn decks(
+        &self,
+        kind: WriteKind,
+        new_states: &NewStates,
+    ) -> Result<Vec<(&ReadFile, ExchangedDeck)>, PipelineError> {
         if self.thickness.is_empty() && kind == WriteKind::Include {
             return Ok(Vec::new());
         }
@@ -256,6 +273,8 @@ impl MapWriter<'_> {
             None if of_part.contains_key(&id) => Exchange::Listed,
             None => Exchange::Other,
         };
+        let left_out = LeftOut::new(self.model, new_states);
+        let leaves_out: &dyn Fn(&ResultCards) -> bool = &|cards| left_out.leaves_out(cards);
         let mut decks: Vec<(&ReadFile, ExchangedDeck)> = Vec::new();
         let from = self.crash.file_source();
         for file in &self.model.files {
@@ -274,11 +293,42 @@ impl MapWriter<'_> {
                 included_as: file.included_as,
                 list_layout: decks.first().map(|(_, first)| first.layout),
                 exchange_of: &exchange_of,
+                leaves_out: (kind == WriteKind::Deck && self.replaces_states())
+                    .then_some(leaves_out),
                 states: &states,
             };
-            decks.push((file, exchange_thickness(&source, &rules, self.monitor)?));
+            let deck = exchange_thickness(&source, &rules, self.monitor)?;
+            left_out.check(file, &deck)?;
+            decks.push((file, deck));
         }
         Ok(decks)
+    }
+
+    /// The copy of the file that holds the elements.
+    fn copy(
+        &self,
+        mut holders: Vec<(&ReadFile, ExchangedDeck)>,
+        path: &Path,
+        n_old: usize,
+    ) -> Result<MapFile, PipelineError> {
+        holders.retain(|(_, deck)| deck.n_found > 0);
+        if holders.len() != 1 {
+            let names = holders
+                .iter()
+                .map(|(file, _)| file.path.display().to_string());
+            let names: Vec<String> = names.collect();
+            return Err(PipelineError::MapOutput(format!(
+                "the elements stand in {} files ({}); write an include instead (--write include)",
+                names.len(),
+                names.join(", ")
+            )));
+        }
+        let (file, deck) = holders.swap_remove(0);
+        self.check_copy(file, n_old)?;
+        Ok(MapFile {
+            replaces: Some(file.path.clone()),
+            ..new_file(path, deck.bytes)
+        })
     }
 
     /// Every element must be found in the deck, and those that are listed beside it must be known.
@@ -310,11 +360,11 @@ impl MapWriter<'_> {
 
     /// What an include does to a file must not be done to the states in its copy, nor to another part.
     fn check_copy(&self, file: &ReadFile, n_old: usize) -> Result<(), PipelineError> {
-        if n_old > 0 {
+        if n_old > 0 && !self.replaces_states() {
             return Err(PipelineError::MapOutput(format!(
                 "{n_old} of the elements have initial stresses or strains in the crash deck already, which \
-                 would count beside the mapped ones; take these cards out of it, or map the thickness alone \
-                 (--quantities thickness)"
+                 would count beside the mapped ones; leave them out of the copy (--replace-states yes), or map \
+                 the thickness alone (--quantities thickness)"
             )));
         }
         let refused = |why: String| {
@@ -367,28 +417,40 @@ impl MapWriter<'_> {
                 "$ {n_default} of them carry no values and have the default thickness\n"
             ));
         }
-        if n_old > 0 {
+        if n_old > 0 && self.replaces_states() {
             head.push_str(&format!(
-                "$ {n_old} of them have initial states in the crash deck already: take those cards out of it\n"
+                "$ {n_old} of them have initial states in the crash deck: copies of its files without these are\n\
+                 $ written too and take the place of the files\n"
+            ));
+        } else if n_old > 0 {
+            head.push_str(&format!(
+                "$ {n_old} of them have initial states in the crash deck already: take those cards out of it;\n\
+                 $ --replace-states yes writes copies of its files without them\n"
             ));
         }
         head.push_str(&format!("$ {}\n", build_id()));
         head
     }
 
-    /// Elements that get a card of stresses or strains and have one of that kind in the crash deck.
-    fn n_with_old_states(&self) -> Result<usize, Cancelled> {
-        let forming = &self.model.forming;
-        if forming.is_empty() {
-            return Ok(0);
-        }
-        let element_of = self.elements_by_id()?;
-        let state = |id: u64| Some(self.state_of(*element_of.get(&id)?));
-        let stressed = forming.stresses().map(|card| card.element_id);
-        let stressed = stressed.filter(|&id| state(id).is_some_and(|own| !own.states.is_empty()));
-        let strained = forming.strains().map(|card| card.element_id);
-        let strained = strained.filter(|&id| state(id).is_some_and(|own| !own.strains.is_empty()));
-        Ok(stressed.chain(strained).collect::<BTreeSet<u64>>().len())
+    /// True if old states of the elements are left out of copies of the crash deck's files.
+    fn replaces_states(&self) -> bool {
+        self.run.recipe.options.replace_states
+    }
+
+    /// Elements that get a card of stresses, and elements that get one of strains.
+    fn new_states(&self) -> Result<NewStates, Cancelled> {
+        let mut new = NewStates::default();
+        for_chunks(self.run.shells.len(), self.monitor, |range| {
+            for state in range.map(|element| self.state_of(element)) {
+                if !state.states.is_empty() {
+                    new.stressed.insert(state.id);
+                }
+                if !state.strains.is_empty() {
+                    new.strained.insert(state.id);
+                }
+            }
+        })?;
+        Ok(new)
     }
 
     fn include(
@@ -396,7 +458,7 @@ impl MapWriter<'_> {
         head: &str,
         decks: &[(&ReadFile, ExchangedDeck)],
         path: &Path,
-    ) -> Result<Vec<(PathBuf, Vec<u8>)>, PipelineError> {
+    ) -> Result<Vec<MapFile>, PipelineError> {
         let layout = decks.first().map_or(self.layout(), |(_, deck)| deck.layout);
         let mut states = keyword_line(layout).into_bytes();
         states.extend_from_slice(head.as_bytes());
@@ -411,9 +473,9 @@ impl MapWriter<'_> {
         }
         states.extend_from_slice(&self.states(layout, &IncludedAs::default())?);
         states.extend_from_slice(b"*END\n");
-        let mut files = vec![(path.to_path_buf(), states)];
+        let mut files = vec![new_file(path, states)];
         if !self.thickness.is_empty() {
-            files.push((beside, self.elements(head, decks)));
+            files.push(new_file(&beside, self.elements(head, decks)));
         }
         Ok(files)
     }
@@ -490,19 +552,17 @@ impl MapWriter<'_> {
         state
     }
 
-    fn carried(&self) -> Result<Carried, Cancelled> {
-        let mut carried = Carried::default();
+    /// Elements that are mapped but have plies, so that they are left as they are.
+    fn n_composite(&self) -> Result<usize, Cancelled> {
+        let mut n = 0;
         for_chunks(self.run.shells.len(), self.monitor, |range| {
-            for element in range {
-                let state = self.state_of(element);
-                let has_values = self.run.mapped.elements[element].status.has_values();
-                let is_composite = has_values && is_composite(self.run, self.model, element);
-                carried.n_composite += usize::from(is_composite);
-                carried.n_stress += usize::from(!state.states.is_empty());
-                carried.n_strain += usize::from(!state.strains.is_empty());
-            }
+            let is_left = |&element: &usize| {
+                self.run.mapped.elements[element].status.has_values()
+                    && is_composite(self.run, self.model, element)
+            };
+            n += range.filter(is_left).count();
         })?;
-        Ok(carried)
+        Ok(n)
     }
 
     /// The cards as they stand in a file of the deck.

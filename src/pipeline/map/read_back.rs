@@ -2,8 +2,9 @@
 
 use super::PipelineError;
 use super::compare::read_beside_nodes;
-use super::output::{MapFiles, MapWriter};
-use crate::formats::{self, Model, Replaced};
+use super::old_states::read_copies;
+use super::output::{MapFiles, MapWriter, WriteKind};
+use crate::formats::Model;
 use crate::geometry::chunks::CHUNK;
 use crate::monitor::Cancelled;
 
@@ -14,14 +15,18 @@ const LARGE_ROUNDING: f64 = 1e-8;
 
 impl MapWriter<'_> {
     /// Reads the states back and compares counts and values.
-    pub(super) fn read_back(&self, files: &MapFiles) -> Result<f64, PipelineError> {
+    pub(super) fn read_back(
+        &self,
+        files: &MapFiles,
+        kind: WriteKind,
+    ) -> Result<f64, PipelineError> {
         let failed = |what: String| {
-            let hint = match &files.replaces {
-                Some(_) => {
+            let hint = match kind {
+                WriteKind::Deck => {
                     "; if the deck turns the elements (*INCLUDE_TRANSFORM, *NODE_TRANSFORM), write an \
                      include (--write include)"
                 }
-                None => "",
+                WriteKind::Include | WriteKind::Part => "",
             };
             PipelineError::MapOutput(format!(
                 "the written state reads back differently: {what}{hint}"
@@ -31,47 +36,34 @@ impl MapWriter<'_> {
         let mut n_stress = 0;
         let mut n_strain = 0;
         let mut n_thickness = 0;
-        let on_disk = self.crash.file_source();
-        for (_, bytes) in &files.files {
-            let read = if let Some(path) = &files.replaces {
-                let others = &*on_disk;
-                let source = Replaced {
-                    others,
-                    path,
-                    bytes,
-                };
-                let options = &self.crash.settings.read;
-                formats::read_from(&source, &self.crash.path, options, self.monitor)?
-            } else {
-                read_beside_nodes(self.model, bytes, self.monitor)?
-            };
+        let copies = read_copies(self.crash, &files.files, self.monitor)?;
+        let copied = copies.iter().map(|read| (read, true));
+        let beside = files.files.iter().filter(|file| file.replaces.is_none());
+        let beside = beside.map(|file| read_beside_nodes(self.model, &file.bytes, self.monitor));
+        let beside: Vec<Model> = beside.collect::<Result<_, _>>()?;
+        for (read, is_copy) in copied.chain(beside.iter().map(|read| (read, false))) {
             n_stress += read.forming.n_stress();
             n_strain += read.forming.n_strain();
-            largest = largest.max(self.stress_error(&read)?);
-            largest = largest.max(self.strain_error(&read)?);
-            let (n, error) = self.thickness_error(&read)?;
-            n_thickness += n;
-            largest = largest.max(error);
+            largest = largest.max(self.stress_error(read)?);
+            largest = largest.max(self.strain_error(read)?);
+            // A copy without old states has the old thickness.
+            if kind == WriteKind::Deck || !is_copy {
+                let (n, error) = self.thickness_error(read)?;
+                n_thickness += n;
+                largest = largest.max(error);
+            }
         }
         // A copy keeps the cards of other elements.
-        let kept = |n: usize| if files.replaces.is_some() { n } else { 0 };
-        let forming = &self.model.forming;
-        for (what, found, wanted, kept) in [
-            (
-                "stress cards",
-                n_stress,
-                files.n_stress,
-                kept(forming.n_stress()),
-            ),
-            (
-                "strain cards",
-                n_strain,
-                files.n_strain,
-                kept(forming.n_strain()),
-            ),
-            ("thicknesses", n_thickness, files.n_thickness, 0),
+        let [other_stresses, other_strains] = match &copies {
+            Some(_) => files.new_states.n_other_cards(self.model),
+            None => [0; 2],
+        };
+        for (what, found, wanted) in [
+            ("stress cards", n_stress, files.n_stress + other_stresses),
+            ("strain cards", n_strain, files.n_strain + other_strains),
+            ("thicknesses", n_thickness, files.n_thickness),
         ] {
-            if !(wanted..=wanted + kept).contains(&found) {
+            if found != wanted {
                 return Err(failed(format!("{found} {what} instead of {wanted}")));
             }
         }
@@ -104,6 +96,10 @@ impl MapWriter<'_> {
                 continue;
             };
             let kept = self.state_of(element);
+            if kept.states.is_empty() {
+                // One of the crash deck's own, in a copy.
+                continue;
+            }
             let n_plane = card.n_plane.max(1);
             compare(
                 &mut values,

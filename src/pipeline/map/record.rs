@@ -7,7 +7,8 @@ use serde::Serialize;
 
 use super::compare::{ComparisonRecord, OtherResult, compare_with, largest_von_mises};
 use super::verdict::{CheckRecord, checks_of};
-use super::{MapFiles, MapRun, PlacedPart, ProbeRecord, covered_values};
+use super::{MapFiles, MapRun, PlacedPart, ProbeRecord, covered_values, mapped_by_solver};
+use crate::formats::diagnostic::{DiagnosticKind, Severity};
 use crate::geometry::chunks::for_chunks;
 use crate::mapping::{
     Distribution, Histogram, SourcePart, Status, distribution, histogram_distance,
@@ -17,7 +18,7 @@ use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::PairUnits;
 use crate::report::{DIRECTION, build_id};
 use crate::role::PerRole;
-use crate::text::{Lengths, parts_by_id};
+use crate::text::{Lengths, counted, parts_by_id};
 
 /// A mapping as it is kept and exchanged.
 #[derive(Debug, Clone, Serialize)]
@@ -232,7 +233,13 @@ pub fn map_record(
         read_back_error: files.map(|files| files.read_back_error),
         comparison: other.map(|other| compare_with(run, crash, other)),
         probes: Vec::new(),
-        warnings: warnings(run, stamped, files),
+        warnings: mapped_by_solver(crash)
+            .into_iter()
+            .chain(unread_line(crash))
+            .chain(stamped.iter().filter_map(|placed| unread_line(placed.part)))
+            .chain(without_states(run))
+            .chain(warnings(run, stamped, files))
+            .collect(),
         map_ms: run.map_ms,
         check_ms: run.check_ms,
     };
@@ -388,9 +395,9 @@ fn warnings(run: &MapRun, stamped: &[PlacedPart<'_>], files: Option<&MapFiles>) 
             ""
         };
         warnings.push(format!(
-            "history variables of {} elements are left out: they belong to {} in the stamped file{hint}, \
+            "history variables of {} are left out: they belong to {} in the stamped file{hint}, \
              the crash part has {}",
-            gap.n_elements,
+            counted(gap.n_elements, "element"),
             law(&gap.source),
             law(&gap.target)
         ));
@@ -401,7 +408,65 @@ fn warnings(run: &MapRun, stamped: &[PlacedPart<'_>], files: Option<&MapFiles>) 
             files.n_composite
         ));
     }
+    if let Some(files) = files {
+        warnings.extend(old_states_warning(run, files));
+    }
     warnings
+}
+
+/// Says what of the file of a part could not be read; `None` if all could.
+pub fn unread_line(part: &LoadedPart) -> Option<String> {
+    let found = &part.model.diagnostics;
+    let is_error = |kind: &DiagnosticKind| kind.severity() == Severity::Error;
+    let n: u64 = found
+        .counts()
+        .filter(|(kind, _)| is_error(kind))
+        .map(|(_, n)| n)
+        .sum();
+    let first = found.iter().find(|one| is_error(&one.kind))?;
+    Some(format!(
+        "{}: {} of what the file holds could not be read ({first}); shapematch info tells all",
+        part.file_name(),
+        counted(usize::try_from(n).unwrap_or(usize::MAX), "piece"),
+    ))
+}
+
+/// Says how many elements with other values have no stress card, though some have one.
+fn without_states(run: &MapRun) -> Option<String> {
+    let mapped = &run.mapped;
+    let states = mapped.states.as_ref()?;
+    let elements = mapped.elements.iter().enumerate();
+    let bare = elements.filter(|(element, report)| {
+        // Rings that are filled have a thickness and a plastic strain alone.
+        let is_mapped = report.status.has_values() && report.status != Status::Filled;
+        is_mapped && states.of(*element).is_empty()
+    });
+    let n = bare.count();
+    (n > 0).then(|| {
+        format!(
+            "no stresses and plastic strains on {} with other values: the stamped elements there have none",
+            counted(n, "element")
+        )
+    })
+}
+
+/// What is to be told of states that the crash deck has already.
+fn old_states_warning(run: &MapRun, files: &MapFiles) -> Option<String> {
+    let (n_old, n_kept) = (files.n_old_states, files.n_kept_states);
+    let replaces = run.recipe.options.replace_states;
+    if replaces && n_kept > 0 {
+        return Some(format!(
+            "{} keep the initial stresses or strains that the crash deck has, because none are mapped onto them",
+            counted(n_kept, "element")
+        ));
+    }
+    (!replaces && n_old > 0).then(|| {
+        format!(
+            "{} of mapped elements are in the crash deck already and would count beside the mapped ones; take \
+             them out of it, or let --replace-states yes write copies without them",
+            counted(n_old, "initial state")
+        )
+    })
 }
 
 /// One row for each crash element: id, part, status, distances, angle, coverage, confidence, source,

@@ -19,7 +19,7 @@ use crate::report::MatrixForm;
 use crate::report::html::{
     CheckReport, Figure, FilesReport, MapReport, NumberRow, QuantityReport, map_figure,
 };
-use crate::report::picture::{Paint, PictureMesh, picture};
+use crate::report::picture::{Paint, Picture, PictureMesh, picture};
 use crate::role::PerRole;
 use crate::text::{
     Lengths, factor_note, fixed, grouped, length, millis, percent, signed, signed_percent,
@@ -237,6 +237,16 @@ fn range_of(a: &DistributionRecord, b: &DistributionRecord) -> [f64; 2] {
 
 fn number_row(of: &DistributionRecord) -> NumberRow {
     [of.mean, of.min, of.p5, of.p50, of.p95, of.p99, of.max].map(length)
+}
+
+/// The look of a stamped file as a CSS background.
+fn swatch(file: usize) -> String {
+    let (color, is_hatched) = ColorScale::file_look(file);
+    let color = hex(color);
+    match is_hatched {
+        true => format!("repeating-linear-gradient(135deg,#262a30 0 2px,{color} 2px 6px)"),
+        false => color,
+    }
 }
 
 fn hex([r, g, b]: Rgb) -> String {
@@ -481,12 +491,20 @@ impl<'a> Painter<'a> {
         if self.run.sources.len() < 2 {
             return Ok(None);
         }
-        let scale = ColorScale::files();
-        let of_file = |file: usize| scale.color(ColorScale::file_value(file));
-        let png = self.draw_target(|element| {
+        let of_file = |file: usize| ColorScale::file_look(file).0;
+        let is_hatched = |file: usize| ColorScale::file_look(file).1;
+        let mut drawn = self.picture_of_target(|element| {
             let file = self.run.values_from(element);
             file.map_or(UNMATCHED, of_file)
         })?;
+        if (0..self.run.sources.len()).any(is_hatched) {
+            let mask = self.picture_of_target(|element| {
+                let file = self.run.values_from(element);
+                [if file.is_some_and(is_hatched) { 255 } else { 0 }; 3]
+            })?;
+            drawn = drawn.hatched(&mask);
+        }
+        let png = drawn.to_png();
         let shares = givers(self.run);
         let row =
             |name: String, n_elements: usize, area: f64| [name, grouped(n_elements), percent(area)];
@@ -495,7 +513,7 @@ impl<'a> Painter<'a> {
             .map(|(file, (stamped, share))| {
                 let name = file_name(&stamped.file);
                 let row = row(name, share.n_elements, share.area_share);
-                (hex(of_file(file)), row)
+                (swatch(file), row)
             })
             .collect();
         let n_given: usize = shares.iter().map(|share| share.n_elements).sum();
@@ -513,6 +531,10 @@ impl<'a> Painter<'a> {
     }
 
     fn draw_target(&self, color: impl Fn(usize) -> Rgb) -> Result<Vec<u8>, Cancelled> {
+        Ok(self.picture_of_target(color)?.to_png())
+    }
+
+    fn picture_of_target(&self, color: impl Fn(usize) -> Rgb) -> Result<Picture, Cancelled> {
         let still = Similarity::identity();
         let colors = self.target.colors(color, self.monitor)?;
         let mesh = PictureMesh {
@@ -520,7 +542,7 @@ impl<'a> Painter<'a> {
             world_from_mesh: &still,
             paint: Paint::PerVertex(&colors),
         };
-        Ok(picture(SIZE, &self.camera, None, &[mesh], self.monitor)?.to_png())
+        picture(SIZE, &self.camera, None, &[mesh], self.monitor)
     }
 
     fn draw_sources(&self, color: impl Fn(usize, usize) -> Rgb) -> Result<Vec<u8>, Cancelled> {

@@ -7,15 +7,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-pub use record::{CAR_COLUMNS, CarReason, CarRecord, CarRow, CarState};
+pub use record::{CAR_COLUMNS, CarCopy, CarReason, CarRecord, CarRow, CarState};
 
 use super::PipelineError;
 use super::error::unless_cancelled;
 use super::find_parts::{FoundParts, find_parts};
 use super::load::{LoadSettings, LoadedPart, load, prepare};
 use super::map::{
-    DefaultThickness, LEAST_AREA, MapOutput, MapRecipe, MapRecord, PlacedPart, WriteKind,
-    deck_comments, elements_path, map_parts, map_record, map_report, write_mapping,
+    DefaultThickness, LEAST_AREA, MapOutput, MapRecipe, MapRecord, NewStates, PlacedPart,
+    WriteKind, car_copies, deck_comments, elements_path, map_parts, map_record, map_report,
+    mapped_by_solver, unread_line, write_mapping,
 };
 use super::match_parts::MatchRecipe;
 use super::write_file::{write_file, write_file_unless_cancelled};
@@ -122,6 +123,13 @@ struct Made {
     thickness_ratio: Option<f64>,
     files: Vec<String>,
     page: Option<String>,
+    /// Elements with old states that are not replaced.
+    n_old_states: usize,
+    new_states: NewStates,
+    /// Cards of the crash deck that let the solver map onto these parts.
+    by_solver: Vec<String>,
+    /// What of each stamped file could not be read.
+    unread: Vec<Option<String>>,
 }
 
 /// Finds the crash parts of every stamped file, maps them and writes the results into `recipe.folder`: states
@@ -155,6 +163,7 @@ pub fn map_car(
     }
     let stems = stems(stamped);
     let mut included = Vec::new();
+    let mut new_states = NewStates::default();
     for members in groups(&claims) {
         monitor.check()?;
         let is_good = |at: &&usize| claims[*at].is_good;
@@ -169,7 +178,10 @@ pub fn map_car(
         };
         match unless_cancelled(group.map_and_write(recipe, monitor))? {
             Ok(made) => {
-                for (&at, is_displaced) in members.iter().zip(&made.is_displaced) {
+                let all = members.iter().zip(&made.is_displaced).zip(&made.unread);
+                for ((&at, is_displaced), unread) in all {
+                    let unread = unread.iter().cloned();
+                    rows[at].reasons.extend(unread.map(CarReason::Unread));
                     if *is_displaced {
                         rows[at].reasons.push(CarReason::Displaced);
                     } else {
@@ -177,6 +189,7 @@ pub fn map_car(
                     }
                 }
                 included.extend(made.files);
+                new_states.add(&made.new_states);
             }
             Err(error) => {
                 let why = CarReason::Failed(error.to_string());
@@ -185,12 +198,14 @@ pub fn map_car(
             }
         }
     }
+    let copies = copies(crash, stamped, (recipe, &new_states), monitor)?;
     let record = CarRecord {
         build: build_id(),
         schema: 1,
         direction: DIRECTION.to_owned(),
         crash: crash.path.display().to_string(),
         rows,
+        copies,
     };
     let master = master(&record, crash, &included);
     write_file(&recipe.folder.join(MASTER), master.as_bytes())?;
@@ -199,6 +214,29 @@ pub fn map_car(
         write_file(&recipe.folder.join(REPORT), page.as_bytes())?;
     }
     Ok(record)
+}
+
+/// Writes copies of the crash files that hold states which the new ones take the place of, if that was asked for.
+fn copies(
+    crash: &LoadedPart,
+    stamped: &[StampedFile],
+    (recipe, new_states): (&CarRecipe, &NewStates),
+    monitor: &Monitor,
+) -> Result<Vec<CarCopy>, PipelineError> {
+    let mut copies = Vec::new();
+    if !recipe.map.options.replace_states {
+        return Ok(copies);
+    }
+    let taken = car_files(stamped, &recipe.folder, true);
+    let beside = recipe.folder.join(MASTER);
+    for copy in car_copies(crash, new_states, &beside, &taken, monitor)? {
+        write_file_unless_cancelled(&copy.path, &copy.bytes, monitor)?;
+        copies.extend(copy.replaces.map(|replaces| CarCopy {
+            file: name_of(&copy.path),
+            replaces: replaces.display().to_string(),
+        }));
+    }
+    Ok(copies)
 }
 
 /// Puts what was found into the row.
@@ -235,6 +273,11 @@ fn take(row: &mut CarRow, made: &Made) {
     }
     if record.mapped_area < LEAST_AREA {
         row.reasons.push(CarReason::Area(record.mapped_area));
+    }
+    let by_solver = made.by_solver.iter().cloned();
+    row.reasons.extend(by_solver.map(CarReason::MappedBySolver));
+    if made.n_old_states > 0 {
+        row.reasons.push(CarReason::OldStates(made.n_old_states));
     }
     if let Some(ratio) = made.thickness_ratio {
         row.reasons.push(CarReason::Thickness(ratio));
@@ -316,12 +359,14 @@ impl Group<'_> {
             path: recipe.folder.join(format!("{}.k", self.stem)),
             is_large: recipe.is_large,
             default_thickness: recipe.default_thickness,
+            // Those of all parts together.
+            has_copies: false,
         };
         let comments = deck_comments(&crash, &placed);
         let files = write_mapping(&run, &crash, &output, &comments, monitor)?;
         let record = map_record(&run, &crash, &placed, Some(&files), None, monitor)?;
-        for (path, bytes) in &files.files {
-            write_file_unless_cancelled(path, bytes, monitor)?;
+        for file in &files.files {
+            write_file_unless_cancelled(&file.path, &file.bytes, monitor)?;
         }
         let page = recipe.has_pages.then(|| format!("{}.html", self.stem));
         if let Some(name) = &page {
@@ -335,7 +380,14 @@ impl Group<'_> {
             thickness: run.mean_thickness(),
             thickness_ratio: run.unusual_thickness(),
             is_displaced,
-            files: files.files.iter().map(|(path, _)| name_of(path)).collect(),
+            files: files.files.iter().map(|file| name_of(&file.path)).collect(),
+            n_old_states: match recipe.map.options.replace_states {
+                true => 0,
+                false => files.n_old_states,
+            },
+            new_states: files.new_states,
+            by_solver: mapped_by_solver(&crash),
+            unread: stamped.iter().map(unread_line).collect(),
             record,
             page,
         })
@@ -371,6 +423,9 @@ fn master(record: &CarRecord, crash: &LoadedPart, included: &[String]) -> String
         "$ Take the elements that the included files define out of the crash deck.\n$ {}\n",
         record.build
     ));
+    for copy in &record.copies {
+        text.push_str(&format!("$ {}\n", copy.text()));
+    }
     for name in included {
         text.push_str(&format!("*INCLUDE\n{name}\n"));
     }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::assess::Verdict;
 use crate::pipeline::load::tools_line;
-use crate::text::{length, parts_by_id, percent};
+use crate::text::{counted, length, parts_by_id, percent};
 
 /// How certain it is that a stamped part lies where it belongs, with all its values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -51,13 +51,19 @@ pub enum CarReason {
     Area(f64),
     /// The mapped thickness is so many times the section's.
     Thickness(f64),
+    /// So many elements have initial stresses or strains in the crash deck already, which are not replaced.
+    OldStates(usize),
+    /// A card of the crash deck lets the solver map onto the crash part too.
+    MappedBySolver(String),
+    /// Something in its file could not be read.
+    Unread(String),
 }
 
 impl CarReason {
     /// The reason as words for people.
     pub fn text(&self) -> String {
         match self {
-            Self::Failed(error) => error.clone(),
+            Self::Failed(text) | Self::MappedBySolver(text) | Self::Unread(text) => text.clone(),
             Self::NoPart => "no part of the crash model fits".to_owned(),
             Self::Pose => "the pose needs a look".to_owned(),
             Self::Rivals(ids) => format!("fits {} about as well", parts_by_id(ids)),
@@ -72,6 +78,11 @@ impl CarReason {
             Self::Thickness(ratio) => {
                 format!("the mapped thickness is {ratio:.2} times the section's")
             }
+            Self::OldStates(n) => format!(
+                "{} in the crash deck would count beside the mapped ones (--replace-states yes writes it \
+                 without them)",
+                counted(*n, "initial state")
+            ),
         }
     }
 }
@@ -181,4 +192,25 @@ pub struct CarRecord {
     pub crash: String,
     /// What became of each stamped part, in the order they were named.
     pub rows: Vec<CarRow>,
+    /// Copies of files of the crash deck without the states that were replaced.
+    pub copies: Vec<CarCopy>,
+}
+
+/// A copy of a file of the crash deck.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct CarCopy {
+    /// Its name in the folder.
+    pub file: String,
+    /// The file whose place it takes.
+    pub replaces: String,
+}
+
+impl CarCopy {
+    /// What it is for, in words.
+    pub fn text(&self) -> String {
+        let Self { file, replaces } = self;
+        format!(
+            "{file} takes the place of {replaces}: it is without the initial states that are replaced"
+        )
+    }
 }

@@ -7,7 +7,7 @@ use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::map::{
-    DefaultThickness, MapFiles, MapOutput, MapRun, OtherResult, PlacedPart, WriteKind,
+    DefaultThickness, MapFile, MapFiles, MapOutput, MapRun, OtherResult, PlacedPart, WriteKind,
     deck_comments, element_table, map_record, map_report, probe_records, write_mapping,
 };
 use crate::role::PerRole;
@@ -56,6 +56,7 @@ pub(super) fn deck_files(
         path: path.to_path_buf(),
         is_large: true,
         default_thickness: DefaultThickness::Section,
+        has_copies: true,
     };
     let comments = deck_comments(parts.crash, &placed(run, parts, input));
     write_mapping(run, parts.crash, &output, &comments, monitor)
@@ -78,13 +79,26 @@ pub(super) fn note(files: &MapFiles) -> String {
         counts.join(", ")
     };
     let error = files.read_back_error;
-    let replaced = files
-        .replaces
-        .as_ref()
-        .map_or_else(String::new, |replaced| {
-            format!("; takes the place of {}", replaced.display())
-        });
+    let first = files.files.first();
+    let replaced = first.and_then(|file| file.replaces.as_ref());
+    let replaced = replaced.map_or_else(String::new, |replaced| {
+        format!("; takes the place of {}", replaced.display())
+    });
     format!("{counts}, read back within {error:.1e}{replaced}")
+}
+
+/// What a file is that is written beside the first.
+pub(super) fn note_beside(file: &MapFile) -> String {
+    let path = file.path.display();
+    match &file.replaces {
+        Some(replaced) => format!(
+            "written beside: {path}, which takes the place of {} and is without the old states",
+            replaced.display()
+        ),
+        None => format!(
+            "written beside: {path}, whose elements take the place of those in the crash deck"
+        ),
+    }
 }
 
 /// The first of these files.
@@ -95,7 +109,7 @@ pub(super) fn deck(
 ) -> Result<Made, PipelineError> {
     let files = deck_files(kind, input, Path::new("mapped.k"), monitor)?;
     let note = note(&files);
-    let bytes = files.files.into_iter().next().map(|(_, bytes)| bytes);
+    let bytes = files.files.into_iter().next().map(|file| file.bytes);
     Ok(Made {
         bytes: bytes.ok_or(PipelineError::Lacks("a deck"))?,
         notes: vec![note],

@@ -393,13 +393,10 @@ impl Output {
             Self::Mapped(kind) => {
                 let made = mapped::deck_files(kind, input, path, monitor)?;
                 let mut notes = vec![mapped::note(&made)];
-                for (index, (path, bytes)) in made.files.iter().enumerate() {
-                    write_file_unless_cancelled(path, bytes, monitor)?;
+                for (index, file) in made.files.iter().enumerate() {
+                    write_file_unless_cancelled(&file.path, &file.bytes, monitor)?;
                     if index > 0 {
-                        notes.push(format!(
-                            "written beside: {}, whose elements take the place of those in the crash deck",
-                            path.display()
-                        ));
+                        notes.push(mapped::note_beside(file));
                     }
                 }
                 return Ok(notes);

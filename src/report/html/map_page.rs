@@ -50,7 +50,7 @@ pub struct CheckReport {
 pub struct FilesReport {
     /// The elements in the colours of the files.
     pub figure: Figure,
-    /// The colour of each file, and its name, elements, share of the area; what has no values last.
+    /// The CSS background of each file, and its name, elements, share of the area; what has no values last.
     pub rows: Vec<(String, [String; 3])>,
 }
 
@@ -266,12 +266,12 @@ impl MapReport {
     }
 }
 
-/// What the colours of a picture mean: names with their colours.
+/// What the colours of a picture mean: names with their CSS backgrounds.
 fn color_legend<'a>(rows: impl Iterator<Item = (&'a str, &'a str)>) -> Markup {
     html! {
         ul.legend {
-            @for (name, color) in rows {
-                li { i style={ "background:" (color) } {} (printable(name)) }
+            @for (name, background) in rows {
+                li { i style={ "background:" (background) } {} (printable(name)) }
             }
         }
     }

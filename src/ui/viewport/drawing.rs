@@ -339,26 +339,26 @@ impl Drawing<'_> {
         let wide = self.gaps.filter(|_| is_exaggerated);
         let cuts: Vec<_> = match wide {
             Some(gaps) => {
-                let color = |role, number| sections::color(self.look, role, number);
-                let crash = (Role::Crash, color(Role::Crash, 0), &gaps.crash, None);
+                let style = |role, number| sections::style(self.look, role, number);
+                let crash = (Role::Crash, style(Role::Crash, 0), &gaps.crash, None);
                 let stamped = gaps.stamped.iter().map(|file| {
-                    let rgb = color(Role::Stamped, file.number);
-                    (Role::Stamped, rgb, &file.cut, Some(&file.found))
+                    let style = style(Role::Stamped, file.number);
+                    (Role::Stamped, style, &file.cut, Some(&file.found))
                 });
                 std::iter::once(crash).chain(stamped).collect()
             }
             None => {
-                let cuts = self.cuts.colored(self.look).into_iter();
-                cuts.map(|(role, rgb, cut)| (role, rgb, cut, None))
+                let cuts = self.cuts.styled(self.look).into_iter();
+                cuts.map(|(role, style, cut)| (role, style, cut, None))
                     .collect()
             }
         };
-        for (role, rgb, cut, gaps) in cuts {
+        for (role, style, cut, gaps) in cuts {
             for (index, line) in cut.lines.iter().enumerate() {
                 let ways = gaps.and_then(|gaps| gaps.ways.get(index));
                 outlines.push(Outline {
                     role,
-                    rgb,
+                    style,
                     points: self.flat(line, ways),
                 });
             }
@@ -409,16 +409,23 @@ impl Drawing<'_> {
 
     fn lines(plot: &mut PlotUi<'_>, outlines: Vec<Outline>) {
         for outline in outlines {
-            let Outline { role, rgb, points } = outline;
+            let Outline {
+                role,
+                style,
+                points,
+            } = outline;
             let width = match role {
                 Role::Crash => BELOW,
                 Role::Stamped => ABOVE,
             };
             let line = Line::new(role.word(), PlotPoints::from(points))
-                .color(color(rgb))
+                .color(color(style.rgb))
                 .width(width)
                 .allow_hover(false);
-            plot.line(line);
+            plot.line(match style.is_dashed {
+                true => line.style(LineStyle::dashed_dense()),
+                false => line,
+            });
         }
     }
 
@@ -450,7 +457,7 @@ impl Drawing<'_> {
         let query = self.plane.point_at([pointer.x, pointer.y]);
         let nearest = self
             .cuts
-            .colored(self.look)
+            .styled(self.look)
             .into_iter()
             .filter_map(|(_, _, cut)| nearest_on_lines(&cut.lines, &query))
             .map(|found| found.point)

@@ -1,12 +1,12 @@
 //! Outlines laid flat, and how those of the two parts lie to each other.
 
-use crate::colormap::Rgb;
+use super::sections::LineStyle;
 use crate::role::Role;
 
 /// A line of an outline in the axes of the plane.
 pub(super) struct Outline {
     pub role: Role,
-    pub rgb: Rgb,
+    pub style: LineStyle,
     pub points: Vec<[f64; 2]>,
 }
 
@@ -74,7 +74,10 @@ mod tests {
     fn square(role: Role, left: f64) -> Outline {
         Outline {
             role,
-            rgb: [0; 3],
+            style: LineStyle {
+                rgb: [0; 3],
+                is_dashed: false,
+            },
             points: vec![[left, 0.0], [left + 3.0, 4.0]],
         }
     }

@@ -148,11 +148,11 @@ impl Picture {
         for layer in &self.layers {
             let number = layer.instance.number();
             if let Some(cut) = cuts.of(layer.role, number) {
-                let color = sections::color(look, layer.role, number);
+                let style = sections::style(look, layer.role, number);
                 overlay.polylines.extend(sections::outline(
                     look,
                     cut,
-                    color,
+                    style,
                     &layer.instance.offset,
                 ));
             }

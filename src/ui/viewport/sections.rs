@@ -53,24 +53,33 @@ impl Cuts {
         self.parts.stamped.iter().chain(self.further.values())
     }
 
-    /// All of them with their colours, the crash part's first so that it lies below.
-    pub fn colored(&self, look: &Look) -> Vec<(Role, Rgb, &Arc<Cut>)> {
+    /// All of them with their styles, the crash part's first so that it lies below.
+    pub fn styled(&self, look: &Look) -> Vec<(Role, LineStyle, &Arc<Cut>)> {
         let parts = self.parts.iter();
         let parts =
-            parts.filter_map(|(role, cut)| Some((role, color(look, role, 0), cut.as_ref()?)));
+            parts.filter_map(|(role, cut)| Some((role, style(look, role, 0), cut.as_ref()?)));
         let further = self.further.iter();
         let further =
-            further.map(|(&number, cut)| (Role::Stamped, color(look, Role::Stamped, number), cut));
+            further.map(|(&number, cut)| (Role::Stamped, style(look, Role::Stamped, number), cut));
         parts.chain(further).collect()
     }
 }
 
-/// The colour of an outline: that of the part, and of a further stamped file its own.
-pub(super) fn color(look: &Look, role: Role, number: usize) -> Rgb {
-    match number {
-        0 => *look.roles.get(role),
-        _ => ColorScale::files().color(ColorScale::file_value(number)),
-    }
+/// How an outline is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct LineStyle {
+    pub rgb: Rgb,
+    /// Its file shares the colour with another one, whose surface is not hatched.
+    pub is_dashed: bool,
+}
+
+/// The style of an outline: the colour of the part, and the look of a further stamped file.
+pub(super) fn style(look: &Look, role: Role, number: usize) -> LineStyle {
+    let (rgb, is_dashed) = match number {
+        0 => (*look.roles.get(role), false),
+        _ => ColorScale::file_look(number),
+    };
+    LineStyle { rgb, is_dashed }
 }
 
 /// The outline of one part in the plane.
@@ -155,6 +164,8 @@ impl Gaps {
 /// Widths of an outline and of the rim that keeps it visible on its own part.
 const LINE: f32 = 2.0;
 const RIM: f32 = 5.0;
+/// Length of the dashes of an outline, and of the gaps between them.
+const DASH: f32 = 6.0;
 
 /// Border and a breath of fill of the plane.
 pub(super) fn frame(look: &Look, corners: &[Point3; 4]) -> Overlay {
@@ -172,8 +183,8 @@ pub(super) fn frame(look: &Look, corners: &[Point3; 4]) -> Overlay {
     }
 }
 
-/// The outline of a part in its colour, with a rim.
-pub(super) fn outline(look: &Look, cut: &Cut, color: Rgb, offset: &Vector3) -> Vec<Polyline> {
+/// The outline of a part in its style, with a rim.
+pub(super) fn outline(look: &Look, cut: &Cut, style: LineStyle, offset: &Vector3) -> Vec<Polyline> {
     let lines = cut.lines.iter().map(|line| {
         let first = line.points.first().filter(|_| line.is_closed);
         let points = line.points.iter().chain(first);
@@ -181,10 +192,17 @@ pub(super) fn outline(look: &Look, cut: &Cut, color: Rgb, offset: &Vector3) -> V
     });
     let lines: Vec<_> = lines.collect();
     let rim = if look.is_dark { 0 } else { 255 };
-    let [r, g, b] = color;
-    let styles = [([rim, rim, rim, 235], RIM), ([r, g, b, 255], LINE)];
-    let drawn = styles.into_iter().flat_map(|(color, width)| {
-        let line = move |points: &Vec<Point3>| Polyline::new(points.clone(), color, width);
+    let [r, g, b] = style.rgb;
+    let dash = if style.is_dashed { DASH } else { 0.0 };
+    let styles = [
+        ([rim, rim, rim, 235], RIM, 0.0),
+        ([r, g, b, 255], LINE, dash),
+    ];
+    let drawn = styles.into_iter().flat_map(|(color, width, dash)| {
+        let line = move |points: &Vec<Point3>| Polyline {
+            dash,
+            ..Polyline::new(points.clone(), color, width)
+        };
         lines.iter().map(line).collect::<Vec<_>>()
     });
     drawn.collect()
