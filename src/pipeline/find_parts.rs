@@ -27,6 +27,8 @@ const AS_CLOSE: f64 = 1.25;
 const LEAST_SHARE: f64 = 0.3;
 /// A stamped part of which this share lies on no crash part may belong to several.
 const UNCOVERED: f64 = 0.15;
+/// A part that is covered by so much more is another than the first.
+const MORE_COVERED: f64 = 0.15;
 /// So much of a further part must lie there.
 const LIES_THERE: f64 = 0.5;
 /// Triangles of a part that are asked.
@@ -119,6 +121,10 @@ struct Task<'a> {
 #[derive(Debug, Clone, Copy)]
 struct Fit {
     verdict: Verdict,
+    /// Whether what is left to look at is the pose and not the shape.
+    is_one_shape: bool,
+    /// Share of the stamped part that lies on the crash part, times that of the crash part.
+    covered: f64,
     /// Holes of one part where the other is solid.
     n_holes_apart: usize,
     /// RMS of the distances.
@@ -126,8 +132,14 @@ struct Fit {
 }
 
 impl Fit {
+    /// Of two parts of the stamped part's shape the one that is covered more is right, however certain the poses
+    /// are: a reinforcement has the shape of the part under it, and so has that part with its reinforcement.
     /// Holes tell parts of one surface from each other, which distances do not.
     fn is_better_than(&self, other: &Self) -> bool {
+        let more = self.covered - other.covered;
+        if self.is_one_shape && other.is_one_shape && more.abs() > MORE_COVERED {
+            return more > 0.0;
+        }
         let key = |fit: &Self| (fit.verdict != Verdict::Good, fit.n_holes_apart);
         let order = key(self).cmp(&key(other));
         order.then(self.rmse.total_cmp(&other.rmse)).is_lt()
@@ -155,7 +167,8 @@ struct Search {
 impl Search {
     /// True if parts no more alike than this need not be tried.
     fn is_over(&self, likeness: f64) -> bool {
-        let best = self.best.as_ref().filter(|(_, found)| found.is_good());
+        let best = self.best.as_ref();
+        let best = best.filter(|(_, found)| found.fit().is_one_shape);
         best.is_some_and(|(of_best, _)| likeness < AS_ALIKE * of_best)
     }
 
@@ -188,30 +201,33 @@ impl Search {
 }
 
 impl Found {
-    fn is_good(&self) -> bool {
-        self.run.assessment.verdict == Verdict::Good
-    }
-
     fn fit(&self) -> Fit {
         let assessment = &self.run.assessment;
-        let rims = assessment.shape.as_ref().map(|shape| &shape.rims);
+        let shape = assessment.shape.as_ref();
+        let rims = shape.map(|shape| &shape.rims);
+        let [stamped, crash] = self.shares();
         Fit {
             verdict: assessment.verdict,
+            is_one_shape: assessment.verdict != Verdict::Poor
+                && shape.is_some_and(|shape| shape.reasons.is_empty()),
+            covered: stamped * crash,
             n_holes_apart: rims.map_or(0, |rims| rims.only_source + rims.only_target),
             rmse: assessment.coverage.rmse(),
         }
     }
 
+    /// Shares of the stamped and of the crash part that lie on the other.
+    fn shares(&self) -> [f64; 2] {
+        let coverage = &self.run.assessment.coverage;
+        [coverage.source_on_target, coverage.target_on_source].map(|side| side.overlap)
+    }
+
     /// Whether a match that nobody looked at says that the parts belong together: a small flat piece lies
     /// somewhere on many parts.
     fn is_convincing(&self) -> bool {
-        let assessment = &self.run.assessment;
-        let coverage = &assessment.coverage;
-        let shares =
-            [coverage.source_on_target, coverage.target_on_source].map(|side| side.overlap);
-        match assessment.verdict {
+        match self.run.assessment.verdict {
             Verdict::Good => true,
-            Verdict::Check => shares.iter().all(|share| *share >= LEAST_SHARE),
+            Verdict::Check => self.shares().iter().all(|share| *share >= LEAST_SHARE),
             Verdict::Poor => false,
         }
     }
@@ -352,6 +368,8 @@ mod tests {
     fn fit(verdict: Verdict, n_holes_apart: usize, rmse: f64) -> Fit {
         Fit {
             verdict,
+            is_one_shape: verdict == Verdict::Good,
+            covered: 1.0,
             n_holes_apart,
             rmse,
         }
@@ -372,5 +390,24 @@ mod tests {
         // The twin of the own part may be judged better, and is told then.
         let [closer, twin] = [fit(Verdict::Check, 0, 0.35), fit(Verdict::Good, 0, 1.28)];
         assert!(twin.is_better_than(&closer) && closer.is_as_good_as(&twin));
+    }
+
+    #[test]
+    fn the_part_under_a_reinforcement_is_better_than_the_reinforcement() {
+        let with = |verdict, covered, is_one_shape| Fit {
+            covered,
+            is_one_shape,
+            ..fit(verdict, 0, 0.1)
+        };
+        let ambiguous = with(Verdict::Check, 1.0, true);
+        let reinforcement = with(Verdict::Good, 0.61, true);
+        assert!(ambiguous.is_better_than(&reinforcement));
+        assert!(!reinforcement.is_better_than(&ambiguous));
+        // A part of another shape is none, however much lies on it.
+        let other = with(Verdict::Check, 1.0, false);
+        assert!(reinforcement.is_better_than(&other));
+        // Of parts covered alike the verdict decides.
+        let alike = with(Verdict::Good, 0.95, true);
+        assert!(alike.is_better_than(&ambiguous));
     }
 }
