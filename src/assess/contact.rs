@@ -36,6 +36,8 @@ pub(super) struct Contact {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Contacts {
     pub(super) list: Vec<Contact>,
+    /// Nodes of the smaller part for each one that was looked at.
+    pub(super) nodes_per_place: f64,
     /// Share of the smaller part's area that meets the other part.
     pub(super) share: f64,
     /// Middle of the places, and their mean distance from it.
@@ -156,7 +158,7 @@ impl<'a> ContactSearch<'a> {
         let list = self.closest.par_iter_mut().enumerate();
         let list = list.filter_map(|(k, closest)| meet(k * stride, closest));
         let areas = data.vertex_areas().iter().step_by(stride);
-        Contacts::of(list.collect(), areas.sum())
+        Contacts::of(list.collect(), areas.sum(), stride as f64)
     }
 }
 
@@ -171,8 +173,8 @@ impl Contacts {
         ContactSearch::new([source, target], pose.scale, reach, MAX_NODES).at(pose)
     }
 
-    /// Places where parts meet, of which the smaller has the area `total`.
-    fn of(list: Vec<Contact>, total: f64) -> Option<Self> {
+    /// Places where parts meet, of which the smaller has the area `total` at the nodes looked at.
+    fn of(list: Vec<Contact>, total: f64, nodes_per_place: f64) -> Option<Self> {
         let sum: f64 = list.iter().map(|c| c.weight).sum();
         let origin = list.first()?.point;
         let mean: Vector3 = list.iter().map(|c| (c.point - origin) * c.weight).sum();
@@ -181,6 +183,7 @@ impl Contacts {
         let radius = list.iter().map(arm).sum::<f64>() / sum;
         (radius > 0.0).then_some(Self {
             share: sum / total,
+            nodes_per_place,
             list,
             center,
             radius,

@@ -281,7 +281,7 @@ fn mirrored_statement(
 ) -> Option<ShapeStatement> {
     let check = &outcome.mirror_check;
     let pose = check.target_from_source.as_ref()?;
-    let speaks_for_it = check.score_ratio? < verdict::OPPOSITE_HAND;
+    let speaks_for_it = check.score_ratio? < verdict::NEAR_MIRROR;
     let noise = Distances::of(source, target, settings).noise;
     speaks_for_it.then(|| statements(source, target, pose, noise, settings).1)
 }

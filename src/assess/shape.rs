@@ -2,6 +2,7 @@
 //! rims that do not lie where they belong, are differences of the part.
 
 mod bends;
+mod local;
 
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,7 @@ use crate::registration::Surface;
 
 pub(super) use bends::Bends;
 use bends::N_BENDS;
+use local::{LocalDifference, local_difference};
 
 /// Unknowns of the fit: a rigid motion, an offset, and the bends.
 pub(super) const N: usize = 7 + N_BENDS;
@@ -46,7 +48,7 @@ const DIFFERENT: f64 = 6.0;
 /// Distances up to so many times the faceting, or this share of the tolerance, are unremarkable at most of
 /// the area.
 pub(super) const FACETING: f64 = 3.0;
-const UNREMARKABLE: f64 = 0.1;
+pub(super) const UNREMARKABLE: f64 = 0.1;
 const SAME_SHARE: f64 = 0.8;
 /// Patches that are searched for the place of the largest difference: 2 to this power.
 const PLACE_LEVELS: u32 = 5;
@@ -169,6 +171,17 @@ pub enum ShapeReason {
     /// The surfaces differ by more than the tolerance.
     Surface {
         /// At 95 % of the area.
+        by: f64,
+        /// What is accepted.
+        limit: f64,
+        /// Point of the largest difference, in the target's frame.
+        #[serde(with = "xyz")]
+        at: Point3,
+    },
+    /// The surfaces differ by more than the tolerance at one place: a bead, an emboss or a dent that only one
+    /// part has.
+    Local {
+        /// At most.
         by: f64,
         /// What is accepted.
         limit: f64,
@@ -330,6 +343,10 @@ impl ShapeStatement {
                 limit,
                 at,
             });
+        } else if let Some(LocalDifference { by, at }) =
+            local_difference(evidence, &fit.left, limit)
+        {
+            reasons.push(ShapeReason::Local { by, limit, at });
         }
         reasons.extend(self.rim_reasons(evidence, fit));
         // Where the parts differ anyway, nothing more is learned from it.

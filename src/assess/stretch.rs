@@ -10,7 +10,9 @@ use super::contact::{
     Contact, ContactSearch, Contacts, MAX_NODES, Six, quantile, robust_weights, solve,
 };
 use super::rims::{HolePair, RimKind, RimPair};
-use super::shape::{Bends, LEAST_PAIRED, N as N_SMOOTH, ShapeEvidence, ShapeTolerance, explaining};
+use super::shape::{
+    Bends, LEAST_PAIRED, N as N_SMOOTH, ShapeEvidence, ShapeTolerance, UNREMARKABLE, explaining,
+};
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 
 /// Unknowns of the fit: those of the statement about the shape, and the stretches.
@@ -21,6 +23,8 @@ const N_PLACED: usize = 9;
 const MOSTLY_OF_OUTLINES: f64 = 0.9;
 /// Surfaces that lie so many times as far apart stretched back speak against a stretch.
 const REFUTED: f64 = 1.5;
+/// Outlines that would lie so many times as far apart speak against a stretch too.
+const MUCH_FARTHER: f64 = 3.0;
 /// Times that the part is stretched back and compared again.
 const ROUNDS: usize = 3;
 /// Places of the smaller part that are looked at; three numbers need no more.
@@ -201,15 +205,18 @@ impl Frame {
         }
     }
 
-    /// Whether outlines that lie beside each other, or a hole, would lie farther off than they do, and farther
-    /// than rims may, if one part were longer by these shares.
+    /// Whether outlines that lie beside each other would lie farther off than they do, and much farther or farther
+    /// than rims may, if one part were longer by these shares, or a hole farther off than it does and may.
     fn misplaces_rims(&self, evidence: &ShapeEvidence<'_>, shares: &[f64; 3], limit: f64) -> bool {
         if evidence.rims.share() < LEAST_PAIRED {
             return false;
         }
         let stretches = [0, 1, 2].map(|k| shares[k] * self.0.half[k]);
         let fit = self.fit_outlines(evidence, Some(stretches));
-        fit.after > limit.max(fit.before) || self.misplaces_holes(evidence, &fit.found, limit)
+        // Those that lie on each other as they are need not lie far off to refute it.
+        let refuted = MUCH_FARTHER * fit.before.max(UNREMARKABLE * limit);
+        fit.after > limit.max(fit.before).min(refuted)
+            || self.misplaces_holes(evidence, &fit.found, limit)
     }
 
     /// Whether a hole would lie farther off than it does, and farther than rims may.

@@ -3,8 +3,11 @@
 //! Every limit is a length that the user sees and can set ([`super::ShapeTolerance`]), a ratio of scores,
 //! or a fraction of the smaller part. None depends on the size of the elements.
 
+use std::cmp::Ordering;
+
 use serde::{Deserialize, Serialize};
 
+use super::shape::UNREMARKABLE;
 use super::{
     Assessment, Clarity, FreeMotionKind, PoseKind, PoseStatement, Reason, ShapeReason,
     ShapeStatement,
@@ -30,7 +33,7 @@ const HOLES_THAT_HOLD: usize = 2;
 /// Scores of the opposite hand below this fraction of the result's fit clearly better.
 pub(super) const OPPOSITE_HAND: f64 = 0.8;
 /// Below this one they fit a little better.
-const NEAR_MIRROR: f64 = 0.98;
+pub(super) const NEAR_MIRROR: f64 = 0.98;
 
 /// Sets the verdict, its reasons, the most severe first, and the statement about the pose. `mirrored` is the
 /// statement about the shape of the opposite hand, `most_scaled` how far the scale of the pairs may be off.
@@ -88,27 +91,45 @@ fn pose_kind(reasons: &[Reason]) -> PoseKind {
     reasons.iter().map(of).max().unwrap_or(PoseKind::Certain)
 }
 
-/// The opposite hand, where both its score and its shape speak for it.
+/// The opposite hand, where its score speaks for it and its shape does not speak against it.
 fn hand(
     assessment: &Assessment,
     shape: &ShapeStatement,
     mirrored: Option<&ShapeStatement>,
 ) -> Option<Reason> {
     let score_ratio = assessment.mirror_check.score_ratio?;
+    if mirrored.is_some_and(|mirrored| fits_better(shape, mirrored)) {
+        return None;
+    }
     if score_ratio < OPPOSITE_HAND && mirrored.is_none_or(|mirrored| fits_better(mirrored, shape)) {
         return Some(Reason::OppositeHand { score_ratio });
     }
     (score_ratio < NEAR_MIRROR).then_some(Reason::NearMirrorImage { score_ratio })
 }
 
-/// Springback raises the scores of both hands, but not by the same: one shape fits better where less remains
-/// of it besides bends, or fewer differences other than a bend.
+/// Springback raises the scores of both hands, but not by the same. One shape fits better where less remains of
+/// it besides bends, if that is more than is accepted of the other; else where it has fewer differences other
+/// than a bend; else where less remains.
 fn fits_better(shape: &ShapeStatement, than: &ShapeStatement) -> bool {
+    let remains_less = |shape: &ShapeStatement, than: &ShapeStatement, share: f64| {
+        shape.remainder < OPPOSITE_HAND * than.remainder
+            && than.remainder > share * than.tolerance.remainder
+    };
     let n_differences = |shape: &ShapeStatement| {
         let is_bend = |reason: &ShapeReason| matches!(reason, ShapeReason::Bent { .. });
         shape.reasons.iter().filter(|r| !is_bend(r)).count()
     };
-    n_differences(shape) < n_differences(than) || shape.remainder < OPPOSITE_HAND * than.remainder
+    if remains_less(shape, than, 1.0) {
+        return true;
+    }
+    if remains_less(than, shape, 1.0) {
+        return false;
+    }
+    match n_differences(shape).cmp(&n_differences(than)) {
+        Ordering::Less => true,
+        Ordering::Equal => remains_less(shape, than, UNREMARKABLE),
+        Ordering::Greater => false,
+    }
 }
 
 fn unit(assessment: &Assessment) -> Option<Reason> {
@@ -191,6 +212,7 @@ fn ending(outcome: &MatchOutcome) -> Option<Reason> {
 mod tests {
     use super::*;
     use crate::assess::ShapeTolerance;
+    use crate::geometry::Point3;
 
     #[test]
     fn a_bend_does_not_speak_for_the_opposite_hand() {
@@ -215,5 +237,30 @@ mod tests {
             &shape(0.3, &[bend]),
             &shape(0.2, &[bend, hardly])
         ));
+    }
+
+    #[test]
+    fn a_hand_with_a_misplaced_hole_is_no_better_for_a_remainder_that_nobody_sees() {
+        let tolerance = ShapeTolerance {
+            remainder: 1.5,
+            springback: 5.0,
+        };
+        let shape = |remainder: f64, reasons: &[ShapeReason]| ShapeStatement {
+            remainder,
+            reasons: reasons.to_vec(),
+            ..ShapeStatement::nothing_met(tolerance)
+        };
+        let hole = ShapeReason::Hole {
+            by: 6.0,
+            limit: 1.5,
+            at: Point3::origin(),
+        };
+        let (held, misplaced) = (shape(0.07, &[]), shape(0.04, &[hole]));
+        assert!(fits_better(&held, &misplaced) && !fits_better(&misplaced, &held));
+        let unseen = shape(0.04, &[]);
+        assert!(!fits_better(&unseen, &held) && !fits_better(&held, &unseen));
+        // Surfaces that lie apart by more than is accepted outweigh a hole.
+        let apart = shape(3.0, &[]);
+        assert!(fits_better(&misplaced, &apart) && !fits_better(&apart, &misplaced));
     }
 }

@@ -177,6 +177,7 @@ impl ShapeReason {
         let [by, limit] = match self {
             Self::Bent { by, limit }
             | Self::Surface { by, limit, .. }
+            | Self::Local { by, limit, .. }
             | Self::Rims { by, limit, .. }
             | Self::Hole { by, limit, .. } => lengths.compared([*by, *limit]),
             Self::Stretched { by, .. } => [lengths.of(*by), String::new()],
@@ -194,6 +195,11 @@ impl ShapeReason {
             }
             Self::Surface { at, .. } => format!(
                 "the surfaces differ by {by}, more than {limit}, most at {}",
+                place(at)
+            ),
+            Self::Local { at, .. } => format!(
+                "only one part has a bead, an emboss or a dent: the surfaces differ there by {by}, more \
+                 than {limit}, at {}",
                 place(at)
             ),
             Self::Rims { at, .. } => format!(
