@@ -5,6 +5,7 @@ mod borders;
 pub mod camera;
 pub(crate) mod chunks;
 mod clean;
+mod cracks;
 mod landmarks;
 mod merged;
 mod mesh;

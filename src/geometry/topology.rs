@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::TriMesh;
 use super::chunks::{for_chunks, map_chunks};
+use super::cracks::without_cracks;
 use crate::monitor::{Cancelled, Monitor};
 
 /// One chain of border edges, vertex by vertex. A closed loop does not repeat its first vertex.
@@ -15,8 +16,8 @@ pub struct BorderLoop {
     pub closed: bool,
 }
 
-/// Edge adjacency of a mesh. Edges are undirected; an edge with one triangle is a border edge, with
-/// three or more a non-manifold one.
+/// Edge adjacency of a mesh. Edges are undirected; an edge with one triangle is a border edge unless it is a side
+/// of a crack between elements of different size, one with three or more a non-manifold one.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Topology {
     /// Both ends of each edge, the smaller vertex first, sorted.
@@ -25,6 +26,8 @@ pub struct Topology {
     pub edge_start: Vec<u32>,
     /// Triangles around the edges, in index order within one edge.
     pub edge_triangles: Vec<u32>,
+    /// The border edges, in rising order.
+    borders: Vec<u32>,
 }
 
 impl Topology {
@@ -54,11 +57,17 @@ impl Topology {
             }
         })?;
         edge_start.push(listed.len() as u32);
-        Ok(Self {
+        let mut topology = Self {
             edges,
             edge_start,
             edge_triangles: map_chunks(listed.len(), monitor, |side| listed[side].1)?,
-        })
+            borders: Vec::new(),
+        };
+        let n_edges = topology.edges.len() as u32;
+        let single = (0..n_edges).filter(|&e| topology.triangles_of(e as usize).len() == 1);
+        let single = single.collect();
+        topology.borders = without_cracks(mesh, &topology, single, monitor)?;
+        Ok(topology)
     }
 
     /// Triangles that share edge `edge`.
@@ -66,9 +75,10 @@ impl Topology {
         &self.edge_triangles[self.edge_start[edge] as usize..self.edge_start[edge + 1] as usize]
     }
 
-    /// Indices of the edges with exactly one triangle.
+    /// Indices of the border edges in rising order: those with exactly one triangle that are no side of a
+    /// crack.
     pub fn border_edges(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.edges.len()).filter(|&e| self.triangles_of(e).len() == 1)
+        self.borders.iter().map(|&edge| edge as usize)
     }
 
     /// Border edges chained to loops, each starting at its smallest vertex, ordered by it.

@@ -37,7 +37,7 @@ pub(super) struct EdgeClasses {
     pub(super) elements: Vec<usize>,
     /// Edges where the surface turns by more than 25°, or more than two triangles meet.
     pub(super) features: Vec<usize>,
-    /// Edges of one triangle only.
+    /// Edges at which the sheet ends.
     pub(super) borders: Vec<usize>,
 }
 
@@ -52,7 +52,8 @@ impl EdgeClasses {
             }
             classes.elements.push(edge);
             match around {
-                [_] => classes.borders.push(edge),
+                // Sides of a crack are edges between elements like any other.
+                [_] => {}
                 [a, b] => {
                     let (a, b) = (faces[*a as usize], faces[*b as usize]);
                     // Neighbours of opposite winding are as flat as those of equal winding.
@@ -66,6 +67,7 @@ impl EdgeClasses {
             }
         }
         classes.features = clear_creases(topology, &creases);
+        classes.borders = topology.border_edges().collect();
         classes
     }
 }
