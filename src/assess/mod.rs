@@ -9,6 +9,7 @@ mod pose;
 mod reason;
 mod rim;
 mod rims;
+mod sectors;
 mod settle;
 mod shape;
 mod skin;

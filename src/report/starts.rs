@@ -40,6 +40,7 @@ pub fn start_kind_words(kind: StartKind) -> String {
         StartKind::Given { index } => format!("given pose {}", index + 1),
         StartKind::Alike { index } => format!("place shaped alike, {}", index + 1),
         StartKind::Twin { axis } => format!("rotated 180° about axis {}", axis + 1),
+        StartKind::Turned { index } => format!("turned by a share of a turn, {}", index + 1),
     }
 }
 
@@ -70,6 +71,9 @@ pub fn start_kind_help(kind: StartKind) -> &'static str {
         StartKind::Twin { .. } => {
             "A rival: the best pose after half a turn about an axis of the part."
         }
+        StartKind::Turned { .. } => {
+            "A rival: the best pose turned about the axis of a part with like sectors, to where it fits too."
+        }
     }
 }
 
@@ -84,7 +88,9 @@ pub fn start_counts(starts: &[StartRecord]) -> String {
             StartKind::Wide { .. } => "by the wide search",
             StartKind::CurrentPose => "from the present pose",
             StartKind::Given { .. } => "given",
-            StartKind::Alike { .. } | StartKind::Twin { .. } => "rivals of the best",
+            StartKind::Alike { .. } | StartKind::Twin { .. } | StartKind::Turned { .. } => {
+                "rivals of the best"
+            }
         };
         match counts.iter_mut().find(|(known, _)| *known == kind) {
             Some((_, n)) => *n += 1,

@@ -57,4 +57,5 @@ mod tidy;
 mod tools;
 mod tuning;
 mod units;
+mod wheel;
 mod wide_search;

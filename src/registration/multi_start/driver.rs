@@ -4,12 +4,15 @@ use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 use super::candidate::{Candidate, DataChoice, Pairing};
-use super::rounds::{Depth, ranking, refine, resembles, run_coarse, run_every_start};
+use super::rounds::{
+    Depth, FEWEST_KEPT, drop_behind, ranking, refine, resembles, run_coarse, run_every_start,
+};
 use super::score::{PoseScorer, TwoSided};
 use super::sizes::{
     incompatible_settings, last_stage_swaps, natural_data_side, sizes_incompatible,
 };
 use super::starts::{Start, StartMethod, starts};
+use super::turns::turns;
 use super::variations::{mirror_images, twins};
 use super::wide_starts::WideStarts;
 use crate::geometry::Similarity;
@@ -271,6 +274,7 @@ impl<'a> MultiStart<'a> {
             return Ok(());
         }
         run_coarse(choice, &mut candidates, settings, monitor)?;
+        let mut n_distinct = N_DISTINCT;
         // A part that is nearly symmetric has a twin pose close by which no other start need reach.
         if let Some(&best) = ranking(&candidates).first() {
             let best = &candidates[best];
@@ -278,9 +282,20 @@ impl<'a> MultiStart<'a> {
             if let Some(wide) = &self.wide {
                 near.extend(wide.alike(&best.as_start(choice), monitor.monitor)?);
             }
+            let turned = turns(choice, best, monitor.monitor)?;
             let mut late = enter(&near);
             run_coarse(choice, &mut late, settings, monitor)?;
             candidates.extend(late);
+            // They score alike, so that none may leave for want of room.
+            for few in turned.chunks(FEWEST_KEPT) {
+                let mut turned = enter(few);
+                run_coarse(choice, &mut turned, settings, monitor)?;
+                candidates.extend(turned);
+            }
+            if !turned.is_empty() {
+                drop_behind(choice, &mut candidates, monitor);
+                n_distinct = n_distinct.max(ranking(&candidates).len());
+            }
         }
         if let Some(&best) = ranking(&candidates).first() {
             choice.expect_as(&candidates[best].run);
@@ -292,7 +307,7 @@ impl<'a> MultiStart<'a> {
                 Depth::Look,
                 choice,
                 &mut candidates,
-                N_DISTINCT,
+                n_distinct,
                 settings,
                 monitor,
             )?;
@@ -305,7 +320,7 @@ impl<'a> MultiStart<'a> {
                 Depth::Whole,
                 choice,
                 &mut candidates,
-                N_DISTINCT,
+                n_distinct,
                 settings,
                 monitor,
             )?;

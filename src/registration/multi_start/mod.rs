@@ -12,6 +12,7 @@ mod rounds;
 mod score;
 mod sizes;
 pub mod starts;
+mod turns;
 mod variations;
 mod wide_starts;
 

@@ -28,6 +28,9 @@ struct Round {
     on_grid: bool,
 }
 
+/// So many candidates go through the coarse stage whatever their scores are.
+pub(crate) const FEWEST_KEPT: usize = 4;
+
 /// The coarse stage of the usual starts, and of those that a preselection has left.
 const ROUNDS: [Round; 3] = [
     Round {
@@ -48,7 +51,7 @@ const ROUNDS: [Round; 3] = [
         n_iterations: 10,
         points: 1.0,
         keep: 0.5,
-        least: 4,
+        least: FEWEST_KEPT,
         on_grid: false,
     },
 ];
@@ -297,6 +300,26 @@ fn prune(
     for (rank, i) in order.into_iter().enumerate() {
         if rank >= cut.keep || (rank > 0 && candidates[i].run.score > limit) {
             candidates[i].end(dropped, choice, monitor);
+        }
+    }
+}
+
+/// Drops what scores worse than an alternative that is worth refining, however many go on.
+pub(crate) fn drop_behind(
+    choice: &DataChoice<'_>,
+    candidates: &mut [Candidate],
+    monitor: &MatchMonitor<'_>,
+) {
+    merge(choice, candidates, monitor);
+    let order = ranking(candidates);
+    let Some(&first) = order.first() else {
+        return;
+    };
+    let limit = WITHIN_SIGHT * candidates[first].run.score;
+    for i in order {
+        if candidates[i].run.score > limit {
+            let after = candidates[i].run.records.len();
+            candidates[i].end(StartOutcome::Dropped { after }, choice, monitor);
         }
     }
 }

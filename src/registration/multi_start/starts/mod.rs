@@ -124,6 +124,11 @@ pub enum StartKind {
         /// Number of the axis.
         axis: usize,
     },
+    /// A good pose of a part with like sectors, turned by a share of a full turn.
+    Turned {
+        /// Number of the angle, from the smallest on.
+        index: usize,
+    },
 }
 
 /// A first pose.
