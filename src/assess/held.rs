@@ -81,7 +81,8 @@ pub struct HeldPose {
 
 /// The pose of `outcome` or another one that the match tried, whichever has its borders and holes where
 /// they belong, if the surfaces leave the pose free to slide. Where they do not, holes choose between poses that
-/// score alike. `None` where there is nothing to choose, or where the parts have no rims beside each other. O(poses · border edges + nodes · log triangles).
+/// score alike. `None` where there is nothing to choose, or where the parts have no rims beside each other.
+/// O(poses · border edges + nodes · log triangles).
 pub fn held_by_rims(
     source: &Surface,
     target: &Surface,

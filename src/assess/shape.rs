@@ -2,9 +2,10 @@
 //! rims that do not lie where they belong, are differences of the part.
 
 mod bends;
+mod equations;
 mod local;
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
 use super::contact::{Contacts, Six, quantile, robust_weights, solve};
@@ -17,6 +18,7 @@ use crate::registration::Surface;
 
 pub(super) use bends::Bends;
 use bends::N_BENDS;
+use equations::{Equations, own_share};
 use local::{LocalDifference, local_difference};
 
 /// Unknowns of the fit: a rigid motion, an offset, and the bends.
@@ -569,48 +571,6 @@ impl Fit {
             is_separable,
         }
     }
-}
-
-/// Normal equations of the fit.
-struct Equations {
-    matrix: SMatrix<f64, N, N>,
-    right: Row,
-}
-
-impl Default for Equations {
-    fn default() -> Self {
-        Self {
-            matrix: SMatrix::zeros(),
-            right: Row::zeros(),
-        }
-    }
-}
-
-impl Equations {
-    fn add(&mut self, row: &Row, gap: f64, weight: f64) {
-        self.matrix.ger(weight, row, row, 1.0);
-        self.right += row * (weight * gap);
-    }
-
-    fn leave_out(&mut self, unknown: usize) {
-        self.matrix.row_mut(unknown).fill(0.0);
-        self.matrix.column_mut(unknown).fill(0.0);
-        self.right[unknown] = 0.0;
-    }
-}
-
-/// Share of the offset's column that lies outside the span of all others.
-fn own_share(matrix: &SMatrix<f64, N, N>) -> f64 {
-    let whole = matrix[(6, 6)];
-    if whole <= 0.0 {
-        return 0.0;
-    }
-    let mut others = *matrix;
-    let mut mixed: SVector<f64, N> = matrix.column(6).into();
-    others.row_mut(6).fill(0.0);
-    others.column_mut(6).fill(0.0);
-    mixed[6] = 0.0;
-    (whole - mixed.dot(&solve(&others, &mixed))) / whole
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
-use super::output::MapFile;
+use super::output::{MapFile, MapWriter};
 use super::{MapRun, PipelineError};
 use crate::formats::keyword::exchange::{
     Exchange, ExchangeRules, ExchangedDeck, ResultCards, exchange_thickness,
@@ -13,7 +13,8 @@ use crate::formats::keyword::exchange::{
 use crate::formats::keyword::source_file::SourceFile;
 use crate::formats::model::ReadFile;
 use crate::formats::{self, Model, Replaced};
-use crate::monitor::Monitor;
+use crate::geometry::chunks::for_chunks;
+use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::outputs::{Content, Target, overwritten_inputs};
 use crate::text::parts_by_id;
@@ -265,4 +266,22 @@ pub(super) fn read_copies(
     };
     let read = formats::read_from(&source, &crash.path, &crash.settings.read, monitor)?;
     Ok(Some(read))
+}
+
+impl MapWriter<'_> {
+    /// Elements that get a card of stresses, and elements that get one of strains.
+    pub(super) fn new_states(&self) -> Result<NewStates, Cancelled> {
+        let mut new = NewStates::default();
+        for_chunks(self.run.shells.len(), self.monitor, |range| {
+            for state in range.map(|element| self.state_of(element)) {
+                if !state.states.is_empty() {
+                    new.stressed.insert(state.id);
+                }
+                if !state.strains.is_empty() {
+                    new.strained.insert(state.id);
+                }
+            }
+        })?;
+        Ok(new)
+    }
 }

@@ -437,22 +437,6 @@ impl MapWriter<'_> {
         self.run.recipe.options.replace_states
     }
 
-    /// Elements that get a card of stresses, and elements that get one of strains.
-    fn new_states(&self) -> Result<NewStates, Cancelled> {
-        let mut new = NewStates::default();
-        for_chunks(self.run.shells.len(), self.monitor, |range| {
-            for state in range.map(|element| self.state_of(element)) {
-                if !state.states.is_empty() {
-                    new.stressed.insert(state.id);
-                }
-                if !state.strains.is_empty() {
-                    new.strained.insert(state.id);
-                }
-            }
-        })?;
-        Ok(new)
-    }
-
     fn include(
         &self,
         head: &str,
