@@ -9,8 +9,6 @@ use crate::text::{capital, length, sentence, whole_percent};
 
 /// Causes that are listed; more would be guessing.
 const MOST: usize = 3;
-/// The opposite hand is a likely cause below this ratio of scores.
-const OTHER_HAND: f64 = 0.98;
 /// Less overlap of the better covered part is little.
 const LITTLE_OVERLAP: f64 = 0.6;
 
@@ -161,9 +159,14 @@ impl AppState {
     }
 
     fn hand_cause(&self, assessment: &Assessment) -> Option<Cause> {
-        let ratio = assessment.mirror_check.score_ratio?;
+        let ratio = assessment.reasons.iter().find_map(|reason| match reason {
+            Reason::OppositeHand { score_ratio } | Reason::NearMirrorImage { score_ratio } => {
+                Some(*score_ratio)
+            }
+            _ => None,
+        })?;
         let hand = self.document.recipe.settings.hand;
-        (ratio < OTHER_HAND).then(|| Cause {
+        Some(Cause {
             title: "Opposite-hand part".to_owned(),
             evidence: format!("The other hand fits better: {}.", error_beside(ratio)),
             remedy: self.retry("Match the opposite hand", |recipe| {
