@@ -3,7 +3,7 @@
 
 use crate::assess::contact::Contact;
 use crate::assess::shape::ShapeEvidence;
-use crate::geometry::Point3;
+use crate::geometry::{Point3, Vector3};
 use crate::registration::Surface;
 
 /// Places beside each other that differ by as much are no noise from this number on.
@@ -14,6 +14,10 @@ const BESIDE: f64 = 1.7;
 /// outline may have been cut.
 const FROM_OUTLINE: f64 = 2.0;
 
+/// Elements cut narrow beads and the edges of wide ones short. A group that is not so many edges of the coarser mesh
+/// wide may be that.
+const LEAST_WIDTH: f64 = 2.5;
+
 /// A group of places in the middle of the sheet where the surfaces lie apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LocalDifference {
@@ -23,8 +27,8 @@ pub(super) struct LocalDifference {
     pub(super) at: Point3,
 }
 
-/// The largest group of neighbouring places, away from the outlines of both parts, at which `left`, what
-/// neither bends nor facets explain, exceeds `limit` to one side. O(k² + k · outlines) for k places beyond
+/// The largest group of neighbouring places, away from the outlines of both parts and wider than the elements cut
+/// short, at which `left`, what neither bends nor facets explain, exceeds `limit` to one side. O(k² + k · outlines) for k places beyond
 /// the limit.
 pub(super) fn local_difference(
     evidence: &ShapeEvidence<'_>,
@@ -51,10 +55,24 @@ pub(super) fn local_difference(
             outlines.iter().all(is_far)
         })
     };
+    let edges = [
+        evidence.source.measures().mean_edge_length * evidence.pose.scale,
+        evidence.target.measures().mean_edge_length,
+    ];
+    let narrow = LEAST_WIDTH * edges[0].max(edges[1]);
+    let is_wide = |group: &[usize]| {
+        let places = || group.iter().map(|&place| beyond[place].0);
+        let area: f64 = places().map(|contact| size(contact).powi(2)).sum();
+        let sum: Vector3 = places().map(|contact| contact.point.coords).sum();
+        let middle = Point3::from(sum / group.len() as f64);
+        let arm = |contact: &Contact| (contact.point - middle).norm();
+        let length = 2.0 * places().map(arm).fold(0.0, f64::max);
+        area >= narrow * length
+    };
     let groups = groups(&beyond, size);
     let inside = groups
         .into_iter()
-        .filter(|group| group.len() >= LEAST_PLACES && is_inside(group));
+        .filter(|group| group.len() >= LEAST_PLACES && is_wide(group) && is_inside(group));
     let largest_of = |group: Vec<usize>| {
         let places = group.into_iter().map(|place| beyond[place]);
         places.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
