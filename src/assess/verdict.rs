@@ -214,17 +214,20 @@ mod tests {
     use crate::assess::ShapeTolerance;
     use crate::geometry::Point3;
 
-    #[test]
-    fn a_bend_does_not_speak_for_the_opposite_hand() {
+    fn shape(remainder: f64, reasons: &[ShapeReason]) -> ShapeStatement {
         let tolerance = ShapeTolerance {
             remainder: 1.0,
             springback: 5.0,
         };
-        let shape = |remainder: f64, reasons: &[ShapeReason]| ShapeStatement {
+        ShapeStatement {
             remainder,
             reasons: reasons.to_vec(),
             ..ShapeStatement::nothing_met(tolerance)
-        };
+        }
+    }
+
+    #[test]
+    fn a_bend_does_not_speak_for_the_opposite_hand() {
         let bend = ShapeReason::Bent {
             by: 6.0,
             limit: 5.0,
@@ -241,15 +244,6 @@ mod tests {
 
     #[test]
     fn a_hand_with_a_misplaced_hole_is_no_better_for_a_remainder_that_nobody_sees() {
-        let tolerance = ShapeTolerance {
-            remainder: 1.5,
-            springback: 5.0,
-        };
-        let shape = |remainder: f64, reasons: &[ShapeReason]| ShapeStatement {
-            remainder,
-            reasons: reasons.to_vec(),
-            ..ShapeStatement::nothing_met(tolerance)
-        };
         let hole = ShapeReason::Hole {
             by: 6.0,
             limit: 1.5,
