@@ -60,9 +60,9 @@ pub(super) fn diagnostics_line(part: &LoadedPart) -> Option<(NoticeLevel, String
 pub(super) fn reduce_line(measured: &MeasuredLevel) -> String {
     let report = &measured.level.report;
     let mut line = format!(
-        "{} → {} triangles of at most {}",
+        "{} → {} of at most {}",
         grouped(report.triangles_before),
-        grouped(report.triangles_after),
+        counted(report.triangles_after, "triangle"),
         grouped(measured.max_triangles),
     );
     if report.triangles_after > measured.max_triangles {

@@ -1,7 +1,7 @@
 //! What `shapematch map` prints.
 
 use crate::pipeline::map::{CheckRecord, ComparisonRecord, DifferenceRecord, MapFiles, MapRecord};
-use crate::text::{grouped, length, millis};
+use crate::text::{counted, grouped, length, millis};
 
 /// The result in a few lines.
 pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>) -> String {
@@ -12,9 +12,9 @@ pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>) -> String {
     line(
         "Mapped",
         format!(
-            "{:.1} % of the area of {} elements in {}",
+            "{:.1} % of the area of {} in {}",
             100.0 * record.mapped_area,
-            grouped(record.n_elements),
+            counted(record.n_elements, "element"),
             millis(record.map_ms)
         ),
     );
@@ -143,9 +143,9 @@ fn wrapped(text: &str) -> Vec<String> {
 /// The lines about another result.
 fn compared(other: &ComparisonRecord) -> Vec<(&'static str, String)> {
     let counts = format!(
-        "with {}: {} elements in both, {} here alone, {} there alone",
+        "with {}: {} in both, {} here alone, {} there alone",
         other.files.join(", "),
-        grouped(other.n_both),
+        counted(other.n_both, "element"),
         grouped(other.n_only_here),
         grouped(other.n_only_other)
     );

@@ -11,7 +11,7 @@ use crate::pipeline::outputs::deck::{format_of, mesh_bytes};
 use crate::pipeline::outputs::{Content, Target};
 use crate::pipeline::reduce::{Deviation, Level, Levels};
 use crate::simplify::{SimplifySettings, Speed, StopReason};
-use crate::text::{grouped, length, millis};
+use crate::text::{counted, grouped, length, millis};
 
 /// The figures of a reduction.
 #[derive(Debug, Serialize)]
@@ -122,9 +122,9 @@ fn record(
 
 fn describe(record: &ReduceRecord) -> String {
     let mut text = format!(
-        "{} of {} triangles (maximum {}) in {}\n",
+        "{} of {} (maximum {}) in {}\n",
         grouped(record.triangles_after),
-        grouped(record.triangles_before),
+        counted(record.triangles_before, "triangle"),
         grouped(record.max_triangles),
         millis(record.time_ms),
     );

@@ -18,6 +18,7 @@ use crate::mapping::Status;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
 use crate::report::build_id;
+use crate::text::counted;
 
 /// Where strains of the two surfaces stand.
 const SURFACES: [f64; 2] = [-1.0, 1.0];
@@ -134,8 +135,9 @@ pub fn write_mapping(
     let n_composite = writer.n_composite()?;
     if output.kind == WriteKind::Part && n_composite > 0 {
         return Err(PipelineError::MapOutput(format!(
-            "{n_composite} elements have plies of their own (_COMPOSITE), which a file of all elements \
-             would lose; write an include or a deck instead (--write)"
+            "a file of all elements would lose the plies of {} (_COMPOSITE); write an include or a \
+             deck instead (--write)",
+            counted(n_composite, "element")
         )));
     }
     let new_states = writer.new_states()?;
@@ -342,17 +344,19 @@ impl MapWriter<'_> {
         if n_found < n_wanted {
             let missing = n_wanted - n_found;
             return Err(PipelineError::MapOutput(format!(
-                "{missing} of {n_wanted} elements are not found in {}, because their cards hold parameters \
-                 or cannot be read; write the states alone (--quantities without thickness)",
+                "{missing} of {} not found in {}, because the cards hold parameters or cannot be read; \
+                 write the states alone (--quantities without thickness)",
+                counted(n_wanted, "element"),
                 self.crash.path.display()
             )));
         }
         let n_unlisted: usize = decks.iter().map(|(_, deck)| deck.n_unlisted).sum();
         if kind != WriteKind::Deck && n_unlisted > 0 {
             return Err(PipelineError::MapOutput(format!(
-                "{n_unlisted} elements cannot be listed outside of the file they stand in, because \
-                 *INCLUDE_TRANSFORM changes the numbers of their further cards or gives them more than ten \
-                 digits; write a copy of that file (--write deck)"
+                "{} cannot be listed outside of the file that holds the cards, because *INCLUDE_TRANSFORM \
+                 changes numbers of further cards or gives them more than ten digits; write a copy of that \
+                 file (--write deck)",
+                counted(n_unlisted, "element")
             )));
         }
         Ok(())

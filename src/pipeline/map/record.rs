@@ -358,12 +358,12 @@ fn warnings(run: &MapRun, stamped: &[PlacedPart<'_>], files: Option<&MapFiles>) 
     for (status, what) in [
         (
             Status::TwoLayers,
-            "lie near two sheets that their normals do not tell apart",
+            "near two sheets that their normals do not tell apart",
         ),
-        (Status::Conflict, "lie on two stamped parts"),
+        (Status::Conflict, "on two stamped parts"),
     ] {
         if count(status) > 0 {
-            warnings.push(format!("{} elements {what}", count(status)));
+            warnings.push(format!("{} {what}", counted(count(status), "element")));
         }
     }
     if mapped.senses.contains(&None) {
@@ -375,8 +375,8 @@ fn warnings(run: &MapRun, stamped: &[PlacedPart<'_>], files: Option<&MapFiles>) 
     }
     if mapped.n_distant > 0 {
         warnings.push(format!(
-            "{} elements lie farther from the stamped part than half the largest distance",
-            mapped.n_distant
+            "{} farther from the stamped part than half the largest distance",
+            counted(mapped.n_distant, "element")
         ));
     }
     if let Some(ratio) = run.unusual_thickness() {
@@ -404,8 +404,8 @@ fn warnings(run: &MapRun, stamped: &[PlacedPart<'_>], files: Option<&MapFiles>) 
     }
     if let Some(files) = files.filter(|files| files.n_composite > 0) {
         warnings.push(format!(
-            "{} elements have plies of their own and keep them: nothing was written for them",
-            files.n_composite
+            "nothing is written for {} with plies in the element's card (_COMPOSITE)",
+            counted(files.n_composite, "element")
         ));
     }
     if let Some(files) = files {

@@ -12,6 +12,7 @@ use crate::app::{
 };
 use crate::jobs::JobKey;
 use crate::role::Role;
+use crate::text::counted;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, grouped, icon_button, role_mark, secondary, square, tight,
@@ -150,7 +151,7 @@ fn badge_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 fn detail(role: Role, part: &Part, state: &AppState) -> String {
     let report = &part.loaded.report;
-    let mut text = format!("{} triangles", grouped(report.n_triangles));
+    let mut text = counted(report.n_triangles, "triangle");
     match state.units_of(role) {
         Some(known) => text += &format!(" · {}", known.units.label()),
         None => text += " · unit unknown",

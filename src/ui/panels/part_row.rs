@@ -8,7 +8,7 @@ use super::section::elided;
 use crate::app::{AppState, Command, LikeWhat, Part, PartCommand, PartRef, ViewCommand};
 use crate::formats::PartSummary;
 use crate::role::Role;
-use crate::text::whole_percent;
+use crate::text::{counted, whole_percent};
 use crate::ui::theme::{Palette, ROW, color};
 use crate::ui::widgets::{eye, focus_ring, grouped, paint_role_mark};
 
@@ -185,11 +185,11 @@ fn eye_command(row: &Row<'_>, is_alone: bool) -> PartCommand {
 fn hover_text(row: &Row<'_>, state: &AppState) -> String {
     let summary = row.summary;
     let mut text = format!(
-        "{}\n{} shells, {} solids, {} triangles",
+        "{}\n{}, {}, {}",
         row.name(),
-        grouped(summary.n_shells),
-        grouped(summary.n_solids),
-        grouped(summary.n_triangles)
+        counted(summary.n_shells, "shell"),
+        counted(summary.n_solids, "solid"),
+        counted(summary.n_triangles, "triangle")
     );
     if let Some(thickness) = summary.thickness {
         text += &format!(", thickness {}", state.lengths().of(thickness));

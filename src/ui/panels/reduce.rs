@@ -284,7 +284,7 @@ fn achieved_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState) {
         .filter(|d| d.loops_after != d.loops_before)
     {
         let lost = d.loops_before.abs_diff(d.loops_after);
-        lines.push(format!("⚠ {lost} holes closed"));
+        lines.push(format!("⚠ {} closed", counted(lost, "hole")));
     }
     lines.extend(flipped_text(level.level.n_flipped));
     for text in lines.into_iter().filter(|text| !text.is_empty()) {
@@ -302,14 +302,14 @@ fn achieved_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState) {
 fn achieved(part: &Part) -> String {
     match &part.level {
         Some(level) => format!(
-            "{} triangles (max {})",
-            grouped(level.level.mesh.n_triangles()),
+            "{} (max {})",
+            counted(level.level.mesh.n_triangles(), "triangle"),
             grouped(level.max_triangles)
         ),
         None if part.wanted_level.is_some() => "⚠ out of date: reduce again".to_owned(),
         None => format!(
-            "{} triangles, full",
-            grouped(part.loaded.report.n_triangles)
+            "{}, full",
+            counted(part.loaded.report.n_triangles, "triangle")
         ),
     }
 }

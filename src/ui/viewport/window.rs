@@ -7,13 +7,13 @@ use egui::{EventFilter, Rect, Response};
 use super::meshes::ShownMesh;
 use super::motion::SmoothCamera;
 use super::navigation::{Navigator, pos_of};
-use super::overlay;
 use super::pointing::Pointing;
 use super::snapshot::LastFrame;
 use super::tools::Tools;
 use crate::app::{AppState, Command, StampedPose, ViewCommand};
 use crate::geometry::{Camera, Rotation};
 use crate::role::{PerRole, Role};
+use crate::text::counted;
 
 /// A pair smaller than this share of the picture's height is fitted again when its pose changes.
 const SMALL: f64 = 0.4;
@@ -162,7 +162,7 @@ pub(super) fn summary(state: &AppState, role: Role) -> String {
     let Some(part) = state.document.part(role) else {
         return format!("{name}, nothing loaded");
     };
-    let n = overlay::grouped(part.reduced_mesh().n_triangles());
+    let triangles = counted(part.reduced_mesh().n_triangles(), "triangle");
     let with = match role {
         Role::Crash if state.view.is_moved_over => ", with the stamped part",
         _ => "",
@@ -174,7 +174,7 @@ pub(super) fn summary(state: &AppState, role: Role) -> String {
     let view = camera.standard_view().map_or_else(String::new, |view| {
         format!(", {} view", view.label().to_lowercase())
     });
-    format!("{name}, {n} triangles{with}{view}")
+    format!("{name}, {triangles}{with}{view}")
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use crate::app::{AppState, Command, Preview, ViewCommand, short_number};
 use crate::geometry::camera::StandardView;
 use crate::report::start_kind_words;
 use crate::role::Role;
-use crate::text::whole_percent;
+use crate::text::{counted, whole_percent};
 
 /// Width and height of the row of camera buttons, and the least width of the names beside it.
 const BUTTONS: Vec2 = vec2(212.0, 24.0);
@@ -212,14 +212,14 @@ fn facts(over: &Overlay<'_>, role: Role) -> String {
     let Some(part) = state.document.part(role) else {
         return "nothing loaded".to_owned();
     };
-    let full = grouped(part.loaded.mesh.n_triangles());
+    let full = counted(part.loaded.mesh.n_triangles(), "triangle");
     let is_reduced = state.shows_reduced(role);
     let triangles = match part.level.as_ref().filter(|_| is_reduced) {
         Some(level) => {
             let reduced = grouped(level.level.mesh.n_triangles());
-            format!("{reduced} of {full} triangles")
+            format!("{reduced} of {full}")
         }
-        None => format!("{full} triangles"),
+        None => full,
     };
     let mut facts = triangles;
     let n_parts = part.facts.used.len();

@@ -6,7 +6,7 @@ use super::bar;
 use crate::app::{Command, InspectCommand, MapPicture};
 use crate::colormap::ColorScale;
 use crate::role::Role;
-use crate::text::grouped;
+use crate::text::{counted, grouped};
 use crate::ui::theme::color;
 use crate::ui::viewport::overlay::Overlay;
 use crate::ui::widgets::percent;
@@ -70,9 +70,9 @@ pub(super) fn row(ui: &mut Ui, over: &Overlay<'_>, class: &Class<'_>, commands: 
     let id = ui.make_persistent_id(("class", class.name, over.role().word()));
     let response = ui.interact(place.response.rect, id, Sense::click());
     let name = format!(
-        "{}: {} elements, {}",
+        "{}: {}, {}",
         class.name,
-        grouped(n),
+        counted(n, "element"),
         percent(share)
     );
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
