@@ -5,7 +5,6 @@ use rayon::prelude::*;
 
 use super::contact::{ContactSearch, MAX_NODES};
 use super::rims::{RimComparison, RimKind, Rims};
-use super::sectors::held_by_holes;
 use super::settle::{Least, Settling};
 use super::slide::slid;
 use super::sliding::{FreeMotion, FreeMotionKind, weak_motion};
@@ -67,7 +66,7 @@ const AS_MUCH: f64 = 0.9;
 /// Shares of the part that meet the other are the same up to this much.
 const SAME_MET: f64 = 0.005;
 /// A pose with fewer holes and no more of anything else counts as at least so many times as bad.
-pub(super) const FEWER_HOLES: f64 = 1.5;
+const FEWER_HOLES: f64 = 1.5;
 
 /// A pose that borders and holes hold, and what is left of the others.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,8 +79,8 @@ pub struct HeldPose {
 }
 
 /// The pose of `outcome` or another one that the match tried, whichever has its borders and holes where
-/// they belong, if the surfaces leave the pose free to slide. Where they do not, holes choose between poses that
-/// score alike. `None` where there is nothing to choose, or where the parts have no rims beside each other.
+/// they belong, if the surfaces leave the pose free to slide. `None` where they do not, or where the parts have no
+/// rims beside each other.
 /// O(poses · border edges + nodes · log triangles).
 pub fn held_by_rims(
     source: &Surface,
@@ -93,7 +92,7 @@ pub fn held_by_rims(
     let found = &outcome.target_from_source;
     let limit = free_limit(source, target, settings);
     let Some(free) = weak_motion(source, target, found, limit) else {
-        return held_by_holes(source, target, outcome, settings, monitor);
+        return Ok(None);
     };
     monitor.check()?;
     let pair = Pair::new(source, target, found.scale, settings);
@@ -233,7 +232,7 @@ fn ratio_by_rims(behind: f64) -> f64 {
 }
 
 /// What poses of two parts are compared by.
-pub(super) struct Pair<'a> {
+struct Pair<'a> {
     source: &'a Surface,
     target: &'a Surface,
     /// Rims of both, looked for within `near`.
@@ -245,14 +244,14 @@ pub(super) struct Pair<'a> {
     /// Distance of surfaces that springback explains.
     springback: f64,
     /// What may remain of the distance of rims.
-    pub(super) remainder: f64,
+    remainder: f64,
     distances: Distances,
 }
 
 /// A pose after its last step.
 #[derive(Clone, Copy)]
-pub(super) struct Settled {
-    pub(super) pose: Similarity,
+struct Settled {
+    pose: Similarity,
     /// Share of the smaller part's rims that lies where it belongs, less that of holes where the other
     /// part is solid.
     held: f64,
@@ -270,7 +269,7 @@ pub(super) struct Settled {
 }
 
 impl Settled {
-    pub(super) fn is_as_close_as(&self, other: &Self, pair: &Pair<'_>) -> bool {
+    fn is_as_close_as(&self, other: &Self, pair: &Pair<'_>) -> bool {
         let little = pair.distances.little_more(LITTLE_GAP, other.gap);
         let mut most = AS_CLOSE * other.gap + little;
         if self.met > MUCH_MORE * other.met {
@@ -287,16 +286,16 @@ impl Settled {
     /// Whether more holes have their counterpart than under the other pose, at no cost: as much of the part
     /// meets the other, and no more holes lie where it is solid. Outlines do not count against that:
     /// pieces of them lie beside each other by chance, as a hole hardly ever does.
-    pub(super) fn has_more_holes_than(&self, other: &Self, within: f64, same_met: f64) -> bool {
+    fn has_more_holes_than(&self, other: &Self, within: f64) -> bool {
         self.n_holes > other.n_holes
             && self.worst_hole <= within
             && self.missing <= other.missing + self.grain
-            && self.met >= other.met - same_met
+            && self.met >= other.met - SAME_MET
     }
 }
 
 impl<'a> Pair<'a> {
-    pub(super) fn new(
+    fn new(
         source: &'a Surface,
         target: &'a Surface,
         scale: f64,
@@ -320,7 +319,7 @@ impl<'a> Pair<'a> {
     }
 
     /// A pose after its last step, which moves it by at least so much.
-    pub(super) fn settle(&self, pose: &Similarity, least: Least) -> Option<Settled> {
+    fn settle(&self, pose: &Similarity, least: Least) -> Option<Settled> {
         let pose = self.roughly.settled(pose, least).unwrap_or(*pose);
         self.measured(self.finely.settled(&pose, least).unwrap_or(pose))
     }
@@ -334,7 +333,7 @@ impl<'a> Pair<'a> {
     /// The rival that the rims speak for; `None` where they speak for the result, which may win only if it
     /// lies close.
     fn choice(&self, result: &Settled, is_close: bool, rivals: &[Settled]) -> Option<Settled> {
-        let beats = |a: &Settled, b: &Settled| a.has_more_holes_than(b, self.remainder, SAME_MET);
+        let beats = |a: &Settled, b: &Settled| a.has_more_holes_than(b, self.remainder);
         let is_better = |other: &Settled| {
             // Another trim moves outlines, and no hole.
             let misplaces_holes = result.n_holes >= other.n_holes
@@ -381,7 +380,7 @@ impl<'a> Pair<'a> {
     }
 
     /// How well a pose fits.
-    pub(super) fn measured(&self, pose: Similarity) -> Option<Settled> {
+    fn measured(&self, pose: Similarity) -> Option<Settled> {
         let (met, gap) = self.surfaces_met(&pose)?;
         let rims = self.rims.at(&pose);
         let (held, grain) = self.rims_held(&rims);
@@ -507,7 +506,7 @@ impl<'a> Pair<'a> {
             };
             let grain = pose.grain.max(winner.grain);
             let by_rims = ratio_by_rims(apart(winner.held - pose.held, grain));
-            let by_holes = if winner.has_more_holes_than(&pose, self.remainder, SAME_MET) {
+            let by_holes = if winner.has_more_holes_than(&pose, self.remainder) {
                 FEWER_HOLES
             } else {
                 0.0

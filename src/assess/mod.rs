@@ -1,5 +1,6 @@
 //! Is the pose right? Measured anew on the full meshes, without anything the search believed.
 
+mod alternatives;
 mod ambiguity;
 mod contact;
 mod coverage;
@@ -9,7 +10,6 @@ mod pose;
 mod reason;
 mod rim;
 mod rims;
-mod sectors;
 mod settle;
 mod shape;
 mod skin;
@@ -21,6 +21,7 @@ mod uncertainty;
 mod verdict;
 mod words;
 
+pub use alternatives::chosen_by_shape;
 pub use ambiguity::{Ambiguity, Clarity, Twin, TwinAxis};
 pub use coverage::{Coverage, OneSided, coverage, overlap_limit, quick_overlap};
 pub use held::{HeldPose, hand_by_rims, held_by_rims};

@@ -264,6 +264,11 @@ pub(super) fn settle(
         outcome.target_from_source = pose;
     }
     monitor.check()?;
+    if let Some(chosen) = assess::chosen_by_shape(source, target, outcome, check, monitor)? {
+        outcome.target_from_source = chosen.target_from_source;
+        outcome.alternatives = chosen.alternatives;
+    }
+    monitor.check()?;
     if check.remove_offset
         && let Some(pose) =
             assess::without_offset(source, target, &outcome.target_from_source, check)

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use std::sync::Arc;
 
+use shapematch::assess::Clarity;
 use shapematch::formats::Model;
 use shapematch::geometry::{Point3, Rotation, Similarity, TriMesh, Vector3};
 use shapematch::monitor::Monitor;
@@ -87,6 +88,10 @@ fn the_hole_of_one_sector_tells_which_it_is() {
 #[test]
 fn springback_does_not_hide_the_sector() {
     let (crash, stamped) = (wheel(2, 0.0), wheel(3, 3.0));
-    let (_, off) = found(&crash, &stamped, [0.3, 1.1, 2.0]);
+    let (run, off) = found(&crash, &stamped, [0.3, 1.1, 2.0]);
     assert!(off < 4.0, "{off}");
+    // All other sectors score alike, and the hole alone tells them apart.
+    let other = &run.outcome.alternatives[0];
+    assert!(other.score_ratio >= 1.5, "{other:?}");
+    assert_eq!(run.assessment.ambiguity.clarity, Clarity::Clear);
 }
