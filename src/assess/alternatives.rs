@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::held::HeldPose;
 use super::settle::{Least, Settling};
 use super::shape::{ShapeReason, ShapeStatement};
-use super::{AssessSettings, Distances, contact, statements};
+use super::{AssessSettings, contact, statements};
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
@@ -34,14 +34,13 @@ pub fn chosen_by_shape(
         return Ok(None);
     }
     let found = &outcome.target_from_source;
-    let noise = Distances::of(source, target, settings).noise;
     let settling = Settling::new([source, target], found.scale, settings, contact::MAX_NODES);
-    let result = Candidate::at(*found, statements(source, target, found, noise, settings).1);
+    let result = Candidate::at(*found, statements(source, target, found, settings).shape);
     let candidate = |other: &&Alternative| {
         monitor.check()?;
         let pose = other.target_from_source;
         let pose = settling.settled(&pose, Least::Facets).unwrap_or(pose);
-        let shape = statements(source, target, &pose, noise, settings).1;
+        let shape = statements(source, target, &pose, settings).shape;
         Ok(Candidate::at(pose, shape))
     };
     let candidates: Result<Vec<Candidate>, Cancelled> = near.par_iter().map(candidate).collect();
@@ -87,6 +86,9 @@ struct Candidate {
     n_differences: usize,
     /// Of these the ones that nothing but another place explains.
     n_clear: usize,
+    /// Holes with a counterpart, and those where the other part is solid.
+    n_holes: usize,
+    n_alone: usize,
 }
 
 impl Candidate {
@@ -98,12 +100,17 @@ impl Candidate {
             pose,
             n_differences,
             n_clear,
+            n_holes: shape.rims.n_holes,
+            n_alone: shape.rims.only_source + shape.rims.only_target,
         }
     }
 
-    /// Whether the shapes surely differ less under this pose.
+    /// Whether the shapes surely differ less under this pose: there are fewer differences, or as many while holes
+    /// that lie alone under the other pose have their counterpart.
     fn beats(&self, other: &Self) -> bool {
+        let pairs_holes = self.n_holes > other.n_holes && self.n_alone < other.n_alone;
         self.n_differences < other.n_clear
+            || pairs_holes && self.n_differences <= other.n_differences
     }
 }
 

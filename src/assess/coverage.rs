@@ -60,11 +60,11 @@ impl Coverage {
 }
 
 /// Half the mean edge length of the coarser mesh, at least three times the faceting: beyond it a
-/// carried value would come from the wrong element.
-pub fn overlap_limit(source: &Surface, target: &Surface, allowance: f64) -> f64 {
+/// carried value would come from the wrong element. Target length units, for poses of this scale.
+pub fn overlap_limit(source: &Surface, target: &Surface, scale: f64, allowance: f64) -> f64 {
     let (a, b) = (source.measures(), target.measures());
-    let edge = a.mean_edge_length.max(b.mean_edge_length);
-    let chordal = a.chordal_error.max(b.chordal_error);
+    let edge = (scale * a.mean_edge_length).max(b.mean_edge_length);
+    let chordal = (scale * a.chordal_error).max(b.chordal_error);
     (0.5 * edge).max(3.0 * chordal) + allowance
 }
 

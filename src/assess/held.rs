@@ -90,7 +90,7 @@ pub fn held_by_rims(
     monitor: &Monitor,
 ) -> Result<Option<HeldPose>, Cancelled> {
     let found = &outcome.target_from_source;
-    let limit = free_limit(source, target, settings);
+    let limit = free_limit(source, target, found.scale, settings);
     let Some(free) = weak_motion(source, target, found, limit) else {
         return Ok(None);
     };
@@ -178,7 +178,7 @@ pub fn hand_by_rims(
     let Some(result) = pair.measured(outcome.target_from_source) else {
         return Ok(None);
     };
-    let limit = free_limit(source, target, settings);
+    let limit = free_limit(source, target, scale, settings);
     let free = weak_motion(source, target, &outcome.target_from_source, limit);
     let slid = free.map_or_else(Vec::new, |free| {
         slid(source, target, mirrored, &free, MOST_SLID)
@@ -210,9 +210,11 @@ pub fn hand_by_rims(
 }
 
 /// Distance within which surfaces leave a motion free: what overlaps, and what springback explains.
-fn free_limit(source: &Surface, target: &Surface, settings: &AssessSettings) -> f64 {
-    let springback = Distances::of(source, target, settings).tolerance.springback;
-    overlap_limit(source, target, settings.allowance).max(springback)
+fn free_limit(source: &Surface, target: &Surface, scale: f64, settings: &AssessSettings) -> f64 {
+    let springback = Distances::of(source, target, scale, settings)
+        .tolerance
+        .springback;
+    overlap_limit(source, target, scale, settings.allowance).max(springback)
 }
 
 /// A difference of shares without what says nothing: places along the rims differ, so that two poses of one
@@ -301,7 +303,7 @@ impl<'a> Pair<'a> {
         scale: f64,
         settings: &AssessSettings,
     ) -> Self {
-        let distances = Distances::of(source, target, settings);
+        let distances = Distances::of(source, target, scale, settings);
         let tolerance = distances.tolerance;
         let near = NEAR_SHARE * target.measures().diagonal;
         let pair = [source, target];

@@ -113,7 +113,7 @@ const NOTHING: f64 = 0.01;
 /// Sources up to so many times the area of the target count as the smaller part.
 const AS_LARGE: f64 = 1.02;
 
-/// What a pair is compared by, in target length units.
+/// What a pair is compared by under poses of one scale, in target length units.
 #[derive(Debug, Clone, Copy)]
 struct Distances {
     tolerance: ShapeTolerance,
@@ -126,16 +126,17 @@ struct Distances {
 }
 
 impl Distances {
-    fn of(source: &Surface, target: &Surface, settings: &AssessSettings) -> Self {
+    fn of(source: &Surface, target: &Surface, scale: f64, settings: &AssessSettings) -> Self {
         let tolerance = tolerance_of(target, settings);
         let diagonal = target.measures().diagonal;
         let reach = (REACH * diagonal).max(SPRINGBACK_REACH * tolerance.springback);
         let chordal = |surface: &Surface| surface.measures().chordal_error;
+        let facets = (scale * chordal(source)).max(chordal(target));
         Self {
             tolerance,
             reach,
             near: (RIM_REACH * tolerance.remainder).min(reach),
-            noise: chordal(source).max(chordal(target)) + settings.allowance,
+            noise: facets.max(NOTHING * tolerance.remainder) + settings.allowance,
         }
     }
 }
@@ -145,8 +146,7 @@ impl Distances {
     /// but little where they lie as close as their facets allow, since what lies off is elsewhere then.
     fn little_more(&self, share: f64, gap: f64) -> f64 {
         let remainder = self.tolerance.remainder;
-        let nothing = self.noise.max(NOTHING * remainder);
-        (share * remainder).min(OFF * (gap + nothing))
+        (share * remainder).min(OFF * (gap + self.noise))
     }
 }
 
@@ -167,7 +167,7 @@ pub fn assess(
     let pose = &outcome.target_from_source;
     let limit = settings
         .limit
-        .unwrap_or_else(|| overlap_limit(source, target, settings.allowance));
+        .unwrap_or_else(|| overlap_limit(source, target, pose.scale, settings.allowance));
     monitor.progress("verify", 0, Some(2));
     let coverage = coverage(source, target, pose, limit, monitor)?;
     monitor.progress("verify", 1, Some(2));
@@ -179,8 +179,8 @@ pub fn assess(
     }
     let Distances {
         noise, tolerance, ..
-    } = Distances::of(source, target, settings);
-    let (uncertainty, shape) = statements(source, target, pose, noise, settings);
+    } = Distances::of(source, target, pose.scale, settings);
+    let Statements { uncertainty, shape } = statements(source, target, pose, settings);
     let mut assessment = Assessment {
         verdict: Verdict::Good,
         reasons: Vec::new(),
@@ -235,23 +235,30 @@ impl Assessment {
 }
 
 /// How far the pose may be off, and whether the shapes are one.
+struct Statements {
+    uncertainty: Option<PoseUncertainty>,
+    shape: ShapeStatement,
+}
+
 fn statements(
     source: &Surface,
     target: &Surface,
     pose: &Similarity,
-    noise: f64,
     settings: &AssessSettings,
-) -> (Option<PoseUncertainty>, ShapeStatement) {
+) -> Statements {
     let Distances {
         tolerance,
         reach,
         near,
-        ..
-    } = Distances::of(source, target, settings);
+        noise,
+    } = Distances::of(source, target, pose.scale, settings);
     let millimetre = settings.length_of_millimetre();
     let tolerance = tolerance.for_bends(target.measures().diagonal, millimetre);
     let Some(contacts) = Contacts::find(source, target, pose, reach) else {
-        return (None, ShapeStatement::nothing_met(tolerance));
+        return Statements {
+            uncertainty: None,
+            shape: ShapeStatement::nothing_met(tolerance),
+        };
     };
     let rims = Rims::find(source, target, pose, near);
     let evidence = ShapeEvidence {
@@ -271,7 +278,8 @@ fn statements(
     let mut shape = ShapeStatement::of(&evidence, tolerance);
     shape.rims.other_trim = other_trim.as_ref().map(|trim| trim.apart);
     shape.is_offset_removed = settings.remove_offset && skin::is_removed(&evidence, &shape);
-    (uncertainty, shape)
+    let uncertainty = uncertainty.map(|pose| pose.of_bent(shape.springback));
+    Statements { uncertainty, shape }
 }
 
 /// The statement about the shape at the pose of the opposite hand, if its score speaks for it.
@@ -284,8 +292,7 @@ fn mirrored_statement(
     let check = &outcome.mirror_check;
     let pose = check.target_from_source.as_ref()?;
     let speaks_for_it = check.score_ratio? < verdict::NEAR_MIRROR;
-    let noise = Distances::of(source, target, settings).noise;
-    speaks_for_it.then(|| statements(source, target, pose, noise, settings).1)
+    speaks_for_it.then(|| statements(source, target, pose, settings).shape)
 }
 
 fn tolerance_of(target: &Surface, settings: &AssessSettings) -> ShapeTolerance {

@@ -75,7 +75,7 @@ impl<'a> Settling<'a> {
         near: f64,
     ) -> Self {
         let [source, target] = surfaces;
-        let distances = Distances::of(source, target, settings);
+        let distances = Distances::of(source, target, scale, settings);
         let near = near.max(3.0 * distances.tolerance.remainder);
         Self {
             surfaces,

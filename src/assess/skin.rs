@@ -26,7 +26,7 @@ pub fn without_offset(
 ) -> Option<Similarity> {
     let Distances {
         reach, near, noise, ..
-    } = Distances::of(source, target, settings);
+    } = Distances::of(source, target, pose.scale, settings);
     let corners = source.mesh().aabb().corners();
     let pair = [source, target];
     let mut contacts = ContactSearch::new(pair, pose.scale, reach, MAX_NODES);

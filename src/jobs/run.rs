@@ -248,8 +248,8 @@ fn judge(input: &VerdictInput, monitor: &Monitor) -> Result<JobOutput, JobError>
 fn measure(input: &MeasureInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
     monitor.progress("measure", 0, None);
     let (target, source) = (&input.parts.crash.surface, &input.parts.stamped.surface);
-    let limit = overlap_limit(source, target, 0.0);
     let pose = &input.crash_from_stamped;
+    let limit = overlap_limit(source, target, pose.scale, 0.0);
     let coverage = coverage(source, target, pose, limit, monitor)?;
     Ok(JobOutput::Measured(Arc::new(coverage)))
 }
@@ -335,8 +335,8 @@ const OVERLAP_POINTS: usize = 2000;
 
 fn overlap(input: &MeasureInput) -> Result<JobOutput, JobError> {
     let (target, source) = (&input.parts.crash.surface, &input.parts.stamped.surface);
-    let limit = overlap_limit(source, target, 0.0);
     let pose = &input.crash_from_stamped;
+    let limit = overlap_limit(source, target, pose.scale, 0.0);
     let [a, b] = quick_overlap(source, target, pose, limit, OVERLAP_POINTS);
     let overlap = a.max(b);
     Ok(JobOutput::Overlapped { overlap, limit })

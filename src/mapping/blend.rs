@@ -3,6 +3,7 @@
 use super::element::Context;
 use super::field::{Field, Fields, from_local, tensor_of};
 use super::gather::Group;
+use super::layered::PLASTIC_STRAIN;
 use super::source::PreparedSource;
 use crate::geometry::tensor::{Turn, normal_component, smallest_rotation};
 use crate::geometry::{Matrix3, Vector3};
@@ -112,7 +113,7 @@ impl<'a> Blend<'a> {
             self.blend(n_layers, n_plane, |fields| fields.states.as_ref(), out);
         }
         for value in &mut out[first..] {
-            value[6] = value[6].max(0.0);
+            value[PLASTIC_STRAIN] = value[PLASTIC_STRAIN].max(0.0);
             drop_rounding_along(value, &normal);
         }
     }

@@ -3,6 +3,7 @@
 use super::blend::Blend;
 use super::field::Fields;
 use super::gather::{Centre, Group, Search, Trail, gauge_of};
+use super::layered::PLASTIC_STRAIN;
 use super::options::{MapMethod, MapOptions, Status};
 use super::points::PointRules;
 use super::source::{PartnerFilter, PreparedSource};
@@ -383,7 +384,7 @@ impl Context<'_> {
                     value[..6].fill(0.0);
                 }
                 if !quantities.plastic_strain {
-                    value[6] = 0.0;
+                    value[PLASTIC_STRAIN] = 0.0;
                 }
             }
         });

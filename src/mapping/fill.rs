@@ -1,5 +1,6 @@
 //! Unmapped elements beside mapped ones: thickness and plastic strain from their neighbours.
 
+use super::layered::PLASTIC_STRAIN;
 use super::options::{MapOptions, Status};
 use super::target::{Mapped, MappedLayers, TargetPart};
 
@@ -80,7 +81,7 @@ fn mean_plastic_strain(
     let mean = |point: usize| -> f64 {
         let terms = usable
             .iter()
-            .map(|&n| target.mesh.areas()[n] * states[n][point][6]);
+            .map(|&n| target.mesh.areas()[n] * states[n][point][PLASTIC_STRAIN]);
         terms.sum::<f64>() / all
     };
     (0..n_points)

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use super::PlacedSource;
 use super::options::Quantities;
+use super::rule::SAME_PLACE;
 use super::target::{ElementReport, Partner, TargetPart};
 use crate::geometry::Matrix3;
 use crate::geometry::tensor::{Tensor, rotated, smallest_rotation};
@@ -63,7 +64,7 @@ impl SourceHistory {
     ) {
         let mut layers: Vec<_> = layers.filter(|(t, _)| t.is_finite()).collect();
         layers.sort_by(|a, b| a.0.total_cmp(&b.0));
-        layers.dedup_by(|later, first| (later.0 - first.0).abs() < 1e-4);
+        layers.dedup_by(|later, first| (later.0 - first.0).abs() < SAME_PLACE);
         let Some((_, of_first)) = layers.first() else {
             return;
         };

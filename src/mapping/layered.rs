@@ -1,10 +1,11 @@
 //! Values of elements through their layers, as the source has them and at the layers of a target.
 
 use super::layers::LayerMatrix;
-use super::rule::LayerRule;
+use super::rule::{LayerRule, SAME_PLACE};
 
-/// Places that belong to one layer: points of a layer share their T but for rounding.
-const SAME_LAYER: f64 = 1e-4;
+/// Where the effective plastic strain stands in the state of a point, behind the six stresses.
+pub const PLASTIC_STRAIN: usize = 6;
+
 /// `N` numbers at points through the thickness of each element; elements may differ in their layers
 /// or have none.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +46,7 @@ impl<const N: usize> Layered<N> {
         while let Some(&(t, _)) = rest.first() {
             let n = rest
                 .iter()
-                .take_while(|(other, _)| other - t < SAME_LAYER)
+                .take_while(|(other, _)| other - t < SAME_PLACE)
                 .count();
             let mut mean = [0.0; N];
             for (_, values) in &rest[..n] {
@@ -69,6 +70,17 @@ impl<const N: usize> Layered<N> {
         if rule < NO_RULE as usize {
             self.records[element] = (first as u32, rule as u16);
         }
+    }
+
+    /// One number of an element, weighted over its layers; NaN if it has none.
+    pub fn mean(&self, element: usize, component: usize) -> f64 {
+        self.of(element).map_or(f64::NAN, |(rule, layers)| {
+            let terms = rule.weights().iter().zip(layers);
+            terms
+                .map(|(weight, values)| weight * values[component])
+                .sum::<f64>()
+                / 2.0
+        })
     }
 
     /// Number of elements, with and without values.

@@ -5,8 +5,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Places closer than this are the same: decks round T to about eight digits, some writers to five.
-const SAME_PLACE: f64 = 1e-4;
+/// Places closer than this are the same, and points there belong to one layer: decks round T to about eight digits, some
+/// writers to five.
+pub const SAME_PLACE: f64 = 1e-4;
 
 /// Half tables, outermost place last; odd rules have 0 first.
 const GAUSS: [&[(f64, f64)]; 10] = [

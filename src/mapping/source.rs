@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::field::{Field, Fields};
 use super::history::SourceHistory;
-use super::layered::{AtLayers, Layered, Numbers, PerElement};
+use super::layered::{AtLayers, Layered, Numbers, PLASTIC_STRAIN, PerElement};
 use super::layers::{LayerBalance, LayerMatrix};
 use super::links::{Links, Neighbours};
 use super::options::MapOptions;
@@ -46,10 +46,7 @@ impl SourcePart {
 
     /// Effective plastic strain of an element, weighted over its layers; NaN if it has none.
     pub fn mean_plastic_strain(&self, element: usize) -> f64 {
-        self.states.of(element).map_or(f64::NAN, |(rule, values)| {
-            let terms = rule.weights().iter().zip(values);
-            terms.map(|(weight, value)| weight * value[6]).sum::<f64>() / 2.0
-        })
+        self.states.mean(element, PLASTIC_STRAIN)
     }
 }
 
@@ -194,7 +191,7 @@ impl<'a> PreparedSource<'a> {
         if let Some(field) = &mut fields.states {
             field.load(&self.states[rule], patch);
             // Extrapolated plastic strains may be negative.
-            field.change(|value| value[6] = value[6].max(0.0));
+            field.change(|value| value[PLASTIC_STRAIN] = value[PLASTIC_STRAIN].max(0.0));
         }
         if let Some(field) = &mut fields.strains {
             field.load(&self.strains[strain_rule], patch);

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::history::MappedHistory;
+use super::layered::PLASTIC_STRAIN;
 use super::options::Status;
 use super::rule::LayerRule;
 use super::shells::ShellMesh;
@@ -193,7 +194,9 @@ impl Mapped {
         let n_plane = values.len() / rule.len();
         let weighted = rule.weights().iter().zip(values.chunks_exact(n_plane));
         let sum: f64 = weighted
-            .map(|(weight, layer)| weight * layer.iter().map(|value| value[6]).sum::<f64>())
+            .map(|(weight, layer)| {
+                weight * layer.iter().map(|value| value[PLASTIC_STRAIN]).sum::<f64>()
+            })
             .sum();
         sum / (2.0 * n_plane as f64)
     }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::load::LoadedPart;
 use crate::geometry::tensor::{Tensor, principal, von_mises};
-use crate::mapping::LayerRule;
+use crate::mapping::{LayerRule, PLASTIC_STRAIN, SAME_PLACE};
 
 /// What can be shown of forming results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,7 +69,7 @@ impl FormingValue {
         match self {
             Self::VonMises => von_mises(&stress),
             Self::MajorStress => principal(&stress)[0],
-            _ => state[6],
+            _ => state[PLASTIC_STRAIN],
         }
     }
 
@@ -171,9 +171,6 @@ struct LayerSorter {
     layers: Vec<[f64; 3]>,
 }
 
-/// Points closer than this in T lie in one layer.
-const SAME_LAYER: f64 = 1e-4;
-
 impl LayerSorter {
     /// Layers of points given by T and number, rising in T.
     fn layers(&mut self, points: impl Iterator<Item = (f64, f64)>) -> &[[f64; 3]] {
@@ -181,7 +178,7 @@ impl LayerSorter {
         self.points.extend(points);
         self.points.sort_by(|a, b| a.0.total_cmp(&b.0));
         self.layers.clear();
-        for layer in self.points.chunk_by(|a, b| b.0 - a.0 < SAME_LAYER) {
+        for layer in self.points.chunk_by(|a, b| b.0 - a.0 < SAME_PLACE) {
             let sum: f64 = layer.iter().map(|point| point.1).sum();
             self.layers
                 .push([layer[0].0, 1.0, sum / layer.len() as f64]);

@@ -88,8 +88,9 @@ pub fn source_on_target(
         sides: Sides::of(target, monitor)?,
         is_data_source: true,
     };
-    let limit = settings.limit_for(source, target);
-    way.measure(limit, settings.reach_for(source, target), monitor)
+    let limit = settings.limit_for(source, target, target_from_source.scale);
+    let reach = settings.reach_for(source, target, target_from_source.scale);
+    way.measure(limit, reach, monitor)
 }
 
 /// Every vertex of the target against the triangles of the source. O(n · log n).
@@ -108,8 +109,9 @@ pub fn target_on_source(
         sides: Sides::of(target, monitor)?,
         is_data_source: false,
     };
-    let limit = settings.limit_for(source, target);
-    way.measure(limit, settings.reach_for(source, target), monitor)
+    let limit = settings.limit_for(source, target, target_from_source.scale);
+    let reach = settings.reach_for(source, target, target_from_source.scale);
+    way.measure(limit, reach, monitor)
 }
 
 /// One of the two directions. "World" is the target's frame.

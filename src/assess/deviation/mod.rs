@@ -38,18 +38,18 @@ const N_SPOTS: usize = 12;
 const SPOT_EDGES: f64 = 6.0;
 
 impl DeviationSettings {
-    /// The limit that holds for two surfaces.
-    pub fn limit_for(&self, source: &Surface, target: &Surface) -> f64 {
+    /// The limit that holds for two surfaces, under poses of this scale.
+    pub fn limit_for(&self, source: &Surface, target: &Surface, scale: f64) -> f64 {
         self.limit
-            .unwrap_or_else(|| overlap_limit(source, target, 0.0))
+            .unwrap_or_else(|| overlap_limit(source, target, scale, 0.0))
     }
 
     /// The reach that holds for two surfaces: never less than twice the limit.
-    pub fn reach_for(&self, source: &Surface, target: &Surface) -> f64 {
+    pub fn reach_for(&self, source: &Surface, target: &Surface, scale: f64) -> f64 {
         let reach = self
             .reach
             .unwrap_or_else(|| REACH * target.measures().diagonal);
-        reach.max(2.0 * self.limit_for(source, target))
+        reach.max(2.0 * self.limit_for(source, target, scale))
     }
 }
 

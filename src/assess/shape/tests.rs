@@ -2,8 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::super::AssessSettings;
-use super::super::statements;
+use super::super::{AssessSettings, Statements, statements};
 use super::*;
 use crate::geometry::TriMesh;
 use crate::text::Lengths;
@@ -32,7 +31,7 @@ fn statement(source: &Surface, target: &Surface) -> ShapeStatement {
         thickness: Some(1.5),
         ..AssessSettings::default()
     };
-    statements(source, target, &Similarity::identity(), 0.01, &settings).1
+    statements(source, target, &Similarity::identity(), &settings).shape
 }
 
 /// Deflection `w` along z of up to `most`, with the shift along x that keeps lengths.
@@ -226,8 +225,8 @@ fn another_trim_all_round_is_no_other_version_where_the_surface_says_so() {
     let settings = AssessSettings::default();
     let still = Similarity::identity();
     let stated = |source: &Surface, target: &Surface| {
-        let (pose, shape) = statements(source, target, &still, 0.01, &settings);
-        (pose.unwrap(), shape)
+        let Statements { uncertainty, shape } = statements(source, target, &still, &settings);
+        (uncertainty.unwrap(), shape)
     };
     // Before its last trim the part reaches 5 mm farther out all round, or on three sides.
     let plain = panel(40, [0.0, 0.0], 1.0);

@@ -388,19 +388,24 @@ impl Model {
         self.materials.iter().find(|material| material.id == id)
     }
 
-    /// Corner thickness of a shell: its own where that is not 0, else its part's.
-    pub fn shell_thickness(&self, shell: u32) -> Option<[f64; 4]> {
-        let of_part = self.parts[self.shells[shell as usize].part as usize].thickness;
-        let Some(extra) = self.shell_extra(shell) else {
-            return of_part;
+    /// Corner thickness of a shell: its own where that is not 0, else its part's. The fourth of a triangle, which
+    /// cards leave blank, is the mean of the three, so that the mean of all four is that of the element.
+    pub fn shell_thickness(&self, index: u32) -> Option<[f64; 4]> {
+        let shell = &self.shells[index as usize];
+        let of_part = self.parts[shell.part as usize].thickness;
+        let own = self.shell_extra(index).map(|extra| extra.thickness);
+        let mut corners = match (own.filter(|own| *own != [0.0; 4]), of_part) {
+            (Some(own), Some(part)) => {
+                std::array::from_fn(|i| if own[i] == 0.0 { part[i] } else { own[i] })
+            }
+            (own, part) => own.or(part)?,
         };
-        let own = extra.thickness;
-        match of_part {
-            Some(part) => Some(std::array::from_fn(|i| {
-                if own[i] == 0.0 { part[i] } else { own[i] }
-            })),
-            None => (own != [0.0; 4]).then_some(own),
+        if shell.is_triangle() {
+            let [a, b, c, _] = corners;
+            // As differences, so that equal thicknesses have themselves as mean.
+            corners[3] = a + ((b - a) + (c - a)) / 3.0;
         }
+        Some(corners)
     }
 
     /// Thickness and material angle written with the shell itself. O(log shells).

@@ -10,7 +10,7 @@ use super::{MapRun, PipelineError, ShownValue};
 use crate::formats::keyword::write::{WriteOptions, write};
 use crate::formats::{self, Disk, Memory, Model, ReadOptions};
 use crate::geometry::tensor::{Tensor, von_mises};
-use crate::mapping::{Layered, distribution};
+use crate::mapping::{Layered, PLASTIC_STRAIN, distribution};
 use crate::monitor::Monitor;
 use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
@@ -45,13 +45,12 @@ impl OtherResult {
         for path in files {
             let model = read_other(path, crash, monitor)?;
             for (shell, index_in_model) in model.shells.iter().zip(0..) {
-                let own = model
+                let has_own = model
                     .shell_extra(index_in_model)
-                    .map(|extra| extra.thickness);
-                let own = own.filter(|corners| *corners != [0.0; 4]);
-                if let (Some(corners), Some(&element)) = (own, index.get(&shell.id)) {
-                    let n = shell.corners().len();
-                    thickness[element] = corners[..n].iter().sum::<f64>() / n as f64 * factor;
+                    .is_some_and(|extra| extra.thickness != [0.0; 4]);
+                let corners = model.shell_thickness(index_in_model).filter(|_| has_own);
+                if let (Some(corners), Some(&element)) = (corners, index.get(&shell.id)) {
+                    thickness[element] = corners.iter().sum::<f64>() / 4.0 * factor;
                     n_found += 1;
                 }
             }
@@ -86,10 +85,7 @@ impl OtherResult {
 
     /// Effective plastic strain of an element, weighted over its layers; NaN if it has none.
     pub fn plastic_strain(&self, element: usize) -> f64 {
-        self.states.of(element).map_or(f64::NAN, |(rule, layers)| {
-            let terms = rule.weights().iter().zip(layers);
-            terms.map(|(weight, state)| weight * state[6]).sum::<f64>() / 2.0
-        })
+        self.states.mean(element, PLASTIC_STRAIN)
     }
 
     fn has_values(&self, element: usize) -> bool {

@@ -6,6 +6,7 @@ use super::old_states::read_copies;
 use super::output::{MapFiles, MapWriter, WriteKind};
 use crate::formats::Model;
 use crate::geometry::chunks::CHUNK;
+use crate::mapping::PLASTIC_STRAIN;
 use crate::monitor::Cancelled;
 
 /// Digits of a small card differ from the values by up to this share of the largest.
@@ -121,8 +122,11 @@ impl MapWriter<'_> {
                 for (a, b) in own[..6].iter().zip(point.stress) {
                     stress = [stress[0].max((a - b).abs()), stress[1].max(a.abs())];
                 }
-                let difference = (own[6] - point.plastic_strain).abs();
-                plastic = [plastic[0].max(difference), plastic[1].max(own[6].abs())];
+                let difference = (own[PLASTIC_STRAIN] - point.plastic_strain).abs();
+                plastic = [
+                    plastic[0].max(difference),
+                    plastic[1].max(own[PLASTIC_STRAIN].abs()),
+                ];
             }
         }
         let kinds = [stress, plastic, values, tensors].map(relative);

@@ -258,7 +258,7 @@ fn mean(
     CheckRecord {
         name: name.to_owned(),
         found: signed_percent(change),
-        limit: "±0.5 %".to_owned(),
+        limit: format!("±{}", percent(MEAN_CHANGE)),
         is_met: Some(change.abs() <= MEAN_CHANGE),
         reason: None,
         picture,
@@ -312,13 +312,14 @@ fn peak(run: &MapRun, pair: &PairRecord) -> CheckRecord {
     let of_stamped = pair.stamped.max;
     let at_best = peak_at_best(run).filter(|best| *best < NARROW_PEAK * of_stamped);
     let change = pair.crash.max / at_best.unwrap_or(of_stamped) - 1.0;
-    let limit = "−10 % to +5 %";
+    let [least, most] = PEAK_CHANGE.map(|change| fixed(100.0 * change, 0));
+    let limit = format!("{least} % to +{most} %");
     CheckRecord {
         name: "Largest plastic strain".to_owned(),
         found: signed_percent(change),
         limit: match at_best {
             Some(_) => format!("{limit} of the mean there"),
-            None => limit.to_owned(),
+            None => limit,
         },
         is_met: Some((PEAK_CHANGE[0]..=PEAK_CHANGE[1]).contains(&change)),
         reason: at_best.map(|_| CheckReason::PeakNarrowerThanElement),
