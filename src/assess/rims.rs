@@ -23,6 +23,9 @@ const N_PLACES: usize = 600;
 const PARALLEL: f64 = 0.8;
 /// Holes whose radii differ by more than this factor are not the same hole.
 const SAME_RADIUS: f64 = 1.6;
+/// Of holes that overlap and are not the same, one is a pilot hole or an opening cut later if its radius is so many times
+/// smaller.
+const ANOTHER_KIND: f64 = 4.0;
 /// A place is paired if nothing nearer than this share of its distance is beside its counterpart.
 const MUTUAL: f64 = 0.7;
 /// Points of the other part's rims in the tree.
@@ -76,12 +79,24 @@ pub(super) struct HolePair {
     pub(super) wider: f64,
 }
 
+impl HolePair {
+    fn of(of_source: &RimHole, of_target: &RimHole) -> Self {
+        Self {
+            hole: *of_target,
+            off: of_source.center - of_target.center,
+            wider: (of_source.radius - of_target.radius).abs(),
+        }
+    }
+}
+
 /// How the rims of both parts lie.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Rims {
     pairs: Vec<RimPair>,
     /// Holes of both.
     pub(super) holes: Vec<HolePair>,
+    /// Holes that overlap and are not the same: one was moved by more than its radius, or has another size.
+    pub(super) overlapping: Vec<HolePair>,
     /// Holes of the source where the target is solid, and the other way round.
     pub(super) missing: [Vec<RimHole>; 2],
     /// Mean edge length of the coarser mesh.
@@ -256,6 +271,11 @@ impl Rims {
         RimComparison::new([source, target], pose.scale, near).at(pose)
     }
 
+    /// Pairs of holes that are the same but for a little, then those that overlap.
+    pub(super) fn all_holes(&self) -> impl Iterator<Item = &HolePair> {
+        self.holes.iter().chain(&self.overlapping)
+    }
+
     pub(super) fn pairs(&self) -> &[RimPair] {
         &self.pairs
     }
@@ -344,15 +364,21 @@ impl Rims {
             match nearest {
                 Some((i, other)) => {
                     is_used[i] = true;
-                    self.holes.push(HolePair {
-                        hole: *other,
-                        off: hole.center - other.center,
-                        wider: (hole.radius - other.radius).abs(),
-                    });
+                    self.holes.push(HolePair::of(&hole, other));
                 }
                 None => alone.push(hole),
             }
         }
+        alone.retain(|hole| {
+            let mut left = of_target.iter().zip(&mut is_used);
+            let other = left.find(|(other, used)| !**used && overlaps(hole, other));
+            let Some((other, used)) = other else {
+                return true;
+            };
+            *used = true;
+            self.overlapping.push(HolePair::of(hole, other));
+            false
+        });
         let back = pose.inverse();
         let left = of_target.iter().zip(&is_used).filter(|(_, used)| !**used);
         let left: Vec<RimHole> = left.map(|(hole, _)| *hole).collect();
@@ -361,6 +387,19 @@ impl Rims {
             solid_at(left, surfaces[0], &back, pose.scale, near),
         ];
     }
+}
+
+/// Whether two holes cross each other, or lie about one middle, and are of one kind.
+fn overlaps(hole: &RimHole, other: &RimHole) -> bool {
+    let [small, large] = if hole.radius < other.radius {
+        [hole.radius, other.radius]
+    } else {
+        [other.radius, hole.radius]
+    };
+    let off = (hole.center - other.center).norm();
+    let crosses = off < small + large && off > large - small;
+    let is_in_one_sheet = hole.normal.dot(&other.normal).abs() > PARALLEL;
+    is_in_one_sheet && (crosses || off < 0.5 * small) && large < ANOTHER_KIND * small
 }
 
 /// Those of the holes at whose middle the other part has no hole.
@@ -453,6 +492,53 @@ mod tests {
             assert_eq!(rims.holes.len(), 1);
             assert!(rims.holes[0].wider < 0.15, "{}", rims.holes[0].wider);
         }
+    }
+
+    #[test]
+    fn a_hole_is_missed_by_no_shift() {
+        let still = Similarity::identity();
+        let plain = sheet(30, 5);
+        for shift in 1..=12 {
+            let rims = Rims::find(&plain, &sheet(30, 5 + shift), &still, 3.0);
+            let off = rims.all_holes().map(|pair| pair.off.norm()).next();
+            let n_alone = rims.missing.each_ref().map(Vec::len);
+            match off {
+                Some(off) => assert!((off - shift as f64).abs() < 1e-9 && n_alone == [0, 0]),
+                None => assert_eq!(n_alone, [1, 1], "{shift}"),
+            }
+        }
+    }
+
+    #[test]
+    fn holes_that_overlap_are_moved_or_resized_but_no_pilot_hole_is() {
+        let hole = |x: f64, radius: f64| RimHole {
+            center: Point3::new(x, 0.0, 0.0),
+            radius,
+            length: 0.0,
+            normal: Vector3::z(),
+        };
+        for (off, [a, b], expected) in [
+            (0.0, [6.0, 11.0], true),
+            (0.0, [22.0, 10.0], true),
+            (12.0, [12.0, 12.0], true),
+            (25.0, [12.0, 12.0], false),
+            // A pilot hole in the middle of an opening, and one somewhere within it.
+            (0.0, [5.0, 60.0], false),
+            (30.0, [20.0, 60.0], false),
+        ] {
+            for [a, b] in [[a, b], [b, a]] {
+                assert_eq!(
+                    overlaps(&hole(0.0, a), &hole(off, b)),
+                    expected,
+                    "{off} {a} {b}"
+                );
+            }
+        }
+        let steep = RimHole {
+            normal: Vector3::x(),
+            ..hole(1.0, 6.0)
+        };
+        assert!(!overlaps(&hole(0.0, 6.0), &steep));
     }
 
     #[test]

@@ -371,7 +371,7 @@ impl ShapeStatement {
         let rims = evidence.rims;
         let limit = rims.limit(&self.tolerance);
         let mut reasons = Vec::new();
-        let holes = rims.holes.iter().zip(&fit.holes);
+        let holes = rims.all_holes().zip(&fit.holes);
         let worst = holes.max_by(|a, b| a.1.total_cmp(b.1));
         if let Some((pair, &by)) = worst.filter(|(_, by)| **by > limit) {
             let at = pair.hole.center;
@@ -440,7 +440,7 @@ fn rim_fit(rims: &Rims, fit: &Fit, tolerance: &ShapeTolerance) -> RimFit {
         offset: (rims.share() >= LEAST_PAIRED).then(|| most_of_rims(rims, &fit.rims)),
         other_trim: None,
         apart: trims::farthest_apart(rims, &fit.rims, rims.limit(tolerance)),
-        n_holes: fit.holes.len(),
+        n_holes: rims.holes.len(),
         worst_hole: fit.holes.iter().copied().fold(0.0, f64::max),
         only_source: rims.missing[0].len(),
         only_target: rims.missing[1].len(),
@@ -553,7 +553,7 @@ impl Fit {
         let as_they_are: Vec<f64> = rims.pairs().iter().map(|p| p.gap).collect();
         // What throws most rims apart explains none of them.
         let explains = most_of_rims(rims, &beside) <= most_of_rims(rims, &as_they_are);
-        let holes = rims.holes.iter().map(|pair| {
+        let holes = rims.all_holes().map(|pair| {
             let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
             let explained = axes.map(|axis| row(&pair.hole.center, &axis, 0.0).dot(&found));
             let left = pair.off - Vector3::from(explained);
