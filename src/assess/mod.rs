@@ -93,7 +93,7 @@ pub struct Assessment {
     /// How far the pose may be off; `None` in results of earlier versions.
     #[serde(default)]
     pub pose: Option<PoseStatement>,
-    /// Whether both parts have one shape; `None` in results of earlier versions.
+    /// Whether both parts have one shape; `None` where their units differ, and in results of earlier versions.
     #[serde(default)]
     pub shape: Option<ShapeStatement>,
 }
@@ -206,7 +206,8 @@ pub fn assess(
         outcome,
         most_scaled,
     );
-    assessment.shape = Some(shape);
+    let is_comparable = assessment.scale_check.unit.is_none();
+    assessment.shape = is_comparable.then_some(shape);
     monitor.check()?;
     monitor.progress("verify", 2, Some(2));
     Ok(assessment)

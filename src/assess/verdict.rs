@@ -44,6 +44,16 @@ pub(super) fn decide(
     outcome: &MatchOutcome,
     most_scaled: f64,
 ) {
+    if let Some(units) = unit(assessment) {
+        // Whatever lies on the wrong size by chance says nothing of pose and shape.
+        assessment.verdict = units.severity();
+        assessment.reasons = vec![units];
+        if let Some(pose) = &mut assessment.pose {
+            pose.kind = PoseKind::NotFound;
+            pose.uncertainty = None;
+        }
+        return;
+    }
     let of_pose = [
         ending(outcome),
         sliding(assessment, shape, outcome.rivals_sought),
@@ -52,7 +62,6 @@ pub(super) fn decide(
     ];
     let of_shape = [
         hand(assessment, shape, mirrored),
-        unit(assessment),
         scale(assessment, most_scaled),
         overlap(assessment, shape),
     ];

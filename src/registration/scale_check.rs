@@ -73,18 +73,31 @@ impl ScaleCheck {
     }
 }
 
-/// The unit factor nearest to `size_ratio`, if it explains the ratio better than no factor does.
-///
-/// Parts that cover each other in part differ in size too, at the least overlap of 20 % by a factor
-/// of about 2.2, so ratios below 4 are no hint.
+/// Parts that cover each other in part differ in size too, at the least overlap of 20 % by a factor of about
+/// 2.2: smaller ratios than this are no hint.
+const LEAST_RATIO: f64 = 4.0;
+/// By how much a ratio may miss the factor of a unit in which parts are modelled,
+const NEAR_FACTOR: f64 = 1.7;
+/// and that of one in which they rarely are, to which any two different parts come near by chance.
+const NEAR_RARE_FACTOR: f64 = 1.25;
+
+/// The unit factor nearest to `size_ratio`, if it comes near one.
 pub fn guess_unit(size_ratio: f64) -> Option<UnitGuess> {
     let log = size_ratio.ln().abs();
-    if !log.is_finite() || log < 4.0_f64.ln() {
+    if !log.is_finite() || log < LEAST_RATIO.ln() {
         return None;
     }
+    let near = |guess: &UnitGuess| {
+        let is_usual = |unit| !matches!(unit, LengthUnit::Centimeter | LengthUnit::Foot);
+        if is_usual(guess.source) && is_usual(guess.target) {
+            NEAR_FACTOR.ln()
+        } else {
+            NEAR_RARE_FACTOR.ln()
+        }
+    };
     UnitGuess::all()
         .map(|guess| ((size_ratio / guess.factor()).ln().abs(), guess))
         .min_by(|a, b| a.0.total_cmp(&b.0))
-        .filter(|(off, _)| *off < 3.0_f64.ln())
+        .filter(|(off, guess)| *off < near(guess))
         .map(|(_, guess)| guess)
 }

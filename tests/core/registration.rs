@@ -579,7 +579,21 @@ fn other_units_are_guessed_and_not_applied() {
     assert_eq!(outcome.target_from_source.scale, 1.0);
     let unit = outcome.scale_check.unit.unwrap();
     assert!((unit.factor() - 25.4).abs() < 1e-12, "{unit:?}");
-    assert!(guess_unit(1.5).is_none() && guess_unit(0.5).is_none());
+    // A different part may be seven times as large.
+    for (ratio, factor) in [
+        (1.5, None),
+        (0.5, None),
+        (7.0, None),
+        (9.0, Some(10.0)),
+        (20.0, Some(25.4)),
+        (0.001, Some(0.001)),
+        (600.0, Some(1000.0)),
+    ] {
+        let guess = guess_unit(ratio).map(|unit| unit.factor());
+        let is_it = |(found, factor): (f64, f64)| (found / factor - 1.0).abs() < 1e-9;
+        assert_eq!(guess.is_some(), factor.is_some(), "{ratio}");
+        assert!(guess.zip(factor).is_none_or(is_it), "{ratio} {guess:?}");
+    }
 }
 
 /// Numbers and first poses of the starts as they begin.
