@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::held::HeldPose;
 use super::settle::{Least, Settling};
 use super::shape::{ShapeReason, ShapeStatement};
-use super::{AssessSettings, contact, statements};
+use super::{AssessSettings, Distances, contact, statements};
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
@@ -15,6 +15,10 @@ use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
 /// A pose with more differences of the shapes counts as at least so many times as bad as the result, and only
 /// alternatives that score better than that are looked at.
 const MORE_DIFFERENCES: f64 = 1.5;
+/// Borders may hold a pose under which what remains of the distances besides a bend is so many times as much, …
+const AS_CLOSE: f64 = 1.5;
+/// … and so many tolerances more.
+const LITTLE_REMAINDER: f64 = 0.25;
 /// Lengths of so many tolerances are differences whatever the facets are and however the part is bent.
 const CLEARLY: f64 = 2.0;
 
@@ -70,6 +74,31 @@ pub fn chosen_by_shape(
         target_from_source: winner.pose,
         alternatives,
     }))
+}
+
+/// Whether a pose that borders and holes speak for is worse than the one that the surfaces found: that one has surely
+/// fewer differences, or what remains besides a bend has clearly grown. Springback keeps surfaces farther apart than
+/// either pose, so that their distance alone does not tell: an addendum all round that ends anywhere
+/// may pull a hood aside by 30 mm. Poses that lie within the tolerance of each other are as good.
+/// O(border edges + nodes · log triangles).
+pub fn is_pulled_aside(
+    source: &Surface,
+    target: &Surface,
+    [by_surfaces, by_borders]: [&Similarity; 2],
+    settings: &AssessSettings,
+) -> bool {
+    let distances = Distances::of(source, target, by_surfaces.scale, settings);
+    let corners = source.mesh().aabb().corners();
+    if by_surfaces.max_displacement(by_borders, &corners) <= distances.tolerance.remainder {
+        return false;
+    }
+    let shape = |pose: &Similarity| statements(source, target, pose, settings).shape;
+    let (before, after) = rayon::join(|| shape(by_surfaces), || shape(by_borders));
+    let little = distances.little_more(LITTLE_REMAINDER, before.remainder);
+    let has_grown = after.remainder > AS_CLOSE * before.remainder + little;
+    let [before, after] = [(by_surfaces, before), (by_borders, after)]
+        .map(|(pose, shape)| Candidate::at(*pose, shape));
+    before.beats(&after) || has_grown && before.n_differences <= after.n_differences
 }
 
 fn ranked(other: Alternative, is_beaten: bool) -> Alternative {
@@ -131,7 +160,7 @@ fn is_clear(reason: &ShapeReason) -> Option<bool> {
 mod tests {
     use super::*;
     use crate::assess::ShapeTolerance;
-    use crate::geometry::Point3;
+    use crate::geometry::{Point3, TriMesh, Vector3};
 
     fn candidate(reasons: &[ShapeReason]) -> Candidate {
         let tolerance = ShapeTolerance {
@@ -143,6 +172,34 @@ mod tests {
             ..ShapeStatement::nothing_met(tolerance)
         };
         Candidate::at(Similarity::identity(), shape)
+    }
+
+    #[test]
+    fn a_pose_under_which_the_shapes_fit_less_well_is_not_taken_for_its_borders() {
+        // A shallow bowl of 300 mm: neither springback nor a small motion explains a shift of it by 30 mm, and half
+        // a millimetre does not matter.
+        let n = 31;
+        let points = (0..n * n).map(|i| {
+            let [x, y] = [i % n, i / n].map(|k| 10.0 * f64::from(k) - 150.0);
+            let waves = 6.0 * (x / 30.0).sin() * (y / 35.0).cos();
+            Point3::new(x, y, (x * x + 0.5 * y * y) / 600.0 + waves)
+        });
+        let cells = (0..n * (n - 1)).filter(|i| i % n + 1 < n);
+        let triangles = cells.flat_map(|a| [[a, a + 1, a + n + 1], [a, a + n + 1, a + n]]);
+        let mesh = TriMesh::new(points.collect(), triangles.collect()).unwrap();
+        let bowl = Surface::new(&mesh, "source").unwrap();
+        let shifted = |x: f64| Similarity {
+            translation: Vector3::new(x, 0.0, 0.0),
+            ..Similarity::identity()
+        };
+        let settings = AssessSettings::default();
+        for (by_surfaces, by_borders, is_worse) in
+            [(0.0, 30.0, true), (30.0, 0.0, false), (0.0, 0.5, false)]
+        {
+            let poses = [&shifted(by_surfaces), &shifted(by_borders)];
+            let found = is_pulled_aside(&bowl, &bowl, poses, &settings);
+            assert_eq!(found, is_worse, "{by_surfaces} {by_borders}");
+        }
     }
 
     #[test]

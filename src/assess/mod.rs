@@ -21,7 +21,7 @@ mod uncertainty;
 mod verdict;
 mod words;
 
-pub use alternatives::chosen_by_shape;
+pub use alternatives::{chosen_by_shape, is_pulled_aside};
 pub use ambiguity::{Ambiguity, Clarity, Twin, TwinAxis};
 pub use coverage::{Coverage, OneSided, coverage, overlap_limit, quick_overlap};
 pub use held::{HeldPose, hand_by_rims, held_by_rims};

@@ -257,10 +257,17 @@ pub(super) fn settle(
     if !is_searched || outcome.termination == Termination::Stopped {
         return Ok(());
     }
+    let found = outcome.target_from_source;
+    let is_kept =
+        |pose: &Similarity| !assess::is_pulled_aside(source, target, [&found, pose], check);
     if let Some(held) = assess::held_by_rims(source, target, outcome, check, monitor)? {
-        outcome.target_from_source = held.target_from_source;
-        outcome.alternatives = held.alternatives;
-    } else if let Some(pose) = assess::settled(source, target, &outcome.target_from_source, check) {
+        if is_kept(&held.target_from_source) {
+            outcome.target_from_source = held.target_from_source;
+            outcome.alternatives = held.alternatives;
+        }
+    } else if let Some(pose) = assess::settled(source, target, &found, check)
+        && is_kept(&pose)
+    {
         outcome.target_from_source = pose;
     }
     monitor.check()?;
