@@ -18,13 +18,13 @@
 //! - [`formats`]: LS-DYNA keyword decks, STL, OBJ, PLY.
 //! - [`simplify`]: quadric error simplification.
 //! - [`search`]: closest points and rays on triangle meshes.
-//! - [`registration`]: Umeyama, ICP, Trimmed ICP, Fractional ICP, and the race of many starts.
+//! - [`registration`]: Umeyama, ICP, Trimmed ICP, Fractional ICP, and the search from many starts.
 //! - [`mapping`]: forming results from the stamped shells onto the crash shells.
 //! - [`assess`]: is the pose right? Coverage, ambiguity, free motions, verdict.
-//! - [`settings`]: the settings of a match by name, one row each.
+//! - [`settings`]: the settings of match and mapping by name, one row each.
 //! - [`samples`]: generated pairs of sheet parts with a known pose.
 //! - [`report`]: the matrix in all its forms, LS-DYNA cards, the record of a run.
-//! - [`pipeline`]: load, reduce, match, export, as one call each.
+//! - [`pipeline`]: load, find parts, reduce, match, map, export and measure, as one call each.
 //! - [`jobs`]: the worker thread of the window: stop, cancel, events.
 //! - [`app`]: the window without the window, by topic: state, commands, undo.
 //! - `ui` (feature `gui`): the window; draws the state, emits commands.

@@ -64,14 +64,6 @@ impl Monitor {
         }
     }
 
-    /// The same flags with `observer` watching.
-    pub fn observed_by(&self, observer: Arc<dyn Observer>) -> Self {
-        Self {
-            flags: self.flags.clone(),
-            observer: Some(observer),
-        }
-    }
-
     /// The same flags without anybody watching, for side work that nobody follows.
     pub fn without_observer(&self) -> Self {
         Self {

@@ -57,7 +57,7 @@ pub enum Reason {
         /// Largest uncertainty of a node.
         #[serde(with = "any_float")]
         by: f64,
-        /// The shape tolerance, a length.
+        /// The tolerance of the pose, a length ([`super::ShapeTolerance`] widened by the bend).
         limit: f64,
         /// In which direction most.
         along: PartDirection,

@@ -264,7 +264,7 @@ pub struct BenchArgs {
     /// and honest verdicts.
     #[arg(long, conflicts_with = "crash")]
     pub robustness: bool,
-    /// Map generated parts with known fields instead: errors of both methods over pairs of meshes, times
+    /// Map generated parts with known fields instead: errors of all methods over pairs of meshes, times
     /// and sizes.
     #[arg(long, conflicts_with_all = ["crash", "robustness"])]
     pub mapping: bool,

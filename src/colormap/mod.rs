@@ -60,11 +60,6 @@ impl ColorMap {
         }
     }
 
-    /// True if the middle is neutral and the two sides differ in hue.
-    pub fn is_diverging(self) -> bool {
-        self == Self::CoolWarm
-    }
-
     /// Colour at `t`, clamped to 0 … 1; NaN counts as 0.
     pub fn sample(self, t: f64) -> Rgb {
         let t = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) };

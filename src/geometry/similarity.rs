@@ -117,16 +117,6 @@ impl Similarity {
         }
     }
 
-    /// The rigid pose, if there is neither mirror nor scale.
-    pub fn to_pose(&self) -> Option<Pose> {
-        if self.is_mirrored() || self.scale != 1.0 {
-            return None;
-        }
-        let rotation = nalgebra::Rotation3::from_matrix_unchecked(self.rotation);
-        let quaternion = nalgebra::UnitQuaternion::from_rotation_matrix(&rotation);
-        Some(Pose::from_parts(self.translation.into(), quaternion))
-    }
-
     /// 4×4 matrix for column vectors, scale included.
     pub fn to_matrix4(&self) -> Matrix4 {
         let mut matrix = Matrix4::identity();

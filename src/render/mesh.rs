@@ -190,11 +190,6 @@ impl RenderMesh {
         self.corners.len() / 3
     }
 
-    /// Number of element edges that are drawn.
-    pub fn n_element_edges(&self) -> usize {
-        self.edge_corners.len()
-    }
-
     /// Number of border edges.
     pub fn n_border_edges(&self) -> usize {
         let is_border = |edge: &&WideEdge| edge.part & BORDER_BIT != 0;

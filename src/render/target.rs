@@ -73,11 +73,6 @@ impl ViewTarget {
         self.textures.as_ref().map(|textures| textures.size)
     }
 
-    /// Forgets the picture, so that the next call draws in any case.
-    pub fn invalidate(&mut self) {
-        self.drawn = None;
-    }
-
     pub(super) fn picture(&self) -> Option<&wgpu::Texture> {
         self.shown().map(|textures| &textures.picture)
     }

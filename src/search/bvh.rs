@@ -45,11 +45,6 @@ impl Bvh {
         Ok(Self { mesh, frame, tree })
     }
 
-    /// The mesh, shared.
-    pub fn shared_mesh(&self) -> &Arc<TriMesh> {
-        &self.mesh
-    }
-
     /// The exact answer for one triangle, if it counts.
     pub(super) fn exact(
         &self,

@@ -28,8 +28,8 @@ pub(super) struct LocalDifference {
 }
 
 /// The largest group of neighbouring places, away from the outlines of both parts and wider than the elements cut
-/// short, at which `left`, what neither bends nor facets explain, exceeds `limit` to one side. O(k² + k · outlines) for k places beyond
-/// the limit.
+/// short, at which `left`, what neither bends nor facets explain, exceeds `limit` to one side.
+/// O(k² + k · outlines) for k places beyond the limit.
 pub(super) fn local_difference(
     evidence: &ShapeEvidence<'_>,
     left: &[f64],
