@@ -76,7 +76,10 @@ fn growth_tells_times_and_exponents_of_right_poses() {
     for pair in table.rows.windows(2) {
         let ratio = pair[1].triangles as f64 / pair[0].triangles as f64;
         assert!((1.5..8.0).contains(&ratio), "{table:?}");
-        assert!(pair[1].node_error < 5.0, "{table:?}");
+    }
+    // Elements of 180 mm do not hold the beads of the floor; those of 60 mm do.
+    for (row, most) in table.rows.iter().zip([1.5, 0.5, 0.05]) {
+        assert!(row.node_error < most, "{table:?}");
     }
     assert!(table.match_exponent.is_some() && table.prepare_exponent.is_some());
     let page = growth_page(&table);
