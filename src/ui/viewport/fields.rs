@@ -88,8 +88,8 @@ type Results = (Option<Arc<MapRun>>, Option<Arc<OtherResult>>);
 struct Field {
     values: Arc<[f32]>,
     is_by_corner: bool,
-    /// What the colours should span.
-    range: [f64; 2],
+    /// What the colours should span; nothing where no value is known.
+    range: Option<[f64; 2]>,
     /// Keeps what the key names by its address.
     _key: (Arc<ShownMesh>, Option<Arc<TriMesh>>, Results),
     _stated: Option<Stated>,
@@ -101,8 +101,9 @@ pub(super) struct FieldStore {
     /// Most recently used last.
     ready: Vec<(FieldKey, Arc<Field>)>,
     failed: Vec<FieldKey>,
-    /// Ranges of what each window shows, so that both have one scale.
-    ranges: PerRole<Option<(FieldKind, [f64; 2])>>,
+    /// Ranges of what each window shows, so that both have one scale. A window without any value says
+    /// nothing of it.
+    ranges: PerRole<Option<(FieldKind, Option<[f64; 2]>)>>,
     /// How many parts each window shows.
     n_shown: PerRole<usize>,
 }
@@ -151,8 +152,12 @@ impl FieldStore {
         }
         let found = orders.iter().map(|order| self.find(order.as_ref()?));
         let found: Vec<_> = found.collect();
-        let ranges = found.iter().flatten().map(|field| field.range);
-        *self.ranges.get_mut(window) = kind.zip(ranges.reduce(union));
+        *self.ranges.get_mut(window) =
+            kind.filter(|_| found.iter().any(Option::is_some))
+                .map(|kind| {
+                    let ranges = found.iter().flatten().filter_map(|field| field.range);
+                    (kind, ranges.reduce(union))
+                });
         *self.n_shown.get_mut(window) = drawn.len();
         let n_shown = self.n_shown.crash + self.n_shown.stamped;
         let n = self.ready.len().saturating_sub(KEPT + n_shown);
@@ -192,8 +197,7 @@ impl FieldStore {
             | FieldKind::Map(_) => {}
         }
         let ranges = self.ranges.iter().filter_map(|(_, range)| *range);
-        let ranges = ranges.filter(|(of, _)| *of == kind).map(|(_, range)| range);
-        let [low, high] = ranges.reduce(union)?;
+        let [low, high] = common_range(ranges.filter(|(of, _)| *of == kind).map(|(_, r)| r))?;
         if kind == FieldKind::Map(MapPicture::Angle) {
             // Normals that agree to a tenth of a degree are one colour.
             let scale = ColorScale::new(ColorMap::Viridis, 0.0, high.max(0.1));
@@ -290,6 +294,18 @@ fn compared(kind: FieldKind, state: &AppState, role: Role, mesh: &ShownMesh) -> 
 
 fn union(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// What the colours of both windows span: the ranges that are known, or 0 to 1 where there are fields
+/// without any value.
+fn common_range(ranges: impl Iterator<Item = Option<[f64; 2]>>) -> Option<[f64; 2]> {
+    let either = |a: Option<[f64; 2]>, b: Option<[f64; 2]>| match (a, b) {
+        (Some(a), Some(b)) => Some(union(a, b)),
+        (a, b) => a.or(b),
+    };
+    ranges
+        .reduce(either)
+        .map(|range| range.unwrap_or([0.0, 1.0]))
 }
 
 /// A field that is asked for, with everything it is made of.
@@ -520,11 +536,11 @@ fn known(value: f32) -> f32 {
     if value > 0.0 { value } else { f32::NAN }
 }
 
-/// Smallest and largest value without the tails; widened if they coincide.
-fn robust_range(values: &[f32]) -> [f64; 2] {
+/// Smallest and largest value without the tails, widened if they coincide; nothing without values.
+fn robust_range(values: &[f32]) -> Option<[f64; 2]> {
     let mut finite: Vec<f32> = values.iter().copied().filter(|v| v.is_finite()).collect();
     if finite.is_empty() {
-        return [0.0, 1.0];
+        return None;
     }
     finite.sort_unstable_by(f32::total_cmp);
     let tail = (TAIL * finite.len() as f64) as usize;
@@ -532,12 +548,12 @@ fn robust_range(values: &[f32]) -> [f64; 2] {
         f64::from(finite[tail]),
         f64::from(finite[finite.len() - 1 - tail]),
     );
-    if high - low > 1e-6 * high.abs() {
+    Some(if high - low > 1e-6 * high.abs() {
         [low, high]
     } else {
         let air = if high == 0.0 { 1.0 } else { 0.05 * high.abs() };
         [low - air, high + air]
-    }
+    })
 }
 
 #[cfg(test)]
@@ -548,11 +564,23 @@ mod tests {
     fn ranges_leave_out_tails_and_what_is_missing() {
         let mut values: Vec<f32> = (0..1000).map(|i| i as f32 / 1000.0).collect();
         values.extend([f32::NAN, 1e9]);
-        let [low, high] = robust_range(&values);
+        let [low, high] = robust_range(&values).unwrap();
         assert!((0.0..0.01).contains(&low) && (0.99..1.0).contains(&high));
-        assert_eq!(robust_range(&[]), [0.0, 1.0]);
-        let [low, high] = robust_range(&[2.0, 2.0]);
+        let [low, high] = robust_range(&[2.0, 2.0]).unwrap();
         assert!(low < 2.0 && high > 2.0);
+    }
+
+    #[test]
+    fn a_part_without_values_leaves_the_colours_to_the_other() {
+        let none = robust_range(&[f32::NAN, f32::INFINITY]);
+        assert_eq!((none, robust_range(&[])), (None, None));
+        let values = Some([0.02, 0.15]);
+        assert_eq!(common_range([values, none].into_iter()), values);
+        assert_eq!(common_range([none, values].into_iter()), values);
+        assert_eq!(common_range([none, none].into_iter()), Some([0.0, 1.0]));
+        assert_eq!(common_range(std::iter::empty()), None);
+        let both = common_range([values, Some([-0.1, 0.1])].into_iter());
+        assert_eq!(both, Some([-0.1, 0.15]));
     }
 
     #[test]
