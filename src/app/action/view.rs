@@ -49,10 +49,10 @@ const COMPARE: &[ActionRow] = &[
     ActionRow {
         action: Action::FitAll,
         label: "Fit all",
-        tooltip: "Bring everything visible into view",
+        tooltip: "Bring everything visible into view in both windows",
         keys: Keys::press(&[Shortcut::plain(Key::Home)]),
         enabled: |state| state.document.has_any_part(),
-        command: |state| some(ViewCommand::FitAll(state.view.focus)),
+        command: |_| some(ViewCommand::FitBoth),
     },
 ];
 

@@ -37,6 +37,7 @@ impl ViewState {
             | ViewCommand::PreviousCamera(_)
             | ViewCommand::ToggleProjection(_)
             | ViewCommand::FitAll(_)
+            | ViewCommand::FitBoth
             | ViewCommand::Focus(_)
             | ViewCommand::ToggleLink => self.apply_camera(&command, scene),
             ViewCommand::SetOrbitStyle(style) => self.orbit_style = style,
@@ -92,6 +93,7 @@ impl ViewState {
                 self.set_camera(role, camera);
             }
             ViewCommand::FitAll(role) => self.fit_all(role, scene),
+            ViewCommand::FitBoth => self.fit_both(scene),
             ViewCommand::Focus(role) => match self.selected_bounds(role, scene) {
                 Some(bounds) => self.fit_window(role, &bounds.corners(), scene),
                 None => self.fit_all(role, scene),
@@ -159,6 +161,13 @@ impl ViewState {
     pub(in crate::app) fn fit_all(&mut self, role: Role, scene: &Scene<'_>) {
         self.remember_camera(role);
         self.refit(role, scene);
+    }
+
+    /// Linked cameras share their zoom: the window that has the keys is fitted last, so that it shows all.
+    fn fit_both(&mut self, scene: &Scene<'_>) {
+        for role in [self.focus.other(), self.focus] {
+            self.fit_all(role, scene);
+        }
     }
 
     fn refit(&mut self, role: Role, scene: &Scene<'_>) {

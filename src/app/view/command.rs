@@ -20,8 +20,10 @@ pub enum ViewCommand {
     PreviousCamera(Role),
     /// Orthographic or perspective.
     ToggleProjection(Role),
-    /// Fit what is visible.
+    /// Fit what is visible in a window.
     FitAll(Role),
+    /// The same in both windows.
+    FitBoth,
     /// Fit the selected part, or all.
     Focus(Role),
     /// Link the two cameras or not.

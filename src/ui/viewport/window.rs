@@ -84,7 +84,17 @@ impl Window {
             // Turning the camera would turn the other window's too.
             Some(Following::Beside(camera))
         } else {
-            Some(Following::Carried(carried(&camera, &before, &pose)))
+            let carried = carried(&camera, &before, &pose);
+            // A window that shows the part whole goes on to do so. It may have been fitted to the new
+            // pose already, and would lose the part if it were moved once more.
+            Some(if state.view.is_fitted(role) {
+                Following::Beside(Camera {
+                    world_from_view: carried.world_from_view,
+                    ..camera
+                })
+            } else {
+                Following::Carried(carried)
+            })
         }
     }
 
@@ -135,7 +145,8 @@ pub(super) fn tell_focus(
     state: &AppState,
     commands: &mut Vec<Command>,
 ) {
-    let is_pressed = response.is_pointer_button_down_on();
+    // A quick click is over before its frame is drawn.
+    let is_pressed = response.is_pointer_button_down_on() || response.clicked();
     if is_pressed {
         response.request_focus();
     }
