@@ -21,6 +21,7 @@ use super::{
     UsageError, check_outputs, json_target, print, progress, takes_stdout, warn_of_tools,
     write_json, write_output,
 };
+use crate::assess::Verdict;
 use crate::formats::{ReadOptions, Selection};
 use crate::geometry::Similarity;
 use crate::mapping::{MapOptions, Quantities, RuleKind};
@@ -29,11 +30,11 @@ use crate::pipeline::find_parts::find_parts;
 use crate::pipeline::load::{LoadSettings, LoadedPart, load, prepare};
 use crate::pipeline::map::{
     DefaultThickness, MapFiles, MapOutput, MapRecipe, MapRecord, OtherResult, PlacedPart,
-    deck_comments, element_table, elements_path, map_parts, map_record, map_report,
-    place as place_part, placing_recipe, pose_warning, unmapped_sets, write_mapping,
+    PoseOrigin, deck_comments, element_table, elements_path, map_parts, map_record, map_report,
+    place as place_part, placing_recipe, unmapped_sets, write_mapping,
 };
 use crate::pipeline::map_car::CarReason;
-use crate::pipeline::match_parts::MatchRecipe;
+use crate::pipeline::match_parts::{MatchRecipe, MatchRun};
 use crate::pipeline::outputs::{Content, Target};
 use crate::pipeline::project::Project;
 use crate::pipeline::units::PairUnits;
@@ -226,20 +227,19 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     inputs.extend(crash.files());
     inputs.extend(stamped.iter().flat_map(LoadedPart::files));
     check_outputs(targets(&args.output), &inputs)?;
-    let Placed {
-        crash,
-        mut poses,
-        is_poor,
-    } = place(args, crash, &stamped, &monitor)?;
+    let Placed { crash, mut poses } = place(args, crash, &stamped, &monitor)?;
     if let Some(mirror) = args.choice.mirror.motion() {
-        poses.iter_mut().for_each(|pose| *pose = mirror.after(pose));
+        for (pose, _) in &mut poses {
+            *pose = mirror.after(pose);
+        }
     }
     let placed: Vec<PlacedPart<'_>> = stamped
         .iter()
         .zip(poses)
-        .map(|(part, crash_from_stamped)| PlacedPart {
+        .map(|(part, (crash_from_stamped, origin))| PlacedPart {
             part,
             crash_from_stamped,
+            origin,
         })
         .collect();
     let recipe = MapRecipe {
@@ -294,7 +294,7 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         written.push((path.clone(), page.into_bytes()));
     }
     drop(monitor);
-    finish(outputs, &record, files.as_ref(), &written, is_poor)
+    finish(outputs, &record, files.as_ref(), &written)
 }
 
 /// True if less of the area carries values than was required.
@@ -310,7 +310,6 @@ fn finish(
     record: &MapRecord,
     files: Option<&MapFiles>,
     written: &[(PathBuf, Vec<u8>)],
-    is_poor: bool,
 ) -> anyhow::Result<ExitCode> {
     let mut is_complete = true;
     let mut note = |path: &Path, written: anyhow::Result<()>| {
@@ -344,6 +343,10 @@ fn finish(
     if !is_complete {
         return Ok(ExitCode::FAILURE);
     }
+    let poor = PoseOrigin::Match {
+        verdict: Verdict::Poor,
+    };
+    let is_poor = record.stamped.iter().any(|stamped| stamped.pose == poor);
     Ok(if is_poor {
         ExitCode::from(super::EXIT_POOR)
     } else {
@@ -466,10 +469,8 @@ fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Ve
 struct Placed {
     /// The crash parts that they lie on.
     crash: LoadedPart,
-    /// The pose of each.
-    poses: Vec<Similarity>,
-    /// A match calls one of them poor.
-    is_poor: bool,
+    /// The pose of each, and where it comes from.
+    poses: Vec<(Similarity, PoseOrigin)>,
 }
 
 /// The pose of each stamped part as it is given, or by a match on the crash parts that it belongs to.
@@ -479,11 +480,11 @@ fn place(
     stamped: &[LoadedPart],
     monitor: &Monitor,
 ) -> anyhow::Result<Placed> {
-    let given = |crash, poses| {
+    let given = |crash, poses: Vec<Similarity>| {
+        let poses = poses.into_iter().map(|pose| (pose, PoseOrigin::Given));
         Ok(Placed {
             crash,
-            poses,
-            is_poor: false,
+            poses: poses.collect(),
         })
     };
     if args.choice.identity {
@@ -535,28 +536,28 @@ fn place(
         );
     }
     let mut poses = Vec::new();
-    let mut is_poor = false;
     for part in stamped {
         let parts = PerRole::new(&crash, part);
         let file = part.path.display().to_string();
         let run =
             place_part(parts, &recipe, monitor).with_context(|| format!("cannot match {file}"))?;
-        if let Some(warning) = pose_warning(run.assessment.verdict, &file) {
-            is_poor = true;
+        // The record says that it is poor; the reason is known here alone.
+        if run.assessment.verdict == Verdict::Poor {
             let units = PairUnits::of(parts.map(Some));
             let why = run.assessment.sentences(Lengths::new(units.lengths));
-            let why = why
-                .first()
-                .map_or_else(String::new, |why| format!(": {why}"));
-            log::warn!("{warning}{why}");
+            if let Some(why) = why.first() {
+                log::warn!("{file}: {why}");
+            }
         }
-        poses.push(run.crash_from_stamped);
+        poses.push(found_by(&run));
     }
-    Ok(Placed {
-        crash,
-        poses,
-        is_poor,
-    })
+    Ok(Placed { crash, poses })
+}
+
+/// The pose that a match found.
+fn found_by(run: &MatchRun) -> (Similarity, PoseOrigin) {
+    let verdict = run.assessment.verdict;
+    (run.crash_from_stamped, PoseOrigin::Match { verdict })
 }
 
 /// The crash parts that the stamped parts belong to, and the poses on them; `None` if one of them fits no
@@ -579,14 +580,10 @@ fn on_found_parts(
             log::warn!("{}: {}", part.path.display(), reason.text());
         }
         ids.extend(found.found.part.chosen_part_ids());
-        poses.push(found.found.run.crash_from_stamped);
+        poses.push(found_by(&found.found.run));
     }
     let mut settings = crash.settings.clone();
     settings.selection = Selection::Parts(ids.into_iter().collect());
     let crash = prepare(&crash.path, Arc::clone(&crash.model), &settings, monitor)?;
-    Ok(Some(Placed {
-        crash,
-        poses,
-        is_poor: false,
-    }))
+    Ok(Some(Placed { crash, poses }))
 }

@@ -9,7 +9,7 @@ use crate::geometry::{Similarity, TriMesh};
 use crate::pipeline::inspect::Comparison;
 use crate::pipeline::load::{LoadSettings, LoadedPart};
 use crate::pipeline::map::{
-    ComparisonRecord, ElementLists, MapRecipe, MapRecord, MapRun, OtherResult,
+    ComparisonRecord, ElementLists, MapRecipe, MapRecord, MapRun, OtherResult, PoseOrigin,
 };
 use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
 use crate::pipeline::project::ProjectRequest;
@@ -249,10 +249,10 @@ pub struct MapInput {
     pub parts: PerRole<Arc<LoadedPart>>,
     /// Quantities, method, limits.
     pub recipe: MapRecipe,
-    /// Where the stamped part lies.
-    pub crash_from_stamped: Similarity,
+    /// Where the stamped part lies, and where this pose comes from.
+    pub pose: (Similarity, PoseOrigin),
     /// Further stamped files with their poses.
-    pub further: Vec<(Arc<LoadedPart>, Similarity)>,
+    pub further: Vec<(Arc<LoadedPart>, (Similarity, PoseOrigin))>,
 }
 
 /// Input of a comparison of a mapping with another mapper's result.

@@ -291,13 +291,14 @@ fn place_further(input: PlaceInput, monitor: MatchMonitor<'_>) -> Result<JobOutp
 }
 
 fn map(input: &MapInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
-    let first = (&*input.parts.stamped, input.crash_from_stamped);
+    let first = (&*input.parts.stamped, input.pose);
     let further = input.further.iter().map(|(part, pose)| (&**part, *pose));
     let stamped: Vec<PlacedPart<'_>> = std::iter::once(first)
         .chain(further)
-        .map(|(part, crash_from_stamped)| PlacedPart {
+        .map(|(part, (crash_from_stamped, origin))| PlacedPart {
             part,
             crash_from_stamped,
+            origin,
         })
         .collect();
     let run = map_parts(&input.parts.crash, &stamped, &input.recipe, monitor)?;

@@ -7,7 +7,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::load::{LoadSettings, LoadedPart, load_from};
-use super::map::{MapRecipe, MapRun, PlacedPart, map_parts};
+use super::map::{MapRecipe, MapRun, PlacedPart, PoseOrigin, map_parts};
 use super::process::{self, resident_bytes, with_peak};
 use super::{PipelineError, millis_since};
 use crate::formats::Memory;
@@ -177,6 +177,7 @@ pub fn error_rows(
         let placed = PlacedPart {
             part: &stamped,
             crash_from_stamped: pair.crash_from_stamped,
+            origin: PoseOrigin::Given,
         };
         let run = map_parts(&crash, &[placed], &recipe, monitor)?;
         let truth = by_shell(&crash, &run, &truth);

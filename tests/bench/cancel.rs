@@ -19,7 +19,7 @@ use shapematch::jobs::{
 };
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::load::{LoadSettings, LoadedPart, PartSource};
-use shapematch::pipeline::map::{MapRecipe, WriteKind};
+use shapematch::pipeline::map::{MapRecipe, PoseOrigin, WriteKind};
 use shapematch::pipeline::match_parts::{MatchRecipe, ReducedPair};
 use shapematch::pipeline::outputs::{MeshOutput, Output, OutputInput};
 use shapematch::role::{PerRole, Role};
@@ -247,7 +247,7 @@ fn matches(parts: &PerRole<Arc<LoadedPart>>, try_one: &impl Fn(&str, &JobKind)) 
     let map = JobKind::Map(MapInput {
         parts: parts.clone(),
         recipe,
-        crash_from_stamped,
+        pose: (crash_from_stamped, PoseOrigin::Given),
         further: Vec::new(),
     });
     try_one("map", &map);

@@ -6,6 +6,7 @@ mod app;
 mod app_exports;
 mod app_further;
 mod app_further_look;
+mod app_map_pose;
 mod app_mapping;
 mod app_mapping_look;
 mod assess;

@@ -7,7 +7,8 @@ use std::process::Output;
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::load::{LoadSettings, PartSource};
 use shapematch::pipeline::map::{
-    DefaultThickness, MapOutput, MapRecipe, PlacedPart, WriteKind, map_parts, write_mapping,
+    DefaultThickness, MapOutput, MapRecipe, PlacedPart, PoseOrigin, WriteKind, map_parts,
+    write_mapping,
 };
 use shapematch::report::parse_matrix;
 use shapematch::role::Role;
@@ -132,6 +133,7 @@ fn the_examples_that_come_with_the_program_are_mapped_and_written() {
         let placed = PlacedPart {
             part: &stamped,
             crash_from_stamped: parse_matrix(&truth).unwrap().motion,
+            origin: PoseOrigin::Given,
         };
         let run = map_parts(&crash, &[placed], &MapRecipe::default(), &silent).unwrap();
         for kind in WriteKind::ALL {

@@ -36,6 +36,15 @@ const MAP: &[ActionRow] = &[
         command: |_| some(MapCommand::MapOrCancel),
     },
     ActionRow {
+        action: Action::MapAsLoaded,
+        label: "Map as loaded",
+        tooltip: "Map without a match, where the stamped file has its part: right only if both files \
+                  have one position",
+        keys: Keys::NONE,
+        enabled: AppState::can_map_as_loaded,
+        command: |_| some(MapCommand::MapAsLoaded),
+    },
+    ActionRow {
         action: Action::CompareMapping,
         label: "Compare mapping…",
         tooltip: "Show the difference to the result of another mapper or the solver's own file (dyna.inc), \

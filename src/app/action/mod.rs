@@ -120,6 +120,8 @@ actions! {
     AddStamped,
     /// Map the forming results, or give the running mapping up.
     MapOrCancel,
+    /// Map where the stamped file has its part.
+    MapAsLoaded,
     /// Write the crash deck with the mapped results.
     SaveMappedDeck,
     /// Write the crash part with the mapped results.

@@ -14,7 +14,7 @@ use crate::assess::Verdict;
 use crate::geometry::Similarity;
 use crate::jobs::{FurtherInput, JobKey, JobKind, PlaceInput};
 use crate::pipeline::load::{LoadSettings, LoadedPart, usual_selection};
-use crate::pipeline::map::{placing_recipe, pose_warning};
+use crate::pipeline::map::{PoseOrigin, placing_recipe, pose_warning};
 use crate::pipeline::match_parts::MatchRun;
 use crate::role::{PerRole, Role};
 use crate::text::{counted, grouped};
@@ -149,6 +149,12 @@ impl Document {
 
     /// Where the further stamped files lie, in their order; the reason if one of them has no pose yet.
     pub fn further_poses(&self) -> Result<Vec<Similarity>, Reason> {
+        let places = self.further_places()?.into_iter();
+        Ok(places.map(|(pose, _)| pose).collect())
+    }
+
+    /// The same with where each pose comes from.
+    pub(super) fn further_places(&self) -> Result<Vec<(Similarity, PoseOrigin)>, Reason> {
         let Some(both) = self.both() else {
             return Err(Reason("Load both parts first."));
         };
@@ -157,7 +163,12 @@ impl Document {
                 "A stamped file has no pose yet: wait for its match, let it lie as the first one, \
                  or remove it.",
             ))?;
-            Ok(place.unwrap_or(*self.crash_from_stamped()))
+            let as_first = || (*self.crash_from_stamped(), self.pose_origin());
+            let own = further.placing.as_ref().zip(place);
+            Ok(own.map_or_else(as_first, |(placing, pose)| {
+                let verdict = placing.verdict;
+                (pose, PoseOrigin::Match { verdict })
+            }))
         };
         self.mapping.further.iter().map(pose).collect()
     }

@@ -19,15 +19,17 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use self::further::{set_pose, set_units};
+use super::facts::match_pose;
 use super::follow_up::FollowUp;
 use super::work::Work;
 use super::{AppState, ColorBy, Document, Effect, NoticeLevel, Reason, Shared};
+use crate::geometry::Similarity;
 use crate::jobs::{CompareMappingInput, JobKey, JobKind, MapInput, Stamp};
 use crate::mapping::{MapOptions, Quantities};
 use crate::pipeline::forming_values::{FormingValue, has_forming_value, nominal_thickness};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::map::{
-    ComparisonRecord, ElementLists, MapRecipe, MapRecord, MapRun, OtherResult,
+    ComparisonRecord, ElementLists, MapRecipe, MapRecord, MapRun, OtherResult, PoseOrigin,
 };
 pub use crate::pipeline::map::{DoubtfulElement, FurtherPose, UnmappedElement};
 use crate::role::Role;
@@ -68,6 +70,9 @@ pub struct MapResult {
     pub other: Option<Shared<OtherResult>>,
 }
 
+/// Moves of less than this share of the part are the rounding of one that comes back.
+const UNMOVED: f64 = 1e-9;
+
 /// Why there is no picture of the files.
 pub(super) const FROM_ONE_FILE: &str = "nothing is mapped from several stamped files";
 
@@ -94,6 +99,8 @@ pub enum MapCommand {
     StopFurther,
     /// Map, or give the running mapping up.
     MapOrCancel,
+    /// Map where the stamped file has its part, without a match.
+    MapAsLoaded,
     /// Look at an element of the current mapping closely, or no longer.
     Probe(Option<usize>),
     /// Pin an element of the crash part for the report, or take its pin away.
@@ -145,6 +152,44 @@ impl Document {
     pub fn can_map(&self) -> Result<(), Reason> {
         self.has_forming_results()?;
         self.further_poses().map(|_| ())
+    }
+
+    /// `Ok` if somebody has said where the stamped part belongs.
+    pub fn has_pose_to_map_at(&self) -> Result<(), Reason> {
+        if self.pose_origin() != PoseOrigin::AsLoaded {
+            return Ok(());
+        }
+        Err(Reason(
+            "There is no match yet: match first, or choose Map as loaded in section 4.",
+        ))
+    }
+
+    /// Where the pose of the stamped part comes from.
+    pub fn pose_origin(&self) -> PoseOrigin {
+        let result = self.result.as_ref();
+        let of_these = result.filter(|result| result.stamp.parts == self.stamp().parts);
+        let (Some(result), Some(part)) = (of_these, self.part(Role::Stamped)) else {
+            let is_moved = *self.crash_from_stamped() != Similarity::identity();
+            return if is_moved {
+                PoseOrigin::ByHand
+            } else {
+                PoseOrigin::AsLoaded
+            };
+        };
+        let verdict = result.run.assessment.verdict;
+        let bounds = part.bounds();
+        let found = match_pose(&result.run, result.alternative);
+        let distance = found.map_or(0.0, |found| {
+            found.max_displacement(self.crash_from_stamped(), &bounds.corners())
+        });
+        // Moved there and back is not moved.
+        if result.stamp != self.stamp() && distance > UNMOVED * bounds.diagonal() {
+            PoseOrigin::Moved { distance, verdict }
+        } else if result.alternative.is_some() {
+            PoseOrigin::Alternative
+        } else {
+            PoseOrigin::Match { verdict }
+        }
     }
 
     /// `Ok` if there is something to map.
@@ -256,6 +301,18 @@ impl AppState {
             return Ok(());
         }
         self.document.can_map()?;
+        self.document.has_pose_to_map_at()?;
+        self.jobs.is_unlocked()
+    }
+
+    /// `Ok` if a mapping of a part that was neither matched nor moved may start.
+    pub fn can_map_as_loaded(&self) -> Result<(), Reason> {
+        self.document.can_map()?;
+        if self.document.has_pose_to_map_at().is_ok() {
+            return Err(Reason(
+                "The stamped part has a pose: Map carries over there.",
+            ));
+        }
         self.jobs.is_unlocked()
     }
 
@@ -359,7 +416,8 @@ impl MappingState {
             MapCommand::MapOrCancel if work.jobs.is_active(JobKey::Map) => {
                 return work.cancel(JobKey::Map);
             }
-            MapCommand::MapOrCancel => return start(work),
+            MapCommand::MapOrCancel if work.document.has_pose_to_map_at().is_err() => {}
+            MapCommand::MapOrCancel | MapCommand::MapAsLoaded => return start(work),
             MapCommand::AskOther if work.jobs.is_active(JobKey::CompareMapping) => {
                 return work.cancel(JobKey::CompareMapping);
             }
@@ -407,7 +465,7 @@ fn start(work: &mut Work<'_>) -> Vec<Effect> {
     let Some(both) = work.document.both() else {
         return Vec::new();
     };
-    let Ok(poses) = work.document.further_poses() else {
+    let Ok(poses) = work.document.further_places() else {
         return Vec::new();
     };
     let recipe = work.document.wanted_mapping();
@@ -416,7 +474,10 @@ fn start(work: &mut Work<'_>) -> Vec<Effect> {
     let input = MapInput {
         parts: both.map(|part| part.loaded.to_arc()),
         recipe,
-        crash_from_stamped: *work.document.crash_from_stamped(),
+        pose: (
+            *work.document.crash_from_stamped(),
+            work.document.pose_origin(),
+        ),
         further: further.zip(poses).collect(),
     };
     vec![work.start(JobKind::Map(input))]

@@ -5,6 +5,7 @@ mod convert;
 mod default_thickness;
 mod lists;
 mod old_states;
+mod origin;
 mod output;
 mod peak;
 mod place;
@@ -27,6 +28,7 @@ pub use convert::TargetLayers;
 pub use default_thickness::DefaultThickness;
 pub use lists::{DoubtfulElement, ElementLists, GiverShare, UnmappedElement, element_lists};
 pub use old_states::{NewStates, car_copies, mapped_by_solver};
+pub use origin::PoseOrigin;
 pub use output::{
     MapFile, MapFiles, MapOutput, WriteKind, deck_comments, elements_path, write_mapping,
 };
@@ -97,6 +99,8 @@ pub struct PlacedPart<'a> {
     pub part: &'a LoadedPart,
     /// `crash = c · R · stamped + t`.
     pub crash_from_stamped: Similarity,
+    /// Where the pose comes from.
+    pub origin: PoseOrigin,
 }
 
 /// Means, percentiles and the way back: is the mapping right?
@@ -117,6 +121,8 @@ pub struct MapRun {
     pub recipe: MapRecipe,
     /// Poses of the stamped parts, in their order.
     pub poses: Vec<Similarity>,
+    /// Where each of them comes from.
+    pub origins: Vec<PoseOrigin>,
     /// The crash part as it was mapped onto.
     pub target: TargetPart,
     /// For each element of `target` its index in the crash model's shells.
@@ -279,6 +285,7 @@ pub fn map_parts(
             .iter()
             .map(|placed| placed.crash_from_stamped)
             .collect(),
+        origins: stamped.iter().map(|placed| placed.origin).collect(),
         target,
         shells: crash_shells.shells,
         source_shells: shells.into_iter().map(|shells| shells.shells).collect(),

@@ -7,7 +7,9 @@ use serde::Serialize;
 
 use super::compare::{ComparisonRecord, OtherResult, compare_with, largest_von_mises};
 use super::verdict::{CheckRecord, checks_of};
-use super::{MapFiles, MapRun, PlacedPart, ProbeRecord, covered_values, mapped_by_solver};
+use super::{
+    MapFiles, MapRun, PlacedPart, PoseOrigin, ProbeRecord, covered_values, mapped_by_solver,
+};
 use crate::formats::diagnostic::{DiagnosticKind, Severity};
 use crate::geometry::chunks::for_chunks;
 use crate::mapping::{
@@ -93,6 +95,8 @@ pub struct StampedRecord {
     pub length_factor: f64,
     /// Its pose, rows of the 4×4 matrix.
     pub crash_from_stamped: [[f64; 4]; 4],
+    /// Where this comes from.
+    pub pose: PoseOrigin,
 }
 
 /// Elements with one status.
@@ -200,6 +204,13 @@ pub fn map_record(
     monitor.check()?;
     let von_mises = von_mises(run);
     monitor.check()?;
+    let first = stamped.first().map(|placed| placed.part);
+    let units = PairUnits::of(PerRole::new(Some(crash), first));
+    let lengths = Lengths::new(units.lengths);
+    let of_pose = |placed: &PlacedPart<'_>| {
+        let name = placed.part.file_name();
+        placed.origin.warning(&name, lengths)
+    };
     let mut record = MapRecord {
         build: build_id(),
         schema: 1,
@@ -212,6 +223,7 @@ pub fn map_record(
                 file: placed.part.path.display().to_string(),
                 length_factor: placed.part.settings.length_factor,
                 crash_from_stamped: placed.crash_from_stamped.to_rows(),
+                pose: placed.origin,
             })
             .collect(),
         n_elements: run.shells.len(),
@@ -233,8 +245,11 @@ pub fn map_record(
         read_back_error: files.map(|files| files.read_back_error),
         comparison: other.map(|other| compare_with(run, crash, other)),
         probes: Vec::new(),
-        warnings: mapped_by_solver(crash)
-            .into_iter()
+        // At a wrong pose everything else is wrong as well.
+        warnings: stamped
+            .iter()
+            .filter_map(of_pose)
+            .chain(mapped_by_solver(crash))
             .chain(unread_line(crash))
             .chain(stamped.iter().filter_map(|placed| unread_line(placed.part)))
             .chain(without_states(run))
@@ -243,9 +258,7 @@ pub fn map_record(
         map_ms: run.map_ms,
         check_ms: run.check_ms,
     };
-    let first = stamped.first().map(|placed| placed.part);
-    let units = PairUnits::of(PerRole::new(Some(crash), first));
-    record.checks = checks_of(run, &record, Lengths::new(units.lengths));
+    record.checks = checks_of(run, &record, lengths);
     Ok(record)
 }
 

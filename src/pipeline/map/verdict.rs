@@ -1,9 +1,11 @@
 //! The checks of a mapping: what was found, what is asked for, and where to look.
 
+use std::path::Path;
+
 use serde::{Serialize, Serializer};
 
 use super::peak::peak_at_best;
-use super::record::{MapRecord, PairRecord};
+use super::record::{MapRecord, PairRecord, StampedRecord};
 use super::{MapRun, ShownValue};
 use crate::mapping::Status;
 use crate::pipeline::forming_values::FormingValue;
@@ -93,7 +95,7 @@ pub struct CheckRecord {
     pub worst: Option<usize>,
 }
 
-/// All checks; those that are not met stand first, where they are seen.
+/// All checks; that of the pose stands first, then those that are not met, where they are seen.
 pub(super) fn checks_of(run: &MapRun, record: &MapRecord, lengths: Lengths) -> Vec<CheckRecord> {
     let mut checks = vec![area(run, record)];
     checks.extend(doubled(run));
@@ -157,7 +159,38 @@ pub(super) fn checks_of(run: &MapRun, record: &MapRecord, lengths: Lengths) -> V
         }
     }
     checks.sort_by_key(|check| check.is_met != Some(false));
+    checks.splice(0..0, pose(record, lengths));
     checks
+}
+
+/// Whether a match stands for the pose of every stamped part; of several the most doubtful is named.
+fn pose(record: &MapRecord, lengths: Lengths) -> Option<CheckRecord> {
+    let first = record.stamped.first()?;
+    let doubt = |stamped: &&StampedRecord| stamped.pose.doubt();
+    let others = record.stamped.iter().skip(1);
+    let most = others.fold(first, |most, next| {
+        if doubt(&next) > doubt(&most) {
+            next
+        } else {
+            most
+        }
+    });
+    let words = most.pose.words(lengths);
+    let is_named = record.stamped.len() > 1 && most.pose.is_good() != Some(true);
+    let name = Path::new(&most.file).file_name().unwrap_or_default();
+    Some(CheckRecord {
+        name: "Pose".to_owned(),
+        found: if is_named {
+            format!("{}: {words}", name.to_string_lossy())
+        } else {
+            words
+        },
+        limit: "a match that is GOOD".to_owned(),
+        is_met: most.pose.is_good(),
+        reason: None,
+        picture: CheckPicture::Distance,
+        worst: None,
+    })
 }
 
 fn area(run: &MapRun, record: &MapRecord) -> CheckRecord {

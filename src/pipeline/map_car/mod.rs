@@ -15,8 +15,8 @@ use super::find_parts::{FoundParts, find_parts};
 use super::load::{LoadSettings, LoadedPart, load, prepare};
 use super::map::{
     DefaultThickness, LEAST_AREA, MapOutput, MapRecipe, MapRecord, NewStates, PlacedPart,
-    WriteKind, car_copies, deck_comments, elements_path, map_parts, map_record, map_report,
-    mapped_by_solver, unread_line, write_mapping,
+    PoseOrigin, WriteKind, car_copies, deck_comments, elements_path, map_parts, map_record,
+    map_report, mapped_by_solver, unread_line, write_mapping,
 };
 use super::match_parts::MatchRecipe;
 use super::write_file::{write_file, write_file_unless_cancelled};
@@ -108,7 +108,13 @@ fn stem_of(path: &Path) -> String {
 struct Claim {
     ids: Vec<u64>,
     pose: Similarity,
-    is_good: bool,
+    verdict: Verdict,
+}
+
+impl Claim {
+    fn is_good(&self) -> bool {
+        self.verdict == Verdict::Good
+    }
 }
 
 /// What was made of the stamped parts of one group.
@@ -166,7 +172,7 @@ pub fn map_car(
     let mut new_states = NewStates::default();
     for members in groups(&claims) {
         monitor.check()?;
-        let is_good = |at: &&usize| claims[*at].is_good;
+        let is_good = |at: &&usize| claims[*at].is_good();
         let first = members.iter().find(is_good).unwrap_or(&members[0]);
         let group = Group {
             crash,
@@ -255,7 +261,7 @@ fn claim(row: &mut CarRow, found: &FoundParts) -> Claim {
     Claim {
         ids: row.crash_parts.clone(),
         pose: run.crash_from_stamped,
-        is_good: run.assessment.verdict == Verdict::Good,
+        verdict: run.assessment.verdict,
     }
 }
 
@@ -330,6 +336,9 @@ impl Group<'_> {
             .map(|(part, (_, claim))| PlacedPart {
                 part,
                 crash_from_stamped: claim.pose,
+                origin: PoseOrigin::Match {
+                    verdict: claim.verdict,
+                },
             })
             .collect();
         let mut mapping = recipe.map.clone();
@@ -340,7 +349,7 @@ impl Group<'_> {
             .filter_map(|(file, _)| file.stress_factor);
         mapping.stress_factors = factors.collect();
         let mut run = map_parts(&crash, &placed, &mapping, monitor)?;
-        let is_good = || self.members.iter().map(|(_, claim)| claim.is_good);
+        let is_good = || self.members.iter().map(|(_, claim)| claim.is_good());
         let mut is_displaced = vec![false; placed.len()];
         let differ = is_good().any(|good| good) && !is_good().all(|good| good);
         if differ && run.mapped.area_share(Status::Conflict, &run.target.mesh) > CONFLICT {

@@ -29,10 +29,11 @@ fn placed<'a>(
     let further = input.further_stamped.iter().map(|part| &**part);
     let stamped = std::iter::once(parts.stamped).chain(further);
     stamped
-        .zip(&run.poses)
-        .map(|(part, pose)| PlacedPart {
+        .zip(run.poses.iter().zip(&run.origins))
+        .map(|(part, (pose, origin))| PlacedPart {
             part,
             crash_from_stamped: *pose,
+            origin: *origin,
         })
         .collect()
 }

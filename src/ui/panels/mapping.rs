@@ -161,9 +161,26 @@ fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let running = state.jobs.running().filter(|job| job.key == JobKey::Map);
         let words = running.map_or("Waiting for the previous task", |_| "Mapping …");
         secondary(ui, words);
-    } else if !is_matched && !is_made {
-        caption(ui, "This pose does not come from a match");
+    } else if state.can_map_as_loaded().is_ok() {
+        caption(ui, "There is no match yet");
+        let look = (Action::MapAsLoaded.row().label, Look::Plain, ROW);
+        wide_action(ui, state, Action::MapAsLoaded, look, commands);
     }
+    pose_ui(ui, state);
+}
+
+/// At which pose a mapping is made: a permanent line wherever no good match stands for it.
+fn pose_ui(ui: &mut Ui, state: &AppState) {
+    if state.document.can_map().is_err() {
+        return;
+    }
+    let origin = state.document.pose_origin();
+    let text = format!("Pose: {}", origin.words(state.lengths()));
+    let color = match origin.is_good() {
+        Some(false) => Palette::of(ui).check,
+        _ => ui.visuals().weak_text_color(),
+    };
+    ui.add(egui::Label::new(egui::RichText::new(text).color(color)).wrap());
 }
 
 fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut Vec<Command>) {

@@ -1,0 +1,117 @@
+//! Where the pose comes from that a mapping was made at: values at a wrong pose look as good as any.
+
+use serde::Serialize;
+
+use super::place::pose_warning;
+use crate::assess::Verdict;
+use crate::text::Lengths;
+
+/// Where the pose of a stamped part comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[serde(rename_all = "kebab-case", tag = "from")]
+pub enum PoseOrigin {
+    /// It was given with the task, and nothing more is known of it.
+    #[default]
+    Given,
+    /// A match found it.
+    Match {
+        /// What the match said of it.
+        verdict: Verdict,
+    },
+    /// A match found it, and another one that fits better.
+    Alternative,
+    /// It was moved by hand from where a match had put it.
+    Moved {
+        /// How far the corner of the part's box that moved farthest.
+        distance: f64,
+        /// What the match said of its own pose.
+        verdict: Verdict,
+    },
+    /// It was put there by hand, without a match.
+    ByHand,
+    /// It lies where its file has it.
+    AsLoaded,
+}
+
+impl PoseOrigin {
+    /// Whether a match stands for the pose; `None` for one that was given.
+    pub fn is_good(&self) -> Option<bool> {
+        match self {
+            Self::Given => None,
+            Self::Match { verdict } => Some(*verdict == Verdict::Good),
+            Self::Alternative | Self::Moved { .. } | Self::ByHand | Self::AsLoaded => Some(false),
+        }
+    }
+
+    /// "moved by hand, 5.00 mm from the match (GOOD)".
+    pub fn words(&self, lengths: Lengths) -> String {
+        match self {
+            Self::Given => "given".to_owned(),
+            Self::Match { verdict } => format!("match: {}", verdict.label()),
+            Self::Alternative => "an alternative of the match".to_owned(),
+            Self::Moved { distance, verdict } => format!(
+                "moved by hand, {} from the match ({})",
+                lengths.of(*distance),
+                verdict.label()
+            ),
+            Self::ByHand => "no match: placed by hand".to_owned(),
+            Self::AsLoaded => "no match yet: as loaded".to_owned(),
+        }
+    }
+
+    /// What is to be told before the mapping is used; `None` if nothing is.
+    pub(super) fn warning(&self, file: &str, lengths: Lengths) -> Option<String> {
+        match self {
+            Self::Given => None,
+            Self::Match { verdict } => pose_warning(*verdict, file),
+            Self::Alternative | Self::Moved { .. } | Self::ByHand | Self::AsLoaded => {
+                Some(format!("the pose of {file}: {}", self.words(lengths)))
+            }
+        }
+    }
+
+    /// How little is to be said for the pose, the best first.
+    pub(super) fn doubt(&self) -> u8 {
+        match self {
+            Self::Match {
+                verdict: Verdict::Good,
+            } => 0,
+            Self::Given => 1,
+            Self::Match {
+                verdict: Verdict::Check,
+            } => 2,
+            Self::Alternative => 3,
+            Self::Moved { .. } => 4,
+            Self::Match {
+                verdict: Verdict::Poor,
+            } => 5,
+            Self::ByHand => 6,
+            Self::AsLoaded => 7,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::LengthUnit;
+
+    #[test]
+    fn only_a_good_match_stands_for_a_pose() {
+        let of = |verdict| PoseOrigin::Match { verdict };
+        assert_eq!(of(Verdict::Good).is_good(), Some(true));
+        assert_eq!(of(Verdict::Check).is_good(), Some(false));
+        assert_eq!(PoseOrigin::Given.is_good(), None);
+        let moved = PoseOrigin::Moved {
+            distance: 5.0,
+            verdict: Verdict::Good,
+        };
+        assert_eq!(moved.is_good(), Some(false));
+        let lengths = Lengths::new(Some(LengthUnit::Millimeter));
+        let words = "moved by hand, 5.00 mm from the match (GOOD)";
+        assert_eq!(moved.words(lengths), words);
+        let warning = moved.warning("a.k", lengths);
+        assert_eq!(warning, Some(format!("the pose of a.k: {words}")));
+        assert_eq!(of(Verdict::Good).warning("a.k", lengths), None);
+    }
+}
