@@ -6,6 +6,7 @@
 mod background;
 pub mod dialogs;
 pub mod gizmo;
+mod help;
 pub mod keyboard;
 mod no_window;
 pub mod overlays;

@@ -2,6 +2,7 @@
 
 use egui::{Align, Layout, Modal, RichText, ScrollArea, Ui, vec2};
 
+use super::help::help_ui;
 use super::palette::{self, palette_ui};
 use super::picture_options::picture_ui;
 use super::project_dialogs::{missing_ui, unsaved_ui};
@@ -9,8 +10,8 @@ use super::theme::{Palette, UNIT};
 use super::typed::{Takes, refusal, told_field};
 use super::widgets::{caption, chip, form_row, level_color, paragraph, secondary};
 use crate::app::{
-    AppState, Command, Dialog, ExportCommand, Menu, MouseScheme, Notice, NoticeCommand,
-    NoticeLevel, Settings, Theme, ViewCommand, clock_text,
+    AppState, Command, Dialog, ExportCommand, MouseScheme, Notice, NoticeCommand, NoticeLevel,
+    Settings, Theme, ViewCommand, clock_text,
 };
 use crate::colormap::ColorMap;
 
@@ -59,7 +60,8 @@ pub fn overlays_ui(
     }
 }
 
-fn title(ui: &mut Ui, text: &str, commands: Option<&mut Vec<Command>>) {
+/// The head of a sheet with the way out of it.
+pub(super) fn title(ui: &mut Ui, text: &str, commands: Option<&mut Vec<Command>>) {
     ui.horizontal(|ui| {
         ui.heading(text);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -78,111 +80,11 @@ fn title(ui: &mut Ui, text: &str, commands: Option<&mut Vec<Command>>) {
     ui.separator();
 }
 
-/// Keys that are no menu entries: group, and for each key what it does.
-const OTHER_KEYS: [(&str, &[(&str, &str)]); 3] = [
-    (
-        "In a 3D window",
-        &[
-            ("Arrows", "Rotate"),
-            ("Shift+Arrows", "Pan"),
-            ("+, −", "Zoom"),
-            ("P on a part", "Rotate about this point; P again: no longer"),
-        ],
-    ),
-    (
-        "While moving by keys",
-        &[
-            ("X, Y, Z", "Only along or about this axis"),
-            ("Shift+X, Y, Z", "Only in the plane across it"),
-            ("Digits", "Type the amount"),
-            ("Enter", "Accept"),
-            ("Esc", "Cancel"),
-        ],
-    ),
-    (
-        "On the convergence chart",
-        &[("Left, Right", "Step by step")],
-    ),
-];
-
-/// What the mouse does in a 3D window.
-const MOUSE: [(&str, &str); 8] = [
-    ("Left drag", "Rotate"),
-    ("Ctrl + drag", "The same, edges only"),
-    ("Ctrl + Shift + left drag", "Roll"),
-    ("Middle drag", "Pan"),
-    ("Wheel, right drag", "Zoom to the pointer"),
-    ("Click", "Select a part"),
-    ("Ctrl + click", "Add to the selection"),
-    ("Double click", "Bring the part into view"),
-];
-
-/// All keys, menu by menu, and the mouse.
-fn help_ui(ui: &mut Ui, room: egui::Vec2) {
-    let width = room.x.min(1040.0);
-    ui.set_width(width);
-    title(ui, "Keys and mouse", None);
-    let sheet = ScrollArea::vertical()
-        .max_height(room.y)
-        .min_scrolled_height(room.y);
-    sheet.show(ui, |ui| {
-        ui.spacing_mut().item_spacing = vec2(40.0, 2.0);
-        // The scroll bar floats; the keys must not lie under it.
-        ui.set_max_width(width - 16.0);
-        ui.columns(3, |columns| {
-            let menus: [&[Menu]; 3] = [
-                &[Menu::File, Menu::Edit],
-                &[Menu::View],
-                &[Menu::Match, Menu::Export, Menu::Help],
-            ];
-            for (column, menus) in columns.iter_mut().zip(menus) {
-                for menu in menus {
-                    help_menu(column, *menu);
-                }
-            }
-            for (title, keys) in OTHER_KEYS {
-                help_group(&mut columns[0], title, keys);
-            }
-            help_group(&mut columns[2], "Mouse", &MOUSE);
-        });
-    });
-}
-
-fn group_title(ui: &mut Ui, text: &str) {
+/// The title of a group in a sheet.
+pub(super) fn group_title(ui: &mut Ui, text: &str) {
     ui.add_space(UNIT);
     let color = Palette::of(ui).accent_text;
     ui.label(RichText::new(text).color(color));
-}
-
-fn help_group(ui: &mut Ui, title: &str, keys: &[(&str, &str)]) {
-    group_title(ui, title);
-    for (keys, what) in keys {
-        key_row(ui, what, keys);
-    }
-}
-
-fn help_menu(ui: &mut Ui, menu: Menu) {
-    let keyed: Vec<_> = menu
-        .rows()
-        .filter_map(|row| Some((row.label, row.key_text()?)))
-        .collect();
-    if keyed.is_empty() {
-        return;
-    }
-    group_title(ui, menu.label());
-    for (label, keys) in keyed {
-        key_row(ui, label, &keys);
-    }
-}
-
-fn key_row(ui: &mut Ui, what: &str, keys: &str) {
-    ui.spacing_mut().interact_size.y = 18.0;
-    ui.horizontal(|ui| {
-        ui.label(what);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            secondary(ui, keys);
-        });
-    });
 }
 
 fn preferences_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {

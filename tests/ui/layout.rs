@@ -23,7 +23,7 @@ pub(super) struct Painted {
 }
 
 /// Every text of the last frame that can be seen.
-pub(super) fn texts(window: &Window) -> Vec<Painted> {
+pub(super) fn texts<S>(window: &Harness<'static, S>) -> Vec<Painted> {
     let mut found = Vec::new();
     for clipped in &window.output().shapes {
         collect(&clipped.shape, clipped.clip_rect, &mut found);
@@ -54,7 +54,7 @@ fn collect(shape: &Shape, clip: Rect, found: &mut Vec<Painted>) {
 }
 
 /// What is wrong unless every text lies within its clip sideways and on no other text.
-pub(super) fn faults(window: &Window) -> Vec<String> {
+pub(super) fn faults<S>(window: &Harness<'static, S>) -> Vec<String> {
     let mut texts = texts(window);
     // Stands in the place of the picture, and so under everything.
     texts.retain(|text| text.text != "no graphics adapter");
@@ -86,7 +86,7 @@ pub(super) fn faults(window: &Window) -> Vec<String> {
 }
 
 /// Buttons and fields that lie partly on one another; one within the other is meant.
-fn overlapping_buttons(window: &Window) -> Vec<String> {
+fn overlapping_buttons<S>(window: &Harness<'static, S>) -> Vec<String> {
     use egui::accesskit::Role;
     let screen = Rect::from_min_size(Pos2::ZERO, window.ctx.content_rect().size());
     let mut all: Vec<(String, Rect)> = Vec::new();

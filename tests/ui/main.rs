@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop at the first surprise")]
 
 mod exports;
+mod follow;
 mod inspect;
 mod keyboard;
 mod large;
@@ -18,6 +19,7 @@ mod preferences;
 mod project;
 mod render;
 mod shaders;
+mod sheets;
 mod specification;
 mod starts;
 mod story;
