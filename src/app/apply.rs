@@ -126,7 +126,8 @@ impl AppState {
         effects
     }
 
-    /// Ends what is on top: a dialog, a move by keys, a preview, then the running match.
+    /// Ends what is on top: a dialog, a move by keys, a preview, then the running match; then closes the
+    /// messages.
     fn escape(&mut self) -> Vec<Effect> {
         let is_preview = self.is_preview();
         let (mut work, topics) = self.split();
@@ -149,7 +150,7 @@ impl AppState {
                 .into_iter()
                 .flat_map(|key| [Some(key), key.of_other_part()]);
             both.flatten().flat_map(|key| work.cancel(key)).collect()
-        } else if topics.inspect.forget_place() {
+        } else if work.log.notices.close_toasts() || topics.inspect.forget_place() {
             Vec::new()
         } else {
             topics.parts.selected.clear();

@@ -8,7 +8,7 @@ use super::reduce::take_level_measured;
 use super::{AppState, Effect, NoticeLevel};
 use crate::jobs::{FoundCrash, JobEvent, JobKey, JobOutput, JobStage, Live, Stamp};
 use crate::role::Role;
-use crate::text::parts_by_id;
+use crate::text::{capital, parts_by_id};
 
 impl AppState {
     pub(super) fn take_job_event(&mut self, event: JobEvent) -> Vec<Effect> {
@@ -40,6 +40,8 @@ impl AppState {
                 Vec::new()
             }
             JobStage::Finished(output) => {
+                // What was said of its last try is solved.
+                self.log.notices.withdraw_job(event.key);
                 self.take_output(output, &event.key, event.stamp, event.elapsed)
             }
         }
@@ -237,15 +239,10 @@ impl AppState {
             JobKey::Export => "Nothing was written; choose another place",
             _ => "Parts and pose are as they were",
         };
-        let mut letters = message.chars();
-        let first: String = letters
-            .next()
-            .into_iter()
-            .flat_map(char::to_uppercase)
-            .collect();
-        let text = format!("{first}{}. {what_now}", letters.as_str());
+        let text = format!("{}. {what_now}", capital(&message));
         self.work()
             .log_at(NoticeLevel::Error, step, role, text, Some(elapsed));
+        self.log.notices.last_is_of(key);
         let (work, topics) = self.split();
         match key {
             JobKey::Match => topics.matching.match_failed(&work, message),

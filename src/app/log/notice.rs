@@ -5,6 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::app::Action;
+use crate::jobs::JobKey;
 
 /// How loud a message is, quiet first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -15,9 +16,9 @@ pub enum NoticeLevel {
     Success,
     /// A toast, and a line in the bell's list.
     Note,
-    /// Stays until it is read.
+    /// Stays a minute; the bell keeps it.
     Warning,
-    /// Stays until it is closed.
+    /// Stays until it is closed, or what failed has worked.
     Error,
 }
 
@@ -42,7 +43,8 @@ impl NoticeLevel {
             Self::Info => Some(Duration::ZERO),
             Self::Success => Some(Duration::from_secs(4)),
             Self::Note => Some(Duration::from_secs(8)),
-            Self::Warning | Self::Error => None,
+            Self::Warning => Some(Duration::from_secs(60)),
+            Self::Error => None,
         }
     }
 
@@ -84,6 +86,8 @@ pub struct Notice {
     pub is_unread: bool,
     /// What the user may want to do about it, beside closing it.
     pub offer: Option<Action>,
+    /// The job that failed, if it tells of one.
+    of_job: Option<JobKey>,
     is_toast: bool,
 }
 
@@ -137,6 +141,7 @@ impl Notices {
             at: showing.now,
             is_unread: true,
             offer,
+            of_job: None,
             is_toast: !showing.is_muted,
         });
         if self.items.len() > MAX_KEPT {
@@ -178,6 +183,32 @@ impl Notices {
             notice.is_toast = false;
             notice.is_unread = false;
         }
+    }
+
+    /// The newest message tells that a job failed.
+    pub(in crate::app) fn last_is_of(&mut self, job: JobKey) {
+        if let Some(last) = self.items.last_mut() {
+            last.of_job = Some(job);
+        }
+    }
+
+    /// A job has worked: that it failed before is solved.
+    pub(in crate::app) fn withdraw_job(&mut self, job: JobKey) {
+        let is_meant = |n: &&mut Notice| n.of_job == Some(job);
+        for notice in self.items.iter_mut().filter(is_meant) {
+            notice.is_toast = false;
+            notice.is_unread = false;
+        }
+    }
+
+    /// Closes all toasts; false if there is none. The bell keeps them.
+    pub(in crate::app) fn close_toasts(&mut self) -> bool {
+        let mut is_any = false;
+        for notice in self.items.iter_mut().filter(|n| n.is_toast) {
+            notice.is_toast = false;
+            is_any = true;
+        }
+        is_any
     }
 
     /// What an action was offered for is over.
