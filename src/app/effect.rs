@@ -46,8 +46,10 @@ pub enum Effect {
     AskSave {
         /// What is written; decides the file extension.
         kind: Output,
-        /// A file name to start from.
-        name: String,
+        /// A path to start from.
+        path: PathBuf,
+        /// The files that are read, which nothing may overwrite.
+        inputs: Vec<PathBuf>,
     },
     /// Put a text on the clipboard.
     CopyText(String),
@@ -57,8 +59,8 @@ pub enum Effect {
     AskPicture {
         /// How it is taken.
         choice: PictureChoice,
-        /// A file name to start from.
-        name: String,
+        /// A path to start from.
+        path: PathBuf,
     },
     /// Write a picture of the 3D windows.
     TakePicture {

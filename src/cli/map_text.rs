@@ -84,7 +84,10 @@ fn wrote(files: &MapFiles) -> Vec<(&'static str, String)> {
         let text = format!("{} ({megabytes:.1} MB)", file.path.display());
         lines.push(("Wrote", text));
         if let Some(replaced) = &file.replaces {
-            lines.push(("", format!("takes the place of {}", replaced.display())));
+            lines.push((
+                "",
+                format!("to be included instead of {}", replaced.display()),
+            ));
         }
     }
     let counts = format!(

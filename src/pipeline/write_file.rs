@@ -116,10 +116,10 @@ pub(super) fn new_file_in(folder: &Path) -> io::Result<NamedTempFile> {
     {
         use std::os::unix::fs::PermissionsExt as _;
         builder.permissions(fs::Permissions::from_mode(0o666));
-        builder.tempfile_in(folder)
     }
-    #[cfg(not(unix))]
-    builder.tempfile_in(folder)
+    // The error would name the file, which nobody asked for.
+    let unnamed = |error: io::Error| io::Error::from(error.kind());
+    builder.tempfile_in(folder).map_err(unnamed)
 }
 
 /// Gives the new file the owner of the old one, where the system lets us.

@@ -2,12 +2,14 @@
 //! into where the desktop has no dialog.
 
 mod desktop;
+mod question;
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 use self::desktop::file_dialog;
+use self::question::{Question, titles};
 use super::background::run_once;
 use super::path_prompt::{self, Completion, plain_words};
 use super::theme::{Palette, UNIT};
@@ -16,34 +18,10 @@ use crate::app::{Command, ExportCommand, FileCommand, MapCommand, PictureChoice,
 use crate::formats::Format;
 use crate::jobs::{Located, ProjectFile, ProjectRequest};
 use crate::pipeline::outputs::Output;
-use crate::pipeline::project::EXTENSION;
 use crate::role::Role;
 
 /// A dialog that ends sooner was not shown: no one closes a window so fast.
 const NOT_SHOWN: Duration = Duration::from_millis(400);
-
-/// What is asked.
-#[derive(Debug, Clone, PartialEq, Eq)]
-enum Question {
-    Open(Role),
-    OpenProject,
-    /// A file of a project.
-    Locate(ProjectFile),
-    /// One more stamped file to map from.
-    Further,
-    /// Another mapper's result.
-    OtherMapping,
-    /// Where to write the project, beginning there.
-    SaveProject(PathBuf),
-    Save {
-        kind: Output,
-        name: String,
-    },
-    Picture {
-        choice: PictureChoice,
-        name: String,
-    },
-}
 
 /// What a thread found out.
 enum Answer {
@@ -73,6 +51,8 @@ enum Found {
     Free,
     /// A file that would be replaced: this one, or the one that is written beside it.
     Taken(PathBuf),
+    /// One of the files that are read.
+    InUse(PathBuf),
     /// Nothing that could be read.
     NoFile,
     /// The folder is missing.
@@ -103,6 +83,10 @@ impl Found {
             }
         }
         let mut files = [Some(path.to_owned()), question.file_beside(path)];
+        let in_use = files.iter().flatten();
+        if let Some(file) = in_use.into_iter().find(|file| question.reads(file)) {
+            return Self::InUse(file.clone());
+        }
         let taken = files.iter_mut().flatten().find(|file| file.exists());
         taken.map_or(Self::Free, |file| Self::Taken(std::mem::take(file)))
     }
@@ -201,13 +185,21 @@ impl Dialogs {
     }
 
     /// Asks where to write.
-    pub fn ask_save(&mut self, kind: Output, name: String, ctx: &egui::Context) {
-        self.ask(Question::Save { kind, name }, ctx);
+    pub fn ask_save(
+        &mut self,
+        kind: Output,
+        path: PathBuf,
+        inputs: Vec<PathBuf>,
+        ctx: &egui::Context,
+    ) {
+        let path = absolute(path);
+        self.ask(Question::Save { kind, path, inputs }, ctx);
     }
 
     /// Asks where to write a picture.
-    pub fn ask_picture(&mut self, choice: PictureChoice, name: String, ctx: &egui::Context) {
-        self.ask(Question::Picture { choice, name }, ctx);
+    pub fn ask_picture(&mut self, choice: PictureChoice, path: PathBuf, ctx: &egui::Context) {
+        let path = absolute(path);
+        self.ask(Question::Picture { choice, path }, ctx);
     }
 
     fn ask(&mut self, question: Question, ctx: &egui::Context) {
@@ -255,14 +247,17 @@ impl Dialogs {
                         // no file beside it.
                         Some(path)
                             if question.with_ending(path.clone()) != path
-                                || question.file_beside(&path).is_some() =>
+                                || question.file_beside(&path).is_some()
+                                || matches!(question, Question::Save { .. }) =>
                         {
                             self.check(question, path, false, ctx);
                         }
                         Some(path) => commands.push(answered(&question, path)),
                         None if took < NOT_SHOWN => {
                             let suggestion = question.suggestion();
-                            self.prompt = Some(Prompt::new(question, suggestion));
+                            let suggestion = suggestion.map(|path| path.display().to_string());
+                            let prompt = Prompt::new(question, suggestion.unwrap_or_default());
+                            self.prompt = Some(prompt);
                         }
                         None => commands.extend(closed(&question)),
                     }
@@ -294,6 +289,10 @@ impl Dialogs {
                 return None;
             }
             Found::NoFile => format!("{} does not exist.", path.display()),
+            Found::InUse(file) => {
+                let name = file.file_name().unwrap_or_default().to_string_lossy();
+                format!("{name} is one of the files that are read here: choose another name.")
+            }
             Found::NotMade(reason) => format!("The folder cannot be created: {reason}."),
             Found::NoFolder(folder) => {
                 let note = format!("Folder {} does not exist.", folder.display());
@@ -310,7 +309,7 @@ impl Dialogs {
 
     /// Looks on a thread of its own what is there at a path.
     fn check(&self, question: Question, path: PathBuf, makes_folder: bool, ctx: &egui::Context) {
-        let path = question.with_ending(path);
+        let path = absolute(question.with_ending(path));
         let (sender, ctx) = (self.sender.clone(), ctx.clone());
         let answer = move || {
             let found = Found::at(&path, &question, makes_folder);
@@ -507,46 +506,9 @@ fn answered(question: &Question, path: PathBuf) -> Command {
     }
 }
 
-impl Question {
-    /// True if a file is to be read.
-    fn is_open(&self) -> bool {
-        !matches!(
-            self,
-            Self::SaveProject(_) | Self::Save { .. } | Self::Picture { .. }
-        )
-    }
-
-    /// The file that is written beside the one at a path.
-    fn file_beside(&self, path: &Path) -> Option<PathBuf> {
-        match self {
-            Self::Save { kind, .. } => kind.file_beside(path),
-            _ => None,
-        }
-    }
-
-    /// A name to start from.
-    fn suggestion(&self) -> String {
-        match self {
-            Self::SaveProject(path) => path.display().to_string(),
-            Self::Save { name, .. } | Self::Picture { name, .. } => name.clone(),
-            _ => String::new(),
-        }
-    }
-
-    /// A name without an ending gets the usual one.
-    fn with_ending(&self, path: PathBuf) -> PathBuf {
-        let ending = match self {
-            Self::Save { kind, .. } => return kind.with_extension(path),
-            Self::SaveProject(_) => EXTENSION,
-            Self::Picture { .. } => "png",
-            _ => return path,
-        };
-        if path.extension().is_some() {
-            path
-        } else {
-            path.with_extension(ending)
-        }
-    }
+/// A path that messages can name whole.
+fn absolute(path: PathBuf) -> PathBuf {
+    std::path::absolute(&path).unwrap_or(path)
 }
 
 /// A window over the window, framed like the other dialogs.
@@ -555,24 +517,6 @@ fn modal(ctx: &egui::Context, name: &str) -> egui::Modal {
         .inner_margin(24)
         .corner_radius(8);
     egui::Modal::new(egui::Id::unique(name)).frame(frame)
-}
-
-fn titles(question: &Question) -> (&'static str, &'static str) {
-    match question {
-        Question::OpenProject => ("Open a project", "Open"),
-        Question::Locate(file) => match file {
-            ProjectFile::Part(Role::Crash) => ("Find the crash model of the project", "Use"),
-            ProjectFile::Part(Role::Stamped) => ("Find the stamped part of the project", "Use"),
-            ProjectFile::Further(_) => ("Find the further stamped file of the project", "Use"),
-        },
-        Question::Further => ("Add a stamped file", "Add"),
-        Question::SaveProject(_) => ("Save the project", "Save"),
-        Question::Open(Role::Crash) => ("Open the crash model", "Open"),
-        Question::Open(Role::Stamped) => ("Open the stamped part", "Open"),
-        Question::OtherMapping => ("Compare the mapping with another result", "Compare"),
-        Question::Save { .. } => ("Write to a file", "Write"),
-        Question::Picture { .. } => ("Write a picture", "Write"),
-    }
 }
 
 fn formats() -> String {

@@ -218,7 +218,9 @@ impl Shell {
             Effect::StopJob(key) => self.worker.stop(key),
             Effect::CancelJob(key) => self.worker.cancel(key),
             Effect::AskOpen(role) => self.dialogs.ask_open(role, ctx),
-            Effect::AskSave { kind, name } => self.dialogs.ask_save(kind, name, ctx),
+            Effect::AskSave { kind, path, inputs } => {
+                self.dialogs.ask_save(kind, path, inputs, ctx);
+            }
             Effect::AskOpenProject => self.dialogs.ask_open_project(ctx),
             Effect::AskLocate(file) => self.dialogs.ask_locate(file, ctx),
             Effect::AskFurther => self.dialogs.ask_further(ctx),
@@ -231,7 +233,7 @@ impl Shell {
             } => self.autosave.save(path, project, document),
             Effect::Autosave(project) => self.autosave.autosave(project),
             Effect::DismissRecovery => self.autosave.dismiss_recovery(),
-            Effect::AskPicture { choice, name } => self.dialogs.ask_picture(choice, name, ctx),
+            Effect::AskPicture { choice, path } => self.dialogs.ask_picture(choice, path, ctx),
             Effect::TakePicture {
                 choice,
                 place,

@@ -1,6 +1,6 @@
 //! What leaves the window: names, places, questions.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use shapematch::app::*;
 use shapematch::pipeline::outputs::{MeshOutput, Output};
@@ -17,8 +17,8 @@ fn the_first_picture_asks_for_a_place_and_the_next_goes_beside_it() {
     let mut window = Window::with_both();
     window.act(Action::TakePicture);
     let choice = match last_effect(&window) {
-        Effect::AskPicture { choice, name } => {
-            assert_eq!(name, "stamped.png");
+        Effect::AskPicture { choice, path } => {
+            assert_eq!(path, Path::new("stamped.png"));
             *choice
         }
         other => panic!("{other:?}"),
@@ -65,9 +65,9 @@ fn a_card_for_a_file_in_another_unit_is_answered_with_the_converted_file() {
     });
     window.apply(ExportCommand::AskSave(cards));
     match last_effect(&window) {
-        Effect::AskSave { kind, name } => {
+        Effect::AskSave { kind, path, .. } => {
             assert_eq!(*kind, Output::Mesh(MeshOutput::Converted));
-            assert_eq!(name, "stamped_converted.k");
+            assert_eq!(path, Path::new("stamped_converted.k"));
         }
         other => panic!("{other:?}"),
     }

@@ -56,7 +56,11 @@ impl Work<'_> {
 
     fn ask_picture(&self, choice: PictureChoice) -> Effect {
         let name = format!("{}.png", self.document.picture_stem());
-        Effect::AskPicture { choice, name }
+        let path = match &self.settings.picture_folder {
+            Some(folder) => folder.join(name),
+            None => self.document.beside_part(Role::Stamped, name),
+        };
+        Effect::AskPicture { choice, path }
     }
 
     /// As the last time, into the folder of the last time; the first time it asks.
@@ -121,8 +125,11 @@ impl Work<'_> {
         } else {
             kind
         };
-        let name = self.document.suggested_name(kind);
-        vec![Effect::AskSave { kind, name }]
+        vec![Effect::AskSave {
+            kind,
+            path: self.document.suggested_path(kind),
+            inputs: self.document.files(),
+        }]
     }
 
     fn write(&mut self, output: Output, path: PathBuf) -> Vec<Effect> {

@@ -86,10 +86,19 @@ impl Document {
         parts.flat_map(|part| part.files()).collect()
     }
 
-    /// A file name to start from, made of the name of the part's file.
-    pub(in crate::app) fn suggested_name(&self, output: Output) -> String {
-        let part = self.part(output.named_after());
-        output.default_name(part.map(|part| part.loaded.file_name()).as_deref())
+    /// A path to start from, made of the part's file and beside it.
+    pub(in crate::app) fn suggested_path(&self, output: Output) -> PathBuf {
+        let role = output.named_after();
+        let part = self.part(role);
+        let name = output.default_name(part.map(|part| part.loaded.file_name()).as_deref());
+        self.beside_part(role, name)
+    }
+
+    /// A name in the folder of a part's file; an example lies in none.
+    fn beside_part(&self, role: Role, name: String) -> PathBuf {
+        let part = self.part(role).or(self.part(role.other()));
+        let folder = part.and_then(|part| part.loaded.path.parent());
+        folder.map_or_else(|| PathBuf::from(&name), |folder| folder.join(&name))
     }
 }
 

@@ -159,7 +159,7 @@ fn unwritable(path: &Path) -> Option<String> {
         return Some("its folder does not exist".to_owned());
     }
     let probe = new_file_in(folder).err()?;
-    Some(format!("nothing can be written to its folder, {probe}"))
+    Some(format!("its folder takes no new file: {probe}"))
 }
 
 /// True if both paths lead to one file, or would if it were there.

@@ -2,7 +2,7 @@
 
 use std::future::Future;
 
-use super::{Question, titles};
+use super::question::{Question, titles};
 use crate::formats::Format;
 use crate::pipeline::project::EXTENSION;
 
@@ -14,15 +14,7 @@ pub(super) fn file_dialog(
     let mut dialog = rfd::AsyncFileDialog::new().set_title(title);
     match question {
         Question::OpenProject => dialog = dialog.add_filter("Project", &[EXTENSION]),
-        Question::SaveProject(path) => {
-            dialog = dialog.add_filter("Project", &[EXTENSION]);
-            if let Some(name) = path.file_name() {
-                dialog = dialog.set_file_name(name.to_string_lossy());
-            }
-            if let Some(folder) = path.parent().filter(|folder| folder.is_dir()) {
-                dialog = dialog.set_directory(folder);
-            }
-        }
+        Question::SaveProject(_) => dialog = dialog.add_filter("Project", &[EXTENSION]),
         Question::OtherMapping => {
             let keyword = Format::Keyword;
             dialog = dialog.add_filter(keyword.label(), keyword.extensions());
@@ -44,11 +36,15 @@ pub(super) fn file_dialog(
             for (label, ending) in kind.extensions() {
                 dialog = dialog.add_filter(*label, &[*ending]);
             }
-            dialog = dialog.set_file_name(question.suggestion());
         }
-        Question::Picture { .. } => {
-            dialog = dialog.add_filter("PNG", &["png"]);
-            dialog = dialog.set_file_name(question.suggestion());
+        Question::Picture { .. } => dialog = dialog.add_filter("PNG", &["png"]),
+    }
+    if let Some(path) = question.suggestion() {
+        if let Some(name) = path.file_name() {
+            dialog = dialog.set_file_name(name.to_string_lossy());
+        }
+        if let Some(folder) = path.parent().filter(|folder| folder.is_dir()) {
+            dialog = dialog.set_directory(folder);
         }
     }
     let is_open = question.is_open();

@@ -1,6 +1,8 @@
 //! Questions before files are replaced and folders are made, and the keys they have for themselves.
 
 use super::*;
+use crate::pipeline::map::WriteKind;
+use crate::pipeline::project::EXTENSION;
 use crate::ui::keyboard::{KeyOwner, Keyboard};
 
 #[test]
@@ -12,7 +14,8 @@ fn a_file_is_replaced_only_after_a_question() {
     let mut dialogs = Dialogs::default();
     let question = || Question::Save {
         kind: Output::Log,
-        name: "log.txt".to_owned(),
+        path: "log.txt".into(),
+        inputs: Vec::new(),
     };
     let mut answer = |typed: &str| {
         dialogs.check(question(), folder.path().join(typed), false, &ctx);
@@ -31,6 +34,30 @@ fn a_file_is_replaced_only_after_a_question() {
     assert_eq!(answer("b"), (1, None));
     // The ending is added before the question, not after it.
     assert_eq!(answer("a"), (0, Some(taken)));
+}
+
+#[test]
+fn a_file_that_is_read_is_told_in_the_field_and_the_path_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let crash = folder.path().join("crash.k");
+    std::fs::write(&crash, "old").unwrap();
+    let ctx = egui::Context::default();
+    let mut dialogs = Dialogs::default();
+    let question = Question::Save {
+        kind: Output::Mapped(WriteKind::Deck),
+        path: folder.path().join("mapped.k"),
+        inputs: vec![crash.clone()],
+    };
+    dialogs.check(question, crash.clone(), false, &ctx);
+    assert!(wait(&mut dialogs, &ctx).is_empty());
+    assert!(
+        dialogs.overwrite.is_none(),
+        "no question that ends in a refusal"
+    );
+    let prompt = dialogs.prompt.unwrap();
+    assert_eq!(prompt.text, crash.display().to_string());
+    let note = prompt.note.unwrap();
+    assert!(note.starts_with("crash.k is one of the files"), "{note}");
 }
 
 /// Waits for the answer of a thread and gives the commands that follow.
