@@ -58,6 +58,11 @@ impl FormingValue {
         matches!(self, Self::MajorStrain | Self::MinorStrain)
     }
 
+    /// What it is multiplied by where people read it: thinning is told in per cent.
+    pub fn shown_factor(self) -> f64 {
+        if self == Self::Thinning { 100.0 } else { 1.0 }
+    }
+
     /// True if it differs from layer to layer.
     pub fn has_layers(self) -> bool {
         self != Self::Thinning

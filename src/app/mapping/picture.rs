@@ -9,6 +9,7 @@ use crate::mapping::Status;
 use crate::pipeline::forming_values::{FormingValue, LayerChoice};
 use crate::pipeline::map::{CheckPicture, ShownValue};
 use crate::role::Role;
+use crate::text::fixed;
 
 /// Pictures of a mapping on the crash part beside the mapped values themselves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,6 +88,9 @@ impl Default for MapDisplay {
     }
 }
 
+/// Outermost layers nearer to each other than this lie alike.
+const ALIKE: f64 = 0.01;
+
 /// Quantities that a mapping can be looked at in.
 const QUANTITIES: [ColorBy; 7] = [
     ColorBy::Thickness,
@@ -120,7 +124,7 @@ impl AppState {
     pub fn shown_value(&self, by: ColorBy) -> ShownValue {
         ShownValue {
             value: by.forming(),
-            layer: self.view.display.mapped.layer,
+            layer: self.shown_layer(by),
             flat: self.flat_thickness(),
         }
     }
@@ -157,14 +161,44 @@ impl AppState {
 
     /// The layers that are shown of a quantity; `None` where it has none.
     pub fn shown_layer(&self, by: ColorBy) -> Option<LayerChoice> {
-        let value = by.forming().filter(|value| value.has_layers())?;
         let chosen = self.view.display.mapped.layer;
-        Some(chosen.unwrap_or(LayerChoice::usual(value)))
+        Some(chosen.unwrap_or(self.usual_layer(by)?))
+    }
+
+    /// What is shown of a quantity as long as nothing else is chosen. The outermost points of two rules lie
+    /// at different T, and stresses of bending grow outwards: mapped and stamped ones are compared in
+    /// the middle of the sheet, where both are at one place.
+    pub fn usual_layer(&self, by: ColorBy) -> Option<LayerChoice> {
+        let value = layered(by)?;
+        let is_compared = value.is_stress() && self.mapped_for(by).is_some();
+        Some(if is_compared {
+            LayerChoice::Middle
+        } else {
+            LayerChoice::usual(value)
+        })
+    }
+
+    /// What to know of layers that are farther out on one side of the mapping than on the other; `None`
+    /// where a place is shown that both have, or where they lie alike.
+    pub fn layers_differ(&self, by: ColorBy) -> Option<String> {
+        let is_inside = matches!(
+            self.shown_layer(by)?,
+            LayerChoice::Mean | LayerChoice::Middle
+        );
+        let run = self.mapped_for(by).filter(|_| !is_inside)?;
+        let [stamped, crash] = run.outermost_layers(layered(by)?)?;
+        let differ = (stamped - crash).abs() > ALIKE;
+        differ.then(|| {
+            let (stamped, crash) = (fixed(stamped, 2), fixed(crash, 2));
+            format!(
+                "Outermost layers: ▲ at T ±{stamped}, ■ at T ±{crash}; values there differ for that"
+            )
+        })
     }
 
     /// The layer of a stamped file that lies where a layer of the crash part does; by the file's number.
-    pub fn stamped_layer(&self, file: usize) -> Option<LayerChoice> {
-        let layer = self.view.display.mapped.layer?;
+    pub fn stamped_layer(&self, by: ColorBy, file: usize) -> Option<LayerChoice> {
+        let layer = self.shown_layer(by)?;
         let run = self.document.current_mapping().map(|result| &result.run);
         let is_flipped = run.is_some_and(|run| run.mapped.senses.get(file) == Some(&Some(true)));
         Some(if is_flipped {

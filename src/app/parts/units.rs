@@ -121,10 +121,12 @@ impl Document {
         system.map(|system| system.stress())
     }
 
-    /// The unit of a forming value, with `None` of a length; `None` where it has none or it is not known.
+    /// The unit a forming value is shown in, with `None` of a length; `None` where it has none or it is not
+    /// known.
     pub fn unit_of(&self, value: Option<FormingValue>) -> Option<&'static str> {
         let unit = match value {
             Some(value) if value.is_stress() => self.stress_unit()?,
+            Some(FormingValue::Thinning) => "%",
             Some(_) => return None,
             None => self.unit_suffix().trim(),
         };

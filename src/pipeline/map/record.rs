@@ -16,6 +16,7 @@ use crate::mapping::{
     Distribution, Histogram, SourcePart, Status, distribution, histogram_distance,
 };
 use crate::monitor::{Cancelled, Monitor};
+use crate::pipeline::forming_values::nominal_thickness;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::PairUnits;
 use crate::report::{DIRECTION, build_id};
@@ -47,6 +48,9 @@ pub struct MapRecord {
     pub median_offset: f64,
     /// Thickness before and after.
     pub thickness: Option<PairRecord>,
+    /// 1 − thickness over that of the flat sheet, where the section of a part gives it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thinning: Option<PairRecord>,
     /// Effective plastic strain before and after.
     pub plastic_strain: Option<PairRecord>,
     /// Largest von Mises stress of the layers before and after.
@@ -202,9 +206,14 @@ pub fn map_record(
         .plastic_strain
         .map(|pair| pair_record(pair, &plastic_values(run)));
     monitor.check()?;
+    let first = stamped.first().map(|placed| placed.part);
+    let flat = nominal_thickness(crash).or_else(|| nominal_thickness(first?));
+    let is_mapped = thickness.is_some();
+    let thinning = flat.filter(|_| is_mapped);
+    let thinning = thinning.and_then(|flat| pair_of(&thinning_values(run, flat)));
+    monitor.check()?;
     let von_mises = von_mises(run);
     monitor.check()?;
-    let first = stamped.first().map(|placed| placed.part);
     let units = PairUnits::of(PerRole::new(Some(crash), first));
     let lengths = Lengths::new(units.lengths);
     let of_pose = |placed: &PlacedPart<'_>| {
@@ -231,6 +240,7 @@ pub fn map_record(
         mapped_area: run.mapped.mapped_area(&run.target.mesh),
         median_offset: run.mapped.median_offset,
         thickness,
+        thinning,
         plastic_strain,
         von_mises,
         checks: Vec::new(),
@@ -301,6 +311,14 @@ fn thickness_values(run: &MapRun) -> BothSides {
     let scale = run.recipe.options.thickness_scale;
     both_sides(run, SourcePart::mean_thickness, |element| {
         run.thickness(element) / scale
+    })
+}
+
+fn thinning_values(run: &MapRun, flat: f64) -> BothSides {
+    let thickness = thickness_values(run);
+    thickness.map(|side| {
+        let values = side.into_iter();
+        values.map(|(t, area)| (1.0 - t / flat, area)).collect()
     })
 }
 
@@ -438,7 +456,8 @@ pub fn unread_line(part: &LoadedPart) -> Option<String> {
         .sum();
     let first = found.iter().find(|one| is_error(&one.kind))?;
     Some(format!(
-        "{}: {} of what the file holds could not be read ({first}); shapematch info tells all",
+        "{}: {} of what the file holds could not be read ({first}); its diagnostics (tab Diagnostics, \
+         shapematch info) name each",
         part.file_name(),
         counted(usize::try_from(n).unwrap_or(usize::MAX), "piece"),
     ))

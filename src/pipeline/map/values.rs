@@ -93,6 +93,30 @@ impl MapRun {
         }
     }
 
+    /// How far out the outermost layers lie at most, as |T|, of the stamped parts and of the crash part;
+    /// `None` if one side has none.
+    pub fn outermost_layers(&self, value: FormingValue) -> Option<[f64; 2]> {
+        let reach = |rule: &LayerRule| {
+            rule.places()
+                .iter()
+                .fold(0.0_f64, |most, t| most.max(t.abs()))
+        };
+        let most = |rules: &[LayerRule]| rules.iter().map(reach).reduce(f64::max);
+        let sources = self.sources.iter().filter_map(|part| {
+            most(if value.is_strain() {
+                part.strains.rules()
+            } else {
+                part.states.rules()
+            })
+        });
+        let own = if value.is_strain() && self.mapped.strains_are_at_surfaces {
+            Some(1.0)
+        } else {
+            most(&self.target.rules)
+        };
+        Some([sources.reduce(f64::max)?, own?])
+    }
+
     /// T, weight and number of each layer of an element.
     fn layers(&self, element: usize, value: FormingValue) -> Vec<[f64; 3]> {
         let mapped = &self.mapped;

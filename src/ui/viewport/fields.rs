@@ -367,8 +367,8 @@ impl Order {
         };
         let shown = by.map(|by| ShownValue {
             layer: match role {
-                Role::Crash => state.view.display.mapped.layer,
-                Role::Stamped => state.stamped_layer(instance.number()),
+                Role::Crash => state.shown_layer(by),
+                Role::Stamped => state.stamped_layer(by, instance.number()),
             },
             ..state.shown_value(by)
         });
@@ -438,6 +438,20 @@ impl Order {
         let Some(shown) = &self.key.shown else {
             return Vec::new();
         };
+        let mut values = self.results_of(shown);
+        // Other pictures of the mapping show no quantity.
+        let is_of_quantity = match self.key.kind {
+            FieldKind::Map(picture) => picture.color_by().speaks_of_quantity(),
+            _ => true,
+        };
+        let factor = shown.value.map_or(1.0, FormingValue::shown_factor) as f32;
+        if is_of_quantity && factor != 1.0 {
+            values.iter_mut().for_each(|value| *value *= factor);
+        }
+        values
+    }
+
+    fn results_of(&self, shown: &ShownValue) -> Vec<f32> {
         match (&self.mapped, self.key.kind) {
             (Some(run), FieldKind::Map(picture)) => {
                 let results = (run.as_ref(), self.compared.as_deref());

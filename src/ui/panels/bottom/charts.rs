@@ -115,6 +115,38 @@ pub fn with_inner_numbers(plot: Plot<'_>) -> Plot<'_> {
         .x_axis_formatter(|mark, range| inner_text(mark.value, (*range.start(), *range.end())))
 }
 
+/// Round numbers along a chart: five or some more, fewer where their names would meet.
+fn round_ticks((low, high): (f64, f64)) -> (Vec<f64>, f64) {
+    let width = high - low;
+    if !(width > 0.0 && width.is_finite()) {
+        return (Vec::new(), 1.0);
+    }
+    let decade = 10_f64.powf(width.log10().floor());
+    let steps = [1.0, 0.5, 0.25, 0.2, 0.1].map(|factor| factor * decade);
+    // The coarsest step that gives four numbers.
+    let fits = |step: &f64| (high / step).floor() - (low / step).ceil() >= 3.0;
+    let step = steps.into_iter().find(fits).unwrap_or(0.1 * decade);
+    let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
+    ((first..=last).map(|n| n as f64 * step).collect(), step)
+}
+
+/// A chart with at least four numbers along its values.
+pub fn with_round_numbers(plot: Plot<'_>) -> Plot<'_> {
+    plot.x_grid_spacer(|input| {
+        let ticks = round_ticks(input.bounds).0.into_iter();
+        // A mark is labelled when its step is wide on the screen.
+        let step_size = input.bounds.1 - input.bounds.0;
+        ticks.map(|value| GridMark { value, step_size }).collect()
+    })
+    .x_axis_formatter(|mark, range| {
+        let (_, step) = round_ticks((*range.start(), *range.end()));
+        trimmed(
+            mark.value,
+            (2.0 - step.log10()).ceil().clamp(0.0, 9.0) as usize,
+        )
+    })
+}
+
 /// A low chart of shares with two numbers upright: nothing, and a round one below the top.
 pub fn with_two_shares(plot: Plot<'_>) -> Plot<'_> {
     plot.y_grid_spacer(|input| {
@@ -215,6 +247,27 @@ mod tests {
             assert_eq!(texts.len(), marks.len(), "{texts:?}");
         }
         assert!(inner_marks((1.0, 1.0)).is_empty());
+    }
+
+    #[test]
+    fn a_chart_of_values_has_four_round_numbers() {
+        for bounds in [
+            (0.0, 1.0),
+            (0.7085, 0.7915),
+            (-312.0, 420.0),
+            (3.0, 3.37),
+            (129.0, 238.0),
+        ] {
+            let (ticks, step) = round_ticks(bounds);
+            assert!((4..=9).contains(&ticks.len()), "{bounds:?}: {ticks:?}");
+            assert!(
+                ticks
+                    .iter()
+                    .all(|tick| bounds.0 <= *tick && *tick <= bounds.1)
+            );
+            assert!((ticks[1] - ticks[0] - step).abs() < 1e-9);
+        }
+        assert!(round_ticks((1.0, 1.0)).0.is_empty());
     }
 
     #[test]

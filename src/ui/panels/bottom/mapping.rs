@@ -5,11 +5,12 @@ use egui_extras::{Column, TableBuilder};
 use egui_plot::{Line, PlotPoints};
 
 use super::charts;
-use super::probe::probe_ui;
+use super::probe::{probe_ui, with_unit};
 use crate::app::{AppState, ColorBy, Command, InspectCommand, MapResult, ViewCommand, file_names};
+use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::map::{CheckRecord, ComparisonRecord, DistributionRecord, PairRecord};
 use crate::role::Role;
-use crate::text::grouped;
+use crate::text::{fixed, grouped};
 use crate::ui::theme::Palette;
 use crate::ui::widgets::{caption, length, nothing_yet, segments, signed};
 
@@ -251,6 +252,7 @@ fn pair_of(result: &MapResult, by: ColorBy) -> Option<&PairRecord> {
     let record = &result.record;
     match by {
         ColorBy::Thickness => record.thickness.as_ref(),
+        ColorBy::Thinning => record.thinning.as_ref(),
         ColorBy::PlasticStrain => record.plastic_strain.as_ref(),
         ColorBy::VonMises => record.von_mises.as_ref(),
         _ => None,
@@ -286,9 +288,15 @@ fn distributions_ui(
     };
     let of_layers = match by {
         ColorBy::PlasticStrain => ", mean of the layers",
-        ColorBy::VonMises => ", largest of the layers",
+        // Of layers at different T: the picture compares them in the middle of the sheet.
+        ColorBy::VonMises => ", extreme of the layers",
         _ => "",
     };
+    let places = result.run.outermost_layers(FormingValue::VonMises);
+    let places = places.filter(|_| by == ColorBy::VonMises);
+    let places = places.map_or_else(String::new, |[stamped, crash]| {
+        format!(" (out to T ▲ {}, ■ {})", fixed(stamped, 2), fixed(crash, 2))
+    });
     let is_narrow = is_low && ui.available_width() < PERCENTILES + CHART;
     let columns: &[usize] = if is_narrow {
         &[0, 1, 3, 5]
@@ -296,26 +304,27 @@ fn distributions_ui(
         &[0, 1, 2, 3, 4, 5]
     };
     let numbers = |ui: &mut Ui| {
-        caption(ui, format!("{}{of_layers}, by area", by.label()));
+        let title = format!("{}{of_layers}{places}, by area", with_unit(state, by));
+        caption(ui, title);
         let palette = Palette::of(ui);
         let rows = [
             ("▲", &pair.stamped, palette.stamped),
             ("■", &pair.crash, palette.crash),
         ];
-        percentiles_ui(ui, &rows, columns);
+        percentiles_ui(ui, &rows, columns, by);
     };
     if is_low {
         let height = ui.available_height();
         ui.horizontal_top(|ui| {
             let width = PERCENTILES * (columns.len() + 1) as f32 / 7.0;
             column_ui(ui, vec2(width, height), numbers);
-            histogram_ui(ui, pair, vec2(ui.available_width() - 8.0, height));
+            histogram_ui(ui, (pair, by), vec2(ui.available_width() - 8.0, height));
         });
         return;
     }
     numbers(ui);
     let size = vec2(ui.available_width(), ui.available_height().max(40.0));
-    histogram_ui(ui, pair, size);
+    histogram_ui(ui, (pair, by), size);
 }
 
 /// The mapping against another result: both sides by area, the differences, and the way to the largest.
@@ -346,7 +355,7 @@ fn compared_ui(
         ("here", &record.here, palette.crash),
         ("there", &record.other, palette.secondary),
     ];
-    percentiles_ui(ui, &rows, &[0, 1, 2, 3, 4, 5]);
+    percentiles_ui(ui, &rows, &[0, 1, 2, 3, 4, 5], by);
     ui.add_space(2.0);
     let numbers = format!(
         "mean difference {} · RMS {} · 95\u{a0}%\u{a0}below {}",
@@ -406,11 +415,13 @@ fn percentiles_ui(
     ui: &mut Ui,
     rows: &[(&str, &DistributionRecord, egui::Color32)],
     columns: &[usize],
+    by: ColorBy,
 ) {
     let palette = Palette::of(ui);
     let titles = ["mean", "5 %", "50 %", "95 %", "99 %", "max"];
-    let numbers =
-        |of: &DistributionRecord| [of.mean, of.p5, of.p50, of.p95, of.p99, of.max].map(length);
+    let numbers = |of: &DistributionRecord| {
+        [of.mean, of.p5, of.p50, of.p95, of.p99, of.max].map(|n| number(by, n))
+    };
     let quiet = |text: &str| RichText::new(text).small().color(palette.secondary);
     egui::Grid::new("mapping percentiles")
         .num_columns(columns.len() + 1)
@@ -433,28 +444,40 @@ fn percentiles_ui(
         });
 }
 
-/// A histogram narrower than this has two numbers along its values, so that they tell the range.
-const NARROW_CHART: f32 = 700.0;
+/// A number of a quantity as it is read, without its unit.
+pub(super) fn number(by: ColorBy, value: f64) -> String {
+    match by.forming() {
+        Some(FormingValue::Thinning) => fixed(FormingValue::Thinning.shown_factor() * value, 1),
+        _ => length(value),
+    }
+}
+
+/// The outline of a histogram over a range. A corner stands only where the height changes: a line
+/// through points that coincide has no direction there, and is drawn several times as wide.
+fn outline(shares: &[f64], [low, high]: [f64; 2]) -> Vec<[f64; 2]> {
+    let width = (high - low) / shares.len().max(1) as f64;
+    let mut corners: Vec<[f64; 2]> = Vec::new();
+    for (bin, &share) in shares.iter().enumerate() {
+        let ends = [bin, bin + 1].map(|edge| low + width * edge as f64);
+        match corners.last_mut() {
+            Some([end, height]) if *height == share => *end = ends[1],
+            _ => corners.extend(ends.map(|x| [x, share])),
+        }
+    }
+    corners
+}
 
 /// Share of the area over the value, as two stepped lines.
-fn histogram_ui(ui: &mut Ui, pair: &PairRecord, size: egui::Vec2) {
+fn histogram_ui(ui: &mut Ui, (pair, by): (&PairRecord, ColorBy), size: egui::Vec2) {
     let palette = Palette::of(ui);
-    let low = pair.stamped.min.min(pair.crash.min);
-    let high = pair.stamped.max.max(pair.crash.max);
-    let steps = |shares: &[f64]| -> PlotPoints<'static> {
-        let width = (high - low) / shares.len().max(1) as f64;
-        let at = |bin: usize| low + width * bin as f64;
-        let corners = shares.iter().enumerate();
-        let corners = corners.flat_map(|(bin, share)| [[at(bin), *share], [at(bin + 1), *share]]);
-        corners.collect::<Vec<_>>().into()
-    };
-    let mut plot = charts::still_chart(ui, "mapping histogram", size)
+    let factor = by.forming().map_or(1.0, FormingValue::shown_factor);
+    let low = factor * pair.stamped.min.min(pair.crash.min);
+    let high = factor * pair.stamped.max.max(pair.crash.max);
+    let steps = |shares: &[f64]| PlotPoints::from(outline(shares, [low, high]));
+    let plot = charts::still_chart(ui, "mapping histogram", size)
         .include_y(0.0)
         .y_axis_min_width(36.0);
-    plot = charts::with_two_shares(plot);
-    if size.x < NARROW_CHART {
-        plot = charts::with_inner_numbers(plot);
-    }
+    let plot = charts::with_round_numbers(charts::with_two_shares(plot));
     plot.show(ui, |plot| {
         let [stamped, crash] = &pair.histograms;
         let line = Line::new("▲ stamped", steps(stamped)).fill(0.0);
@@ -462,4 +485,32 @@ fn histogram_ui(ui: &mut Ui, pair: &PairRecord, size: egui::Vec2) {
         let line = Line::new("■ crash, mapped", steps(crash)).fill(0.0);
         plot.line(line.color(palette.crash).width(1.5).fill_alpha(0.15));
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_outline_has_no_points_that_coincide() {
+        let corners = outline(&[0.0, 0.0, 0.5, 0.5, 0.2, 0.0], [0.0, 6.0]);
+        let expected = [
+            [0.0, 0.0],
+            [2.0, 0.0],
+            [2.0, 0.5],
+            [4.0, 0.5],
+            [4.0, 0.2],
+            [5.0, 0.2],
+            [5.0, 0.0],
+            [6.0, 0.0],
+        ];
+        assert_eq!(corners, expected);
+        assert!(outline(&[], [0.0, 1.0]).is_empty());
+    }
+
+    #[test]
+    fn thinning_is_read_in_per_cent() {
+        assert_eq!(number(ColorBy::Thinning, 0.1523), "15.2");
+        assert_eq!(number(ColorBy::PlasticStrain, 0.1523), "0.152");
+    }
 }

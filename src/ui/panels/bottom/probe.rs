@@ -4,12 +4,12 @@ use egui::{Align, Layout, RichText, Ui, vec2};
 use egui_plot::{Line, MarkerShape, Points};
 
 use super::charts;
-use super::mapping::{column_ui, look_at_element};
+use super::mapping::{column_ui, look_at_element, number};
 use crate::app::{Action, AppState, ColorBy, Command, InspectCommand, MapCommand, ProbeReport};
 use crate::role::Role;
 use crate::text::grouped;
 use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::{Look, action_button, caption, length, percent};
+use crate::ui::widgets::{Look, action_button, caption, percent};
 
 /// One element: where its values come from, both sides in numbers and through the thickness.
 pub fn probe_ui(ui: &mut Ui, state: &AppState, is_low: bool, commands: &mut Vec<Command>) {
@@ -145,7 +145,7 @@ fn facts(state: &AppState, probe: &ProbeReport) -> String {
 }
 
 /// Name of a quantity with its unit, where it has one that is known.
-fn with_unit(state: &AppState, by: ColorBy) -> String {
+pub(super) fn with_unit(state: &AppState, by: ColorBy) -> String {
     match state.document.unit_of(by.forming()) {
         Some(unit) => format!("{}, {unit}", by.label()),
         None => by.label().to_owned(),
@@ -155,15 +155,9 @@ fn with_unit(state: &AppState, by: ColorBy) -> String {
 /// The values of both sides, below what stands `before` them.
 fn values_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, before: impl FnOnce(&mut Ui)) {
     let palette = Palette::of(ui);
-    // Names have no room for them.
-    let units = probe.values.iter();
-    let units = units.filter_map(|(by, _)| state.document.unit_of(by.forming()));
-    let mut units: Vec<&str> = units.collect();
-    units.dedup();
-    let units = units.join(", ");
-    let number = |value: f64| {
+    let text = |by: ColorBy, value: f64| {
         if value.is_finite() {
-            length(value)
+            number(by, value)
         } else {
             "–".to_owned()
         }
@@ -178,14 +172,15 @@ fn values_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, before: impl Fn
                 .spacing(vec2(8.0, 1.0))
                 .min_row_height(16.0)
                 .show(ui, |ui| {
-                    ui.label(RichText::new(&units).small().color(palette.secondary));
+                    ui.label("");
                     ui.label(RichText::new("▲").small().color(palette.stamped));
                     ui.label(RichText::new("■").small().color(palette.crash));
                     ui.end_row();
                     for (by, [stamped, crash]) in &probe.values {
-                        ui.label(RichText::new(by.label()).small().color(palette.secondary));
-                        ui.label(RichText::new(number(*stamped)).small());
-                        ui.label(RichText::new(number(*crash)).small());
+                        let name = with_unit(state, *by);
+                        ui.label(RichText::new(name).small().color(palette.secondary));
+                        ui.label(RichText::new(text(*by, *stamped)).small());
+                        ui.label(RichText::new(text(*by, *crash)).small());
                         ui.end_row();
                     }
                 });

@@ -10,7 +10,7 @@ use crate::geometry::camera::scale_bar;
 use crate::mapping::Status;
 use crate::pipeline::forming_values::FormingValue;
 use crate::role::Role;
-use crate::text::{fixed, length, vector};
+use crate::text::{fixed, inside, length, vector};
 use crate::ui::viewport::fields::FieldKind;
 use crate::ui::viewport::navigation::{DragKind, pos_of, screen_of};
 use crate::ui::viewport::picture::Hit;
@@ -184,7 +184,11 @@ fn map_text(state: &AppState, picture: MapPicture, value: Option<f64>) -> Option
         MapPicture::Difference | MapPicture::Other => {
             let text = match by {
                 ColorBy::Thickness => state.lengths().signed_of(number),
-                _ => signed(number),
+                _ => {
+                    let unit = state.document.unit_of(by.forming());
+                    let unit = unit.map_or_else(String::new, |unit| format!("\u{a0}{unit}"));
+                    signed(number) + &unit
+                }
             };
             format!("difference {text}")
         }
@@ -206,7 +210,10 @@ fn map_text(state: &AppState, picture: MapPicture, value: Option<f64>) -> Option
 
 /// A forming result with its name; stresses with the unit of the deck, if that is known.
 fn forming_text(state: &AppState, value: FormingValue, number: f64) -> String {
-    let name = value.label().to_lowercase();
+    let name = inside(value.label());
+    if value == FormingValue::Thinning {
+        return format!("{name} {}\u{a0}%", fixed(number, 1));
+    }
     if !value.is_stress() {
         return format!("{name} {}", fixed(number, 4));
     }

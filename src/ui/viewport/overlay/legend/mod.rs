@@ -16,7 +16,7 @@ use super::{MARGIN, Overlay, header};
 use crate::app::{Command, MapPicture, file_names};
 use crate::colormap::ColorScale;
 use crate::pipeline::forming_values::LayerChoice;
-use crate::text::tick_number;
+use crate::text::{inside, tick_number};
 use crate::ui::viewport::fields::FieldKind;
 
 /// Width of what is inside the plate, and of the folded one; air beside it.
@@ -175,18 +175,18 @@ fn title(over: &Overlay<'_>, kind: FieldKind) -> String {
     };
     match kind {
         FieldKind::Map(MapPicture::Difference) => {
-            let name = format!("Difference of {}", quantity.label().to_lowercase());
-            layered(&name, state.view.display.mapped.layer)
+            let name = format!("Difference of {}", inside(quantity.label()));
+            layered(&name, state.shown_layer(quantity))
         }
         FieldKind::Map(MapPicture::Other) => {
             let compared = state.document.current_mapping();
             let compared = compared.and_then(|result| result.record.comparison.as_ref());
             let files = compared.map_or_else(String::new, |record| file_names(&record.files));
             let name = format!("{}, less {files}", quantity.label());
-            layered(&name, state.view.display.mapped.layer)
+            layered(&name, state.shown_layer(quantity))
         }
         FieldKind::Map(MapPicture::Angle) => "Angle of the normals".to_owned(),
-        FieldKind::Forming(_) => layered(kind.label(), state.view.display.mapped.layer),
+        FieldKind::Forming(value) => layered(kind.label(), state.shown_layer(value.into())),
         _ => kind.label().to_owned(),
     }
 }
