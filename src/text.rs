@@ -91,10 +91,15 @@ pub fn vector(components: [f64; 3], decimals: usize) -> String {
 /// Lengths that differ in no decimal up to this one are told as equal.
 const MOST_DECIMALS: usize = 7;
 
+/// Lengths below this are rounding.
+const NOTHING: f64 = 5e-8;
+/// In millimetres.
+const MICROMETRE: f64 = 0.001;
+
 /// A length with three significant digits: 0.0412, 1.35, 128.
 pub fn length(value: f64) -> String {
     // What rounding leaves of nothing is nothing.
-    let value = if value.abs() < 5e-8 { 0.0 } else { value };
+    let value = if value.abs() < NOTHING { 0.0 } else { value };
     let magnitude = value.abs();
     let decimals = if magnitude >= 100.0 || value == 0.0 {
         0
@@ -143,10 +148,24 @@ pub fn yes_no(value: bool) -> &'static str {
     if value { "yes" } else { "no" }
 }
 
-/// The text with its first letter in upper case.
+/// The text with its first letter in upper case, unless it begins with the name of a file.
 pub fn capital(text: &str) -> String {
+    let first = text.split([' ', ':']).next().unwrap_or_default();
+    if first
+        .trim_end_matches(['.', ',', ';'])
+        .contains(['.', '/', '\\', '_'])
+    {
+        return text.to_owned();
+    }
     let mut letters = text.chars();
     let first = letters.next().map(|c| c.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
+
+/// A label within a sentence: its first letter in lower case, the rest as it is ("von Mises stress").
+pub fn inside(label: &str) -> String {
+    let mut letters = label.chars();
+    let first = letters.next().map(|c| c.to_lowercase().to_string());
     first.unwrap_or_default() + letters.as_str()
 }
 
@@ -206,9 +225,15 @@ impl Lengths {
         Self { decimals, ..self }
     }
 
-    /// The number alone: `0.381`.
+    /// The number alone: `0.381`. Of less than a micrometre only that is told: nobody reads more zeros, and
+    /// no sheet is known so well.
     pub fn number(self, value: f64) -> String {
         match (self.decimals, self.unit) {
+            (None, Some(LengthUnit::Millimeter))
+                if (NOTHING..MICROMETRE).contains(&value.abs()) =>
+            {
+                format!("< {MICROMETRE}")
+            }
             (Some(decimals), Some(unit)) => {
                 let in_mm = unit.factor_to(LengthUnit::Millimeter);
                 let more = in_mm.log10().ceil().max(0.0) as usize;
@@ -220,7 +245,11 @@ impl Lengths {
 
     /// The number with its sign: `+0.381`, `−1.35`.
     pub fn signed(self, value: f64) -> String {
-        with_sign(value, &self.number(value))
+        let number = self.number(value);
+        if number.starts_with('<') {
+            return number;
+        }
+        with_sign(value, &number)
     }
 
     /// The number and the unit: `0.381 mm`.
@@ -282,6 +311,9 @@ mod tests {
         assert_eq!(lengths.of(0.3806), "0.381 mm");
         assert_eq!(lengths.axis("distance"), "distance, mm");
         assert_eq!(Lengths::default().of(0.3806), "0.381");
+        let tiny = [5.5e-6, -0.0009, 0.001, 1e-9].map(|value| lengths.of(value));
+        assert_eq!(tiny, ["< 0.001 mm", "< 0.001 mm", "0.0010 mm", "0 mm"]);
+        assert_eq!(lengths.signed_of(0.0003), "< 0.001 mm");
     }
 
     #[test]
@@ -354,5 +386,9 @@ mod tests {
         assert_eq!(sentence("the shapes differ"), "The shapes differ.");
         assert_eq!(sentence("are they the same?"), "Are they the same?");
         assert_eq!(capital(""), "");
+        let of_file = "err.k: 2 pieces could not be read";
+        assert_eq!(capital(of_file), of_file);
+        assert_eq!(capital("done. more"), "Done. more");
+        assert_eq!(inside("Von Mises stress"), "von Mises stress");
     }
 }

@@ -8,7 +8,7 @@ use crate::role::Role;
 pub use crate::text::{grouped, length, percent, signed};
 use egui::{
     Align, Button, Color32, CornerRadius, Frame, Layout, Margin, Rect, Response, RichText, Sense,
-    Stroke, Ui, Vec2, pos2, vec2,
+    Stroke, TextStyle, Ui, Vec2, pos2, vec2,
 };
 
 /// A count on a chip: full, 50k, 2k, 500.
@@ -365,12 +365,30 @@ pub fn form_row<R>(
 /// A name on the left and a value on the right edge, for lists of figures.
 pub fn figure(ui: &mut Ui, name: &str, value: &str) {
     ui.spacing_mut().interact_size.y = 18.0;
-    ui.horizontal(|ui| {
-        secondary(ui, name);
+    let font = TextStyle::Body.resolve(ui.style());
+    let width = |text: &str| {
+        let text = text.to_owned();
+        let laid = ui
+            .painter()
+            .layout_no_wrap(text, font.clone(), Color32::WHITE);
+        laid.size().x
+    };
+    let needed = width(name) + ui.spacing().item_spacing.x + width(value);
+    let has_room = needed <= ui.available_width();
+    let value_ui = |ui: &mut Ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.label(value);
         });
+    };
+    ui.horizontal(|ui| {
+        secondary(ui, name);
+        if has_room {
+            value_ui(ui);
+        }
     });
+    if !has_room {
+        ui.horizontal(value_ui);
+    }
 }
 
 /// A button of a question; the usual answer is filled.
