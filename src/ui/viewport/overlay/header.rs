@@ -13,6 +13,7 @@ use crate::geometry::camera::StandardView;
 use crate::report::start_kind_words;
 use crate::role::Role;
 use crate::text::{counted, whole_percent};
+use crate::ui::viewport::visible_parts::visible_parts;
 
 /// Width and height of the row of camera buttons, and the least width of the names beside it.
 const BUTTONS: Vec2 = vec2(212.0, 24.0);
@@ -159,12 +160,8 @@ fn is_free(over: &Overlay<'_>) -> bool {
 /// Name of a part and what becomes of it.
 fn title(painter: &Painter, over: &Overlay<'_>, role: Role) -> [Arc<Galley>; 2] {
     let state = over.frame.state;
-    let shows_values = || {
-        let is_picture = state.color_by(Role::Crash).map_picture().is_some();
-        state.is_mapping_shown() && !is_picture
-    };
     let (name, what) = match role {
-        Role::Crash if shows_values() => ("CRASH", "mapped"),
+        Role::Crash if state.is_mapping_shown() => ("CRASH", "mapped"),
         Role::Crash => ("CRASH", "fixed"),
         Role::Stamped => ("STAMPED", "moves"),
     };
@@ -213,7 +210,10 @@ fn facts(over: &Overlay<'_>, role: Role) -> String {
         return "nothing loaded".to_owned();
     };
     let full = counted(part.loaded.mesh.n_triangles(), "triangle");
-    let is_reduced = state.shows_reduced(role);
+    // Values by element are drawn on the full mesh, whichever is chosen.
+    let drawn = visible_parts(state, over.frame.view);
+    let mut drawn = drawn.iter().filter(|instance| instance.role == role);
+    let is_reduced = drawn.any(|instance| instance.further.is_none() && !instance.is_detailed);
     let triangles = match part.level.as_ref().filter(|_| is_reduced) {
         Some(level) => {
             let reduced = grouped(level.level.mesh.n_triangles());
@@ -297,8 +297,9 @@ fn overlap(state: &AppState) -> Option<String> {
     );
     // Less than half a percent is no change to speak of.
     if let Some(change) = known.change.filter(|change| change.abs() >= 0.005) {
-        let sign = if change > 0.0 { "▲ +" } else { "▼ −" };
-        text += &format!("  {sign}{}", whole_percent(change.abs()));
+        // Without an arrow: a triangle stands for the stamped part.
+        let sign = if change > 0.0 { "+" } else { "−" };
+        text += &format!(" ({sign}{})", whole_percent(change.abs()));
     }
     Some(text)
 }
