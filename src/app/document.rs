@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use super::names::told_apart;
 use super::{Label, Mapping, PointPairs, Shared};
 use crate::formats::model::ReadFile;
 use crate::geometry::{Aabb, Similarity, TriMesh};
@@ -189,6 +190,19 @@ impl Document {
     /// The result, if parts and pose are still those it stands for.
     pub fn current_result(&self) -> Option<&MatchResult> {
         self.result.as_ref().filter(|r| r.stamp == self.stamp())
+    }
+
+    /// Name of a part's file, with its folder where the other part's file has the same name.
+    pub fn name_of(&self, role: Role) -> String {
+        let path = |role| Some(self.part(role)?.loaded.path.as_path());
+        let all = Role::ALL.into_iter().filter_map(path);
+        path(role).map_or_else(String::new, |own| told_apart(own, all))
+    }
+
+    /// True if both parts were read from one file, which is seldom meant.
+    pub fn has_one_file(&self) -> bool {
+        let both = self.both();
+        both.is_some_and(|both| both.crash.loaded.path == both.stamped.loaded.path)
     }
 
     /// Centre of the box of the stamped part at its pose, the pivot of moves by hand.

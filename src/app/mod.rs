@@ -26,6 +26,7 @@ mod log;
 mod mapping;
 mod matching;
 mod moving;
+mod names;
 mod pairs;
 mod palette;
 mod parts;

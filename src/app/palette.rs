@@ -1,14 +1,16 @@
-//! What the command search offers: every action, recent files, every form of matrix and card, the themes.
+//! What the command search offers: every action, every colour, recent files, every form of matrix and
+//! card, the themes.
 
 use std::path::Path;
 
 use super::fuzzy::Search;
 use super::{
-    Action, ActionRow, AppState, Command, CopyForm, ExportCommand, FileCommand, Menu,
-    ProjectCommand, Settings, Theme,
+    Action, ActionRow, AppState, ColorBy, Command, CopyForm, ExportCommand, FileCommand, Menu,
+    ProjectCommand, Settings, Theme, ViewCommand,
 };
 use crate::pipeline::outputs::{MeshOutput, Output};
 use crate::report::{CardForm, MatrixForm};
+use crate::text::inside;
 
 /// Commands that are remembered as used last.
 const MAX_RECENT: usize = 6;
@@ -141,6 +143,7 @@ impl AppState {
                 reason,
             ));
         }
+        entries.extend(ColorBy::ALL.map(|by| self.color_entry(by)));
         let locked = why(Action::OpenExample);
         let recent = self.settings.recent.iter();
         entries.extend(recent.map(|path| PaletteEntry {
@@ -164,6 +167,21 @@ impl AppState {
             does: Does::Theme(theme),
         }));
         entries
+    }
+
+    fn color_entry(&self, by: ColorBy) -> PaletteEntry {
+        let mut display = self.view.display.clone();
+        display.color_by = by;
+        PaletteEntry {
+            label: format!("Colour: {}", inside(by.label())),
+            group: by.group(),
+            help: "What the colours of the parts show".to_owned(),
+            keys: String::new(),
+            reason: self.missing_for(by),
+            is_recent: false,
+            letters: Vec::new(),
+            does: does(ViewCommand::SetDisplay(Box::new(display))),
+        }
     }
 
     fn action_entry(&self, row: &ActionRow) -> PaletteEntry {
@@ -252,6 +270,23 @@ mod tests {
             assert_eq!(state.settings.theme, theme);
             assert_eq!(state.palette("")[0].label, entry.label);
         }
+    }
+
+    #[test]
+    fn every_colour_is_a_command() {
+        let mut state = AppState::default();
+        let thinning = state.palette("thinning").remove(0);
+        assert_eq!(thinning.label, "Colour: thinning");
+        assert!(thinning.reason.is_some(), "no part is loaded");
+        let entry = state.palette("colour: part").remove(0);
+        for command in entry.commands(&state) {
+            state.apply(command);
+        }
+        assert_eq!(state.view.display.color_by, ColorBy::Part);
+        // Groups stand together, each once.
+        let mut groups: Vec<_> = ColorBy::ALL.map(ColorBy::group).to_vec();
+        groups.dedup();
+        assert_eq!(groups, ["Part", "Match", "Forming", "Mapping"]);
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::names::told_apart;
 use super::{NoticeLevel, PictureChoice, UnitMemory};
 use crate::colormap::ColorMap;
 use crate::formats::ReadOptions;
@@ -218,27 +219,7 @@ impl Settings {
 
     /// Name of a recent file, with as much of its folder as tells it from others of that name.
     pub fn recent_name(&self, path: &Path) -> String {
-        let name = path.file_name().unwrap_or(path.as_os_str());
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let same_name = self.recent.iter().filter(|other| *other != path);
-        let same_name = same_name.filter(|other| other.file_name() == path.file_name());
-        let others: Vec<&Path> = same_name.filter_map(|other| other.parent()).collect();
-        if others.is_empty() {
-            return name.to_string_lossy().into_owned();
-        }
-        let n_folders = folder.components().count();
-        let end_of = |folder: &Path, n: usize| -> PathBuf {
-            let skip = folder.components().count().saturating_sub(n);
-            folder.components().skip(skip).collect()
-        };
-        let is_own = |n: &usize| {
-            others
-                .iter()
-                .all(|other| end_of(other, *n) != end_of(folder, *n))
-        };
-        let n = (1..=n_folders).find(is_own).unwrap_or(n_folders);
-        let folder = end_of(folder, n);
-        format!("{} – {}", name.to_string_lossy(), folder.display())
+        told_apart(path, self.recent.iter().map(PathBuf::as_path))
     }
 
     /// Brings values from a file that someone edited back into their ranges.

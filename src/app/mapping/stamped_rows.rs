@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::further::file_name;
 use super::{Further, FurtherPose, MappingState};
+use crate::app::names::told_apart;
 use crate::app::{AppState, Part, UnitHint, facts};
 use crate::assess::Verdict;
 use crate::jobs::JobKey;
@@ -109,6 +110,10 @@ impl AppState {
         rows.extend(failed.map(|(number, (path, reason))| {
             unread((*number, path, StampedState::NotRead(reason.clone())))
         }));
+        let paths: Vec<PathBuf> = rows.iter().map(|row| row.path.clone()).collect();
+        for row in &mut rows {
+            row.name = told_apart(&row.path, paths.iter().map(PathBuf::as_path));
+        }
         rows
     }
 

@@ -102,6 +102,27 @@ impl ColorBy {
         Self::MapOther,
     ];
 
+    /// Of what it speaks; the choices of a group stand beside each other in [`ColorBy::ALL`].
+    pub fn group(self) -> &'static str {
+        match self {
+            Self::Role | Self::Part | Self::Thickness | Self::ReductionError => "Part",
+            Self::Deviation | Self::Overlap | Self::Uncertainty => "Match",
+            Self::Thinning
+            | Self::PlasticStrain
+            | Self::MajorStrain
+            | Self::MinorStrain
+            | Self::VonMises
+            | Self::MajorStress => "Forming",
+            Self::MapDifference
+            | Self::MapDistance
+            | Self::MapAngle
+            | Self::MapConfidence
+            | Self::MapStatus
+            | Self::MapFile
+            | Self::MapOther => "Mapping",
+        }
+    }
+
     /// The picture of a mapping, if it is one.
     pub fn map_picture(self) -> Option<MapPicture> {
         let is_it = |picture: &MapPicture| picture.color_by() == self;

@@ -4,7 +4,7 @@ use egui::{Align, Layout, Sense, TextStyle, Ui, vec2};
 
 use super::part_list::part_list_ui;
 use super::part_question::part_question_ui;
-use super::section::{elided, section_ui};
+use super::section::{elided, elided_middle, section_ui};
 use super::units;
 use crate::app::{
     Action, AppState, BottomTab, ColorBy, Command, Display, FileCommand, Part, PreviewCommand,
@@ -31,6 +31,10 @@ pub fn load_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             for role in Role::ALL {
                 file_ui(ui, role, state, commands);
                 changed_ui(ui, role, state, commands);
+            }
+            if state.document.has_one_file() {
+                let text = "⚠ Both parts are read from one file";
+                ui.colored_label(Palette::of(ui).check, text);
             }
             units::unit_question_ui(ui, state, commands);
             part_question_ui(ui, state, commands);
@@ -94,14 +98,14 @@ fn changed_ui(ui: &mut Ui, role: Role, state: &AppState, commands: &mut Vec<Comm
 
 fn loaded_ui(ui: &mut Ui, role: Role, part: &Part, state: &AppState, commands: &mut Vec<Command>) {
     let palette = Palette::of(ui);
-    let name = part.loaded.file_name();
+    let name = state.document.name_of(role);
     let has_badge = role == Role::Stamped && state.document.has_pose();
     let badge = if has_badge { ROW + UNIT } else { 0.0 };
     let room = ui.available_width() - ROW - UNIT - badge;
     let (rect, response) = ui.allocate_exact_size(vec2(room, 36.0), Sense::hover());
     let body = TextStyle::Body.resolve(ui.style());
     let small = TextStyle::Small.resolve(ui.style());
-    let title = elided(ui, &name, body, palette.text, room);
+    let title = elided_middle(ui, &name, body, palette.text, room);
     ui.painter()
         .galley(rect.left_top() + vec2(0.0, 1.0), title, palette.text);
     let detail = elided(
@@ -260,8 +264,16 @@ fn display_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                     .selected_text(state.color_by(Role::Crash).label())
                     .width(ui.available_width())
                     .truncate()
+                    // All choices at once: nobody looks for what lies below the edge of a list.
+                    .height(ui.ctx().content_rect().height())
                     .show_ui(ui, |ui| {
+                        ui.spacing_mut().item_spacing.y = 1.0;
+                        let mut group = "";
                         for by in ColorBy::ALL {
+                            if by.group() != group {
+                                group = by.group();
+                                caption(ui, group);
+                            }
                             color_row(ui, state, &mut display.color_by, by);
                         }
                     });

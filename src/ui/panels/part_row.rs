@@ -4,7 +4,7 @@ use egui::{
     Align2, Color32, FontId, Rangef, Rect, Response, Sense, Stroke, TextStyle, Ui, Vec2, pos2, vec2,
 };
 
-use super::section::elided;
+use super::section::elided_middle;
 use crate::app::{AppState, Command, LikeWhat, Part, PartCommand, PartRef, ViewCommand};
 use crate::formats::PartSummary;
 use crate::role::Role;
@@ -303,7 +303,7 @@ fn paint(ui: &Ui, rect: Rect, row: &Row<'_>, columns: &Columns, state: &AppState
     let body = TextStyle::Body.resolve(ui.style());
     let small = TextStyle::Small.resolve(ui.style());
     let left = |x: Rangef, text: &str, color: Color32| {
-        let galley = elided(ui, text, body.clone(), color, x.span());
+        let galley = elided_middle(ui, text, body.clone(), color, x.span());
         let at = pos2(x.min, middle - galley.size().y / 2.0);
         ui.painter().galley(at, galley, color);
     };

@@ -234,6 +234,40 @@ pub fn elided(
     ui.painter().layout_job(job)
 }
 
+/// One line of text, cut in the middle where it does not fit: names that begin alike are told apart by their
+/// ends.
+pub fn elided_middle(
+    ui: &Ui,
+    text: &str,
+    font: FontId,
+    color: egui::Color32,
+    room: f32,
+) -> std::sync::Arc<egui::Galley> {
+    let lay = |text: String| ui.painter().layout_no_wrap(text, font.clone(), color);
+    let whole = lay(text.to_owned());
+    if whole.size().x <= room {
+        return whole;
+    }
+    let letters: Vec<char> = text.chars().collect();
+    let kept = |n: usize| {
+        let (head, tail) = (n.div_ceil(2), n / 2);
+        let head: String = letters[..head].iter().collect();
+        let tail: String = letters[letters.len() - tail..].iter().collect();
+        format!("{}…{}", head.trim_end(), tail.trim_start())
+    };
+    // As many letters as fit.
+    let (mut low, mut high) = (0, letters.len());
+    while low + 1 < high {
+        let middle = low.midpoint(high);
+        if lay(kept(middle)).size().x <= room {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    elided(ui, &kept(low), font, color, room)
+}
+
 fn paint_fold(painter: &egui::Painter, at: egui::Pos2, is_open: bool, palette: &Palette) {
     let corners = if is_open {
         [vec2(-4.0, -2.5), vec2(4.0, -2.5), vec2(0.0, 3.0)]

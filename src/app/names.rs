@@ -1,0 +1,40 @@
+//! Names of files where several of one name stand beside each other.
+
+use std::path::{Path, PathBuf};
+
+/// Name of a file, with as much of its folder as tells it from others of that name.
+pub(super) fn told_apart<'a>(path: &Path, all: impl Iterator<Item = &'a Path>) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let same_name = all.filter(|other| *other != path);
+    let same_name = same_name.filter(|other| other.file_name() == path.file_name());
+    let others: Vec<&Path> = same_name.filter_map(|other| other.parent()).collect();
+    if others.is_empty() {
+        return name.to_string_lossy().into_owned();
+    }
+    let n_folders = folder.components().count();
+    let end_of = |folder: &Path, n: usize| -> PathBuf {
+        let skip = folder.components().count().saturating_sub(n);
+        folder.components().skip(skip).collect()
+    };
+    let is_own = |n: &usize| {
+        others
+            .iter()
+            .all(|other| end_of(other, *n) != end_of(folder, *n))
+    };
+    let n = (1..=n_folders).find(is_own).unwrap_or(n_folders);
+    let folder = end_of(folder, n);
+    format!("{} – {}", name.to_string_lossy(), folder.display())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_one_name_have_their_folder() {
+        let paths = ["/a/b/part.k", "/a/c/part.k", "/a/b/other.k"].map(Path::new);
+        let told = paths.map(|path| told_apart(path, paths.into_iter()));
+        assert_eq!(told, ["part.k – b", "part.k – c", "other.k"]);
+    }
+}
