@@ -64,6 +64,13 @@ pub(super) fn has_mapping(state: &AppState) -> Result<(), Reason> {
     require(has_mapping, "Map the forming results first.")
 }
 
+/// There is a mapping, and it is the one that would be made now.
+pub(super) fn has_valid_mapping(state: &AppState) -> Result<(), Reason> {
+    has_mapping(state)?;
+    let is_valid = !state.document.is_mapping_out_of_date();
+    require(is_valid, "The mapping is out of date: map again.")
+}
+
 pub(super) fn has_starts(state: &AppState) -> Result<(), Reason> {
     let n_starts = state.current_starts().map_or(0, |s| s.poses.len());
     require(n_starts > 0, "Align the surface normals first.")?;

@@ -1,6 +1,6 @@
 //! The menu *Export*: what leaves the program.
 
-use super::conditions::{always, has_mapping, has_result, has_stamped};
+use super::conditions::{always, has_result, has_stamped, has_valid_mapping};
 use super::row::keys::{ctrl_shift, function};
 use super::row::some;
 use super::{Action, ActionRow, Key, Keys, MenuGroup, Shortcut, toggled_dialog};
@@ -57,7 +57,7 @@ const MAPPED: &[ActionRow] = &[
         label: "Save mapped deck…",
         tooltip: "Write a copy of the crash deck with mapped thickness and states, all else byte for byte",
         keys: Keys::NONE,
-        enabled: has_mapping,
+        enabled: has_valid_mapping,
         command: |_| save(Output::Mapped(WriteKind::Deck)),
     },
     ActionRow {
@@ -65,7 +65,7 @@ const MAPPED: &[ActionRow] = &[
         label: "Save mapped part…",
         tooltip: "Write all elements of the crash part with mapped thickness, and the states",
         keys: Keys::NONE,
-        enabled: has_mapping,
+        enabled: has_valid_mapping,
         command: |_| save(Output::Mapped(WriteKind::Part)),
     },
     ActionRow {
@@ -74,7 +74,7 @@ const MAPPED: &[ActionRow] = &[
         tooltip: "Write the states as an include, and beside it the elements with their thickness, which take \
                   the place of the crash deck's",
         keys: Keys::NONE,
-        enabled: has_mapping,
+        enabled: has_valid_mapping,
         command: |_| save(Output::Mapped(WriteKind::Include)),
     },
     ActionRow {
@@ -82,7 +82,7 @@ const MAPPED: &[ActionRow] = &[
         label: "Save mapping report…",
         tooltip: "Write statistics and pictures before and after as one HTML page",
         keys: Keys::NONE,
-        enabled: has_mapping,
+        enabled: has_valid_mapping,
         command: |_| save(Output::MapReport),
     },
     ActionRow {
@@ -90,7 +90,7 @@ const MAPPED: &[ActionRow] = &[
         label: "Save mapping table…",
         tooltip: "Write status, distances and values of every crash element, as CSV",
         keys: Keys::NONE,
-        enabled: has_mapping,
+        enabled: has_valid_mapping,
         command: |_| save(Output::MapTable),
     },
 ];

@@ -30,6 +30,7 @@ use crate::pipeline::forming_values::{FormingValue, has_forming_value, nominal_t
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::map::{
     ComparisonRecord, ElementLists, MapRecipe, MapRecord, MapRun, OtherResult, PoseOrigin,
+    unread_line,
 };
 pub use crate::pipeline::map::{DoubtfulElement, FurtherPose, UnmappedElement};
 use crate::role::Role;
@@ -558,7 +559,11 @@ pub(super) fn take_mapped(
         percent(record.mapped_area),
         counted(record.n_elements, "element")
     );
-    for warning in &record.warnings {
+    // What could not be read was told when the file was.
+    let crash = work.document.part(Role::Crash).map(|part| &part.loaded);
+    let parts = crash.into_iter().chain(work.document.all_stamped());
+    let told: Vec<String> = parts.filter_map(|part| unread_line(part)).collect();
+    for warning in record.warnings.iter().filter(|one| !told.contains(one)) {
         work.log_at(NoticeLevel::Warning, "map", None, capital(warning), None);
     }
     work.log_step("map", None, text, Some(took));

@@ -186,13 +186,24 @@ fn pose_ui(ui: &mut Ui, state: &AppState) {
 fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut Vec<Command>) {
     let record = &result.record;
     caption(ui, "Result");
-    for line in lines(record) {
-        ui.label(line);
+    let stale = state.stale(Section::Map);
+    if let Some(stale) = stale {
+        let text = format!("Out of date: {}. Map again.", stale.reason);
+        let text = egui::RichText::new(text).color(Palette::of(ui).check);
+        ui.add(egui::Label::new(text).wrap());
     }
-    for warning in &record.warnings {
-        paragraph(ui, sentence(warning));
-    }
-    checks_ui(ui, record, commands);
+    ui.scope(|ui| {
+        if stale.is_some() {
+            ui.multiply_opacity(STALE);
+        }
+        for line in lines(record) {
+            ui.label(line);
+        }
+        for warning in &record.warnings {
+            paragraph(ui, sentence(warning));
+        }
+        checks_ui(ui, record, commands);
+    });
     picture_ui(ui, state, commands);
     doubtful_ui(ui, state, commands);
     unmapped_ui(ui, state, commands);
@@ -217,6 +228,9 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
         secondary(ui, "Writing …  Esc gives it up");
     }
 }
+
+/// How much of a result is seen that is out of date.
+const STALE: f32 = 0.5;
 
 /// The file that mappings are compared with, and the way out of it.
 fn other_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -303,12 +317,15 @@ fn picture_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             for choice in LayerChoice::ALL {
                 if chip(ui, choice.label(), choice == layer).clicked() {
                     let mut display = state.view.display.clone();
-                    let usual = quantity.forming().map(LayerChoice::usual);
+                    let usual = state.usual_layer(quantity);
                     display.mapped.layer = Some(choice).filter(|_| usual != Some(choice));
                     chosen = Some(display);
                 }
             }
         });
+    }
+    if let Some(note) = state.layers_differ(quantity).filter(|_| speaks_of_it) {
+        caption(ui, note);
     }
     if let Some(display) = chosen {
         commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
