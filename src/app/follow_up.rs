@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use super::{
-    AppState, BottomTab, Document, Effect, FreeWindow, MapPicture, NoticeLevel, Part, Section,
-    Showing, ShownGeometry,
+    AppState, BottomTab, Document, Effect, FreeWindow, NoticeLevel, Part, Section, Showing,
+    ShownGeometry,
 };
 use crate::geometry::{Aabb, Point3};
 use crate::jobs::ProjectRequest;
@@ -133,7 +133,7 @@ impl AppState {
                 self.view.tab = BottomTab::Mapping;
             }
             FollowUp::MappingCompared => {
-                self.view.display = self.with_map_picture(Some(MapPicture::Other));
+                self.view.display = self.with_other_result();
                 self.view.tab = BottomTab::Mapping;
             }
             FollowUp::SweepBegun => self.view.tab = BottomTab::Sweep,

@@ -7,7 +7,7 @@ use shapematch::app::{
 use shapematch::jobs::{JobKind, JobOutput, PipelineRunner, Runner as _};
 use shapematch::mapping::Status;
 use shapematch::monitor::Monitor;
-use shapematch::pipeline::forming_values::LayerChoice;
+use shapematch::pipeline::forming_values::{FormingValue, LayerChoice};
 use shapematch::pipeline::map::{CheckReason, CheckRecord, MapRun, WriteKind};
 use shapematch::pipeline::outputs::{Output, OutputInput};
 use shapematch::pipeline::project::Project;
@@ -495,6 +495,56 @@ fn a_mapping_is_compared_with_another_result_element_by_element() {
     window.act(Action::MapOrCancel);
     let result = window.state.document.current_mapping().unwrap();
     assert!(result.record.comparison.is_some());
+}
+
+#[test]
+fn a_comparison_begins_with_a_quantity_that_both_have() {
+    let (mut window, folder) = mapped_in_full();
+    // The states of an include; the thickness stands in the file beside it.
+    let made =
+        Output::Mapped(WriteKind::Include).make(&output_input(&window), None, &Monitor::silent());
+    let file = folder.path().join("states.k");
+    std::fs::write(&file, made.unwrap().bytes).unwrap();
+    assert_eq!(window.state.map_quantity(), ColorBy::Thickness);
+    window.apply(MapCommand::CompareWith(file));
+    let in_both = window.state.compared_quantities();
+    assert!(!in_both.contains(&ColorBy::Thickness), "{in_both:?}");
+    assert_eq!(window.state.map_quantity(), in_both[0]);
+    assert_eq!(window.state.color_by(Role::Crash), ColorBy::MapOther);
+}
+
+#[test]
+fn stresses_of_a_mapping_are_compared_where_both_sheets_have_a_layer() {
+    let (window, _folder) = mapped_in_full();
+    let state = &window.state;
+    assert_eq!(
+        state.shown_layer(ColorBy::VonMises),
+        Some(LayerChoice::Middle)
+    );
+    assert_eq!(
+        state.shown_layer(ColorBy::PlasticStrain),
+        Some(LayerChoice::Mean)
+    );
+    assert!(state.layers_differ(ColorBy::VonMises).is_none());
+    let mut window = window;
+    while window.state.shown_layer(ColorBy::VonMises) != Some(LayerChoice::Top) {
+        window.act(Action::NextLayer);
+    }
+    let run = &window.state.document.current_mapping().unwrap().run;
+    let [stamped, crash] = run.outermost_layers(FormingValue::VonMises).unwrap();
+    let note = window.state.layers_differ(ColorBy::VonMises);
+    assert_eq!(
+        note.is_some(),
+        (stamped - crash).abs() > 0.01,
+        "{stamped} {crash}"
+    );
+    // Thinning has figures as the thickness has.
+    let record = &window.state.document.current_mapping().unwrap().record;
+    let (thickness, thinning) = (record.thickness.as_ref(), record.thinning.as_ref());
+    let flat = window.state.flat_thickness().unwrap();
+    let [thickness, thinning] = [thickness, thinning].map(|pair| pair.unwrap().crash);
+    assert!((thinning.mean - (1.0 - thickness.mean / flat)).abs() < 1e-9);
+    assert!((thinning.max - (1.0 - thickness.min / flat)).abs() < 1e-9);
 }
 
 #[test]

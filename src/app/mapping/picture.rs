@@ -109,6 +109,29 @@ impl AppState {
         QUANTITIES.into_iter().filter(has).collect()
     }
 
+    /// The quantities that both the current mapping and the result beside it have.
+    pub fn compared_quantities(&self) -> Vec<ColorBy> {
+        let result = self.document.current_mapping();
+        let record = result.and_then(|result| result.record.comparison.as_ref());
+        let is_in_both = |by: &ColorBy| {
+            let is_told = *by == ColorBy::Thickness || by.forming().is_some();
+            is_told && record.is_some_and(|record| record.of(by.forming()).is_some())
+        };
+        let all = self.mapped_quantities().into_iter();
+        all.filter(is_in_both).collect()
+    }
+
+    /// The difference to the other result, of a quantity that both have.
+    pub(in crate::app) fn with_other_result(&self) -> Display {
+        let mut display = self.with_map_picture(Some(MapPicture::Other));
+        let in_both = self.compared_quantities();
+        if !in_both.contains(&display.mapped.quantity) {
+            let first = in_both.first().copied();
+            display.mapped.quantity = first.unwrap_or(display.mapped.quantity);
+        }
+        display
+    }
+
     /// The quantity the pictures of the mapping speak of; the first there is if the chosen one was not
     /// mapped.
     pub fn map_quantity(&self) -> ColorBy {

@@ -13,6 +13,7 @@ use crate::geometry::tensor::{Tensor, von_mises};
 use crate::mapping::{Layered, PLASTIC_STRAIN, distribution};
 use crate::monitor::Monitor;
 use crate::pipeline::forming_values::FormingValue;
+use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
 
 /// What other files say of the elements of a mapping.
@@ -188,6 +189,19 @@ pub struct ComparisonRecord {
 }
 
 impl ComparisonRecord {
+    /// The differences of a quantity, with `None` of the thickness; `None` where a side has nothing of it.
+    pub fn of(&self, value: Option<FormingValue>) -> Option<&DifferenceRecord> {
+        let found = match value {
+            None => &self.thickness,
+            Some(FormingValue::PlasticStrain) => &self.plastic_strain,
+            Some(FormingValue::VonMises) => &self.von_mises,
+            Some(FormingValue::MajorStrain) => &self.major_strain,
+            Some(FormingValue::MinorStrain) => &self.minor_strain,
+            Some(FormingValue::Thinning | FormingValue::MajorStress) => &None,
+        };
+        found.as_ref()
+    }
+
     /// What was compared, by its name; `None` where either side has nothing of it.
     pub fn rows(&self) -> [(&'static str, Option<&DifferenceRecord>); 5] {
         [

@@ -1,6 +1,6 @@
 //! The mapping looked at closely: its checks, the distribution of a quantity on both sides, and the probe.
 
-use egui::{Align, Layout, RichText, Sense, Ui, vec2};
+use egui::{Align, Layout, RichText, Sense, TextStyle, Ui, vec2};
 use egui_extras::{Column, TableBuilder};
 use egui_plot::{Line, PlotPoints};
 
@@ -10,12 +10,12 @@ use crate::app::{AppState, ColorBy, Command, InspectCommand, MapResult, ViewComm
 use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::map::{CheckRecord, ComparisonRecord, DistributionRecord, PairRecord};
 use crate::role::Role;
-use crate::text::{fixed, grouped};
+use crate::text::{fixed, grouped, inside};
 use crate::ui::theme::Palette;
 use crate::ui::widgets::{caption, length, nothing_yet, segments, signed};
 
 /// Height of a row.
-const LINE: f32 = 19.0;
+const LINE: f32 = 17.0;
 
 /// Checks, distributions, probe, side by side.
 pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -61,7 +61,7 @@ const LOW: f32 = 110.0;
 /// Width of the choice between them there.
 const CHOICE: f32 = 92.0;
 /// Largest widths of the three.
-const WIDEST: [f32; 3] = [480.0, 760.0, 640.0];
+const WIDEST: [f32; 3] = [620.0, 760.0, 640.0];
 
 /// In a pane narrower than this only one of the three is shown at a time.
 const NARROW: f32 = 860.0;
@@ -167,18 +167,20 @@ fn checks_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
     let title = format!("Checks: {n_met} of {n_asked} met (click to see)");
     caption(ui, title);
     ui.spacing_mut().item_spacing.y = 0.0;
+    let [name, found] = check_columns(ui, checks);
     // A table keeps its columns as wide and its rows where they were first: one for each width and place.
-    let place = [ui.available_width(), ui.cursor().left()].map(|x| x.round() as i32);
+    let place = [ui.available_width(), ui.cursor().left(), name, found];
+    let place = place.map(|x| x.round() as i32);
     TableBuilder::new(ui)
         .id_salt(("mapping checks", place))
         .sense(Sense::click())
         .min_scrolled_height(0.0)
         .auto_shrink([false, false])
         .cell_layout(Layout::left_to_right(Align::Center))
-        .column(Column::exact(14.0))
+        .column(Column::exact(SIGN))
+        .column(Column::exact(name).clip(true))
+        .column(Column::exact(found).clip(true))
         .column(Column::remainder().clip(true))
-        .column(Column::exact(62.0).clip(true))
-        .column(Column::exact(92.0).clip(true))
         .body(|body| {
             body.rows(LINE, checks.len(), |mut row| {
                 let check = &checks[row.index()];
@@ -187,7 +189,9 @@ fn checks_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
                     ui.add(egui::Label::new(&check.name).truncate());
                 });
                 row.col(|ui| {
-                    ui.add(egui::Label::new(&check.found).truncate());
+                    let found = egui::Label::new(&check.found).truncate();
+                    // The tooltip of the row says it whole.
+                    ui.add(found.show_tooltip_when_elided(false));
                 });
                 row.col(|ui| {
                     let text = RichText::new(&check.limit).small().color(palette);
@@ -206,11 +210,49 @@ fn checks_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
                 if response.clicked() {
                     show_check(state, result, check, commands);
                 }
-                if let Some(reason) = check.reason {
-                    response.on_hover_text(reason.label());
-                }
+                response.on_hover_ui(|ui| {
+                    let (name, found, limit) = (&check.name, &check.found, &check.limit);
+                    ui.label(format!("{name}: {found} ({limit})"));
+                    if let Some(reason) = check.reason {
+                        ui.label(reason.label());
+                    }
+                });
             });
         });
+}
+
+/// Width of the column of marks.
+const SIGN: f32 = 14.0;
+
+/// Widths of the names and of what was found, by their longest texts. Where not all of a row has room, what
+/// was found is cut first, and then the names.
+fn check_columns(ui: &Ui, checks: &[CheckRecord]) -> [f32; 2] {
+    let widest = |style: TextStyle, text: fn(&CheckRecord) -> &str| {
+        let font = style.resolve(ui.style());
+        let of = |check: &CheckRecord| {
+            let text = text(check).to_owned();
+            let laid = ui
+                .painter()
+                .layout_no_wrap(text, font.clone(), egui::Color32::WHITE);
+            laid.size().x.ceil() + 2.0
+        };
+        checks.iter().map(of).fold(0.0, f32::max)
+    };
+    let [name, found] = [
+        widest(TextStyle::Body, |check| &check.name),
+        widest(TextStyle::Body, |check| &check.found),
+    ];
+    let limit = widest(TextStyle::Small, |check| &check.limit);
+    let gaps = 3.0 * ui.spacing().item_spacing.x + ui.spacing().scroll.bar_width + 4.0;
+    column_widths(ui.available_width() - SIGN - gaps, [name, found, limit])
+}
+
+fn column_widths(room: f32, [name, found, limit]: [f32; 3]) -> [f32; 2] {
+    const LEAST_FOUND: f32 = 62.0;
+    const LEAST_NAME: f32 = 80.0;
+    let found = found.min((room - name - limit).max(LEAST_FOUND));
+    let name = name.min((room - found - limit).max(LEAST_NAME));
+    [name, found]
 }
 
 /// The mark of a check; the quiet colour of its table.
@@ -337,17 +379,23 @@ fn compared_ui(
     let by = state.map_quantity();
     let files = file_names(&comparison.files);
     caption(ui, format!("{} against {files}, by area", by.label()));
-    let record = match by {
-        ColorBy::Thickness => comparison.thickness.as_ref(),
-        ColorBy::PlasticStrain => comparison.plastic_strain.as_ref(),
-        ColorBy::VonMises => comparison.von_mises.as_ref(),
-        ColorBy::MajorStrain => comparison.major_strain.as_ref(),
-        ColorBy::MinorStrain => comparison.minor_strain.as_ref(),
-        _ => None,
-    };
-    let Some(record) = record else {
-        let hint = "no statistics of this quantity, or the other file has nothing of it";
-        caption(ui, hint);
+    let Some(record) = comparison.of(by.forming()) else {
+        let in_both = state.compared_quantities();
+        if in_both.is_empty() {
+            caption(ui, format!("{files} has no quantity that was mapped"));
+            return;
+        }
+        let missing = inside(by.label());
+        let text = format!("There are no figures of {missing} beside {files}, but of:");
+        caption(ui, text);
+        ui.horizontal_wrapped(|ui| {
+            for other in in_both {
+                if ui.button(other.label()).clicked() {
+                    let display = state.with_map_quantity(other);
+                    commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
+                }
+            }
+        });
         return;
     };
     let palette = Palette::of(ui);
@@ -506,6 +554,14 @@ mod tests {
         ];
         assert_eq!(corners, expected);
         assert!(outline(&[], [0.0, 1.0]).is_empty());
+    }
+
+    #[test]
+    fn columns_are_as_wide_as_their_texts_where_there_is_room() {
+        assert_eq!(column_widths(500.0, [180.0, 100.0, 90.0]), [180.0, 100.0]);
+        // A long finding gives way before the names do.
+        assert_eq!(column_widths(400.0, [180.0, 300.0, 90.0]), [180.0, 130.0]);
+        assert_eq!(column_widths(300.0, [180.0, 300.0, 90.0]), [148.0, 62.0]);
     }
 
     #[test]
