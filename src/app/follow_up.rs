@@ -89,7 +89,15 @@ impl AppState {
                 let dialog = &mut topics.view.dialog;
                 return topics.project.open(&mut work, request, dialog);
             }
-            FollowUp::PartsSwapped => self.view.cameras.swap(),
+            FollowUp::PartsSwapped => {
+                self.view.cameras.swap();
+                // Each part lies where its own file has it now.
+                self.with_scene(|view, scene| {
+                    for role in Role::ALL {
+                        view.fit_all(role, scene);
+                    }
+                });
+            }
             FollowUp::PartLoaded(role) => {
                 self.with_scene(|view, scene| view.fit_after_load(role, scene));
                 self.go_on_from_load();

@@ -296,7 +296,7 @@ impl PartDirection {
             Self::Along => "along the part",
             Self::Across => "across the part",
             Self::Through => "at right angles to the sheet",
-            Self::Oblique => "between the main directions of the part",
+            Self::Oblique => "in no main direction of the part",
         }
     }
 }

@@ -35,6 +35,8 @@ const OTHER_KEYS: [(&str, &[(&str, &str)]); 5] = [
         &[
             ("Tab, Shift+Tab", "Next or previous field, tab or 3D window"),
             ("Space, Enter", "Press the button or tab with the frame"),
+            ("F10", "Open the menus; Left, Right: the next one"),
+            ("Esc", "Close the messages"),
         ],
     ),
     (

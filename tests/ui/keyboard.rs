@@ -207,3 +207,19 @@ fn a_pose_moved_by_hand_can_be_copied_and_the_result_is_one_click_away() {
     assert_eq!(*document.crash_from_stamped(), matched);
     assert!(document.current_result().is_some());
 }
+
+#[test]
+fn f10_opens_the_menus_and_arrows_go_from_one_to_the_next() {
+    let mut window = window();
+    let mut shows = |key: Key, item: &str| {
+        window.key_press(key);
+        window.run_steps(3);
+        window.query_by_label_contains(item).is_some()
+    };
+    assert!(shows(Key::F10, "Preferences…"));
+    assert!(shows(Key::ArrowRight, "Undo"));
+    assert!(shows(Key::ArrowLeft, "Preferences…"));
+    // Round the end.
+    assert!(shows(Key::ArrowLeft, "Keys and mouse"));
+    assert!(!shows(Key::F10, "Keys and mouse"));
+}

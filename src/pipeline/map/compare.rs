@@ -13,7 +13,6 @@ use crate::geometry::tensor::{Tensor, von_mises};
 use crate::mapping::{Layered, PLASTIC_STRAIN, distribution};
 use crate::monitor::Monitor;
 use crate::pipeline::forming_values::FormingValue;
-use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
 
 /// What other files say of the elements of a mapping.

@@ -282,7 +282,8 @@ fn over_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             .part(Role::Stamped)
             .map_or(1.0, |p| p.bounds().diagonal());
         ui.spacing_mut().slider_width = ui.available_width() - 64.0;
-        ui.add(egui::Slider::new(&mut display.separation, 0.0..=0.25 * size).max_decimals(1))
+        let slider = egui::Slider::new(&mut display.separation, 0.0..=0.25 * size);
+        ui.add(slider.max_decimals(1).suffix(state.document.unit_suffix()))
             .on_hover_text("Draws the stamped part apart from where it is; the matrix stays");
     });
     ui.horizontal(|ui| {

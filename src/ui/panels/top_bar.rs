@@ -1,6 +1,9 @@
 //! Menus, search, unit, bell.
 
-use egui::{Align, Button, Layout, MenuBar, RichText, Sense, Ui, pos2, vec2};
+use egui::{
+    Align, Button, Id, Key, Layout, MenuBar, Modifiers, Popup, Response, RichText, Sense, Ui, pos2,
+    vec2,
+};
 
 use super::rail::fold_ui;
 use super::units::window_unit_ui;
@@ -23,9 +26,13 @@ pub fn top_bar_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let room = ui.available_width();
         if room < NARROW {
             // One menu of menus.
-            ui.menu_button("☰ Menu", |ui| menus_ui(ui, state, commands));
+            let all = ui.menu_button("☰ Menu", |ui| {
+                menus_ui(ui, state, commands);
+            });
+            turn_by_keys(ui, &[all.response]);
         } else {
-            menus_ui(ui, state, commands);
+            let menus = menus_ui(ui, state, commands);
+            turn_by_keys(ui, &menus);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             bell_ui(ui, state, commands);
@@ -41,12 +48,39 @@ pub fn top_bar_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 const NARROW: f32 = 480.0;
 const MEDIUM: f32 = 560.0;
 
-fn menus_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+fn menus_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) -> Vec<Response> {
+    let mut titles = Vec::new();
     for menu in Menu::ALL {
-        ui.menu_button(menu.label(), |ui| {
+        let shown = ui.menu_button(menu.label(), |ui| {
             ui.set_min_width(248.0);
             menu_ui(ui, state, menu, commands);
         });
+        titles.push(shown.response);
+    }
+    titles
+}
+
+/// F10 opens the first menu or closes the open one; Left and Right go from one open menu to the next.
+fn turn_by_keys(ui: &Ui, titles: &[Response]) {
+    let ctx = ui.ctx();
+    let ids: Vec<Id> = titles.iter().map(Popup::default_response_id).collect();
+    let open = ids.iter().position(|id| Popup::is_id_open(ctx, *id));
+    let is_other_open = open.is_none() && Popup::is_any_open(ctx);
+    let is_pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    let next = match open {
+        _ if is_other_open => None,
+        None => is_pressed(Key::F10).then_some(0),
+        Some(at) if is_pressed(Key::F10) => {
+            Popup::close_id(ctx, ids[at]);
+            None
+        }
+        Some(at) if is_pressed(Key::ArrowRight) => Some((at + 1) % ids.len()),
+        Some(at) if is_pressed(Key::ArrowLeft) => Some((at + ids.len() - 1) % ids.len()),
+        Some(_) => None,
+    };
+    if let Some(next) = next {
+        Popup::open_id(ctx, ids[next]);
+        titles[next].request_focus();
     }
 }
 

@@ -146,8 +146,8 @@ fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])>
         // Beside those of the overlap, which leave out what lies beyond the limit.
         row("RMS (compared)", &|s| lengths.number(s.rms)),
         row("P95 (compared)", &|s| lengths.number(s.p95)),
-        row("Min", &|s| lengths.signed(s.min)),
-        row("Max", &|s| lengths.signed(s.max)),
+        row("min", &|s| lengths.signed(s.min)),
+        row("max", &|s| lengths.signed(s.max)),
         row("standard deviation", &|s| lengths.number(s.std)),
     ];
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {

@@ -23,17 +23,24 @@ pub fn history_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
     let thumbnails = Thumbnails::of(ui.ctx());
     let mut thumbnails = thumbnails.lock();
-    let n_rows = state.history.n_done() + state.history.n_undone() + 1;
-    ScrollArea::vertical()
+    let n_done = state.history.n_done();
+    let n_rows = n_done + state.history.n_undone() + 1;
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let mut area = ScrollArea::vertical()
         .id_salt("history")
-        .auto_shrink([false, false])
-        .stick_to_bottom(true)
-        .show_rows(ui, HEIGHT, n_rows, |ui, range| {
-            ui.spacing_mut().item_spacing.y = 0.0;
-            for number in range {
-                row_ui(ui, number, state, &mut thumbnails, commands);
-            }
-        });
+        .auto_shrink([false, false]);
+    // The present step is seen after every step, wherever the list was scrolled to before.
+    let id = egui::Id::unique("step that the history shows");
+    if ui.data(|data| data.get_temp(id)) != Some(n_done) {
+        ui.data_mut(|data| data.insert_temp(id, n_done));
+        let above = 0.5 * (ui.available_height() - HEIGHT);
+        area = area.vertical_scroll_offset((HEIGHT * n_done as f32 - above).max(0.0));
+    }
+    area.show_rows(ui, HEIGHT, n_rows, |ui, range| {
+        for number in range {
+            row_ui(ui, number, state, &mut thumbnails, commands);
+        }
+    });
     thumbnails.make(ui, state);
 }
 

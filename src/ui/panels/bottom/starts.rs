@@ -116,13 +116,13 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
     let titles = [
         String::new(),
         "start".to_owned(),
-        "Outcome".to_owned(),
+        "outcome".to_owned(),
         "overlap".to_owned(),
-        format!("Residual{unit}"),
+        format!("residual{unit}"),
         format!("P95{unit}"),
-        "Iterations".to_owned(),
+        "iterations".to_owned(),
         "time".to_owned(),
-        format!("To best{unit}"),
+        format!("to best{unit}"),
     ];
     let mut hovered = None;
     let thumbnails = Thumbnails::of(ui.ctx());

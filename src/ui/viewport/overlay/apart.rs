@@ -2,7 +2,7 @@
 
 use egui::{Button, Pos2, Rect, RichText, Shape, Stroke, Ui, vec2};
 
-use super::Overlay;
+use super::{Overlay, legend};
 use crate::app::{Command, MoveCommand};
 use crate::geometry::Point3;
 use crate::role::Role;
@@ -54,7 +54,18 @@ fn suggest(ui: &mut Ui, over: &Overlay<'_>, middle: Pos2, commands: &mut Vec<Com
     let room = over.frame.rect().shrink2(vec2(90.0, 70.0));
     let center = room.clamp(middle + vec2(0.0, 24.0));
     let text = RichText::new("Align centres").size(12.5);
-    let area = Rect::from_center_size(center, size);
+    let mut area = Rect::from_center_size(center, size);
+    // The legend lies over everything in its place.
+    if let Some(legend) = legend::last_place(ui, over)
+        && legend.expand(4.0).intersects(area)
+    {
+        let side = if legend.center().x > over.frame.rect().center().x {
+            legend.left() - 8.0 - area.right()
+        } else {
+            legend.right() + 8.0 - area.left()
+        };
+        area = area.translate(vec2(side, 0.0));
+    }
     if ui.put(area, Button::new(text)).clicked() {
         commands.push(MoveCommand::AlignCenters.into());
     }
