@@ -134,6 +134,17 @@ impl LayerChoice {
         }
     }
 
+    /// What both sides of a mapping are compared in as long as nothing else is chosen. The outermost points
+    /// of two rules lie at different T, and stresses of bending grow outwards: these are compared in
+    /// the middle of the sheet, which is one place on both sides.
+    pub fn compared(value: FormingValue) -> Self {
+        if value.is_stress() {
+            Self::Middle
+        } else {
+            Self::usual(value)
+        }
+    }
+
     /// The same layer of a sheet whose normal points to the other side.
     pub fn turned_over(self) -> Self {
         match self {

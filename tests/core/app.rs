@@ -1126,6 +1126,35 @@ fn equal_messages_count_up_and_short_ones_end() {
 }
 
 #[test]
+fn messages_of_what_is_solved_go_and_escape_closes_the_rest() {
+    let mut window = Window::new();
+    window.open("missing.k", Role::Crash);
+    assert_eq!(toasts(&window.state).len(), 1);
+    // Another job solves nothing of it.
+    window.open("stamped.k", Role::Stamped);
+    assert!(toasts(&window.state)[0].contains("missing.k"));
+    window.open("crash.k", Role::Crash);
+    assert!(
+        !toasts(&window.state)
+            .iter()
+            .any(|text| text.contains("missing.k"))
+    );
+    let kept = window.state.log.notices.kept();
+    assert_eq!(kept.filter(|n| n.text.contains("missing.k")).count(), 1);
+    window.apply(NoticeCommand::Tell(NoticeLevel::Warning, "look".into()));
+    window.apply(NoticeCommand::Tell(NoticeLevel::Error, "failed".into()));
+    let later = window.state.log.now + Duration::from_secs(61);
+    window.state.tick(later);
+    assert_eq!(toasts(&window.state), ["failed"]);
+    window.apply(Command::Escape);
+    assert!(toasts(&window.state).is_empty());
+    assert!(
+        window.state.log.notices.n_unread() > 0,
+        "the bell keeps them"
+    );
+}
+
+#[test]
 fn settings_of_an_older_program_still_load() {
     let settings: Settings = serde_json::from_str(r#"{"theme":"Dark","gone":1}"#).unwrap();
     assert_eq!(settings.theme, Theme::Dark);

@@ -189,11 +189,12 @@ fn the_message_after_writing_says_what_was_written_and_what_it_replaces() {
         path: path.clone(),
     });
     let text = told(&window);
-    let crash = folder.path().join("crash.k");
     for words in [
-        format!("written: {}; {n} thicknesses, ", path.display()),
+        format!("written: mapped.k; {n} thicknesses, "),
         "read back within".to_owned(),
-        format!("takes the place of {}", crash.display()),
+        "include it instead of crash.k".to_owned(),
+        // The folder is whole, and last, where a toast is cut.
+        format!("; in {}", folder.path().display()),
     ] {
         assert!(text.contains(&words), "{words} is not in {text}");
     }
@@ -206,7 +207,7 @@ fn the_message_after_writing_says_what_was_written_and_what_it_replaces() {
     });
     let text = told(&window);
     let beside = folder.path().join("include_elements.k");
-    let words = format!("written beside: {}, whose elements", beside.display());
+    let words = format!("written beside: {}, with the elements", beside.display());
     assert!(text.contains(&words), "{text}");
 }
 

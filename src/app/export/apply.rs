@@ -193,7 +193,20 @@ impl Work<'_> {
                 let text = format!("written: {}", path.display());
                 // The message says at once what the log says in rows.
                 let notes = exported.notes.iter().map(String::as_str);
-                let all: Vec<&str> = std::iter::once(text.as_str()).chain(notes).collect();
+                // A toast is cut at its end: there stands the folder, which may be long.
+                let name = path
+                    .file_name()
+                    .unwrap_or(path.as_os_str())
+                    .to_string_lossy();
+                let name = format!("written: {name}");
+                let folder = path
+                    .parent()
+                    .map(|folder| format!("in {}", folder.display()));
+                let folder = folder.filter(|folder| folder.len() > "in ".len());
+                let all = std::iter::once(name.as_str())
+                    .chain(notes)
+                    .chain(folder.as_deref());
+                let all: Vec<&str> = all.collect();
                 self.notify(NoticeLevel::Success, all.join("; "));
                 let level = NoticeLevel::Success;
                 self.log.push(level, "export", None, text, Some(took));

@@ -188,16 +188,12 @@ impl AppState {
         Some(chosen.unwrap_or(self.usual_layer(by)?))
     }
 
-    /// What is shown of a quantity as long as nothing else is chosen. The outermost points of two rules lie
-    /// at different T, and stresses of bending grow outwards: mapped and stamped ones are compared in
-    /// the middle of the sheet, where both are at one place.
+    /// What is shown of a quantity as long as nothing else is chosen.
     pub fn usual_layer(&self, by: ColorBy) -> Option<LayerChoice> {
         let value = layered(by)?;
-        let is_compared = value.is_stress() && self.mapped_for(by).is_some();
-        Some(if is_compared {
-            LayerChoice::Middle
-        } else {
-            LayerChoice::usual(value)
+        Some(match self.mapped_for(by) {
+            Some(_) => LayerChoice::compared(value),
+            None => LayerChoice::usual(value),
         })
     }
 
