@@ -179,6 +179,48 @@ impl LayerChoice {
     }
 }
 
+/// What a sheet has in its middle, from what its layers have, given with their T and rising in it. Tensors are
+/// interpolated and not numbers made of them: a bent sheet with stresses of either sign has none there,
+/// but the same von Mises stress on both sides of it. `None` without layers.
+pub(super) fn at_middle<const N: usize>(
+    mut layers: impl Iterator<Item = (f64, [f64; N])>,
+) -> Option<[f64; N]> {
+    let mut below: Option<(f64, [f64; N])> = None;
+    loop {
+        let Some((t, above)) = layers.next() else {
+            return below.map(|(_, values)| values);
+        };
+        if t < 0.0 {
+            below = Some((t, above));
+            continue;
+        }
+        return Some(match below {
+            None => above,
+            Some((s, below)) => {
+                let share = -s / (t - s);
+                std::array::from_fn(|i| below[i] + (above[i] - below[i]) * share)
+            }
+        });
+    }
+}
+
+/// Points of an element as layers rising in T, points of one layer averaged.
+fn as_layers<const N: usize>(
+    points: impl Iterator<Item = (f64, [f64; N])>,
+) -> Vec<(f64, [f64; N])> {
+    let mut points: Vec<_> = points.collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let layers = points.chunk_by(|a, b| b.0 - a.0 < SAME_PLACE);
+    let mean = |layer: &[(f64, [f64; N])]| {
+        let sum = |i: usize| layer.iter().map(|point| point.1[i]).sum::<f64>();
+        (
+            layer[0].0,
+            std::array::from_fn(|i| sum(i) / layer.len() as f64),
+        )
+    };
+    layers.map(mean).collect()
+}
+
 /// Puts the points of an element together to layers with their weights.
 #[derive(Default)]
 struct LayerSorter {
@@ -255,18 +297,30 @@ pub fn forming_values(
     let mut sorter = LayerSorter::default();
     if value.is_strain() {
         for strain in model.forming.strains() {
-            let points = strain.points.iter();
-            let points = points.map(|point| (point.t, value.of_strain(&point.strain)));
-            put(strain.element_id, layer.pick(sorter.layers(points), value));
+            let points = strain.points.iter().map(|point| (point.t, point.strain));
+            let number = if layer == LayerChoice::Middle {
+                let middle = at_middle(as_layers(points).into_iter());
+                middle.map_or(f64::NAN, |strain| value.of_strain(&strain))
+            } else {
+                let numbers = points.map(|(t, strain)| (t, value.of_strain(&strain)));
+                layer.pick(sorter.layers(numbers), value)
+            };
+            put(strain.element_id, number);
         }
     } else {
         for stress in model.forming.stresses() {
             let points = stress.points.iter().map(|point| {
                 let [xx, yy, zz, xy, yz, zx] = point.stress;
-                let state = [xx, yy, zz, xy, yz, zx, point.plastic_strain];
-                (point.t, value.of_state(&state))
+                (point.t, [xx, yy, zz, xy, yz, zx, point.plastic_strain])
             });
-            put(stress.element_id, layer.pick(sorter.layers(points), value));
+            let number = if layer == LayerChoice::Middle {
+                let middle = at_middle(as_layers(points).into_iter());
+                middle.map_or(f64::NAN, |state| value.of_state(&state))
+            } else {
+                let numbers = points.map(|(t, state)| (t, value.of_state(&state)));
+                layer.pick(sorter.layers(numbers), value)
+            };
+            put(stress.element_id, number);
         }
     }
     match n_found {
@@ -368,6 +422,10 @@ mod tests {
         for (found, expected) in layers.into_iter().zip(expected) {
             assert!((found - expected).abs() < 1e-12, "{layers:?}");
         }
+        // Half way from −30 to 20 there are −5, and the von Mises stress of that, not the mean of both.
+        let middle = Some(LayerChoice::Middle);
+        let of_middle = forming_values(&part, FormingValue::VonMises, None, middle);
+        only(of_middle.unwrap(), 0, 5.0);
         // A triangle has three corners; its fourth is blank.
         only(of(FormingValue::Thinning), 1, 0.25);
         let none = forming_values(&part, FormingValue::Thinning, None, None).unwrap_err();

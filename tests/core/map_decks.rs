@@ -357,7 +357,7 @@ fn every_spelling_of_an_element_survives() {
     // The same is told, and a file of all elements is refused because it would lose one.
     let told = pair.map(&["--out", "out.k"]);
     assert!(
-        errors(&told).contains("would lose the plies of 1 element"),
+        errors(&told).contains("nothing is written for 1 element with plies"),
         "{}",
         errors(&told)
     );

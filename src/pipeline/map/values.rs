@@ -3,7 +3,7 @@
 
 use super::{MapRun, OtherResult};
 use crate::mapping::{LayerRule, Layered, Partner};
-use crate::pipeline::forming_values::{FormingValue, LayerChoice};
+use crate::pipeline::forming_values::{FormingValue, LayerChoice, at_middle};
 
 /// What is looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,9 +47,10 @@ impl MapRun {
         match shown.value {
             None => self.thickness(element),
             Some(FormingValue::Thinning) => 1.0 - self.thickness(element) / flat,
-            Some(value) => shown
-                .layer_of(value)
-                .pick(&self.layers(element, value), value),
+            Some(value) => match shown.layer_of(value) {
+                LayerChoice::Middle => self.middle(element, value),
+                layer => layer.pick(&self.layers(element, value), value),
+            },
         }
     }
 
@@ -65,8 +66,12 @@ impl MapRun {
             None => thickness(),
             Some(FormingValue::Thinning) => 1.0 - thickness() / shown.flat.unwrap_or(f64::NAN),
             Some(value) => {
-                let layers = self.partner_layers(&partner, value);
-                shown.layer_of(value).pick(&layers, value)
+                let element = partner.element as usize;
+                match shown.layer_of(value) {
+                    // The middle is where it is, whichever side is up.
+                    LayerChoice::Middle => middle_of(&part.strains, &part.states, element, value),
+                    layer => layer.pick(&self.partner_layers(&partner, value), value),
+                }
             }
         }
     }
@@ -117,6 +122,26 @@ impl MapRun {
         Some([sources.reduce(f64::max)?, own?])
     }
 
+    /// The number in the middle of an element's sheet; NaN without layers.
+    fn middle(&self, element: usize, value: FormingValue) -> f64 {
+        let mapped = &self.mapped;
+        let own = &self.target.rules[self.target.rule_of[element] as usize];
+        if value.is_strain() {
+            let surfaces = LayerRule::surfaces();
+            let rule = if mapped.strains_are_at_surfaces {
+                &surfaces
+            } else {
+                own
+            };
+            let strains = mapped.strains.as_ref();
+            let middle = strains.and_then(|strains| in_middle(rule, strains.of(element)));
+            return middle.map_or(f64::NAN, |strain| value.of_strain(&strain));
+        }
+        let states = mapped.states.as_ref();
+        let middle = states.and_then(|states| in_middle(own, states.of(element)));
+        middle.map_or(f64::NAN, |state| value.of_state(&state))
+    }
+
     /// T, weight and number of each layer of an element.
     fn layers(&self, element: usize, value: FormingValue) -> Vec<[f64; 3]> {
         let mapped = &self.mapped;
@@ -164,15 +189,46 @@ impl OtherResult {
             None => thickness,
             Some(FormingValue::Thinning) => 1.0 - thickness / shown.flat.unwrap_or(f64::NAN),
             Some(value) => {
+                let layer = shown.layer_of(value);
+                if layer == LayerChoice::Middle {
+                    return middle_of(&self.strains, &self.states, element, value);
+                }
                 let layers = if value.is_strain() {
                     of_source(&self.strains, element, |strain| value.of_strain(strain))
                 } else {
                     of_source(&self.states, element, |state| value.of_state(state))
                 };
-                shown.layer_of(value).pick(&layers, value)
+                layer.pick(&layers, value)
             }
         }
     }
+}
+
+/// The number in the middle of a sheet; NaN without layers.
+fn middle_of(
+    strains: &Layered<6>,
+    states: &Layered<7>,
+    element: usize,
+    value: FormingValue,
+) -> f64 {
+    if value.is_strain() {
+        let layers = strains.of(element);
+        let middle = layers.and_then(|(rule, strains)| in_middle(rule, strains));
+        return middle.map_or(f64::NAN, |strain| value.of_strain(&strain));
+    }
+    let layers = states.of(element);
+    let middle = layers.and_then(|(rule, states)| in_middle(rule, states));
+    middle.map_or(f64::NAN, |state| value.of_state(&state))
+}
+
+/// What layers of a rule have in the middle, points of a layer averaged.
+fn in_middle<const N: usize>(rule: &LayerRule, points: &[[f64; N]]) -> Option<[f64; N]> {
+    let n_plane = (points.len() / rule.len().max(1)).max(1);
+    let means = points.chunks(n_plane).map(|layer| {
+        let sum = |i: usize| layer.iter().map(|point| point[i]).sum::<f64>();
+        std::array::from_fn(|i| sum(i) / n_plane as f64)
+    });
+    at_middle(rule.places().iter().copied().zip(means))
 }
 
 fn of_source<const N: usize>(
