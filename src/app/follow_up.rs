@@ -89,15 +89,7 @@ impl AppState {
                 let dialog = &mut topics.view.dialog;
                 return topics.project.open(&mut work, request, dialog);
             }
-            FollowUp::PartsSwapped => {
-                self.view.cameras.swap();
-                // Each part lies where its own file has it now.
-                self.with_scene(|view, scene| {
-                    for role in Role::ALL {
-                        view.fit_all(role, scene);
-                    }
-                });
-            }
+            FollowUp::PartsSwapped => self.see_swapped(),
             FollowUp::PartLoaded(role) => {
                 self.with_scene(|view, scene| view.fit_after_load(role, scene));
                 self.go_on_from_load();
@@ -172,6 +164,12 @@ impl AppState {
             FollowUp::Quit => return self.quit(),
         }
         Vec::new()
+    }
+
+    /// The cameras go with their parts, each of which lies where its own file has it now.
+    fn see_swapped(&mut self) {
+        self.view.cameras.swap();
+        self.with_scene(|view, scene| view.fit_both(scene));
     }
 
     /// Two single parts need no choice, so the sections after loading come next; a deck of many

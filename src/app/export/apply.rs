@@ -58,7 +58,7 @@ impl Work<'_> {
         let name = format!("{}.png", self.document.picture_stem());
         let path = match &self.settings.picture_folder {
             Some(folder) => folder.join(name),
-            None => self.document.beside_part(Role::Stamped, name),
+            None => self.document.beside_part(Role::Stamped, &name),
         };
         Effect::AskPicture { choice, path }
     }

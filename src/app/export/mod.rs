@@ -91,14 +91,14 @@ impl Document {
         let role = output.named_after();
         let part = self.part(role);
         let name = output.default_name(part.map(|part| part.loaded.file_name()).as_deref());
-        self.beside_part(role, name)
+        self.beside_part(role, &name)
     }
 
     /// A name in the folder of a part's file; an example lies in none.
-    fn beside_part(&self, role: Role, name: String) -> PathBuf {
+    fn beside_part(&self, role: Role, name: &str) -> PathBuf {
         let part = self.part(role).or(self.part(role.other()));
         let folder = part.and_then(|part| part.loaded.path.parent());
-        folder.map_or_else(|| PathBuf::from(&name), |folder| folder.join(&name))
+        folder.map_or_else(|| PathBuf::from(name), |folder| folder.join(name))
     }
 }
 

@@ -164,7 +164,7 @@ impl ViewState {
     }
 
     /// Linked cameras share their zoom: the window that has the keys is fitted last, so that it shows all.
-    fn fit_both(&mut self, scene: &Scene<'_>) {
+    pub(in crate::app) fn fit_both(&mut self, scene: &Scene<'_>) {
         for role in [self.focus.other(), self.focus] {
             self.fit_all(role, scene);
         }
