@@ -39,13 +39,13 @@ pub fn chosen_by_shape(
     }
     let found = &outcome.target_from_source;
     let settling = Settling::new([source, target], found.scale, settings, contact::MAX_NODES);
-    let result = Candidate::at(*found, statements(source, target, found, settings).shape);
+    let result = Candidate::at(*found, &statements(source, target, found, settings).shape);
     let candidate = |other: &&Alternative| {
         monitor.check()?;
         let pose = other.target_from_source;
         let pose = settling.settled(&pose, Least::Facets).unwrap_or(pose);
         let shape = statements(source, target, &pose, settings).shape;
-        Ok(Candidate::at(pose, shape))
+        Ok(Candidate::at(pose, &shape))
     };
     let candidates: Result<Vec<Candidate>, Cancelled> = near.par_iter().map(candidate).collect();
     let candidates = candidates?;
@@ -96,8 +96,8 @@ pub fn is_pulled_aside(
     let (before, after) = rayon::join(|| shape(by_surfaces), || shape(by_borders));
     let little = distances.little_more(LITTLE_REMAINDER, before.remainder);
     let has_grown = after.remainder > AS_CLOSE * before.remainder + little;
-    let [before, after] = [(by_surfaces, before), (by_borders, after)]
-        .map(|(pose, shape)| Candidate::at(*pose, shape));
+    let before = Candidate::at(*by_surfaces, &before);
+    let after = Candidate::at(*by_borders, &after);
     before.beats(&after) || has_grown && before.n_differences <= after.n_differences
 }
 
@@ -121,7 +121,7 @@ struct Candidate {
 }
 
 impl Candidate {
-    fn at(pose: Similarity, shape: ShapeStatement) -> Self {
+    fn at(pose: Similarity, shape: &ShapeStatement) -> Self {
         let differences = shape.reasons.iter().filter_map(is_clear);
         let (n_differences, n_clear) =
             differences.fold((0, 0), |(n, clear), is| (n + 1, clear + usize::from(is)));
@@ -171,7 +171,7 @@ mod tests {
             reasons: reasons.to_vec(),
             ..ShapeStatement::nothing_met(tolerance)
         };
-        Candidate::at(Similarity::identity(), shape)
+        Candidate::at(Similarity::identity(), &shape)
     }
 
     #[test]
