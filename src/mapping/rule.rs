@@ -5,9 +5,12 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Places closer than this are the same, and points there belong to one layer: decks round T to about eight digits, some
-/// writers to five.
+/// Points closer than this belong to one layer: decks round T to about eight digits, some writers to five.
 pub const SAME_PLACE: f64 = 1e-4;
+
+/// Layers this close to those of a rule are that rule, if its layers lie farther apart than ten times as
+/// much: some writers give T three digits. Rules of as many layers differ by thirteen times as much or more.
+const SAME_RULE: f64 = 2e-3;
 
 /// Half tables, outermost place last; odd rules have 0 first.
 const GAUSS: [&[(f64, f64)]; 10] = [
@@ -135,12 +138,15 @@ impl RuleKind {
 pub struct LayerRule {
     places: Vec<f64>,
     weights: Vec<f64>,
+    /// Gauss or Lobatto: the weights integrate smooth profiles better than straight lines between
+    /// the layers do.
+    is_quadrature: bool,
 }
 
 impl LayerRule {
-    /// The rule of a section with `n_layers` layers; 0 counts as 1. One and two layers are always
-    /// Gauss points. Above ten layers the solver integrates by the trapezoidal rule, whatever the
-    /// kind.
+    /// The rule of a section with `n_layers` layers; 0 counts as 1. One layer is always in the middle, and
+    /// two Lobatto layers are Gauss points. Above ten layers the solver integrates by the trapezoidal
+    /// rule, whatever the kind.
     pub fn new(kind: RuleKind, n_layers: usize) -> Self {
         let n = n_layers.max(1);
         match kind {
@@ -149,7 +155,7 @@ impl LayerRule {
             _ if n == 1 => Self::mirrored(1, GAUSS[0]),
             _ => {
                 let place = |i: usize| -1.0 + 2.0 * i as f64 / (n - 1) as f64;
-                Self::from_places((0..n).map(place).collect())
+                Self::trapezoidal((0..n).map(place).collect())
             }
         }
     }
@@ -159,18 +165,23 @@ impl LayerRule {
         Self::from_places(vec![-1.0, 1.0])
     }
 
-    /// The rule whose places these are (in rising order) if it is Gauss or Lobatto; else weights that
-    /// integrate the piecewise linear interpolant, constant beyond the outermost layers.
+    /// The Gauss or Lobatto rule whose places these are (in rising order), as far as decks give digits;
+    /// else these places with trapezoidal weights.
     pub fn from_places(places: Vec<f64>) -> Self {
         let n = places.len();
-        for kind in [RuleKind::Gauss, RuleKind::Lobatto] {
-            if (1..=10).contains(&n) {
-                let known = Self::new(kind, n);
-                if known.has_places(&places) {
-                    return Self { places, ..known };
-                }
+        if (1..=10).contains(&n) {
+            let kinds = [RuleKind::Gauss, RuleKind::Lobatto];
+            let mut known = kinds.into_iter().map(|kind| Self::new(kind, n));
+            if let Some(rule) = known.find(|rule| rule.has_places(&places)) {
+                return rule;
             }
         }
+        Self::trapezoidal(places)
+    }
+
+    /// Weights that integrate straight lines between the layers, constant beyond the outermost.
+    fn trapezoidal(places: Vec<f64>) -> Self {
+        let n = places.len();
         let weights = match n {
             0 => Vec::new(),
             1 => vec![2.0],
@@ -190,14 +201,22 @@ impl LayerRule {
                 })
                 .collect(),
         };
-        Self { places, weights }
+        Self {
+            places,
+            weights,
+            is_quadrature: false,
+        }
     }
 
     fn mirrored(n: usize, half: &[(f64, f64)]) -> Self {
         let below = half.iter().rev().map(|&(place, weight)| (-place, weight));
         let above = half.iter().skip(n % 2).copied();
         let (places, weights) = below.chain(above).unzip();
-        let mut rule = Self { places, weights };
+        let mut rule = Self {
+            places,
+            weights,
+            is_quadrature: true,
+        };
         if n % 2 == 1 {
             // The half tables hold +0, the reflection makes −0 of it.
             rule.places[n / 2] = 0.0;
@@ -225,14 +244,21 @@ impl LayerRule {
         &self.weights
     }
 
+    /// True for Gauss and Lobatto, whose weights are exact.
+    pub fn is_quadrature(&self) -> bool {
+        self.is_quadrature
+    }
+
     /// True if the layers lie at these places, as far as decks give digits.
     pub fn has_places(&self, places: &[f64]) -> bool {
-        self.places.len() == places.len()
-            && self
-                .places
-                .iter()
-                .zip(places)
-                .all(|(a, b)| (a - b).abs() < SAME_PLACE)
+        let mut gaps = self.places.windows(2).map(|pair| pair[1] - pair[0]);
+        let tolerance = if gaps.all(|gap| gap > 10.0 * SAME_RULE) {
+            SAME_RULE
+        } else {
+            SAME_PLACE
+        };
+        let is_close = |(a, b): (&f64, &f64)| (a - b).abs() < tolerance;
+        self.places.len() == places.len() && self.places.iter().zip(places).all(is_close)
     }
 }
 
@@ -276,10 +302,16 @@ mod tests {
 
     #[test]
     fn rules_are_recognised_by_their_places() {
-        let rounded = vec![-0.774_60, 0.0, 0.774_60];
-        let rule = LayerRule::from_places(rounded.clone());
-        assert_eq!(rule.places(), rounded);
-        assert_eq!(rule.weights(), LayerRule::new(RuleKind::Gauss, 3).weights());
+        for digits in [3, 5, 8] {
+            for (kind, n) in (3..=10).flat_map(|n| [(RuleKind::Gauss, n), (RuleKind::Lobatto, n)]) {
+                let rule = LayerRule::new(kind, n);
+                let scale = 10_f64.powi(digits);
+                let rounded = rule.places().iter().map(|t| (t * scale).round() / scale);
+                assert_eq!(LayerRule::from_places(rounded.collect()), rule);
+            }
+        }
+        let near = vec![-0.770, 0.0, 0.770];
+        assert_eq!(LayerRule::from_places(near.clone()).places(), near);
         let equal = LayerRule::from_places(vec![-1.0, -0.5, 0.0, 0.5, 1.0]);
         assert_eq!(equal.weights(), [0.25, 0.5, 0.5, 0.5, 0.25]);
         assert_eq!(LayerRule::surfaces().weights(), [1.0, 1.0]);
