@@ -138,6 +138,10 @@ kinds! {
     BadTransformation, Error, "unusable transformation";
     /// Forming results that contradict themselves.
     BadForming, Error, "unusable forming result";
+    /// Forming results that are taken, though perhaps not as they were meant.
+    DoubtfulForming, Warning, "doubtful forming result";
+    /// Strains that are left out because they are in the axes of their element.
+    LocalStrains, Warning, "strains in element axes";
     /// A set that is undefined or refers to itself.
     BadSet, Warning, "unusable set";
     /// A keyword that matters to the mesh but is not carried out.

@@ -1,5 +1,7 @@
 //! What a file holds, as a record for JSON and for people.
 
+use std::collections::HashSet;
+
 use serde::Serialize;
 
 use crate::formats::{Diagnostic, Model};
@@ -166,8 +168,8 @@ impl FormingInfo {
         let others = &model.forming.others;
         Self {
             thickness: with_thickness().count(),
-            stress: model.forming.n_stress(),
-            strain: model.forming.n_strain(),
+            stress: n_shells(model, model.forming.stresses().map(|s| s.element_id)),
+            strain: n_shells(model, model.forming.strains().map(|s| s.element_id)),
             others: others.solid_stress.max(others.solid_strain)
                 + others.thick_shell_stress.max(others.thick_shell_strain),
             history_variables: model
@@ -185,6 +187,16 @@ impl FormingInfo {
     pub fn is_empty(&self) -> bool {
         self.thickness + self.stress + self.strain + self.others == 0
     }
+}
+
+/// How many shells results with these ids belong to. A deck without shells has them for those of another.
+fn n_shells(model: &Model, ids: impl Iterator<Item = u64>) -> usize {
+    let ids: HashSet<u64> = ids.collect();
+    if model.shells.is_empty() {
+        return ids.len();
+    }
+    let own: HashSet<u64> = model.shells.iter().map(|shell| shell.id).collect();
+    ids.intersection(&own).count()
 }
 
 fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {

@@ -69,6 +69,7 @@ fn add_parts(model: &mut Model) {
             elform: -16,
             n_layers: 5,
             has_own_rule: false,
+            is_trapezoidal: false,
         },
     }];
 }
@@ -129,11 +130,13 @@ fn add_forming(model: &mut Model, first: u64) {
         .forming
         .add_stress(first, 1, &[stress(-1.0), stress(1.0)], &history)
         .unwrap();
-    let strain = StrainPoint {
-        t: 1.0,
+    let strain = |t: f64| StrainPoint {
+        t,
         strain: [0.01, 0.02, -0.03, 1e-5, 0.0, 0.5],
     };
-    model.forming.add_strain(first + 1, 1, &[strain; 3]);
+    model
+        .forming
+        .add_strain(first + 1, 1, &[-1.0, 0.0, 1.0].map(strain));
 }
 
 #[track_caller]

@@ -290,7 +290,7 @@ mod gaps {
         let model = read_text(format!("{nodes}*ELEMENT_SHELL_THICKNESS\n{shells}"));
         let ids: Vec<u64> = model.shells.iter().map(|shell| shell.id).collect();
         assert_eq!(ids, [1, 2, 3]);
-        assert_eq!(model.shell_thickness(1), Some([2.0, 2.0, 2.0, 0.0]));
+        assert_eq!(model.shell_thickness(1), Some([2.0; 4]));
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! Results of a forming simulation: `*INITIAL_STRESS_SHELL` and `*INITIAL_STRAIN_SHELL`, also for
 //! sets; those of solids and thick shells are read past and counted.
 
+mod checks;
+
 use std::iter::Peekable;
 use std::ops::Range;
 use std::sync::Arc;
@@ -16,9 +18,6 @@ use crate::geometry::tensor::Tensor;
 /// More points or history variables than any solver writes for one shell; such a count means that
 /// the cards are out of step.
 const MAX_COUNT: i64 = 10_000;
-
-/// The square of a larger stress or strain is still a number, and so is its turned tensor.
-const MAX_TENSOR: f64 = 1e100;
 
 /// What an include does to the results in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -289,6 +288,8 @@ impl<'a, 'd> Reader<'a, 'd> {
                 self.check_size(head, tensor);
             }
         }
+        self.check_places(head, n_thick, points.iter().map(|point| point.t));
+        self.check_plastic_strain(head, points.iter().map(|point| point.plastic_strain));
         self.thermal(n_thermal_points, n_thermal, large)?;
         if let Some(id) = self.finish_element(head, id, offset) {
             into.add_state(id, n_plane.max(1), &points, &history, &tensors);
@@ -310,14 +311,15 @@ impl<'a, 'd> Reader<'a, 'd> {
         let [id, n_plane, n_thick, large, _, _, _, is_local] = self.header(head)?;
         let [n_plane, n_thick] = self.counts(head, [n_plane, n_thick])?;
         let lines = if large == 0 { SMALL } else { LARGE };
-        // Without counts there is one point at the inner and one at the outer surface.
-        let (n_plane, n_points) = match n_plane * n_thick {
-            0 => (1, 2),
-            n => (n_plane, n),
+        // Without counts there is one point at the inner and one at the outer surface, which need no T.
+        let is_of_surfaces = n_plane * n_thick == 0;
+        let (n_plane, n_thick) = match is_of_surfaces {
+            true => (1, 2),
+            false => (n_plane, n_thick),
         };
         let mut points = Vec::new();
-        for _ in 0..n_points {
-            let values = self.take(7, lines)?;
+        for _ in 0..n_plane * n_thick {
+            let values = self.take_at_least(7 - usize::from(is_of_surfaces), 7, lines)?;
             let point = StrainPoint {
                 t: values[6],
                 strain: std::array::from_fn(|i| values[i]),
@@ -325,13 +327,17 @@ impl<'a, 'd> Reader<'a, 'd> {
             self.check_size(head, &point.strain);
             points.push(point);
         }
+        if is_of_surfaces && points[0].t * points[1].t >= 0.0 {
+            (points[0].t, points[1].t) = (-1.0, 1.0);
+        }
+        self.check_places(head, n_thick, points.iter().map(|point| point.t));
         let Some(id) = self.finish_element(head, id, offset) else {
             return Ok(());
         };
         if is_local == 0 {
             into.add_strain(id, n_plane, &points);
         } else {
-            let kind = DiagnosticKind::Unsupported;
+            let kind = DiagnosticKind::LocalStrains;
             let what = if self.block.has_option("SET") {
                 "shell set"
             } else {
@@ -467,6 +473,12 @@ impl<'a, 'd> Reader<'a, 'd> {
     /// The next `n` values. Some tools break a line early and put what is missing on a line of its
     /// own; otherwise missing fields at a line's end are zero.
     fn take(&mut self, n: usize, lines: Lines) -> Result<&[f64], Stop> {
+        self.take_at_least(n, n, lines)
+    }
+
+    /// The same, where those behind `n_needed` may be left out and stand on no line of their own: the next
+    /// line may be the first card of another element.
+    fn take_at_least(&mut self, n_needed: usize, n: usize, lines: Lines) -> Result<&[f64], Stop> {
         self.values.clear();
         while self.values.len() < n {
             let expected = lines.per_line.min(n - self.values.len());
@@ -480,7 +492,8 @@ impl<'a, 'd> Reader<'a, 'd> {
             let found = self.append(&card, expected, lines);
             let missing = expected - found;
             let width = lines.widths[0];
-            let rest_follows = missing > 0
+            let rest_follows = self.values.len() < n_needed
+                && missing > 0
                 && (self.cards.peek()).is_some_and(|next| next.n_fields(width) == missing);
             if rest_follows {
                 let next = self.next_card().expect("it was seen just before");
@@ -508,24 +521,6 @@ impl<'a, 'd> Reader<'a, 'd> {
             self.values.push(value);
         }
         n_found
-    }
-
-    /// Names a tensor that cannot be turned without leaving the range of numbers.
-    fn check_size(&mut self, head: &Card<'_>, tensor: &[f64; 6]) {
-        let largest = tensor.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        if largest <= MAX_TENSOR || self.bad_field.is_some() {
-            return;
-        }
-        let error = FieldError {
-            kind: DiagnosticKind::NumberTooLarge,
-            column: 0,
-            found: format!("{largest:e}"),
-            expected: "stresses and strains of at most 1e100",
-        };
-        let what = "the element's result";
-        self.diagnostics
-            .push_with(error.kind, || head.diagnose(&error, what));
-        self.bad_field = Some(error);
     }
 
     /// The element's or set's id, unless one of its fields could not be read.

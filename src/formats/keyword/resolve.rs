@@ -50,6 +50,7 @@ pub(super) fn finish(
     spread_node_thickness(&assembly, &mut model, monitor)?;
     let raw = std::mem::take(&mut assembly.forming);
     let mut results = Results::new(raw, &model, &mut assembly.found);
+    results.tell_doubtful(&model, &mut assembly.found);
     carry_out_motions(&mut assembly, &mut model, &mut results, monitor)?;
     model.forming = results.finish();
     leave_out_nodes(&repeated, &mut model);

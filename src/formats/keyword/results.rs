@@ -143,6 +143,20 @@ impl Results {
         }
     }
 
+    /// Names results of shells that are not there, and further results of a shell. A deck without shells has
+    /// results for those of another.
+    pub(super) fn tell_doubtful(&self, model: &Model, found: &mut Diagnostics) {
+        if self.forming.is_empty() || model.shells.is_empty() {
+            return;
+        }
+        let ids: Vec<u64> = model.shells.iter().map(|shell| shell.id).collect();
+        let (shell_of, _) = IdIndex::new(&ids);
+        let stresses = self.forming.stresses().map(|stress| stress.element_id);
+        let strains = self.forming.strains().map(|strain| strain.element_id);
+        tell_doubtful(stresses, "stresses", &shell_of, found);
+        tell_doubtful(strains, "strains", &shell_of, found);
+    }
+
     pub(super) fn finish(self) -> Forming {
         self.forming
     }
@@ -237,6 +251,28 @@ impl Results {
             n_stretched,
             ..Turned::default()
         }
+    }
+}
+
+fn tell_doubtful(
+    ids: impl Iterator<Item = u64>,
+    what: &str,
+    shell_of: &IdIndex,
+    found: &mut Diagnostics,
+) {
+    let mut known = HashSet::new();
+    for id in ids {
+        let why = if shell_of.get(id).is_none() {
+            "and is not defined"
+        } else if !known.insert(id) {
+            "more than once, the last count when they are mapped"
+        } else {
+            continue;
+        };
+        let kind = DiagnosticKind::DoubtfulForming;
+        found.push_with(kind, || {
+            Diagnostic::new(kind, format!("shell {id} has {what} {why}"))
+        });
     }
 }
 

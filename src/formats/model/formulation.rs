@@ -14,6 +14,8 @@ pub struct ShellFormulation {
     pub n_layers: u32,
     /// A rule of the user's (`QR/IRID` below 0), whose places the deck holds elsewhere.
     pub has_own_rule: bool,
+    /// Equally spaced layers (`QR/IRID` 1) instead of those of `*CONTROL_SHELL`.
+    pub is_trapezoidal: bool,
 }
 
 impl Default for ShellFormulation {
@@ -22,6 +24,7 @@ impl Default for ShellFormulation {
             elform: 0,
             n_layers: LAYERS_BY_DEFAULT,
             has_own_rule: false,
+            is_trapezoidal: false,
         }
     }
 }
@@ -38,6 +41,7 @@ impl ShellFormulation {
                 LAYERS_BY_DEFAULT
             },
             has_own_rule: quadrature < 0.0,
+            is_trapezoidal: quadrature == 1.0,
         }
     }
 
@@ -85,6 +89,8 @@ mod tests {
         assert_eq!(ShellFormulation::new(2, -3.0, 0.0).n_layers, 2);
         assert_eq!(ShellFormulation::new(2, 1e9, -7.0).n_layers, 2);
         assert!(ShellFormulation::new(2, 3.0, -7.0).has_own_rule);
+        assert!(ShellFormulation::new(2, 3.0, 1.0).is_trapezoidal);
+        assert!(!ShellFormulation::new(2, 3.0, 0.0).is_trapezoidal);
         assert_eq!(ShellFormulation::new(16, 5.0, 0.0).n_plane(), 4);
         assert_eq!(ShellFormulation::new(2, 5.0, 0.0).n_plane(), 1);
     }

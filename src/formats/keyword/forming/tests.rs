@@ -21,9 +21,12 @@ const AS_IT_IS: ResultUnits = ResultUnits {
     stress: 1.0,
 };
 
+/// Nothing is said but that layers lie in one place, as those of these tests do.
+#[track_caller]
 fn clean(text: &str) -> Forming {
     let (forming, diagnostics) = read(text);
-    assert!(diagnostics.is_empty(), "{diagnostics:?}");
+    let n_doubts = diagnostics.count(DiagnosticKind::DoubtfulForming);
+    assert_eq!(diagnostics.total(), n_doubts, "{diagnostics:?}");
     forming
 }
 
@@ -161,9 +164,88 @@ fn strains_small_large_and_without_counts() {
     for shell in forming.strains() {
         for point in shell.points {
             assert_eq!(point.strain, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-            assert_eq!(point.t, -1.0);
         }
     }
+    let places = |shell: usize| -> Vec<f64> {
+        let points = forming.strain(shell).points.iter();
+        points.map(|point| point.t).collect()
+    };
+    // One T for both surfaces says nothing.
+    assert_eq!(places(0), [-1.0, 1.0]);
+    assert_eq!(places(1), [-1.0; 3]);
+}
+
+/// The form with an inner and an outer surface needs no T, and has places of its own where it gives some.
+#[test]
+fn strains_of_two_surfaces_need_no_place() {
+    for large in [0, 1] {
+        for t in [None, Some(0.0), Some(-0.25)] {
+            let mut deck = String::from("*INITIAL_STRAIN_SHELL\n");
+            for id in [7, 8, 9] {
+                deck += &match large {
+                    0 => ints(10, &[id]),
+                    large => ints(10, &[id, 0, 0, large]),
+                };
+                for side in [-1.0, 1.0] {
+                    let mut values = vec![side, 2.0, 3.0, 4.0, 5.0, 6.0];
+                    values.extend(t.map(|t: f64| t.abs().copysign(-side)));
+                    let (width, per_line) = if large == 0 { (10, 8) } else { (16, 5) };
+                    for line in values.chunks(per_line) {
+                        deck += &row(width, line);
+                    }
+                }
+            }
+            let (forming, diagnostics) = read(&deck);
+            assert!(diagnostics.is_empty(), "{diagnostics:?}");
+            assert_eq!(forming.n_strain(), 3);
+            let expected = if t == Some(-0.25) {
+                [0.25, -0.25]
+            } else {
+                [-1.0, 1.0]
+            };
+            for shell in forming.strains() {
+                let places: Vec<f64> = shell.points.iter().map(|point| point.t).collect();
+                let first: Vec<f64> = shell.points.iter().map(|point| point.strain[0]).collect();
+                assert_eq!((&places[..], &first[..]), (&expected[..], &[-1.0, 1.0][..]));
+            }
+        }
+    }
+}
+
+#[test]
+fn places_and_plastic_strains_that_cannot_be_are_told() {
+    let deck = |places: [f64; 2], plastic: f64| {
+        let point = |t: f64| format!("{t},1,1,1,0,0,0,{plastic}\n");
+        format!(
+            "*INITIAL_STRESS_SHELL\n1,1,2\n{}{}",
+            point(places[0]),
+            point(places[1])
+        )
+    };
+    let found = |places, plastic| {
+        let (forming, diagnostics) = read(&deck(places, plastic));
+        let kinds = [DiagnosticKind::BadForming, DiagnosticKind::DoubtfulForming];
+        (
+            forming.n_stress(),
+            kinds.map(|kind| diagnostics.count(kind)),
+        )
+    };
+    assert_eq!(found([-0.577, 0.577], 0.1), (1, [0, 0]));
+    assert_eq!(found([-1.0, 1.000_5], -1e-9), (1, [0, 0]));
+    assert_eq!(found([1.0, 2.0], 0.1), (0, [1, 0]));
+    assert_eq!(found([0.0, 0.0], 0.1), (1, [0, 1]));
+    assert_eq!(found([-0.577, 0.577], -0.1), (1, [0, 1]));
+    let (forming, diagnostics) =
+        read("*INITIAL_STRAIN_SHELL\n1,1,2\n1,0,0,0,0,0,1\n1,0,0,0,0,0,2\n");
+    assert_eq!(forming.n_strain(), 0);
+    let told: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        told,
+        [
+            "dynain:2:1: error: the layers of an element lie outside of its sheet, and its results are left \
+             out, found \"T = 2\", expected places of the layers from -1 to 1"
+        ]
+    );
 }
 
 #[test]
@@ -177,7 +259,7 @@ fn what_cannot_be_used_is_said() {
         read("*INITIAL_STRESS_SHELL\n1,1,1\n0,x\n2,1,1\n0,1,1,1,1,1,1,0\n");
     assert_eq!((forming.n_stress(), diagnostics.total()), (1, 1));
     let (_, diagnostics) = read("*INITIAL_STRAIN_SHELL\n1,1,1,0,,,,1\n0,1,1,1,1,1,1\n");
-    assert_eq!(diagnostics.count(DiagnosticKind::Unsupported), 1);
+    assert_eq!(diagnostics.count(DiagnosticKind::LocalStrains), 1);
 }
 
 #[test]
@@ -242,7 +324,7 @@ fn results_of_solids_and_thick_shells_are_counted() {
 
 #[test]
 fn a_deck_cut_anywhere_is_no_panic() {
-    let deck = stress_deck("", 10, 16, true) + "*INITIAL_STRAIN_SHELL\n 1,1,1\n1,2,3,4,5,6,7\n";
+    let deck = stress_deck("", 10, 16, true) + "*INITIAL_STRAIN_SHELL\n 1,1,1\n1,2,3,4,5,6,.7\n";
     let whole = clean(&deck).n_stress();
     for end in 0..deck.len() {
         let (forming, _) = read(&deck[..end]);
