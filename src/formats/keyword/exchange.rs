@@ -66,6 +66,8 @@ pub struct ExchangedDeck {
     /// The cards of the exchanged and the listed shells alone, below their keywords, with the ids and the
     /// thicknesses of the whole deck.
     pub elements: Vec<u8>,
+    /// The deck's `*PARAMETER` blocks, which the cards may use.
+    pub parameters: Vec<u8>,
     /// Shells that are missing there: what the include changes in their further cards is not known, or
     /// their ids have more than ten digits.
     pub n_unlisted: usize,
@@ -94,6 +96,7 @@ pub fn exchange_thickness(
             unread_results: None,
             layout: rules.included_as.layout,
             elements: Vec::new(),
+            parameters: Vec::new(),
             n_unlisted: 0,
         },
         rules,
@@ -118,6 +121,9 @@ pub fn exchange_thickness(
                 ElementKeyword::Shell(cards) => copy.shells(&block, cards, monitor)?,
                 _ => copy.result.n_unknown += 1,
             }
+        } else if block.name.starts_with("PARAMETER") {
+            let lines = &bytes[block.offset..block.body.end];
+            copy.result.parameters.extend_from_slice(lines);
         } else if let Some(leaves_out) = rules.leaves_out {
             copy.results(&block, leaves_out);
         }
@@ -239,10 +245,10 @@ impl Copy<'_> {
             let id = card.required_id(TEN_BY_8, 0).ok();
             let is_quadratic = card.id(TEN_BY_8, 6).is_ok_and(|node| node != 0);
             let thickness = cards.thickness.then(|| lines.next_line()).flatten();
+            let second = (thickness.is_some() && is_quadratic)
+                .then(|| lines.next_line())
+                .flatten();
             let rest = lines.offset();
-            if cards.thickness && is_quadratic {
-                lines.next_line();
-            }
             for _ in 0..cards.n_passed_over {
                 lines.next_line();
             }
@@ -258,6 +264,7 @@ impl Copy<'_> {
             let element = Element {
                 first: (first, at),
                 thickness: thickness.map(|(line, at)| (lines.card(line, at), line, at)),
+                second_thickness: second.map(|(line, at)| (lines.card(line, at), line, at)),
                 rest: &self.bytes[rest..lines.offset()],
                 is_quadratic,
                 card,
@@ -282,31 +289,39 @@ impl Copy<'_> {
         Ok(())
     }
 
-    /// Copies the element's first card, then its thickness card, new or replaced, which is returned.
+    /// Copies the element's first card, then its thickness cards, new or replaced, which are returned.
     fn set_thickness(&mut self, element: &Element<'_>, new: &[f64; 4]) -> Vec<u8> {
         self.result.n_exchanged += 1;
-        if let Some((_, line, at)) = &element.thickness {
-            self.up_to(*at);
-            self.done = at + line.len();
-        } else {
-            let (first, at) = element.first;
-            self.up_to(at + first.len());
-            self.result.bytes.extend_from_slice(self.line_end);
+        let cards = element.thickness_cards(new, element.card.layout());
+        let (first, at) = element.first;
+        let mut before = at + first.len();
+        let old = [&element.thickness, &element.second_thickness];
+        for (card, old) in cards.iter().zip(old) {
+            match old {
+                Some((_, line, at)) => {
+                    self.up_to(*at);
+                    before = at + line.len();
+                    self.done = before;
+                }
+                None => {
+                    self.up_to(before);
+                    self.result.bytes.extend_from_slice(self.line_end);
+                }
+            }
+            self.result.bytes.extend_from_slice(card);
         }
-        let card = element.thickness_card(new, element.card.layout(), self.line_end);
-        self.result.bytes.extend_from_slice(&card);
-        card
+        cards.join(self.line_end)
     }
 
-    /// Adds an element to the list, with its new thicknesses, whose card in the file is given too, or as it
+    /// Adds an element to the list, with its new thicknesses, whose cards in the file are given too, or as it
     /// stands.
     fn list(&mut self, element: &Element<'_>, keyword: &Keyword, new: Option<(&[f64; 4], &[u8])>) {
         let place = &self.rules.included_as;
-        let old = element.thickness.as_ref().map(|(_, line, _)| *line);
-        let is_thick = new.is_some() || old.is_some();
+        let is_thick = new.is_some() || element.thickness.is_some();
         let (layout, first, thickness) = if place.keeps_numbers() {
-            let thickness = new.map(|(_, card)| card).or(old).map(<[u8]>::to_vec);
-            (element.card.layout(), element.first.0.to_vec(), thickness)
+            let cards = new.map(|(_, cards)| cards.to_vec());
+            let cards = cards.or_else(|| element.old_thickness_cards(self.line_end));
+            (element.card.layout(), element.first.0.to_vec(), cards)
         } else {
             let Some(cards) =
                 element.in_whole_deck(place, keyword, new.map(|(new, _)| new), self.line_end)
@@ -590,5 +605,44 @@ $ between\n\
         );
         let with_offset = SourceFile::new("b.k", &deck.replace("SHELL+", "SHELL_OFFSET+")[..]);
         assert_eq!(exchanged(&with_offset, included_as, &of).n_unlisted, 1);
+    }
+
+    /// The card of the mid-side nodes has the means of the corners beside them, whether there was one or not.
+    #[test]
+    fn shells_with_mid_side_nodes_get_both_cards() {
+        let row = |id: u64| {
+            format!(
+                "{id:>8}       1       1       2       3       4       5       6       7       8\n"
+            )
+        };
+        let old = format!(
+            "{}\n$ middles\n{}    tail\n",
+            "             0.9".repeat(4),
+            "             0.8".repeat(4)
+        );
+        let middles = "  1.12500000E+00  1.37500000E+00  1.62500000E+00  1.37500000E+00";
+        let thick = format!("*ELEMENT_SHELL_THICKNESS\n{}{old}{}{old}", row(2), row(4));
+        let found = exchange(&thick, &[2]);
+        let written = format!("{}{CARD}\n$ middles\n{middles}    tail\n", row(2));
+        let kept = format!("{}{old}", row(4));
+        let states = "*INITIAL_STRESS_SHELL\n";
+        assert_eq!(
+            text(&found),
+            format!("*ELEMENT_SHELL_THICKNESS\n{written}{kept}{states}")
+        );
+        let listed = String::from_utf8(found.elements).unwrap();
+        let without_comment = |text: &str| text.replace("$ middles\n", "");
+        assert_eq!(
+            listed,
+            without_comment(&format!("*ELEMENT_SHELL_THICKNESS\n{written}{kept}"))
+        );
+        let plain = format!("*ELEMENT_SHELL\n{}", row(2));
+        assert_eq!(
+            text(&exchange(&plain, &[2])),
+            format!(
+                "*ELEMENT_SHELL_THICKNESS\n{}{CARD}\n{middles}\n{states}",
+                row(2)
+            )
+        );
     }
 }

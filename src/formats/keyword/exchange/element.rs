@@ -13,6 +13,8 @@ pub(super) struct Element<'a> {
     /// Its first card and where it stands.
     pub(super) first: (&'a [u8], usize),
     pub(super) thickness: Option<(Card<'a>, &'a [u8], usize)>,
+    /// The card with the thickness at mid-side nodes.
+    pub(super) second_thickness: Option<(Card<'a>, &'a [u8], usize)>,
     /// Its further cards, with their line ends.
     pub(super) rest: &'a [u8],
     pub(super) is_quadratic: bool,
@@ -23,27 +25,37 @@ pub(super) struct Element<'a> {
 }
 
 impl Element<'_> {
-    /// The thickness card with these corners, and the second one that mid-side nodes bring where there was
-    /// none.
-    pub(super) fn thickness_card(
-        &self,
-        corners: &[f64; 4],
-        layout: Layout,
-        line_end: &[u8],
-    ) -> Vec<u8> {
-        if let Some((card, line, _)) = &self.thickness {
-            return replaced_thickness(card, line, corners, layout);
-        }
-        let mut text = Vec::new();
-        push_thickness(&mut text, corners, layout);
-        if self.is_quadratic {
-            text.extend_from_slice(line_end);
-            push_thickness(&mut text, corners, layout);
-        }
-        text
+    /// The thickness card with these corners, and the second one that mid-side nodes bring, with the means
+    /// of the corners beside them.
+    pub(super) fn thickness_cards(&self, corners: &[f64; 4], layout: Layout) -> Vec<Vec<u8>> {
+        let [a, b, c, d] = *corners;
+        // As differences, so that equal thicknesses have themselves as mean.
+        let middles = [(a, b), (b, c), (c, d), (d, a)].map(|(a, b)| a + (b - a) / 2.0);
+        let both = [
+            (corners, &self.thickness),
+            (&middles, &self.second_thickness),
+        ];
+        let n_cards = 1 + usize::from(self.is_quadratic);
+        let cards = both[..n_cards].iter().map(|(values, old)| match old {
+            Some((card, line, _)) => replaced_thickness(card, line, values, layout),
+            None => {
+                let mut text = Vec::new();
+                push_thickness(&mut text, values, layout);
+                text
+            }
+        });
+        cards.collect()
     }
 
-    /// Its first card and its thickness card with the numbers of the whole deck, and the width of their
+    /// The thickness cards as they stand; `None` if there are none.
+    pub(super) fn old_thickness_cards(&self, line_end: &[u8]) -> Option<Vec<u8>> {
+        let old = [&self.thickness, &self.second_thickness];
+        let lines = old.into_iter().flatten().map(|(_, line, _)| *line);
+        let lines: Vec<&[u8]> = lines.collect();
+        (!lines.is_empty()).then(|| lines.join(line_end))
+    }
+
+    /// Its first card and its thickness cards with the numbers of the whole deck, and the width of their
     /// fields. `None` if one of its further cards would change too in a way that is not known here.
     pub(super) fn in_whole_deck(
         &self,
@@ -54,8 +66,8 @@ impl Element<'_> {
     ) -> Option<(Layout, Vec<u8>, Option<Vec<u8>>)> {
         let has_other_length = place.length_factor != 1.0;
         let has_nodes = keyword.has_scalar_nodes && place.node_offset != 0;
-        let has_second_thickness = self.thickness.is_some() && self.is_quadratic;
-        if has_nodes || has_other_length && (self.cards.n_passed_over > 0 || has_second_thickness) {
+        let keeps_second = new.is_none() && self.second_thickness.is_some();
+        if has_nodes || has_other_length && (self.cards.n_passed_over > 0 || keeps_second) {
             return None;
         }
         let mut ids = [0; 10];
@@ -92,7 +104,12 @@ impl Element<'_> {
         let Some(corners) = new.copied().or(old) else {
             return Some((layout, first, None));
         };
-        let mut text = self.thickness_card(&corners, layout, line_end);
+        let mut cards = self.thickness_cards(&corners, layout);
+        if new.is_none()
+            && let (Some((_, line, _)), Some(second)) = (&self.second_thickness, cards.get_mut(1))
+        {
+            *second = line.to_vec();
+        }
         // Without BETA the fifth field is a coordinate system.
         if let Some((card, ..)) = &self.thickness
             && !self.cards.beta
@@ -100,11 +117,12 @@ impl Element<'_> {
             && !card.is_empty_field(FIVE_BY_16, 4)
         {
             let system = shifted(card.id(FIVE_BY_16, 4).ok()?, place.system_offset);
+            let text = &mut cards[0];
             text.clear();
-            push_thickness(&mut text, &corners, layout);
-            push_int(&mut text, system, layout.width(FIVE_BY_16[4]));
+            push_thickness(text, &corners, layout);
+            push_int(text, system, layout.width(FIVE_BY_16[4]));
         }
-        Some((layout, first, Some(text)))
+        Some((layout, first, Some(cards.join(line_end))))
     }
 }
 
