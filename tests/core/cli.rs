@@ -99,6 +99,13 @@ fn the_bundled_pair_is_matched_and_everything_is_written() {
     assert_eq!(typed.motion.to_rows(), found.to_rows());
     let on_cards = read_back(&std::fs::read_to_string(&cards).unwrap()).unwrap();
     assert!(node_distance(&stamped, &on_cards, &found).1 < 1e-3);
+    // They name the file as it lies from theirs.
+    let folder = pair.folder.path().join("cards");
+    std::fs::create_dir(&folder).unwrap();
+    let elsewhere = folder.join("c.k");
+    pair.run(&["--cards", elsewhere.to_str().unwrap()]);
+    let elsewhere = std::fs::read_to_string(elsewhere).unwrap();
+    assert!(elsewhere.contains("\n../stamped.dynain\n"), "{elsewhere}");
 
     let page = std::fs::read_to_string(&page).unwrap();
     assert!(page.ends_with("</html>\n") && page.contains("GOOD"));

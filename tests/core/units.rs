@@ -152,7 +152,7 @@ fn every_export_states_units_and_factors() {
     assert_eq!(record.files.crash.units, Some("ton-mm-s"));
     assert_eq!(record.files.stamped.units, Some("mm"));
     let form = shapematch::report::CardForm::ALL[0];
-    let cards = shapematch::pipeline::outputs::cards::cards(form, &run, parts).unwrap();
+    let cards = shapematch::pipeline::outputs::cards::cards(form, &run, parts, None).unwrap();
     assert!(cards.text.contains("lengths in mm"), "{}", cards.text);
     assert!(cards.text.contains("stamped.dynain.gz: mm, guessed"));
 }

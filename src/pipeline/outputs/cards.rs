@@ -1,16 +1,19 @@
 //! LS-DYNA cards for a match, with the fields filled from what was measured.
 
+use std::path::{Component, Path, PathBuf};
+
 use crate::formats::Selection;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::MatchRun;
 use crate::pipeline::units::PairUnits;
-use crate::report::cards::check_file_name;
+use crate::report::cards::{check_file_name, file_name_fault};
 use crate::report::{CardForm, CardOptions, Cards, Receiver, build_id, write_cards};
 use crate::role::PerRole;
 use crate::text::Lengths;
 
-/// Writes the cards of a match and reads them back.
+/// Writes the cards of a match and reads them back. They name the stamped file as it lies from `folder`, where
+/// they will stand; by its name alone without one.
 ///
 /// RMAX becomes the distance up to which nodes counted as lying on each other; PERCELE one percent
 /// less than the measured share of the crash part that is covered, so that the solver stops where
@@ -19,6 +22,7 @@ pub fn cards(
     form: CardForm,
     run: &MatchRun,
     parts: PerRole<&LoadedPart>,
+    folder: Option<&Path>,
 ) -> Result<Cards, PipelineError> {
     check(parts)?;
     let PerRole { crash, stamped } = parts;
@@ -37,7 +41,9 @@ pub fn cards(
     comments.extend(PairUnits::stress_warning(parts));
     comments.push(build_id());
     let options = CardOptions {
-        file_name: included_name(stamped),
+        file_name: folder
+            .and_then(|folder| name_from(folder, stamped))
+            .unwrap_or_else(|| included_name(stamped)),
         receiver: receiver(crash)?,
         search_radius: coverage.limit,
         mapped_percent: (100.0 * coverage.target_on_source.overlap - 1.0).max(0.0),
@@ -67,6 +73,39 @@ fn included_name(stamped: &LoadedPart) -> String {
     stamped.file_name().trim_end_matches(".gz").to_owned()
 }
 
+/// The same as it lies from a folder. `None` if that is not known, or no name that a card holds.
+fn name_from(folder: &Path, stamped: &LoadedPart) -> Option<String> {
+    let whole = |folder: &Path| {
+        let folder = match folder.as_os_str().is_empty() {
+            true => Path::new("."),
+            false => folder,
+        };
+        std::fs::canonicalize(folder).ok()
+    };
+    let there = whole(stamped.path.parent()?)?;
+    let way = way_from(&whole(folder)?, &there)?;
+    let mut name = String::new();
+    for folder in way.iter() {
+        name.push_str(folder.to_str()?);
+        // Solvers take it on every system.
+        name.push('/');
+    }
+    name.push_str(&included_name(stamped));
+    file_name_fault(&name).is_none().then_some(name)
+}
+
+/// The relative path from one folder to another; both are absolute.
+fn way_from(here: &Path, there: &Path) -> Option<PathBuf> {
+    let (mut here, mut there) = (here.components().peekable(), there.components().peekable());
+    let mut has_common = false;
+    while here.peek().is_some() && here.peek() == there.peek() {
+        (here.next(), there.next());
+        has_common = true;
+    }
+    let up = here.map(|_| Component::ParentDir);
+    has_common.then(|| up.chain(there).collect())
+}
+
 fn receiver(crash: &LoadedPart) -> Result<Receiver, PipelineError> {
     if let Selection::PartSet(id) = crash.settings.selection {
         return Ok(Receiver::Set(id));
@@ -74,5 +113,23 @@ fn receiver(crash: &LoadedPart) -> Result<Receiver, PipelineError> {
     match crash.chosen_part_ids()[..] {
         [id] => Ok(Receiver::Part(id)),
         ref ids => Err(PipelineError::SeveralReceivers(ids.len())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_between_folders() {
+        for (here, there, way) in [
+            ("/a/b", "/a/b", ""),
+            ("/a", "/a/b/c", "b/c"),
+            ("/a/b/c", "/a/d", "../../d"),
+        ] {
+            let found = way_from(Path::new(here), Path::new(there));
+            assert_eq!(found, Some(PathBuf::from(way)), "{here} to {there}");
+        }
+        assert_eq!(way_from(Path::new("a"), Path::new("/b")), None);
     }
 }

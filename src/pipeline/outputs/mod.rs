@@ -332,6 +332,17 @@ impl Output {
         format: Option<Format>,
         monitor: &Monitor,
     ) -> Result<Made, PipelineError> {
+        self.make_in(input, format, None, monitor)
+    }
+
+    /// The same for a file that will stand in `folder`.
+    fn make_in(
+        self,
+        input: &OutputInput,
+        format: Option<Format>,
+        folder: Option<&Path>,
+        monitor: &Monitor,
+    ) -> Result<Made, PipelineError> {
         let pose = &input.crash_from_stamped;
         let (text, notes) = match self {
             Self::Matrix(form) => {
@@ -357,7 +368,7 @@ impl Output {
             }
             Self::Cards(form) => {
                 let (run, parts) = input.matched(monitor)?;
-                let cards = cards::cards(form, &run, parts)?;
+                let cards = cards::cards(form, &run, parts, folder)?;
                 let error = cards.largest_node_error(parts.stamped.mesh.positions());
                 let unit = Lengths::new(PairUnits::of(parts.map(Some)).lengths).suffix();
                 let note =
@@ -403,7 +414,7 @@ impl Output {
             }
             _ => None,
         };
-        let made = self.make(input, format, monitor)?;
+        let made = self.make_in(input, format, path.parent(), monitor)?;
         write_file_unless_cancelled(path, &made.bytes, monitor)?;
         Ok(made.notes)
     }

@@ -135,7 +135,7 @@ fn cards_of(run: &MatchRun, parts: PerRole<&LoadedPart>) -> Vec<CardsInfo> {
         .into_iter()
         .map(|form| CardsInfo {
             name: form.label(),
-            text: match cards(form, run, parts) {
+            text: match cards(form, run, parts, None) {
                 Ok(cards) => {
                     let error = cards.largest_node_error(parts.stamped.mesh.positions());
                     Ok((cards.text, error))
