@@ -89,7 +89,14 @@ pub fn find_parts(
         return Ok(None);
     };
     let found = task.with_further_parts(found)?;
+    let rivals = not_among(&found.part.chosen_part_ids(), rivals);
     Ok(Some(FoundParts { found, rivals }))
+}
+
+/// The rivals that were not taken in as further parts of the sheet.
+fn not_among(taken: &[u64], mut rivals: Vec<u64>) -> Vec<u64> {
+    rivals.retain(|id| !taken.contains(id));
+    rivals
 }
 
 /// True if one of several chosen crash parts should be found first: alone it is more like the stamped part
@@ -409,5 +416,10 @@ mod tests {
         // Of parts covered alike the verdict decides.
         let alike = with(Verdict::Good, 0.95, true);
         assert!(alike.is_better_than(&ambiguous));
+    }
+
+    #[test]
+    fn a_part_of_the_sheet_is_no_rival_of_it() {
+        assert_eq!(not_among(&[1, 2, 3], vec![2, 7]), [7]);
     }
 }
