@@ -1,11 +1,8 @@
 //! `shapematch map`: forming results onto the crash part.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 
-use anyhow::Context as _;
 use clap::builder::BoolishValueParser;
 use clap::{ArgAction, Args};
 
@@ -15,32 +12,27 @@ use super::map_choices::{
 use super::map_text::summary;
 use super::numbers::{layers, percent, points_in_plane};
 use super::of_each::{LengthFactors, StressFactors, of_file, one_or_each};
-use super::recipe::{pose, selection};
+use super::placing::{Placed, place};
+use super::recipe::selection;
 use super::setting_args::MapSettingArgs;
 use super::{
-    UsageError, check_outputs, json_target, print, progress, takes_stdout, warn_of_tools,
-    write_json, write_output,
+    UsageError, check_outputs, is_stdout, json_target, print, progress, warn_of_tools, write_json,
+    write_output,
 };
 use crate::assess::Verdict;
-use crate::formats::{ReadOptions, Selection};
-use crate::geometry::Similarity;
+use crate::formats::ReadOptions;
 use crate::mapping::{MapOptions, Quantities, RuleKind};
 use crate::monitor::Monitor;
-use crate::pipeline::find_parts::find_parts;
-use crate::pipeline::load::{LoadSettings, LoadedPart, load, prepare};
+use crate::pipeline::load::{LoadSettings, LoadedPart, load};
 use crate::pipeline::map::{
     DefaultThickness, MapFiles, MapOutput, MapRecipe, MapRecord, OtherResult, PlacedPart,
     PoseOrigin, deck_comments, element_table, elements_path, map_parts, map_record, map_report,
-    place as place_part, placing_recipe, unmapped_sets, write_mapping,
+    unmapped_sets, write_mapping,
 };
-use crate::pipeline::map_car::CarReason;
-use crate::pipeline::match_parts::{MatchRecipe, MatchRun};
 use crate::pipeline::outputs::{Content, Target};
-use crate::pipeline::project::Project;
-use crate::pipeline::units::PairUnits;
 use crate::registration::Hand;
-use crate::role::{PerRole, Role};
-use crate::text::{Lengths, counted};
+use crate::role::Role;
+use crate::text::counted;
 
 /// Exit status where a gate such as `--require` is not met; the files are written all the same.
 const EXIT_GATE: u8 = 1;
@@ -66,18 +58,18 @@ pub struct MapArgs {
 /// Which elements, and where they lie.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "What is mapped")]
-struct MapChoice {
+pub(super) struct MapChoice {
     /// Part of the crash model: an id, several ids (2001,2002), a title (also title:NAME), or set:ID,
     /// shell-set:ID, node-set:ID. Where the parts are matched first, it is found if not given.
     #[arg(long, value_name = "PART")]
-    crash_part: Option<String>,
+    pub(super) crash_part: Option<String>,
     /// Part of the stamped files, written as for --crash-part, or all, or sheet. Give one for all files or
     /// one for each. Without it, the sheet: parts that are rigid, or have no forming results where others
     /// have them, are tools and left out.
     #[arg(long, value_name = "PART")]
     stamped_part: Vec<String>,
     #[command(flatten)]
-    lengths: LengthFactors,
+    pub(super) lengths: LengthFactors,
     #[command(flatten)]
     stresses: StressFactors,
     /// Material law of the stamped parts (24 or PIECEWISE_LINEAR_PLASTICITY), for files that hold none.
@@ -90,13 +82,13 @@ struct MapChoice {
     /// Pose of a stamped part (crash from stamped): a text file, or the numbers themselves, 16 by rows.
     /// Give one for each stamped file. Without it the parts are matched first.
     #[arg(long, value_name = "FILE|NUMBERS", allow_hyphen_values = true)]
-    pose: Vec<String>,
+    pub(super) pose: Vec<String>,
     /// Take the poses from a .shapematch project, in the order of its stamped files.
     #[arg(long, value_name = "FILE", conflicts_with = "pose")]
-    project: Option<PathBuf>,
+    pub(super) project: Option<PathBuf>,
     /// The parts already lie on each other.
     #[arg(long, conflicts_with_all = ["pose", "project"])]
-    identity: bool,
+    pub(super) identity: bool,
     /// Where the parts are matched first: whether the stamped part is the crash part's own hand, the
     /// opposite one (left for right), or either. Tensors are mirrored with it.
     #[arg(long, value_enum, default_value = "same", conflicts_with_all = ["pose", "project", "identity"])]
@@ -186,7 +178,7 @@ Exit status: 0 mapped, 1 failed or less mapped than --require asks for, 2 wrong 
 pose that the match calls poor.";
 
 impl MapChoice {
-    fn hand(&self) -> Hand {
+    pub(super) fn hand(&self) -> Hand {
         if self.mirror == MirrorName::Free {
             return Hand::Mirrored;
         }
@@ -227,7 +219,7 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     inputs.extend(crash.files());
     inputs.extend(stamped.iter().flat_map(LoadedPart::files));
     check_outputs(targets(&args.output), &inputs)?;
-    let Placed { crash, mut poses } = place(args, crash, &stamped, &monitor)?;
+    let Placed { crash, mut poses } = place(&args.choice, crash, &stamped, &monitor)?;
     if let Some(mirror) = args.choice.mirror.motion() {
         for (pose, _) in &mut poses {
             *pose = mirror.after(pose);
@@ -311,11 +303,11 @@ fn finish(
     files: Option<&MapFiles>,
     written: &[(PathBuf, Vec<u8>)],
 ) -> anyhow::Result<ExitCode> {
-    let mut is_complete = true;
+    let mut failed: Vec<PathBuf> = Vec::new();
     let mut note = |path: &Path, written: anyhow::Result<()>| {
         if let Err(error) = written {
             log::error!("{} is not written: {error:#}", path.display());
-            is_complete = false;
+            failed.push(path.to_path_buf());
         }
     };
     for (path, bytes) in written {
@@ -324,8 +316,12 @@ fn finish(
     if let Some(path) = &outputs.json {
         note(path, write_json(path, record));
     }
-    if !takes_stdout(outputs.json.as_deref()) {
-        print(&summary(record, files))?;
+    let printed = [&outputs.json, &outputs.out]
+        .into_iter()
+        .flatten()
+        .chain(texts(outputs).map(|(_, path)| path));
+    if !printed.into_iter().any(|path| is_stdout(path)) {
+        print(&summary(record, files, &failed))?;
     }
     for warning in &record.warnings {
         log::warn!("{warning}");
@@ -340,7 +336,7 @@ fn finish(
         log::error!("{share:.1} % of the area is mapped, {required} % are required{withheld}");
         return Ok(ExitCode::from(EXIT_GATE));
     }
-    if !is_complete {
+    if !failed.is_empty() {
         return Ok(ExitCode::FAILURE);
     }
     let poor = PoseOrigin::Match {
@@ -363,7 +359,18 @@ fn check_usage(args: &MapArgs) -> anyhow::Result<()> {
     }
     if n_poses > 0 && n_poses != n_files {
         return refuse(format!(
-            "{n_poses} poses for {n_files} stamped files; give one for each"
+            "{} for {}; give one for each",
+            counted(n_poses, "pose"),
+            counted(n_files, "stamped file")
+        ));
+    }
+    let output = &args.output;
+    let is_one_file =
+        output.write != KindName::Include && !args.values.recipe().options.replace_states;
+    if !is_one_file && output.out.as_deref().is_some_and(is_stdout) {
+        let what = "--out - has room for one file";
+        return refuse(format!(
+            "{what}; write it with --write part or deck and without --replace-states, or name a file"
         ));
     }
     let n_parts = args.choice.stamped_part.len();
@@ -404,17 +411,19 @@ fn targets(output: &MapOutputArgs) -> Vec<Target> {
             ));
         }
     }
-    let texts = [
+    targets.extend(texts(output).map(|(name, path)| target(name, path, Content::Text)));
+    targets
+}
+
+/// Tables and pages beside the decks and the record, by their options.
+fn texts(output: &MapOutputArgs) -> impl Iterator<Item = (&'static str, &PathBuf)> {
+    let all = [
         ("--csv", &output.csv),
         ("--unmapped", &output.unmapped),
         ("--report", &output.report),
     ];
-    for (name, path) in texts {
-        if let Some(path) = path {
-            targets.push(target(name, path, Content::Text));
-        }
-    }
-    targets
+    all.into_iter()
+        .filter_map(|(name, path)| Some((name, path.as_ref()?)))
 }
 
 /// The same with the copies of crash files, which are known late.
@@ -463,127 +472,4 @@ fn load_all(args: &MapArgs, monitor: &Monitor) -> anyhow::Result<(LoadedPart, Ve
         warn_of_tools(part);
     }
     Ok((crash, stamped))
-}
-
-/// Where the stamped parts lie.
-struct Placed {
-    /// The crash parts that they lie on.
-    crash: LoadedPart,
-    /// The pose of each, and where it comes from.
-    poses: Vec<(Similarity, PoseOrigin)>,
-}
-
-/// The pose of each stamped part as it is given, or by a match on the crash parts that it belongs to.
-fn place(
-    args: &MapArgs,
-    crash: LoadedPart,
-    stamped: &[LoadedPart],
-    monitor: &Monitor,
-) -> anyhow::Result<Placed> {
-    let given = |crash, poses: Vec<Similarity>| {
-        let poses = poses.into_iter().map(|pose| (pose, PoseOrigin::Given));
-        Ok(Placed {
-            crash,
-            poses: poses.collect(),
-        })
-    };
-    if args.choice.identity {
-        return given(crash, vec![Similarity::identity(); stamped.len()]);
-    }
-    if let Some(path) = &args.choice.project {
-        let (project, notes) = Project::read(path)?;
-        for note in notes {
-            log::warn!("{}: {note}", path.display());
-        }
-        let poses = project.stamped_poses();
-        let (n_poses, n_files) = (poses.len(), stamped.len());
-        let poses: Option<Vec<Similarity>> = poses.into_iter().collect();
-        return match poses.filter(|_| n_poses == n_files) {
-            Some(poses) => {
-                args.choice.lengths.check_project(&project, path)?;
-                given(crash, poses)
-            }
-            None if n_poses == n_files => Err(UsageError(format!(
-                "a stamped file of {} has no pose yet; match it in the window",
-                path.display()
-            ))
-            .into()),
-            None => Err(UsageError(format!(
-                "{} holds {}, but {n_files} are named",
-                path.display(),
-                counted(n_poses, "stamped file")
-            ))
-            .into()),
-        };
-    }
-    if !args.choice.pose.is_empty() {
-        let poses: anyhow::Result<Vec<Similarity>> = args
-            .choice
-            .pose
-            .iter()
-            .map(|text| pose("--pose", text))
-            .collect();
-        return given(crash, poses?);
-    }
-    let recipe = placing_recipe(args.choice.hand());
-    if args.choice.crash_part.is_none() && crash.chosen_part_ids().len() > 1 {
-        if let Some(placed) = on_found_parts(&crash, stamped, &recipe, monitor)? {
-            return Ok(placed);
-        }
-        log::warn!(
-            "no part of {} fits alone; --crash-part names it",
-            crash.path.display()
-        );
-    }
-    let mut poses = Vec::new();
-    for part in stamped {
-        let parts = PerRole::new(&crash, part);
-        let file = part.path.display().to_string();
-        let run =
-            place_part(parts, &recipe, monitor).with_context(|| format!("cannot match {file}"))?;
-        // The record says that it is poor; the reason is known here alone.
-        if run.assessment.verdict == Verdict::Poor {
-            let units = PairUnits::of(parts.map(Some));
-            let why = run.assessment.sentences(Lengths::new(units.lengths));
-            if let Some(why) = why.first() {
-                log::warn!("{file}: {why}");
-            }
-        }
-        poses.push(found_by(&run));
-    }
-    Ok(Placed { crash, poses })
-}
-
-/// The pose that a match found.
-fn found_by(run: &MatchRun) -> (Similarity, PoseOrigin) {
-    let verdict = run.assessment.verdict;
-    (run.crash_from_stamped, PoseOrigin::Match { verdict })
-}
-
-/// The crash parts that the stamped parts belong to, and the poses on them; `None` if one of them fits no
-/// part of the crash model.
-fn on_found_parts(
-    crash: &LoadedPart,
-    stamped: &[LoadedPart],
-    recipe: &MatchRecipe,
-    monitor: &Monitor,
-) -> anyhow::Result<Option<Placed>> {
-    let mut ids = BTreeSet::new();
-    let mut poses = Vec::new();
-    for part in stamped {
-        let parts = PerRole::new(crash, part);
-        let Some(found) = find_parts(parts, recipe, &Similarity::identity(), monitor)? else {
-            return Ok(None);
-        };
-        if !found.rivals.is_empty() {
-            let reason = CarReason::Rivals(found.rivals);
-            log::warn!("{}: {}", part.path.display(), reason.text());
-        }
-        ids.extend(found.found.part.chosen_part_ids());
-        poses.push(found_by(&found.found.run));
-    }
-    let mut settings = crash.settings.clone();
-    settings.selection = Selection::Parts(ids.into_iter().collect());
-    let crash = prepare(&crash.path, Arc::clone(&crash.model), &settings, monitor)?;
-    Ok(Some(Placed { crash, poses }))
 }

@@ -1,10 +1,12 @@
 //! What `shapematch map` prints.
 
+use std::path::PathBuf;
+
 use crate::pipeline::map::{CheckRecord, ComparisonRecord, DifferenceRecord, MapFiles, MapRecord};
 use crate::text::{counted, grouped, length, millis};
 
-/// The result in a few lines.
-pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>) -> String {
+/// The result in a few lines. Files that could not be written are not among those that were.
+pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>, failed: &[PathBuf]) -> String {
     let mut text = String::new();
     let mut line = |head: &str, rest: String| text.push_str(&format!("{head:<9}{rest}\n"));
     let ids: Vec<String> = record.crash_parts.iter().map(u64::to_string).collect();
@@ -70,25 +72,29 @@ pub(super) fn summary(record: &MapRecord, files: Option<&MapFiles>) -> String {
     for (head, rest) in record.comparison.iter().flat_map(compared) {
         line(head, rest);
     }
-    for (head, rest) in files.into_iter().flat_map(wrote) {
+    for (head, rest) in files.into_iter().flat_map(|files| wrote(files, failed)) {
         line(head, rest);
     }
     text
 }
 
 /// The files with what they hold.
-fn wrote(files: &MapFiles) -> Vec<(&'static str, String)> {
+fn wrote(files: &MapFiles, failed: &[PathBuf]) -> Vec<(&'static str, String)> {
     let mut lines = Vec::new();
-    for file in &files.files {
+    let written = files
+        .files
+        .iter()
+        .filter(|file| !failed.contains(&file.path));
+    for file in written {
         let megabytes = file.bytes.len() as f64 / 1e6;
         let text = format!("{} ({megabytes:.1} MB)", file.path.display());
         lines.push(("Wrote", text));
-        if let Some(replaced) = &file.replaces {
-            lines.push((
-                "",
-                format!("to be included instead of {}", replaced.display()),
-            ));
+        if let Some(replaced) = file.place_taken() {
+            lines.push(("", replaced));
         }
+    }
+    if lines.is_empty() {
+        return lines;
     }
     let counts = format!(
         "{} thicknesses, {} stress and {} strain cards, read back within {:.1e}",
@@ -99,8 +105,9 @@ fn wrote(files: &MapFiles) -> Vec<(&'static str, String)> {
     );
     lines.push(("", counts));
     if files.n_default > 0 {
+        let verb = if files.n_default == 1 { "is" } else { "are" };
         let n = grouped(files.n_default);
-        lines.push(("", format!("{n} of the thicknesses are the default one")));
+        lines.push(("", format!("{n} of the thicknesses {verb} the default one")));
     }
     lines
 }

@@ -16,6 +16,7 @@ mod match_text;
 mod matching;
 mod numbers;
 mod of_each;
+mod placing;
 mod progress;
 mod project;
 mod recipe;

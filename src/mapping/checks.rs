@@ -158,6 +158,7 @@ pub fn map_back(
         history: SourceHistory::default(),
         laws: BTreeMap::new(),
     };
+    let mapped_quantities = options.quantities;
     let options = MapOptions {
         quantities: Quantities::USUAL,
         fill_rings: 0,
@@ -168,7 +169,10 @@ pub fn map_back(
         part: &as_source,
         target_from_source: Similarity::identity(),
     };
-    let mut compared = Compared::default();
+    let mut compared = Compared {
+        has_plastic: mapped_quantities.plastic_strain,
+        ..Compared::default()
+    };
     for (number, source) in sources.iter().enumerate() {
         let moved = source.part.mesh.moved(&source.target_from_source);
         monitor.check()?;
@@ -198,6 +202,8 @@ type Weighted = Vec<(f64, f64)>;
 /// Values of the sources and what the way back leaves of them.
 #[derive(Default)]
 struct Compared {
+    /// The plastic strain was mapped, and is not 0 because nobody asked for it.
+    has_plastic: bool,
     thickness: (Weighted, Weighted),
     plastic: (Weighted, Weighted),
     is_covered: Vec<Vec<bool>>,
@@ -233,7 +239,7 @@ impl Compared {
                 }
                 let own = source.mean_plastic_strain(element);
                 let returned = back.mean_plastic_strain(as_target, element);
-                if own.is_finite() && returned.is_finite() {
+                if self.has_plastic && own.is_finite() && returned.is_finite() {
                     plastic.0.push((own, area));
                     plastic.1.push(((returned - own).abs(), area));
                 }
@@ -256,6 +262,7 @@ impl Compared {
             is_covered,
             covered_area,
             area,
+            ..
         } = self;
         let (thickness, plastic) = (spread(thickness, monitor)?, spread(plastic, monitor)?);
         Ok(MapBack {

@@ -5,8 +5,8 @@ use super::options::{MapOptions, Status};
 use super::target::{Mapped, MappedLayers, TargetPart};
 
 /// Fills as many rings as the options ask for. A filled element gets the area-weighted means of its
-/// mapped neighbours of the same part and the same number of layers, zero stress, no strain, and the
-/// status [`Status::Filled`].
+/// mapped neighbours of the same part and the same number of layers, and the status [`Status::Filled`]. Where
+/// plastic strains are asked for, these come with zero stress; there is no strain and no history.
 pub(super) fn fill(mapped: &mut Mapped, target: &TargetPart, options: &MapOptions) {
     if options.fill_rings == 0 {
         return;
@@ -53,7 +53,9 @@ pub(super) fn fill(mapped: &mut Mapped, target: &TargetPart, options: &MapOption
                 let sum: f64 = known.iter().map(|n| area(n) * mapped.thickness[*n]).sum();
                 mapped.thickness[element] = sum / known.iter().map(area).sum::<f64>();
             }
-            if let Some(states) = &mut states {
+            if options.quantities.plastic_strain
+                && let Some(states) = &mut states
+            {
                 states[element] = mean_plastic_strain(states, &around, target);
             }
             mapped.elements[element].status = Status::Filled;

@@ -81,6 +81,11 @@ pub fn map(
     monitor: &Monitor,
 ) -> Result<Mapped, MappingError> {
     check(sources, target, options)?;
+    let has_history = |placed: &PlacedSource<'_>| !placed.part.history.is_empty();
+    let mut options = options.clone();
+    // Else history alone would ask for states, all of them 0.
+    options.quantities.history &= sources.iter().any(has_history);
+    let options = &options;
     let surfaces = LayerRule::surfaces();
     let has_surfaces_only = |placed: &PlacedSource<'_>| {
         let mut rules = placed.part.strains.rules().iter();
@@ -159,7 +164,8 @@ fn check(
                 .thickness
                 .iter()
                 .any(|t| source::mean_thickness(t).is_finite()))
-            || (wanted.needs_states() && part.states.n_present() > 0)
+            || ((wanted.stress || wanted.plastic_strain) && part.states.n_present() > 0)
+            || (wanted.history && !part.history.is_empty())
             || (wanted.strain && part.strains.n_present() > 0)
     });
     if !has_any {

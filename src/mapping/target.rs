@@ -153,7 +153,7 @@ pub struct Mapped {
     /// Thickness at the corners of each element, whose mean is its thickness. Empty if not asked for.
     pub corners: Vec<[f64; 4]>,
     /// Stress (six) and effective plastic strain at each layer, if asked for. Zero stress where only
-    /// plastic strain was.
+    /// plastic strain was; both zero where only history variables were.
     pub states: Option<MappedLayers<7>>,
     /// Strain at both surfaces, or at each layer where the source has more than the surfaces.
     pub strains: Option<MappedLayers<6>>,

@@ -82,7 +82,8 @@ pub static MAP_SETTINGS: [Setting<MapOptions>; 10] = [
         former: &[],
         key: "fill_rings",
         label: "Rings to fill",
-        help: "Rings of unmapped elements to be filled with the means of mapped neighbours",
+        help: "Rings of unmapped elements to be filled with the mean thickness and plastic strain of mapped \
+               neighbours; they get no stresses, strains and history variables",
         group: Group::Values,
         domain: Domain::Count(limits::RINGS),
         access: at!(fill_rings),

@@ -155,9 +155,9 @@ fn old_states_in_included_files_are_left_out_of_copies_of_these() {
         let copy = std::fs::read_to_string(pair.path("out_old.k")).unwrap();
         assert_eq!(copy, rest.trim_end(), "{kind}");
         if kind == "deck" {
-            std::fs::rename(pair.path("out.k"), pair.path("crash.k")).unwrap();
-            std::fs::rename(pair.path("out_old.k"), pair.path("old.k")).unwrap();
-            let read = model(&pair.path("crash.k"));
+            // As it stands, it holds the new states alone.
+            assert!(text.contains("*INCLUDE_TRANSFORM\nout_old.k\n"), "{text}");
+            let read = model(&pair.path("out.k"));
             let ids: Vec<u64> = read
                 .forming
                 .stresses()
@@ -278,4 +278,27 @@ fn what_could_not_be_read_is_told() {
         "{told}"
     );
     assert!(told.contains("found \"1x0.0\""), "{told}");
+}
+
+#[test]
+fn a_copy_that_nothing_includes_says_so() {
+    let [with, _] = old_states(10);
+    let deck = crash(3, "").replace("*END\n", "*INCLUDE\nold.k\n*END\n");
+    let pair = Pair::new(&deck, &two_squares());
+    std::fs::write(pair.path("old.k"), with).unwrap();
+    let told = |kind: &str| {
+        let output = pair.map(&options(kind, REPLACE));
+        assert!(output.status.success(), "{}", errors(&output));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let deck = told("deck");
+    assert!(
+        deck.contains("out.k includes it instead of old.k"),
+        "{deck}"
+    );
+    let include = told("include");
+    assert!(
+        include.contains("to be included instead of old.k"),
+        "{include}"
+    );
 }

@@ -37,6 +37,7 @@ pub mod parameter;
 mod parameter_card;
 pub mod parameter_error;
 mod parts;
+pub mod rename;
 mod resolve;
 mod results;
 mod set_members;

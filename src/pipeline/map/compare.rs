@@ -110,12 +110,13 @@ fn read_other(path: &Path, crash: &LoadedPart, monitor: &Monitor) -> Result<Mode
         return Ok(model);
     }
     let bytes = formats::read_text(&Disk, path, &crash.settings.read, monitor)?;
-    read_beside_nodes(&crash.model, &bytes, monitor)
+    read_beside_nodes(&crash.model, &[], &bytes, monitor)
 }
 
-/// Reads a file as an include of a deck that holds the nodes of `crash`.
+/// Reads a file as an include of a deck that holds the nodes of `crash` and includes the `others` before it.
 pub(super) fn read_beside_nodes(
     crash: &Model,
+    others: &[Vec<u8>],
     bytes: &[u8],
     monitor: &Monitor,
 ) -> Result<Model, PipelineError> {
@@ -125,10 +126,14 @@ pub(super) fn read_beside_nodes(
     };
     let mut deck = write(&nodes, &WriteOptions::default(), monitor)?;
     deck.truncate(deck.len() - b"*END\n".len());
+    let mut memory = Memory::new().with("mapped.k", bytes.to_vec());
+    for (number, other) in others.iter().enumerate() {
+        let name = format!("other_{number}.k");
+        deck.extend_from_slice(format!("*INCLUDE\n{name}\n").as_bytes());
+        memory = memory.with(name, other.clone());
+    }
     deck.extend_from_slice(b"*INCLUDE\nmapped.k\n*END\n");
-    let memory = Memory::new()
-        .with("nodes.k", deck)
-        .with("mapped.k", bytes.to_vec());
+    let memory = memory.with("nodes.k", deck);
     let options = ReadOptions::default();
     Ok(formats::read_from(
         &memory,

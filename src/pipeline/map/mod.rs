@@ -3,6 +3,8 @@
 mod compare;
 mod convert;
 mod default_thickness;
+mod head;
+mod includes;
 mod lists;
 mod old_states;
 mod origin;
@@ -17,6 +19,7 @@ mod report;
 mod unmapped;
 mod values;
 mod verdict;
+mod warnings;
 
 use std::collections::BTreeSet;
 use std::time::Instant;
@@ -26,22 +29,21 @@ use serde::{Deserialize, Serialize};
 pub use compare::{ComparisonRecord, DifferenceRecord, OtherResult, compare_with};
 pub use convert::TargetLayers;
 pub use default_thickness::DefaultThickness;
+pub use head::deck_comments;
 pub use lists::{DoubtfulElement, ElementLists, GiverShare, UnmappedElement, element_lists};
 pub use old_states::{NewStates, car_copies, mapped_by_solver};
 pub use origin::PoseOrigin;
-pub use output::{
-    MapFile, MapFiles, MapOutput, WriteKind, deck_comments, elements_path, write_mapping,
-};
+pub use output::{MapFile, MapFiles, MapOutput, WriteKind, elements_path, write_mapping};
 pub use place::{FurtherPose, place, placing_recipe, pose_warning};
 pub use probe::{ProbeRecord, ProbedValue, probe_records};
-pub use record::{
-    DistributionRecord, MapRecord, PairRecord, element_table, map_record, unread_line,
-};
+pub use record::{DistributionRecord, MapRecord, PairRecord, element_table, map_record};
 pub use report::map_report;
 pub use unmapped::unmapped_sets;
 pub use values::{Profile, ShownValue};
 pub(super) use verdict::LEAST_AREA;
 pub use verdict::{CheckPicture, CheckReason, CheckRecord};
+pub use warnings::unread_line;
+pub(super) use warnings::{bare_elements, file_lines};
 
 use super::load::LoadedPart;
 use super::{PipelineError, millis_since};
@@ -164,8 +166,12 @@ impl MapRun {
         value.copied().unwrap_or(f64::NAN)
     }
 
-    /// Effective plastic strain of an element, weighted over its layers; NaN if it has none.
+    /// Effective plastic strain of an element, weighted over its layers; NaN if it has none or it was not
+    /// asked for.
     pub fn plastic_strain(&self, element: usize) -> f64 {
+        if !self.recipe.options.quantities.plastic_strain {
+            return f64::NAN;
+        }
         self.mapped.mean_plastic_strain(&self.target, element)
     }
 
@@ -327,7 +333,8 @@ impl Layers<'_> {
         let model = &self.crash.model;
         let section = model.shell_formulation(part);
         let wanted = self.recipe.options.quantities;
-        let needs_layers = wanted.plastic_strain || wanted.stress || wanted.strain;
+        let needs_layers =
+            wanted.plastic_strain || wanted.stress || wanted.strain || wanted.history;
         let id = model.parts[part as usize].id;
         let n_layers = match (self.recipe.n_layers, section) {
             (Some(n), _) => n,
@@ -342,7 +349,9 @@ impl Layers<'_> {
         if !limits::LAYERS.contains(&n_layers) {
             return Err(PipelineError::TooManyLayers { part: id, n_layers });
         }
-        let of_deck = if model.shell_control.is_lobatto {
+        let of_deck = if section.is_some_and(|section| section.is_trapezoidal) {
+            RuleKind::Equal
+        } else if model.shell_control.is_lobatto {
             RuleKind::Lobatto
         } else {
             RuleKind::Gauss
@@ -390,9 +399,11 @@ fn check(
     };
     checks.thickness = distribution(thickness.into_iter()).zip(on_target(&mapped_thickness));
     monitor.check()?;
-    let plastic = on_sources(&SourcePart::mean_plastic_strain);
-    let mapped_plastic = |element: usize| mapped.mean_plastic_strain(target, element);
-    checks.plastic_strain = distribution(plastic.into_iter()).zip(on_target(&mapped_plastic));
+    if options.quantities.plastic_strain {
+        let plastic = on_sources(&SourcePart::mean_plastic_strain);
+        let mapped_plastic = |element: usize| mapped.mean_plastic_strain(target, element);
+        checks.plastic_strain = distribution(plastic.into_iter()).zip(on_target(&mapped_plastic));
+    }
     checks.map_back = Some(back);
     Ok(checks)
 }

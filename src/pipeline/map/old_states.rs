@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
+use super::includes::include_copies;
 use super::output::{MapFile, MapWriter};
 use super::{MapRun, PipelineError};
 use crate::formats::keyword::exchange::{
@@ -184,6 +185,8 @@ pub(super) fn copies_without_states(
             path,
             bytes: copy.bytes,
             replaces: Some(file.path.clone()),
+            included_by: None,
+            is_left_out: false,
         });
     }
     Ok(copies)
@@ -232,7 +235,7 @@ pub fn car_copies(
     taken: &[PathBuf],
     monitor: &Monitor,
 ) -> Result<Vec<MapFile>, PipelineError> {
-    let copies = copies_without_states(crash, new, [beside, Path::new("")], taken, monitor)?;
+    let mut copies = copies_without_states(crash, new, [beside, Path::new("")], taken, monitor)?;
     if let Some(read) = read_copies(crash, &copies, monitor)? {
         let found = NewStates::default().n_other_cards(&read);
         let wanted = new.n_other_cards(&crash.model);
@@ -243,6 +246,7 @@ pub fn car_copies(
             )));
         }
     }
+    include_copies(&mut copies, crash);
     Ok(copies)
 }
 

@@ -1,10 +1,12 @@
 //! The mapped state as decks: an include, the part's elements, or a copy of the crash deck.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
+use super::head::keyword_line;
+use super::includes::{include_copies, lost_includes};
 use super::old_states::{LeftOut, NewStates, copies_without_states};
-use super::{DefaultThickness, MapRun, PipelineError, PlacedPart};
+use super::{DefaultThickness, MapRun, PipelineError};
 use crate::formats::keyword::card::Layout;
 use crate::formats::keyword::exchange::{
     Exchange, ExchangeRules, ExchangedDeck, ResultCards, exchange_thickness,
@@ -14,10 +16,8 @@ use crate::formats::keyword::state_cards::{ShellState, StateFormat, write_states
 use crate::formats::model::{IncludedAs, ReadFile};
 use crate::formats::{self, Model};
 use crate::geometry::chunks::for_chunks;
-use crate::mapping::Status;
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
-use crate::report::build_id;
 use crate::text::counted;
 
 /// Where strains of the two surfaces stand.
@@ -76,6 +76,23 @@ pub struct MapFile {
     pub bytes: Vec<u8>,
     /// The crash file that it is a copy of, whose place it takes.
     pub replaces: Option<PathBuf>,
+    /// The written file that includes it in the place of that one.
+    pub included_by: Option<PathBuf>,
+    /// The deck includes the old file still.
+    pub is_left_out: bool,
+}
+
+impl MapFile {
+    /// Says whose place it takes, and what is left to do so that it does; `None` for a file that is none of
+    /// the deck's.
+    pub fn place_taken(&self) -> Option<String> {
+        let replaced = self.replaces.as_ref()?.display();
+        Some(match &self.included_by {
+            Some(by) => format!("{} includes it instead of {replaced}", by.display()),
+            None if self.is_left_out => format!("to be included instead of {replaced}"),
+            None => format!("to be used instead of {replaced}"),
+        })
+    }
 }
 
 /// What was written, read back and compared.
@@ -102,6 +119,8 @@ pub struct MapFiles {
     pub n_kept_states: usize,
     /// Elements with cards of stresses or strains.
     pub new_states: NewStates,
+    /// Says which files a copy includes that are not found from where it goes.
+    pub lost_includes: Option<String>,
 }
 
 /// Makes the files and reads them back. Nothing is written to disk here. An error if an element of the
@@ -114,6 +133,7 @@ pub fn write_mapping(
     comments: &[String],
     monitor: &Monitor,
 ) -> Result<MapFiles, PipelineError> {
+    check_ids(run, &crash.model)?;
     let factor = crash.settings.length_factor;
     let mut thickness = thickness_by_id(run, &crash.model, factor, monitor)?;
     let n_mapped = thickness.len();
@@ -144,6 +164,11 @@ pub fn write_mapping(
     let decks = writer.decks(output.kind, &new_states)?;
     let n_thickness: usize = decks.iter().map(|(_, deck)| deck.n_exchanged).sum();
     writer.check_elements(&decks, output.kind)?;
+    let parameters = decks.iter().map(|(_, deck)| deck);
+    let parameters = parameters.filter(|deck| !deck.parameters.is_empty());
+    let parameters: Vec<Vec<u8>> = parameters
+        .map(|deck| [keyword_line(deck.layout).as_bytes(), &deck.parameters].concat())
+        .collect();
     let n_old_states = new_states.n_old(&crash.model);
     let head = writer.head(comments, n_default, n_old_states);
     let mut holder = PathBuf::new();
@@ -179,9 +204,29 @@ pub fn write_mapping(
         n_old_states,
         n_kept_states: new_states.n_kept(run, &crash.model),
         new_states,
+        lost_includes: None,
     };
-    files.read_back_error = writer.read_back(&files, output.kind)?;
+    files.read_back_error = writer.read_back(&files, output.kind, &parameters)?;
+    // Read back under the old names.
+    include_copies(&mut files.files, crash);
+    files.lost_includes = lost_includes(&files.files, crash);
     Ok(files)
+}
+
+/// Results are written for ids, so none may stand for two elements.
+fn check_ids(run: &MapRun, model: &Model) -> Result<(), PipelineError> {
+    let mut known = HashSet::with_capacity(run.shells.len());
+    let ids = run
+        .shells
+        .iter()
+        .map(|&shell| model.shells[shell as usize].id);
+    match ids.into_iter().find(|id| !known.insert(*id)) {
+        Some(id) => Err(PipelineError::MapOutput(format!(
+            "shell {id} is defined twice among the elements that are mapped onto; give each an id of its own in \
+             the crash deck (shapematch info names all)"
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// A file that is none of the deck's.
@@ -190,26 +235,9 @@ fn new_file(path: &Path, bytes: Vec<u8>) -> MapFile {
         path: path.to_path_buf(),
         bytes,
         replaces: None,
+        included_by: None,
+        is_left_out: false,
     }
-}
-
-/// What decks say of where their values come from: the files, and the pose of each stamped part.
-pub fn deck_comments(crash: &LoadedPart, placed: &[PlacedPart<'_>]) -> Vec<String> {
-    let mut lines = vec![format!("forming results mapped onto {}", crash.file_name())];
-    for placed in placed {
-        lines.push(format!(
-            "from {}, crash = c R stamped + t with rows:",
-            placed.part.file_name()
-        ));
-        for row in placed.crash_from_stamped.to_rows() {
-            lines.push(format!("  {} {} {} {}", row[0], row[1], row[2], row[3]));
-        }
-        let factor = placed.part.settings.length_factor;
-        if factor != 1.0 {
-            lines.push(format!("  its lengths multiplied by {factor}"));
-        }
-    }
-    lines
 }
 
 /// New corner thicknesses of the mapped elements in the deck's own unit, by element id.
@@ -339,6 +367,14 @@ impl MapWriter<'_> {
         decks: &[(&ReadFile, ExchangedDeck)],
         kind: WriteKind,
     ) -> Result<(), PipelineError> {
+        let has_cards = decks.iter().any(|(_, deck)| deck.n_found > 0);
+        if !has_cards && (kind == WriteKind::Deck || !self.thickness.is_empty()) {
+            return Err(PipelineError::MapOutput(format!(
+                "{} holds no cards of the elements, as LS-DYNA decks have them, so none can be written; the \
+                 mapping comes as a table and as a report too (--csv, --report)",
+                self.crash.path.display()
+            )));
+        }
         let n_found: usize = decks.iter().map(|(_, deck)| deck.n_exchanged).sum();
         let n_wanted = self.thickness.len();
         if n_found < n_wanted {
@@ -402,42 +438,8 @@ impl MapWriter<'_> {
         Ok(by_id)
     }
 
-    fn head(&self, comments: &[String], n_default: usize, n_old: usize) -> String {
-        let mut head = String::new();
-        for line in comments.iter().flat_map(|comment| comment.lines()) {
-            head.push_str(&format!("$ {line}\n"));
-        }
-        let counts = self.run.mapped.counts();
-        let words = Status::ALL
-            .iter()
-            .zip(counts)
-            .filter(|(_, count)| *count > 0);
-        let words: Vec<String> = words
-            .map(|(status, n)| format!("{n} {}", status.label()))
-            .collect();
-        head.push_str(&format!("$ elements: {}\n", words.join(", ")));
-        if n_default > 0 {
-            head.push_str(&format!(
-                "$ {n_default} of them carry no values and have the default thickness\n"
-            ));
-        }
-        if n_old > 0 && self.replaces_states() {
-            head.push_str(&format!(
-                "$ {n_old} of them have initial states in the crash deck: copies of its files without these are\n\
-                 $ written too and take the place of the files\n"
-            ));
-        } else if n_old > 0 {
-            head.push_str(&format!(
-                "$ {n_old} of them have initial states in the crash deck already: take those cards out of it;\n\
-                 $ --replace-states yes writes copies of its files without them\n"
-            ));
-        }
-        head.push_str(&format!("$ {}\n", build_id()));
-        head
-    }
-
     /// True if old states of the elements are left out of copies of the crash deck's files.
-    fn replaces_states(&self) -> bool {
+    pub(super) fn replaces_states(&self) -> bool {
         self.run.recipe.options.replace_states
     }
 
@@ -527,12 +529,17 @@ impl MapWriter<'_> {
         if is_composite(self.run, self.model, element) {
             return state;
         }
-        if let Some(states) = &mapped.states {
-            state.states = states.of(element);
-        }
         if let Some(history) = &mapped.history {
             let kept = history.of(element);
             (state.history, state.tensors) = (kept.values, kept.tensors);
+        }
+        let wanted = self.run.recipe.options.quantities;
+        let has_history = !state.history.is_empty() || !state.tensors.is_empty();
+        // History variables need a card, whose other values are zeros where nothing else was asked for.
+        if (wanted.stress || wanted.plastic_strain || has_history)
+            && let Some(states) = &mapped.states
+        {
+            state.states = states.of(element);
         }
         if let Some(strains) = &mapped.strains {
             state.strains = strains.of(element);
@@ -567,14 +574,6 @@ impl MapWriter<'_> {
             is_large: self.is_large,
         };
         write_states(self.run.shells.len(), state_of, format, self.monitor)
-    }
-}
-
-fn keyword_line(layout: Layout) -> String {
-    match layout {
-        Layout::Standard => "*KEYWORD\n".to_owned(),
-        Layout::I10 => "*KEYWORD I10=Y\n".to_owned(),
-        Layout::Long => "*KEYWORD LONG=Y\n".to_owned(),
     }
 }
 

@@ -15,11 +15,13 @@ const SMALL_ROUNDING: f64 = 5.1e-4;
 const LARGE_ROUNDING: f64 = 1e-8;
 
 impl MapWriter<'_> {
-    /// Reads the states back and compares counts and values.
+    /// Reads the states back and compares counts and values. `parameters` are decks that define what cards
+    /// of elements may use.
     pub(super) fn read_back(
         &self,
         files: &MapFiles,
         kind: WriteKind,
+        parameters: &[Vec<u8>],
     ) -> Result<f64, PipelineError> {
         let failed = |what: String| {
             let hint = match kind {
@@ -40,7 +42,8 @@ impl MapWriter<'_> {
         let copies = read_copies(self.crash, &files.files, self.monitor)?;
         let copied = copies.iter().map(|read| (read, true));
         let beside = files.files.iter().filter(|file| file.replaces.is_none());
-        let beside = beside.map(|file| read_beside_nodes(self.model, &file.bytes, self.monitor));
+        let beside =
+            beside.map(|file| read_beside_nodes(self.model, parameters, &file.bytes, self.monitor));
         let beside: Vec<Model> = beside.collect::<Result<_, _>>()?;
         for (read, is_copy) in copied.chain(beside.iter().map(|read| (read, false))) {
             n_stress += read.forming.n_stress();

@@ -1,16 +1,13 @@
-//! The mapping in figures: JSON record, element table, and what to warn about.
+//! The mapping in figures: JSON record and element table.
 
-use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use serde::Serialize;
 
 use super::compare::{ComparisonRecord, OtherResult, compare_with, largest_von_mises};
 use super::verdict::{CheckRecord, checks_of};
-use super::{
-    MapFiles, MapRun, PlacedPart, PoseOrigin, ProbeRecord, covered_values, mapped_by_solver,
-};
-use crate::formats::diagnostic::{DiagnosticKind, Severity};
+use super::warnings::warnings;
+use super::{MapFiles, MapRun, PlacedPart, PoseOrigin, ProbeRecord, covered_values};
 use crate::geometry::chunks::for_chunks;
 use crate::mapping::{
     Distribution, Histogram, SourcePart, Status, distribution, histogram_distance,
@@ -21,7 +18,7 @@ use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::PairUnits;
 use crate::report::{DIRECTION, build_id};
 use crate::role::PerRole;
-use crate::text::{Lengths, counted, parts_by_id};
+use crate::text::Lengths;
 
 /// A mapping as it is kept and exchanged.
 #[derive(Debug, Clone, Serialize)]
@@ -29,7 +26,7 @@ pub struct MapRecord {
     /// Which program made it.
     pub build: String,
     /// Version of this layout.
-    pub schema: u32,
+    pub schema: &'static str,
     /// What the matrices mean.
     pub direction: String,
     /// The crash deck.
@@ -222,7 +219,7 @@ pub fn map_record(
     };
     let mut record = MapRecord {
         build: build_id(),
-        schema: 1,
+        schema: "shapematch.map/1",
         direction: DIRECTION.to_owned(),
         crash: crash.path.display().to_string(),
         crash_parts: crash.chosen_part_ids(),
@@ -259,11 +256,7 @@ pub fn map_record(
         warnings: stamped
             .iter()
             .filter_map(of_pose)
-            .chain(mapped_by_solver(crash))
-            .chain(unread_line(crash))
-            .chain(stamped.iter().filter_map(|placed| unread_line(placed.part)))
-            .chain(without_states(run))
-            .chain(warnings(run, stamped, files))
+            .chain(warnings(run, crash, stamped, files))
             .collect(),
         map_ms: run.map_ms,
         check_ms: run.check_ms,
@@ -274,7 +267,7 @@ pub fn map_record(
 
 /// Largest von Mises stress of both sides, where stresses were mapped.
 fn von_mises(run: &MapRun) -> Option<PairRecord> {
-    if !run.recipe.options.quantities.stress || run.checks.plastic_strain.is_none() {
+    if !run.recipe.options.quantities.stress {
         return None;
     }
     pair_of(&both_sides(run, von_mises_of, |element| {
@@ -324,7 +317,7 @@ fn thinning_values(run: &MapRun, flat: f64) -> BothSides {
 
 fn plastic_values(run: &MapRun) -> BothSides {
     both_sides(run, SourcePart::mean_plastic_strain, |element| {
-        run.mapped.mean_plastic_strain(&run.target, element)
+        run.plastic_strain(element)
     })
 }
 
@@ -347,158 +340,6 @@ fn pair_record((stamped, crash): (Distribution, Distribution), values: &BothSide
         histogram_distance: histogram_distance(&a, &b),
         histograms: [a.shares, b.shares],
     }
-}
-
-/// The parts of a stamped file that have neither stresses nor strains, and no thickness but that of their
-/// section; in words.
-fn without_results(placed: &PlacedPart<'_>, shells: &[u32]) -> Option<String> {
-    let model = &placed.part.model;
-    let has_results = model.parts_with_results();
-    let has_thickness =
-        |shell: &&u32| (model.shell_extra(**shell)).is_some_and(|e| e.thickness != [0.0; 4]);
-    let part_of = |shell: &u32| model.shells[*shell as usize].part;
-    let formed = shells.iter().filter(has_thickness).map(part_of);
-    let formed: BTreeSet<u32> = formed.collect();
-    let all: BTreeSet<u32> = shells.iter().map(part_of).collect();
-    let is_silent = |part: &&u32| !has_results[**part as usize] && !formed.contains(part);
-    let silent = all.iter().filter(is_silent);
-    let ids: Vec<u64> = silent.map(|&part| model.parts[part as usize].id).collect();
-    let name = placed.part.file_name();
-    (!ids.is_empty()).then(|| {
-        format!(
-            "{name}: no forming results in {}; crash elements there get the thickness of its section and nothing else",
-            parts_by_id(&ids)
-        )
-    })
-}
-
-fn warnings(run: &MapRun, stamped: &[PlacedPart<'_>], files: Option<&MapFiles>) -> Vec<String> {
-    let sources = stamped.iter().zip(&run.source_shells);
-    let mut warnings: Vec<String> = sources
-        .filter_map(|(placed, shells)| without_results(placed, shells))
-        .collect();
-    let mapped = &run.mapped;
-    let area = mapped.mapped_area(&run.target.mesh);
-    if area < run.recipe.wanted_area() {
-        warnings.push(format!(
-            "only {:.1} % of the crash part's area carries values; the status of the elements says why",
-            100.0 * area
-        ));
-    }
-    let count = |status: Status| mapped.counts()[status as usize];
-    for (status, what) in [
-        (
-            Status::TwoLayers,
-            "near two sheets that their normals do not tell apart",
-        ),
-        (Status::Conflict, "on two stamped parts"),
-    ] {
-        if count(status) > 0 {
-            warnings.push(format!("{} {what}", counted(count(status), "element")));
-        }
-    }
-    if mapped.senses.contains(&None) {
-        warnings.push(
-            "normals of the two parts agree on no side; sheets that lie close are told apart by \
-             distance alone"
-                .to_owned(),
-        );
-    }
-    if mapped.n_distant > 0 {
-        warnings.push(format!(
-            "{} farther from the stamped part than half the largest distance",
-            counted(mapped.n_distant, "element")
-        ));
-    }
-    if let Some(ratio) = run.unusual_thickness() {
-        warnings.push(format!(
-            "the mapped thickness is {ratio:.2} times that of the section; another gauge or another unit?"
-        ));
-    }
-    for gap in run.mapped.history.iter().flat_map(|h| &h.left_out) {
-        let law = |law: &Option<String>| match law {
-            Some(law) => format!("material {law}"),
-            None => "an unknown material".to_owned(),
-        };
-        let hint = if gap.source.is_none() {
-            " (--stamped-material names it)"
-        } else {
-            ""
-        };
-        warnings.push(format!(
-            "history variables of {} are left out: they belong to {} in the stamped file{hint}, \
-             the crash part has {}",
-            counted(gap.n_elements, "element"),
-            law(&gap.source),
-            law(&gap.target)
-        ));
-    }
-    if let Some(files) = files.filter(|files| files.n_composite > 0) {
-        warnings.push(format!(
-            "nothing is written for {} with plies in the element's card (_COMPOSITE)",
-            counted(files.n_composite, "element")
-        ));
-    }
-    if let Some(files) = files {
-        warnings.extend(old_states_warning(run, files));
-    }
-    warnings
-}
-
-/// Says what of the file of a part could not be read; `None` if all could.
-pub fn unread_line(part: &LoadedPart) -> Option<String> {
-    let found = &part.model.diagnostics;
-    let is_error = |kind: &DiagnosticKind| kind.severity() == Severity::Error;
-    let n: u64 = found
-        .counts()
-        .filter(|(kind, _)| is_error(kind))
-        .map(|(_, n)| n)
-        .sum();
-    let first = found.iter().find(|one| is_error(&one.kind))?;
-    Some(format!(
-        "{}: {} of what the file holds could not be read ({first}); its diagnostics (tab Diagnostics, \
-         shapematch info) name each",
-        part.file_name(),
-        counted(usize::try_from(n).unwrap_or(usize::MAX), "piece"),
-    ))
-}
-
-/// Says how many elements with other values have no stress card, though some have one.
-fn without_states(run: &MapRun) -> Option<String> {
-    let mapped = &run.mapped;
-    let states = mapped.states.as_ref()?;
-    let elements = mapped.elements.iter().enumerate();
-    let bare = elements.filter(|(element, report)| {
-        // Rings that are filled have a thickness and a plastic strain alone.
-        let is_mapped = report.status.has_values() && report.status != Status::Filled;
-        is_mapped && states.of(*element).is_empty()
-    });
-    let n = bare.count();
-    (n > 0).then(|| {
-        format!(
-            "no stresses and plastic strains on {} with other values: the stamped elements there have none",
-            counted(n, "element")
-        )
-    })
-}
-
-/// What is to be told of states that the crash deck has already.
-fn old_states_warning(run: &MapRun, files: &MapFiles) -> Option<String> {
-    let (n_old, n_kept) = (files.n_old_states, files.n_kept_states);
-    let replaces = run.recipe.options.replace_states;
-    if replaces && n_kept > 0 {
-        return Some(format!(
-            "{} keep the initial stresses or strains that the crash deck has, because none are mapped onto them",
-            counted(n_kept, "element")
-        ));
-    }
-    (!replaces && n_old > 0).then(|| {
-        format!(
-            "{} of mapped elements are in the crash deck already and would count beside the mapped ones; take \
-             them out of it, or let --replace-states yes write copies without them",
-            counted(n_old, "initial state")
-        )
-    })
 }
 
 /// One row for each crash element: id, part, status, distances, angle, coverage, confidence, source,

@@ -15,8 +15,8 @@ use super::find_parts::{FoundParts, find_parts};
 use super::load::{LoadSettings, LoadedPart, load, prepare};
 use super::map::{
     DefaultThickness, LEAST_AREA, MapOutput, MapRecipe, MapRecord, NewStates, PlacedPart,
-    PoseOrigin, WriteKind, car_copies, deck_comments, elements_path, map_parts, map_record,
-    map_report, mapped_by_solver, unread_line, write_mapping,
+    PoseOrigin, WriteKind, bare_elements, car_copies, deck_comments, elements_path, file_lines,
+    map_parts, map_record, map_report, mapped_by_solver, write_mapping,
 };
 use super::match_parts::MatchRecipe;
 use super::write_file::{write_file, write_file_unless_cancelled};
@@ -134,8 +134,10 @@ struct Made {
     new_states: NewStates,
     /// Cards of the crash deck that let the solver map onto these parts.
     by_solver: Vec<String>,
-    /// What of each stamped file could not be read.
-    unread: Vec<Option<String>>,
+    /// What of each stamped file could not be read or is doubtful.
+    unread: Vec<Vec<String>>,
+    /// Elements that lack a quantity which others have.
+    bare: Vec<String>,
 }
 
 /// Finds the crash parts of every stamped file, maps them and writes the results into `recipe.folder`: states
@@ -151,6 +153,7 @@ pub fn map_car(
     monitor: &Monitor,
 ) -> Result<CarRecord, PipelineError> {
     let mut rows: Vec<CarRow> = stamped.iter().map(|file| CarRow::new(&file.path)).collect();
+    record::tell_apart(&mut rows);
     let mut claims: BTreeMap<usize, Claim> = BTreeMap::new();
     for (at, (file, row)) in stamped.iter().zip(&mut rows).enumerate() {
         monitor.check()?;
@@ -207,7 +210,7 @@ pub fn map_car(
     let copies = copies(crash, stamped, (recipe, &new_states), monitor)?;
     let record = CarRecord {
         build: build_id(),
-        schema: 1,
+        schema: "shapematch.map-car/1",
         direction: DIRECTION.to_owned(),
         crash: crash.path.display().to_string(),
         rows,
@@ -285,6 +288,8 @@ fn take(row: &mut CarRow, made: &Made) {
     if made.n_old_states > 0 {
         row.reasons.push(CarReason::OldStates(made.n_old_states));
     }
+    let bare = made.bare.iter().cloned();
+    row.reasons.extend(bare.map(CarReason::Bare));
     if let Some(ratio) = made.thickness_ratio {
         row.reasons.push(CarReason::Thickness(ratio));
     }
@@ -396,7 +401,11 @@ impl Group<'_> {
             },
             new_states: files.new_states,
             by_solver: mapped_by_solver(&crash),
-            unread: stamped.iter().map(unread_line).collect(),
+            unread: stamped
+                .iter()
+                .map(|part| file_lines(part, &mapping.options))
+                .collect(),
+            bare: bare_elements(&run),
             record,
             page,
         })

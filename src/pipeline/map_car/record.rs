@@ -55,15 +55,20 @@ pub enum CarReason {
     OldStates(usize),
     /// A card of the crash deck lets the solver map onto the crash part too.
     MappedBySolver(String),
-    /// Something in its file could not be read.
+    /// Something in its file could not be read, or is perhaps not as it was meant.
     Unread(String),
+    /// Elements with other values have no thickness or no stresses.
+    Bare(String),
 }
 
 impl CarReason {
     /// The reason as words for people.
     pub fn text(&self) -> String {
         match self {
-            Self::Failed(text) | Self::MappedBySolver(text) | Self::Unread(text) => text.clone(),
+            Self::Failed(text)
+            | Self::MappedBySolver(text)
+            | Self::Unread(text)
+            | Self::Bare(text) => text.clone(),
             Self::NoPart => "no part of the crash model fits".to_owned(),
             Self::Pose => "the pose needs a look".to_owned(),
             Self::Rivals(ids) => format!("fits {} about as well", parts_by_id(ids)),
@@ -76,7 +81,10 @@ impl CarReason {
             Self::Displaced => "another stamped part lies there and fits better".to_owned(),
             Self::Area(share) => format!("{} of the area has values", percent(*share)),
             Self::Thickness(ratio) => {
-                format!("the mapped thickness is {ratio:.2} times the section's")
+                format!(
+                    "the mapped thickness is {} times the section's",
+                    length(*ratio)
+                )
             }
             Self::OldStates(n) => format!(
                 "{} in the crash deck would count beside the mapped ones (--replace-states yes writes it \
@@ -92,6 +100,9 @@ impl CarReason {
 pub struct CarRow {
     /// The stamped file.
     pub file: String,
+    /// How tables name it.
+    #[serde(skip)]
+    pub(super) name: String,
     /// Whether to look at it.
     pub state: CarState,
     /// Why.
@@ -122,6 +133,7 @@ impl CarRow {
     pub(super) fn new(file: &Path) -> Self {
         Self {
             file: file.display().to_string(),
+            name: super::name_of(file),
             state: CarState::None,
             reasons: Vec::new(),
             tools_left_out: Vec::new(),
@@ -139,12 +151,7 @@ impl CarRow {
 
     /// Says which of its parts are left out as tools; `None` if none are.
     pub fn tools_line(&self) -> Option<String> {
-        tools_line(&self.file_name(), &self.tools_left_out)
-    }
-
-    fn file_name(&self) -> String {
-        let name = Path::new(&self.file).file_name().unwrap_or_default();
-        name.to_string_lossy().into_owned()
+        tools_line(&self.name, &self.tools_left_out)
     }
 
     /// Cells of a table: file, crash part, state, verdict, RMS, mapped area, thickness, reasons.
@@ -153,7 +160,7 @@ impl CarRow {
         let reasons: Vec<String> = self.reasons.iter().map(CarReason::text).collect();
         let or_blank = |cell: Option<String>| cell.unwrap_or_default();
         [
-            self.file_name(),
+            self.name.clone(),
             format!("{} {}", ids.join(", "), self.title)
                 .trim()
                 .to_owned(),
@@ -164,6 +171,16 @@ impl CarRow {
             or_blank(self.thickness.map(length)),
             reasons.join("; "),
         ]
+    }
+}
+
+/// Names files of one name by their paths.
+pub(super) fn tell_apart(rows: &mut [CarRow]) {
+    let names: Vec<String> = rows.iter().map(|row| row.name.clone()).collect();
+    for row in rows {
+        if names.iter().filter(|name| **name == row.name).count() > 1 {
+            row.name.clone_from(&row.file);
+        }
     }
 }
 
@@ -185,7 +202,7 @@ pub struct CarRecord {
     /// Which program made it.
     pub build: String,
     /// Version of this layout.
-    pub schema: u32,
+    pub schema: &'static str,
     /// What the matrices mean.
     pub direction: String,
     /// The crash deck.
@@ -212,5 +229,19 @@ impl CarCopy {
         format!(
             "{file} takes the place of {replaces}: it is without the initial states that are replaced"
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_one_name_are_told_apart() {
+        let paths = ["left/door.k", "right/door.k", "left/sill.k"];
+        let mut rows = paths.map(|path| CarRow::new(Path::new(path)));
+        tell_apart(&mut rows);
+        let names = rows.map(|row| row.cells()[0].clone());
+        assert_eq!(names, ["left/door.k", "right/door.k", "sill.k"]);
     }
 }

@@ -81,29 +81,18 @@ pub(super) fn note(files: &MapFiles) -> String {
     };
     let error = files.read_back_error;
     let first = files.files.first();
-    let replaced = first.and_then(|file| file.replaces.as_ref());
-    let replaced = replaced.map_or_else(String::new, |replaced| {
-        format!("; include it instead of {}", name_of(replaced))
-    });
+    let replaced = first.and_then(MapFile::place_taken);
+    let replaced = replaced.map_or_else(String::new, |replaced| format!("; {replaced}"));
     format!("{counts}, read back within {error:.1e}{replaced}")
-}
-
-/// The name of a file without its folder.
-fn name_of(path: &Path) -> String {
-    path.file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned()
 }
 
 /// What a file is that is written beside the first.
 pub(super) fn note_beside(file: &MapFile) -> String {
     let path = file.path.display();
-    match &file.replaces {
-        Some(replaced) => format!(
-            "written beside: {path}, a copy without the old states; include it instead of {}",
-            name_of(replaced)
-        ),
+    match file.place_taken() {
+        Some(replaced) => {
+            format!("written beside: {path}, a copy without the old states; {replaced}")
+        }
         None => format!(
             "written beside: {path}, with the elements that the crash deck is to have instead of its own"
         ),

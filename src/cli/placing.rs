@@ -1,0 +1,145 @@
+//! Where the stamped parts of a mapping lie: as given, or by a match.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use anyhow::Context as _;
+
+use super::UsageError;
+use super::map::MapChoice;
+use super::recipe::pose;
+use crate::assess::Verdict;
+use crate::formats::Selection;
+use crate::geometry::Similarity;
+use crate::monitor::Monitor;
+use crate::pipeline::find_parts::find_parts;
+use crate::pipeline::load::{LoadedPart, prepare};
+use crate::pipeline::map::{PoseOrigin, place as place_part, placing_recipe};
+use crate::pipeline::map_car::CarReason;
+use crate::pipeline::match_parts::{MatchRecipe, MatchRun};
+use crate::pipeline::project::Project;
+use crate::pipeline::units::PairUnits;
+use crate::role::PerRole;
+use crate::text::{Lengths, counted};
+
+/// Where the stamped parts lie.
+pub(super) struct Placed {
+    /// The crash parts that they lie on.
+    pub(super) crash: LoadedPart,
+    /// The pose of each, and where it comes from.
+    pub(super) poses: Vec<(Similarity, PoseOrigin)>,
+}
+
+/// The pose of each stamped part as it is given, or by a match on the crash parts that it belongs to.
+pub(super) fn place(
+    choice: &MapChoice,
+    crash: LoadedPart,
+    stamped: &[LoadedPart],
+    monitor: &Monitor,
+) -> anyhow::Result<Placed> {
+    let given = |crash, poses: Vec<Similarity>| {
+        let poses = poses.into_iter().map(|pose| (pose, PoseOrigin::Given));
+        Ok(Placed {
+            crash,
+            poses: poses.collect(),
+        })
+    };
+    if choice.identity {
+        return given(crash, vec![Similarity::identity(); stamped.len()]);
+    }
+    if let Some(path) = &choice.project {
+        let (project, notes) = Project::read(path)?;
+        for note in notes {
+            log::warn!("{}: {note}", path.display());
+        }
+        let poses = project.stamped_poses();
+        let (n_poses, n_files) = (poses.len(), stamped.len());
+        let poses: Option<Vec<Similarity>> = poses.into_iter().collect();
+        return match poses.filter(|_| n_poses == n_files) {
+            Some(poses) => {
+                choice.lengths.check_project(&project, path)?;
+                given(crash, poses)
+            }
+            None if n_poses == n_files => Err(UsageError(format!(
+                "a stamped file of {} has no pose yet; match it in the window",
+                path.display()
+            ))
+            .into()),
+            None => Err(UsageError(format!(
+                "{} holds {}, but {n_files} are named",
+                path.display(),
+                counted(n_poses, "stamped file")
+            ))
+            .into()),
+        };
+    }
+    if !choice.pose.is_empty() {
+        let poses: anyhow::Result<Vec<Similarity>> = choice
+            .pose
+            .iter()
+            .map(|text| pose("--pose", text))
+            .collect();
+        return given(crash, poses?);
+    }
+    let recipe = placing_recipe(choice.hand());
+    if choice.crash_part.is_none() && crash.chosen_part_ids().len() > 1 {
+        if let Some(placed) = on_found_parts(&crash, stamped, &recipe, monitor)? {
+            return Ok(placed);
+        }
+        log::warn!(
+            "no part of {} fits alone; --crash-part names it",
+            crash.path.display()
+        );
+    }
+    let mut poses = Vec::new();
+    for part in stamped {
+        let parts = PerRole::new(&crash, part);
+        let file = part.path.display().to_string();
+        let run =
+            place_part(parts, &recipe, monitor).with_context(|| format!("cannot match {file}"))?;
+        // The record says that it is poor; the reason is known here alone.
+        if run.assessment.verdict == Verdict::Poor {
+            let units = PairUnits::of(parts.map(Some));
+            let why = run.assessment.sentences(Lengths::new(units.lengths));
+            if let Some(why) = why.first() {
+                log::warn!("{file}: {why}");
+            }
+        }
+        poses.push(found_by(&run));
+    }
+    Ok(Placed { crash, poses })
+}
+
+/// The pose that a match found.
+fn found_by(run: &MatchRun) -> (Similarity, PoseOrigin) {
+    let verdict = run.assessment.verdict;
+    (run.crash_from_stamped, PoseOrigin::Match { verdict })
+}
+
+/// The crash parts that the stamped parts belong to, and the poses on them; `None` if one of them fits no
+/// part of the crash model.
+fn on_found_parts(
+    crash: &LoadedPart,
+    stamped: &[LoadedPart],
+    recipe: &MatchRecipe,
+    monitor: &Monitor,
+) -> anyhow::Result<Option<Placed>> {
+    let mut ids = BTreeSet::new();
+    let mut poses = Vec::new();
+    for part in stamped {
+        let parts = PerRole::new(crash, part);
+        let Some(found) = find_parts(parts, recipe, &Similarity::identity(), monitor)? else {
+            return Ok(None);
+        };
+        if !found.rivals.is_empty() {
+            let reason = CarReason::Rivals(found.rivals);
+            log::warn!("{}: {}", part.path.display(), reason.text());
+        }
+        ids.extend(found.found.part.chosen_part_ids());
+        poses.push(found_by(&found.found.run));
+    }
+    let mut settings = crash.settings.clone();
+    settings.selection = Selection::Parts(ids.into_iter().collect());
+    let crash = prepare(&crash.path, Arc::clone(&crash.model), &settings, monitor)?;
+    Ok(Some(Placed { crash, poses }))
+}

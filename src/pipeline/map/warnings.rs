@@ -1,0 +1,280 @@
+//! What a mapping warns about.
+
+use std::collections::BTreeSet;
+
+use super::{MapFiles, MapRun, PlacedPart, mapped_by_solver};
+use crate::formats::diagnostic::{DiagnosticKind, Severity};
+use crate::mapping::{MapOptions, Quantities, Status};
+use crate::pipeline::load::LoadedPart;
+use crate::text::{counted, length, parts_by_id};
+
+/// The parts of a stamped file that have neither stresses nor strains, and no thickness but that of their
+/// section; in words.
+fn without_results(placed: &PlacedPart<'_>, shells: &[u32]) -> Option<String> {
+    let model = &placed.part.model;
+    let has_results = model.parts_with_results();
+    let has_thickness =
+        |shell: &&u32| (model.shell_extra(**shell)).is_some_and(|e| e.thickness != [0.0; 4]);
+    let part_of = |shell: &u32| model.shells[*shell as usize].part;
+    let formed = shells.iter().filter(has_thickness).map(part_of);
+    let formed: BTreeSet<u32> = formed.collect();
+    let all: BTreeSet<u32> = shells.iter().map(part_of).collect();
+    let is_silent = |part: &&u32| !has_results[**part as usize] && !formed.contains(part);
+    let silent = all.iter().filter(is_silent);
+    let ids: Vec<u64> = silent.map(|&part| model.parts[part as usize].id).collect();
+    let name = placed.part.file_name();
+    (!ids.is_empty()).then(|| {
+        format!(
+            "{name}: no forming results in {}; crash elements there get the thickness of its section and nothing else",
+            parts_by_id(&ids)
+        )
+    })
+}
+
+/// What is to be told of a mapping, each in a sentence.
+pub(super) fn warnings(
+    run: &MapRun,
+    crash: &LoadedPart,
+    stamped: &[PlacedPart<'_>],
+    files: Option<&MapFiles>,
+) -> Vec<String> {
+    let mut warnings = mapped_by_solver(crash);
+    warnings.extend(unread_line(crash));
+    for placed in stamped {
+        warnings.extend(file_lines(placed.part, &run.recipe.options));
+    }
+    warnings.extend(not_there(run));
+    warnings.extend(bare_elements(run));
+    let sources = stamped.iter().zip(&run.source_shells);
+    warnings.extend(sources.filter_map(|(placed, shells)| without_results(placed, shells)));
+    let mapped = &run.mapped;
+    let area = mapped.mapped_area(&run.target.mesh);
+    if area < run.recipe.wanted_area() {
+        warnings.push(format!(
+            "only {:.1} % of the crash part's area carries values; the status of the elements says why",
+            100.0 * area
+        ));
+    }
+    let count = |status: Status| mapped.counts()[status as usize];
+    for (status, what) in [
+        (
+            Status::TwoLayers,
+            "near two sheets that their normals do not tell apart",
+        ),
+        (Status::Conflict, "on two stamped parts"),
+    ] {
+        if count(status) > 0 {
+            warnings.push(format!("{} {what}", counted(count(status), "element")));
+        }
+    }
+    let wanted = run.recipe.options.quantities;
+    let n_filled = count(Status::Filled);
+    if n_filled > 0 && (wanted.stress || wanted.strain || wanted.history) {
+        warnings.push(format!(
+            "{} filled from neighbours: thickness and plastic strain alone, stresses there are 0",
+            counted(n_filled, "element")
+        ));
+    }
+    if area > 0.0 && mapped.senses.contains(&None) {
+        warnings.push(
+            "normals of the two parts agree on no side; sheets that lie close are told apart by \
+             distance alone"
+                .to_owned(),
+        );
+    }
+    if mapped.n_distant > 0 {
+        warnings.push(format!(
+            "{} farther from the stamped part than half the largest distance",
+            counted(mapped.n_distant, "element")
+        ));
+    }
+    if let Some(ratio) = run.unusual_thickness() {
+        warnings.push(format!(
+            "the mapped thickness is {} times that of the section; another gauge or another unit?",
+            length(ratio)
+        ));
+    }
+    for gap in run.mapped.history.iter().flat_map(|h| &h.left_out) {
+        let law = |law: &Option<String>| match law {
+            Some(law) => format!("material {law}"),
+            None => "an unknown material".to_owned(),
+        };
+        let hint = if gap.source.is_none() {
+            " (--stamped-material names it)"
+        } else {
+            ""
+        };
+        warnings.push(format!(
+            "history variables of {} are left out: they belong to {} in the stamped file{hint}, \
+             the crash part has {}",
+            counted(gap.n_elements, "element"),
+            law(&gap.source),
+            law(&gap.target)
+        ));
+    }
+    if let Some(files) = files.filter(|files| files.n_composite > 0) {
+        warnings.push(format!(
+            "nothing is written for {} with plies in the element's card (_COMPOSITE)",
+            counted(files.n_composite, "element")
+        ));
+    }
+    if let Some(files) = files {
+        warnings.extend(files.lost_includes.clone());
+        warnings.extend(old_states_warning(run, files));
+    }
+    warnings
+}
+
+/// What is to be told of the file of a stamped part: what could not be read, what is doubtful, and what is left
+/// out.
+pub(in crate::pipeline) fn file_lines(part: &LoadedPart, options: &MapOptions) -> Vec<String> {
+    let local = options.quantities.strain.then(|| local_strains(part));
+    let lines = [
+        unread_line(part),
+        doubtful_line(part),
+        repeated_elements(part),
+        local.flatten(),
+    ];
+    lines.into_iter().flatten().collect()
+}
+
+/// Says what of the file of a part could not be read; `None` if all could.
+pub fn unread_line(part: &LoadedPart) -> Option<String> {
+    let what = |n| {
+        format!(
+            "{} of what the file holds could not be read",
+            counted(n, "piece")
+        )
+    };
+    told_of(part, |kind| kind.severity() == Severity::Error, what)
+}
+
+/// Says which results are taken though they may not be meant so.
+fn doubtful_line(part: &LoadedPart) -> Option<String> {
+    let what = |n| counted(n, "doubtful result");
+    told_of(part, |kind| kind == DiagnosticKind::DoubtfulForming, what)
+}
+
+/// Says that results cannot be told apart.
+fn repeated_elements(part: &LoadedPart) -> Option<String> {
+    let what = |n| {
+        let n = counted(n, "element");
+        format!("{n} with an id that another one has, so that one of them alone gets the results")
+    };
+    told_of(part, |kind| kind == DiagnosticKind::DuplicateElement, what)
+}
+
+/// Says which strains are left out.
+fn local_strains(part: &LoadedPart) -> Option<String> {
+    let what = |n| {
+        let verb = if n == 1 { "is" } else { "are" };
+        format!(
+            "{} in axes of its element {verb} left out",
+            counted(n, "strain")
+        )
+    };
+    told_of(part, |kind| kind == DiagnosticKind::LocalStrains, what)
+}
+
+/// How many diagnostics of some kinds reading a part made, in words, with the first.
+fn told_of(
+    part: &LoadedPart,
+    is_one: impl Fn(DiagnosticKind) -> bool,
+    what: impl Fn(usize) -> String,
+) -> Option<String> {
+    let found = &part.model.diagnostics;
+    let n: u64 = found
+        .counts()
+        .filter(|(kind, _)| is_one(*kind))
+        .map(|(_, n)| n)
+        .sum();
+    let first = found.iter().find(|one| is_one(one.kind))?;
+    Some(format!(
+        "{}: {} ({first}); its diagnostics (tab Diagnostics, shapematch info) name each",
+        part.file_name(),
+        what(usize::try_from(n).unwrap_or(usize::MAX)),
+    ))
+}
+
+/// Names quantities that were asked for one by one and that no stamped file holds.
+fn not_there(run: &MapRun) -> Option<String> {
+    let wanted = run.recipe.options.quantities;
+    if wanted == Quantities::FULL {
+        return None;
+    }
+    let sources = &run.sources;
+    let absent = [
+        (
+            "strains",
+            wanted.strain && sources.iter().all(|part| part.strains.n_present() == 0),
+        ),
+        (
+            "history variables",
+            wanted.history && sources.iter().all(|part| part.history.is_empty()),
+        ),
+    ];
+    let names = absent.iter().filter(|(_, is_absent)| *is_absent);
+    let names: Vec<&str> = names.map(|(name, _)| *name).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{} were asked for, and no stamped file holds any",
+            names.join(" and ")
+        )
+    })
+}
+
+/// Says how many elements with other values have no thickness, and how many have no stress card.
+pub(in crate::pipeline) fn bare_elements(run: &MapRun) -> Vec<String> {
+    let mapped = &run.mapped;
+    // Rings that are filled have what their neighbours have.
+    let is_mapped = |status: Status| status.has_values() && status != Status::Filled;
+    let count = |is_bare: &dyn Fn(usize) -> bool| {
+        let elements = mapped.elements.iter().enumerate();
+        elements
+            .filter(|(element, report)| is_mapped(report.status) && is_bare(*element))
+            .count()
+    };
+    let told = |n: usize, what: &str, have_none: &str| {
+        let on = counted(n, "element");
+        format!("no {what} on {on} with other values: the stamped elements there have {have_none}")
+    };
+    let mut lines = Vec::new();
+    let thickness = &mapped.thickness;
+    let n = count(&|element| thickness.get(element).is_some_and(|t| t.is_nan()));
+    if n > 0 {
+        lines.push(told(n, "thickness", "none above 0"));
+    }
+    let n = count(&|element| {
+        let states = mapped.states.as_ref();
+        states.is_some_and(|states| states.of(element).is_empty())
+    });
+    if n > 0 {
+        lines.push(told(n, "stresses and plastic strains", "none"));
+    }
+    lines
+}
+
+/// What is to be told of states that the crash deck has already.
+fn old_states_warning(run: &MapRun, files: &MapFiles) -> Option<String> {
+    let (n_old, n_kept) = (files.n_old_states, files.n_kept_states);
+    let replaces = run.recipe.options.replace_states;
+    if replaces && n_kept > 0 {
+        let (verb, them) = if n_kept == 1 {
+            ("keeps", "it")
+        } else {
+            ("keep", "them")
+        };
+        return Some(format!(
+            "{} {verb} the initial stresses or strains that the crash deck has, because none are mapped onto {them}",
+            counted(n_kept, "element")
+        ));
+    }
+    (!replaces && n_old > 0).then(|| {
+        let verb = if n_old == 1 { "is" } else { "are" };
+        format!(
+            "{} of mapped elements {verb} in the crash deck already and would count beside the mapped ones; take \
+             them out of it, or let --replace-states yes write copies without them",
+            counted(n_old, "initial state")
+        )
+    })
+}
