@@ -516,7 +516,7 @@ fn is_primary(window: &Harness<'static, Shell>, button: &str) -> bool {
 fn mapping_is_the_next_thing_to_do_only_at_a_pose_of_a_match() {
     let mut window = matched();
     let says = |window: &Harness<'static, Shell>, what: &str| {
-        window.query_by_label_contains(what).is_some()
+        window.query_all_by_label_contains(what).next().is_some()
     };
     // Room for every section at once.
     window.set_size(egui::vec2(1400.0, 1800.0));

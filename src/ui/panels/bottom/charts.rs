@@ -115,31 +115,48 @@ pub fn with_inner_numbers(plot: Plot<'_>) -> Plot<'_> {
         .x_axis_formatter(|mark, range| inner_text(mark.value, (*range.start(), *range.end())))
 }
 
-/// Round numbers along a chart: five or some more, fewer where their names would meet.
-fn round_ticks((low, high): (f64, f64)) -> (Vec<f64>, f64) {
+/// Room for a number along a chart with the air beside it.
+const NUMBER: f32 = 54.0;
+
+/// At most `most` round numbers along a chart, at least four of them where so many have room; none so near an
+/// end that it reaches beyond the chart. With the step between them.
+fn round_ticks((low, high): (f64, f64), most: usize) -> (Vec<f64>, f64) {
     let width = high - low;
     if !(width > 0.0 && width.is_finite()) {
         return (Vec::new(), 1.0);
     }
-    let decade = 10_f64.powf(width.log10().floor());
-    let steps = [1.0, 0.5, 0.25, 0.2, 0.1].map(|factor| factor * decade);
-    // The coarsest step that gives four numbers.
-    let fits = |step: &f64| (high / step).floor() - (low / step).ceil() >= 3.0;
-    let step = steps.into_iter().find(fits).unwrap_or(0.1 * decade);
-    let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
-    ((first..=last).map(|n| n as f64 * step).collect(), step)
+    // Half a number reaches to either side of its place.
+    let margin = (0.5 / most.max(2) as f64).min(0.1) * width;
+    let (low, high) = (low + margin, high - margin);
+    let among = |step: f64| {
+        let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
+        (first..=last)
+            .map(|n| n as f64 * step)
+            .collect::<Vec<f64>>()
+    };
+    let decade = 10_f64.powf(width.log10().floor() - 1.0);
+    let steps = [1.0, 2.0, 2.5, 5.0, 10.0, 20.0, 50.0].map(|factor| factor * decade);
+    // The coarsest step that gives four, else the finest that has room.
+    let fitting = || steps.iter().map(|step| (among(*step), *step));
+    let mut fitting: Vec<_> = fitting().filter(|(ticks, _)| ticks.len() <= most).collect();
+    let enough = fitting.iter().rposition(|(ticks, _)| ticks.len() >= 4);
+    if fitting.is_empty() {
+        return (Vec::new(), 1.0);
+    }
+    fitting.swap_remove(enough.unwrap_or(0))
 }
 
-/// A chart with at least four numbers along its values.
-pub fn with_round_numbers(plot: Plot<'_>) -> Plot<'_> {
-    plot.x_grid_spacer(|input| {
-        let ticks = round_ticks(input.bounds).0.into_iter();
+/// A chart of this width with at least four numbers along its values, fewer where they have no room.
+pub fn with_round_numbers(plot: Plot<'_>, width: f32) -> Plot<'_> {
+    let most = ((width / NUMBER) as usize).clamp(2, 8);
+    plot.x_grid_spacer(move |input| {
+        let ticks = round_ticks(input.bounds, most).0.into_iter();
         // A mark is labelled when its step is wide on the screen.
         let step_size = input.bounds.1 - input.bounds.0;
         ticks.map(|value| GridMark { value, step_size }).collect()
     })
-    .x_axis_formatter(|mark, range| {
-        let (_, step) = round_ticks((*range.start(), *range.end()));
+    .x_axis_formatter(move |mark, range| {
+        let (_, step) = round_ticks((*range.start(), *range.end()), most);
         trimmed(
             mark.value,
             (2.0 - step.log10()).ceil().clamp(0.0, 9.0) as usize,
@@ -250,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chart_of_values_has_four_round_numbers() {
+    fn a_chart_of_values_has_four_round_numbers_where_they_have_room() {
         for bounds in [
             (0.0, 1.0),
             (0.7085, 0.7915),
@@ -258,16 +275,18 @@ mod tests {
             (3.0, 3.37),
             (129.0, 238.0),
         ] {
-            let (ticks, step) = round_ticks(bounds);
-            assert!((4..=9).contains(&ticks.len()), "{bounds:?}: {ticks:?}");
-            assert!(
-                ticks
-                    .iter()
-                    .all(|tick| bounds.0 <= *tick && *tick <= bounds.1)
-            );
-            assert!((ticks[1] - ticks[0] - step).abs() < 1e-9);
+            for most in 2..=8 {
+                let (ticks, step) = round_ticks(bounds, most);
+                let least = if most >= 6 { 4 } else { 1 };
+                let n = ticks.len();
+                assert!((least..=most).contains(&n), "{bounds:?}, {most}: {ticks:?}");
+                let is_inside = |tick: &f64| bounds.0 < *tick && *tick < bounds.1;
+                assert!(ticks.iter().all(is_inside));
+                let apart = ticks.windows(2).map(|pair| pair[1] - pair[0]);
+                assert!(apart.into_iter().all(|d| (d - step).abs() < 1e-9));
+            }
         }
-        assert!(round_ticks((1.0, 1.0)).0.is_empty());
+        assert!(round_ticks((1.0, 1.0), 5).0.is_empty());
     }
 
     #[test]

@@ -225,7 +225,7 @@ fn checks_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
 const SIGN: f32 = 14.0;
 
 /// Widths of the names and of what was found, by their longest texts. Where not all of a row has room, what
-/// was found is cut first, and then the names.
+/// was found is cut first, then what is asked for, and the names last.
 fn check_columns(ui: &Ui, checks: &[CheckRecord]) -> [f32; 2] {
     let widest = |style: TextStyle, text: fn(&CheckRecord) -> &str| {
         let font = style.resolve(ui.style());
@@ -243,15 +243,14 @@ fn check_columns(ui: &Ui, checks: &[CheckRecord]) -> [f32; 2] {
         widest(TextStyle::Body, |check| &check.found),
     ];
     let limit = widest(TextStyle::Small, |check| &check.limit);
-    let gaps = 3.0 * ui.spacing().item_spacing.x + ui.spacing().scroll.bar_width + 4.0;
+    let gaps = 3.0 * ui.spacing().item_spacing.x + ui.spacing().scroll.bar_width;
     column_widths(ui.available_width() - SIGN - gaps, [name, found, limit])
 }
 
 fn column_widths(room: f32, [name, found, limit]: [f32; 3]) -> [f32; 2] {
-    const LEAST_FOUND: f32 = 62.0;
-    const LEAST_NAME: f32 = 80.0;
-    let found = found.min((room - name - limit).max(LEAST_FOUND));
-    let name = name.min((room - found - limit).max(LEAST_NAME));
+    const LEAST: [f32; 3] = [80.0, 62.0, 60.0];
+    let name = name.min((room - LEAST[1] - LEAST[2]).max(LEAST[0]));
+    let found = found.min((room - name - limit).max(LEAST[1]));
     [name, found]
 }
 
@@ -525,7 +524,7 @@ fn histogram_ui(ui: &mut Ui, (pair, by): (&PairRecord, ColorBy), size: egui::Vec
     let plot = charts::still_chart(ui, "mapping histogram", size)
         .include_y(0.0)
         .y_axis_min_width(36.0);
-    let plot = charts::with_round_numbers(charts::with_two_shares(plot));
+    let plot = charts::with_round_numbers(charts::with_two_shares(plot), size.x);
     plot.show(ui, |plot| {
         let [stamped, crash] = &pair.histograms;
         let line = Line::new("▲ stamped", steps(stamped)).fill(0.0);
@@ -561,7 +560,7 @@ mod tests {
         assert_eq!(column_widths(500.0, [180.0, 100.0, 90.0]), [180.0, 100.0]);
         // A long finding gives way before the names do.
         assert_eq!(column_widths(400.0, [180.0, 300.0, 90.0]), [180.0, 130.0]);
-        assert_eq!(column_widths(300.0, [180.0, 300.0, 90.0]), [148.0, 62.0]);
+        assert_eq!(column_widths(300.0, [180.0, 300.0, 90.0]), [178.0, 62.0]);
     }
 
     #[test]

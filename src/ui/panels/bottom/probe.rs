@@ -177,7 +177,8 @@ fn values_ui(ui: &mut Ui, state: &AppState, probe: &ProbeReport, before: impl Fn
                     ui.label(RichText::new("■").small().color(palette.crash));
                     ui.end_row();
                     for (by, [stamped, crash]) in &probe.values {
-                        let name = with_unit(state, *by);
+                        // The unit says that it is a stress.
+                        let name = with_unit(state, *by).replace(" stress,", ",");
                         ui.label(RichText::new(name).small().color(palette.secondary));
                         ui.label(RichText::new(text(*by, *stamped)).small());
                         ui.label(RichText::new(text(*by, *crash)).small());
