@@ -640,7 +640,7 @@ $ between\n\
         assert_eq!(
             text(&exchange(&plain, &[2])),
             format!(
-                "*ELEMENT_SHELL_THICKNESS\n{}{CARD}\n{middles}\n{states}",
+                "*ELEMENT_SHELL\n*ELEMENT_SHELL_THICKNESS\n{}{CARD}\n{middles}\n{states}",
                 row(2)
             )
         );

@@ -47,6 +47,47 @@ pub(super) fn warnings(
     warnings.extend(bare_elements(run));
     let sources = stamped.iter().zip(&run.source_shells);
     warnings.extend(sources.filter_map(|(placed, shells)| without_results(placed, shells)));
+    warnings.extend(of_elements(run));
+    if let Some(ratio) = run.unusual_thickness() {
+        warnings.push(format!(
+            "the mapped thickness is {} times that of the section; another gauge or another unit?",
+            length(ratio)
+        ));
+    }
+    for gap in run.mapped.history.iter().flat_map(|h| &h.left_out) {
+        let law = |law: &Option<String>| match law {
+            Some(law) => format!("material {law}"),
+            None => "an unknown material".to_owned(),
+        };
+        let hint = if gap.source.is_none() {
+            " (--stamped-material names it)"
+        } else {
+            ""
+        };
+        warnings.push(format!(
+            "history variables of {} are left out: they belong to {} in the stamped file{hint}, \
+             the crash part has {}",
+            counted(gap.n_elements, "element"),
+            law(&gap.source),
+            law(&gap.target)
+        ));
+    }
+    if let Some(files) = files.filter(|files| files.n_composite > 0) {
+        warnings.push(format!(
+            "nothing is written for {} with plies in the element's card (_COMPOSITE)",
+            counted(files.n_composite, "element")
+        ));
+    }
+    if let Some(files) = files {
+        warnings.extend(files.lost_includes.clone());
+        warnings.extend(old_states_warning(run, files));
+    }
+    warnings
+}
+
+/// What is to be told of the status of the elements and of where they lie.
+fn of_elements(run: &MapRun) -> Vec<String> {
+    let mut warnings = Vec::new();
     let mapped = &run.mapped;
     let area = mapped.mapped_area(&run.target.mesh);
     if area < run.recipe.wanted_area() {
@@ -87,40 +128,6 @@ pub(super) fn warnings(
             "{} farther from the stamped part than half the largest distance",
             counted(mapped.n_distant, "element")
         ));
-    }
-    if let Some(ratio) = run.unusual_thickness() {
-        warnings.push(format!(
-            "the mapped thickness is {} times that of the section; another gauge or another unit?",
-            length(ratio)
-        ));
-    }
-    for gap in run.mapped.history.iter().flat_map(|h| &h.left_out) {
-        let law = |law: &Option<String>| match law {
-            Some(law) => format!("material {law}"),
-            None => "an unknown material".to_owned(),
-        };
-        let hint = if gap.source.is_none() {
-            " (--stamped-material names it)"
-        } else {
-            ""
-        };
-        warnings.push(format!(
-            "history variables of {} are left out: they belong to {} in the stamped file{hint}, \
-             the crash part has {}",
-            counted(gap.n_elements, "element"),
-            law(&gap.source),
-            law(&gap.target)
-        ));
-    }
-    if let Some(files) = files.filter(|files| files.n_composite > 0) {
-        warnings.push(format!(
-            "nothing is written for {} with plies in the element's card (_COMPOSITE)",
-            counted(files.n_composite, "element")
-        ));
-    }
-    if let Some(files) = files {
-        warnings.extend(files.lost_includes.clone());
-        warnings.extend(old_states_warning(run, files));
     }
     warnings
 }
@@ -167,11 +174,11 @@ fn repeated_elements(part: &LoadedPart) -> Option<String> {
 /// Says which strains are left out.
 fn local_strains(part: &LoadedPart) -> Option<String> {
     let what = |n| {
-        let verb = if n == 1 { "is" } else { "are" };
-        format!(
-            "{} in axes of its element {verb} left out",
-            counted(n, "strain")
-        )
+        let rest = match n {
+            1 => "of its element is",
+            _ => "of their elements are",
+        };
+        format!("{} in axes {rest} left out", counted(n, "strain"))
     };
     told_of(part, |kind| kind == DiagnosticKind::LocalStrains, what)
 }

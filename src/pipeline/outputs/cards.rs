@@ -85,7 +85,7 @@ fn name_from(folder: &Path, stamped: &LoadedPart) -> Option<String> {
     let there = whole(stamped.path.parent()?)?;
     let way = way_from(&whole(folder)?, &there)?;
     let mut name = String::new();
-    for folder in way.iter() {
+    for folder in &way {
         name.push_str(folder.to_str()?);
         // Solvers take it on every system.
         name.push('/');
@@ -99,7 +99,8 @@ fn way_from(here: &Path, there: &Path) -> Option<PathBuf> {
     let (mut here, mut there) = (here.components().peekable(), there.components().peekable());
     let mut has_common = false;
     while here.peek().is_some() && here.peek() == there.peek() {
-        (here.next(), there.next());
+        here.next();
+        there.next();
         has_common = true;
     }
     let up = here.map(|_| Component::ParentDir);
