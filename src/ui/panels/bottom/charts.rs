@@ -89,8 +89,15 @@ fn decades((low, high): (f64, f64)) -> Vec<GridMark> {
 const END: f64 = 0.2;
 const APART: f64 = 0.45;
 
-/// Two round numbers along a narrow chart, with the step that they are multiples of; none near its ends.
-fn inner_ticks((low, high): (f64, f64)) -> (Vec<f64>, f64) {
+/// The share of a chart of this width in pixels that two numbers need between them.
+fn apart(width: f32) -> f64 {
+    // Between the ends that stay free there is little more than a half.
+    f64::from(0.9 * NUMBER / width.max(1.0)).clamp(APART, 0.57)
+}
+
+/// Two round numbers along a narrow chart, this share of it apart, with the step that they are multiples of;
+/// none near its ends.
+fn inner_ticks((low, high): (f64, f64), apart: f64) -> (Vec<f64>, f64) {
     let width = high - low;
     if !(width > 0.0 && width.is_finite()) {
         return (Vec::new(), 1.0);
@@ -101,7 +108,7 @@ fn inner_ticks((low, high): (f64, f64)) -> (Vec<f64>, f64) {
         for factor in [1.0, 0.5, 0.2] {
             let step = factor * decade;
             let ends = [(first / step).ceil() * step, (last / step).floor() * step];
-            if ends[1] - ends[0] > APART * width {
+            if ends[1] - ends[0] > apart * width {
                 return (ends.to_vec(), step);
             }
         }
@@ -109,10 +116,14 @@ fn inner_ticks((low, high): (f64, f64)) -> (Vec<f64>, f64) {
     }
 }
 
-/// A narrow chart with two numbers along its values, none of which reaches beyond it.
-pub fn with_inner_numbers(plot: Plot<'_>) -> Plot<'_> {
-    plot.x_grid_spacer(|input| inner_marks(input.bounds))
-        .x_axis_formatter(|mark, range| inner_text(mark.value, (*range.start(), *range.end())))
+/// A narrow chart, of this width without its axis, with two numbers along its values, none of which reaches
+/// beyond it.
+pub fn with_inner_numbers(plot: Plot<'_>, width: f32) -> Plot<'_> {
+    let apart = apart(width);
+    plot.x_grid_spacer(move |input| inner_marks(input.bounds, apart))
+        .x_axis_formatter(move |mark, range| {
+            inner_text(mark.value, (*range.start(), *range.end()), apart)
+        })
 }
 
 /// Room for a number along a chart with the air beside it.
@@ -195,16 +206,16 @@ fn share_text(share: f64) -> String {
 }
 
 /// Grid of a narrow chart that has its numbers inside.
-fn inner_marks(bounds: (f64, f64)) -> Vec<GridMark> {
+fn inner_marks(bounds: (f64, f64), apart: f64) -> Vec<GridMark> {
     // A mark is labelled when its step is wide on the screen.
     let step_size = bounds.1 - bounds.0;
-    let marks = inner_ticks(bounds).0.into_iter();
+    let marks = inner_ticks(bounds, apart).0.into_iter();
     marks.map(|value| GridMark { value, step_size }).collect()
 }
 
 /// The number at a mark of [`inner_marks`], with the digits that its step needs.
-fn inner_text(value: f64, bounds: (f64, f64)) -> String {
-    let (_, step) = inner_ticks(bounds);
+fn inner_text(value: f64, bounds: (f64, f64), apart: f64) -> String {
+    let (_, step) = inner_ticks(bounds, apart);
     let n_decimals = (-step.log10() + 1e-9).ceil().clamp(0.0, 9.0) as usize;
     tick_number(value, n_decimals)
 }
@@ -252,18 +263,25 @@ mod tests {
             (-1e-7, 1e-7),
         ] {
             let bounds = (low, high);
-            let marks = inner_marks(bounds);
+            let apart = apart(87.0);
+            let marks = inner_marks(bounds, apart);
             assert_eq!(marks.len(), 2, "{bounds:?}");
             assert!(
                 marks
                     .iter()
                     .all(|mark| low < mark.value && mark.value < high)
             );
-            let mut texts: Vec<_> = marks.iter().map(|m| inner_text(m.value, bounds)).collect();
+            let mut texts: Vec<_> = marks
+                .iter()
+                .map(|m| inner_text(m.value, bounds, apart))
+                .collect();
             texts.dedup();
             assert_eq!(texts.len(), marks.len(), "{texts:?}");
+            // Numbers of six letters do not meet.
+            let between = (marks[1].value - marks[0].value) / (high - low);
+            assert!(87.0 * between > 44.0, "{bounds:?}");
         }
-        assert!(inner_marks((1.0, 1.0)).is_empty());
+        assert!(inner_marks((1.0, 1.0), APART).is_empty());
     }
 
     #[test]

@@ -228,7 +228,7 @@ fn profile_plot(
         .include_x(low)
         .include_x(high)
         .y_axis_min_width(26.0);
-    charts::with_inner_numbers(plot).show(ui, |plot| {
+    charts::with_inner_numbers(plot, size.x - 40.0).show(ui, |plot| {
         let line = Line::new("▲ stamped", stamped.clone());
         plot.line(line.color(palette.stamped).width(1.5));
         let points = Points::new("▲ stamped", stamped).shape(MarkerShape::Up);
