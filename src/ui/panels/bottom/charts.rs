@@ -300,8 +300,8 @@ mod tests {
                 assert!((least..=most).contains(&n), "{bounds:?}, {most}: {ticks:?}");
                 let is_inside = |tick: &f64| bounds.0 < *tick && *tick < bounds.1;
                 assert!(ticks.iter().all(is_inside));
-                let apart = ticks.windows(2).map(|pair| pair[1] - pair[0]);
-                assert!(apart.into_iter().all(|d| (d - step).abs() < 1e-9));
+                let mut apart = ticks.windows(2).map(|pair| pair[1] - pair[0]);
+                assert!(apart.all(|d| (d - step).abs() < 1e-9));
             }
         }
         assert!(round_ticks((1.0, 1.0), 5).0.is_empty());
