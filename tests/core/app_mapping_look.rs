@@ -192,7 +192,7 @@ fn the_message_after_writing_says_what_was_written_and_what_it_replaces() {
     for words in [
         format!("written: mapped.k; {n} thicknesses, "),
         "read back within".to_owned(),
-        "include it instead of crash.k".to_owned(),
+        "to be used instead of crash.k".to_owned(),
         // The folder is whole, and last, where a toast is cut.
         format!("; in {}", folder.path().display()),
     ] {

@@ -86,9 +86,10 @@ impl MapFile {
     /// Says whose place it takes, and what is left to do so that it does; `None` for a file that is none of
     /// the deck's.
     pub fn place_taken(&self) -> Option<String> {
-        let replaced = self.replaces.as_ref()?.display();
+        let name_of = |path: &Path| path.file_name().unwrap_or_default().display().to_string();
+        let replaced = name_of(self.replaces.as_ref()?);
         Some(match &self.included_by {
-            Some(by) => format!("{} includes it instead of {replaced}", by.display()),
+            Some(by) => format!("{} includes it instead of {replaced}", name_of(by)),
             None if self.is_left_out => format!("to be included instead of {replaced}"),
             None => format!("to be used instead of {replaced}"),
         })
