@@ -77,25 +77,26 @@ pub fn chosen_by_shape(
 }
 
 /// Whether a pose that borders and holes speak for is worse than the one that the surfaces found: that one has surely
-/// fewer differences, or what remains besides a bend has clearly grown. Springback keeps surfaces farther apart than
-/// either pose, so that their distance alone does not tell: an addendum all round that ends anywhere
-/// may pull a hood aside by 30 mm. Poses that lie within the tolerance of each other are as good.
-/// O(border edges + nodes · log triangles).
+/// fewer differences, or, where `is_firm` says that the surfaces leave nothing free, what remains besides a bend has
+/// clearly grown. Springback keeps surfaces farther apart than either pose, so that their distance alone does not tell:
+/// an addendum all round that ends anywhere may pull a hood aside by 30 mm. Poses that lie within the
+/// tolerance of each other are as good. O(border edges + nodes · log triangles).
 pub fn is_pulled_aside(
     source: &Surface,
     target: &Surface,
     [by_surfaces, by_borders]: [&Similarity; 2],
+    is_firm: bool,
     settings: &AssessSettings,
 ) -> bool {
-    let distances = Distances::of(source, target, by_surfaces.scale, settings);
+    let tolerance = Distances::of(source, target, by_surfaces.scale, settings).tolerance;
     let corners = source.mesh().aabb().corners();
-    if by_surfaces.max_displacement(by_borders, &corners) <= distances.tolerance.remainder {
+    if by_surfaces.max_displacement(by_borders, &corners) <= tolerance.remainder {
         return false;
     }
     let shape = |pose: &Similarity| statements(source, target, pose, settings).shape;
     let (before, after) = rayon::join(|| shape(by_surfaces), || shape(by_borders));
-    let little = distances.little_more(LITTLE_REMAINDER, before.remainder);
-    let has_grown = after.remainder > AS_CLOSE * before.remainder + little;
+    let little = LITTLE_REMAINDER * tolerance.remainder;
+    let has_grown = is_firm && after.remainder > AS_CLOSE * before.remainder + little;
     let before = Candidate::at(*by_surfaces, &before);
     let after = Candidate::at(*by_borders, &after);
     before.beats(&after) || has_grown && before.n_differences <= after.n_differences
@@ -197,7 +198,7 @@ mod tests {
             [(0.0, 30.0, true), (30.0, 0.0, false), (0.0, 0.5, false)]
         {
             let poses = [&shifted(by_surfaces), &shifted(by_borders)];
-            let found = is_pulled_aside(&bowl, &bowl, poses, &settings);
+            let found = is_pulled_aside(&bowl, &bowl, poses, true, &settings);
             assert_eq!(found, is_worse, "{by_surfaces} {by_borders}");
         }
     }

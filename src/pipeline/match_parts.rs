@@ -258,15 +258,16 @@ pub(super) fn settle(
         return Ok(());
     }
     let found = outcome.target_from_source;
-    let is_kept =
-        |pose: &Similarity| !assess::is_pulled_aside(source, target, [&found, pose], check);
+    let is_kept = |pose: &Similarity, is_firm| {
+        !assess::is_pulled_aside(source, target, [&found, pose], is_firm, check)
+    };
     if let Some(held) = assess::held_by_rims(source, target, outcome, check, monitor)? {
-        if is_kept(&held.target_from_source) {
+        if is_kept(&held.target_from_source, false) {
             outcome.target_from_source = held.target_from_source;
             outcome.alternatives = held.alternatives;
         }
     } else if let Some(pose) = assess::settled(source, target, &found, check)
-        && is_kept(&pose)
+        && is_kept(&pose, true)
     {
         outcome.target_from_source = pose;
     }
