@@ -369,23 +369,24 @@ impl Rims {
                 None => alone.push(hole),
             }
         }
-        alone.retain(|hole| {
-            let mut left = of_target.iter().zip(&mut is_used);
-            let other = left.find(|(other, used)| !**used && overlaps(hole, other));
-            let Some((other, used)) = other else {
-                return true;
-            };
-            *used = true;
-            self.overlapping.push(HolePair::of(hole, other));
-            false
-        });
         let back = pose.inverse();
         let left = of_target.iter().zip(&is_used).filter(|(_, used)| !**used);
         let left: Vec<RimHole> = left.map(|(hole, _)| *hole).collect();
-        self.missing = [
+        let [(of_source, mut open_in_target), (of_target, open_in_source)] = [
             solid_at(alone, surfaces[1], &still, 1.0, near),
             solid_at(left, surfaces[0], &back, pose.scale, near),
         ];
+        self.missing = [of_source, of_target];
+        // Where neither part is solid at the middle of the other's hole, the holes lie in each other.
+        for other in open_in_source {
+            if let Some(i) = open_in_target
+                .iter()
+                .position(|hole| overlaps(hole, &other))
+            {
+                let hole = open_in_target.swap_remove(i);
+                self.overlapping.push(HolePair::of(&hole, &other));
+            }
+        }
     }
 }
 
@@ -402,14 +403,14 @@ fn overlaps(hole: &RimHole, other: &RimHole) -> bool {
     is_in_one_sheet && (crosses || off < 0.5 * small) && large < ANOTHER_KIND * small
 }
 
-/// Those of the holes at whose middle the other part has no hole.
+/// The holes at whose middle the other part is solid, and the rest.
 fn solid_at(
     holes: Vec<RimHole>,
     other: &Surface,
     other_from_target: &Similarity,
     unit: f64,
     near: f64,
-) -> Vec<RimHole> {
+) -> (Vec<RimHole>, Vec<RimHole>) {
     let is_solid = |hole: &RimHole| {
         let at = other_from_target.apply(&hole.center);
         // Over a curved sheet the middle of a hole floats a little.
@@ -423,7 +424,7 @@ fn solid_at(
             !other.is_on_border(&hit) && facing.abs() > PARALLEL && away < reach
         })
     };
-    holes.into_iter().filter(is_solid).collect()
+    holes.into_iter().partition(is_solid)
 }
 
 fn hole(rim: &Rim, target_from_rim: &Similarity) -> RimHole {
