@@ -1,6 +1,6 @@
-//! The choice between poses that score alike: what the shapes say under each of them. Facets and springback raise
-//! all scores, so that half a turn of a part with waves costs a few percent; the hole, the bead or the border that
-//! lies elsewhere then does not care about either.
+//! The choice between poses by what the shapes say under each of them. Facets and springback raise all scores, so
+//! that half a turn of a part with waves costs a few percent of the score; that a hole, a bead or a border lies
+//! elsewhere then is seen all the same.
 
 use rayon::prelude::*;
 
@@ -77,7 +77,7 @@ pub fn chosen_by_shape(
 }
 
 /// Whether a pose that borders and holes speak for is worse than the one that the surfaces found: that one has surely
-/// fewer differences, or, where `is_firm` says that the surfaces leave nothing free, what remains besides a bend has
+/// fewer differences, or, where `surfaces_hold` says that they leave nothing free, what remains besides a bend has
 /// clearly grown. Springback keeps surfaces farther apart than either pose, so that their distance alone does not tell:
 /// an addendum all round that ends anywhere may pull a hood aside by 30 mm. Poses that lie within the
 /// tolerance of each other are as good. O(border edges + nodes · log triangles).
@@ -85,7 +85,7 @@ pub fn is_pulled_aside(
     source: &Surface,
     target: &Surface,
     [by_surfaces, by_borders]: [&Similarity; 2],
-    is_firm: bool,
+    surfaces_hold: bool,
     settings: &AssessSettings,
 ) -> bool {
     let tolerance = Distances::of(source, target, by_surfaces.scale, settings).tolerance;
@@ -96,7 +96,7 @@ pub fn is_pulled_aside(
     let shape = |pose: &Similarity| statements(source, target, pose, settings).shape;
     let (before, after) = rayon::join(|| shape(by_surfaces), || shape(by_borders));
     let little = LITTLE_REMAINDER * tolerance.remainder;
-    let has_grown = is_firm && after.remainder > AS_CLOSE * before.remainder + little;
+    let has_grown = surfaces_hold && after.remainder > AS_CLOSE * before.remainder + little;
     let before = Candidate::at(*by_surfaces, &before);
     let after = Candidate::at(*by_borders, &after);
     before.beats(&after) || has_grown && before.n_differences <= after.n_differences

@@ -18,6 +18,37 @@ pub struct Layered<const N: usize> {
 
 const NO_RULE: u16 = u16::MAX;
 
+/// Integration points (T, values) of an element in any order as layers that rise in T: points of one layer are
+/// averaged.
+pub fn into_layers<const N: usize>(mut points: Vec<(f64, [f64; N])>) -> Vec<(f64, [f64; N])> {
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut n_layers, mut start) = (0, 0);
+    while start < points.len() {
+        let t = points[start].0;
+        let of_layer = points[start..].iter();
+        let n = of_layer
+            .take_while(|(other, _)| other - t < SAME_PLACE)
+            .count();
+        // One point is its own layer, a T that is no number included.
+        let n = n.max(1);
+        if n > 1 {
+            let mut mean = [0.0; N];
+            for (_, values) in &points[start..start + n] {
+                for (sum, value) in mean.iter_mut().zip(values) {
+                    *sum += value;
+                }
+            }
+            points[n_layers] = (t, mean.map(|sum| sum / n as f64));
+        } else {
+            points[n_layers] = points[start];
+        }
+        n_layers += 1;
+        start += n;
+    }
+    points.truncate(n_layers);
+    points
+}
+
 impl<const N: usize> Layered<N> {
     /// No values for `n_elements` elements.
     pub fn new(n_elements: usize) -> Self {
@@ -32,36 +63,18 @@ impl<const N: usize> Layered<N> {
     /// one layer are averaged, layers sorted by T. Nothing is set without points, with a value that is
     /// not finite, or beyond 65,534 different rules.
     pub fn set(&mut self, element: usize, points: impl Iterator<Item = (f64, [f64; N])>) {
-        let mut points: Vec<(f64, [f64; N])> = points.collect();
+        let points: Vec<(f64, [f64; N])> = points.collect();
         let finite = |(t, values): &(f64, [f64; N])| {
             t.is_finite() && values.iter().all(|value| value.is_finite())
         };
         if points.is_empty() || !points.iter().all(finite) {
             return;
         }
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut places = Vec::new();
+        let layers = into_layers(points);
+        let places: Vec<f64> = layers.iter().map(|(t, _)| *t).collect();
         let first = self.values.len();
-        let mut rest = &points[..];
-        while let Some(&(t, _)) = rest.first() {
-            let n = rest
-                .iter()
-                .take_while(|(other, _)| other - t < SAME_PLACE)
-                .count();
-            let mut mean = [0.0; N];
-            for (_, values) in &rest[..n] {
-                for (sum, value) in mean.iter_mut().zip(values) {
-                    *sum += value;
-                }
-            }
-            places.push(t);
-            self.values.push(if n == 1 {
-                rest[0].1
-            } else {
-                mean.map(|sum| sum / n as f64)
-            });
-            rest = &rest[n..];
-        }
+        self.values
+            .extend(layers.into_iter().map(|(_, values)| values));
         let known = self.rules.iter().position(|rule| rule.has_places(&places));
         let rule = known.unwrap_or_else(|| {
             self.rules.push(LayerRule::from_places(places));

@@ -34,7 +34,7 @@ mod uniqueness;
 pub use checks::{Distribution, Histogram, MapBack, distribution, histogram_distance, map_back};
 pub use error::MappingError;
 pub use history::{LawGap, LayerHistory, MappedHistory, SourceHistory};
-pub use layered::{Layered, PLASTIC_STRAIN};
+pub use layered::{Layered, PLASTIC_STRAIN, into_layers};
 pub use layers::{LayerBalance, LayerMatrix};
 pub use links::{Links, Neighbours};
 pub use options::{MapMethod, MapOptions, NormalSense, Overlap, Quantities, Status, limits};

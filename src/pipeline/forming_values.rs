@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::load::LoadedPart;
 use crate::geometry::tensor::{Tensor, principal, von_mises};
-use crate::mapping::{LayerRule, PLASTIC_STRAIN, SAME_PLACE};
+use crate::mapping::{LayerRule, PLASTIC_STRAIN, into_layers};
 
 /// What can be shown of forming results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -167,14 +167,10 @@ impl LayerChoice {
             Self::Extreme => numbers.fold(f64::NAN, f64::max),
             Self::Bottom => end(layers.first()),
             Self::Top => end(layers.last()),
-            Self::Middle => match layers.iter().position(|layer| layer[0] >= 0.0) {
-                None => end(layers.last()),
-                Some(0) => end(layers.first()),
-                Some(above) => {
-                    let [[below, _, from], [t, _, to]] = [layers[above - 1], layers[above]];
-                    from + (to - from) * -below / (t - below)
-                }
-            },
+            Self::Middle => {
+                let numbers = layers.iter().map(|&[t, _, number]| (t, [number]));
+                at_middle(numbers).map_or(f64::NAN, |[number]| number)
+            }
         }
     }
 }
@@ -204,56 +200,45 @@ pub(super) fn at_middle<const N: usize>(
     }
 }
 
-/// Points of an element as layers rising in T, points of one layer averaged.
-fn as_layers<const N: usize>(
-    points: impl Iterator<Item = (f64, [f64; N])>,
-) -> Vec<(f64, [f64; N])> {
-    let mut points: Vec<_> = points.collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let layers = points.chunk_by(|a, b| b.0 - a.0 < SAME_PLACE);
-    let mean = |layer: &[(f64, [f64; N])]| {
-        let sum = |i: usize| layer.iter().map(|point| point.1[i]).sum::<f64>();
-        (
-            layer[0].0,
-            std::array::from_fn(|i| sum(i) / layer.len() as f64),
-        )
-    };
-    layers.map(mean).collect()
-}
-
-/// Puts the points of an element together to layers with their weights.
+/// Weighs the layers of elements.
 #[derive(Default)]
-struct LayerSorter {
+struct LayerWeights {
     rules: Vec<LayerRule>,
-    points: Vec<(f64, f64)>,
-    layers: Vec<[f64; 3]>,
 }
 
-impl LayerSorter {
-    /// Layers of points given by T and number, rising in T.
-    fn layers(&mut self, points: impl Iterator<Item = (f64, f64)>) -> &[[f64; 3]] {
-        self.points.clear();
-        self.points.extend(points);
-        self.points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        self.layers.clear();
-        for layer in self.points.chunk_by(|a, b| b.0 - a.0 < SAME_PLACE) {
-            let sum: f64 = layer.iter().map(|point| point.1).sum();
-            self.layers
-                .push([layer[0].0, 1.0, sum / layer.len() as f64]);
-        }
-        let places: Vec<f64> = self.layers.iter().map(|layer| layer[0]).collect();
+impl LayerWeights {
+    /// T, weight and number of each layer.
+    fn of(&mut self, layers: &[(f64, [f64; 1])]) -> Vec<[f64; 3]> {
+        let places: Vec<f64> = layers.iter().map(|(t, _)| *t).collect();
         if places.is_empty() {
-            return &self.layers;
+            return Vec::new();
         }
         let known = self.rules.iter().position(|rule| rule.has_places(&places));
         let known = known.unwrap_or_else(|| {
             self.rules.push(LayerRule::from_places(places));
             self.rules.len() - 1
         });
-        for (layer, weight) in self.layers.iter_mut().zip(self.rules[known].weights()) {
-            layer[1] = *weight;
+        let weights = self.rules[known].weights().iter();
+        let weighted = layers.iter().zip(weights);
+        weighted
+            .map(|((t, [number]), w)| [*t, *w, *number])
+            .collect()
+    }
+
+    /// What is shown of an element, of whose points `number_of` makes numbers.
+    fn shown<const N: usize>(
+        &mut self,
+        points: Vec<(f64, [f64; N])>,
+        (layer, value): (LayerChoice, FormingValue),
+        number_of: impl Fn(&[f64; N]) -> f64,
+    ) -> f64 {
+        if layer == LayerChoice::Middle {
+            let middle = at_middle(into_layers(points).into_iter());
+            return middle.map_or(f64::NAN, |values| number_of(&values));
         }
-        &self.layers
+        let numbers = points.iter().map(|(t, values)| (*t, [number_of(values)]));
+        let layers = into_layers(numbers.collect());
+        layer.pick(&self.of(&layers), value)
     }
 }
 
@@ -294,18 +279,13 @@ pub fn forming_values(
         }
     };
     let layer = layer.unwrap_or(LayerChoice::usual(value));
-    let mut sorter = LayerSorter::default();
+    let mut weights = LayerWeights::default();
     if value.is_strain() {
         for strain in model.forming.strains() {
             let points = strain.points.iter().map(|point| (point.t, point.strain));
-            let number = if layer == LayerChoice::Middle {
-                let middle = at_middle(as_layers(points).into_iter());
-                middle.map_or(f64::NAN, |strain| value.of_strain(&strain))
-            } else {
-                let numbers = points.map(|(t, strain)| (t, value.of_strain(&strain)));
-                layer.pick(sorter.layers(numbers), value)
-            };
-            put(strain.element_id, number);
+            let number = |strain: &_| value.of_strain(strain);
+            let shown = weights.shown(points.collect(), (layer, value), number);
+            put(strain.element_id, shown);
         }
     } else {
         for stress in model.forming.stresses() {
@@ -313,14 +293,9 @@ pub fn forming_values(
                 let [xx, yy, zz, xy, yz, zx] = point.stress;
                 (point.t, [xx, yy, zz, xy, yz, zx, point.plastic_strain])
             });
-            let number = if layer == LayerChoice::Middle {
-                let middle = at_middle(as_layers(points).into_iter());
-                middle.map_or(f64::NAN, |state| value.of_state(&state))
-            } else {
-                let numbers = points.map(|(t, state)| (t, value.of_state(&state)));
-                layer.pick(sorter.layers(numbers), value)
-            };
-            put(stress.element_id, number);
+            let number = |state: &_| value.of_state(state);
+            let shown = weights.shown(points.collect(), (layer, value), number);
+            put(stress.element_id, shown);
         }
     }
     match n_found {

@@ -258,8 +258,8 @@ pub(super) fn settle(
         return Ok(());
     }
     let found = outcome.target_from_source;
-    let is_kept = |pose: &Similarity, is_firm| {
-        !assess::is_pulled_aside(source, target, [&found, pose], is_firm, check)
+    let is_kept = |pose: &Similarity, surfaces_hold| {
+        !assess::is_pulled_aside(source, target, [&found, pose], surfaces_hold, check)
     };
     if let Some(held) = assess::held_by_rims(source, target, outcome, check, monitor)? {
         if is_kept(&held.target_from_source, false) {
