@@ -4,10 +4,12 @@
 
 use rayon::prelude::*;
 
+use super::contact::MAX_NODES;
 use super::held::HeldPose;
 use super::settle::{Least, Settling};
 use super::shape::{ShapeReason, ShapeStatement};
-use super::{AssessSettings, Distances, contact, statements};
+use super::statements::statements;
+use super::tolerance::{AssessSettings, Distances};
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
@@ -38,7 +40,7 @@ pub fn chosen_by_shape(
         return Ok(None);
     }
     let found = &outcome.target_from_source;
-    let settling = Settling::new([source, target], found.scale, settings, contact::MAX_NODES);
+    let settling = Settling::new([source, target], found.scale, settings, MAX_NODES);
     let result = Candidate::at(*found, &statements(source, target, found, settings).shape);
     let candidate = |other: &&Alternative| {
         monitor.check()?;
@@ -130,8 +132,8 @@ impl Candidate {
             pose,
             n_differences,
             n_clear,
-            n_holes: shape.rims.n_holes,
-            n_alone: shape.rims.only_source + shape.rims.only_target,
+            n_holes: shape.borders.n_holes,
+            n_alone: shape.borders.only_source + shape.borders.only_target,
         }
     }
 
@@ -150,7 +152,7 @@ fn is_clear(reason: &ShapeReason) -> Option<bool> {
         ShapeReason::Bent { .. } => None,
         ShapeReason::Surface { by, limit, .. }
         | ShapeReason::Local { by, limit, .. }
-        | ShapeReason::Rims { by, limit, .. }
+        | ShapeReason::Borders { by, limit, .. }
         | ShapeReason::Hole { by, limit, .. } => Some(*by > CLEARLY * limit),
         ShapeReason::Holes { .. } => Some(true),
         ShapeReason::HardlyMet { .. } | ShapeReason::Stretched { .. } => Some(false),

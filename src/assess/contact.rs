@@ -4,8 +4,8 @@
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 use rayon::prelude::*;
 
-use super::is_source_smaller;
-use super::stretch::Scaled;
+use super::scaled::Scaled;
+use super::tolerance::is_source_smaller;
 use crate::geometry::{Point3, Rotation, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::ClosestPoint;
@@ -128,9 +128,9 @@ impl<'a> ContactSearch<'a> {
             let other = model.normal_at(&hit);
             let facing = own.dot(&other);
             let beside = (moved - hit.point) - other * (moved - hit.point).dot(&other);
-            let is_off_the_rim =
+            let is_off_the_border =
                 model.is_on_border(&hit) && beside.norm() > 0.5 * (moved - hit.point).norm();
-            if facing.abs() < MIN_FACING || is_off_the_rim {
+            if facing.abs() < MIN_FACING || is_off_the_border {
                 return None;
             }
             let height = (moved - model.curved_point(&hit)).dot(&other);
@@ -214,9 +214,9 @@ impl Contacts {
         let rotation = *Rotation::new(turn).to_rotation_matrix().matrix();
         Similarity {
             rotation,
-            translation: self.center.coords - shift - rotation * self.center.coords,
-            scale: 1.0,
+            ..Similarity::identity()
         }
+        .taking(&self.center, &(self.center - shift))
     }
 
     /// The places cut by repeated halving at the median into `1 << levels` patches; for each place

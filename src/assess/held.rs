@@ -3,28 +3,29 @@
 
 use rayon::prelude::*;
 
+use super::borders::{BorderComparison, Borders, PairKind};
 use super::contact::{ContactSearch, MAX_NODES};
-use super::rims::{RimComparison, RimKind, Rims};
+use super::coverage::overlap_limit;
 use super::settle::{Least, Settling};
 use super::slide::slid;
 use super::sliding::{FreeMotion, FreeMotionKind, weak_motion};
-use super::{AssessSettings, Distances, overlap_limit};
+use super::tolerance::{AssessSettings, Distances};
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
 
-/// Rims are looked for within this share of the diagonal: first poses are that good.
+/// Borders are looked for within this share of the diagonal: first poses are that good.
 const NEAR_SHARE: f64 = 0.03;
-/// Poses whose rims are compared at most.
+/// Poses whose borders are compared at most.
 const MOST_POSES: usize = 64;
 /// Poses that the search along the free motion adds.
 const MOST_SLID: usize = 8;
 /// Nodes of the smaller part that poses are compared on; the winner is moved on all that are looked at.
 const N_NODES: usize = 2000;
-/// Of all these so many, with the best rims, are moved until they fit.
+/// Of all these so many, with the best borders, are moved until they fit.
 const MOST_SETTLED: usize = 8;
-/// Where the rims of one pose lie together, those of others that lie apart by more than so many times as much,
-/// and by more than this share of the distance within which rims are looked for, belong elsewhere: no step
+/// Where the borders of one pose lie together, those of others that lie apart by more than so many times as much,
+/// and by more than this share of the distance within which borders are looked for, belong elsewhere: no step
 /// brings them together.
 const FAR_BEHIND: f64 = 10.0;
 const NOT_BESIDE: f64 = 0.3;
@@ -36,20 +37,20 @@ const MOST_ROOTS_TRIED: usize = 8;
 const MOST_ALTERNATIVES: usize = 5;
 /// Turns between poses of one family: cosine of 10°.
 const SAME_WAY: f64 = 0.985;
-/// Another pose takes the place of the result if so much more of the rims lies where it belongs, as a
+/// Another pose takes the place of the result if so much more of the borders lies where it belongs, as a
 /// share of them.
 const MORE_HELD: f64 = 0.005;
-/// So much less of the rims where they belong makes a pose count as twice as bad.
+/// So much less of the borders where they belong makes a pose count as twice as bad.
 const TWICE_AS_BAD: f64 = 0.05;
 /// Distances of surfaces up to this share of the tolerance mean nothing.
 const NO_GAP: f64 = 0.1;
-/// Shares of the rims that differ by less than this do not tell hands apart.
+/// Shares of the borders that differ by less than this do not tell hands apart.
 const SAME_SHARE: f64 = 0.02;
-/// The opposite hand is told by its rims if so much of them lies where it belongs; with less its score counts
+/// The opposite hand is told by its borders if so much of them lies where it belongs; with less its score counts
 /// as at least this many times the result's.
 const SURELY_HELD: f64 = 0.9;
 const HINT: f64 = 0.9;
-/// With less than this the rims speak against a pose.
+/// With less than this the borders speak against a pose.
 const HARDLY_HELD: f64 = 0.5;
 /// Poses that are not refined yet may lie so many times as far apart as springback explains.
 const ROUGHLY: f64 = 2.0;
@@ -73,16 +74,16 @@ const FEWER_HOLES: f64 = 1.5;
 pub struct HeldPose {
     /// The pose.
     pub target_from_source: Similarity,
-    /// The other poses of the match. Where their rims fit worse than their surfaces, that is how much
+    /// The other poses of the match. Where their borders fit worse than their surfaces, that is how much
     /// worse they are.
     pub alternatives: Vec<Alternative>,
 }
 
 /// The pose of `outcome` or another one that the match tried, whichever has its borders and holes where
 /// they belong, if the surfaces leave the pose free to slide. `None` where they do not, or where the parts have no
-/// rims beside each other.
+/// borders beside each other.
 /// O(poses · border edges + nodes · log triangles).
-pub fn held_by_rims(
+pub fn held_by_borders(
     source: &Surface,
     target: &Surface,
     outcome: &MatchOutcome,
@@ -118,13 +119,14 @@ pub fn held_by_rims(
         poses.extend(slid(source, target, root, free, MOST_SLID));
     }
     poses.extend(&others);
-    let by_rims = pair.by_rims(&poses, monitor)?;
+    let by_borders = pair.by_borders(&poses, monitor)?;
     let settle = |pose: &Similarity| {
         monitor.check()?;
         let is_likely = pair.lies_on(pose, &result);
         Ok(is_likely.then(|| pair.settle(pose, Least::Any)).flatten())
     };
-    let settled: Result<Vec<Option<Settled>>, Cancelled> = by_rims.par_iter().map(settle).collect();
+    let settled: Result<Vec<Option<Settled>>, Cancelled> =
+        by_borders.par_iter().map(settle).collect();
     let settled: Vec<Settled> = settled?.into_iter().flatten().collect();
     // A bent part may have been laid where it hardly fits: what fits best says how close is close.
     let closest = settled
@@ -159,7 +161,7 @@ pub fn held_by_rims(
 /// Score of the opposite hand over that of the result, where the surfaces fit both: a hole on one side
 /// tells the left part from the right one. `None` where the surfaces decide, or the opposite hand found
 /// no pose.
-pub fn hand_by_rims(
+pub fn hand_by_borders(
     source: &Surface,
     target: &Surface,
     outcome: &MatchOutcome,
@@ -184,12 +186,13 @@ pub fn hand_by_rims(
         slid(source, target, mirrored, &free, MOST_SLID)
     });
     let poses: Vec<Similarity> = slid.into_iter().chain([*mirrored]).collect();
-    let by_rims = pair.by_rims(&poses, monitor)?;
+    let by_borders = pair.by_borders(&poses, monitor)?;
     let settle = |pose: &Similarity| {
         monitor.check()?;
         Ok(pair.settle(pose, Least::Any))
     };
-    let settled: Result<Vec<Option<Settled>>, Cancelled> = by_rims.par_iter().map(settle).collect();
+    let settled: Result<Vec<Option<Settled>>, Cancelled> =
+        by_borders.par_iter().map(settle).collect();
     let close = settled?
         .into_iter()
         .flatten()
@@ -199,8 +202,8 @@ pub fn hand_by_rims(
     };
     let fits_as_well = result.gap <= AS_CLOSE * opposite.gap;
     let behind = result.held - opposite.held;
-    let ratio = ratio_by_rims(apart(behind, SAME_SHARE));
-    // Rims that fit neither hand are a hint and no more.
+    let ratio = ratio_by_borders(apart(behind, SAME_SHARE));
+    // Borders that fit neither hand are a hint and no more.
     let least = if opposite.held < SURELY_HELD {
         HINT
     } else {
@@ -217,14 +220,14 @@ fn free_limit(source: &Surface, target: &Surface, scale: f64, settings: &AssessS
     overlap_limit(source, target, scale, settings.allowance).max(springback)
 }
 
-/// A difference of shares without what says nothing: places along the rims differ, so that two poses of one
+/// A difference of shares without what says nothing: places along the borders differ, so that two poses of one
 /// quality never hold quite the same share.
 fn apart(difference: f64, nothing: f64) -> f64 {
     difference.signum() * (difference.abs() - nothing).max(0.0)
 }
 
-/// How much worse a pose is of whose rims so much less lies where it belongs.
-fn ratio_by_rims(behind: f64) -> f64 {
+/// How much worse a pose is of whose borders so much less lies where it belongs.
+fn ratio_by_borders(behind: f64) -> f64 {
     let behind = behind / TWICE_AS_BAD;
     if behind >= 0.0 {
         1.0 + behind
@@ -237,15 +240,15 @@ fn ratio_by_rims(behind: f64) -> f64 {
 struct Pair<'a> {
     source: &'a Surface,
     target: &'a Surface,
-    /// Rims of both, looked for within `near`.
-    rims: RimComparison<'a>,
+    /// Borders of both, looked for within `near`.
+    borders: BorderComparison<'a>,
     /// The last step of first poses, and of those that are nearly there.
     roughly: Settling<'a>,
     finely: Settling<'a>,
     near: f64,
     /// Distance of surfaces that springback explains.
     springback: f64,
-    /// What may remain of the distance of rims.
+    /// What may remain of the distance of borders.
     remainder: f64,
     distances: Distances,
 }
@@ -254,15 +257,15 @@ struct Pair<'a> {
 #[derive(Clone, Copy)]
 struct Settled {
     pose: Similarity,
-    /// Share of the smaller part's rims that lies where it belongs, less that of holes where the other
+    /// Share of the smaller part's borders that lies where it belongs, less that of holes where the other
     /// part is solid.
     held: f64,
-    /// Share of the rims that one place of them stands for: `held` is no finer.
+    /// Share of the borders that one place of them stands for: `held` is no finer.
     grain: f64,
     /// Holes with a counterpart, and how far the one that lies farthest from it is off.
     n_holes: usize,
     worst_hole: f64,
-    /// Holes where the other part is solid, as a share of the smaller part's rims.
+    /// Holes where the other part is solid, as a share of the smaller part's borders.
     missing: f64,
     /// Share of the smaller part that meets the other.
     met: f64,
@@ -310,7 +313,7 @@ impl<'a> Pair<'a> {
         Self {
             source,
             target,
-            rims: RimComparison::new(pair, scale, near),
+            borders: BorderComparison::new(pair, scale, near),
             roughly: Settling::within(pair, scale, settings, N_NODES, near),
             finely: Settling::new(pair, scale, settings, N_NODES),
             near,
@@ -326,13 +329,13 @@ impl<'a> Pair<'a> {
         self.measured(self.finely.settled(&pose, least).unwrap_or(pose))
     }
 
-    /// A pose whose surfaces lie apart, moved however little: ragged rims step aside by more than surfaces may
+    /// A pose whose surfaces lie apart, moved however little: ragged borders step aside by more than surfaces may
     /// lie apart.
     fn closer(&self, pose: &Settled) -> Option<Settled> {
         self.measured(self.finely.settled(&pose.pose, Least::Any)?)
     }
 
-    /// The rival that the rims speak for; `None` where they speak for the result, which may win only if it
+    /// The rival that the borders speak for; `None` where they speak for the result, which may win only if it
     /// lies close.
     fn choice(&self, result: &Settled, is_close: bool, rivals: &[Settled]) -> Option<Settled> {
         let beats = |a: &Settled, b: &Settled| a.has_more_holes_than(b, self.remainder);
@@ -353,15 +356,15 @@ impl<'a> Pair<'a> {
         best.map(|best| **best)
     }
 
-    /// The poses whose rims lie beside each other, best first: of those that would settle as one the first.
-    fn by_rims(
+    /// The poses whose borders lie beside each other, best first: of those that would settle as one the first.
+    fn by_borders(
         &self,
         poses: &[Similarity],
         monitor: &Monitor,
     ) -> Result<Vec<Similarity>, Cancelled> {
         let apart = |pose: &Similarity| {
             monitor.check()?;
-            Ok((self.rims_apart(pose), *pose))
+            Ok((self.borders_apart(pose), *pose))
         };
         let sorted: Result<Vec<(f64, Similarity)>, Cancelled> =
             poses.par_iter().map(apart).collect();
@@ -384,16 +387,16 @@ impl<'a> Pair<'a> {
     /// How well a pose fits.
     fn measured(&self, pose: Similarity) -> Option<Settled> {
         let (met, gap) = self.surfaces_met(&pose)?;
-        let rims = self.rims.at(&pose);
-        let (held, grain) = self.rims_held(&rims);
-        let holes = rims.holes.iter().map(|pair| pair.off.norm());
+        let borders = self.borders.at(&pose);
+        let (held, grain) = self.borders_held(&borders);
+        let holes = borders.holes.iter().map(|pair| pair.off.norm());
         Some(Settled {
             pose,
             held,
             grain,
-            n_holes: rims.holes.len(),
+            n_holes: borders.holes.len(),
             worst_hole: holes.fold(0.0, f64::max),
-            missing: rims.missing_share(),
+            missing: borders.missing_share(),
             met,
             gap,
         })
@@ -448,45 +451,45 @@ impl<'a> Pair<'a> {
         roots
     }
 
-    /// Root mean square distance of the smaller part's rims from those of the other, at most `near`;
+    /// Root mean square distance of the smaller part's borders from those of the other, at most `near`;
     /// a hole without counterpart lies that far away too.
-    fn rims_apart(&self, pose: &Similarity) -> f64 {
-        let rims = self.rims.at(pose);
-        let share = rims.share().min(1.0);
-        let paired: f64 = rims.pairs().iter().map(|p| p.weight).sum();
-        let gaps = rims.pairs().iter().map(|p| p.weight * p.gap * p.gap);
+    fn borders_apart(&self, pose: &Similarity) -> f64 {
+        let borders = self.borders.at(pose);
+        let share = borders.share().min(1.0);
+        let paired: f64 = borders.pairs().iter().map(|p| p.weight).sum();
+        let gaps = borders.pairs().iter().map(|p| p.weight * p.gap * p.gap);
         let mean_sq = if paired > 0.0 {
             gaps.sum::<f64>() / paired
         } else {
             0.0
         };
-        let alone = (1.0 - share) + rims.missing_share();
+        let alone = (1.0 - share) + borders.missing_share();
         (share * mean_sq + alone * self.near * self.near).sqrt()
     }
 
-    /// Share of the smaller part's rims that lies within the tolerance of a like rim of the other part, less
+    /// Share of the smaller part's borders that lies within the tolerance of a like border of the other part, less
     /// for what lies farther from it; holes where the other part is solid count against the pose. With it the
-    /// share that a single place of the rims stands for.
-    fn rims_held(&self, rims: &Rims) -> (f64, f64) {
-        let within = 2.0 * (self.remainder + rims.unremarkable());
+    /// share that a single place of the borders stands for.
+    fn borders_held(&self, borders: &Borders) -> (f64, f64) {
+        let within = 2.0 * (self.remainder + borders.unremarkable());
         let (mut held, mut paired, mut largest) = (0.0, 0.0, 0.0_f64);
-        for pair in rims.pairs() {
+        for pair in borders.pairs() {
             largest = largest.max(pair.weight);
             let ratio = pair.gap / within;
-            if pair.kind != RimKind::Mixed {
+            if pair.kind != PairKind::Mixed {
                 held += pair.weight * (1.0 - ratio * ratio).max(0.0);
             }
             paired += pair.weight;
         }
         let of_all = if paired > 0.0 {
-            rims.share().min(1.0) / paired
+            borders.share().min(1.0) / paired
         } else {
             0.0
         };
-        (of_all * held - rims.missing_share(), of_all * largest)
+        (of_all * held - borders.missing_share(), of_all * largest)
     }
 
-    /// The other poses with what their rims say of them.
+    /// The other poses with what their borders say of them.
     fn alternatives(
         &self,
         winner: &Settled,
@@ -502,19 +505,19 @@ impl<'a> Pair<'a> {
         };
         let is_other =
             |other: &Alternative| !same_pose(&other.target_from_source, &winner.pose, &part);
-        let with_rims = |other: &Alternative| {
+        let with_borders = |other: &Alternative| {
             let Some(pose) = self.measured(other.target_from_source) else {
                 return *other;
             };
             let grain = pose.grain.max(winner.grain);
-            let by_rims = ratio_by_rims(apart(winner.held - pose.held, grain));
+            let by_borders = ratio_by_borders(apart(winner.held - pose.held, grain));
             let by_holes = if winner.has_more_holes_than(&pose, self.remainder) {
                 FEWER_HOLES
             } else {
                 0.0
             };
             Alternative {
-                score_ratio: other.score_ratio.max(by_rims).max(by_holes),
+                score_ratio: other.score_ratio.max(by_borders).max(by_holes),
                 ..*other
             }
         };
@@ -528,7 +531,7 @@ impl<'a> Pair<'a> {
         let others = known.chain(is_replaced.then_some(before)).chain(slid);
         let mut alternatives: Vec<Alternative> = others
             .filter(|other| is_other(other))
-            .map(|other| with_rims(&other))
+            .map(|other| with_borders(&other))
             .collect();
         alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
         let mut distinct: Vec<Alternative> = Vec::new();

@@ -1,23 +1,24 @@
 //! The last step of a pose: where surfaces alone leave it free to slide, borders and holes hold it, and an
 //! offset of the sheets does not push it aside.
 
+use super::borders::{BorderComparison, Borders};
 use super::contact::{ContactSearch, MAX_NODES, quantile};
-use super::rims::{RimComparison, Rims};
-use super::shape::{Fit, ShapeEvidence};
-use super::{AssessSettings, Distances, trims};
+use super::fit::{Fit, ShapeEvidence};
+use super::tolerance::{AssessSettings, Distances};
+use super::trims;
 use crate::geometry::Similarity;
 use crate::registration::Surface;
 
 /// Steps that are made at most.
 const STEPS: usize = 6;
-/// The last step was made if it moves the part by less than this share of the facets of the rims.
+/// The last step was made if it moves the part by less than this share of the facets of the borders.
 const STILL: f64 = 0.02;
-/// Rims are looked for within this share of the diagonal: a door slides so far.
-const RIM_SHARE: f64 = 0.015;
-/// Rims must lie beside each other along this share of the smaller part's.
+/// Borders are looked for within this share of the diagonal: a door slides so far.
+const BORDER_SHARE: f64 = 0.015;
+/// Borders must lie beside each other along this share of the smaller part's.
 const LEAST_PAIRED: f64 = 0.3;
-/// The misfit of the rims must shrink at least to this share, or the distance of the surfaces while no fewer
-/// rims lie beside each other: those of a bent part fit nowhere.
+/// The misfit of the borders must shrink at least to this share, or the distance of the surfaces while no fewer
+/// borders lie beside each other: those of a bent part fit nowhere.
 const BETTER: f64 = 0.7;
 /// The surfaces may come to lie apart by so many times as much …
 const AS_CLOSE: f64 = 1.5;
@@ -25,7 +26,7 @@ const AS_CLOSE: f64 = 1.5;
 const LITTLE_GAP: f64 = 0.5;
 
 /// The pose moved so that surfaces, borders and holes fit together; `None` where that would move it by
-/// no more than the rims are cut into facets, where the rims do not say where the part belongs (parts
+/// no more than the borders are cut into facets, where the borders do not say where the part belongs (parts
 /// that are trimmed differently), or where neither they nor the surfaces fit better. O(steps · nodes · log triangles).
 pub fn settled(
     source: &Surface,
@@ -42,14 +43,14 @@ pub fn settled(
 pub(super) enum Least {
     /// Any.
     Any,
-    /// What the rims are cut into.
+    /// What the borders are cut into.
     Facets,
 }
 
-/// What moving poses of a pair needs: both rims are prepared once for all of them.
+/// What moving poses of a pair needs: both borders are prepared once for all of them.
 pub(super) struct Settling<'a> {
     surfaces: [&'a Surface; 2],
-    rims: RimComparison<'a>,
+    borders: BorderComparison<'a>,
     distances: Distances,
     max_nodes: usize,
 }
@@ -62,11 +63,11 @@ impl<'a> Settling<'a> {
         settings: &AssessSettings,
         max_nodes: usize,
     ) -> Self {
-        let near = RIM_SHARE * surfaces[1].measures().diagonal;
+        let near = BORDER_SHARE * surfaces[1].measures().diagonal;
         Self::within(surfaces, scale, settings, max_nodes, near)
     }
 
-    /// [`Settling::new`] with rims looked for within at least `near`.
+    /// [`Settling::new`] with borders looked for within at least `near`.
     pub(super) fn within(
         surfaces: [&'a Surface; 2],
         scale: f64,
@@ -79,7 +80,7 @@ impl<'a> Settling<'a> {
         let near = near.max(3.0 * distances.tolerance.remainder);
         Self {
             surfaces,
-            rims: RimComparison::new(surfaces, scale, near),
+            borders: BorderComparison::new(surfaces, scale, near),
             distances,
             max_nodes,
         }
@@ -101,21 +102,21 @@ impl<'a> Settling<'a> {
         let mut is_still = false;
         for step in 0..=STEPS {
             let contacts = contacts.at(&moved)?;
-            let rims = self.rims.at(&moved);
-            if rims.share() < LEAST_PAIRED {
+            let borders = self.borders.at(&moved);
+            if borders.share() < LEAST_PAIRED {
                 return None;
             }
-            let facets = rims.unremarkable();
-            let misfit = misfit(&rims);
+            let facets = borders.unremarkable();
+            let misfit = misfit(&borders);
             let first = *first_misfit.get_or_insert(misfit);
             let gap = contacts.typical_gap(tolerance.remainder);
             let first_gap = *first_gap.get_or_insert(gap);
-            let first_share = *first_share.get_or_insert(rims.share());
+            let first_share = *first_share.get_or_insert(borders.share());
             if step == STEPS || is_still {
                 let little = self.distances.little_more(LITTLE_GAP, first_gap);
                 let most = AS_CLOSE * first_gap + noise + little;
                 let fits = misfit < tolerance.remainder + facets && gap < most;
-                let is_closer = gap < BETTER * first_gap && rims.share() >= first_share;
+                let is_closer = gap < BETTER * first_gap && borders.share() >= first_share;
                 return (fits && misfit < BETTER * first || is_closer).then_some(moved);
             }
             let evidence = ShapeEvidence {
@@ -123,13 +124,16 @@ impl<'a> Settling<'a> {
                 target,
                 pose: &moved,
                 contacts: &contacts,
-                rims: &rims,
+                borders: &borders,
                 noise,
                 reach,
             };
-            let trusted = trims::trusted(&evidence, rims.limit(&tolerance));
-            let rims = trusted.as_ref().unwrap_or(&rims);
-            let evidence = ShapeEvidence { rims, ..evidence };
+            let trusted = trims::trusted(&evidence, borders.limit(&tolerance));
+            let borders = trusted.as_ref().unwrap_or(&borders);
+            let evidence = ShapeEvidence {
+                borders,
+                ..evidence
+            };
             let next = contacts.undo(&Fit::of(&evidence).rigid).after(&moved);
             if step == 0 && least == Least::Facets && largest_motion(source, pose, &next) <= facets
             {
@@ -142,9 +146,9 @@ impl<'a> Settling<'a> {
     }
 }
 
-/// Distance across the rims that most of their length does not exceed.
-fn misfit(rims: &Rims) -> f64 {
-    let pairs = rims.pairs().iter();
+/// Distance across the borders that most of their length does not exceed.
+fn misfit(borders: &Borders) -> f64 {
+    let pairs = borders.pairs().iter();
     quantile(
         &mut pairs.map(|p| (p.gap.abs(), p.weight)).collect::<Vec<_>>(),
         0.75,

@@ -1,9 +1,10 @@
 //! The pose for the mid-surfaces: an offset between skin and mid-surface is taken out of it.
 
+use super::borders::BorderComparison;
 use super::contact::{ContactSearch, MAX_NODES};
-use super::rims::RimComparison;
-use super::shape::{FACETING, Fit, ShapeEvidence, ShapeStatement};
-use super::{AssessSettings, Distances};
+use super::fit::{Fit, ShapeEvidence};
+use super::shape::{FACETING, ShapeStatement};
+use super::tolerance::{AssessSettings, Distances};
 use crate::geometry::Similarity;
 use crate::registration::Surface;
 
@@ -30,18 +31,18 @@ pub fn without_offset(
     let corners = source.mesh().aabb().corners();
     let pair = [source, target];
     let mut contacts = ContactSearch::new(pair, pose.scale, reach, MAX_NODES);
-    let rims = RimComparison::new(pair, pose.scale, near);
+    let borders = BorderComparison::new(pair, pose.scale, near);
     let mut moved = *pose;
     let mut offset = 0.0;
     for _ in 0..STEPS {
         let contacts = contacts.at(&moved)?;
-        let rims = rims.at(&moved);
+        let borders = borders.at(&moved);
         let evidence = ShapeEvidence {
             source,
             target,
             pose: &moved,
             contacts: &contacts,
-            rims: &rims,
+            borders: &borders,
             noise,
             reach,
         };

@@ -4,22 +4,22 @@
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 
+use super::border_curve::{Place, places};
 use super::contact::solve;
-use super::is_source_smaller;
-use super::rim::{Place, places};
 use super::sliding::{FreeMotion, FreeMotionKind};
+use super::tolerance::is_source_smaller;
 use crate::geometry::{Aabb, Point3, Rotation, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::{FeatureGrid, GridSettings};
 
-/// Places along the rims of the smaller part, of which half lie on holes where there are any.
+/// Places along the borders of the smaller part, of which half lie on holes where there are any.
 const N_PLACES: usize = 128;
-/// Of these so many, spread over all rims, sort the poses of the lattice, and then the best of them.
+/// Of these so many, spread over all borders, sort the poses of the lattice, and then the best of them.
 const N_FIRST: usize = 16;
 const N_SECOND: usize = 48;
-/// Places along the rims of the larger part.
+/// Places along the borders of the larger part.
 const N_MODEL_PLACES: usize = 12_000;
-/// Distance beyond which rims have nothing to do with each other, as a share of the larger part's
+/// Distance beyond which borders have nothing to do with each other, as a share of the larger part's
 /// diagonal; the lattice is as fine.
 const CUT: f64 = 0.02;
 /// Shares of it in the rounds after the first.
@@ -35,9 +35,9 @@ const MOST_REFINED: usize = 600;
 const MOST_FINISHED: usize = 120;
 /// Largest number of poses of the lattice; it is made coarser where it would have more.
 const MOST_POSES: f64 = 400_000.0;
-/// Rims that run in directions farther apart than this are not the same: cosine of 37°.
+/// Borders that run in directions farther apart than this are not the same: cosine of 37°.
 const PARALLEL: f32 = 0.8;
-/// The grid that finds the nearest rim.
+/// The grid that finds the nearest border.
 const GRID: GridSettings = GridSettings {
     n_cells: 112,
     margin: 0.1,
@@ -55,18 +55,10 @@ enum Generator {
 impl Generator {
     fn motion(self, amount: f64) -> Similarity {
         match self {
-            Self::Shift(direction) => Similarity {
-                translation: direction * amount,
-                ..Similarity::identity()
-            },
+            Self::Shift(direction) => Similarity::from_translation(direction * amount),
             Self::Turn(axis, point) => {
                 let turn = Rotation::from_scaled_axis(axis * amount);
-                let rotation = *turn.to_rotation_matrix().matrix();
-                Similarity {
-                    rotation,
-                    translation: point.coords - rotation * point.coords,
-                    scale: 1.0,
-                }
+                Similarity::about(&point, *turn.to_rotation_matrix().matrix())
             }
         }
     }
@@ -86,8 +78,8 @@ struct Axis {
     amounts: Vec<f64>,
 }
 
-/// Poses of the source along `free` from `pose`, those whose rims fit best first, at most `n` of them and
-/// no two near each other. Empty where a part has no rims or the motion is of no known kind.
+/// Poses of the source along `free` from `pose`, those whose borders fit best first, at most `n` of them and
+/// no two near each other. Empty where a part has no borders or the motion is of no known kind.
 /// O(poses of the lattice).
 pub(super) fn slid(
     source: &Surface,
@@ -103,7 +95,7 @@ pub(super) fn slid(
     } else {
         ((target, &still), (source, pose))
     };
-    let Some(search) = RimSearch::new(data, model) else {
+    let Some(search) = BorderSearch::new(data, model) else {
         return Vec::new();
     };
     let axes = axes(free, [box_of(data), box_of(model)], search.cut);
@@ -207,7 +199,7 @@ fn spread(middle: f64, room: f64, step: f64) -> Vec<f64> {
         .collect()
 }
 
-/// A motion of the smaller part, and how badly its rims fit.
+/// A motion of the smaller part, and how badly its borders fit.
 #[derive(Clone, Copy)]
 struct Candidate {
     motion: Similarity,
@@ -223,8 +215,8 @@ struct Local {
     weight: f64,
 }
 
-/// Rims of both parts in the frame of a grid over those of the larger one.
-struct RimSearch {
+/// Borders of both parts in the frame of a grid over those of the larger one.
+struct BorderSearch {
     grid: FeatureGrid,
     data: Vec<Local>,
     model: Vec<Local>,
@@ -233,7 +225,7 @@ struct RimSearch {
     extent: f64,
 }
 
-impl RimSearch {
+impl BorderSearch {
     fn new(data: (&Surface, &Similarity), model: (&Surface, &Similarity)) -> Option<Self> {
         let model_places: Vec<Place> = places(model, N_MODEL_PLACES, |_| true);
         let samples: Vec<(Point3, Vector3)> = model_places
@@ -356,14 +348,14 @@ impl RimSearch {
         }
     }
 
-    /// The rim of the larger part nearest to a place that was moved, with their distance along it.
+    /// The border of the larger part nearest to a place that was moved, with their distance along it.
     fn beside(&self, point: &Vector3, tangent: &Vector3) -> Option<&Local> {
         let at = [point.x as f32, point.y as f32, point.z as f32];
         let found = &self.model[self.grid.nearest_index(at) as usize];
         (found.tangent.dot(tangent).abs() as f32 > PARALLEL).then_some(found)
     }
 
-    /// Mean over the places of the truncated squared distance across the nearest rim, as a share of the
+    /// Mean over the places of the truncated squared distance across the nearest border, as a share of the
     /// square of the cut.
     fn loss(&self, places: &[Local], motion: &Similarity, cut: f64) -> f64 {
         let motion = self.in_grid(motion);
@@ -372,10 +364,10 @@ impl RimSearch {
         for place in places {
             let point = motion.rotation * place.point + motion.translation;
             let tangent = motion.rotation * place.tangent;
-            let away = self.beside(&point, &tangent).map_or(1.0, |rim| {
-                let off = point - rim.point;
-                let across = off.dot(&rim.across) * per_cut;
-                // Past the end of a rim the distance along it counts as well.
+            let away = self.beside(&point, &tangent).map_or(1.0, |border| {
+                let off = point - border.point;
+                let across = off.dot(&border.across) * per_cut;
+                // Past the end of a border the distance along it counts as well.
                 let apart = (off.norm() * per_cut - 1.0).max(0.0);
                 (across * across + apart * apart).min(1.0)
             });
@@ -396,12 +388,12 @@ impl RimSearch {
         for place in &self.data {
             let point = local.rotation * place.point + local.translation;
             let tangent = local.rotation * place.tangent;
-            let Some(rim) = self.beside(&point, &tangent) else {
+            let Some(border) = self.beside(&point, &tangent) else {
                 continue;
             };
-            let gap = (point - rim.point).dot(&rim.across) / self.grid.scale();
+            let gap = (point - border.point).dot(&border.across) / self.grid.scale();
             let ratio = gap / cut;
-            let away = (point - rim.point).norm() / self.grid.scale();
+            let away = (point - border.point).norm() / self.grid.scale();
             if ratio.abs() >= 1.0 || away > 2.0 * cut {
                 continue;
             }
@@ -409,7 +401,7 @@ impl RimSearch {
             let at = self.outer(&point);
             let mut row = SVector::<f64, 3>::zeros();
             for (entry, moving) in row.iter_mut().zip(&moving) {
-                *entry = moving.velocity(&at).dot(&rim.across);
+                *entry = moving.velocity(&at).dot(&border.across);
             }
             matrix += row * row.transpose() * weight;
             right -= row * (weight * gap);

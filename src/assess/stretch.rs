@@ -6,14 +6,14 @@
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
+use super::borders::{BorderPair, HolePair, LEAST_PAIRED, PairKind};
 use super::contact::{
     Contact, ContactSearch, Contacts, MAX_NODES, Six, quantile, robust_weights, solve,
 };
-use super::rims::{HolePair, RimKind, RimPair};
-use super::shape::{
-    Bends, LEAST_PAIRED, N as N_SMOOTH, ShapeEvidence, ShapeTolerance, UNREMARKABLE, explaining,
-};
-use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
+use super::fit::{Bends, N_SMOOTH, ShapeEvidence, explaining};
+use super::scaled::Scaled;
+use super::tolerance::{ShapeTolerance, UNREMARKABLE};
+use crate::geometry::{Point3, Similarity, Vector3};
 
 /// Unknowns of the fit: those of the statement about the shape, and the stretches.
 const N: usize = N_SMOOTH + 3;
@@ -64,7 +64,7 @@ pub(super) struct Stretch {
 /// O(nodes · log triangles).
 pub(super) fn stretch(evidence: &ShapeEvidence<'_>, tolerance: &ShapeTolerance) -> Option<Stretch> {
     let limit = 2.0 * tolerance.remainder;
-    let frame = Frame(Bends::of(evidence));
+    let frame = Frame::of(evidence);
     let surfaces = [evidence.source, evidence.target];
     let scale = evidence.pose.scale;
     let mut search = ContactSearch::new(surfaces, scale, evidence.reach, N_PLACES);
@@ -80,7 +80,7 @@ pub(super) fn stretch(evidence: &ShapeEvidence<'_>, tolerance: &ShapeTolerance) 
         return None;
     }
     for _ in 0..ROUNDS {
-        let back = Scaled::new(&frame, shares.map(|share| 1.0 / (1.0 + share)));
+        let back = frame.scaled(shares.map(|share| 1.0 / (1.0 + share)));
         let gaps = Gaps::of(&search.at_scaled(evidence.pose, Some(&back))?, &frame);
         let found;
         (found, after) = gaps.explained(N, evidence.noise);
@@ -92,9 +92,9 @@ pub(super) fn stretch(evidence: &ShapeEvidence<'_>, tolerance: &ShapeTolerance) 
         }
     }
     let (axis, by) = frame.longest(&shares);
-    let rims = evidence.rims.limit(tolerance);
+    let borders = evidence.borders.limit(tolerance);
     let is_longer = after < EXPLAINED * before && by > limit;
-    (is_longer && !frame.misplaces_rims(evidence, &shares, rims)).then_some(Stretch {
+    (is_longer && !frame.misplaces_borders(evidence, &shares, borders)).then_some(Stretch {
         axis: [PartAxis::Length, PartAxis::Width, PartAxis::Height][axis],
         share: shares[axis],
         by,
@@ -102,10 +102,10 @@ pub(super) fn stretch(evidence: &ShapeEvidence<'_>, tolerance: &ShapeTolerance) 
 }
 
 /// Whether one part that is longer, wider or higher than the other explains how their outlines lie apart, and
-/// neither surfaces nor holes speak against it. `limit` is how far rims may lie apart.
+/// neither surfaces nor holes speak against it. `limit` is how far borders may lie apart.
 /// O(nodes · log triangles).
 pub(super) fn explains_outlines(evidence: &ShapeEvidence<'_>, limit: f64) -> bool {
-    let frame = Frame(Bends::of(evidence));
+    let frame = Frame::of(evidence);
     frame.of_outlines(evidence, limit).is_some_and(|found| {
         !frame.misplaces_holes(evidence, &found, limit) && frame.keeps_surfaces(evidence, &found)
     })
@@ -115,6 +115,15 @@ pub(super) fn explains_outlines(evidence: &ShapeEvidence<'_>, limit: f64) -> boo
 struct Frame(Bends);
 
 impl Frame {
+    fn of(evidence: &ShapeEvidence<'_>) -> Self {
+        Self(Bends::of(evidence.source, evidence.pose, evidence.contacts))
+    }
+
+    /// The part with its lengths along the axes multiplied.
+    fn scaled(&self, factors: [f64; 3]) -> Scaled {
+        Scaled::new(self.0.center, &self.0.axes, factors)
+    }
+
     /// What the unknowns do to a gap. Stretches are in lengths at the ends of the part.
     fn row(&self, contacts: &Contacts, contact: &Contact) -> Row {
         let Self(bends) = self;
@@ -161,10 +170,13 @@ impl Frame {
         evidence: &ShapeEvidence<'_>,
         stretches: Option<[f64; 3]>,
     ) -> OutlineFit {
-        let ShapeEvidence { contacts, rims, .. } = *evidence;
-        let outlines = rims.pairs().iter();
-        let outlines: Vec<&RimPair> = outlines.filter(|p| p.kind == RimKind::Outlines).collect();
-        let row = |pair: &&RimPair| self.placed(contacts, &pair.point, &pair.across);
+        let ShapeEvidence {
+            contacts, borders, ..
+        } = *evidence;
+        let outlines = borders.pairs().iter();
+        let outlines: Vec<&BorderPair> =
+            outlines.filter(|p| p.kind == PairKind::Outlines).collect();
+        let row = |pair: &&BorderPair| self.placed(contacts, &pair.point, &pair.across);
         let rows: Vec<Placed> = outlines.iter().map(row).collect();
         let lengths: Vec<f64> = outlines.iter().map(|p| p.weight).collect();
         let at_most = |left: &[f64]| {
@@ -180,7 +192,7 @@ impl Frame {
         if let Some(stretches) = stretches {
             found.fixed_rows_mut::<3>(6).copy_from_slice(&stretches);
         }
-        let floor = evidence.noise.max(rims.unremarkable());
+        let floor = evidence.noise.max(borders.unremarkable());
         let mut left = left_by(&found);
         for _ in 0..ROUNDS {
             let weights = robust_weights(&left, &lengths, floor);
@@ -206,9 +218,14 @@ impl Frame {
     }
 
     /// Whether outlines that lie beside each other would lie farther off than they do, and much farther or farther
-    /// than rims may, if one part were longer by these shares, or a hole farther off than it does and may.
-    fn misplaces_rims(&self, evidence: &ShapeEvidence<'_>, shares: &[f64; 3], limit: f64) -> bool {
-        if evidence.rims.share() < LEAST_PAIRED {
+    /// than borders may, if one part were longer by these shares, or a hole farther off than it does and may.
+    fn misplaces_borders(
+        &self,
+        evidence: &ShapeEvidence<'_>,
+        shares: &[f64; 3],
+        limit: f64,
+    ) -> bool {
+        if evidence.borders.share() < LEAST_PAIRED {
             return false;
         }
         let stretches = [0, 1, 2].map(|k| shares[k] * self.0.half[k]);
@@ -219,10 +236,10 @@ impl Frame {
             || self.misplaces_holes(evidence, &fit.found, limit)
     }
 
-    /// Whether a hole would lie farther off than it does, and farther than rims may.
+    /// Whether a hole would lie farther off than it does, and farther than borders may.
     fn misplaces_holes(&self, evidence: &ShapeEvidence<'_>, found: &Placed, limit: f64) -> bool {
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
-        evidence.rims.holes.iter().any(|pair| {
+        evidence.borders.holes.iter().any(|pair| {
             let HolePair { hole, off, .. } = pair;
             let row = |axis: Vector3| self.placed(evidence.contacts, &hole.center, &axis);
             let moved = Vector3::from(axes.map(|axis| row(axis).dot(found)));
@@ -245,7 +262,7 @@ impl Frame {
         let six: Six = found.fixed_rows::<6>(0).into();
         let moved = evidence.contacts.undo(&six).after(pose);
         let as_it_is = left_at(pose, None);
-        let scaled = left_at(&moved, Some(&Scaled::new(self, factors)));
+        let scaled = left_at(&moved, Some(&self.scaled(factors)));
         as_it_is
             .zip(scaled)
             .is_some_and(|(as_it_is, scaled)| scaled <= REFUTED * as_it_is.max(noise))
@@ -319,36 +336,5 @@ impl Gaps {
         }
         let sizes = left.iter().map(|l| l.abs()).zip(self.areas.iter().copied());
         (found, quantile(&mut sizes.collect::<Vec<_>>(), MOSTLY))
-    }
-}
-
-/// Lengths along three axes through a point multiplied by factors.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Scaled {
-    center: Point3,
-    matrix: Matrix3,
-    inverse: Matrix3,
-}
-
-impl Scaled {
-    fn new(frame: &Frame, factors: [f64; 3]) -> Self {
-        let Frame(Bends { center, axes, .. }) = frame;
-        let along =
-            |factors: [f64; 3]| axes * Matrix3::from_diagonal(&factors.into()) * axes.transpose();
-        Self {
-            center: *center,
-            matrix: along(factors),
-            inverse: along(factors.map(f64::recip)),
-        }
-    }
-
-    /// The place of a point of the source.
-    pub(super) fn apply(&self, point: &Point3) -> Point3 {
-        self.center + self.matrix * (point - self.center)
-    }
-
-    /// The place that comes to lie on this point.
-    pub(super) fn undo(&self, point: &Point3) -> Point3 {
-        self.center + self.inverse * (point - self.center)
     }
 }

@@ -3,9 +3,9 @@
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
+use super::borders::Borders;
 use super::contact::{Contacts, Six, robust_weights, solve};
-use super::rims::Rims;
-use super::shape::LEAST_OWN;
+use super::fit::LEAST_OWN;
 use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 use crate::registration::Surface;
@@ -81,10 +81,10 @@ impl PoseUncertainty {
         source: &Surface,
         pose: &Similarity,
         contacts: &Contacts,
-        rims: &Rims,
+        borders: &Borders,
         (noise, thickness): (f64, Option<f64>),
     ) -> Option<Self> {
-        let (mut motions, offset_as_motion) = replicates(contacts, rims, noise);
+        let (mut motions, offset_as_motion) = replicates(contacts, borders, noise);
         let unknown_offset = offset_as_motion.and(thickness).map_or(0.0, |t| 0.5 * t);
         motions.extend(offset_as_motion.map(|motion| motion * unknown_offset));
         let motions: Vec<SmallMotion> = motions
@@ -246,11 +246,11 @@ impl Evidence {
 /// which borders or an offset of the sheets would move the pose. Where an offset is what the gaps are, it
 /// is solved for with every motion. With them the motion that cannot be told from an offset of one, if there
 /// is one.
-fn replicates(contacts: &Contacts, rims: &Rims, noise: f64) -> (Vec<Six>, Option<Six>) {
+fn replicates(contacts: &Contacts, borders: &Borders, noise: f64) -> (Vec<Six>, Option<Six>) {
     let gaps: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();
     let areas: Vec<f64> = contacts.list.iter().map(|c| c.weight).collect();
     let weights = robust_weights(&gaps, &areas, noise);
-    let parts = evidence_of_patches(contacts, rims, &weights, noise);
+    let parts = evidence_of_patches(contacts, borders, &weights, noise);
     let mut all = Evidence::none();
     for part in &parts {
         all.matrix += part.matrix;
@@ -299,7 +299,7 @@ fn replicates(contacts: &Contacts, rims: &Rims, noise: f64) -> (Vec<Six>, Option
 
 fn evidence_of_patches(
     contacts: &Contacts,
-    rims: &Rims,
+    borders: &Borders,
     weights: &[f64],
     noise: f64,
 ) -> Vec<Evidence> {
@@ -312,7 +312,7 @@ fn evidence_of_patches(
     }
     let points: Vec<Point3> = contacts.list.iter().map(|c| c.point).collect();
     let tree = PointTree::build(points);
-    for (pair, weight) in rims.pairs().iter().zip(rims.weights(noise)) {
+    for (pair, weight) in borders.pairs().iter().zip(borders.weights(noise)) {
         // A border belongs to the patch of the place nearest to it, which is near in every sense.
         let Some(nearest) = tree.nearest(&pair.point, f64::INFINITY, None) else {
             break;
@@ -353,7 +353,8 @@ fn weak_motions(
 
 #[cfg(test)]
 mod tests {
-    use super::super::{AssessSettings, statements};
+    use super::super::statements::statements;
+    use super::super::tolerance::AssessSettings;
     use super::*;
     use crate::geometry::TriMesh;
 

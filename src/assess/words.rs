@@ -178,7 +178,7 @@ impl ShapeReason {
             Self::Bent { by, limit }
             | Self::Surface { by, limit, .. }
             | Self::Local { by, limit, .. }
-            | Self::Rims { by, limit, .. }
+            | Self::Borders { by, limit, .. }
             | Self::Hole { by, limit, .. } => lengths.compared([*by, *limit]),
             Self::Stretched { by, .. } => [lengths.of(*by), String::new()],
             Self::HardlyMet { .. } | Self::Holes { .. } => [String::new(), String::new()],
@@ -202,7 +202,7 @@ impl ShapeReason {
                  than {limit}, at {}",
                 place(at)
             ),
-            Self::Rims { at, .. } => format!(
+            Self::Borders { at, .. } => format!(
                 "the borders lie {by} apart, more than {limit}, most at {}",
                 place(at)
             ),
@@ -268,7 +268,7 @@ impl ShapeStatement {
             };
             format!(", offset of the sheets {}{removed}", lengths.of(offset))
         });
-        let trim = match (self.rims.other_trim, self.rims.apart) {
+        let trim = match (self.borders.other_trim, self.borders.apart) {
             (Some(apart), _) => {
                 format!(", trimmed differently, borders {} apart", lengths.of(apart))
             }

@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use super::args::BenchArgs;
 use super::{print, progress, takes_stdout, write_json, write_output};
-use crate::pipeline::growth::{GrowthTable, growth};
-use crate::pipeline::growth_page::{GROWTH_COLUMNS, growth_page};
+use crate::pipeline::bench::growth::{GrowthTable, growth};
+use crate::pipeline::bench::growth_page::{GROWTH_COLUMNS, growth_page};
 
 /// Measures all sizes and prints the table.
 pub fn run(args: &BenchArgs, quiet: bool) -> anyhow::Result<ExitCode> {

@@ -7,7 +7,7 @@ use anyhow::bail;
 
 use super::args::BenchArgs;
 use super::{check_outputs, json_target, print, progress, takes_stdout, write_json};
-use crate::pipeline::map_bench::{MapBench, map_bench, table_names};
+use crate::pipeline::bench::map::{MapBench, map_bench, table_names};
 use crate::text::{fixed, grouped};
 
 /// Measures and prints the tables.

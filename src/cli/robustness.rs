@@ -7,9 +7,9 @@ use anyhow::bail;
 
 use super::args::BenchArgs;
 use super::{print, progress, takes_stdout, write_json, write_output};
-use crate::pipeline::robustness::{RobustnessSettings, robustness};
-use crate::pipeline::robustness_page::page;
-use crate::pipeline::robustness_table::{COLUMNS, RobustnessTable, notes};
+use crate::pipeline::bench::robustness::{RobustnessSettings, robustness};
+use crate::pipeline::bench::robustness_page::page;
+use crate::pipeline::bench::robustness_table::{COLUMNS, RobustnessTable, notes};
 use crate::samples::SamplePart;
 use crate::samples::scenario::Scenario;
 

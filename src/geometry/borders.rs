@@ -16,7 +16,7 @@ pub struct Border {
     pub length: f64,
     /// Middle of its edges, by length.
     pub center: Point3,
-    /// Whether it is closed and the sheet lies around it. Other borders are trims.
+    /// Whether it is closed and the sheet lies around it. Other borders are outlines.
     pub is_hole: bool,
 }
 

@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn cracks_are_no_borders_and_leave_the_holes_that_they_touch_as_they_are() {
         let is_hole = |x: u32, y: u32| (4..6).contains(&x) && (4..6).contains(&y);
-        // Cracks run from the rim of the hole to the outline, and around an island.
+        // Cracks run from the border of the hole to the outline, and around an island.
         let is_fine = |x: u32, y: u32| x < 5 && y > 3 || x == 8 && y == 2;
         for bent in [0.0, 0.02] {
             // The chord over two millimetres leaves the node in its middle aside.

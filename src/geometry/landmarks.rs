@@ -97,8 +97,8 @@ mod tests {
         for (x, y) in [(20.0, 10.0), (-20.0, 10.0), (-20.0, -10.0), (20.0, -10.0)] {
             let corner = Point3::new(x, y, 0.0);
             let far = |i: &usize| (positions[*i] - corner).norm();
-            let rim = (0..positions.len()).filter(|i| i % 2 == 1);
-            let nearest = rim.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap();
+            let border = (0..positions.len()).filter(|i| i % 2 == 1);
+            let nearest = border.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap();
             positions[nearest] = corner;
         }
         let cell = |k: u32| {

@@ -49,3 +49,10 @@ pub type Matrix4 = nalgebra::Matrix4<f64>;
 pub type Pose = nalgebra::Isometry3<f64>;
 /// A rotation as a unit quaternion.
 pub type Rotation = nalgebra::UnitQuaternion<f64>;
+
+/// A unit vector perpendicular to a unit vector: across the axis that this is farthest from.
+pub(crate) fn any_perpendicular(unit: &Vector3) -> Vector3 {
+    let mut axis = Vector3::zeros();
+    axis[unit.iamin()] = 1.0;
+    unit.cross(&axis).normalize()
+}

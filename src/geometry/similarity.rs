@@ -82,6 +82,32 @@ impl Similarity {
         }
     }
 
+    /// A shift.
+    pub fn from_translation(translation: Vector3) -> Self {
+        Self {
+            translation,
+            ..Self::identity()
+        }
+    }
+
+    /// A rotation or mirror (an orthogonal matrix) about a point, which stays.
+    pub fn about(center: &Point3, rotation: Matrix3) -> Self {
+        Self {
+            rotation,
+            ..Self::identity()
+        }
+        .taking(center, center)
+    }
+
+    /// The same rotation and scale with the translation that takes `from` to `to`.
+    #[must_use]
+    pub fn taking(self, from: &Point3, to: &Point3) -> Self {
+        Self {
+            translation: to.coords - self.rotation * from.coords * self.scale,
+            ..self
+        }
+    }
+
     /// Moves a point.
     pub fn apply(&self, point: &Point3) -> Point3 {
         Point3::from(self.rotation * point.coords * self.scale + self.translation)

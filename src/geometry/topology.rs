@@ -350,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn finds_rim_and_hole() {
+    fn finds_border_and_hole() {
         let mesh = plate_with_hole(5);
         let topology = Topology::of(&mesh);
         let loops = topology.border_loops(&mesh);

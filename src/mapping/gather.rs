@@ -202,7 +202,7 @@ impl Context<'_> {
             } else if partner.distance_sq > reach * reach {
                 is_far = true;
             } else {
-                // Beside a weld line the rim of the neighbour lies within reach too.
+                // Beside a weld line the border of the neighbour lies within reach too.
                 n_inside += usize::from(!partner.is_on_border);
                 let source = source as u32;
                 let candidate = Centre {
@@ -241,7 +241,7 @@ impl Context<'_> {
         partner.distance_sq <= reach * reach && !self.is_outside(element, &centre, partner)
     }
 
-    /// True if the partner is the rim of a sheet that ends before the point.
+    /// True if the partner is the border of a sheet that ends before the point.
     fn is_outside(&self, element: usize, query: &Point3, partner: &SourcePoint) -> bool {
         if !partner.is_on_border {
             return false;

@@ -211,14 +211,14 @@ impl Found {
     fn fit(&self) -> Fit {
         let assessment = &self.run.assessment;
         let shape = assessment.shape.as_ref();
-        let rims = shape.map(|shape| &shape.rims);
+        let borders = shape.map(|shape| &shape.borders);
         let [stamped, crash] = self.shares();
         Fit {
             verdict: assessment.verdict,
             is_one_shape: assessment.verdict != Verdict::Poor
                 && shape.is_some_and(|shape| shape.reasons.is_empty()),
             covered: stamped * crash,
-            n_holes_apart: rims.map_or(0, |rims| rims.only_source + rims.only_target),
+            n_holes_apart: borders.map_or(0, |borders| borders.only_source + borders.only_target),
             rmse: assessment.coverage.rmse(),
         }
     }

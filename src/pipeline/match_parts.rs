@@ -261,7 +261,7 @@ pub(super) fn settle(
     let is_kept = |pose: &Similarity, surfaces_hold| {
         !assess::is_pulled_aside(source, target, [&found, pose], surfaces_hold, check)
     };
-    if let Some(held) = assess::held_by_rims(source, target, outcome, check, monitor)? {
+    if let Some(held) = assess::held_by_borders(source, target, outcome, check, monitor)? {
         if is_kept(&held.target_from_source, false) {
             outcome.target_from_source = held.target_from_source;
             outcome.alternatives = held.alternatives;
@@ -284,7 +284,7 @@ pub(super) fn settle(
         outcome.target_from_source = pose;
     }
     monitor.check()?;
-    if let Some(ratio) = assess::hand_by_rims(source, target, outcome, check, monitor)? {
+    if let Some(ratio) = assess::hand_by_borders(source, target, outcome, check, monitor)? {
         outcome.mirror_check.score_ratio = Some(ratio);
     }
     Ok(())

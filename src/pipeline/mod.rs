@@ -4,17 +4,15 @@
 //! moves (source). Each stage returns what it did and how long it took; nothing here prints.
 
 pub mod autosave;
+pub mod bench;
 pub mod file_watch;
 pub mod find_parts;
 pub mod forming_values;
-pub mod growth;
-pub mod growth_page;
 pub mod id_map;
 pub mod inspect;
 pub mod likeness;
 pub mod load;
 pub mod map;
-pub mod map_bench;
 pub mod map_car;
 pub mod match_parts;
 pub mod outputs;
@@ -22,9 +20,6 @@ pub mod preferences;
 mod process;
 pub mod project;
 pub mod reduce;
-pub mod robustness;
-pub mod robustness_page;
-pub mod robustness_table;
 pub mod sweep;
 mod sweep_record;
 pub mod units;

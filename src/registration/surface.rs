@@ -29,7 +29,7 @@ pub struct Surface {
     vertex_areas: Vec<f64>,
     border_edges: Vec<u8>,
     border_vertices: Vec<bool>,
-    /// Trims and holes, found when first asked for.
+    /// Outlines and holes, found when first asked for.
     borders: OnceLock<Vec<Border>>,
     measures: Measures,
 }
@@ -220,7 +220,7 @@ impl Surface {
         }
     }
 
-    /// Trims and holes.
+    /// Outlines and holes.
     pub fn borders(&self) -> &[Border] {
         self.borders
             .get_or_init(|| Border::all(&self.mesh, &self.topology, self.vertex_normals()))

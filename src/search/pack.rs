@@ -3,7 +3,7 @@
 use glam::Vec4;
 
 use super::wide::{FAR_AWAY, Pack, Query, WIDTH};
-use crate::geometry::Vector3;
+use crate::geometry::{Vector3, any_perpendicular};
 
 /// Height over longest edge below which the direction of a triangle's normal is left to `f64`.
 const NEEDLE: f64 = 1e-6;
@@ -179,13 +179,6 @@ impl TrianglePack {
         self.inv_bc[slot] = inverse(bc_sq);
         self.inv_ac[slot] = inverse(ac_sq);
     }
-}
-
-fn any_perpendicular(unit: &Vector3) -> Vector3 {
-    let axis = unit.iamin();
-    let mut other = Vector3::zeros();
-    other[axis] = 1.0;
-    unit.cross(&other).normalize()
 }
 
 /// Four points side by side.

@@ -211,7 +211,7 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
         },
         shape(ShapeReason::Surface { by: 5.0, limit, at }),
         shape(ShapeReason::Bent { by: 5.0, limit }),
-        shape(ShapeReason::Rims { by: 5.0, limit, at }),
+        shape(ShapeReason::Borders { by: 5.0, limit, at }),
         shape(ShapeReason::Hole { by: 5.0, limit, at }),
         shape(ShapeReason::Stretched {
             by: 5.0,
@@ -283,7 +283,7 @@ fn arch(n: u32, phase: f64) -> TriMesh {
 }
 
 #[test]
-fn skin_on_mid_surface_does_not_turn_an_arch_off_its_rims() {
+fn skin_on_mid_surface_does_not_turn_an_arch_off_its_borders() {
     for phase in [0.0, 4.0] {
         let target = arch(60, phase);
         for offset in [-1.0, 1.0] {
@@ -312,7 +312,7 @@ fn error_of(part: &TriMesh, target: &TriMesh, offset: f64) -> f64 {
         thickness: Some(1.0),
         ..AssessSettings::default()
     };
-    let held = held_by_rims(&source, &target, &outcome, &settings, &Monitor::silent());
+    let held = held_by_borders(&source, &target, &outcome, &settings, &Monitor::silent());
     let pose = held.unwrap().map(|held| held.target_from_source);
     let pose = pose.or_else(|| settled(&source, &target, &outcome.target_from_source, &settings));
     let pose = pose.unwrap_or(outcome.target_from_source);

@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 use serde_json::Value;
 use shapematch::formats::{Model, ReadOptions, read};
 use shapematch::monitor::Monitor;
-use shapematch::pipeline::map_bench::{ErrorRow, error_rows};
+use shapematch::pipeline::bench::map::{ErrorRow, error_rows};
 use shapematch::samples::{SamplePart, SampleSettings};
 
 fn shapematch(args: &[&str]) -> Output {

@@ -1,4 +1,4 @@
-//! More checks of the mapping against what is known: holes and rims, ridges, curved sheets, means, and
+//! More checks of the mapping against what is known: holes and borders, ridges, curved sheets, means, and
 //! what a small error of the pose does.
 
 use shapematch::geometry::{Point3, Similarity, Vector3};
@@ -24,7 +24,7 @@ fn plastic_of(mapped: &Mapped, element: usize) -> f64 {
 }
 
 #[test]
-fn a_hole_stays_empty_and_its_rim_keeps_its_values() {
+fn a_hole_stays_empty_and_its_border_keeps_its_values() {
     let centre = Point3::new(50.0, 30.0, 0.0);
     let blank = Blank {
         jitter: 0.0,

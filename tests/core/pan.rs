@@ -54,14 +54,14 @@ pub fn pan(pitch: f64) -> TriMesh {
             .any(|([cx, cy], r)| (x - cx).hypot(y - cy) < *r)
     };
     let mut triangles = Vec::new();
-    let mut on_rim = vec![[false; 2]; ((nx + 1) * (ny + 1)) as usize];
+    let mut on_border = vec![[false; 2]; ((nx + 1) * (ny + 1)) as usize];
     for j in 0..ny {
         for i in 0..nx {
             let corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
             let [a, b, c, d] = corners.map(|[i, j]| index(i, j));
             let cut = corners.iter().any(|&[i, j]| in_hole(at(i, j)));
             for v in [a, b, c, d] {
-                on_rim[v as usize][usize::from(cut)] = true;
+                on_border[v as usize][usize::from(cut)] = true;
             }
             if cut {
                 continue;
@@ -73,13 +73,17 @@ pub fn pan(pitch: f64) -> TriMesh {
             }
         }
     }
-    // Three vertices of one rim would span a triangle inside the hole.
-    triangles.retain(|corners| corners.iter().any(|&v| on_rim[v as usize] != [true, true]));
+    // Three vertices of one border would span a triangle inside the hole.
+    triangles.retain(|corners| {
+        corners
+            .iter()
+            .any(|&v| on_border[v as usize] != [true, true])
+    });
     let mut positions = Vec::new();
     for j in 0..=ny {
         for i in 0..=nx {
             let [mut x, mut y] = at(i, j);
-            if on_rim[index(i, j) as usize] == [true, true] {
+            if on_border[index(i, j) as usize] == [true, true] {
                 let ([cx, cy], r) = HOLES
                     .iter()
                     .copied()

@@ -3,11 +3,11 @@
 
 use shapematch::assess::Verdict;
 use shapematch::monitor::Monitor;
-use shapematch::pipeline::growth::growth;
-use shapematch::pipeline::growth_page::growth_page;
-use shapematch::pipeline::robustness::{Ending, RobustnessSettings, robustness};
-use shapematch::pipeline::robustness_page::page;
-use shapematch::pipeline::robustness_table::RobustnessTable;
+use shapematch::pipeline::bench::growth::growth;
+use shapematch::pipeline::bench::growth_page::growth_page;
+use shapematch::pipeline::bench::robustness::{Ending, RobustnessSettings, robustness};
+use shapematch::pipeline::bench::robustness_page::page;
+use shapematch::pipeline::bench::robustness_table::RobustnessTable;
 use shapematch::samples::SamplePart;
 use shapematch::samples::scenario::Scenario;
 
@@ -90,7 +90,7 @@ fn growth_tells_times_and_exponents_of_right_poses() {
 }
 
 /// Where a piece of a sliding part belongs is found along all of the part, and with an addendum around it
-/// rims that have no counterpart do not pull surfaces apart.
+/// borders that have no counterpart do not pull surfaces apart.
 #[test]
 fn pieces_of_parts_that_slide_are_found_along_all_of_the_part() {
     let run = |seed, part, scenario| {

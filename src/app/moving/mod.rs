@@ -293,10 +293,7 @@ fn align_centers(work: &mut Work<'_>) {
     let (Some(here), Some(there)) = (work.document.stamped_center(), crash_center(work)) else {
         return;
     };
-    let delta = Similarity {
-        translation: there - here,
-        ..Similarity::identity()
-    };
+    let delta = Similarity::from_translation(there - here);
     move_by(work, "Align centres".to_owned(), &delta);
 }
 

@@ -160,10 +160,7 @@ impl ModalMove {
     /// The motion so far, relative to the pose at the beginning.
     pub fn motion(&self, frame: &MoveFrame) -> Similarity {
         match self.kind {
-            MotionKind::Move => Similarity {
-                translation: self.translation(frame),
-                ..Similarity::identity()
-            },
+            MotionKind::Move => Similarity::from_translation(self.translation(frame)),
             MotionKind::Rotate => rotation_about(
                 &frame.pivot,
                 &self.rotation_axis(frame),

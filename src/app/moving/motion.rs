@@ -108,10 +108,7 @@ pub fn translation_along(direction: &Vector3, distance: f64) -> Similarity {
     if norm == 0.0 || !distance.is_finite() {
         return Similarity::identity();
     }
-    Similarity {
-        translation: direction * (distance / norm),
-        ..Similarity::identity()
-    }
+    Similarity::from_translation(direction * (distance / norm))
 }
 
 /// The rotation by `angle` radians about an axis through `pivot`, right-handed; a zero axis gives
@@ -123,11 +120,7 @@ pub fn rotation_about(pivot: &Point3, axis: &Vector3, angle: f64) -> Similarity 
     let rotation = *Rotation::from_axis_angle(&axis, angle)
         .to_rotation_matrix()
         .matrix();
-    Similarity {
-        rotation,
-        translation: pivot.coords - rotation * pivot.coords,
-        scale: 1.0,
-    }
+    Similarity::about(pivot, rotation)
 }
 
 /// Rotation as turns about x, then y, then z of the crash model, in degrees; `None` for a mirrored
@@ -145,12 +138,7 @@ pub fn turns_deg(pose: &Similarity) -> Option<[f64; 3]> {
 pub fn with_turns_deg(pose: &Similarity, turns: [f64; 3], pivot: &Point3) -> Similarity {
     let [x, y, z] = turns.map(f64::to_radians);
     let rotation = *nalgebra::Rotation3::from_euler_angles(x, y, z).matrix();
-    let image = pose.apply(pivot);
-    Similarity {
-        rotation,
-        translation: image.coords - rotation * pivot.coords * pose.scale,
-        scale: pose.scale,
-    }
+    Similarity { rotation, ..*pose }.taking(pivot, &pose.apply(pivot))
 }
 
 #[cfg(test)]

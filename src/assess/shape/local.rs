@@ -2,7 +2,7 @@
 //! most of the area says.
 
 use crate::assess::contact::Contact;
-use crate::assess::shape::ShapeEvidence;
+use crate::assess::fit::ShapeEvidence;
 use crate::geometry::{Point3, Vector3};
 use crate::registration::Surface;
 

@@ -2,9 +2,11 @@
 
 use std::f64::consts::PI;
 
-use super::super::{AssessSettings, Statements, statements};
+use super::super::statements::{Statements, statements};
+use super::super::tolerance::AssessSettings;
 use super::*;
-use crate::geometry::TriMesh;
+use crate::geometry::{Similarity, TriMesh};
+use crate::registration::Surface;
 use crate::text::Lengths;
 
 /// A hat section of 400 by 120 mm whose nodes are moved by `displace`.
@@ -63,30 +65,13 @@ fn bending_is_springback_and_nothing_else() {
 }
 
 #[test]
-fn springback_does_not_shrink_with_the_part() {
-    let plain = hat(40, |p| p);
-    let tolerance = ShapeTolerance::new(None, Some(1.5), plain.measures().diagonal, 1.0);
-    let shape = statement(&hat(37, bent(4.5)), &plain);
-    assert_eq!(shape.kind, ShapeKind::Deformed, "{shape:?}");
-    assert!(shape.reasons.is_empty(), "{shape:?}");
-    assert!(shape.springback > tolerance.springback, "{shape:?}");
-    // The pose of a straight part has the narrower limit, that of a bent one its bend besides.
-    assert_eq!(tolerance.of_pose(0.0, 1.0), tolerance.springback);
-    assert_eq!(tolerance.of_pose(0.5, 1.0), tolerance.springback + 0.5);
-    assert_eq!(tolerance.of_pose(9.0, 1.0), SPRINGBACK_MOST);
-    // Of a part of a hand's width two and a half millimetres are too much.
-    let small = ShapeTolerance::new(None, None, 80.0, 1.0).for_bends(80.0, 1.0);
-    assert!((small.springback - 1.6).abs() < 1e-12);
-}
-
-#[test]
 fn a_longer_part_and_a_higher_part_are_other_versions() {
     let plain = hat(40, |p| p);
     let longer = hat(40, |p| Point3::new(1.02 * p.x, p.y, p.z));
     let shape = statement(&longer, &plain);
     assert_eq!(shape.kind, ShapeKind::OtherVersion, "{shape:?}");
     assert!(
-        matches!(shape.reasons[0], ShapeReason::Rims { .. }),
+        matches!(shape.reasons[0], ShapeReason::Borders { .. }),
         "{shape:?}"
     );
     let higher = hat(40, |p| Point3::new(p.x, p.y, 1.12 * p.z));
@@ -233,7 +218,7 @@ fn another_trim_all_round_is_no_other_version_where_the_surface_says_so() {
     for cut in [[5.0, 5.0], [0.0, 6.0], [-4.0, -7.0]] {
         let (pose, shape) = stated(&panel(37, cut, 1.0), &plain);
         assert_eq!(shape.kind, ShapeKind::Same, "{shape:?}");
-        let apart = shape.rims.other_trim.unwrap();
+        let apart = shape.borders.other_trim.unwrap();
         let farthest = cut.map(f64::abs).into_iter().fold(0.0, f64::max);
         assert!((apart - farthest).abs() < 0.5, "{apart} {cut:?}");
         assert!(
@@ -245,7 +230,7 @@ fn another_trim_all_round_is_no_other_version_where_the_surface_says_so() {
     let flat = |cut: f64| sheet(40, [cut, cut], 1.0, |_, _| 0.0);
     let (_, shape) = stated(&flat(5.0), &flat(0.0));
     assert_eq!(shape.kind, ShapeKind::OtherVersion, "{shape:?}");
-    assert_eq!(shape.rims.other_trim, None);
+    assert_eq!(shape.borders.other_trim, None);
     // Larger in all directions is another version, whatever the outlines are like.
     let factor = 1.02;
     let larger = panel(37, [0.0, 0.0], 1.0).mesh().transformed(&Similarity {
@@ -300,7 +285,7 @@ fn edges_hold_half_a_tube_where_its_surface_does_not() {
 fn one_end_that_was_cut_elsewhere_is_told_with_its_place() {
     let plain = panel(80, [0.0, 0.0], 1.0);
     assert_eq!(
-        statement(&panel(37, [0.0, 0.0], 1.0), &plain).rims.apart,
+        statement(&panel(37, [0.0, 0.0], 1.0), &plain).borders.apart,
         None
     );
     // 6.25 mm are cut off half of one end, a twelfth of the outline.
@@ -314,7 +299,7 @@ fn one_end_that_was_cut_elsewhere_is_told_with_its_place() {
     let cut = TriMesh::new(points.to_vec(), triangles).unwrap();
     let shape = statement(&Surface::new(&cut, "source").unwrap(), &plain);
     assert!(shape.reasons.is_empty(), "{shape:?}");
-    let apart = shape.rims.apart.unwrap();
+    let apart = shape.borders.apart.unwrap();
     assert!((apart.by - 6.25).abs() < 0.5, "{apart:?}");
     assert!(
         apart.at.x > 480.0 && (-250.0..0.0).contains(&apart.at.y),
@@ -325,4 +310,14 @@ fn one_end_that_was_cut_elsewhere_is_told_with_its_place() {
         words.contains("trimmed differently at one place"),
         "{words}"
     );
+}
+
+#[test]
+fn springback_does_not_shrink_with_the_part() {
+    let plain = hat(40, |p| p);
+    let tolerance = ShapeTolerance::new(None, Some(1.5), plain.measures().diagonal, 1.0);
+    let shape = statement(&hat(37, bent(4.5)), &plain);
+    assert_eq!(shape.kind, ShapeKind::Deformed, "{shape:?}");
+    assert!(shape.reasons.is_empty(), "{shape:?}");
+    assert!(shape.springback > tolerance.springback, "{shape:?}");
 }

@@ -13,8 +13,8 @@ pub struct RejectRules {
     pub min_cos: f64,
     /// Partners farther away do not count.
     pub max_distance: f64,
-    /// Points that lie beyond the rim by more than this have no partner (Turk and Levoy 1994):
-    /// their closest point on the rim is not where they belong. Infinite switches the rule off.
+    /// Points that lie beyond the border by more than this have no partner (Turk and Levoy 1994):
+    /// their closest point on the border is not where they belong. Infinite switches the rule off.
     pub max_overhang: f64,
 }
 
@@ -29,7 +29,7 @@ impl Default for RejectRules {
 }
 
 impl RejectRules {
-    /// True if `moved`, whose closest point is `hit`, lies beyond the rim of the model.
+    /// True if `moved`, whose closest point is `hit`, lies beyond the border of the model.
     pub(crate) fn rejects(&self, model: &Surface, hit: &SurfaceHit, moved: &Point3) -> bool {
         if self.max_overhang.is_infinite() || !model.is_on_border(hit) {
             return false;

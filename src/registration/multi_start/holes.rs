@@ -4,19 +4,19 @@ use crate::geometry::{Point3, Similarity};
 use crate::registration::surface::Surface;
 use crate::search::PointTree;
 
-/// Points on the rims of holes that poses are compared with.
+/// Points on the borders of holes that poses are compared with.
 const N_POINTS: usize = 600;
-/// The rim of a hole counts as there within this share of the mean edge length: two meshes of one
+/// The border of a hole counts as there within this share of the mean edge length: two meshes of one
 /// hole cut its corners differently.
 const TOLERANCE: f64 = 0.5;
-/// Points that the other mesh's rims are asked at lie this share of the tolerance apart.
+/// Points that the other mesh's borders are asked at lie this share of the tolerance apart.
 const SPACING: f64 = 0.5;
 
-/// The rims of a mesh's holes as points in its own frame.
+/// The borders of a mesh's holes as points in its own frame.
 pub(crate) struct Holes {
     /// Evenly spread over the length.
     samples: Vec<Point3>,
-    /// The same rims more densely, to be asked.
+    /// The same borders more densely, to be asked.
     dense: PointTree,
 }
 
@@ -30,7 +30,7 @@ impl Holes {
             .collect();
         let length: f64 = segments.iter().map(|[a, b]| (b - a).norm()).sum();
         let spacing = SPACING * TOLERANCE * edge_length;
-        // Rims that are far longer than the mesh is fine would only cost memory.
+        // Borders that are far longer than the mesh is fine would only cost memory.
         let spacing = spacing.max(length / 200_000.0);
         Self {
             samples: along(&segments, length / N_POINTS as f64),
@@ -38,7 +38,7 @@ impl Holes {
         }
     }
 
-    /// Share of the length of these rims that has a rim of `other` beside it under a pose, 0 … 1;
+    /// Share of the length of these borders that has a border of `other` beside it under a pose, 0 … 1;
     /// `None` without holes.
     pub(crate) fn share_on(
         &self,

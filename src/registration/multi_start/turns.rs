@@ -113,11 +113,7 @@ impl Axis {
 
     fn turn(&self, angle: f64) -> Similarity {
         let rotation = Rotation::from_axis_angle(&self.direction, angle);
-        Similarity {
-            rotation: *rotation.to_rotation_matrix().matrix(),
-            translation: self.point.coords - rotation * self.point.coords,
-            scale: 1.0,
-        }
+        Similarity::about(&self.point, *rotation.to_rotation_matrix().matrix())
     }
 }
 

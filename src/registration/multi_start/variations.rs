@@ -16,11 +16,7 @@ pub(crate) fn mirror_images(choice: &DataChoice<'_>, candidate: &Candidate) -> V
         .map(|axis| {
             let normal: Vector3 = measures.principal_axes.column(axis).into();
             let rotation = Matrix3::identity() - normal * normal.transpose() * 2.0;
-            let mirror = Similarity {
-                rotation,
-                translation: measures.centroid.coords - rotation * measures.centroid.coords,
-                scale: 1.0,
-            };
+            let mirror = Similarity::about(&measures.centroid, rotation);
             variation(choice, candidate, &mirror, axis)
         })
         .collect()
@@ -34,12 +30,8 @@ pub(crate) fn twins(choice: &DataChoice<'_>, candidate: &Candidate) -> Vec<Start
         .map(|axis| {
             let direction = Unit::new_normalize(measures.principal_axes.column(axis).into());
             let rotation = Rotation::from_axis_angle(&direction, PI);
-            let shift = measures.centroid.coords - rotation * measures.centroid.coords;
-            let half_turn = Similarity {
-                rotation: *rotation.to_rotation_matrix().matrix(),
-                translation: shift,
-                scale: 1.0,
-            };
+            let rotation = *rotation.to_rotation_matrix().matrix();
+            let half_turn = Similarity::about(&measures.centroid, rotation);
             variation(choice, candidate, &half_turn, axis)
         })
         .collect()

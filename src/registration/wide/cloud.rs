@@ -102,10 +102,7 @@ impl Cloud {
 
     /// From the data's frame to that of the cloud.
     fn local_from_data(&self) -> Similarity {
-        let shift = Similarity {
-            translation: -self.center.coords,
-            ..Similarity::identity()
-        };
+        let shift = Similarity::from_translation(-self.center.coords);
         if self.is_mirrored {
             Similarity::mirror_x().after(&shift)
         } else {

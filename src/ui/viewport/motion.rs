@@ -165,8 +165,9 @@ fn between(from: &Similarity, to: &Similarity, center: &Point3, t: f64) -> Simil
     Similarity {
         rotation,
         scale,
-        translation: now.coords - scale * (rotation * center.coords),
+        ..*to
     }
+    .taking(center, &now)
 }
 
 #[cfg(test)]

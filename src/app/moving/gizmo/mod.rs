@@ -269,10 +269,9 @@ impl Drag {
                 rotation_about(&self.frame.pivot, &first, self.snapped.x)
             }
             Handle::Arrow(_) => translation_along(&first, self.snapped.x),
-            Handle::Square(_) | Handle::Dot => Similarity {
-                translation: first * self.snapped.x + second * self.snapped.y,
-                ..Similarity::identity()
-            },
+            Handle::Square(_) | Handle::Dot => {
+                Similarity::from_translation(first * self.snapped.x + second * self.snapped.y)
+            }
         }
     }
 

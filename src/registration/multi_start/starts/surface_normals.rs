@@ -1,7 +1,7 @@
 //! First poses that align the mean normals of both parts and rotate in steps about them.
 
 use super::{Start, StartKind, rotation_about};
-use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
+use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3, any_perpendicular};
 use crate::registration::surface::{Measures, Surface};
 
 /// Lays the source's area centroid on the target's and its mean normal on the target's (reversed
@@ -68,16 +68,6 @@ pub(super) fn align(from: &Place, to: &Place, flipped: bool, angle: f64) -> Simi
         &from.center,
         &to.center,
     )
-}
-
-/// A unit vector perpendicular to the unit vector `z`.
-fn any_perpendicular(z: &Vector3) -> Vector3 {
-    let other = if z.x.abs() < 0.7 {
-        Vector3::x()
-    } else {
-        Vector3::y()
-    };
-    (other - z * other.dot(z)).normalize()
 }
 
 pub(super) fn starts(

@@ -2,9 +2,9 @@
 
 use nalgebra::SVector;
 
-use super::super::contact::{Contacts, Six};
-use super::{Row, ShapeEvidence};
-use crate::geometry::{Matrix3, Point3, Vector3};
+use crate::assess::contact::{Contacts, Six};
+use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
+use crate::registration::Surface;
 
 /// Number of bends.
 pub(in crate::assess) const N_BENDS: usize = 7;
@@ -20,11 +20,12 @@ pub(in crate::assess) struct Bends {
 }
 
 impl Bends {
-    pub(in crate::assess) fn of(evidence: &ShapeEvidence<'_>) -> Self {
-        let axes = evidence.pose.rotation * evidence.source.measures().principal_axes;
-        let center = evidence.contacts.center;
+    /// Bends of the source under a pose, over the places where it meets the target.
+    pub(in crate::assess) fn of(source: &Surface, pose: &Similarity, contacts: &Contacts) -> Self {
+        let axes = pose.rotation * source.measures().principal_axes;
+        let center = contacts.center;
         let mut half = [f64::MIN_POSITIVE; 3];
-        for contact in &evidence.contacts.list {
+        for contact in &contacts.list {
             let arm = contact.point - center;
             for (k, half) in half.iter_mut().enumerate() {
                 *half = half.max(axes.column(k).dot(&arm).abs());
@@ -33,14 +34,13 @@ impl Bends {
         Self { center, axes, half }
     }
 
-    /// The rigid motion in what the bends of a solution do, in least squares over the area.
-    pub(super) fn rigid_part(&self, found: &Row, contacts: &Contacts) -> Six {
-        let sizes = found.fixed_rows::<N_BENDS>(7);
+    /// The rigid motion in what bends of these sizes do, in least squares over the area.
+    pub(super) fn rigid_part(&self, sizes: &SVector<f64, N_BENDS>, contacts: &Contacts) -> Six {
         let (mut inertia, mut moment) = (Matrix3::zeros(), Vector3::zeros());
         let (mut sum, mut total) = (Vector3::zeros(), 0.0);
         for contact in &contacts.list {
             let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
-            let moved = axes.map(|axis| self.row(&contact.point, &axis).dot(&sizes));
+            let moved = axes.map(|axis| self.row(&contact.point, &axis).dot(sizes));
             let moved = Vector3::from(moved);
             let arm = (contact.point - contacts.center) / contacts.radius;
             let weight = contact.weight;
@@ -56,7 +56,7 @@ impl Bends {
         Six::from([turn.x, turn.y, turn.z, shift.x, shift.y, shift.z])
     }
 
-    /// How much each of the bends, of size 1 at the rim, moves a place along a direction.
+    /// How much each of the bends, of size 1 at the border, moves a place along a direction.
     pub(in crate::assess) fn row(
         &self,
         point: &Point3,

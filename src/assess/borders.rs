@@ -1,25 +1,24 @@
 //! Borders and holes of two parts under a pose: do they lie where they belong? A part that is three
-//! percent longer than its counterpart fits its surface well and misses its rims.
+//! percent longer than its counterpart fits its surface well and misses its borders.
 
-use super::contact::robust_weights;
-use super::is_source_smaller;
-use super::rim::{Place, Rim, along, ragged, rims_of};
-use super::shape::ShapeTolerance;
+use super::border_curve::{BorderCurve, Place, along, curves_of, ragged};
+use super::contact::{quantile, robust_weights};
+use super::tolerance::{ShapeTolerance, is_source_smaller};
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::{ClosestPoint, PointTree};
 
-/// Rims are cut into straight edges; so much of their mean edge length is no deviation.
-const RIM_FACETS: f64 = 0.06;
+/// Borders are cut into straight edges; so much of their mean edge length is no deviation.
+const BORDER_FACETS: f64 = 0.06;
 /// So many times the median step aside is none either.
 const RAGGED: f64 = 2.5;
 
-/// Share of its weight that a pair of rims keeps at least.
+/// Share of its weight that a pair of borders keeps at least.
 const LEAST_WEIGHT: f64 = 1e-3;
 
-/// Places along the rims of the smaller part that are compared.
+/// Places along the borders of the smaller part that are compared.
 const N_PLACES: usize = 600;
-/// Rims that run in directions farther apart than this are not the same: cosine of 37°.
+/// Borders that run in directions farther apart than this are not the same: cosine of 37°.
 const PARALLEL: f64 = 0.8;
 /// Holes whose radii differ by more than this factor are not the same hole.
 const SAME_RADIUS: f64 = 1.6;
@@ -28,41 +27,44 @@ const SAME_RADIUS: f64 = 1.6;
 const ANOTHER_KIND: f64 = 4.0;
 /// A place is paired if nothing nearer than this share of its distance is beside its counterpart.
 const MUTUAL: f64 = 0.7;
-/// Points of the other part's rims in the tree.
+/// Where fewer of the smaller part's borders lie beside borders of the other, the parts are trimmed differently
+/// and borders say nothing about the shape.
+pub(super) const LEAST_PAIRED: f64 = 0.4;
+/// Points of the other part's borders in the tree.
 const N_DENSE: f64 = 40_000.0;
 
-/// A place on a rim of one part beside a rim of the other, in the target's frame.
+/// A place on a border of one part beside a border of the other, in the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct RimPair {
+pub(super) struct BorderPair {
     pub(super) point: Point3,
     /// Unit direction out of the target's sheet, within it.
     pub(super) across: Vector3,
-    /// How far the source's rim lies outside the target's.
+    /// How far the source's border lies outside the target's.
     pub(super) gap: f64,
     /// Area that it stands for: length times an edge.
     pub(super) weight: f64,
-    /// Which rims they are.
-    pub(super) kind: RimKind,
+    /// Which borders they are.
+    pub(super) kind: PairKind,
 }
 
-/// Which rims lie beside each other.
+/// Which borders lie beside each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum RimKind {
+pub(super) enum PairKind {
     /// Two outlines.
     Outlines,
-    /// Two rims of holes.
+    /// Two borders of holes.
     Holes,
-    /// An outline and the rim of a hole: a cut may run along a hole of the other part by chance.
+    /// An outline and the border of a hole: a cut may run along a hole of the other part by chance.
     Mixed,
 }
 
 /// A hole in the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct RimHole {
+pub(super) struct Hole {
     pub(super) center: Point3,
-    /// Mean distance of its rim from the centre.
+    /// Mean distance of its border from the centre.
     pub(super) radius: f64,
-    /// Of its rim.
+    /// Of its border.
     length: f64,
     /// Of the sheet around it.
     pub(super) normal: Vector3,
@@ -72,7 +74,7 @@ pub(super) struct RimHole {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct HolePair {
     /// The target's.
-    pub(super) hole: RimHole,
+    pub(super) hole: Hole,
     /// From its middle to that of the source's.
     pub(super) off: Vector3,
     /// Difference of the radii.
@@ -80,7 +82,7 @@ pub(super) struct HolePair {
 }
 
 impl HolePair {
-    fn of(of_source: &RimHole, of_target: &RimHole) -> Self {
+    fn of(of_source: &Hole, of_target: &Hole) -> Self {
         Self {
             hole: *of_target,
             off: of_source.center - of_target.center,
@@ -89,44 +91,44 @@ impl HolePair {
     }
 }
 
-/// How the rims of both parts lie.
+/// How the borders of both parts lie.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Rims {
-    pairs: Vec<RimPair>,
+pub(super) struct Borders {
+    pairs: Vec<BorderPair>,
     /// Holes of both.
     pub(super) holes: Vec<HolePair>,
     /// Holes that overlap and are not the same: one was moved by more than its radius, or has another size.
     pub(super) overlapping: Vec<HolePair>,
     /// Holes of the source where the target is solid, and the other way round.
-    pub(super) missing: [Vec<RimHole>; 2],
+    pub(super) missing: [Vec<Hole>; 2],
     /// Mean edge length of the coarser mesh.
     pub(super) edge: f64,
-    /// How far the rims of the more ragged part step aside from one node to the next, as where elements
+    /// How far the borders of the more ragged part step aside from one node to the next, as where elements
     /// were left out instead of cut.
     ragged: f64,
-    /// Length of all rims of the smaller part.
+    /// Length of all borders of the smaller part.
     length: f64,
 }
 
-/// The rims of two parts, ready to be compared under one pose after another.
+/// The borders of two parts, ready to be compared under one pose after another.
 #[derive(Debug, Clone)]
-pub(super) struct RimComparison<'a> {
+pub(super) struct BorderComparison<'a> {
     /// Source and target.
     surfaces: [&'a Surface; 2],
-    rims: [Vec<Rim>; 2],
-    /// Whether the source is the smaller part, along whose rims places are compared.
+    borders: [Vec<BorderCurve>; 2],
+    /// Whether the source is the smaller part, along whose borders places are compared.
     of_source: bool,
-    /// Distance in target units beyond which rims have nothing to do with each other.
+    /// Distance in target units beyond which borders have nothing to do with each other.
     near: f64,
     /// What is the same under every pose.
-    still: Rims,
-    /// `None` where a part has no rims.
-    places: Option<RimPlaces>,
+    still: Borders,
+    /// `None` where a part has no borders.
+    places: Option<BorderPlaces>,
 }
 
-/// Places along the rims of both parts, each in the frame of its part.
+/// Places along the borders of both parts, each in the frame of its part.
 #[derive(Debug, Clone)]
-struct RimPlaces {
+struct BorderPlaces {
     /// Along the smaller part, and how far apart.
     own: Vec<Place>,
     step: f64,
@@ -138,36 +140,40 @@ struct RimPlaces {
     spacing: f64,
 }
 
-impl<'a> RimComparison<'a> {
+impl<'a> BorderComparison<'a> {
     /// Prepares for poses of this scale. O(border edges).
     pub(super) fn new(surfaces: [&'a Surface; 2], scale: f64, near: f64) -> Self {
         let [source, target] = surfaces;
-        let rims = surfaces.map(rims_of);
+        let borders = surfaces.map(curves_of);
         let of_source = is_source_smaller(source, target, scale);
         let edge = source.measures().mean_edge_length * scale;
         let [own, other] = if of_source { [0, 1] } else { [1, 0] };
         let units = [scale, 1.0];
-        let still = Rims {
+        let still = Borders {
             edge: edge.max(target.measures().mean_edge_length),
-            ragged: ragged(&rims[0], scale).max(ragged(&rims[1], 1.0)),
-            length: units[own] * rims[own].iter().map(|rim| rim.length).sum::<f64>(),
-            ..Rims::default()
+            ragged: ragged(&borders[0], scale).max(ragged(&borders[1], 1.0)),
+            length: units[own] * borders[own].iter().map(|border| border.length).sum::<f64>(),
+            ..Borders::default()
         };
         Self {
-            places: RimPlaces::new((&rims[own], units[own]), (&rims[other], units[other]), near),
+            places: BorderPlaces::new(
+                (&borders[own], units[own]),
+                (&borders[other], units[other]),
+                near,
+            ),
             surfaces,
-            rims,
+            borders,
             of_source,
             near,
             still,
         }
     }
 
-    /// Compares the rims that lie near each other under a pose. O(border edges + near triangles).
-    pub(super) fn at(&self, pose: &Similarity) -> Rims {
+    /// Compares the borders that lie near each other under a pose. O(border edges + near triangles).
+    pub(super) fn at(&self, pose: &Similarity) -> Borders {
         let still = Similarity::identity();
         let places = self.places.iter();
-        let mut pairs: Vec<RimPair> = if self.of_source {
+        let mut pairs: Vec<BorderPair> = if self.of_source {
             places
                 .flat_map(|p| p.pairs(pose, &still, self.near))
                 .collect()
@@ -182,24 +188,25 @@ impl<'a> RimComparison<'a> {
                 pair.gap = -pair.gap;
             }
         }
-        let mut found = Rims {
+        let mut found = Borders {
             pairs,
             ..self.still.clone()
         };
-        let rims = self.rims.each_ref().map(Vec::as_slice);
-        found.compare_holes(self.surfaces, rims, pose, self.near);
+        let borders = self.borders.each_ref().map(Vec::as_slice);
+        found.compare_holes(self.surfaces, borders, pose, self.near);
         found
     }
 }
 
-impl RimPlaces {
-    /// Of rims of the smaller and of the other part, each with its unit in target units.
+impl BorderPlaces {
+    /// Of borders of the smaller and of the other part, each with its unit in target units.
     fn new(
-        (own, unit): (&[Rim], f64),
-        (other, other_unit): (&[Rim], f64),
+        (own, unit): (&[BorderCurve], f64),
+        (other, other_unit): (&[BorderCurve], f64),
         near: f64,
     ) -> Option<Self> {
-        let length = |rims: &[Rim]| rims.iter().map(|rim| rim.length).sum::<f64>();
+        let length =
+            |borders: &[BorderCurve]| borders.iter().map(|border| border.length).sum::<f64>();
         let (own_length, other_length) = (length(own), length(other));
         if own_length <= 0.0 || other_length <= 0.0 {
             return None;
@@ -222,13 +229,13 @@ impl RimPlaces {
         })
     }
 
-    /// Places along the smaller part's rims beside those of the other.
+    /// Places along the smaller part's borders beside those of the other.
     fn pairs(
         &self,
         target_from_own: &Similarity,
         target_from_other: &Similarity,
         near: f64,
-    ) -> Vec<RimPair> {
+    ) -> Vec<BorderPair> {
         let other_from_own = target_from_other.inverse().after(target_from_own);
         let own_from_other = other_from_own.inverse();
         let (unit, other_unit) = (target_from_own.scale, target_from_other.scale);
@@ -249,15 +256,15 @@ impl RimPlaces {
                 return None;
             }
             let across = beside.tangent.cross(&beside.normal);
-            Some(RimPair {
+            Some(BorderPair {
                 gap: (place.point - beside.point).dot(&across),
                 point: beside.point,
                 across,
                 weight: self.step * unit,
                 kind: match (place.is_hole, beside.is_hole) {
-                    (true, true) => RimKind::Holes,
-                    (false, false) => RimKind::Outlines,
-                    _ => RimKind::Mixed,
+                    (true, true) => PairKind::Holes,
+                    (false, false) => PairKind::Outlines,
+                    _ => PairKind::Mixed,
                 },
             })
         };
@@ -265,10 +272,10 @@ impl RimPlaces {
     }
 }
 
-impl Rims {
-    /// Compares the rims that lie within `near` of each other. O(border edges + near triangles).
+impl Borders {
+    /// Compares the borders that lie within `near` of each other. O(border edges + near triangles).
     pub(super) fn find(source: &Surface, target: &Surface, pose: &Similarity, near: f64) -> Self {
-        RimComparison::new([source, target], pose.scale, near).at(pose)
+        BorderComparison::new([source, target], pose.scale, near).at(pose)
     }
 
     /// Pairs of holes that are the same but for a little, then those that overlap.
@@ -276,12 +283,19 @@ impl Rims {
         self.holes.iter().chain(&self.overlapping)
     }
 
-    pub(super) fn pairs(&self) -> &[RimPair] {
+    /// What 90 % of the pairs do not exceed of these distances across them, one for each pair.
+    pub(super) fn distance_of_most(&self, left: &[f64]) -> f64 {
+        let sizes = left.iter().map(|left| left.abs());
+        let sizes = sizes.zip(self.pairs.iter().map(|p| p.weight));
+        quantile(&mut sizes.collect::<Vec<_>>(), 0.9)
+    }
+
+    pub(super) fn pairs(&self) -> &[BorderPair] {
         &self.pairs
     }
 
-    /// The rims without those pairs that are not wanted; each is given with its number.
-    pub(super) fn filtered(&self, is_wanted: impl Fn(usize, &RimPair) -> bool) -> Self {
+    /// The borders without those pairs that are not wanted; each is given with its number.
+    pub(super) fn filtered(&self, is_wanted: impl Fn(usize, &BorderPair) -> bool) -> Self {
         let pairs = self.pairs.iter().enumerate();
         let wanted = pairs.filter(|(i, pair)| is_wanted(*i, pair));
         Self {
@@ -290,18 +304,18 @@ impl Rims {
         }
     }
 
-    /// Distance between rims that says nothing about the parts.
+    /// Distance between borders that says nothing about the parts.
     pub(super) fn unremarkable(&self) -> f64 {
-        RIM_FACETS * self.edge + RAGGED * self.ragged
+        BORDER_FACETS * self.edge + RAGGED * self.ragged
     }
 
-    /// How far apart rims may lie: what facets and ragged trims do to them has nothing to do with how the
+    /// How far apart borders may lie: what facets and ragged trims do to them has nothing to do with how the
     /// parts differ.
     pub(super) fn limit(&self, tolerance: &ShapeTolerance) -> f64 {
         tolerance.remainder.hypot(self.unremarkable())
     }
 
-    /// Share of the smaller part's rims that lie beside rims of the other.
+    /// Share of the smaller part's borders that lie beside borders of the other.
     pub(super) fn share(&self) -> f64 {
         let paired = self.pairs.iter().map(|p| p.weight).sum::<f64>() / self.edge;
         if self.length > 0.0 {
@@ -311,7 +325,7 @@ impl Rims {
         }
     }
 
-    /// Length of the rims of holes where the other part is solid, as a share of all rims of the smaller
+    /// Length of the borders of holes where the other part is solid, as a share of all borders of the smaller
     /// part.
     pub(super) fn missing_share(&self) -> f64 {
         let missing = self.missing.iter().flatten();
@@ -326,12 +340,12 @@ impl Rims {
     /// The pairs' weights, less for those that lie far apart beside the others.
     pub(super) fn weights(&self, noise: f64) -> Vec<f64> {
         let gaps: Vec<f64> = self.pairs.iter().map(|p| p.gap).collect();
-        // Ragged rims know a place only as well as their steps are small, and all to one side.
-        let known = (RIM_FACETS * self.edge / self.unremarkable()).powi(2);
+        // Ragged borders know a place only as well as their steps are small, and all to one side.
+        let known = (BORDER_FACETS * self.edge / self.unremarkable()).powi(2);
         let areas: Vec<f64> = self.pairs.iter().map(|p| known * p.weight).collect();
         let mut weights = robust_weights(&gaps, &areas, noise.max(self.unremarkable()));
         for (weight, area) in weights.iter_mut().zip(&areas) {
-            // Where no surface holds the part, rims do, however far apart.
+            // Where no surface holds the part, borders do, however far apart.
             *weight = weight.max(LEAST_WEIGHT * area);
         }
         weights
@@ -340,21 +354,22 @@ impl Rims {
     fn compare_holes(
         &mut self,
         surfaces: [&Surface; 2],
-        rims: [&[Rim]; 2],
+        borders: [&[BorderCurve]; 2],
         pose: &Similarity,
         near: f64,
     ) {
         let still = Similarity::identity();
-        let [of_source, of_target] = [(rims[0], pose), (rims[1], &still)].map(|(rims, pose)| {
-            let holes = rims.iter().filter(|rim| rim.is_hole);
-            holes.map(|rim| hole(rim, pose)).collect::<Vec<_>>()
-        });
+        let [of_source, of_target] =
+            [(borders[0], pose), (borders[1], &still)].map(|(borders, pose)| {
+                let holes = borders.iter().filter(|border| border.is_hole);
+                holes.map(|border| hole(border, pose)).collect::<Vec<_>>()
+            });
         let mut is_used = vec![false; of_target.len()];
         let mut alone = Vec::new();
         for hole in of_source {
             let candidates = of_target.iter().enumerate().filter(|(i, _)| !is_used[*i]);
-            let off = |other: &RimHole| (other.center - hole.center).norm();
-            let same_size = |other: &RimHole| {
+            let off = |other: &Hole| (other.center - hole.center).norm();
+            let same_size = |other: &Hole| {
                 let ratio = other.radius / hole.radius;
                 ratio < SAME_RADIUS && ratio * SAME_RADIUS > 1.0
             };
@@ -371,7 +386,7 @@ impl Rims {
         }
         let back = pose.inverse();
         let left = of_target.iter().zip(&is_used).filter(|(_, used)| !**used);
-        let left: Vec<RimHole> = left.map(|(hole, _)| *hole).collect();
+        let left: Vec<Hole> = left.map(|(hole, _)| *hole).collect();
         let [(of_source, mut open_in_target), (of_target, open_in_source)] = [
             solid_at(alone, surfaces[1], &still, 1.0, near),
             solid_at(left, surfaces[0], &back, pose.scale, near),
@@ -391,7 +406,7 @@ impl Rims {
 }
 
 /// Whether two holes cross each other, or lie about one middle, and are of one kind.
-fn overlaps(hole: &RimHole, other: &RimHole) -> bool {
+fn overlaps(hole: &Hole, other: &Hole) -> bool {
     let [small, large] = if hole.radius < other.radius {
         [hole.radius, other.radius]
     } else {
@@ -405,13 +420,13 @@ fn overlaps(hole: &RimHole, other: &RimHole) -> bool {
 
 /// The holes at whose middle the other part is solid, and the rest.
 fn solid_at(
-    holes: Vec<RimHole>,
+    holes: Vec<Hole>,
     other: &Surface,
     other_from_target: &Similarity,
     unit: f64,
     near: f64,
-) -> (Vec<RimHole>, Vec<RimHole>) {
-    let is_solid = |hole: &RimHole| {
+) -> (Vec<Hole>, Vec<Hole>) {
+    let is_solid = |hole: &Hole| {
         let at = other_from_target.apply(&hole.center);
         // Over a curved sheet the middle of a hole floats a little.
         let reach = (0.5 * hole.radius + near) / unit;
@@ -427,13 +442,13 @@ fn solid_at(
     holes.into_iter().partition(is_solid)
 }
 
-fn hole(rim: &Rim, target_from_rim: &Similarity) -> RimHole {
-    let normal = rim.normal().try_normalize(0.0).unwrap_or_default();
-    RimHole {
-        center: target_from_rim.apply(&rim.center),
-        radius: rim.radius() * target_from_rim.scale,
-        length: rim.length * target_from_rim.scale,
-        normal: target_from_rim.rotate(&normal),
+fn hole(border: &BorderCurve, target_from_border: &Similarity) -> Hole {
+    let normal = border.normal().try_normalize(0.0).unwrap_or_default();
+    Hole {
+        center: target_from_border.apply(&border.center),
+        radius: border.radius() * target_from_border.scale,
+        length: border.length * target_from_border.scale,
+        normal: target_from_border.rotate(&normal),
     }
 }
 
@@ -468,30 +483,30 @@ mod tests {
     }
 
     #[test]
-    fn a_longer_part_misses_its_rims_and_a_shifted_hole_is_found() {
+    fn a_longer_part_misses_its_borders_and_a_shifted_hole_is_found() {
         let still = Similarity::identity();
         let (plain, longer, moved) = (sheet(30, 5), sheet(32, 5), sheet(30, 6));
-        let least = |rims: &Rims| rims.pairs.iter().map(|p| p.gap).fold(0.0, f64::min);
-        let same = Rims::find(&plain, &plain, &still, 3.0);
+        let least = |borders: &Borders| borders.pairs.iter().map(|p| p.gap).fold(0.0, f64::min);
+        let same = Borders::find(&plain, &plain, &still, 3.0);
         assert!(same.pairs.len() > 500 && same.pairs.iter().all(|p| p.gap == 0.0));
         assert_eq!(same.holes.len(), 1);
-        let other = Rims::find(&plain, &longer, &still, 3.0);
+        let other = Borders::find(&plain, &longer, &still, 3.0);
         assert!((least(&other) + 2.0).abs() < 1e-9);
-        let hole = Rims::find(&plain, &moved, &still, 3.0);
+        let hole = Borders::find(&plain, &moved, &still, 3.0);
         assert_eq!(hole.holes.len(), 1);
         assert!((hole.holes[0].off + Vector3::x()).norm() < 1e-9);
     }
 
     #[test]
-    fn noise_that_bends_every_edge_hides_no_rim_and_widens_no_hole() {
+    fn noise_that_bends_every_edge_hides_no_border_and_widens_no_hole() {
         let still = Similarity::identity();
         let (plain, noisy) = (sheet(30, 5), noisy_sheet(30, 5, 0.8));
         for pair in [[&plain, &noisy], [&noisy, &plain]] {
-            let rims = Rims::find(pair[0], pair[1], &still, 3.0);
-            assert!(rims.share() > 0.95, "{}", rims.share());
-            assert!(rims.pairs.iter().all(|p| p.gap.abs() < 0.6));
-            assert_eq!(rims.holes.len(), 1);
-            assert!(rims.holes[0].wider < 0.15, "{}", rims.holes[0].wider);
+            let borders = Borders::find(pair[0], pair[1], &still, 3.0);
+            assert!(borders.share() > 0.95, "{}", borders.share());
+            assert!(borders.pairs.iter().all(|p| p.gap.abs() < 0.6));
+            assert_eq!(borders.holes.len(), 1);
+            assert!(borders.holes[0].wider < 0.15, "{}", borders.holes[0].wider);
         }
     }
 
@@ -500,9 +515,9 @@ mod tests {
         let still = Similarity::identity();
         let plain = sheet(30, 5);
         for shift in 1..=12 {
-            let rims = Rims::find(&plain, &sheet(30, 5 + shift), &still, 3.0);
-            let off = rims.all_holes().map(|pair| pair.off.norm()).next();
-            let n_alone = rims.missing.each_ref().map(Vec::len);
+            let borders = Borders::find(&plain, &sheet(30, 5 + shift), &still, 3.0);
+            let off = borders.all_holes().map(|pair| pair.off.norm()).next();
+            let n_alone = borders.missing.each_ref().map(Vec::len);
             match off {
                 Some(off) => assert!((off - shift as f64).abs() < 1e-9 && n_alone == [0, 0]),
                 None => assert_eq!(n_alone, [1, 1], "{shift}"),
@@ -512,7 +527,7 @@ mod tests {
 
     #[test]
     fn holes_that_overlap_are_moved_or_resized_but_no_pilot_hole_is() {
-        let hole = |x: f64, radius: f64| RimHole {
+        let hole = |x: f64, radius: f64| Hole {
             center: Point3::new(x, 0.0, 0.0),
             radius,
             length: 0.0,
@@ -535,7 +550,7 @@ mod tests {
                 );
             }
         }
-        let steep = RimHole {
+        let steep = Hole {
             normal: Vector3::x(),
             ..hole(1.0, 6.0)
         };
@@ -546,8 +561,8 @@ mod tests {
     fn holes_on_different_sides_are_missing_both_ways() {
         let still = Similarity::identity();
         let (left, right) = (sheet(30, 3), sheet(30, 22));
-        let rims = Rims::find(&left, &right, &still, 3.0);
-        assert!(rims.holes.is_empty());
-        assert_eq!(rims.missing.each_ref().map(Vec::len), [1, 1]);
+        let borders = Borders::find(&left, &right, &still, 3.0);
+        assert!(borders.holes.is_empty());
+        assert_eq!(borders.missing.each_ref().map(Vec::len), [1, 1]);
     }
 }

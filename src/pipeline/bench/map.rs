@@ -6,10 +6,6 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::load::{LoadSettings, LoadedPart, load_from};
-use super::map::{MapRecipe, MapRun, PlacedPart, PoseOrigin, map_parts};
-use super::process::{self, resident_bytes, with_peak};
-use super::{PipelineError, millis_since};
 use crate::formats::Memory;
 use crate::formats::keyword::card::Layout;
 use crate::formats::keyword::state_cards::{ShellState, StateFormat, write_states};
@@ -19,6 +15,10 @@ use crate::mapping::{
     RuleKind, ShellMesh, SourceHistory, SourcePart, TargetPart, map, map_back,
 };
 use crate::monitor::Monitor;
+use crate::pipeline::load::{LoadSettings, LoadedPart, load_from};
+use crate::pipeline::map::{MapRecipe, MapRun, PlacedPart, PoseOrigin, map_parts};
+use crate::pipeline::process::{self, resident_bytes, with_peak};
+use crate::pipeline::{PipelineError, millis_since};
 use crate::samples::{
     self, SampleMesh, SamplePart, SampleSettings, ShellForming, crash_means, stamped_means,
 };

@@ -6,13 +6,13 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::load::{LoadSettings, LoadedPart, prepare};
-use super::match_parts::{MatchRecipe, match_parts};
-use super::{PipelineError, millis_since};
 use crate::assess::Verdict;
 use crate::formats::Model;
 use crate::geometry::Similarity;
 use crate::monitor::Monitor;
+use crate::pipeline::load::{LoadSettings, LoadedPart, prepare};
+use crate::pipeline::match_parts::{MatchRecipe, match_parts};
+use crate::pipeline::{PipelineError, millis_since};
 use crate::role::PerRole;
 use crate::samples::{SamplePart, SampleSettings, generate};
 

@@ -2,12 +2,18 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::{N, Row};
+use super::bends::N_BENDS;
 use crate::assess::contact::solve;
+
+/// Unknowns of the fit: a rigid motion, an offset, and the bends.
+pub(in crate::assess) const N_SMOOTH: usize = 7 + N_BENDS;
+
+/// One row of the fit.
+pub(in crate::assess) type Row = SVector<f64, N_SMOOTH>;
 
 /// Normal equations of the fit.
 pub(super) struct Equations {
-    pub(super) matrix: SMatrix<f64, N, N>,
+    pub(super) matrix: SMatrix<f64, N_SMOOTH, N_SMOOTH>,
     pub(super) right: Row,
 }
 
@@ -36,13 +42,13 @@ impl Equations {
 }
 
 /// Share of the offset's column that lies outside the span of all others.
-pub(super) fn own_share(matrix: &SMatrix<f64, N, N>) -> f64 {
+pub(super) fn own_share(matrix: &SMatrix<f64, N_SMOOTH, N_SMOOTH>) -> f64 {
     let whole = matrix[(6, 6)];
     if whole <= 0.0 {
         return 0.0;
     }
     let mut others = *matrix;
-    let mut mixed: SVector<f64, N> = matrix.column(6).into();
+    let mut mixed: SVector<f64, N_SMOOTH> = matrix.column(6).into();
     others.row_mut(6).fill(0.0);
     others.column_mut(6).fill(0.0);
     mixed[6] = 0.0;

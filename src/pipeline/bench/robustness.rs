@@ -3,11 +3,11 @@
 
 use std::time::Instant;
 
-use super::match_parts::settle;
-use super::{PipelineError, millis_since};
 use crate::assess::{self, AssessSettings, Assessment, PoseKind, ShapeKind, Verdict};
 use crate::geometry::Similarity;
 use crate::monitor::Monitor;
+use crate::pipeline::match_parts::settle;
+use crate::pipeline::{PipelineError, millis_since};
 use crate::registration::{self, MatchInput, MatchSettings, Surface};
 use crate::samples::SamplePart;
 use crate::samples::scenario::{Scenario, ScenarioPair};
@@ -240,7 +240,7 @@ fn ending(
     }
 }
 
-/// Distance that 99 % of the smaller part's nodes do not exceed. Its rim counts too: where it leaves the
+/// Distance that 99 % of the smaller part's nodes do not exceed. Its border counts too: where it leaves the
 /// larger part, distances grow.
 fn smaller_part_distance(source: &Surface, target: &Surface, pose: &Similarity) -> f64 {
     let of_source = source.measures().area <= target.measures().area;

@@ -1,17 +1,17 @@
-//! The rims of one part: its closed borders, with places along them, and the size of its holes.
+//! The closed borders of one part as curves, with places along them, and the size of its holes.
 
 use crate::geometry::{Border, Point3, Similarity, Vector3};
 use crate::registration::Surface;
 
-/// Edges to each side that give a ragged rim its direction, as far as they are an eighth of it.
+/// Edges to each side that give a ragged border its direction, as far as they are an eighth of it.
 const SMOOTHED: usize = 2;
-/// A rim is ragged if most of its edges turn from the one before by so much more than around a circle: noise of
+/// A border is ragged if most of its edges turn from the one before by so much more than around a circle: noise of
 /// a tenth of their length, which hides their direction. In degrees.
 const RAGGED_TURN: f64 = 10.0;
 
-/// One rim in its part's own frame.
+/// A closed border in its part's own frame.
 #[derive(Debug, Clone)]
-pub(super) struct Rim {
+pub(super) struct BorderCurve {
     points: Vec<Point3>,
     normals: Vec<Vector3>,
     /// Its middle by length.
@@ -20,7 +20,7 @@ pub(super) struct Rim {
     pub(super) is_hole: bool,
 }
 
-/// A place along a rim.
+/// A place along a border.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub(super) point: Point3,
@@ -30,20 +30,20 @@ pub(super) struct Place {
     pub(super) is_hole: bool,
 }
 
-/// About `n` places in the target's frame along those rims of a part that are wanted: of holes or of
+/// About `n` places in the target's frame along those borders of a part that are wanted: of holes or of
 /// trims.
 pub(super) fn places(
     (surface, target_from_surface): (&Surface, &Similarity),
     n: usize,
     is_wanted: impl Fn(bool) -> bool,
 ) -> Vec<Place> {
-    let mut rims = rims_of(surface);
-    rims.retain(|rim| is_wanted(rim.is_hole));
-    let length: f64 = rims.iter().map(|rim| rim.length).sum();
+    let mut borders = curves_of(surface);
+    borders.retain(|border| is_wanted(border.is_hole));
+    let length: f64 = borders.iter().map(|border| border.length).sum();
     if length <= 0.0 {
         return Vec::new();
     }
-    let found = along(&rims, length / n as f64).into_iter();
+    let found = along(&borders, length / n as f64).into_iter();
     found
         .map(|place| place.moved(target_from_surface))
         .collect()
@@ -51,7 +51,7 @@ pub(super) fn places(
 
 impl Place {
     pub(super) fn moved(self, pose: &Similarity) -> Self {
-        // A mirror turns the sense in which a rim is walked along.
+        // A mirror turns the sense in which a border is walked along.
         let sense = if pose.is_mirrored() { -1.0 } else { 1.0 };
         Self {
             point: pose.apply(&self.point),
@@ -62,8 +62,8 @@ impl Place {
     }
 }
 
-impl Rim {
-    /// Mean distance from its middle. Noise makes a rim longer, and hardly changes this.
+impl BorderCurve {
+    /// Mean distance from its middle. Noise makes a border longer, and hardly changes this.
     pub(super) fn radius(&self) -> f64 {
         let n = self.points.len();
         let (mut sum, mut length) = (0.0, 0.0);
@@ -115,16 +115,16 @@ impl Rim {
     }
 }
 
-pub(super) fn along(rims: &[Rim], spacing: f64) -> Vec<Place> {
+pub(super) fn along(borders: &[BorderCurve], spacing: f64) -> Vec<Place> {
     let mut places = Vec::new();
     let mut until_next = 0.5 * spacing;
-    for rim in rims {
-        let n = rim.points.len();
-        let reach = rim.smoothed();
+    for border in borders {
+        let n = border.points.len();
+        let reach = border.smoothed();
         for i in 0..n {
-            let (a, b) = (rim.points[i], rim.points[(i + 1) % n]);
+            let (a, b) = (border.points[i], border.points[(i + 1) % n]);
             let length = (b - a).norm();
-            let (tangent, normal) = rim.directions(i, reach);
+            let (tangent, normal) = border.directions(i, reach);
             let mut at = until_next;
             while at < length {
                 let t = at / length;
@@ -132,7 +132,7 @@ pub(super) fn along(rims: &[Rim], spacing: f64) -> Vec<Place> {
                     point: a + (b - a) * t,
                     tangent,
                     normal,
-                    is_hole: rim.is_hole,
+                    is_hole: border.is_hole,
                 });
                 at += spacing;
             }
@@ -143,12 +143,12 @@ pub(super) fn along(rims: &[Rim], spacing: f64) -> Vec<Place> {
 }
 
 /// The closed borders. A chain that ends where two sheets touch is none that the parts must share.
-pub(super) fn rims_of(surface: &Surface) -> Vec<Rim> {
+pub(super) fn curves_of(surface: &Surface) -> Vec<BorderCurve> {
     let closed = surface.borders().iter();
     let closed = closed.filter(|border| border.closed && border.vertices.len() > 2);
-    let rim = |border: &Border| {
+    let border = |border: &Border| {
         let vertices = border.vertices.iter().map(|&v| v as usize);
-        Rim {
+        BorderCurve {
             points: vertices
                 .clone()
                 .map(|v| surface.mesh().positions()[v])
@@ -159,18 +159,18 @@ pub(super) fn rims_of(surface: &Surface) -> Vec<Rim> {
             is_hole: border.is_hole,
         }
     };
-    closed.map(rim).collect()
+    closed.map(border).collect()
 }
 
-/// Median distance of a rim's node from the middle between its neighbours; next to nothing along straight
-/// and smoothly curved rims, whatever folds and corners they have.
-pub(super) fn ragged(rims: &[Rim], unit: f64) -> f64 {
+/// Median distance of a border's node from the middle between its neighbours; next to nothing along straight
+/// and smoothly curved borders, whatever folds and corners they have.
+pub(super) fn ragged(borders: &[BorderCurve], unit: f64) -> f64 {
     let mut steps = Vec::new();
-    for rim in rims {
-        let count = rim.points.len();
-        for (i, p) in rim.points.iter().enumerate() {
+    for border in borders {
+        let count = border.points.len();
+        for (i, p) in border.points.iter().enumerate() {
             let [before, after] = [(i + count - 1) % count, (i + 1) % count];
-            let middle = nalgebra::center(&rim.points[before], &rim.points[after]);
+            let middle = nalgebra::center(&border.points[before], &border.points[after]);
             steps.push(unit * (p - middle).norm());
         }
     }
@@ -183,8 +183,8 @@ mod tests {
     use super::*;
 
     /// A hole in a plane, its nodes so far from the middle.
-    fn hole(points: Vec<Point3>) -> Rim {
-        Rim {
+    fn hole(points: Vec<Point3>) -> BorderCurve {
+        BorderCurve {
             normals: vec![Vector3::z(); points.len()],
             points,
             center: Point3::origin(),

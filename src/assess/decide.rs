@@ -1,0 +1,258 @@
+//! The verdict is the most severe of what speaks against the pose and against one shape.
+//!
+//! Every limit is a length that the user sees and can set ([`super::ShapeTolerance`]), a ratio of scores,
+//! or a fraction of the smaller part. None depends on the size of the elements.
+
+use std::cmp::Ordering;
+
+use super::ambiguity::Clarity;
+use super::assessment::Assessment;
+use super::pose::{PoseKind, PoseStatement};
+use super::reason::Reason;
+use super::shape::{ShapeReason, ShapeStatement};
+use super::sliding::FreeMotionKind;
+use super::tolerance::UNREMARKABLE;
+use super::verdict::Verdict;
+use crate::registration::{MatchOutcome, Termination};
+
+/// Fraction of the smaller part that meets the other one for GOOD.
+const ENOUGH_MET: f64 = 0.75;
+/// Holes in common that hold a part whose surface can slide.
+const HOLES_THAT_HOLD: usize = 2;
+/// Scores of the opposite hand below this fraction of the result's fit clearly better.
+pub(super) const OPPOSITE_HAND: f64 = 0.8;
+/// Below this one they fit a little better.
+pub(super) const NEAR_MIRROR: f64 = 0.98;
+
+/// Sets the verdict, its reasons, the most severe first, and the statement about the pose. `mirrored` is the
+/// statement about the shape of the opposite hand, `most_scaled` how far the scale of the pairs may be off.
+pub(super) fn decide(
+    assessment: &mut Assessment,
+    shape: &ShapeStatement,
+    mirrored: Option<&ShapeStatement>,
+    outcome: &MatchOutcome,
+    most_scaled: f64,
+) {
+    if let Some(units) = unit(assessment) {
+        // Whatever lies on the wrong size by chance says nothing of pose and shape.
+        assessment.verdict = units.severity();
+        assessment.reasons = vec![units];
+        if let Some(pose) = &mut assessment.pose {
+            pose.kind = PoseKind::NotFound;
+            pose.uncertainty = None;
+        }
+        return;
+    }
+    let of_pose = [
+        ending(outcome),
+        sliding(assessment, shape, outcome.rivals_sought),
+        ambiguity(assessment),
+        uncertainty(assessment),
+    ];
+    let of_shape = [
+        hand(assessment, shape, mirrored),
+        scale(assessment, most_scaled),
+        overlap(assessment, shape),
+    ];
+    let found = of_pose.into_iter().chain(of_shape).flatten();
+    let differences = shape
+        .reasons
+        .iter()
+        .map(|&difference| Reason::Shape { difference });
+    let mut reasons: Vec<Reason> = found.chain(differences).collect();
+    let verdict = reasons.iter().map(Reason::severity).max();
+    let verdict = verdict.unwrap_or(Verdict::Good);
+    if verdict == Verdict::Good {
+        reasons.push(Reason::InOrder {
+            overlap: shape.met,
+            p95: assessment.coverage.p95(),
+            rivals_sought: outcome.rivals_sought,
+        });
+    }
+    if let Some(pose) = &mut assessment.pose {
+        pose.kind = pose_kind(&reasons);
+    }
+    reasons.sort_by_key(|reason| std::cmp::Reverse(reason.severity()));
+    assessment.verdict = verdict;
+    assessment.reasons = reasons;
+}
+
+/// What the reasons say about the pose alone.
+fn pose_kind(reasons: &[Reason]) -> PoseKind {
+    let of = |reason: &Reason| match reason {
+        Reason::EndedEarly { .. } => PoseKind::NotFound,
+        Reason::Shape { .. } if reason.severity() == Verdict::Poor => PoseKind::NotFound,
+        Reason::EqualAlternative { .. } | Reason::NearAlternative { .. } => PoseKind::Ambiguous,
+        Reason::Sliding { .. } | Reason::Uncertain { .. } | Reason::Stopped => PoseKind::Uncertain,
+        _ => PoseKind::Certain,
+    };
+    reasons.iter().map(of).max().unwrap_or(PoseKind::Certain)
+}
+
+/// The opposite hand, where its score speaks for it and its shape does not speak against it.
+fn hand(
+    assessment: &Assessment,
+    shape: &ShapeStatement,
+    mirrored: Option<&ShapeStatement>,
+) -> Option<Reason> {
+    let score_ratio = assessment.mirror_check.score_ratio?;
+    if mirrored.is_some_and(|mirrored| fits_better(shape, mirrored)) {
+        return None;
+    }
+    if score_ratio < OPPOSITE_HAND && mirrored.is_none_or(|mirrored| fits_better(mirrored, shape)) {
+        return Some(Reason::OppositeHand { score_ratio });
+    }
+    (score_ratio < NEAR_MIRROR).then_some(Reason::NearMirrorImage { score_ratio })
+}
+
+/// Springback raises the scores of both hands, but not by the same. One shape fits better where less remains of
+/// it besides bends, if that is more than is accepted of the other; else where it has fewer differences other
+/// than a bend; else where less remains.
+fn fits_better(shape: &ShapeStatement, than: &ShapeStatement) -> bool {
+    let remains_less = |shape: &ShapeStatement, than: &ShapeStatement, share: f64| {
+        shape.remainder < OPPOSITE_HAND * than.remainder
+            && than.remainder > share * than.tolerance.remainder
+    };
+    let n_differences = |shape: &ShapeStatement| {
+        let is_bend = |reason: &ShapeReason| matches!(reason, ShapeReason::Bent { .. });
+        shape.reasons.iter().filter(|r| !is_bend(r)).count()
+    };
+    if remains_less(shape, than, 1.0) {
+        return true;
+    }
+    if remains_less(than, shape, 1.0) {
+        return false;
+    }
+    match n_differences(shape).cmp(&n_differences(than)) {
+        Ordering::Less => true,
+        Ordering::Equal => remains_less(shape, than, UNREMARKABLE),
+        Ordering::Greater => false,
+    }
+}
+
+fn unit(assessment: &Assessment) -> Option<Reason> {
+    let check = &assessment.scale_check;
+    let size_ratio = check.size_ratio;
+    check
+        .unit
+        .map(|unit| Reason::DifferentUnits { size_ratio, unit })
+}
+
+/// A scale that would move the ends of the part by more than springback may.
+fn scale(assessment: &Assessment, most: f64) -> Option<Reason> {
+    let scale = assessment.scale_check.pair_scale;
+    ((scale - 1.0).abs() > most).then_some(Reason::PairScale { scale })
+}
+
+fn overlap(assessment: &Assessment, shape: &ShapeStatement) -> Option<Reason> {
+    let coverage = &assessment.coverage;
+    (shape.met < ENOUGH_MET).then_some(Reason::BothOverhang {
+        source: coverage.source_on_target.overlap,
+        target: coverage.target_on_source.overlap,
+    })
+}
+
+/// A motion that the surfaces do not resist, unless holes hold the part, or borders that were compared
+/// with those of all other poses along it: the borders of a plate fit after half a turn.
+fn sliding(assessment: &Assessment, shape: &ShapeStatement, rivals_sought: bool) -> Option<Reason> {
+    let motion = assessment.freedom.motion?;
+    let is_firm = assessment.pose.as_ref().is_some_and(PoseStatement::is_firm);
+    let was_searched = !matches!(
+        motion.kind,
+        FreeMotionKind::Spherical | FreeMotionKind::Other
+    );
+    let is_clear = rivals_sought && was_searched && assessment.ambiguity.clarity == Clarity::Clear;
+    let borders = &shape.borders;
+    let borders_fit = borders
+        .offset
+        .is_some_and(|apart| apart <= shape.tolerance.remainder);
+    let is_held = is_firm && (borders.n_holes >= HOLES_THAT_HOLD || is_clear && borders_fit);
+    (!is_held).then_some(Reason::Sliding { motion })
+}
+
+fn uncertainty(assessment: &Assessment) -> Option<Reason> {
+    let pose = assessment.pose.as_ref()?;
+    let stated = pose.uncertainty.as_ref()?;
+    (!pose.is_firm()).then_some(Reason::Uncertain {
+        by: stated.largest,
+        limit: pose.tolerance,
+        along: stated.along,
+    })
+}
+
+fn ambiguity(assessment: &Assessment) -> Option<Reason> {
+    let ambiguity = &assessment.ambiguity;
+    let (score_ratio, twin) = (ambiguity.ratio?, ambiguity.twin);
+    match ambiguity.clarity {
+        Clarity::Clear => None,
+        Clarity::Verify => Some(Reason::NearAlternative { score_ratio, twin }),
+        Clarity::Ambiguous => Some(Reason::EqualAlternative {
+            score_ratio,
+            twin,
+            n_equivalent: ambiguity.n_equivalent,
+        }),
+    }
+}
+
+fn ending(outcome: &MatchOutcome) -> Option<Reason> {
+    let termination = outcome.termination;
+    match termination {
+        Termination::Converged
+        | Termination::ClosedForm
+        | Termination::MaxIterations
+        | Termination::NoGain => None,
+        Termination::Stopped => Some(Reason::Stopped),
+        Termination::Degenerate | Termination::NoPairs => Some(Reason::EndedEarly { termination }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assess::ShapeTolerance;
+    use crate::geometry::Point3;
+
+    fn shape(remainder: f64, reasons: &[ShapeReason]) -> ShapeStatement {
+        let tolerance = ShapeTolerance {
+            remainder: 1.0,
+            springback: 5.0,
+        };
+        ShapeStatement {
+            remainder,
+            reasons: reasons.to_vec(),
+            ..ShapeStatement::nothing_met(tolerance)
+        }
+    }
+
+    #[test]
+    fn a_bend_does_not_speak_for_the_opposite_hand() {
+        let bend = ShapeReason::Bent {
+            by: 6.0,
+            limit: 5.0,
+        };
+        let bent = shape(0.2, &[bend]);
+        assert!(!fits_better(&shape(0.3, &[]), &bent));
+        assert!(fits_better(&shape(0.1, &[]), &bent));
+        let hardly = ShapeReason::HardlyMet { share: 0.4 };
+        assert!(fits_better(
+            &shape(0.3, &[bend]),
+            &shape(0.2, &[bend, hardly])
+        ));
+    }
+
+    #[test]
+    fn a_hand_with_a_misplaced_hole_is_no_better_for_a_remainder_that_nobody_sees() {
+        let hole = ShapeReason::Hole {
+            by: 6.0,
+            limit: 1.5,
+            at: Point3::origin(),
+        };
+        let (held, misplaced) = (shape(0.07, &[]), shape(0.04, &[hole]));
+        assert!(fits_better(&held, &misplaced) && !fits_better(&misplaced, &held));
+        let unseen = shape(0.04, &[]);
+        assert!(!fits_better(&unseen, &held) && !fits_better(&held, &unseen));
+        // Surfaces that lie apart by more than is accepted outweigh a hole.
+        let apart = shape(3.0, &[]);
+        assert!(fits_better(&misplaced, &apart) && !fits_better(&apart, &misplaced));
+    }
+}

@@ -1,0 +1,139 @@
+//! What explains the gaps between two parts: a small motion, an offset of the sheets, and smooth bends.
+
+mod bends;
+mod equations;
+
+use super::borders::Borders;
+use super::contact::{Contacts, Six, robust_weights, solve};
+use crate::geometry::{Point3, Similarity, Vector3};
+use crate::registration::Surface;
+
+pub(super) use bends::Bends;
+use bends::N_BENDS;
+use equations::{Equations, own_share};
+pub(super) use equations::{N_SMOOTH, Row};
+
+/// Times that places far off the fit are given less weight.
+const ROUNDS: usize = 4;
+/// Share of an offset that nothing else can imitate; with less it is not told apart.
+pub(super) const LEAST_OWN: f64 = 0.02;
+
+/// Two parts under a pose, and where they meet.
+#[derive(Clone, Copy)]
+pub(super) struct ShapeEvidence<'a> {
+    pub(super) source: &'a Surface,
+    pub(super) target: &'a Surface,
+    pub(super) pose: &'a Similarity,
+    pub(super) contacts: &'a Contacts,
+    pub(super) borders: &'a Borders,
+    /// Faceting of both meshes.
+    pub(super) noise: f64,
+    /// Surfaces within it are compared.
+    pub(super) reach: f64,
+}
+
+/// The gaps taken apart.
+pub(super) struct Fit {
+    /// Of each place, what rigid motion and bends explain.
+    pub(super) smooth: Vec<f64>,
+    /// What nothing explains, not even the facets.
+    pub(super) left: Vec<f64>,
+    /// The same for each pair of borders and of holes.
+    pub(super) borders: Vec<f64>,
+    pub(super) holes: Vec<f64>,
+    /// How far the source lies from where it belongs, bends counted as part of its shape; turns in
+    /// lengths at the contacts' radius.
+    pub(super) rigid: Six,
+    pub(super) offset: f64,
+    pub(super) is_separable: bool,
+}
+
+/// How much each unknown moves a place along a direction; `offset` is what a unit of the offset does.
+pub(super) fn explaining(
+    contacts: &Contacts,
+    bends: &Bends,
+    point: &Point3,
+    direction: &Vector3,
+    offset: f64,
+) -> Row {
+    let mut row = Row::zeros();
+    let six = contacts.row(point, direction);
+    row.fixed_rows_mut::<6>(0).copy_from(&six);
+    row[6] = offset;
+    row.fixed_rows_mut::<N_BENDS>(7)
+        .copy_from(&bends.row(point, direction));
+    row
+}
+
+impl Fit {
+    /// The offset of the sheets, where it can be told from a shift.
+    pub(super) fn separate_offset(&self) -> Option<f64> {
+        self.is_separable.then_some(self.offset)
+    }
+
+    /// Robust least squares over a rigid motion, an offset and the bends of a plate that keep lengths
+    /// (second and third order). Borders take part, so that a slide of the pose along the part is no
+    /// difference of the shape. O(places).
+    pub(super) fn of(evidence: &ShapeEvidence<'_>) -> Self {
+        let (contacts, borders) = (evidence.contacts, evidence.borders);
+        let bends = Bends::of(evidence.source, evidence.pose, contacts);
+        let row = |point: &Point3, direction: &Vector3, offset: f64| {
+            explaining(contacts, &bends, point, direction, offset)
+        };
+        let places = contacts.list.iter();
+        let places: Vec<Row> = places.map(|c| row(&c.point, &c.normal, 1.0)).collect();
+        let beside = borders.pairs().iter();
+        let beside: Vec<Row> = beside.map(|p| row(&p.point, &p.across, 0.0)).collect();
+        let areas: Vec<f64> = contacts.list.iter().map(|c| c.weight).collect();
+        let mut left: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();
+        let mut found = Row::zeros();
+        let mut is_separable = false;
+        let border_weights = borders.weights(evidence.noise);
+        for _ in 0..ROUNDS {
+            let weights = robust_weights(&left, &areas, evidence.noise);
+            let mut equations = Equations::default();
+            for ((row, contact), weight) in places.iter().zip(&contacts.list).zip(weights) {
+                equations.add(row, contact.gap, weight);
+            }
+            for ((row, pair), weight) in beside.iter().zip(borders.pairs()).zip(&border_weights) {
+                equations.add(row, pair.gap, *weight);
+            }
+            is_separable = own_share(&equations.matrix) > LEAST_OWN;
+            if !is_separable {
+                // The shift of the rigid motion takes it.
+                equations.leave_out(6);
+            }
+            found = solve(&equations.matrix, &equations.right);
+            for ((left, row), contact) in left.iter_mut().zip(&places).zip(&contacts.list) {
+                *left = contact.gap - row.dot(&found);
+            }
+        }
+        let smooth = places.iter().map(|row| row.dot(&found) - found[6]);
+        for (left, contact) in left.iter_mut().zip(&contacts.list) {
+            *left = left.signum() * (left.abs() - contact.facet).max(0.0);
+        }
+        let beside = beside.iter().zip(borders.pairs());
+        let beside: Vec<f64> = beside.map(|(row, p)| p.gap - row.dot(&found)).collect();
+        let as_they_are: Vec<f64> = borders.pairs().iter().map(|p| p.gap).collect();
+        // What throws most borders apart explains none of them.
+        let explains = borders.distance_of_most(&beside) <= borders.distance_of_most(&as_they_are);
+        let holes = borders.all_holes().map(|pair| {
+            let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+            let explained = axes.map(|axis| row(&pair.hole.center, &axis, 0.0).dot(&found));
+            let left = pair.off - Vector3::from(explained);
+            // Across its sheet the middle of a hole says what the surface says.
+            let within = left - pair.hole.normal * left.dot(&pair.hole.normal);
+            within.norm() + pair.wider
+        });
+        Self {
+            smooth: smooth.collect(),
+            borders: if explains { beside } else { as_they_are },
+            holes: holes.collect(),
+            rigid: found.fixed_rows::<6>(0)
+                + bends.rigid_part(&found.fixed_rows::<N_BENDS>(7).into(), contacts),
+            left,
+            offset: found[6],
+            is_separable,
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! The program measured: how right matches are, how time grows with the size, and how exact the mapping is.
+
+pub mod growth;
+pub mod growth_page;
+pub mod map;
+pub mod robustness;
+pub mod robustness_page;
+pub mod robustness_table;
