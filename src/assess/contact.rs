@@ -8,7 +8,7 @@ use super::scaled::Scaled;
 use super::tolerance::is_source_smaller;
 use crate::geometry::{Point3, Rotation, Similarity, Vector3};
 use crate::registration::Surface;
-use crate::search::ClosestPoint;
+use crate::search::{ClosestPoint, SurfaceHit};
 
 /// Nodes of the smaller part that are looked at; more change no figure by a percent.
 pub(super) const MAX_NODES: usize = 8000;
@@ -127,9 +127,7 @@ impl<'a> ContactSearch<'a> {
             *closest = Some(hit.triangle);
             let other = model.normal_at(&hit);
             let facing = own.dot(&other);
-            let beside = (moved - hit.point) - other * (moved - hit.point).dot(&other);
-            let is_off_the_border =
-                model.is_on_border(&hit) && beside.norm() > 0.5 * (moved - hit.point).norm();
+            let is_off_the_border = model.is_on_border(&hit) && is_beside(model, &hit, &moved);
             if facing.abs() < MIN_FACING || is_off_the_border {
                 return None;
             }
@@ -159,6 +157,34 @@ impl<'a> ContactSearch<'a> {
         let list = list.filter_map(|(k, closest)| meet(k * stride, closest));
         let areas = data.vertex_areas().iter().step_by(stride);
         Contacts::of(list.collect(), areas.sum(), stride as f64)
+    }
+
+    /// Share of the smaller part's area that lies beyond the borders of the other part under a pose: its closest
+    /// place there is a border that lies off its reach or beside it. O(nodes · log triangles).
+    pub(super) fn overhang(&self, pose: &Similarity) -> f64 {
+        let (data, model, model_from_data, unit) = if self.of_source {
+            (self.source, self.target, *pose, 1.0)
+        } else {
+            (self.target, self.source, pose.inverse(), pose.scale)
+        };
+        let reach = self.reach / unit;
+        let nodes = (0..data.mesh().positions().len()).into_par_iter();
+        let areas = nodes.step_by(self.stride).map(|vertex| {
+            let moved = model_from_data.apply(&data.mesh().positions()[vertex]);
+            let hit = model.bvh().closest(&moved, f64::INFINITY, None, None);
+            let is_beyond = hit.is_some_and(|hit| {
+                model.is_on_border(&hit)
+                    && ((moved - hit.point).norm() > reach || is_beside(model, &hit, &moved))
+            });
+            let area = data.vertex_areas()[vertex];
+            (if is_beyond { area } else { 0.0 }, area)
+        });
+        // Summed in one order, whatever the number of threads.
+        let areas: Vec<(f64, f64)> = areas.collect();
+        let (beyond, total) = areas
+            .into_iter()
+            .fold((0.0, 0.0), |(b, t), (beyond, area)| (b + beyond, t + area));
+        if total > 0.0 { beyond / total } else { 0.0 }
     }
 }
 
@@ -199,6 +225,13 @@ impl Contacts {
         let square = |c: &Contact| c.weight * (c.gap - offset).powi(2);
         let gaps = self.list.iter().map(square);
         (gaps.sum::<f64>() / weight).sqrt()
+    }
+
+    /// The size that these values, one for each place, do not exceed over this share of the area.
+    pub(super) fn at_share(&self, values: &[f64], share: f64) -> f64 {
+        let sizes = values.iter().map(|v| v.abs());
+        let sizes = sizes.zip(self.list.iter().map(|c| c.weight));
+        quantile(&mut sizes.collect::<Vec<_>>(), share)
     }
 
     /// How a small motion moves a place along a direction, turns in lengths at `radius`.
@@ -251,6 +284,12 @@ impl Contacts {
         self.halve(low, levels - 1, 2 * number, patch);
         self.halve(high, levels - 1, 2 * number + 1, patch);
     }
+}
+
+/// Whether a point lies rather beside the place of a surface closest to it than above.
+fn is_beside(model: &Surface, hit: &SurfaceHit, point: &Point3) -> bool {
+    let (away, normal) = (point - hit.point, model.normal_at(hit));
+    (away - normal * away.dot(&normal)).norm() > 0.5 * away.norm()
 }
 
 /// A weight for each value: its area, less the farther the value lies from nothing (Tukey's biweight

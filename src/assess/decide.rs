@@ -17,6 +17,8 @@ use crate::registration::{MatchOutcome, Termination};
 
 /// Fraction of the smaller part that meets the other one for GOOD.
 const ENOUGH_MET: f64 = 0.75;
+/// Where less meets, at most this fraction may lie neither on the other part nor beyond its borders.
+const ELSEWHERE: f64 = 0.03;
 /// Holes in common that hold a part whose surface can slide.
 const HOLES_THAT_HOLD: usize = 2;
 /// Scores of the opposite hand below this fraction of the result's fit clearly better.
@@ -144,9 +146,16 @@ fn scale(assessment: &Assessment, most: f64) -> Option<Reason> {
     ((scale - 1.0).abs() > most).then_some(Reason::PairScale { scale })
 }
 
+/// Parts of which each has a large piece that the other lacks, unless the surface they share is one and holds the
+/// pose by itself, and the rest of the smaller part lies beyond the borders of the other.
 fn overlap(assessment: &Assessment, shape: &ShapeStatement) -> Option<Reason> {
     let coverage = &assessment.coverage;
-    (shape.met < ENOUGH_MET).then_some(Reason::BothOverhang {
+    let is_firm = assessment.pose.as_ref().is_some_and(PoseStatement::is_firm);
+    let is_held = is_firm && assessment.freedom.motion.is_none();
+    let elsewhere = shape.overhang.map(|beyond| 1.0 - shape.met - beyond);
+    let only_overhangs = elsewhere.is_some_and(|share| share < ELSEWHERE);
+    let is_one = shape.reasons.is_empty() && only_overhangs && is_held;
+    (shape.met < ENOUGH_MET && !is_one).then_some(Reason::BothOverhang {
         source: coverage.source_on_target.overlap,
         target: coverage.target_on_source.overlap,
     })

@@ -4,7 +4,7 @@ mod bends;
 mod equations;
 
 use super::borders::Borders;
-use super::contact::{Contacts, Six, robust_weights, solve};
+use super::contact::{ContactSearch, Contacts, MAX_NODES, Six, robust_weights, solve};
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::registration::Surface;
 
@@ -30,6 +30,14 @@ pub(super) struct ShapeEvidence<'a> {
     pub(super) noise: f64,
     /// Surfaces within it are compared.
     pub(super) reach: f64,
+}
+
+impl ShapeEvidence<'_> {
+    /// Share of the smaller part's area that lies beyond the borders of the other.
+    pub(super) fn overhang(&self) -> f64 {
+        let pair = [self.source, self.target];
+        ContactSearch::new(pair, self.pose.scale, self.reach, MAX_NODES).overhang(self.pose)
+    }
 }
 
 /// The gaps taken apart.

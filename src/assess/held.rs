@@ -40,6 +40,8 @@ const SAME_WAY: f64 = 0.985;
 /// Another pose takes the place of the result if so much more of the borders lies where it belongs, as a
 /// share of them.
 const MORE_HELD: f64 = 0.005;
+/// Up to this share of them lies beside others by chance.
+const BY_CHANCE: f64 = 0.15;
 /// So much less of the borders where they belong makes a pose count as twice as bad.
 const TWICE_AS_BAD: f64 = 0.05;
 /// Distances of surfaces up to this share of the tolerance mean nothing.
@@ -66,6 +68,8 @@ const MUCH_MORE: f64 = 1.3;
 const AS_MUCH: f64 = 0.9;
 /// Shares of the part that meet the other are the same up to this much.
 const SAME_MET: f64 = 0.005;
+/// Of parts of which the smaller meets the other by less than this share, each has a piece that the other lacks.
+const OVERHANGS: f64 = 0.95;
 /// A pose with fewer holes and no more of anything else counts as at least so many times as bad.
 const FEWER_HOLES: f64 = 1.5;
 
@@ -260,6 +264,8 @@ struct Settled {
     /// Share of the smaller part's borders that lies where it belongs, less that of holes where the other
     /// part is solid.
     held: f64,
+    /// Share of them that lies beside a border of the other part.
+    paired: f64,
     /// Share of the borders that one place of them stands for: `held` is no finer.
     grain: f64,
     /// Holes with a counterpart, and how far the one that lies farthest from it is off.
@@ -274,6 +280,15 @@ struct Settled {
 }
 
 impl Settled {
+    /// Share of the borders beside one of the other part that lies where it belongs.
+    fn held_of_paired(&self) -> f64 {
+        if self.paired > 0.0 {
+            self.held / self.paired
+        } else {
+            0.0
+        }
+    }
+
     fn is_as_close_as(&self, other: &Self, pair: &Pair<'_>) -> bool {
         let little = pair.distances.little_more(LITTLE_GAP, other.gap);
         let mut most = AS_CLOSE * other.gap + little;
@@ -345,7 +360,8 @@ impl<'a> Pair<'a> {
                 && result.worst_hole <= self.remainder
                 && other.worst_hole > self.remainder;
             let more = result.held + result.grain.max(MORE_HELD);
-            let holds_more = other.held > more && !misplaces_holes && !beats(result, other);
+            let holds_more =
+                other.held > more.max(BY_CHANCE) && !misplaces_holes && !beats(result, other);
             !is_close || holds_more || beats(other, result)
         };
         let better: Vec<&Settled> = rivals.iter().filter(|other| is_better(other)).collect();
@@ -393,6 +409,7 @@ impl<'a> Pair<'a> {
         Some(Settled {
             pose,
             held,
+            paired: borders.share().min(1.0),
             grain,
             n_holes: borders.holes.len(),
             worst_hole: holes.fold(0.0, f64::max),
@@ -510,7 +527,14 @@ impl<'a> Pair<'a> {
                 return *other;
             };
             let grain = pose.grain.max(winner.grain);
-            let by_borders = ratio_by_borders(apart(winner.held - pose.held, grain));
+            let behind = if winner.met < OVERHANGS {
+                // Borders beyond the other part say nothing: where each has a piece that the other lacks, shifting
+                // them by one hole of a row leaves more of them alone and is as likely.
+                winner.held_of_paired() - pose.held_of_paired()
+            } else {
+                winner.held - pose.held
+            };
+            let by_borders = ratio_by_borders(apart(behind, grain));
             let by_holes = if winner.has_more_holes_than(&pose, self.remainder) {
                 FEWER_HOLES
             } else {

@@ -2,8 +2,8 @@
 //!
 //! From the bottom up: `tolerance` says how far parts may differ; `contact` and `borders` find where two parts meet
 //! under a pose, `fit` takes the gaps apart; `trims`, `stretch` and `shape` say what the parts differ in, `uncertainty`
-//! how far the pose may be off. With these statements `settle`, `slide`, `held`, `alternatives` and `skin` improve or
-//! choose a pose before it is assessed, and `decide` makes the verdict of an [`Assessment`].
+//! how far the pose may be off. With these statements `settle`, `slide`, `held`, `alternatives`, `unbent` and `skin` improve
+//! or choose a pose before it is assessed, and `decide` makes the verdict of an [`Assessment`].
 
 mod alternatives;
 mod ambiguity;
@@ -28,6 +28,7 @@ mod statements;
 mod stretch;
 mod tolerance;
 mod trims;
+mod unbent;
 mod uncertainty;
 mod verdict;
 mod words;
@@ -46,6 +47,7 @@ pub use sliding::{FreeMotion, FreeMotionKind, Freedom, free_motions};
 pub use stretch::PartAxis;
 pub use tolerance::{AssessSettings, ShapeTolerance};
 pub use trims::BorderApart;
+pub use unbent::without_bend;
 pub use uncertainty::{PartDirection, PoseUncertainty};
 pub use verdict::Verdict;
 pub use words::error_beside;

@@ -6,7 +6,7 @@ mod local;
 use serde::{Deserialize, Serialize};
 
 use super::borders::{Borders, LEAST_PAIRED};
-use super::contact::{Contacts, quantile};
+use super::contact::Contacts;
 use super::fit::{Fit, ShapeEvidence};
 use super::stretch::{PartAxis, Stretch, stretch};
 use super::tolerance::{ShapeTolerance, UNREMARKABLE};
@@ -168,6 +168,10 @@ pub struct ShapeStatement {
     /// Share of the smaller part's area that meets the other part.
     #[serde(with = "any_float")]
     pub met: f64,
+    /// Share of the smaller part's area that lies beyond the borders of the other part; `None` where most of it
+    /// meets that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub overhang: Option<f64>,
     /// How far bend and twist displace the sheet along its normal, at 95 % of the area.
     #[serde(with = "any_float")]
     pub springback: f64,
@@ -191,29 +195,24 @@ pub struct ShapeStatement {
 }
 
 impl ShapeStatement {
-    /// Compares the shapes at a pose.
-    pub(super) fn of(evidence: &ShapeEvidence<'_>, tolerance: ShapeTolerance) -> Self {
-        let fit = Fit::of(evidence);
+    /// Compares the shapes at a pose; `fit` is that of the evidence.
+    pub(super) fn of(evidence: &ShapeEvidence<'_>, fit: &Fit, tolerance: ShapeTolerance) -> Self {
         let contacts = evidence.contacts;
-        let areas = contacts.list.iter().map(|c| c.weight);
-        let at = |share: f64, values: &[f64]| {
-            let sizes = values.iter().map(|v| v.abs());
-            quantile(&mut sizes.zip(areas.clone()).collect::<Vec<_>>(), share)
-        };
         let mut statement = Self {
             kind: ShapeKind::Same,
             tolerance,
             met: contacts.share,
-            springback: at(0.95, &fit.smooth),
-            remainder: at(0.95, &fit.left),
+            overhang: (contacts.share < MOSTLY_MET).then(|| evidence.overhang()),
+            springback: contacts.at_share(&fit.smooth, 0.95),
+            remainder: contacts.at_share(&fit.left, 0.95),
             offset: Some(fit.offset).filter(|o| o.abs() > FACETING * evidence.noise),
             is_offset_separable: fit.is_separable,
             is_offset_removed: false,
-            borders: border_fit(evidence.borders, &fit, &tolerance),
+            borders: border_fit(evidence.borders, fit, &tolerance),
             reasons: Vec::new(),
         };
-        statement.reasons = statement.find_reasons(evidence, &fit);
-        statement.kind = statement.judge(evidence.noise, at(SAME_SHARE, &fit.left));
+        statement.reasons = statement.find_reasons(evidence, fit);
+        statement.kind = statement.judge(evidence.noise, contacts.at_share(&fit.left, SAME_SHARE));
         statement
     }
 
@@ -223,6 +222,7 @@ impl ShapeStatement {
             kind: ShapeKind::Different,
             tolerance,
             met: 0.0,
+            overhang: None,
             springback: 0.0,
             remainder: f64::INFINITY,
             offset: None,

@@ -60,8 +60,7 @@ pub fn without_offset(
 }
 
 /// Whether an offset is all that is left of the gaps: it does not push the pose aside any more.
-pub(super) fn is_removed(evidence: &ShapeEvidence<'_>, shape: &ShapeStatement) -> bool {
-    let fit = Fit::of(evidence);
+pub(super) fn is_removed(fit: &Fit, shape: &ShapeStatement) -> bool {
     let offset = shape.offset.and(fit.separate_offset());
     offset.is_some_and(|offset| fit.rigid.norm() <= LEFT * offset.abs())
 }

@@ -3,7 +3,7 @@
 use super::borders::Borders;
 use super::contact::Contacts;
 use super::decide::NEAR_MIRROR;
-use super::fit::ShapeEvidence;
+use super::fit::{Fit, ShapeEvidence};
 use super::shape::ShapeStatement;
 use super::tolerance::{AssessSettings, Distances};
 use super::uncertainty::PoseUncertainty;
@@ -61,10 +61,11 @@ pub(super) fn statements(
         borders,
         (noise, settings.thickness),
     );
-    let mut shape = ShapeStatement::of(&evidence, tolerance);
+    let fit = Fit::of(&evidence);
+    let mut shape = ShapeStatement::of(&evidence, &fit, tolerance);
     shape.borders.other_trim = other_trim.as_ref().map(|trim| trim.apart);
-    shape.is_offset_removed = settings.remove_offset && skin::is_removed(&evidence, &shape);
-    let uncertainty = uncertainty.map(|pose| pose.of_bent(shape.springback));
+    shape.is_offset_removed = settings.remove_offset && skin::is_removed(&fit, &shape);
+    let uncertainty = uncertainty.map(|pose| pose.of_bent(shape.springback, &fit.rigid, &contacts));
     Statements { uncertainty, shape }
 }
 

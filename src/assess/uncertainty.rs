@@ -33,6 +33,21 @@ struct SmallMotion {
     shift: Vector3,
 }
 
+impl SmallMotion {
+    /// Of a motion given as in [`Contacts::row`].
+    fn of(six: &Six, contacts: &Contacts) -> Self {
+        Self {
+            turn: Vector3::new(six[0], six[1], six[2]) / contacts.radius,
+            shift: Vector3::new(six[3], six[4], six[5]),
+        }
+    }
+
+    /// How it moves a place so far from the centre.
+    fn at(&self, arm: &Vector3) -> Vector3 {
+        self.shift + self.turn.cross(arm)
+    }
+}
+
 /// Which way of the part its largest uncertainty points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -89,10 +104,7 @@ impl PoseUncertainty {
         motions.extend(offset_as_motion.map(|motion| motion * unknown_offset));
         let motions: Vec<SmallMotion> = motions
             .iter()
-            .map(|six| SmallMotion {
-                turn: Vector3::new(six[0], six[1], six[2]) / contacts.radius,
-                shift: Vector3::new(six[3], six[4], six[5]),
-            })
+            .map(|six| SmallMotion::of(six, contacts))
             .collect();
         let mut found = Self {
             largest: 0.0,
@@ -118,9 +130,11 @@ impl PoseUncertainty {
     }
 
     /// The same for a part that is bent by `bend`: least squares over nodes and over surfaces, or over one half and
-    /// the other, leave poses that differ by a share of it.
+    /// the other, leave poses that differ by a share of it; and a smoothly curved part slides along itself by many
+    /// times its bend. `step` is the motion by which the part lies elsewhere if the bends are counted as its shape,
+    /// given as in [`Contacts::row`].
     #[must_use]
-    pub(super) fn of_bent(mut self, bend: f64) -> Self {
+    pub(super) fn of_bent(mut self, bend: f64, step: &Six, contacts: &Contacts) -> Self {
         let by = BEND_SHARE * bend;
         let shifts = Matrix3::identity() * (by / 3.0_f64.sqrt());
         self.motions
@@ -128,14 +142,17 @@ impl PoseUncertainty {
                 turn: Vector3::zeros(),
                 shift: shift.into(),
             }));
-        self.largest = self.largest.hypot(by);
+        let step = SmallMotion::of(step, contacts);
+        let off = step.at(&(self.place - self.center)).norm();
+        self.motions.push(step);
+        self.largest = self.largest.hypot(by).hypot(off);
         self
     }
 
     /// The uncertainty at a place of the target's frame, in target length units.
     pub fn at(&self, place: &Point3) -> f64 {
         let arm = place - self.center;
-        let off = |m: &SmallMotion| (m.shift + m.turn.cross(&arm)).norm_squared();
+        let off = |m: &SmallMotion| m.at(&arm).norm_squared();
         self.motions.iter().map(off).sum::<f64>().sqrt()
     }
 
@@ -151,7 +168,7 @@ impl PoseUncertainty {
         let arm = place - self.center;
         let mut spread = Matrix3::zeros();
         for motion in &self.motions {
-            let off = motion.shift + motion.turn.cross(&arm);
+            let off = motion.at(&arm);
             spread += off * off.transpose();
         }
         let eigen = SymmetricEigen::new(spread);

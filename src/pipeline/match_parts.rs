@@ -277,15 +277,23 @@ pub(super) fn settle(
         outcome.alternatives = chosen.alternatives;
     }
     monitor.check()?;
+    // Both hands are compared where their surfaces lie closest.
+    if let Some(ratio) = assess::hand_by_borders(source, target, outcome, check, monitor)? {
+        outcome.mirror_check.score_ratio = Some(ratio);
+    }
+    monitor.check()?;
+    let rough = outcome.target_from_source;
+    if let Some(pose) = assess::without_bend(source, target, &rough, check)
+        && !assess::is_pulled_aside(source, target, [&rough, &pose], false, check)
+    {
+        outcome.target_from_source = pose;
+    }
+    monitor.check()?;
     if check.remove_offset
         && let Some(pose) =
             assess::without_offset(source, target, &outcome.target_from_source, check)
     {
         outcome.target_from_source = pose;
-    }
-    monitor.check()?;
-    if let Some(ratio) = assess::hand_by_borders(source, target, outcome, check, monitor)? {
-        outcome.mirror_check.score_ratio = Some(ratio);
     }
     Ok(())
 }

@@ -321,3 +321,24 @@ fn springback_does_not_shrink_with_the_part() {
     assert!(shape.reasons.is_empty(), "{shape:?}");
     assert!(shape.springback > tolerance.springback, "{shape:?}");
 }
+
+#[test]
+fn what_lies_beyond_the_borders_overhangs_and_what_lies_elsewhere_does_not() {
+    let piece = |from: f64, lifted: f64| {
+        grid([60, 40], |i, j| {
+            let (x, y) = (from + 12.5 * i as f64, 12.5 * j as f64 - 250.0);
+            let waves = 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
+            Point3::new(x, y, waves + if x < 0.0 { lifted } else { 0.0 })
+        })
+    };
+    let [left, right] = [-500.0, -250.0].map(|from| piece(from, 0.0));
+    let shape = statement(&left, &right);
+    assert!((shape.met - 2.0 / 3.0).abs() < 0.03, "{shape:?}");
+    let beyond = shape.overhang.unwrap();
+    assert!((shape.met + beyond - 1.0).abs() < 0.01, "{shape:?}");
+    // A third of the other one lies far above the sheet and is no piece that this lacks.
+    let shape = statement(&piece(-250.0, 100.0), &right);
+    assert!((shape.met - 2.0 / 3.0).abs() < 0.05, "{shape:?}");
+    assert!(shape.overhang.unwrap() < 0.02, "{shape:?}");
+    assert_eq!(statement(&left, &left).overhang, None);
+}

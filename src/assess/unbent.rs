@@ -1,0 +1,90 @@
+//! The pose of a bent part: its bends are counted as its shape and do not push the pose aside.
+
+use super::borders::{BorderComparison, LEAST_PAIRED};
+use super::contact::{ContactSearch, MAX_NODES};
+use super::fit::{Fit, ShapeEvidence};
+use super::shape::FACETING;
+use super::tolerance::{AssessSettings, Distances, UNREMARKABLE};
+use super::trims;
+use crate::geometry::Similarity;
+use crate::registration::Surface;
+
+/// Steps that are made at most, and the motion, as a share of the bend, below which they end.
+const STEPS: usize = 8;
+const STILL: f64 = 0.02;
+/// Surfaces whose root mean square distance, but for an offset, is this share of a bend that counts are not bent so.
+const CLOSE: f64 = 0.4;
+/// A bend pushes a pose aside by so many times itself at most; a larger step is none of a bend.
+const FARTHEST: f64 = 12.0;
+/// The parts still meet but for this share of them.
+const AS_MUCH: f64 = 0.01;
+
+/// The pose without what a bend does to it: a motion of surfaces that leaves the smallest distances makes up for a
+/// part of the bend, and a smoothly curved part slides along itself by many times that. Motion, bends and an offset are
+/// solved together, with the borders where they hold. `None` where the part is hardly bent, or where the pose would go
+/// farther than a bend takes it. O(steps · (border edges + nodes · log triangles)).
+pub fn without_bend(
+    source: &Surface,
+    target: &Surface,
+    pose: &Similarity,
+    settings: &AssessSettings,
+) -> Option<Similarity> {
+    let Distances {
+        tolerance,
+        reach,
+        near,
+        noise,
+    } = Distances::of(source, target, pose.scale, settings);
+    let corners = source.mesh().aabb().corners();
+    let pair = [source, target];
+    let mut search = ContactSearch::new(pair, pose.scale, reach, MAX_NODES);
+    let hardly = (UNREMARKABLE * tolerance.remainder).max(FACETING * noise);
+    if search.at(pose)?.typical_gap(f64::INFINITY) <= CLOSE * hardly {
+        return None;
+    }
+    let comparison = BorderComparison::new(pair, pose.scale, near);
+    let mut moved = *pose;
+    let mut first = None;
+    for step in 0..=STEPS {
+        let contacts = search.at(&moved)?;
+        let borders = comparison.at(&moved);
+        let evidence = ShapeEvidence {
+            source,
+            target,
+            pose: &moved,
+            contacts: &contacts,
+            borders: &borders,
+            noise,
+            reach,
+        };
+        let holding = if borders.share() < LEAST_PAIRED {
+            // What lies beside each other by chance holds nothing.
+            Some(borders.filtered(|_, _| false))
+        } else {
+            trims::trusted(&evidence, borders.limit(&tolerance))
+        };
+        let borders = holding.as_ref().unwrap_or(&borders);
+        let fit = Fit::of(&ShapeEvidence {
+            borders,
+            ..evidence
+        });
+        let [bend, left] = [&fit.smooth, &fit.left].map(|values| contacts.at_share(values, 0.95));
+        let (first_bend, first_left, first_share) =
+            *first.get_or_insert((bend, left, contacts.share));
+        if first_bend <= hardly {
+            return None;
+        }
+        let next = contacts.undo(&fit.rigid).after(&moved);
+        let is_still = next.max_displacement(&moved, &corners) <= STILL * first_bend;
+        if is_still || step == STEPS {
+            let far = moved.max_displacement(pose, &corners);
+            let is_of_a_bend = far <= FARTHEST * bend
+                && bend <= first_bend.max(tolerance.springback)
+                && left <= first_left + UNREMARKABLE * tolerance.remainder
+                && contacts.share >= first_share - AS_MUCH;
+            return (step > 0 && is_of_a_bend).then_some(moved);
+        }
+        moved = next;
+    }
+    None
+}
