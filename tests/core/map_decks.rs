@@ -420,6 +420,32 @@ fn missing_partial_and_other_layers_are_kept_apart() {
 }
 
 #[test]
+fn ids_that_have_no_room_get_wide_cards() {
+    let far = 900_000_000_000_000;
+    let deck = crash(2, "");
+    let (head, _) = deck.split_once("*ELEMENT_SHELL\n").unwrap();
+    let elements = square(far + 1, 7, 0, 20) + &square(far + 2, 7, 1, 20);
+    let deck = format!("{head}*ELEMENT_SHELL +\n{elements}*END\n");
+    let pair = Pair::new(&deck, &stamped(2, &(stresses(1..=2))));
+    for kind in ["deck", "part", "include"] {
+        let written = pair.written(&["--write", kind, "--quantities", "full"]);
+        assert!(
+            written.contains("*INITIAL_STRESS_SHELL+\n     900000000000001"),
+            "{written}"
+        );
+        let read = model(&pair.path("out.k"));
+        let ids: Vec<u64> = read
+            .forming
+            .stresses()
+            .map(|card| card.element_id)
+            .collect();
+        if kind != "include" {
+            assert_eq!(ids, [far + 1, far + 2]);
+        }
+    }
+}
+
+#[test]
 fn wide_decks_get_wide_cards() {
     for (keyword, ints, floats) in [("*KEYWORD I10=Y\n", 10, 16), ("*KEYWORD LONG=Y\n", 20, 20)] {
         let field = |text: &str| format!("{text:>ints$}");
