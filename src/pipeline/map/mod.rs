@@ -174,22 +174,6 @@ impl MapRun {
         self.mapped.mean_plastic_strain(&self.target, element)
     }
 
-    /// Largest von Mises stress of an element's layers, each the mean of its points in the plane; NaN if
-    /// it has none.
-    pub fn largest_von_mises(&self, element: usize) -> f64 {
-        let Some(states) = &self.mapped.states else {
-            return f64::NAN;
-        };
-        let points = states.of(element);
-        let rule = &self.target.rules[self.target.rule_of[element] as usize];
-        let n_plane = (points.len() / rule.len().max(1)).max(1);
-        let means = points.chunks(n_plane).map(|layer| {
-            let mean = |i: usize| layer.iter().map(|state| state[i]).sum::<f64>() / n_plane as f64;
-            std::array::from_fn(mean)
-        });
-        compare::largest_von_mises(&means.collect::<Vec<[f64; 7]>>())
-    }
-
     /// Mean thickness of the crash elements with values, over their area; NaN where none was mapped.
     pub fn mean_thickness(&self) -> f64 {
         let values = self.mapped.thickness.iter().zip(self.target.mesh.areas());
