@@ -211,9 +211,8 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     check_usage(args)?;
     let monitor = progress::monitor(quiet);
     let mut inputs = vec![args.crash.clone()];
-    inputs.extend(args.stamped.iter().cloned());
-    inputs.extend(args.output.compare.iter().cloned());
-    inputs.extend(args.choice.project.iter().cloned());
+    let others = args.stamped.iter().chain(&args.output.compare);
+    inputs.extend(others.chain(&args.choice.project).cloned());
     check_outputs(targets(&args.output), &inputs)?;
     let (crash, stamped) = load_all(args, &monitor)?;
     inputs.extend(crash.files());
@@ -279,7 +278,8 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         written.push((path.clone(), table.into_bytes()));
     }
     if let Some(path) = &outputs.unmapped {
-        written.push((path.clone(), unmapped_sets(&run, &crash.model).into_bytes()));
+        let sets = unmapped_sets(&run, &crash.model, &monitor)?;
+        written.push((path.clone(), sets.into_bytes()));
     }
     if let Some(path) = &outputs.report {
         let page = map_report(&run, &record, &crash, other.as_ref(), &monitor)?;

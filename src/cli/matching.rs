@@ -7,6 +7,7 @@ use std::sync::Arc;
 use anyhow::bail;
 
 use super::args::{MatchArgs, OutputArgs};
+use super::placing::warn_of_unit;
 use super::recipe::{Asked, asked};
 use super::{
     EXIT_POOR, EXIT_USAGE, UsageError, check_outputs, is_stdout, match_text, print, print_exactly,
@@ -40,8 +41,13 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
             let asked = asked(args)?;
             asked.recipe.settings.check().map_err(PipelineError::from)?;
             let mut parts = load_both(PerRole::new(&args.crash, path), &asked, monitor)?;
-            if args.input.crash_part.is_none() && is_part_open(parts.as_ref()) {
-                (parts.crash, alike_parts) = found_crash(parts.as_ref(), &asked, monitor)?;
+            if args.input.crash_part.is_none() {
+                let both = parts.as_ref();
+                if is_part_open(both) {
+                    (parts.crash, alike_parts) = found_crash(both, &asked, monitor)?;
+                } else if both.crash.chosen_part_ids().len() > 1 {
+                    warn_of_unit(both, monitor)?;
+                }
             }
             (asked, parts)
         }

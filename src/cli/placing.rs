@@ -12,7 +12,7 @@ use crate::assess::Verdict;
 use crate::formats::Selection;
 use crate::geometry::Similarity;
 use crate::monitor::Monitor;
-use crate::pipeline::find_parts::find_parts;
+use crate::pipeline::find_parts::{find_parts, guessed_units};
 use crate::pipeline::load::{LoadedPart, prepare};
 use crate::pipeline::map::{PoseOrigin, place as place_part, placing_recipe};
 use crate::pipeline::map_car::CarReason;
@@ -116,6 +116,15 @@ fn found_by(run: &MatchRun) -> (Similarity, PoseOrigin) {
     (run.crash_from_stamped, PoseOrigin::Match { verdict })
 }
 
+/// Tells where a crash part would have the size of the stamped part in another unit.
+pub(super) fn warn_of_unit(parts: PerRole<&LoadedPart>, monitor: &Monitor) -> anyhow::Result<()> {
+    if let Some(unit) = guessed_units(parts, monitor)? {
+        let reasons = [CarReason::NoPart, CarReason::OtherUnit(unit)].map(|reason| reason.text());
+        log::warn!("{}: {}", parts.stamped.path.display(), reasons.join("; "));
+    }
+    Ok(())
+}
+
 /// The crash parts that the stamped parts belong to, and the poses on them; `None` if one of them fits no
 /// part of the crash model.
 fn on_found_parts(
@@ -129,6 +138,7 @@ fn on_found_parts(
     for part in stamped {
         let parts = PerRole::new(crash, part);
         let Some(found) = find_parts(parts, recipe, &Similarity::identity(), monitor)? else {
+            warn_of_unit(parts, monitor)?;
             return Ok(None);
         };
         if !found.rivals.is_empty() {

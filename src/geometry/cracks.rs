@@ -22,7 +22,7 @@ const SAME_SIDE: f64 = 0.5;
 
 /// Those of `single`, the edges of a mesh with one triangle in rising order, that are no side of a crack.
 /// O(edges with one triangle · log of them).
-pub(super) fn without_cracks(
+pub(crate) fn without_cracks(
     mesh: &TriMesh,
     topology: &Topology,
     mut single: Vec<u32>,

@@ -5,7 +5,7 @@ mod borders;
 pub mod camera;
 pub(crate) mod chunks;
 mod clean;
-mod cracks;
+pub(crate) mod cracks;
 mod landmarks;
 mod merged;
 mod mesh;

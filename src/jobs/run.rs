@@ -305,7 +305,7 @@ fn map(input: &MapInput, monitor: &Monitor) -> Result<JobOutput, JobError> {
     monitor.check()?;
     let record = map_record(&run, &input.parts.crash, &stamped, None, None, monitor)?;
     monitor.check()?;
-    let lists = element_lists(&run, &input.parts.crash);
+    let lists = element_lists(&run, &input.parts.crash, monitor)?;
     Ok(JobOutput::Mapped {
         run: Arc::new(run),
         record: Arc::new(record),
@@ -323,7 +323,7 @@ fn compare_mapping(input: CompareMappingInput, monitor: &Monitor) -> Result<JobO
     monitor.progress("read", 0, None);
     let other = OtherResult::read(&[file], &run, &crash, monitor)?;
     monitor.check()?;
-    let record = compare_with(&run, &crash, &other);
+    let record = compare_with(&run, &crash, &other, monitor)?;
     Ok(JobOutput::MappingCompared {
         run,
         other: Arc::new(other),

@@ -5,16 +5,22 @@ use rayon::prelude::*;
 use super::field::Fields;
 use super::patch::Patch;
 use super::target::TargetPart;
+use crate::monitor::{Cancelled, Monitor};
 
 /// Elements that one thread takes at a time.
 const CHUNK: usize = 1024;
 
 /// The linear field around each element at its corners, limited so that no corner leaves the range of
 /// the elements around; the mean of the corners is the element's value. NaN where it has none.
-pub(super) fn corner_thickness(thickness: &[f64], target: &TargetPart) -> Vec<[f64; 4]> {
+pub(super) fn corner_thickness(
+    thickness: &[f64],
+    target: &TargetPart,
+    monitor: &Monitor,
+) -> Result<Vec<[f64; 4]>, Cancelled> {
     let mesh = &target.mesh;
-    let neighbours = mesh.neighbours();
-    let of_chunk = |chunk: usize| -> Vec<[f64; 4]> {
+    let neighbours = mesh.links(monitor)?.neighbours;
+    let of_chunk = |chunk: usize| -> Result<Vec<[f64; 4]>, Cancelled> {
+        monitor.check()?;
         let elements = chunk * CHUNK..((chunk + 1) * CHUNK).min(mesh.len());
         let mut patch = Patch::default();
         let numbers = elements.clone().map(|element| element as u32);
@@ -28,13 +34,13 @@ pub(super) fn corner_thickness(thickness: &[f64], target: &TargetPart) -> Vec<[f
             Some(corners.map(|offset| field.weighted(slot, 0, 1.0, &offset)[0]))
         };
         let slots = 0..elements.len();
-        slots
+        Ok(slots
             .map(|slot| at_corners(slot).unwrap_or([f64::NAN; 4]))
-            .collect()
+            .collect())
     };
     let chunks: Vec<Vec<[f64; 4]>> = (0..mesh.len().div_ceil(CHUNK))
         .into_par_iter()
         .map(of_chunk)
-        .collect();
-    chunks.concat()
+        .collect::<Result<_, Cancelled>>()?;
+    Ok(chunks.concat())
 }

@@ -3,19 +3,28 @@
 use super::layered::PLASTIC_STRAIN;
 use super::options::{MapOptions, Status};
 use super::target::{Mapped, MappedLayers, TargetPart};
+use crate::geometry::chunks::{CHUNK, for_chunks, map_chunks};
+use crate::monitor::{Cancelled, Monitor};
 
 /// Fills as many rings as the options ask for. A filled element gets the area-weighted means of its
 /// mapped neighbours of the same part and the same number of layers, and the status [`Status::Filled`]. Where
 /// plastic strains are asked for, these come with zero stress; there is no strain and no history.
-pub(super) fn fill(mapped: &mut Mapped, target: &TargetPart, options: &MapOptions) {
+pub(super) fn fill(
+    mapped: &mut Mapped,
+    target: &TargetPart,
+    options: &MapOptions,
+    monitor: &Monitor,
+) -> Result<(), Cancelled> {
     if options.fill_rings == 0 {
-        return;
+        return Ok(());
     }
-    let neighbours = target.mesh.neighbours();
-    let mut states: Option<Vec<Vec<[f64; 7]>>> = mapped.states.as_ref().map(|states| {
-        let all = 0..target.mesh.len();
-        all.map(|element| states.of(element).to_vec()).collect()
+    let neighbours = target.mesh.links(monitor)?.neighbours;
+    let own = mapped.states.as_ref().map(|states| {
+        map_chunks(target.mesh.len(), monitor, |element| {
+            states.of(element).to_vec()
+        })
     });
+    let mut states: Option<Vec<Vec<[f64; 7]>>> = own.transpose()?;
     for _ in 0..options.fill_rings {
         let has_values: Vec<bool> = mapped
             .elements
@@ -23,26 +32,31 @@ pub(super) fn fill(mapped: &mut Mapped, target: &TargetPart, options: &MapOption
             .map(|report| report.status.has_values())
             .collect();
         let mut filled = Vec::new();
-        for element in (0..target.mesh.len()).filter(|&element| !has_values[element]) {
-            let around = neighbours
-                .of(element)
-                .iter()
-                .map(|&n| n as usize)
-                .filter(|&n| {
-                    has_values[n]
-                        && target.mesh.parts()[n] == target.mesh.parts()[element]
-                        && target.rule_of[n] == target.rule_of[element]
-                        && target.planes(n) == target.planes(element)
-                });
-            let around: Vec<usize> = around.collect();
-            if !around.is_empty() {
-                filled.push((element, around));
+        for_chunks(target.mesh.len(), monitor, |range| {
+            for element in range.filter(|&element| !has_values[element]) {
+                let around = neighbours
+                    .of(element)
+                    .iter()
+                    .map(|&n| n as usize)
+                    .filter(|&n| {
+                        has_values[n]
+                            && target.mesh.parts()[n] == target.mesh.parts()[element]
+                            && target.rule_of[n] == target.rule_of[element]
+                            && target.planes(n) == target.planes(element)
+                    });
+                let around: Vec<usize> = around.collect();
+                if !around.is_empty() {
+                    filled.push((element, around));
+                }
             }
-        }
+        })?;
         if filled.is_empty() {
             break;
         }
-        for (element, around) in filled {
+        for (number, (element, around)) in filled.into_iter().enumerate() {
+            if number % CHUNK == 0 {
+                monitor.check()?;
+            }
             let area = |n: &usize| target.mesh.areas()[*n];
             if !mapped.thickness.is_empty() {
                 let known: Vec<usize> = around
@@ -65,6 +79,7 @@ pub(super) fn fill(mapped: &mut Mapped, target: &TargetPart, options: &MapOption
         let values = states.iter().map(Vec::as_slice);
         mapped.states = Some(MappedLayers::of_elements(values));
     }
+    Ok(())
 }
 
 /// Zero stress and the area mean of the plastic strain, point by point.

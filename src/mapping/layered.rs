@@ -59,6 +59,14 @@ impl<const N: usize> Layered<N> {
         }
     }
 
+    /// No values for `n_elements` elements; those with layers at the places of one of the rules have it.
+    pub fn with_rules(n_elements: usize, rules: Vec<LayerRule>) -> Self {
+        Self {
+            rules,
+            ..Self::new(n_elements)
+        }
+    }
+
     /// Sets the values of an element from its integration points (T, values) in any order: points of
     /// one layer are averaged, layers sorted by T. Nothing is set without points, with a value that is
     /// not finite, or beyond 65,534 different rules.
@@ -109,7 +117,7 @@ impl<const N: usize> Layered<N> {
             .count()
     }
 
-    /// The different rules that occur.
+    /// The different rules that occur, behind those that were given.
     pub fn rules(&self) -> &[LayerRule] {
         &self.rules
     }

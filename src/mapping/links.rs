@@ -1,9 +1,16 @@
 //! Which elements of a sheet lie beside each other, and where it ends.
+//!
+//! Borders are found in these lists and not by `geometry::Topology`, which would be of all triangles of the sheet.
+//! Only around the borders such a topology is made, to tell cracks of no width from them as it does.
+
+use std::collections::HashMap;
 
 use rayon::prelude::*;
 
 use super::shells::ShellMesh;
 use crate::geometry::chunks::{for_chunks, map_chunks};
+use crate::geometry::cracks::without_cracks;
+use crate::geometry::{Topology, TriMesh};
 use crate::monitor::{Cancelled, Monitor};
 
 /// Elements that one thread takes at a time.
@@ -70,6 +77,7 @@ impl Links {
             items.extend_from_slice(&chunk.items);
             links.border_edges.extend_from_slice(&chunk.border_edges);
         }
+        links.leave_out_cracks(mesh, &merged, &corners_of, monitor)?;
         let mut is_border = vec![false; n_merged];
         for_chunks(corners_of.len(), monitor, |range| {
             for (corners, &bits) in corners_of[range.clone()]
@@ -90,6 +98,67 @@ impl Links {
         let of_node = |node: &u32| is_border.get(*node as usize).is_some_and(|&border| border);
         links.is_border_node = merged.iter().map(of_node).collect();
         Ok(links)
+    }
+
+    /// Takes the sides of cracks of no width from the border edges: where a mesh was refined in some places, small
+    /// elements hang on the edge of a large one. O(border elements · log of them).
+    fn leave_out_cracks(
+        &mut self,
+        mesh: &ShellMesh,
+        merged: &[u32],
+        corners_of: &[[u32; 4]],
+        monitor: &Monitor,
+    ) -> Result<(), Cancelled> {
+        let (mut elements, mut sides) = (Vec::new(), Vec::new());
+        let (mut place, mut positions, mut triangles) = (HashMap::new(), Vec::new(), Vec::new());
+        for_chunks(mesh.len(), monitor, |range| {
+            for element in range.filter(|&element| self.border_edges[element] != 0) {
+                elements.push(element);
+                for triangle in mesh.halves(element).into_iter().flatten() {
+                    triangles.push(triangle.map(|node| {
+                        *place.entry(merged[node as usize]).or_insert_with(|| {
+                            positions.push(mesh.positions()[node as usize]);
+                            positions.len() as u32 - 1
+                        })
+                    }));
+                }
+            }
+        })?;
+        // The two ends of a side of an element on the border, the smaller one first.
+        let ends = |corners: &[u32; 4], [i, j]: [usize; 2]| -> Option<[u32; 2]> {
+            let [a, b] = [place.get(&corners[i])?, place.get(&corners[j])?];
+            Some([*a.min(b), *a.max(b)])
+        };
+        for &element in &elements {
+            let corners = &corners_of[element];
+            let bits = self.border_edges[element];
+            let on_border = edges(corners).filter(|[i, _]| bits & (1 << i) != 0);
+            sides.extend(on_border.filter_map(|edge| ends(corners, edge)));
+        }
+        sides.sort_unstable();
+        // Triangles without area are none, and the others have finite corners.
+        let Ok(around) = TriMesh::new(positions, triangles) else {
+            return Ok(());
+        };
+        let topology = Topology::build(&around, monitor)?;
+        let mut border: Vec<u32> = (0..topology.edges.len() as u32).collect();
+        border.retain(|&edge| sides.binary_search(&topology.edges[edge as usize]).is_ok());
+        let kept = without_cracks(&around, &topology, border.clone(), monitor)?;
+        let mut closed: Vec<[u32; 2]> = border
+            .into_iter()
+            .filter(|edge| kept.binary_search(edge).is_err())
+            .map(|edge| topology.edges[edge as usize])
+            .collect();
+        closed.sort_unstable();
+        for element in elements {
+            let corners = &corners_of[element];
+            for edge in edges(corners) {
+                if ends(corners, edge).is_some_and(|ends| closed.binary_search(&ends).is_ok()) {
+                    self.border_edges[element] &= !(1 << edge[0]);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// True if the edge of an element between two of its nodes lies on the border; a diagonal never

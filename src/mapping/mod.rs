@@ -138,9 +138,9 @@ pub fn map(
     monitor.check()?;
     mapped.history = history::carry(sources, target, &mapped.elements, options.quantities);
     monitor.check()?;
-    fill::fill(&mut mapped, target, options);
+    fill::fill(&mut mapped, target, options, monitor)?;
     if options.corner_thickness && !mapped.thickness.is_empty() {
-        mapped.corners = corners::corner_thickness(&mapped.thickness, target);
+        mapped.corners = corners::corner_thickness(&mapped.thickness, target, monitor)?;
     }
     Ok(mapped)
 }

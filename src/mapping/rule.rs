@@ -160,6 +160,21 @@ impl LayerRule {
         }
     }
 
+    /// One layer in the middle of each ply, which weighs what the ply is thick; from the bottom side up.
+    pub fn of_plies(thickness: &[f64]) -> Self {
+        let half: f64 = thickness.iter().sum::<f64>() / 2.0;
+        let mut below = 0.0;
+        let places = thickness.iter().map(|ply| {
+            below += ply;
+            (below - ply / 2.0) / half - 1.0
+        });
+        Self {
+            places: places.collect(),
+            weights: thickness.iter().map(|ply| ply / half).collect(),
+            is_quadrature: false,
+        }
+    }
+
     /// Both surfaces, as strains are often written.
     pub fn surfaces() -> Self {
         Self::from_places(vec![-1.0, 1.0])
@@ -316,6 +331,16 @@ mod tests {
         assert_eq!(equal.weights(), [0.25, 0.5, 0.5, 0.5, 0.25]);
         assert_eq!(LayerRule::surfaces().weights(), [1.0, 1.0]);
         assert_eq!(LayerRule::new(RuleKind::Gauss, 11).places()[1], -0.8);
+    }
+
+    #[test]
+    fn plies_are_layers_in_their_middle() {
+        let rule = LayerRule::of_plies(&[0.25, 0.5, 0.25]);
+        assert_eq!(rule.places(), [-0.75, 0.0, 0.75]);
+        assert_eq!(rule.weights(), [0.5, 1.0, 0.5]);
+        let uneven = LayerRule::of_plies(&[0.25, 0.75]);
+        assert_eq!(uneven.places(), [-0.75, 0.25]);
+        assert_eq!(uneven.weights(), [0.5, 1.5]);
     }
 
     #[test]

@@ -158,7 +158,7 @@ impl ShellMesh {
     }
 
     /// The triangles of an element that have an area.
-    fn halves(&self, element: usize) -> [Option<[u32; 3]>; 2] {
+    pub(super) fn halves(&self, element: usize) -> [Option<[u32; 3]>; 2] {
         let own = &self.normals[element];
         if *own == Vector3::zeros() {
             return [None; 2];
@@ -259,6 +259,34 @@ mod tests {
         let [a, _, c, _] = mesh.corners()[0];
         assert!(!links.is_border_edge(0, &mesh.corners()[0], [a, c]));
         assert!((0..9).all(|node| links.is_border_node(node)));
+    }
+
+    #[test]
+    fn cracks_between_large_and_small_elements_are_no_border() {
+        // A square of 2 with two squares of 1 on its right side, where one of their nodes hangs.
+        let at = |x: f64, y: f64| Point3::new(x, y, 0.0);
+        let positions = [
+            [0, 0],
+            [2, 0],
+            [2, 2],
+            [0, 2],
+            [2, 1],
+            [3, 0],
+            [3, 1],
+            [3, 2],
+        ];
+        let positions = positions
+            .map(|[x, y]| at(f64::from(x), f64::from(y)))
+            .to_vec();
+        let corners = vec![[0, 1, 2, 3], [1, 5, 6, 4], [4, 6, 7, 2]];
+        let mesh = ShellMesh::new(positions, corners, vec![0; 3]).unwrap();
+        let links = mesh.links(&Monitor::silent()).unwrap();
+        let is_border = |element: usize, ends: [u32; 2]| {
+            links.is_border_edge(element, &mesh.corners()[element], ends)
+        };
+        assert!(!is_border(0, [1, 2]) && !is_border(1, [4, 1]) && !is_border(2, [2, 4]));
+        assert!(is_border(0, [0, 1]) && is_border(1, [5, 6]) && is_border(2, [7, 2]));
+        assert!(!links.is_border_node(4) && links.is_border_node(1));
     }
 
     #[test]

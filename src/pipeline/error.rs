@@ -91,15 +91,6 @@ pub enum PipelineError {
         /// Id of the crash part.
         part: u64,
     },
-    /// The layers of a part are plies of its own.
-    #[error(
-        "part {part} has plies (*PART_COMPOSITE), whose places are not read; name layers and rule that stand for \
-         them (--layers, --rule), or map the thickness alone (--quantities thickness)"
-    )]
-    PlyLayers {
-        /// Id of the crash part.
-        part: u64,
-    },
     /// Stamped files without what is to be mapped.
     #[error("none of the results that were asked for are in {0}")]
     NoResults(String),

@@ -5,13 +5,15 @@ use std::sync::Arc;
 
 use super::PipelineError;
 use super::error::unless_cancelled;
-use super::likeness::{Moments, moments_of_parts, more_alike};
+use super::likeness::{Moments, Signature, moments_of_parts, more_alike};
 use super::load::{LoadedPart, prepare};
 use super::match_parts::{MatchRecipe, MatchRun, match_parts};
 use crate::assess::Verdict;
 use crate::formats::Selection;
+use crate::geometry::chunks::for_chunks;
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::monitor::{Cancelled, Monitor};
+use crate::registration::{Hand, UnitGuess, guess_unit};
 use crate::role::PerRole;
 use crate::search::ClosestPoint as _;
 
@@ -31,6 +33,8 @@ const UNCOVERED: f64 = 0.15;
 const MORE_COVERED: f64 = 0.15;
 /// So much of a further part must lie there.
 const LIES_THERE: f64 = 0.5;
+/// So alike are a crash part and the stamped one in another unit, and none in its own, for that unit to be named.
+const ALIKE_IN_UNIT: f64 = 0.7;
 /// Triangles of a part that are asked.
 const N_PLACES: usize = 400;
 
@@ -93,6 +97,29 @@ pub fn find_parts(
     Ok(Some(FoundParts { found, rivals }))
 }
 
+/// The units that the files seem to be in, where none of the chosen crash parts has the size of the stamped part
+/// but one would have it in another unit.
+pub fn guessed_units(
+    parts: PerRole<&LoadedPart>,
+    monitor: &Monitor,
+) -> Result<Option<UnitGuess>, Cancelled> {
+    let Signatures { stamped, crash } = signatures(parts, monitor)?;
+    let Some(stamped) = stamped else {
+        return Ok(None);
+    };
+    let is_alike = |(_, own): &(_, Signature)| stamped.likeness(own) >= ALIKE_IN_UNIT;
+    if crash.iter().any(is_alike) {
+        return Ok(None);
+    }
+    let alike = crash.into_iter().filter_map(|(_, own)| {
+        let guess = guess_unit((own.area / stamped.area).sqrt())?;
+        let likeness = stamped.scaled(guess.factor()).likeness(&own);
+        (likeness >= ALIKE_IN_UNIT).then_some((likeness, guess))
+    });
+    let best = alike.max_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(best.map(|(_, guess)| guess))
+}
+
 /// The rivals that were not taken in as further parts of the sheet.
 fn not_among(taken: &[u64], mut rivals: Vec<u64>) -> Vec<u64> {
     rivals.retain(|id| !taken.contains(id));
@@ -136,12 +163,15 @@ struct Fit {
     n_holes_apart: usize,
     /// RMS of the distances.
     rmse: f64,
+    /// The stamped part is taken for one of the other hand.
+    is_mirrored: bool,
 }
 
 impl Fit {
     /// Of two parts of the stamped part's shape the one that is covered more is right, however certain the poses
     /// are: a reinforcement has the shape of the part under it, and so has that part with its reinforcement.
-    /// Holes tell parts of one surface from each other, which distances do not.
+    /// Holes tell parts of one surface from each other, which distances do not. Of two parts that fit about as well
+    /// it is the one of its own hand: a car has both.
     fn is_better_than(&self, other: &Self) -> bool {
         let more = self.covered - other.covered;
         if self.is_one_shape && other.is_one_shape && more.abs() > MORE_COVERED {
@@ -149,6 +179,14 @@ impl Fit {
         }
         let key = |fit: &Self| (fit.verdict != Verdict::Good, fit.n_holes_apart);
         let order = key(self).cmp(&key(other));
+        let is_close = |a: &Self, b: &Self| a.rmse <= AS_CLOSE * b.rmse;
+        if order.is_eq()
+            && self.is_mirrored != other.is_mirrored
+            && is_close(self, other)
+            && is_close(other, self)
+        {
+            return other.is_mirrored;
+        }
         order.then(self.rmse.total_cmp(&other.rmse)).is_lt()
     }
 
@@ -220,6 +258,7 @@ impl Found {
             covered: stamped * crash,
             n_holes_apart: borders.map_or(0, |borders| borders.only_source + borders.only_target),
             rmse: assessment.coverage.rmse(),
+            is_mirrored: self.run.crash_from_stamped.is_mirrored(),
         }
     }
 
@@ -271,11 +310,57 @@ impl Task<'_> {
     }
 }
 
-/// Every chosen part alone, and all together, with their likeness to the stamped part, the most alike first.
-fn candidates(
+/// The pose in which the mirror image of the stamped part lies on most of what the stamped part itself, in its
+/// `own` pose, leaves of the crash parts, as where one half of a symmetric sheet was formed; `None` where it does
+/// not.
+pub fn mirrored_twin(
     parts: PerRole<&LoadedPart>,
+    own: &Similarity,
+    recipe: &MatchRecipe,
     monitor: &Monitor,
-) -> Result<Vec<(f64, Vec<u64>)>, Cancelled> {
+) -> Result<Option<Similarity>, PipelineError> {
+    let mut recipe = recipe.clone();
+    recipe.settings.hand = match own.is_mirrored() {
+        true => Hand::Same,
+        false => Hand::Mirrored,
+    };
+    let run = match_parts(parts, None, &recipe, &Similarity::identity(), monitor);
+    let Ok(run) = unless_cancelled(run)? else {
+        return Ok(None);
+    };
+    let (stamped, crash) = (&parts.stamped.surface, &parts.crash.surface);
+    let mesh = crash.mesh();
+    let edges = [stamped, crash].map(|surface| surface.measures().mean_edge_length);
+    let near = edges[0].max(edges[1]);
+    let poses = [*own, run.crash_from_stamped].map(|pose| (pose.inverse(), pose.scale));
+    let (mut left, mut there) = (0.0, 0.0);
+    for_chunks(mesh.n_triangles(), monitor, |range| {
+        for triangle in range {
+            let centre = middle(&mesh.corners(triangle));
+            let [own, mirrored] = poses.each_ref().map(|(inverse, scale)| {
+                let hit = stamped
+                    .bvh()
+                    .closest(&inverse.apply(&centre), near / scale, None, None);
+                hit.is_some()
+            });
+            let area = mesh.triangle_area(triangle);
+            left += if own { 0.0 } else { area };
+            there += if mirrored && !own { area } else { 0.0 };
+        }
+    })?;
+    let is_there = run.assessment.verdict != Verdict::Poor && there > LIES_THERE * left;
+    Ok(is_there.then_some(run.crash_from_stamped))
+}
+
+/// What parts are compared by.
+struct Signatures {
+    /// Of the stamped part; `None` without area.
+    stamped: Option<Signature>,
+    /// Of every chosen crash part alone, and of all together where they are several.
+    crash: Vec<(Vec<u64>, Signature)>,
+}
+
+fn signatures(parts: PerRole<&LoadedPart>, monitor: &Monitor) -> Result<Signatures, Cancelled> {
     let moments =
         |part: &LoadedPart| moments_of_parts(&part.model, part.settings.length_factor, monitor);
     let moments = parts.map(moments).transpose()?;
@@ -285,25 +370,39 @@ fn candidates(
         of_parts.fold(Moments::default(), |sum, moments| sum.and(moments))
     };
     let stamped = all_of(&used.stamped, &moments.stamped);
-    let Some(stamped) = stamped.signature(parts.stamped.mean_thickness()) else {
-        return Ok(Vec::new());
-    };
+    let stamped = stamped.signature(parts.stamped.mean_thickness());
     let factor = parts.crash.settings.length_factor;
     let summaries = parts.crash.model.part_summaries();
-    let mut found: Vec<(f64, Vec<u64>)> = Vec::new();
+    let mut crash: Vec<(Vec<u64>, Signature)> = Vec::new();
     for row in summaries.iter().filter(|row| used.crash.contains(&row.id)) {
         let thickness = row.thickness.map(|thickness| thickness * factor);
         let own = moments.crash.get(&row.id);
         if let Some(own) = own.and_then(|own| own.signature(thickness)) {
-            found.push((stamped.likeness(&own), vec![row.id]));
+            crash.push((vec![row.id], own));
         }
     }
     if used.crash.len() > 1 {
         let together = all_of(&used.crash, &moments.crash);
         if let Some(together) = together.signature(parts.crash.mean_thickness()) {
-            found.push((stamped.likeness(&together), used.crash));
+            crash.push((used.crash, together));
         }
     }
+    Ok(Signatures { stamped, crash })
+}
+
+/// Every chosen part alone, and all together, with their likeness to the stamped part, the most alike first.
+fn candidates(
+    parts: PerRole<&LoadedPart>,
+    monitor: &Monitor,
+) -> Result<Vec<(f64, Vec<u64>)>, Cancelled> {
+    let Signatures { stamped, crash } = signatures(parts, monitor)?;
+    let Some(stamped) = stamped else {
+        return Ok(Vec::new());
+    };
+    let all = crash.into_iter();
+    let mut found: Vec<(f64, Vec<u64>)> = all
+        .map(|(ids, own)| (stamped.likeness(&own), ids))
+        .collect();
     found.retain(|(likeness, _)| *likeness >= LEAST_LIKENESS);
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     Ok(found)
@@ -379,6 +478,7 @@ mod tests {
             covered: 1.0,
             n_holes_apart,
             rmse,
+            is_mirrored: false,
         }
     }
 
@@ -390,6 +490,12 @@ mod tests {
         assert!(!without_holes.is_as_good_as(&own));
         let copy = fit(Verdict::Good, 0, 0.46);
         assert!(own.is_better_than(&copy) && copy.is_as_good_as(&own));
+        let other_hand = Fit {
+            is_mirrored: true,
+            ..fit(Verdict::Good, 0, 0.44)
+        };
+        assert!(own.is_better_than(&other_hand) && !other_hand.is_better_than(&own));
+        assert!(other_hand.is_as_good_as(&own));
         let far = fit(Verdict::Good, 0, 0.6);
         assert!(!far.is_as_good_as(&own));
         let bent = fit(Verdict::Check, 0, 0.4);

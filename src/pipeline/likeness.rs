@@ -140,6 +140,16 @@ const EDGES: [f64; 3] = [1.0, 1.0, 0.3];
 const THICKNESS: f64 = 0.5;
 
 impl Signature {
+    /// That of the same part with its lengths multiplied.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            area: self.area * factor * factor,
+            edges: self.edges.map(|edge| edge * factor),
+            thickness: self.thickness.map(|thickness| thickness * factor),
+        }
+    }
+
     /// 1 for equal parts, towards 0 the more they differ; the order of the two does not matter.
     pub fn likeness(&self, other: &Self) -> f64 {
         // Below this share of the longest edge a part is flat, whatever the figures say.

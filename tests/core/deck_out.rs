@@ -56,7 +56,7 @@ fn add_parts(model: &mut Model) {
         section_id: 3,
         material_id: 0,
         thickness: Some([1.25, 1.25, 1.5, 1.25]),
-        has_plies: false,
+        plies: None,
         is_defined: true,
     };
     model.parts = vec![part(1), part(2)];

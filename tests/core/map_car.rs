@@ -209,6 +209,51 @@ fn stresses_have_the_factors_of_their_files_and_take_the_place_of_old_ones() {
 }
 
 #[test]
+fn a_stamped_file_in_metres_is_told_with_its_factor() {
+    let car = Car::new();
+    let text = std::fs::read_to_string(car.path(STAMPED[1])).unwrap();
+    let (mut metres, mut keyword) = (String::new(), String::new());
+    let mut is_thickness = false;
+    for line in text.lines() {
+        if line.starts_with('*') {
+            keyword = line.to_owned();
+        }
+        let shorter = |line: &str, from: usize, n: usize| {
+            let numbers = (0..n).map(|i| &line[from + 16 * i..from + 16 * (i + 1)]);
+            let scaled = numbers.map(|text| text.trim().parse::<f64>().unwrap() / 1000.0);
+            let scaled: String = scaled.map(|value| format!("{value:>16.9}")).collect();
+            line[..from].to_owned() + &scaled + &line[from + 16 * n..]
+        };
+        let is_card = !line.starts_with(['*', '$']);
+        metres += &match keyword.as_str() {
+            "*NODE" if is_card => shorter(line, 8, 3),
+            "*ELEMENT_SHELL_THICKNESS" if is_card && is_thickness => shorter(line, 0, 4),
+            _ => line.to_owned(),
+        };
+        metres += "\n";
+        is_thickness = is_card && keyword.contains("THICKNESS") && !is_thickness;
+    }
+    std::fs::write(car.path("metres.dynain"), metres).unwrap();
+    let told = "in metres and the crash part in millimetres (--stamped-length-factor 1000)";
+    let options = ["map-car", CRASH, "metres.dynain", "--out", "mapped"];
+    let done = car.run(&options);
+    assert_eq!(done.status.code(), Some(1), "{}", errors(&done));
+    let table = String::from_utf8(done.stdout).unwrap();
+    assert!(table.contains(told), "{table}");
+    for command in ["map", "match"] {
+        let done = car.run(&[command, CRASH, "metres.dynain"]);
+        assert!(errors(&done).contains(told), "{}", errors(&done));
+    }
+    let with_factor = [&options[..], &["--stamped-length-factor", "1000"]].concat();
+    let done = car.run(&with_factor);
+    assert!(done.status.success(), "{}", errors(&done));
+    // A part that is not of this car is none in another unit either.
+    let cup = car.run(&["map-car", CRASH, STAMPED[2], "--out", "mapped"]);
+    let table = String::from_utf8(cup.stdout).unwrap();
+    assert!(!table.contains("--stamped-length-factor"), "{table}");
+}
+
+#[test]
 fn a_whole_model_is_mapped_where_the_stamped_part_belongs() {
     let car = Car::new();
     let options = ["map", CRASH, STAMPED[1], "--json", "-"];
@@ -282,6 +327,80 @@ fn a_doubtful_match_gives_way_to_a_good_one() {
     assert!(alone.status.success(), "{}", errors(&alone));
     let deck = |folder: &str| std::fs::read(car.path(folder).join("stamped.k")).unwrap();
     assert!(deck("mapped") == deck("alone"));
+}
+
+#[test]
+fn half_of_a_symmetric_sheet_is_told_with_its_mirror_image() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    // Alike on both sides of y = 0, and on no other two sides.
+    let height = |x: f64, y: f64| {
+        let bump = (-((x - 60.0) / 40.0).powi(2) - ((y.abs() - 50.0) / 25.0).powi(2)).exp();
+        20.0 * bump + 0.0015 * x * x
+    };
+    let sheet = |from: i32, keyword: &str, card: &str| {
+        let (mut nodes, mut shells) = ("*NODE\n".to_owned(), format!("{keyword}\n"));
+        for j in from..=20 {
+            for i in 0..=40 {
+                let (x, y) = (5.0 * f64::from(i), 5.0 * f64::from(j));
+                let id = (j - from) * 41 + i + 1;
+                nodes += &format!("{id:>8}{x:>16.6}{y:>16.6}{:>16.6}\n", height(x, y));
+                if i < 40 && j < 20 {
+                    let corners = [id, 1, id, id + 1, id + 42, id + 41];
+                    let fields = corners.iter().map(|id| format!("{id:>8}"));
+                    shells += &(fields.collect::<String>() + "\n" + card);
+                }
+            }
+        }
+        nodes + &shells
+    };
+    let part = "*PART\nsheet\n         1         1\n*SECTION_SHELL\n         1         2                   2\n       1.0\n";
+    let car = format!("*KEYWORD\n{part}{}*END\n", sheet(-20, "*ELEMENT_SHELL", ""));
+    let card = format!("{:>16}", 0.9).repeat(4) + "\n";
+    let half = format!(
+        "*KEYWORD\n{}*END\n",
+        sheet(0, "*ELEMENT_SHELL_THICKNESS", &card)
+    );
+    std::fs::write(path("car.k"), car).unwrap();
+    std::fs::write(path("half.dynain"), half).unwrap();
+    let run = |args: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_shapematch"));
+        let done = command
+            .current_dir(folder.path())
+            .args(args)
+            .output()
+            .unwrap();
+        assert!(done.status.success(), "{}", errors(&done));
+        serde_json::from_slice::<Value>(&done.stdout).unwrap()
+    };
+    let found = run(&[
+        "map-car",
+        "car.k",
+        "half.dynain",
+        "--out",
+        "mapped",
+        "--json",
+        "-",
+    ]);
+    let row = &found["rows"][0];
+    assert!(
+        (row["mapped_area"].as_f64().unwrap() - 0.5).abs() < 0.01,
+        "{row}"
+    );
+    let reasons = row["reasons"].as_array().unwrap();
+    let mirrored = reasons.iter().find_map(|reason| reason.get("mirror-image"));
+    // What the reason advises.
+    let words = |rows: &Value| {
+        let rows = rows.as_array().unwrap().iter();
+        let all = rows.flat_map(|row| row.as_array().unwrap());
+        let all: Vec<String> = all.map(Value::to_string).collect();
+        all.join(" ")
+    };
+    let (own, mirrored) = (words(&row["crash_from_stamped"]), words(mirrored.unwrap()));
+    let twice = ["map", "car.k", "half.dynain", "half.dynain", "--json", "-"];
+    let poses = ["--pose", &own, "--pose", &mirrored];
+    let both = run(&[&twice[..], &poses].concat());
+    assert_eq!(both["mapped_area"], 1.0);
 }
 
 #[test]

@@ -420,6 +420,32 @@ fn missing_partial_and_other_layers_are_kept_apart() {
 }
 
 #[test]
+fn ids_that_have_no_room_get_wide_cards() {
+    let far = 900_000_000_000_000;
+    let deck = crash(2, "");
+    let (head, _) = deck.split_once("*ELEMENT_SHELL\n").unwrap();
+    let elements = square(far + 1, 7, 0, 20) + &square(far + 2, 7, 1, 20);
+    let deck = format!("{head}*ELEMENT_SHELL +\n{elements}*END\n");
+    let pair = Pair::new(&deck, &stamped(2, &(stresses(1..=2))));
+    for kind in ["deck", "part", "include"] {
+        let written = pair.written(&["--write", kind, "--quantities", "full"]);
+        assert!(
+            written.contains("*INITIAL_STRESS_SHELL+\n     900000000000001"),
+            "{written}"
+        );
+        let read = model(&pair.path("out.k"));
+        let ids: Vec<u64> = read
+            .forming
+            .stresses()
+            .map(|card| card.element_id)
+            .collect();
+        if kind != "include" {
+            assert_eq!(ids, [far + 1, far + 2]);
+        }
+    }
+}
+
+#[test]
 fn wide_decks_get_wide_cards() {
     for (keyword, ints, floats) in [("*KEYWORD I10=Y\n", 10, 16), ("*KEYWORD LONG=Y\n", 20, 20)] {
         let field = |text: &str| format!("{text:>ints$}");
@@ -496,15 +522,6 @@ fn mixed_formulations_get_the_layers_of_their_sections() {
         expected += &format!("{t}{rest}");
     }
     assert!(written.ends_with(&(expected + "*END\n")), "{written}");
-    // Plies are no layers of a section.
-    let plies = "*PART_COMPOSITE\nfirst\n         7        16\n         1       0.5       0.0                   1       0.5\n*PART\nsecond";
-    let plies = deck.replace("*PART\nfirst\n         7         7\n*PART\nsecond", plies);
-    let told = Pair::new(&plies, &stamped(2, &stresses(1..=2))).map(&[]);
-    assert!(
-        errors(&told).contains("part 7 has plies (*PART_COMPOSITE)"),
-        "{}",
-        errors(&told)
-    );
     // Sections with a rule of their own, and none at all, are named.
     let own = deck.replace(
         "     0.833         3\n",
@@ -523,6 +540,64 @@ fn mixed_formulations_get_the_layers_of_their_sections() {
         "{}",
         errors(&told)
     );
+}
+
+#[test]
+fn plies_are_the_layers_of_their_part() {
+    let ply = |thickness: &str| format!("         1{thickness:>10}       0.0          ");
+    for (option, plies) in [
+        (
+            "",
+            format!("{}{}\n{}\n", ply("0.2"), ply("0.6"), ply("0.2")),
+        ),
+        (
+            "_LONG",
+            ["0.2", "0.6", "0.2"].map(|t| ply(t) + "\n").concat(),
+        ),
+    ] {
+        let part = format!("*PART_COMPOSITE{option}\nfirst\n         7        16\n{plies}");
+        let of_plies = |deck: String| {
+            let section = "*PART\nsheet\n         7         7         5\n";
+            assert!(deck.contains(section));
+            deck.replace(section, &part)
+        };
+        // In the middle of each ply, four points.
+        let pair = Pair::new(&of_plies(crash(2, "")), &stamped(2, &stresses(1..=2)));
+        let written = pair.written(&["--quantities", "plastic,stress", "--large", "no"]);
+        let rest = " 1.000E+02 5.000E+01 0.000E+00 0.000E+00 0.000E+00 0.000E+00 1.000E-01\n";
+        let mut card =
+            "       101         4         3         0         0         0         0         0\n"
+                .to_owned();
+        for t in ["-8.000E-01", " 0.000E+00", " 8.000E-01"] {
+            card += &format!("{t}{rest}").repeat(4);
+        }
+        assert!(written.contains(&card), "{written}");
+        // Those who name layers get them.
+        let written = pair.written(&["--layers", "2", "--large", "no"]);
+        assert!(
+            written.contains("       101         4         2"),
+            "{written}"
+        );
+        // A stamped part has means that weigh its plies: (0.2 * 0.3 + 0.6 * 0.1 + 0.2 * 0.2) / 1.0.
+        let state =
+            |t: f64, strain: f64| format!("{t:>10}{}{strain:>10}\n", "       0.0".repeat(6));
+        let layers = state(-0.8, 0.3) + &state(0.0, 0.1) + &state(0.8, 0.2);
+        let states = |id| format!("*INITIAL_STRESS_SHELL\n{id:>10}         1         3\n{layers}");
+        let dynain = stamped(2, &(states(1) + &states(2)));
+        let dynain = dynain.replacen(
+            "*KEYWORD\n",
+            &format!(
+                "*KEYWORD\n{}",
+                part.replace("\n         7 ", "\n         1 ")
+            ),
+            1,
+        );
+        let json =
+            Pair::new(&crash(2, ""), &dynain).map(&["--quantities", "plastic", "--json", "-"]);
+        let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+        let mean = &json["plastic_strain"]["stamped"]["mean"];
+        assert!((mean.as_f64().unwrap() - 0.16).abs() < 1e-12, "{json:#}");
+    }
 }
 
 #[test]

@@ -130,6 +130,11 @@ fn a_unit_of_the_include_counts_for_thicknesses() {
     // Stresses would have another unit too.
     let told = refused(&pair, "deck");
     assert!(told.contains("has a unit of stress of its own"), "{told}");
+    let usual = written(&pair, "deck", "thickness,plastic");
+    assert!(
+        usual.contains("*INITIAL_STRESS_SHELL\n       101"),
+        "{usual}"
+    );
     let copy = written(&pair, "deck", "thickness");
     assert!(copy.contains("  9.00000000E-04  9.00000000E-04"), "{copy}");
     let (thickness, _) = thickness_and_stress(&with_copy(&pair));

@@ -14,7 +14,7 @@ use shapematch::report::parse_matrix;
 use shapematch::role::Role;
 use shapematch::samples;
 
-use super::map_decks::Pair;
+use super::map_decks::{Pair, SECTION, model};
 
 /// Nodes and elements of a strip of `n` squares along x.
 fn squares(n: usize, first_id: usize, part: usize, thickness: Option<f64>) -> String {
@@ -109,6 +109,60 @@ fn elements_without_values_get_the_default_thickness_that_was_chosen() {
         let option = format!("--default-thickness={wrong}");
         let refused = strip.map(&["--identity", &option]);
         assert_eq!(refused.status.code(), Some(2), "{wrong}");
+    }
+}
+
+#[test]
+fn the_nearest_thickness_is_that_along_the_mesh() {
+    // Four columns of three squares, of which the stamped part has two, with a thickness for each row.
+    let grid = |n_columns: usize, part: u64, card: &dyn Fn(usize) -> String| {
+        let mut nodes = "*NODE\n".to_owned();
+        for (row, column) in (0..4).flat_map(|row| (0..5).map(move |column| (row, column))) {
+            let (id, x, y) = (5 * row + column + 1, 10 * column, 10 * row);
+            nodes += &format!(
+                "{id:>8}{:>16}{:>16}{:>16}\n",
+                format!("{x}.0"),
+                format!("{y}.0"),
+                "0.0"
+            );
+        }
+        let mut shells = String::new();
+        for (row, column) in (0..3).flat_map(|row| (0..n_columns).map(move |column| (row, column)))
+        {
+            let first = 5 * row + column + 1;
+            let corners = [first, first + 1, first + 6, first + 5];
+            let corners: String = corners.iter().map(|id| format!("{id:>8}")).collect();
+            shells += &format!(
+                "{:>8}{part:>8}{corners}\n{}",
+                10 * row + column + 1,
+                card(row)
+            );
+        }
+        (nodes, shells)
+    };
+    let (nodes, shells) = grid(4, 7, &|_| String::new());
+    let crash = format!("*KEYWORD\n{SECTION}{nodes}*ELEMENT_SHELL\n{shells}*END\n");
+    let thickness = |row: usize| 0.7 + 0.1 * row as f64;
+    let card = |row: usize| format!("{:>16.1}", thickness(row)).repeat(4) + "\n";
+    let (nodes, shells) = grid(2, 1, &card);
+    let stamped = format!("*KEYWORD\n{nodes}*ELEMENT_SHELL_THICKNESS\n{shells}*END\n");
+    let pair = Pair::new(&crash, &stamped);
+    let options = [
+        "--default-thickness",
+        "nearest",
+        "--write",
+        "deck",
+        "--out",
+        "out.k",
+    ];
+    let output = pair.map(&options);
+    assert!(output.status.success(), "{}", errors(&output));
+    let written = model(&pair.path("out.k"));
+    assert_eq!(written.shell_extras.len(), 12);
+    for extra in &written.shell_extras {
+        let row = (written.shells[extra.shell as usize].id / 10) as usize;
+        let off = extra.thickness[0] - thickness(row);
+        assert!(off.abs() < 1e-8, "{extra:?}");
     }
 }
 

@@ -66,6 +66,53 @@ fn a_section_of_equal_layers_gets_its_states_at_their_places() {
 }
 
 #[test]
+fn figures_name_the_layer_that_both_sides_are_compared_in() {
+    // Bent without a force: the stress is 100 T, so that its outermost points differ and its middle has none.
+    let results = bent(1, &["-.7745967", "0.0", ".77459667"]);
+    let pair = Pair::new(
+        &crash(1, ""),
+        &stamped(1, &format!("*INITIAL_STRESS_SHELL\n{results}")),
+    );
+    let options = [
+        "--layers",
+        "5",
+        "--rule",
+        "lobatto",
+        "--quantities",
+        "full",
+        "--out",
+        "out.k",
+    ];
+    let report = ["--report", "map.html", "--json", "map.json"];
+    let output = pair.map(&[&options[..], &report].concat());
+    assert!(output.status.success(), "{}", errors(&output));
+    let compared = pair.map(
+        &[
+            &options[..6],
+            &["--compare", "out.k", "--json", "other.json"],
+        ]
+        .concat(),
+    );
+    assert!(compared.status.success(), "{}", errors(&compared));
+    let read = |name: &str| -> serde_json::Value {
+        serde_json::from_str(&std::fs::read_to_string(pair.path(name)).unwrap()).unwrap()
+    };
+    let record = read("map.json");
+    assert_eq!(record["von_mises"]["layer"], "middle");
+    assert_eq!(record["plastic_strain"]["layer"], "mean");
+    assert!(record["thickness"]["layer"].is_null());
+    for side in ["stamped", "crash"] {
+        let most = record["von_mises"][side]["max"].as_f64().unwrap();
+        assert!(most.abs() < 1e-6, "{side}: {most}");
+    }
+    let comparison = &read("other.json")["comparison"];
+    assert_eq!(comparison["von_mises"]["layer"], "middle");
+    assert_eq!(comparison["plastic_strain"]["layer"], "mean");
+    let report = std::fs::read_to_string(pair.path("map.html")).unwrap();
+    assert!(report.contains("Von Mises stress in the middle of the sheet"));
+}
+
+#[test]
 fn quantities_that_no_file_holds_are_told_and_not_written() {
     let pair = Pair::new(&crash(2, ""), &stamped(2, &stresses(1..=2)));
     for quantity in ["history", "strain"] {
@@ -324,6 +371,37 @@ fn a_copy_in_another_folder_says_which_includes_it_loses() {
     );
     let beside = told("out.k");
     assert!(!beside.contains("not found"), "{beside}");
+    // Folders of includes are relative to the deck, or are not; names run over lines.
+    std::fs::create_dir(pair.path("lib")).unwrap();
+    std::fs::rename(pair.path("more.k"), pair.path("lib/more.k")).unwrap();
+    let lib = pair.path("lib").display().to_string();
+    let deeper = "*INCLUDE\nleast +\n.k\n";
+    std::fs::write(pair.path("lib/more.k"), format!("*KEYWORD\n{deeper}*END\n")).unwrap();
+    for (folder, lost) in [
+        (
+            "*INCLUDE_PATH_RELATIVE\nli +\nb\n".to_owned(),
+            Some("crash.k"),
+        ),
+        (format!("*INCLUDE_PATH\n{lib}\n"), Some("more.k")),
+        (
+            format!("*INCLUDE_PATH\n{lib}\n{}\n", lib.replace("lib", "")),
+            None,
+        ),
+    ] {
+        let deck = crash(2, "").replace("*END\n", &format!("{folder}*INCLUDE\nmore.k\n*END\n"));
+        std::fs::write(pair.path("crash.k"), deck).unwrap();
+        let away = told("away/out.k");
+        match lost {
+            Some("crash.k") => assert!(away.contains("out.k includes more.k, not found"), "{away}"),
+            Some(_) => assert!(
+                away.contains("more.k includes least.k, not found from the folder of away/out.k"),
+                "{away}"
+            ),
+            None => assert!(!away.contains("not found"), "{away}"),
+        }
+        let beside = told("out.k");
+        assert!(!beside.contains("not found"), "{beside}");
+    }
 }
 
 #[test]

@@ -2,11 +2,13 @@
 //! weld lines, hems, and the way there and back.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use shapematch::geometry::tensor::{Tensor, principal, rotated, von_mises};
 use shapematch::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
 use shapematch::mapping::*;
-use shapematch::monitor::Monitor;
+use shapematch::monitor::{Monitor, Observer};
 
 /// Where a point (u, v) of the flat blank lies.
 pub(super) type Shape = fn(f64, f64) -> Point3;
@@ -874,4 +876,43 @@ fn wrong_choices_and_missing_results_are_named() {
     };
     let ended = map(&[place], &onto, &full(), &cancelled).unwrap_err();
     assert!(matches!(ended, MappingError::Cancelled(_)));
+}
+
+/// Counts how often the work looks whether it is to end.
+#[derive(Default)]
+struct Questions(AtomicUsize);
+
+impl Observer for Questions {
+    fn asked(&self) {
+        self.0.fetch_add(1, Ordering::SeqCst);
+    }
+}
+
+#[test]
+fn filling_and_corners_look_whether_they_are_to_end() {
+    let part = source(Blank::new(20.0).mesh(flat), 2, uniform);
+    let onto = target(Blank::new(20.0).mesh(flat), 2);
+    let place = PlacedSource {
+        part: &part,
+        target_from_source: Similarity::identity(),
+    };
+    let n_asked = |options: MapOptions| {
+        let questions = Arc::new(Questions::default());
+        let monitor = Monitor::with_observer(Arc::clone(&questions) as Arc<dyn Observer>);
+        map(&[place], &onto, &options, &monitor).unwrap();
+        questions.0.load(Ordering::SeqCst)
+    };
+    let usual = n_asked(full());
+    let filled = n_asked(MapOptions {
+        fill_rings: 1,
+        ..full()
+    });
+    let at_corners = n_asked(MapOptions {
+        corner_thickness: true,
+        ..full()
+    });
+    assert!(
+        filled > usual && at_corners > usual,
+        "{usual} {filled} {at_corners}"
+    );
 }

@@ -276,8 +276,8 @@ impl Assembly {
                 title: self.raw_titles.add(&raw.title),
                 section_id: raw.section_id,
                 material_id: raw.material_id,
-                thickness: raw.thickness.map(|sum| [sum; 4]),
-                has_plies: raw.thickness.is_some(),
+                thickness: raw.thickness(),
+                plies: raw.plies,
                 is_defined: true,
             };
         }
@@ -313,8 +313,8 @@ impl Assembly {
                 title,
                 section_id: raw.section_id,
                 material_id: raw.material_id,
-                thickness: raw.thickness.map(|sum| [sum; 4]),
-                has_plies: raw.thickness.is_some(),
+                thickness: raw.thickness(),
+                plies: raw.plies,
                 is_defined: true,
             };
         }

@@ -27,7 +27,7 @@ mod exponential;
 pub mod expression;
 pub mod fixed_width;
 mod forming;
-mod include;
+pub(crate) mod include;
 pub mod materials;
 mod mesh;
 pub(crate) mod names;

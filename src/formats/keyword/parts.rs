@@ -1,7 +1,7 @@
 //! Parts and shell sections: titles and thickness.
 
 use super::super::diagnostic::{DiagnosticKind, Diagnostics};
-use super::super::model::{Section, ShellControl, ShellFormulation};
+use super::super::model::{Plies, Section, ShellControl, ShellFormulation};
 use super::super::text;
 use super::block::{Block, Cards};
 use super::card::{Card, EIGHT_BY_10, FieldError};
@@ -28,10 +28,18 @@ pub(crate) struct RawPart {
     pub label: Option<String>,
     /// The text that stands in place of the section's id, which is 0 then.
     pub section_label: Option<String>,
-    /// Sum of the plies of `*PART_COMPOSITE`.
-    pub thickness: Option<f64>,
+    /// Those of `*PART_COMPOSITE`.
+    pub plies: Option<Plies>,
     /// Byte offset of its card.
     pub at: usize,
+}
+
+impl RawPart {
+    /// Sum of the plies, at each corner.
+    pub(crate) fn thickness(&self) -> Option<[f64; 4]> {
+        let plies = self.plies.as_ref()?;
+        Some([plies.thickness.iter().sum(); 4])
+    }
 }
 
 /// Keywords that begin like a part's but define none.
@@ -113,8 +121,11 @@ fn part(
         card.id(EIGHT_BY_10, 2).unwrap_or(0)
     };
     // The other cards are passed over even if this one is no good.
-    let thickness = if composite {
-        Some(composite_thickness(block, cards) * offsets.length)
+    let plies = if composite {
+        Some(Plies {
+            thickness: read_plies(block, cards, offsets.length),
+            elform: card.int_or_zero(EIGHT_BY_10, 1).unwrap_or(0),
+        })
     } else {
         pass_over_options(block, cards);
         None
@@ -128,7 +139,7 @@ fn part(
         material_id: shifted(material, offsets.material),
         label,
         section_label,
-        thickness: thickness.filter(|&sum| sum > 0.0),
+        plies: plies.filter(|plies| !plies.thickness.is_empty()),
         at: card.offset(),
     })
 }
@@ -162,13 +173,13 @@ fn pass_over_options(block: &Block<'_>, cards: &mut Cards<'_>) {
     }
 }
 
-/// Sum of the plies that follow; the heading of the next part ends them.
-fn composite_thickness(block: &Block<'_>, cards: &mut Cards<'_>) -> f64 {
+/// Thickness of the plies that follow, without those that have none; the heading of the next part ends them.
+fn read_plies(block: &Block<'_>, cards: &mut Cards<'_>, length: f64) -> Vec<f64> {
     if block.has_option("CONTACT") {
         cards.next_line();
     }
     let one_ply_a_card = block.has_option("LONG");
-    let mut sum = 0.0;
+    let mut thickness = Vec::new();
     loop {
         let before = cards.clone();
         let Some(card) = cards.next() else { break };
@@ -176,9 +187,10 @@ fn composite_thickness(block: &Block<'_>, cards: &mut Cards<'_>) -> f64 {
             *cards = before;
             break;
         };
-        sum += first + if one_ply_a_card { 0.0 } else { second };
+        let of_card = [first, if one_ply_a_card { 0.0 } else { second }];
+        thickness.extend(of_card.into_iter().filter(|&t| t > 0.0).map(|t| t * length));
     }
-    sum
+    thickness
 }
 
 /// The two ply thicknesses on a card: all of its filled fields are numbers and the first is an id.

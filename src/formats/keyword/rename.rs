@@ -1,18 +1,33 @@
-//! Copies a deck with other names in its include lines and everything else byte for byte.
+//! Which files a deck includes, and copies of it with other names in its include lines and everything else byte for
+//! byte.
 
-use super::block::Blocks;
-use super::include::{Include, layout_of_keyword, read_includes};
+use std::ops::Range;
+
+use super::block::{Block, Blocks};
+use super::include::{layout_of_keyword, read_includes, read_paths};
 use super::source_file::SourceFile;
 use crate::formats::model::IncludedAs;
 
-/// Columns of a name on one line.
-const MOST_COLUMNS: usize = 80;
+/// Columns of a name on its last or only line.
+const COLUMNS: usize = 80;
+/// Columns of a piece of a name that goes on, without ` +`.
+const COLUMNS_OF_PIECE: usize = 78;
+/// Lines of a name.
+const MOST_LINES: usize = 3;
 
-/// The names in the `*INCLUDE` and `*INCLUDE_TRANSFORM` lines of a deck, each with the byte range that holds
-/// it; `None` for one that runs over several lines.
-fn names(deck: &SourceFile, included_as: &IncludedAs) -> Vec<(Include, Option<usize>)> {
-    let bytes = deck.bytes();
-    let mut found = Vec::new();
+/// What a deck includes itself, and the folders that it adds to those where included files are looked for.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct DeckIncludes {
+    /// Names of included files.
+    pub names: Vec<String>,
+    /// Folders of `*INCLUDE_PATH`.
+    pub folders: Vec<String>,
+    /// Folders of `*INCLUDE_PATH_RELATIVE`, relative to that of the master file.
+    pub relative_folders: Vec<String>,
+}
+
+/// Hands over every block of a deck.
+fn for_blocks(deck: &SourceFile, included_as: &IncludedAs, mut take: impl FnMut(&Block<'_>)) {
     let mut blocks = Blocks::new(deck, included_as.layout);
     while let Some(block) = blocks.next() {
         match block.name.as_str() {
@@ -22,56 +37,97 @@ fn names(deck: &SourceFile, included_as: &IncludedAs) -> Vec<(Include, Option<us
                     blocks.set_layout(layout);
                 }
             }
-            "INCLUDE" | "INCLUDE_TRANSFORM" => {
-                let mut includes = read_includes(&block);
-                if block.name == "INCLUDE_TRANSFORM" {
-                    // Further cards are numbers.
-                    includes.truncate(1);
-                }
-                found.extend(includes.into_iter().map(|include| {
-                    let line = &bytes[include.at..block.body.end];
-                    let line = line.split(|&byte| b"\r\n".contains(&byte)).next();
-                    let line = line.unwrap_or_default().trim_ascii_end();
-                    let runs_over = line.ends_with(b" +");
-                    let end = (!runs_over).then(|| include.at + line.len());
-                    (include, end)
-                }));
-            }
-            _ => {}
+            _ => take(&block),
         }
     }
+}
+
+/// The names in an `*INCLUDE` or `*INCLUDE_TRANSFORM` block, each with the bytes that hold it.
+fn names(block: &Block<'_>, bytes: &[u8]) -> Vec<(String, Range<usize>)> {
+    if !["INCLUDE", "INCLUDE_TRANSFORM"].contains(&block.name.as_str()) {
+        return Vec::new();
+    }
+    let mut includes = read_includes(block);
+    if block.name == "INCLUDE_TRANSFORM" {
+        // Further cards are numbers.
+        includes.truncate(1);
+    }
+    let with_place = includes.into_iter().map(|include| {
+        let end = end_of_name(bytes, include.at..block.body.end);
+        (include.name, include.at..end)
+    });
+    with_place.collect()
+}
+
+/// Where the name that begins a range of bytes ends: lines that end in ` +` go on, with comments between them.
+fn end_of_name(bytes: &[u8], range: Range<usize>) -> usize {
+    let (mut from, mut end) = (range.start, range.start);
+    for line in bytes[range].split_inclusive(|&byte| byte == b'\n') {
+        let text = line.trim_ascii_end();
+        if !text.starts_with(b"$") {
+            end = from + text.len();
+            if !text.ends_with(b" +") {
+                break;
+            }
+        }
+        from += line.len();
+    }
+    end
+}
+
+/// What a deck includes.
+pub fn includes_of(deck: &SourceFile, included_as: &IncludedAs) -> DeckIncludes {
+    let mut found = DeckIncludes::default();
+    for_blocks(deck, included_as, |block| match block.name.as_str() {
+        "INCLUDE_PATH" => found.folders.extend(read_paths(block)),
+        "INCLUDE_PATH_RELATIVE" => found.relative_folders.extend(read_paths(block)),
+        _ => {
+            let all = names(block, deck.bytes()).into_iter();
+            found.names.extend(all.map(|(name, _)| name));
+        }
+    });
     found
 }
 
-/// The names of the files that a deck includes itself.
-pub fn included_names(deck: &SourceFile, included_as: &IncludedAs) -> Vec<String> {
-    let all = names(deck, included_as).into_iter();
-    all.map(|(include, _)| include.name).collect()
-}
-
-/// The deck with those names changed for which there is another, and these names as they were. Names on
-/// several lines stay, and so do those whose new name has no room on a line.
+/// The deck with those names changed for which there is another, and these names as they were. Comments within
+/// a name on several lines go with it; names whose new one is too long for any include line stay.
 pub fn rename_includes(
     deck: &SourceFile,
     included_as: &IncludedAs,
     new_name: impl Fn(&str) -> Option<String>,
 ) -> (Vec<u8>, Vec<String>) {
     let bytes = deck.bytes();
+    let line_end = match memchr::memchr(b'\n', bytes) {
+        Some(at) if bytes[..at].ends_with(b"\r") => "\r\n",
+        _ => "\n",
+    };
     let (mut copy, mut done, mut renamed) = (Vec::with_capacity(bytes.len()), 0, Vec::new());
-    for (include, end) in names(deck, included_as) {
-        let (Some(end), Some(name)) = (end, new_name(&include.name)) else {
-            continue;
-        };
-        if name.len() > MOST_COLUMNS {
-            continue;
+    for_blocks(deck, included_as, |block| {
+        for (name, place) in names(block, bytes) {
+            let Some(lines) = new_name(&name).and_then(|new| on_lines(&new, line_end)) else {
+                continue;
+            };
+            copy.extend_from_slice(&bytes[done..place.start]);
+            copy.extend_from_slice(lines.as_bytes());
+            done = place.end;
+            renamed.push(name);
         }
-        copy.extend_from_slice(&bytes[done..include.at]);
-        copy.extend_from_slice(name.as_bytes());
-        done = end;
-        renamed.push(include.name);
-    }
+    });
     copy.extend_from_slice(&bytes[done..]);
     (copy, renamed)
+}
+
+/// A name as it stands in a deck, on several lines where one has no room; `None` where they have none either.
+fn on_lines(name: &str, line_end: &str) -> Option<String> {
+    let (mut lines, mut rest) = (String::new(), name);
+    let mut n_lines = 1;
+    while rest.len() > COLUMNS {
+        n_lines += 1;
+        let (piece, after) = rest.split_at(rest.floor_char_boundary(COLUMNS_OF_PIECE));
+        lines += &format!("{piece} +{line_end}");
+        rest = after;
+    }
+    (n_lines <= MOST_LINES).then_some(lines + rest)
 }
 
 #[cfg(test)]
@@ -80,21 +136,47 @@ mod tests {
 
     #[test]
     fn names_change_and_everything_else_stays() {
-        let deck = "*KEYWORD\n*INCLUDE\n$ first\n  a.k \r\nsub/b.k\nlong/ +\nc.k\n*INCLUDE_TRANSFORM\nb.k\n\
-                    $ offsets\n         1\n*NODE\na.k\n*END\n*INCLUDE\na.k\n";
+        let deck = "*KEYWORD\n*INCLUDE\n$ first\n  a.k \r\nsub/b.k\nlong/ +\n$ more\n and +\nc.k\n*INCLUDE_TRANSFORM\n\
+                    b.k\n$ offsets\n         1\n*NODE\na.k\n*INCLUDE_PATH\n/lib\n*INCLUDE_PATH_RELATIVE\n../far +\n\
+                    /away\n*END\n*INCLUDE\na.k\n";
         let file = SourceFile::new("deck.k", deck);
         let as_it_is = IncludedAs::default();
-        let names = included_names(&file, &as_it_is);
-        assert_eq!(names, ["a.k", "sub/b.k", "long/c.k", "b.k"]);
+        let found = includes_of(&file, &as_it_is);
+        assert_eq!(found.names, ["a.k", "sub/b.k", "long/ andc.k", "b.k"]);
+        assert_eq!(found.folders, ["/lib"]);
+        assert_eq!(found.relative_folders, ["../far/away"]);
         let (bytes, renamed) = rename_includes(&file, &as_it_is, |name| {
-            (name != "sub/b.k").then(|| format!("new_{name}"))
+            let last = name.rsplit('/').next().unwrap();
+            (name != "sub/b.k").then(|| format!("new_{last}"))
         });
-        assert_eq!(renamed, ["a.k", "b.k"]);
+        assert_eq!(renamed, ["a.k", "long/ andc.k", "b.k"]);
         let expected = deck
             .replacen("  a.k \r", "new_a.k \r", 1)
+            .replacen("long/ +\n$ more\n and +\nc.k", "new_ andc.k", 1)
             .replacen("\nb.k", "\nnew_b.k", 1);
         assert_eq!(String::from_utf8(bytes).unwrap(), expected);
-        let (same, none) = rename_includes(&file, &as_it_is, |_| Some("x".repeat(81)));
-        assert_eq!((same.as_slice(), none.len()), (deck.as_bytes(), 0));
+    }
+
+    #[test]
+    fn long_names_run_over_lines_and_longer_ones_stay() {
+        let as_it_is = IncludedAs::default();
+        for end in ["\n", "\r\n"] {
+            let deck = format!("*INCLUDE{end}a.k{end}b.k{end}");
+            let file = SourceFile::new("deck.k", deck.clone());
+            for n in [80, 81, 158, 236, 237, 300] {
+                let name = "ü".repeat(n / 2) + &"x".repeat(n % 2);
+                let new = |old: &str| (old == "a.k").then(|| name.clone());
+                let (bytes, renamed) = rename_includes(&file, &as_it_is, new);
+                if n > 236 {
+                    assert_eq!((bytes.as_slice(), renamed.len()), (deck.as_bytes(), 0));
+                    continue;
+                }
+                let lines = bytes.split(|&byte| byte == b'\n');
+                assert!(lines.map(<[u8]>::len).max().unwrap() <= 81);
+                let copy = SourceFile::new("copy.k", bytes);
+                let names = includes_of(&copy, &as_it_is).names;
+                assert_eq!(names, [name.as_str(), "b.k"]);
+            }
+        }
     }
 }

@@ -12,6 +12,8 @@ use crate::monitor::{Cancelled, Monitor};
 
 /// Elements that are formatted as one piece.
 const CHUNK: usize = 512;
+/// The largest id in ten columns.
+const MOST_IN_TEN: u64 = 9_999_999_999;
 
 /// The state of one shell as it is written. Points stand layer by layer in rising T and inside a layer
 /// around the element.
@@ -45,7 +47,8 @@ pub struct StateFormat {
 }
 
 /// The cards of shells 0 to `n_shells`, stresses first, as text that can stand in any deck of the same
-/// layout. `state_of` gives the state of a shell; shells without states or strains get no card.
+/// layout: where ids have more digits than its fields, the keywords ask for the long one (`+`). `state_of` gives
+/// the state of a shell; shells without states or strains get no card.
 /// Bytes do not depend on the number of threads. O(values), about 60 ns each.
 pub fn write_states<'a>(
     n_shells: usize,
@@ -53,15 +56,31 @@ pub fn write_states<'a>(
     format: StateFormat,
     monitor: &Monitor,
 ) -> Result<Vec<u8>, Cancelled> {
+    let largest = (0..n_shells).map(|shell| state_of(shell).id).max();
+    let is_wider = format.layout != Layout::Long && largest > Some(MOST_IN_TEN);
+    let (format, suffix) = if is_wider {
+        let layout = Layout::Long;
+        (StateFormat { layout, ..format }, "+")
+    } else {
+        (format, "")
+    };
     let mut text = Vec::new();
     let stresses = chunks(n_shells, monitor, |text, shell| {
         stress_card(text, &state_of(shell), format);
     })?;
-    append(&mut text, "*INITIAL_STRESS_SHELL\n", &stresses);
+    append(
+        &mut text,
+        &format!("*INITIAL_STRESS_SHELL{suffix}\n"),
+        &stresses,
+    );
     let strains = chunks(n_shells, monitor, |text, shell| {
         strain_card(text, &state_of(shell), format);
     })?;
-    append(&mut text, "*INITIAL_STRAIN_SHELL\n", &strains);
+    append(
+        &mut text,
+        &format!("*INITIAL_STRAIN_SHELL{suffix}\n"),
+        &strains,
+    );
     Ok(text)
 }
 

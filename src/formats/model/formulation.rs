@@ -66,11 +66,19 @@ pub struct ShellControl {
 }
 
 impl Model {
-    /// The formulation of a part's shells; `None` if its section is not in the deck. O(sections).
+    /// The formulation of a part's shells, whose layers are its plies where it has some; `None` if its section
+    /// is not in the deck. O(sections).
     pub fn shell_formulation(&self, part: u32) -> Option<ShellFormulation> {
-        let id = self.parts.get(part as usize)?.section_id;
-        let section = self.sections.iter().find(|section| section.id == id)?;
-        let mut formulation = section.formulation;
+        let part = self.parts.get(part as usize)?;
+        let mut formulation = match &part.plies {
+            Some(plies) => ShellFormulation::new(plies.elform, plies.thickness.len() as f64, 0.0),
+            None => {
+                let mut sections = self.sections.iter();
+                sections
+                    .find(|section| section.id == part.section_id)?
+                    .formulation
+            }
+        };
         if formulation.elform == 0 {
             formulation.elform = self.shell_control.elform;
         }

@@ -154,10 +154,19 @@ pub struct Part {
     pub material_id: u64,
     /// Thickness that elements without their own take: at the four corners.
     pub thickness: Option<[f64; 4]>,
-    /// Its thickness is that of plies of its own (`*PART_COMPOSITE`).
-    pub has_plies: bool,
+    /// What it has in place of a section (`*PART_COMPOSITE`).
+    pub plies: Option<Plies>,
     /// False if elements name the part but no file defines it.
     pub is_defined: bool,
+}
+
+/// The plies of a part: each is a layer with one integration point in its middle.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Plies {
+    /// Thickness of each, from the bottom side up.
+    pub thickness: Vec<f64>,
+    /// Element formulation `ELFORM`; 0 where the card leaves it to `*CONTROL_SHELL`.
+    pub elform: i64,
 }
 
 impl Part {

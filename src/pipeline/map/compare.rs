@@ -9,10 +9,9 @@ use super::record::{DistributionRecord, PairRecord, pair_of};
 use super::{MapRun, PipelineError, ShownValue};
 use crate::formats::keyword::write::{WriteOptions, write};
 use crate::formats::{self, Disk, Memory, Model, ReadOptions};
-use crate::geometry::tensor::{Tensor, von_mises};
 use crate::mapping::{Layered, PLASTIC_STRAIN, distribution};
-use crate::monitor::Monitor;
-use crate::pipeline::forming_values::FormingValue;
+use crate::monitor::{Cancelled, Monitor};
+use crate::pipeline::forming_values::{FormingValue, LayerChoice};
 use crate::pipeline::load::LoadedPart;
 
 /// What other files say of the elements of a mapping.
@@ -95,15 +94,6 @@ impl OtherResult {
     }
 }
 
-/// Largest von Mises stress of some points; NaN if there are none.
-pub(super) fn largest_von_mises(points: &[[f64; 7]]) -> f64 {
-    let of_point = |state: &[f64; 7]| {
-        let stress: Tensor = std::array::from_fn(|i| state[i]);
-        von_mises(&stress)
-    };
-    points.iter().map(of_point).fold(f64::NAN, f64::max)
-}
-
 fn read_other(path: &Path, crash: &LoadedPart, monitor: &Monitor) -> Result<Model, PipelineError> {
     let model = formats::read(path, &crash.settings.read, monitor)?;
     if !model.nodes.is_empty() {
@@ -146,6 +136,9 @@ pub(super) fn read_beside_nodes(
 /// Our values less another's, over the elements that have both.
 #[derive(Debug, Clone, Serialize)]
 pub struct DifferenceRecord {
+    /// The layer that both were taken from; `None` for the thickness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layer: Option<LayerChoice>,
     /// Elements with both values.
     pub n_elements: usize,
     /// Our distribution over these elements.
@@ -182,13 +175,13 @@ pub struct ComparisonRecord {
     pub n_only_other: usize,
     /// Differences of the thickness.
     pub thickness: Option<DifferenceRecord>,
-    /// Effective plastic strain, mean over the layers.
+    /// Effective plastic strain.
     pub plastic_strain: Option<DifferenceRecord>,
-    /// Largest von Mises stress of the layers, where stresses were mapped.
+    /// Von Mises stress, where stresses were mapped.
     pub von_mises: Option<DifferenceRecord>,
-    /// Largest principal strain of the layers, where strains were mapped.
+    /// Largest principal strain, where strains were mapped.
     pub major_strain: Option<DifferenceRecord>,
-    /// Smallest principal strain of the layers, where strains were mapped.
+    /// Smallest principal strain, where strains were mapped.
     pub minor_strain: Option<DifferenceRecord>,
 }
 
@@ -211,7 +204,10 @@ impl ComparisonRecord {
         [
             ("Thickness", self.thickness.as_ref()),
             ("Effective plastic strain", self.plastic_strain.as_ref()),
-            ("Largest von Mises stress", self.von_mises.as_ref()),
+            (
+                "Von Mises stress in the middle of the sheet",
+                self.von_mises.as_ref(),
+            ),
             ("Largest major strain", self.major_strain.as_ref()),
             ("Smallest minor strain", self.minor_strain.as_ref()),
         ]
@@ -219,7 +215,12 @@ impl ComparisonRecord {
 }
 
 /// Compares a mapping with another result. O(elements · log elements).
-pub fn compare_with(run: &MapRun, crash: &LoadedPart, other: &OtherResult) -> ComparisonRecord {
+pub fn compare_with(
+    run: &MapRun,
+    crash: &LoadedPart,
+    other: &OtherResult,
+    monitor: &Monitor,
+) -> Result<ComparisonRecord, Cancelled> {
     let (mut n_both, mut n_only_here, mut n_only_other) = (0, 0, 0);
     for (element, report) in run.mapped.elements.iter().enumerate() {
         match (report.status.has_values(), other.has_values(element)) {
@@ -229,17 +230,20 @@ pub fn compare_with(run: &MapRun, crash: &LoadedPart, other: &OtherResult) -> Co
             (false, false) => {}
         }
     }
-    let difference = |here: &dyn Fn(usize) -> f64, there: &dyn Fn(usize) -> f64| {
-        difference(run, crash, here, there)
-    };
     let wanted = run.recipe.options.quantities;
-    let of_layers = |value: FormingValue| {
-        let shown = ShownValue::usual(Some(value));
+    let difference = |value: Option<FormingValue>| {
+        monitor.check()?;
+        let shown = ShownValue::compared(value);
+        let layer = value.map(LayerChoice::compared);
         let here = |element: usize| run.shown(element, &shown);
-        difference(&here, &|element| other.shown(element, &shown))
+        let there = |element: usize| other.shown(element, &shown);
+        Ok(difference(run, crash, layer, [&here, &there]))
     };
-    let if_mapped = |is_mapped: bool, value| is_mapped.then(|| of_layers(value)).flatten();
-    ComparisonRecord {
+    let if_mapped = |is_mapped: bool, value| match is_mapped {
+        true => difference(Some(value)),
+        false => Ok(None),
+    };
+    Ok(ComparisonRecord {
         files: other
             .files
             .iter()
@@ -248,19 +252,19 @@ pub fn compare_with(run: &MapRun, crash: &LoadedPart, other: &OtherResult) -> Co
         n_both,
         n_only_here,
         n_only_other,
-        thickness: difference(&|e| run.thickness(e), &|e| other.thickness[e]),
-        plastic_strain: difference(&|e| run.plastic_strain(e), &|e| other.plastic_strain(e)),
-        von_mises: if_mapped(wanted.stress, FormingValue::VonMises),
-        major_strain: if_mapped(wanted.strain, FormingValue::MajorStrain),
-        minor_strain: if_mapped(wanted.strain, FormingValue::MinorStrain),
-    }
+        thickness: difference(None)?,
+        plastic_strain: if_mapped(wanted.plastic_strain, FormingValue::PlasticStrain)?,
+        von_mises: if_mapped(wanted.stress, FormingValue::VonMises)?,
+        major_strain: if_mapped(wanted.strain, FormingValue::MajorStrain)?,
+        minor_strain: if_mapped(wanted.strain, FormingValue::MinorStrain)?,
+    })
 }
 
 fn difference(
     run: &MapRun,
     crash: &LoadedPart,
-    here: &dyn Fn(usize) -> f64,
-    there: &dyn Fn(usize) -> f64,
+    layer: Option<LayerChoice>,
+    [here, there]: [&dyn Fn(usize) -> f64; 2],
 ) -> Option<DifferenceRecord> {
     let areas = run.target.mesh.areas();
     let values = (0..areas.len()).map(|element| (element, here(element), there(element)));
@@ -279,8 +283,9 @@ fn difference(
         let off = |row: &&(usize, f64, f64)| (row.1 - row.2).abs();
         off(a).total_cmp(&off(b)).then(b.0.cmp(&a.0))
     })?;
-    let pair: PairRecord = pair_of(&[ours, theirs])?;
+    let pair: PairRecord = pair_of(layer, &[ours, theirs])?;
     Some(DifferenceRecord {
+        layer,
         n_elements: both.len(),
         here: pair.stamped,
         other: pair.crash,

@@ -6,7 +6,7 @@ use super::{MapRecipe, mesh_error, parts_in_use};
 use crate::formats::Model;
 use crate::geometry::Point3;
 use crate::mapping::{
-    LayerHistory, LayerRule, Layered, RuleKind, ShellMesh, SourceHistory, SourcePart, TargetPart,
+    LayerHistory, LayerRule, Layered, ShellMesh, SourceHistory, SourcePart, TargetPart,
 };
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::PipelineError;
@@ -85,7 +85,10 @@ pub(super) fn source_part(
     let has_results = !model.forming.is_empty();
     let named = if has_results { &shells.shells[..] } else { &[] };
     let index = element_index(model, named, monitor)?;
-    let mut states = Layered::new(shells.shells.len());
+    let parts = parts_in_use(shells).into_iter();
+    let plies = parts.filter_map(|part| model.parts[part as usize].plies.as_ref());
+    let plies = plies.map(|plies| LayerRule::of_plies(&plies.thickness));
+    let mut states = Layered::with_rules(shells.shells.len(), plies.collect());
     let mut history = SourceHistory::new(shells.shells.len());
     for (number, stress) in model.forming.stresses().enumerate() {
         if number % CHUNK == 0 {
@@ -159,41 +162,42 @@ pub(super) fn element_index(
 }
 
 /// What the layers of the crash elements are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct TargetLayers {
-    /// Number of layers.
-    pub n_layers: usize,
-    /// Rule of integration through the thickness.
-    pub rule: RuleKind,
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct TargetLayers {
+    /// Their places and weights.
+    pub rule: LayerRule,
     /// Points in the plane: 1 or 4.
     pub n_plane: u8,
 }
 
-/// The crash part with the layers of each of its elements.
+/// The crash part with the layers of each of its parts.
 pub(super) fn target_part(
     part: &LoadedPart,
     shells: &PartShells,
-    layers_of_part: impl Fn(u32) -> TargetLayers,
+    layers_of_part: &BTreeMap<u32, TargetLayers>,
     monitor: &Monitor,
 ) -> Result<TargetPart, Cancelled> {
     let model = &part.model;
     let factor = part.settings.length_factor;
-    let mut kinds: Vec<TargetLayers> = Vec::new();
+    let mut rules: Vec<LayerRule> = Vec::new();
+    let of_parts = layers_of_part.iter().map(|(&part, layers)| {
+        let known = rules.iter().position(|rule| *rule == layers.rule);
+        let rule = known.unwrap_or_else(|| {
+            rules.push(layers.rule.clone());
+            rules.len() - 1
+        });
+        (part, (rule as u16, layers.n_plane))
+    });
+    let of_parts: BTreeMap<u32, (u16, u8)> = of_parts.collect();
     let mut rule_of = Vec::with_capacity(shells.shells.len());
     let mut n_plane = Vec::with_capacity(shells.shells.len());
     for (element, &of_part) in shells.mesh.parts().iter().enumerate() {
         if element % CHUNK == 0 {
             monitor.check()?;
         }
-        let layers = layers_of_part(of_part);
-        let same =
-            |kind: &TargetLayers| (kind.n_layers, kind.rule) == (layers.n_layers, layers.rule);
-        let rule = kinds.iter().position(same).unwrap_or_else(|| {
-            kinds.push(layers);
-            kinds.len() - 1
-        });
-        rule_of.push(rule as u16);
-        n_plane.push(layers.n_plane);
+        let (rule, points) = of_parts[&of_part];
+        rule_of.push(rule);
+        n_plane.push(points);
     }
     let nominal = shells.shells.iter().map(|&shell| {
         let corners = model.shell_thickness(shell);
@@ -201,11 +205,8 @@ pub(super) fn target_part(
             corners.iter().sum::<f64>() / 4.0 * factor
         })
     });
-    let rules = kinds
-        .iter()
-        .map(|kind| LayerRule::new(kind.rule, kind.n_layers));
     Ok(TargetPart {
-        rules: rules.collect(),
+        rules,
         rule_of,
         n_plane,
         nominal_thickness: nominal.collect(),

@@ -1,8 +1,11 @@
 //! What is written as the thickness of elements that carry no values.
 
-use std::collections::VecDeque;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 use super::MapRun;
+use crate::geometry::chunks::{CHUNK, for_chunks};
+use crate::monitor::{Cancelled, Monitor};
 
 /// Thickness of the elements without values in the files that are written.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -12,44 +15,71 @@ pub enum DefaultThickness {
     Section,
     /// This one, in the crash model's unit of lengths.
     Fixed(f64),
-    /// That of the nearest element with a thickness, counted in elements along the mesh. Elements that
-    /// hang together with none keep that of their section.
+    /// That of the nearest element with a thickness, along the mesh. Elements that hang together with none keep
+    /// that of their section.
     Nearest,
 }
 
 impl DefaultThickness {
     /// The thickness of every element without values, by its place in the run. O(elements).
-    pub(super) fn of(self, run: &MapRun) -> Vec<(usize, f64)> {
+    pub(super) fn of(
+        self,
+        run: &MapRun,
+        monitor: &Monitor,
+    ) -> Result<Vec<(usize, f64)>, Cancelled> {
         let without = |element: &usize| !run.mapped.elements[*element].status.has_values();
         let elements = (0..run.shells.len()).filter(without);
-        match self {
+        Ok(match self {
             Self::Section => Vec::new(),
             Self::Fixed(thickness) => elements.map(|element| (element, thickness)).collect(),
             Self::Nearest => {
-                let nearest = spread(run);
+                let nearest = spread(run, monitor)?;
                 let known = elements.map(|element| (element, nearest[element]));
                 known
                     .filter(|(_, thickness)| thickness.is_finite())
                     .collect()
             }
-        }
+        })
     }
 }
 
-/// The mapped thickness carried from element to neighbour until all that can be reached have one.
-fn spread(run: &MapRun) -> Vec<f64> {
-    let n = run.shells.len();
-    let mut thickness: Vec<f64> = (0..n).map(|element| run.thickness(element)).collect();
-    let neighbours = run.target.mesh.neighbours();
-    let mut front: VecDeque<usize> = (0..n).filter(|&e| thickness[e].is_finite()).collect();
-    while let Some(element) = front.pop_front() {
+/// The mapped thickness carried from element to neighbour until all that can be reached have that of the nearest,
+/// by the way from centre to centre; of several as near that of the first in the deck. O(elements · log of those
+/// without).
+fn spread(run: &MapRun, monitor: &Monitor) -> Result<Vec<f64>, Cancelled> {
+    let mesh = &run.target.mesh;
+    let neighbours = mesh.links(monitor)?.neighbours;
+    let known: Vec<f64> = (0..mesh.len())
+        .map(|element| run.thickness(element))
+        .collect();
+    let mut thickness = known.clone();
+    // The way so far, the element that it comes from and the one that it leads to. Bits of numbers that are not
+    // negative rise with them.
+    let mut ways = BinaryHeap::new();
+    let go_on = |ways: &mut BinaryHeap<_>, way: f64, from: usize, element: usize| {
+        let centre = mesh.centroids()[element];
         for &next in neighbours.of(element) {
-            let next = next as usize;
-            if !thickness[next].is_finite() {
-                thickness[next] = thickness[element];
-                front.push_back(next);
+            if !known[next as usize].is_finite() {
+                let way = way + (mesh.centroids()[next as usize] - centre).norm();
+                ways.push(Reverse((way.to_bits(), from, next as usize)));
             }
         }
+    };
+    for_chunks(mesh.len(), monitor, |range| {
+        for element in range.filter(|&element| known[element].is_finite()) {
+            go_on(&mut ways, 0.0, element, element);
+        }
+    })?;
+    let mut n_done = 0;
+    while let Some(Reverse((way, from, element))) = ways.pop() {
+        if n_done % CHUNK == 0 {
+            monitor.check()?;
+        }
+        n_done += 1;
+        if !thickness[element].is_finite() {
+            thickness[element] = known[from];
+            go_on(&mut ways, f64::from_bits(way), from, element);
+        }
     }
-    thickness
+    Ok(thickness)
 }

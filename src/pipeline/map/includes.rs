@@ -3,11 +3,14 @@
 
 use std::path::{Path, PathBuf};
 
+use super::PipelineError;
 use super::output::MapFile;
-use crate::formats::keyword::rename::{included_names, rename_includes};
+use crate::formats::keyword::include::SearchPath;
+use crate::formats::keyword::rename::{includes_of, rename_includes};
 use crate::formats::keyword::source_file::SourceFile;
 use crate::formats::model::ReadFile;
-use crate::formats::source::{Disk, FileSource};
+use crate::formats::{self, Disk};
+use crate::monitor::Monitor;
 use crate::pipeline::load::LoadedPart;
 
 /// Lets copies include the copies of other files in their place, where their lines can be changed, and marks
@@ -58,34 +61,80 @@ fn is_named(path: &Path, name: &str, crash: &LoadedPart) -> bool {
     called.all(|read| read.path == path) && is_called(path)
 }
 
-/// Says which files a copy includes that are not found from where it is written; `None` if all are.
-pub(super) fn lost_includes(files: &[MapFile], crash: &LoadedPart) -> Option<String> {
-    files.iter().find_map(|file| {
-        let read = original(file, crash)?;
-        let source = SourceFile::new(&file.path, file.bytes.clone());
-        let is_in = |path: &Path, name: &str| {
-            let folder = path.parent().unwrap_or(Path::new(""));
-            Disk.find(&folder.join(name)).is_some()
+/// Says which included files are not found any more from where the copies are written; `None` if all are. Folders
+/// of `*INCLUDE_PATH_RELATIVE` are relative to that of the whole deck, so a copy of the deck itself in another
+/// folder may lose what files include that lie where they were.
+pub(super) fn lost_includes(
+    files: &[MapFile],
+    crash: &LoadedPart,
+    monitor: &Monitor,
+) -> Result<Option<String>, PipelineError> {
+    let copy_of = |path: &Path| {
+        let mut copies = files.iter();
+        copies.find(|file| file.replaces.as_deref() == Some(path))
+    };
+    let is_moved =
+        |file: &MapFile| file.path.parent() != file.replaces.as_deref().and_then(Path::parent);
+    if !files.iter().any(is_moved) {
+        return Ok(None);
+    }
+    let mut decks = Vec::with_capacity(crash.model.files.len());
+    let from = crash.file_source();
+    for read in &crash.model.files {
+        let copy = copy_of(&read.path);
+        let bytes = match copy {
+            Some(copy) => copy.bytes.clone().into(),
+            None => formats::read_text(&*from, &read.path, &crash.settings.read, monitor)?,
         };
+        let path = copy.map_or(&read.path, |copy| &copy.path);
+        let includes = includes_of(&SourceFile::new(path, bytes), &read.included_as);
+        decks.push((&read.path, path, includes));
+    }
+    let search = |deck: &Path| {
+        let master = folder_of(deck);
+        let absolute = decks.iter().flat_map(|(.., deck)| &deck.folders);
+        let relative = decks.iter().flat_map(|(.., deck)| &deck.relative_folders);
+        let folders = absolute.map(PathBuf::from);
+        let folders = folders.chain(relative.map(|folder| master.join(folder)));
+        let of_options = crash.settings.read.include_folders.iter().cloned();
+        SearchPath {
+            folders: folders.chain(of_options).collect(),
+            master,
+        }
+    };
+    let whole = copy_of(&crash.path).map_or(&crash.path, |copy| &copy.path);
+    let [before, after] = [&crash.path, whole].map(|path| search(path));
+    for (old, new, includes) in &decks {
+        let is_copy = old != new;
         let is_written = |name: &str| {
-            let there = file.path.with_file_name(name);
+            let there = new.with_file_name(name);
             files.iter().any(|other| other.path == there)
         };
-        let names = included_names(&source, &read.included_as).into_iter();
-        let lost = names.filter(|name| {
-            let is_lost = is_in(&read.path, name) && !is_in(&file.path, name);
-            Path::new(name).is_relative() && is_lost && !is_written(name)
+        let lost = includes.names.iter().filter(|name| {
+            let was_found = before.find(&Disk, &folder_of(old), name).is_some();
+            was_found && after.find(&Disk, &folder_of(new), name).is_none() && !is_written(name)
         });
-        let lost: Vec<String> = lost.collect();
-        let first = lost.first()?;
+        let lost: Vec<&String> = lost.collect();
+        let Some(first) = lost.first() else { continue };
         let what = match lost.len() {
-            1 => first.clone(),
+            1 => (*first).clone(),
             n => format!("{first} and {} more", n - 1),
         };
-        Some(format!(
-            "{} includes {what}, not found from its folder; move it to the folder of {}, or write it there",
-            file.path.display(),
-            read.path.display()
-        ))
-    })
+        let [from, new, old, whole] = [&crash.path, *new, *old, whole].map(|path| path.display());
+        return Ok(Some(match is_copy {
+            true => format!(
+                "{new} includes {what}, not found from its folder; move it to the folder of {old}, or write it there"
+            ),
+            // It loses what the folder of the whole deck led to.
+            false => format!(
+                "{old} includes {what}, not found from the folder of {whole}; move that to the folder of {from}, or \
+                 write it there"
+            ),
+        }));
+    }
+    Ok(None)
+}
+
+fn folder_of(path: &Path) -> PathBuf {
+    path.parent().unwrap_or(Path::new("")).to_path_buf()
 }

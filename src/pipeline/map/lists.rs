@@ -2,7 +2,9 @@
 
 use super::MapRun;
 use crate::geometry::Point3;
+use crate::geometry::chunks::CHUNK;
 use crate::mapping::Status;
+use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::load::LoadedPart;
 
 /// Elements of a list.
@@ -62,7 +64,11 @@ pub struct DoubtfulElement {
 }
 
 /// The lists of a mapping onto `crash`. O(elements).
-pub fn element_lists(run: &MapRun, crash: &LoadedPart) -> ElementLists {
+pub fn element_lists(
+    run: &MapRun,
+    crash: &LoadedPart,
+    monitor: &Monitor,
+) -> Result<ElementLists, Cancelled> {
     let id = |element: usize| crash.model.shells[run.shells[element] as usize].id;
     let center = |element: usize| run.target.mesh.centroids()[element];
     let mut first_of: Vec<(Status, usize)> = Vec::new();
@@ -71,6 +77,9 @@ pub fn element_lists(run: &MapRun, crash: &LoadedPart) -> ElementLists {
     // In order, never longer than the list.
     let mut worst: Vec<(f64, usize)> = Vec::with_capacity(N_LISTED + 1);
     for (element, report) in run.mapped.elements.iter().enumerate() {
+        if element % CHUNK == 0 {
+            monitor.check()?;
+        }
         let (status, confidence) = (report.status, report.confidence);
         let is_first = first_of.iter().all(|(known, _)| *known != status);
         if is_first {
@@ -93,7 +102,7 @@ pub fn element_lists(run: &MapRun, crash: &LoadedPart) -> ElementLists {
         }
     }
     let unmapped = first.into_iter().chain(others).take(N_LISTED);
-    ElementLists {
+    Ok(ElementLists {
         unmapped: unmapped
             .map(|(element, status)| UnmappedElement {
                 id: id(element),
@@ -111,16 +120,19 @@ pub fn element_lists(run: &MapRun, crash: &LoadedPart) -> ElementLists {
             })
             .collect(),
         first_of,
-        givers: givers(run),
-    }
+        givers: givers(run, monitor)?,
+    })
 }
 
 /// What each stamped part gave. O(elements).
-pub(super) fn givers(run: &MapRun) -> Vec<GiverShare> {
+pub(super) fn givers(run: &MapRun, monitor: &Monitor) -> Result<Vec<GiverShare>, Cancelled> {
     let mut givers = vec![GiverShare::default(); run.sources.len()];
     let areas = run.target.mesh.areas();
     let whole: f64 = areas.iter().sum();
     for (element, area) in areas.iter().enumerate() {
+        if element % CHUNK == 0 {
+            monitor.check()?;
+        }
         let Some(part) = run.values_from(element) else {
             continue;
         };
@@ -129,5 +141,5 @@ pub(super) fn givers(run: &MapRun) -> Vec<GiverShare> {
         giver.area_share += area / whole;
         giver.first = giver.first.or(Some(element));
     }
-    givers
+    Ok(givers)
 }

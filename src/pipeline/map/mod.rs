@@ -21,13 +21,12 @@ mod values;
 mod verdict;
 mod warnings;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
 pub use compare::{ComparisonRecord, DifferenceRecord, OtherResult, compare_with};
-pub use convert::TargetLayers;
 pub use default_thickness::DefaultThickness;
 pub use head::deck_comments;
 pub use lists::{DoubtfulElement, ElementLists, GiverShare, UnmappedElement, element_lists};
@@ -49,11 +48,11 @@ use super::load::LoadedPart;
 use super::{PipelineError, millis_since};
 use crate::geometry::Similarity;
 use crate::mapping::{
-    self, Distribution, MapBack, MapOptions, Mapped, PlacedSource, RuleKind, SourcePart,
+    self, Distribution, LayerRule, MapBack, MapOptions, Mapped, PlacedSource, RuleKind, SourcePart,
     TargetPart, distribution, limits,
 };
 use crate::monitor::Monitor;
-use convert::{PartShells, part_shells, source_part, target_part};
+use convert::{PartShells, TargetLayers, part_shells, source_part, target_part};
 
 /// Usual ratio of the mean thickness of a formed part to that of its section.
 const USUAL_THINNING: std::ops::RangeInclusive<f64> = 0.75..=1.1;
@@ -175,22 +174,6 @@ impl MapRun {
         self.mapped.mean_plastic_strain(&self.target, element)
     }
 
-    /// Largest von Mises stress of an element's layers, each the mean of its points in the plane; NaN if
-    /// it has none.
-    pub fn largest_von_mises(&self, element: usize) -> f64 {
-        let Some(states) = &self.mapped.states else {
-            return f64::NAN;
-        };
-        let points = states.of(element);
-        let rule = &self.target.rules[self.target.rule_of[element] as usize];
-        let n_plane = (points.len() / rule.len().max(1)).max(1);
-        let means = points.chunks(n_plane).map(|layer| {
-            let mean = |i: usize| layer.iter().map(|state| state[i]).sum::<f64>() / n_plane as f64;
-            std::array::from_fn(mean)
-        });
-        compare::largest_von_mises(&means.collect::<Vec<[f64; 7]>>())
-    }
-
     /// Mean thickness of the crash elements with values, over their area; NaN where none was mapped.
     pub fn mean_thickness(&self) -> f64 {
         let values = self.mapped.thickness.iter().zip(self.target.mesh.areas());
@@ -236,15 +219,15 @@ pub fn map_parts(
     let crash_shells = part_shells(crash, monitor)?;
     let layers = Layers { crash, recipe };
     let crash_parts = parts_in_use(&crash_shells);
+    let mut layers_of = BTreeMap::new();
     for &part in &crash_parts {
-        layers.of(part)?;
+        layers_of.insert(part, layers.of(part)?);
     }
     let wanted = recipe.options.quantities;
     if wanted.stress || wanted.history {
         ready::check_axes(crash, &crash_parts)?;
     }
-    let layers_of = |part| layers.of(part).unwrap_or(FALLBACK_LAYERS);
-    let target = target_part(crash, &crash_shells, layers_of, monitor)?;
+    let target = target_part(crash, &crash_shells, &layers_of, monitor)?;
     let mut shells = Vec::with_capacity(stamped.len());
     for placed in stamped {
         shells.push(part_shells(placed.part, monitor)?);
@@ -309,13 +292,6 @@ fn parts_in_use(shells: &PartShells) -> Vec<u32> {
     parts.into_iter().collect()
 }
 
-/// Layers of elements whose part was already found to have some.
-const FALLBACK_LAYERS: TargetLayers = TargetLayers {
-    n_layers: 2,
-    rule: RuleKind::Gauss,
-    n_plane: 1,
-};
-
 fn mesh_error(error: crate::geometry::MeshError) -> PipelineError {
     PipelineError::Mapping(mapping::MappingError::from(error))
 }
@@ -341,9 +317,6 @@ impl Layers<'_> {
             (None, Some(section)) if !section.has_own_rule => section.n_layers as usize,
             (None, _) if !needs_layers => 1,
             (None, Some(_)) => return Err(PipelineError::OwnLayerRule { part: id }),
-            (None, None) if model.parts[part as usize].has_plies => {
-                return Err(PipelineError::PlyLayers { part: id });
-            }
             (None, None) => return Err(PipelineError::UnknownLayers { part: id }),
         };
         if !limits::LAYERS.contains(&n_layers) {
@@ -356,9 +329,13 @@ impl Layers<'_> {
         } else {
             RuleKind::Gauss
         };
+        let plies = model.parts[part as usize].plies.as_ref();
+        let rule = match (plies, self.recipe.n_layers, self.recipe.rule) {
+            (Some(plies), None, None) => LayerRule::of_plies(&plies.thickness),
+            (_, _, rule) => LayerRule::new(rule.unwrap_or(of_deck), n_layers),
+        };
         Ok(TargetLayers {
-            n_layers,
-            rule: self.recipe.rule.unwrap_or(of_deck),
+            rule,
             n_plane: self
                 .recipe
                 .n_plane

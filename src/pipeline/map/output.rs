@@ -138,7 +138,7 @@ pub fn write_mapping(
     let factor = crash.settings.length_factor;
     let mut thickness = thickness_by_id(run, &crash.model, factor, monitor)?;
     let n_mapped = thickness.len();
-    for (element, value) in output.default_thickness.of(run) {
+    for (element, value) in output.default_thickness.of(run, monitor)? {
         if !is_composite(run, &crash.model, element) {
             let id = crash.model.shells[run.shells[element] as usize].id;
             thickness.insert(id, [value / factor; 4]);
@@ -210,7 +210,7 @@ pub fn write_mapping(
     files.read_back_error = writer.read_back(&files, output.kind, &parameters)?;
     // Read back under the old names.
     include_copies(&mut files.files, crash);
-    files.lost_includes = lost_includes(&files.files, crash);
+    files.lost_includes = lost_includes(&files.files, crash, monitor)?;
     Ok(files)
 }
 
@@ -422,7 +422,9 @@ impl MapWriter<'_> {
                 "is included {n_times} times, and its copy would change all of them"
             ));
         }
-        let has_stress = self.run.mapped.states.is_some();
+        // Cards of plastic strains alone have stresses of zero.
+        let wanted = self.run.recipe.options.quantities;
+        let has_stress = self.run.mapped.states.is_some() && (wanted.stress || wanted.history);
         if has_stress && file.included_as.stress_factor != 1.0 {
             return refused("has a unit of stress of its own (*INCLUDE_TRANSFORM)".to_owned());
         }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{MapRun, PlacedPart, ShownValue};
 use crate::mapping::Status;
-use crate::pipeline::forming_values::{FormingValue, LayerChoice};
+use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
 
 /// Quantities of a probe; `None` is the thickness.
@@ -69,10 +69,7 @@ pub fn probe_records(
         });
         let (stamped_element, stamped_file) = giver.unzip();
         let value = |value: Option<FormingValue>| {
-            let shown = ShownValue {
-                layer: value.map(LayerChoice::compared),
-                ..ShownValue::usual(value)
-            };
+            let shown = ShownValue::compared(value);
             let found = ProbedValue {
                 name: value.map_or("Thickness", FormingValue::label),
                 stamped: run.shown_at_partner(element, &shown),

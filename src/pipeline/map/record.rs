@@ -4,16 +4,17 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::compare::{ComparisonRecord, OtherResult, compare_with, largest_von_mises};
+use super::compare::{ComparisonRecord, OtherResult, compare_with};
+use super::values::middle_of;
 use super::verdict::{CheckRecord, checks_of};
 use super::warnings::warnings;
-use super::{MapFiles, MapRun, PlacedPart, PoseOrigin, ProbeRecord, covered_values};
+use super::{MapFiles, MapRun, PlacedPart, PoseOrigin, ProbeRecord, ShownValue, covered_values};
 use crate::geometry::chunks::for_chunks;
 use crate::mapping::{
     Distribution, Histogram, SourcePart, Status, distribution, histogram_distance,
 };
 use crate::monitor::{Cancelled, Monitor};
-use crate::pipeline::forming_values::nominal_thickness;
+use crate::pipeline::forming_values::{FormingValue, LayerChoice, nominal_thickness};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::PairUnits;
 use crate::report::{DIRECTION, build_id};
@@ -50,7 +51,7 @@ pub struct MapRecord {
     pub thinning: Option<PairRecord>,
     /// Effective plastic strain before and after.
     pub plastic_strain: Option<PairRecord>,
-    /// Largest von Mises stress of the layers before and after.
+    /// Von Mises stress before and after.
     pub von_mises: Option<PairRecord>,
     /// The way there and back.
     pub map_back: Option<MapBackRecord>,
@@ -114,6 +115,9 @@ pub struct StatusRecord {
 /// A quantity on both sides.
 #[derive(Debug, Clone, Serialize)]
 pub struct PairRecord {
+    /// The layer that both were taken from; `None` for the thickness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layer: Option<LayerChoice>,
     /// On the covered stamped elements.
     pub stamped: DistributionRecord,
     /// On the mapped crash elements.
@@ -197,17 +201,17 @@ pub fn map_record(
     monitor.check()?;
     let thickness = checks
         .thickness
-        .map(|pair| pair_record(pair, &thickness_values(run)));
+        .map(|pair| pair_record(None, pair, &thickness_values(run)));
     monitor.check()?;
     let plastic_strain = checks
         .plastic_strain
-        .map(|pair| pair_record(pair, &plastic_values(run)));
+        .map(|pair| pair_record(Some(LayerChoice::Mean), pair, &plastic_values(run)));
     monitor.check()?;
     let first = stamped.first().map(|placed| placed.part);
     let flat = nominal_thickness(crash).or_else(|| nominal_thickness(first?));
     let is_mapped = thickness.is_some();
     let thinning = flat.filter(|_| is_mapped);
-    let thinning = thinning.and_then(|flat| pair_of(&thinning_values(run, flat)));
+    let thinning = thinning.and_then(|flat| pair_of(None, &thinning_values(run, flat)));
     monitor.check()?;
     let von_mises = von_mises(run);
     monitor.check()?;
@@ -250,7 +254,9 @@ pub fn map_record(
             plastic_range: back.plastic_range,
         }),
         read_back_error: files.map(|files| files.read_back_error),
-        comparison: other.map(|other| compare_with(run, crash, other)),
+        comparison: other
+            .map(|other| compare_with(run, crash, other, monitor))
+            .transpose()?,
         probes: Vec::new(),
         // At a wrong pose everything else is wrong as well.
         warnings: stamped
@@ -261,24 +267,25 @@ pub fn map_record(
         map_ms: run.map_ms,
         check_ms: run.check_ms,
     };
-    record.checks = checks_of(run, &record, lengths);
+    record.checks = checks_of(run, &record, lengths, monitor)?;
     Ok(record)
 }
 
-/// Largest von Mises stress of both sides, where stresses were mapped.
+/// Von Mises stress of both sides, where stresses were mapped.
 fn von_mises(run: &MapRun) -> Option<PairRecord> {
     if !run.recipe.options.quantities.stress {
         return None;
     }
-    pair_of(&both_sides(run, von_mises_of, |element| {
-        run.largest_von_mises(element)
-    }))
+    let value = FormingValue::VonMises;
+    let shown = ShownValue::compared(Some(value));
+    let on_target = |element| run.shown(element, &shown);
+    let layer = LayerChoice::compared(value);
+    pair_of(Some(layer), &both_sides(run, von_mises_of, on_target))
 }
 
-/// Largest von Mises stress of the layers of a stamped element; NaN if it has none.
+/// Von Mises stress in the middle of a stamped element; NaN if it has none.
 pub(super) fn von_mises_of(part: &SourcePart, element: usize) -> f64 {
-    let states = part.states.of(element);
-    states.map_or(f64::NAN, |(_, layers)| largest_von_mises(layers))
+    middle_of(&part.strains, &part.states, element, FormingValue::VonMises)
 }
 
 /// Values with areas, on the covered stamped elements and on the crash elements.
@@ -322,19 +329,24 @@ fn plastic_values(run: &MapRun) -> BothSides {
 }
 
 /// The distributions of both sides with their distance; `None` if one side has no values.
-pub(super) fn pair_of(values: &BothSides) -> Option<PairRecord> {
+pub(super) fn pair_of(layer: Option<LayerChoice>, values: &BothSides) -> Option<PairRecord> {
     let [a, b] = values
         .each_ref()
         .map(|side| distribution(side.iter().copied()));
-    Some(pair_record((a?, b?), values))
+    Some(pair_record(layer, (a?, b?), values))
 }
 
-fn pair_record((stamped, crash): (Distribution, Distribution), values: &BothSides) -> PairRecord {
+fn pair_record(
+    layer: Option<LayerChoice>,
+    (stamped, crash): (Distribution, Distribution),
+    values: &BothSides,
+) -> PairRecord {
     let (min, max) = (stamped.min.min(crash.min), stamped.max.max(crash.max));
     let [a, b] = values
         .each_ref()
         .map(|side| Histogram::new(side.iter().copied(), min, max));
     PairRecord {
+        layer,
         stamped: stamped.into(),
         crash: crash.into(),
         histogram_distance: histogram_distance(&a, &b),

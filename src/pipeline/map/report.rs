@@ -343,10 +343,10 @@ impl<'a> Painter<'a> {
             quantities.push(self.quantity(name, pair, &on_source, &on_target)?);
         }
         if let Some(pair) = &record.von_mises {
-            let shown = ShownValue::usual(Some(FormingValue::VonMises));
+            let shown = ShownValue::compared(Some(FormingValue::VonMises));
             let on_source = |part: &SourcePart, element| von_mises_of(part, element);
             let on_target = |element: usize| run.shown(element, &shown);
-            let name = "Largest von Mises stress of the layers";
+            let name = "Von Mises stress in the middle of the sheet";
             quantities.push(self.quantity(name, pair, &on_source, &on_target)?);
         }
         Ok(quantities)
@@ -411,7 +411,7 @@ impl<'a> Painter<'a> {
             Some(FormingValue::MinorStrain),
         ];
         for ((name, found), value) in comparison.rows().into_iter().zip(values) {
-            let shown = ShownValue::usual(value);
+            let shown = ShownValue::compared(value);
             let name = match value {
                 None => self.lengths.axis(name),
                 Some(_) => name.to_owned(),
@@ -505,7 +505,7 @@ impl<'a> Painter<'a> {
             drawn = drawn.hatched(&mask);
         }
         let png = drawn.to_png();
-        let shares = givers(self.run);
+        let shares = givers(self.run, self.monitor)?;
         let row =
             |name: String, n_elements: usize, area: f64| [name, grouped(n_elements), percent(area)];
         let named = record.stamped.iter().zip(&shares).enumerate();

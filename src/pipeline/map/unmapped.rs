@@ -3,10 +3,11 @@
 use super::MapRun;
 use crate::formats::Model;
 use crate::mapping::Status;
+use crate::monitor::{Cancelled, Monitor};
 
 /// `*SET_SHELL_LIST_TITLE` for each status but *mapped*, with ids that no set of the deck has; a deck of
 /// its own. Ids stand in fields of ten, or of twenty (`LONG=Y`) where they are longer.
-pub fn unmapped_sets(run: &MapRun, model: &Model) -> String {
+pub fn unmapped_sets(run: &MapRun, model: &Model, monitor: &Monitor) -> Result<String, Cancelled> {
     let ids = run
         .shells
         .iter()
@@ -22,6 +23,7 @@ pub fn unmapped_sets(run: &MapRun, model: &Model) -> String {
     });
     let mut set = first_set;
     for status in Status::ALL.into_iter().filter(|s| *s != Status::Mapped) {
+        monitor.check()?;
         let reports = run.mapped.elements.iter().zip(ids.clone());
         let members: Vec<u64> = reports
             .filter(|(report, _)| report.status == status)
@@ -39,5 +41,5 @@ pub fn unmapped_sets(run: &MapRun, model: &Model) -> String {
         }
         set += 1;
     }
-    text + "*END\n"
+    Ok(text + "*END\n")
 }

@@ -10,15 +10,15 @@ use crate::pipeline::forming_values::{FormingValue, LayerChoice, at_middle};
 pub struct ShownValue {
     /// The forming result; `None` for the thickness.
     pub value: Option<FormingValue>,
-    /// Which layers; `None` for what is usual.
+    /// Which layers; `None` for those that both sides are compared in.
     pub layer: Option<LayerChoice>,
     /// Thickness of the flat sheet, which thinning is against.
     pub flat: Option<f64>,
 }
 
 impl ShownValue {
-    /// A quantity of the layers that are usual for it; `None` is the thickness.
-    pub(super) fn usual(value: Option<FormingValue>) -> Self {
+    /// A quantity in the layers that both sides are compared in; `None` is the thickness.
+    pub(super) fn compared(value: Option<FormingValue>) -> Self {
         Self {
             value,
             layer: None,
@@ -27,7 +27,7 @@ impl ShownValue {
     }
 
     fn layer_of(&self, value: FormingValue) -> LayerChoice {
-        self.layer.unwrap_or(LayerChoice::usual(value))
+        self.layer.unwrap_or(LayerChoice::compared(value))
     }
 }
 
@@ -205,7 +205,7 @@ impl OtherResult {
 }
 
 /// The number in the middle of a sheet; NaN without layers.
-fn middle_of(
+pub(super) fn middle_of(
     strains: &Layered<6>,
     states: &Layered<7>,
     element: usize,

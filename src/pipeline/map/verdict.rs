@@ -8,6 +8,7 @@ use super::peak::peak_at_best;
 use super::record::{MapRecord, PairRecord, StampedRecord};
 use super::{MapRun, ShownValue};
 use crate::mapping::Status;
+use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::FormingValue;
 use crate::text::{Lengths, counted, fixed, percent, signed_percent};
 
@@ -96,10 +97,17 @@ pub struct CheckRecord {
 }
 
 /// All checks; that of the pose stands first, then those that are not met, where they are seen.
-pub(super) fn checks_of(run: &MapRun, record: &MapRecord, lengths: Lengths) -> Vec<CheckRecord> {
+pub(super) fn checks_of(
+    run: &MapRun,
+    record: &MapRecord,
+    lengths: Lengths,
+    monitor: &Monitor,
+) -> Result<Vec<CheckRecord>, Cancelled> {
     let mut checks = vec![area(run, record)];
     checks.extend(doubled(run));
+    monitor.check()?;
     checks.push(distance(run, lengths));
+    monitor.check()?;
     checks.push(confidence(run));
     let plastic = Some(FormingValue::PlasticStrain);
     for (name, pair, picture, value) in [
@@ -121,10 +129,11 @@ pub(super) fn checks_of(run: &MapRun, record: &MapRecord, lengths: Lengths) -> V
                 .map(|pair| mean(run, name, pair, (picture, value))),
         );
     }
+    monitor.check()?;
     checks.extend(beside_section(run));
     checks.extend(volume(run));
     if let Some(pair) = &record.plastic_strain {
-        checks.push(peak(run, pair));
+        checks.push(peak(run, pair, monitor)?);
     }
     if let Some(back) = &record.map_back {
         for (name, p95, range, picture, value) in [
@@ -143,6 +152,7 @@ pub(super) fn checks_of(run: &MapRun, record: &MapRecord, lengths: Lengths) -> V
                 plastic,
             ),
         ] {
+            monitor.check()?;
             if range > 0.0 {
                 checks.push(CheckRecord {
                     name: name.to_owned(),
@@ -160,7 +170,7 @@ pub(super) fn checks_of(run: &MapRun, record: &MapRecord, lengths: Lengths) -> V
     }
     checks.sort_by_key(|check| check.is_met != Some(false));
     checks.splice(0..0, pose(record, lengths));
-    checks
+    Ok(checks)
 }
 
 /// Whether a match stands for the pose of every stamped part; of several the most doubtful is named.
@@ -341,13 +351,13 @@ fn volume(run: &MapRun) -> Option<CheckRecord> {
 }
 
 /// The largest value against the stamped one, or against what the crash element there can carry of it.
-fn peak(run: &MapRun, pair: &PairRecord) -> CheckRecord {
+fn peak(run: &MapRun, pair: &PairRecord, monitor: &Monitor) -> Result<CheckRecord, Cancelled> {
     let of_stamped = pair.stamped.max;
-    let at_best = peak_at_best(run).filter(|best| *best < NARROW_PEAK * of_stamped);
+    let at_best = peak_at_best(run, monitor)?.filter(|best| *best < NARROW_PEAK * of_stamped);
     let change = pair.crash.max / at_best.unwrap_or(of_stamped) - 1.0;
     let [least, most] = PEAK_CHANGE.map(|change| fixed(100.0 * change, 0));
     let limit = format!("{least} % to +{most} %");
-    CheckRecord {
+    Ok(CheckRecord {
         name: "Largest plastic strain".to_owned(),
         found: signed_percent(change),
         limit: match at_best {
@@ -358,11 +368,11 @@ fn peak(run: &MapRun, pair: &PairRecord) -> CheckRecord {
         reason: at_best.map(|_| CheckReason::PeakNarrowerThanElement),
         picture: CheckPicture::PlasticStrain,
         worst: largest(run, |element| run.plastic_strain(element)),
-    }
+    })
 }
 
 fn worst_difference(run: &MapRun, value: Option<FormingValue>) -> Option<usize> {
-    let shown = ShownValue::usual(value);
+    let shown = ShownValue::compared(value);
     largest(run, |element| run.difference(element, &shown).abs())
 }
 

@@ -11,7 +11,7 @@ pub use record::{CAR_COLUMNS, CarCopy, CarReason, CarRecord, CarRow, CarState};
 
 use super::PipelineError;
 use super::error::unless_cancelled;
-use super::find_parts::{FoundParts, find_parts};
+use super::find_parts::{FoundParts, find_parts, guessed_units, mirrored_twin};
 use super::load::{LoadSettings, LoadedPart, load, prepare};
 use super::map::{
     DefaultThickness, LEAST_AREA, MapOutput, MapRecipe, MapRecord, NewStates, PlacedPart,
@@ -138,6 +138,8 @@ struct Made {
     unread: Vec<Vec<String>>,
     /// Elements that lack a quantity which others have.
     bare: Vec<String>,
+    /// The pose of the mirror image, where that lies on what a part alone leaves of the crash parts.
+    mirrored_twin: Option<Similarity>,
 }
 
 /// Finds the crash parts of every stamped file, maps them and writes the results into `recipe.folder`: states
@@ -154,22 +156,7 @@ pub fn map_car(
 ) -> Result<CarRecord, PipelineError> {
     let mut rows: Vec<CarRow> = stamped.iter().map(|file| CarRow::new(&file.path)).collect();
     record::tell_apart(&mut rows);
-    let mut claims: BTreeMap<usize, Claim> = BTreeMap::new();
-    for (at, (file, row)) in stamped.iter().zip(&mut rows).enumerate() {
-        monitor.check()?;
-        let found = load(&file.path, &file.settings, monitor).and_then(|part| {
-            row.tools_left_out = part.tools_left_out();
-            let parts = PerRole::new(crash, &part);
-            find_parts(parts, &recipe.matching, &Similarity::identity(), monitor)
-        });
-        match unless_cancelled(found)? {
-            Ok(Some(found)) => {
-                claims.insert(at, claim(row, &found));
-            }
-            Ok(None) => row.reasons.push(CarReason::NoPart),
-            Err(error) => row.reasons.push(CarReason::Failed(error.to_string())),
-        }
-    }
+    let claims = claims(crash, stamped, (recipe, &mut rows), monitor)?;
     let stems = stems(stamped);
     let mut included = Vec::new();
     let mut new_states = NewStates::default();
@@ -223,6 +210,39 @@ pub fn map_car(
         write_file(&recipe.folder.join(REPORT), page.as_bytes())?;
     }
     Ok(record)
+}
+
+/// Finds the crash parts of every stamped file.
+fn claims(
+    crash: &LoadedPart,
+    stamped: &[StampedFile],
+    (recipe, rows): (&CarRecipe, &mut [CarRow]),
+    monitor: &Monitor,
+) -> Result<BTreeMap<usize, Claim>, PipelineError> {
+    let mut claims: BTreeMap<usize, Claim> = BTreeMap::new();
+    for (at, (file, row)) in stamped.iter().zip(rows).enumerate() {
+        monitor.check()?;
+        let found = load(&file.path, &file.settings, monitor).and_then(|part| {
+            row.tools_left_out = part.tools_left_out();
+            let parts = PerRole::new(crash, &part);
+            let still = Similarity::identity();
+            let found = find_parts(parts, &recipe.matching, &still, monitor)?;
+            if found.is_none() {
+                row.reasons.push(CarReason::NoPart);
+                let unit = guessed_units(parts, monitor)?;
+                row.reasons.extend(unit.map(CarReason::OtherUnit));
+            }
+            Ok(found)
+        });
+        match unless_cancelled(found)? {
+            Ok(Some(found)) => {
+                claims.insert(at, claim(row, &found));
+            }
+            Ok(None) => {}
+            Err(error) => row.reasons.push(CarReason::Failed(error.to_string())),
+        }
+    }
+    Ok(claims)
 }
 
 /// Writes copies of the crash files that hold states which the new ones take the place of, if that was asked for.
@@ -283,6 +303,9 @@ fn take(row: &mut CarRow, made: &Made) {
     if record.mapped_area < LEAST_AREA {
         row.reasons.push(CarReason::Area(record.mapped_area));
     }
+    let twin = made.mirrored_twin.as_ref();
+    row.reasons
+        .extend(twin.map(|pose| CarReason::MirrorImage(pose.to_rows())));
     let by_solver = made.by_solver.iter().cloned();
     row.reasons.extend(by_solver.map(CarReason::MappedBySolver));
     if made.n_old_states > 0 {
@@ -387,10 +410,8 @@ impl Group<'_> {
             let page = map_report(&run, &record, &crash, None, monitor)?;
             write_file_unless_cancelled(&recipe.folder.join(name), page.as_bytes(), monitor)?;
         }
-        let ids = crash.chosen_part_ids();
-        let named = crash.model.parts.iter().find(|part| ids.contains(&part.id));
         Ok(Made {
-            title: named.map_or_else(String::new, |part| part.title.clone()),
+            title: first_title(&crash),
             thickness: run.mean_thickness(),
             thickness_ratio: run.unusual_thickness(),
             is_displaced,
@@ -406,6 +427,13 @@ impl Group<'_> {
                 .map(|part| file_lines(part, &mapping.options))
                 .collect(),
             bare: bare_elements(&run),
+            mirrored_twin: match &stamped[..] {
+                [alone] if record.mapped_area < LEAST_AREA => {
+                    let parts = PerRole::new(&crash, alone);
+                    mirrored_twin(parts, &run.poses[0], &recipe.matching, monitor)?
+                }
+                _ => None,
+            },
             record,
             page,
         })
@@ -420,6 +448,13 @@ impl Group<'_> {
         let model = Arc::clone(&self.crash.model);
         prepare(&self.crash.path, model, &settings, monitor)
     }
+}
+
+/// The title of the first of the chosen parts.
+fn first_title(crash: &LoadedPart) -> String {
+    let ids = crash.chosen_part_ids();
+    let named = crash.model.parts.iter().find(|part| ids.contains(&part.id));
+    named.map_or_else(String::new, |part| part.title.clone())
 }
 
 fn name_of(path: &Path) -> String {

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::assess::Verdict;
 use crate::pipeline::load::tools_line;
+use crate::registration::UnitGuess;
 use crate::text::{counted, length, parts_by_id, percent};
 
 /// How certain it is that a stamped part lies where it belongs, with all its values.
@@ -39,12 +40,16 @@ pub enum CarReason {
     Failed(String),
     /// No crash part fits.
     NoPart,
+    /// One would if the files were in these units.
+    OtherUnit(UnitGuess),
     /// The verdict of the match is no better than CHECK.
     Pose,
     /// It fits these crash parts about as well.
     Rivals(Vec<u64>),
     /// Another stamped part lies on this share of the same area.
     Conflict(f64),
+    /// Its mirror image lies on most of what it leaves of the crash part, in the pose with these rows.
+    MirrorImage([[f64; 4]; 4]),
     /// Another stamped part lies in its place and fits better.
     Displaced,
     /// Only this share of the area has values.
@@ -70,6 +75,12 @@ impl CarReason {
             | Self::Unread(text)
             | Self::Bare(text) => text.clone(),
             Self::NoPart => "no part of the crash model fits".to_owned(),
+            Self::OtherUnit(unit) => format!(
+                "one would if the stamped part is in {} and the crash part in {} (--stamped-length-factor {})",
+                unit.source.plural(),
+                unit.target.plural(),
+                unit.factor()
+            ),
             Self::Pose => "the pose needs a look".to_owned(),
             Self::Rivals(ids) => format!("fits {} about as well", parts_by_id(ids)),
             Self::Conflict(share) => {
@@ -77,6 +88,11 @@ impl CarReason {
                     "another stamped part lies on {} of the area too",
                     percent(*share)
                 )
+            }
+            Self::MirrorImage(_) => {
+                "its mirror image lies on the rest: shapematch map takes the file twice, with \
+                                     its pose and the mirrored one (--pose, both are in --json)"
+                    .to_owned()
             }
             Self::Displaced => "another stamped part lies there and fits better".to_owned(),
             Self::Area(share) => format!("{} of the area has values", percent(*share)),

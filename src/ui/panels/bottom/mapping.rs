@@ -329,15 +329,9 @@ fn distributions_ui(
     };
     let of_layers = match by {
         ColorBy::PlasticStrain => ", mean of the layers",
-        // Of layers at different T: the picture compares them in the middle of the sheet.
-        ColorBy::VonMises => ", extreme of the layers",
+        ColorBy::VonMises => ", middle of the sheet",
         _ => "",
     };
-    let places = result.run.outermost_layers(FormingValue::VonMises);
-    let places = places.filter(|_| by == ColorBy::VonMises);
-    let places = places.map_or_else(String::new, |[stamped, crash]| {
-        format!(" (out to T ▲ {}, ■ {})", fixed(stamped, 2), fixed(crash, 2))
-    });
     let is_narrow = is_low && ui.available_width() < PERCENTILES + CHART;
     let columns: &[usize] = if is_narrow {
         &[0, 1, 3, 5]
@@ -345,7 +339,7 @@ fn distributions_ui(
         &[0, 1, 2, 3, 4, 5]
     };
     let numbers = |ui: &mut Ui| {
-        let title = format!("{}{of_layers}{places}, by area", with_unit(state, by));
+        let title = format!("{}{of_layers}, by area", with_unit(state, by));
         caption(ui, title);
         let palette = Palette::of(ui);
         let rows = [
