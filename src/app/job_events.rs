@@ -139,8 +139,8 @@ impl AppState {
                 take_compared(work, &run, other, *record, took);
             }
             JobOutput::Compared(comparison) => topics.inspect.take_compared(comparison, stamp),
-            JobOutput::Overlapped { overlap, limit } => {
-                topics.moving.take_overlap(overlap, limit, stamp);
+            JobOutput::Overlapped { of, overlap, limit } => {
+                topics.moving.take_overlap(of, overlap, limit, stamp);
             }
             JobOutput::Swept(table) => topics.matching.take_swept(work, table, took),
             JobOutput::Exported(exported) => return work.take_exported(exported, took),

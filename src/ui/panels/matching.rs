@@ -220,7 +220,7 @@ fn status_ui(ui: &mut Ui, state: &AppState) {
     }
     if let Some(latest) = job.latest {
         text += &format!(
-            "start {}/{n_starts} · iteration {} · residual {} · overlap {} · ",
+            "start {}/{n_starts} · iteration {} · residual {} · kept {} · ",
             latest.start + 1,
             latest.number + 1,
             state.lengths().of(latest.record.rmse),

@@ -69,7 +69,7 @@ pub fn convergence_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
     let size = vec2((ui.available_width() - 16.0) / 2.0, ui.available_height());
     let mut pointed = Pointed::default();
     ui.horizontal_top(|ui| {
-        for chart in [RMS, OVERLAP] {
+        for chart in [RMS, KEPT] {
             let at = chart.show(ui, &curves, size);
             pointed.is_inside |= at.is_inside;
             pointed.is_clicked |= at.is_clicked;
@@ -182,7 +182,7 @@ fn figures_ui(ui: &mut Ui, curves: &Curves<'_>) {
     let n_steps = iterations.len();
     let words = |step: &IterationRecord| {
         format!(
-            "residual {} · overlap {}",
+            "residual {} · kept {}",
             curves.lengths.of(step.rmse),
             percent(step.fraction)
         )
@@ -217,8 +217,8 @@ const RMS: Chart = Chart {
     value: |iteration| iteration.rmse,
     is_length: true,
 };
-const OVERLAP: Chart = Chart {
-    name: "overlap",
+const KEPT: Chart = Chart {
+    name: "kept",
     value: |iteration| iteration.fraction,
     is_length: false,
 };

@@ -117,7 +117,7 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
         String::new(),
         "start".to_owned(),
         "outcome".to_owned(),
-        "overlap".to_owned(),
+        "kept".to_owned(),
         format!("residual{unit}"),
         format!("P95{unit}"),
         "iterations".to_owned(),

@@ -287,11 +287,16 @@ fn stripes(over: &Overlay<'_>) -> Option<String> {
     ))
 }
 
-/// How warm the pose is, with the change since the last one.
+/// How warm the pose is, with the change since the last one. Not where the verdict states the overlap: this one is
+/// of few points.
 fn overlap(state: &AppState) -> Option<String> {
-    let known = state.current_overlap().filter(|_| !state.is_preview())?;
+    let is_measured = state.document.current_result().is_some();
+    let known = state
+        .current_overlap()
+        .filter(|_| !is_measured && !state.is_preview())?;
     let mut text = format!(
-        "overlap {} within {}",
+        "overlap of {} {} within {}",
+        known.of.word(),
         whole_percent(known.overlap),
         state.lengths().of(known.limit)
     );
