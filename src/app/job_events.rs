@@ -133,10 +133,15 @@ impl AppState {
                 lists,
                 further,
             } => {
-                return take_mapped(work, (run, record, lists), further, took);
+                return self.taking_mapping(|work, state| {
+                    take_mapped(work, state, (run, record, lists), further, took)
+                });
             }
             JobOutput::MappingCompared { run, other, record } => {
-                take_compared(work, &run, other, *record, took);
+                return self.taking_mapping(|work, state| {
+                    take_compared(work, state, &run, (other, *record), took);
+                    Vec::new()
+                });
             }
             JobOutput::Compared(comparison) => topics.inspect.take_compared(comparison, stamp),
             JobOutput::Overlapped { of, overlap, limit } => {
