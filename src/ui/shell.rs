@@ -12,7 +12,7 @@ use super::panels::drop::DropTarget;
 use super::pictures::{Pictures, Wanted};
 use super::preferences::{Preferences, UserFiles, WindowPlace};
 use super::viewport::Viewports;
-use super::{overlays, panels, project_dialogs, theme, toasts};
+use super::{overlays, panels, project_dialogs, system_fonts, theme, toasts};
 use crate::app::{
     AppState, Clock, Command, Document, Effect, FileCommand, NoticeCommand, NoticeLevel,
     PictureChoice, PictureSize, ProjectCommand, Settings, StartupOptions, Theme,
@@ -119,6 +119,7 @@ impl Shell {
         preferences: Preferences,
     ) -> std::io::Result<Self> {
         theme::install(&cc.egui_ctx);
+        system_fonts::add(&cc.egui_ctx);
         let ctx = cc.egui_ctx.clone();
         let waking = ctx.clone();
         let autosave = Autosave::start(files.sessions, move || waking.request_repaint())?;
