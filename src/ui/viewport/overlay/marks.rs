@@ -125,8 +125,8 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rec
         };
         let mut galley = lay(text.clone(), READOUT_ROWS);
         if galley.elided {
-            // Too narrow for the longest piece: better broken than cut.
-            galley = lay(text.replace('\u{a0}', " "), 2 * READOUT_ROWS);
+            // Too narrow for a place: better broken than cut.
+            galley = lay(text.replace(",\u{a0}", ", "), 2 * READOUT_ROWS);
         }
         let size = galley.size() + vec2(14.0, 8.0);
         let mut corner = Pos2::new(right, window.bottom()) - Vec2::splat(MARGIN) - size;
