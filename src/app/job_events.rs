@@ -133,14 +133,19 @@ impl AppState {
                 lists,
                 further,
             } => {
-                return take_mapped(work, (run, record, lists), further, took);
+                return self.taking_mapping(|work, state| {
+                    take_mapped(work, state, (run, record, lists), further, took)
+                });
             }
             JobOutput::MappingCompared { run, other, record } => {
-                take_compared(work, &run, other, *record, took);
+                return self.taking_mapping(|work, state| {
+                    take_compared(work, state, &run, (other, *record), took);
+                    Vec::new()
+                });
             }
             JobOutput::Compared(comparison) => topics.inspect.take_compared(comparison, stamp),
-            JobOutput::Overlapped { overlap, limit } => {
-                topics.moving.take_overlap(overlap, limit, stamp);
+            JobOutput::Overlapped { of, overlap, limit } => {
+                topics.moving.take_overlap(of, overlap, limit, stamp);
             }
             JobOutput::Swept(table) => topics.matching.take_swept(work, table, took),
             JobOutput::Exported(exported) => return work.take_exported(exported, took),

@@ -74,7 +74,7 @@ impl Observer for Line {
 impl registration::Observer for Line {
     fn iteration(&self, start: usize, number: usize, record: &IterationRecord) {
         self.bar.set_message(format!(
-            "start {} · iteration {} · RMS {} · overlap {}",
+            "start {} · iteration {} · residual {} · kept {}",
             start + 1,
             number + 1,
             length(record.rmse),

@@ -117,9 +117,10 @@ fn describe(project: &Project, path: &Path) -> String {
             };
             writeln!(
                 text,
-                "Result   {}{age}: overlap {}, RMS {}",
+                "Result   {}{age}: overlap stamped {}, crash {}, RMS {}",
                 assessment.verdict.label(),
-                percent(assessment.coverage.better_overlap()),
+                percent(assessment.coverage.source_on_target.overlap),
+                percent(assessment.coverage.target_on_source.overlap),
                 length(assessment.coverage.rmse())
             )
         }

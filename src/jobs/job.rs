@@ -443,7 +443,9 @@ pub enum JobOutput {
     },
     /// The overlap from few points.
     Overlapped {
-        /// Share of the part that is covered better.
+        /// The part that is covered better.
+        of: Role,
+        /// Share of its area.
         overlap: f64,
         /// Distance up to which a place counts as covered.
         limit: f64,

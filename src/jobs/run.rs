@@ -338,9 +338,13 @@ fn overlap(input: &MeasureInput) -> Result<JobOutput, JobError> {
     let (target, source) = (&input.parts.crash.surface, &input.parts.stamped.surface);
     let pose = &input.crash_from_stamped;
     let limit = overlap_limit(source, target, pose.scale, 0.0);
-    let [a, b] = quick_overlap(source, target, pose, limit, OVERLAP_POINTS);
-    let overlap = a.max(b);
-    Ok(JobOutput::Overlapped { overlap, limit })
+    let [stamped, crash] = quick_overlap(source, target, pose, limit, OVERLAP_POINTS);
+    let (of, overlap) = if stamped > crash {
+        (Role::Stamped, stamped)
+    } else {
+        (Role::Crash, crash)
+    };
+    Ok(JobOutput::Overlapped { of, overlap, limit })
 }
 
 fn run_sweep(input: &SweepInput, monitor: &Monitor) -> Result<JobOutput, JobError> {

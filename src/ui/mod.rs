@@ -18,6 +18,7 @@ mod pictures;
 pub mod preferences;
 pub mod project_dialogs;
 pub mod shell;
+mod system_fonts;
 pub mod theme;
 pub mod toasts;
 pub mod typed;

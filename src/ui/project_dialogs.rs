@@ -70,9 +70,10 @@ pub fn missing_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         });
     }
     ui.add_space(UNIT);
-    caption(
+    paragraph(
         ui,
-        "They were looked for where the project says, and beside the project.",
+        "They were looked for where the project says, and beside the project. Find one, and the others are looked \
+         for beside it.",
     );
     // In a row as the other answers are, which has the words in the middle of the buttons.
     ui.horizontal(|ui| {

@@ -12,7 +12,7 @@ use super::panels::drop::DropTarget;
 use super::pictures::{Pictures, Wanted};
 use super::preferences::{Preferences, UserFiles, WindowPlace};
 use super::viewport::Viewports;
-use super::{overlays, panels, project_dialogs, theme, toasts};
+use super::{overlays, panels, project_dialogs, system_fonts, theme, toasts};
 use crate::app::{
     AppState, Clock, Command, Document, Effect, FileCommand, NoticeCommand, NoticeLevel,
     PictureChoice, PictureSize, ProjectCommand, Settings, StartupOptions, Theme,
@@ -108,6 +108,10 @@ pub struct Shell {
     title: String,
     pictures: Pictures,
     keyboard: Keyboard,
+    /// A dialog lay over the window in the frame before.
+    was_covered: bool,
+    /// Where the pointer rests that is away for a frame.
+    resting: Option<egui::Pos2>,
 }
 
 impl Shell {
@@ -119,6 +123,7 @@ impl Shell {
         preferences: Preferences,
     ) -> std::io::Result<Self> {
         theme::install(&cc.egui_ctx);
+        system_fonts::add(&cc.egui_ctx);
         let ctx = cc.egui_ctx.clone();
         let waking = ctx.clone();
         let autosave = Autosave::start(files.sessions, move || waking.request_repaint())?;
@@ -148,6 +153,8 @@ impl Shell {
             title: String::new(),
             pictures: Pictures::default(),
             keyboard: Keyboard::default(),
+            was_covered: false,
+            resting: None,
         };
         shell.apply_settings(&cc.egui_ctx);
         shell.autosave.list();
@@ -455,6 +462,27 @@ impl eframe::App for Shell {
         self.update_title(ctx);
         self.remember_place(ctx);
         self.save();
+    }
+
+    /// A tooltip stays while the pointer rests on its widget, also over a dialog that a key opened: for one frame
+    /// the pointer is away then.
+    fn raw_input_hook(&mut self, ctx: &egui::Context, raw_input: &mut egui::RawInput) {
+        if let Some(place) = self.resting.take() {
+            raw_input.events.insert(0, egui::Event::PointerMoved(place));
+        }
+        let is_covered = self.state.view.dialog.is_some() || self.dialogs.is_open();
+        let was_covered = std::mem::replace(&mut self.was_covered, is_covered);
+        let is_new = is_covered && !was_covered;
+        let pointer = ctx.input(|input| input.pointer.clone());
+        if is_new && !pointer.any_down() {
+            let moved = raw_input.events.iter().rev().find_map(|event| match event {
+                egui::Event::PointerMoved(place) => Some(*place),
+                _ => None,
+            });
+            self.resting = moved.or(pointer.hover_pos());
+            raw_input.events.push(egui::Event::PointerGone);
+            ctx.request_repaint();
+        }
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {

@@ -71,9 +71,36 @@ fn text(ui: &Ui, notice: &Notice, width: f32) -> LayoutJob {
         n => format!("{} (×{n})", notice.text),
     };
     let font = TextStyle::Body.resolve(ui.style());
-    let mut job = LayoutJob::simple(text, font, Palette::of(ui).text, width - BESIDE);
-    job.wrap.max_rows = MAX_LINES;
-    job
+    let job = |text| LayoutJob::simple(text, font.clone(), Palette::of(ui).text, width - BESIDE);
+    let fits = |text: &str| {
+        let laid = ui.painter().layout_job(job(text.to_owned()));
+        laid.rows.len() <= MAX_LINES
+    };
+    job(shortened(text, fits))
+}
+
+/// As much of a text as fits, cut in its middle: a path says most at its end.
+fn shortened(text: String, fits: impl Fn(&str) -> bool) -> String {
+    if fits(&text) {
+        return text;
+    }
+    let letters: Vec<char> = text.chars().collect();
+    let kept = |n: usize| {
+        let (head, tail) = (n.div_ceil(2), n / 2);
+        let head: String = letters[..head].iter().collect();
+        let tail: String = letters[letters.len() - tail..].iter().collect();
+        format!("{head}…{tail}")
+    };
+    let (mut low, mut high) = (0, letters.len());
+    while low + 1 < high {
+        let middle = low.midpoint(high);
+        if fits(&kept(middle)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    kept(low)
 }
 
 fn toast_ui(
@@ -102,7 +129,11 @@ fn toast_ui(
             ui.vertical(|ui| {
                 ui.set_width(width - BESIDE);
                 let job = text(ui, notice, width);
-                let label = ui.add(egui::Label::new(job)).on_hover_text(&notice.text);
+                let is_whole = job.text.starts_with(notice.text.as_str());
+                let mut label = ui.add(egui::Label::new(job));
+                if !is_whole {
+                    label = label.on_hover_text(&notice.text);
+                }
                 ui.ctx().accesskit_node_builder(label.id, |node| {
                     node.set_live(match notice.level {
                         NoticeLevel::Error => egui::accesskit::Live::Assertive,
@@ -156,4 +187,18 @@ fn paint_edge(ui: &Ui, rect: egui::Rect, color: Color32) {
         se: 0,
     };
     ui.painter().rect_filled(edge, radius, color);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_text_keeps_its_ends() {
+        let fits = |text: &str| text.chars().count() <= 9;
+        let short = |text: &str| shortened(text.to_owned(), fits);
+        assert_eq!(short("a/b/c.k"), "a/b/c.k");
+        assert_eq!(short("written: /a/b/c/d.k"), "writ…/d.k");
+        assert_eq!(short("ä".repeat(40).as_str()), "ääää…ääää");
+    }
 }

@@ -1050,6 +1050,17 @@ fn starts_are_stepped_through_without_moving_the_part() {
 }
 
 #[test]
+fn the_own_window_is_fitted_to_the_part_where_it_is_while_starts_are_tried() {
+    let mut window = Window::with_both();
+    window.apply(ViewCommand::FitAll(Role::Stamped));
+    let before = window.state.view.cameras.stamped;
+    window.act(Action::Align);
+    assert!(window.state.is_preview());
+    window.apply(ViewCommand::FitAll(Role::Stamped));
+    assert_eq!(window.state.view.cameras.stamped, before);
+}
+
+#[test]
 fn moving_over_fifty_times_changes_nothing_but_the_view() {
     let mut window = Window::with_both();
     let before = window.state.document.clone();

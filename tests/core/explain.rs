@@ -5,9 +5,11 @@ use shapematch::assess::{Reason, ShapeReason, Twin, TwinAxis, Verdict};
 use shapematch::geometry::{Point3, Rotation, Similarity, TriMesh, Vector3};
 use shapematch::jobs::{JobEvent, JobKey, JobStage};
 use shapematch::registration::Surface;
+use shapematch::role::Role;
+use shapematch::samples::SampleVariant;
 use shapematch::text::Lengths;
 
-use super::app::Window;
+use super::app::{Window, write_bracket};
 
 #[test]
 fn the_overlap_follows_each_move_with_its_change() {
@@ -170,4 +172,25 @@ fn a_twin_is_told_by_angle_and_axis() {
         assert_eq!(twin.axis, axis);
         assert_eq!(twin.words(Lengths::default()), words);
     }
+}
+
+#[test]
+fn a_file_in_metres_is_the_cause_among_the_parts_of_a_whole_model_too() {
+    let [whole, metres] = [SampleVariant::WholeModel, SampleVariant::Metres].map(|variant| {
+        let folder = tempfile::tempdir().unwrap();
+        write_bracket(folder.path(), variant);
+        folder
+    });
+    let mut window = Window::new();
+    window.runner = Some(super::app_mapping::real);
+    let crash = whole.path().join("crash.k");
+    window.open(crash.to_str().unwrap(), Role::Crash);
+    let stamped = metres.path().join("stamped.dynain");
+    window.open(stamped.to_str().unwrap(), Role::Stamped);
+    window.act(Action::MatchOrStop);
+    let causes = window.state.causes();
+    let titles: Vec<_> = causes.iter().map(|cause| cause.title.as_str()).collect();
+    assert_eq!(titles, ["Different units"]);
+    let (label, _) = causes[0].remedy.as_ref().unwrap();
+    assert_eq!(label, "Treat stamped as m");
 }

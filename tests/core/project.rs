@@ -15,6 +15,7 @@ use shapematch::registration::{
     StartMethod, StartSettings,
 };
 use shapematch::role::{PerRole, Role};
+use shapematch::samples::SampleVariant;
 use shapematch::settings::Choice;
 use shapematch::units::LengthUnit;
 
@@ -228,6 +229,80 @@ fn a_missing_file_is_asked_for_or_done_without() {
     asked.apply(ProjectCommand::Locate(of_stamped, Located::At(hidden)));
     assert_eq!(asked.state.view.dialog, None);
     assert!(asked.state.document.current_result().is_some());
+}
+
+#[test]
+fn files_that_moved_together_are_asked_for_once() {
+    let (folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    save(&mut window, &path);
+    let of = |role| ProjectFile::Part(role);
+    let moved = |to: &str| {
+        let to = folder.path().join(to);
+        std::fs::create_dir_all(to.parent().unwrap()).unwrap();
+        to
+    };
+    let crash_now = moved("new/car/front.k");
+    std::fs::rename(&crash, &crash_now).unwrap();
+    let stamped_now = moved("new/car").join(stamped.file_name().unwrap());
+    std::fs::rename(&stamped, &stamped_now).unwrap();
+    let mut asked = open(&path);
+    assert_eq!(asked.state.project.missing.as_ref().unwrap().1.len(), 2);
+    asked.apply(ProjectCommand::Locate(
+        of(Role::Crash),
+        Located::At(crash_now.clone()),
+    ));
+    assert_eq!(asked.state.view.dialog, None);
+    assert_same_work(&window, &asked);
+    assert_eq!(asked.part(Role::Stamped).loaded.path, stamped_now);
+
+    // Another content under its name is not taken unasked.
+    std::fs::write(&stamped_now, b"$ another\n").unwrap();
+    let mut asked = open(&path);
+    asked.apply(ProjectCommand::Locate(
+        of(Role::Crash),
+        Located::At(crash_now),
+    ));
+    assert_eq!(asked.state.view.dialog, Some(Dialog::MissingFiles));
+    let missing = &asked.state.project.missing.as_ref().unwrap().1;
+    assert_eq!(*missing, [(of(Role::Stamped), stamped)]);
+}
+
+#[test]
+fn a_mapping_is_there_again_when_its_project_is_opened() {
+    let folder = tempfile::tempdir().unwrap();
+    let pair = super::app::write_bracket(folder.path(), SampleVariant::Plain);
+    let path = folder.path().join("a.shapematch");
+    let mut window = Window::real();
+    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
+        window.open(folder.path().join(name).to_str().unwrap(), role);
+    }
+    window.apply(MoveCommand::SetPose {
+        crash_from_stamped: pair.crash_from_stamped,
+        name: "Known pose".to_owned(),
+    });
+    window.act(Action::MapOrCancel);
+    // Beside what it wrote itself, as another mapper's result.
+    let other = folder.path().join("other.k");
+    std::fs::copy(folder.path().join("crash.k"), &other).unwrap();
+    window.apply(MapCommand::CompareWith(other));
+    window.apply(ViewCommand::SetTab(BottomTab::Log));
+    save(&mut window, &path);
+
+    let again = open(&path);
+    let [old, new] = [&window, &again].map(|w| w.state.document.current_mapping().unwrap());
+    assert_eq!(old.run.mapped, new.run.mapped);
+    assert_eq!(old.other.is_some(), new.other.is_some());
+    assert!(!again.state.is_unsaved());
+    assert_eq!(again.state.history.n_done(), 1);
+    // The window looks as it did.
+    assert_eq!(again.state.view.display, window.state.view.display);
+
+    // Mapped at another pose it is of no use.
+    window.act(Action::FlipX);
+    save(&mut window, &path);
+    let again = open(&path);
+    assert!(again.state.document.mapping.result.is_none());
 }
 
 #[test]

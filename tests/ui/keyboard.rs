@@ -223,3 +223,31 @@ fn f10_opens_the_menus_and_arrows_go_from_one_to_the_next() {
     assert!(shows(Key::ArrowLeft, "Keys and mouse"));
     assert!(!shows(Key::F10, "Keys and mouse"));
 }
+
+#[test]
+fn alt_alone_opens_the_menus_and_with_another_key_does_not() {
+    let mut window = window();
+    let mut press = |keys: &[(Key, bool)]| {
+        for &(key, pressed) in keys {
+            window.event(egui::Event::Key {
+                key,
+                physical_key: None,
+                pressed,
+                repeat: false,
+                modifiers: egui::Modifiers::ALT,
+            });
+        }
+        window.run_steps(3);
+        window.query_by_label_contains("Preferences…").is_some()
+    };
+    let alt = |pressed| (Key::AltLeft, pressed);
+    assert!(!press(&[
+        alt(true),
+        (Key::H, true),
+        (Key::H, false),
+        alt(false)
+    ]));
+    assert!(!press(&[alt(true)]));
+    assert!(press(&[alt(false)]));
+    assert!(!press(&[alt(true), alt(false)]));
+}

@@ -87,3 +87,21 @@ fn one_camera_shows_every_first_pose_whole() {
     window.run_steps(20);
     assert_eq!(camera(&window), alone);
 }
+
+#[test]
+fn a_section_of_a_first_pose_is_cut_once_in_each_window() {
+    let mut window = super::project::drawn(0.25);
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    click(&mut window, "Align surface normals");
+    finish(&mut window);
+    assert!(window.state().state().shown_start().is_some());
+    // The windows show the stamped part at two poses; once both are cut, nothing is left to do.
+    window.key_press(egui::Key::S);
+    super::project::picture(&mut window);
+    for _ in 0..10 {
+        window.run_steps(1);
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        assert!(window.state_mut().picture().is_some(), "cut again");
+    }
+}

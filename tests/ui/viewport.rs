@@ -638,3 +638,26 @@ fn shift_and_arrows_pan_and_windows_say_what_they_show() {
     harness.run_steps(2);
     assert!(harness.state().camera(Role::Crash).height < before.height);
 }
+
+#[test]
+fn the_wheel_over_the_view_buttons_does_not_zoom() {
+    // They stand where there is room beside the names.
+    let mut harness = Harness::builder()
+        .with_size(vec2(1400.0, SIZE.y))
+        .build_ui_state(show, Desk::with_sheets(None));
+    settle(&mut harness);
+    let before = harness.state().camera(Role::Crash);
+    let button = harness.get_by_label("Look along Y (crash)");
+    let at = button.rect().center();
+    harness.event(Event::PointerMoved(at));
+    harness.step();
+    harness.event(Event::MouseWheel {
+        unit: MouseWheelUnit::Line,
+        delta: vec2(0.0, 2.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: egui::Modifiers::NONE,
+    });
+    harness.run_steps(30);
+    assert_eq!(harness.state().camera(Role::Crash), before);
+}

@@ -12,7 +12,7 @@ use crate::app::work::Work;
 use crate::app::{Document, Effect, NoticeLevel, Part, Reason, Shared, UnitHint, facts};
 use crate::assess::Verdict;
 use crate::geometry::Similarity;
-use crate::jobs::{FurtherInput, JobKey, JobKind, PlaceInput};
+use crate::jobs::{FurtherInput, JobKey, JobKind, PlaceInput, Stamp};
 use crate::pipeline::load::{LoadSettings, LoadedPart, usual_selection};
 use crate::pipeline::map::{PoseOrigin, placing_recipe, pose_warning};
 use crate::pipeline::match_parts::MatchRun;
@@ -59,6 +59,8 @@ pub struct MappingState {
     pub(super) unread: BTreeMap<u64, (PathBuf, String)>,
     /// The match that was asked for.
     pub(super) placing: Option<Task>,
+    /// The state of a project that was opened, whose mapping is made again; until another one is asked for.
+    pub(super) restoring: Option<Stamp>,
     /// Matches that gave no pose, with the reason where they were not given up.
     pub(super) unplaced: Vec<(Task, Option<String>)>,
 }

@@ -4,6 +4,7 @@
 mod further;
 mod picture;
 mod probe;
+mod results;
 mod shown_files;
 mod stamped_rows;
 
@@ -11,30 +12,25 @@ pub(super) use further::{FURTHER_WITHOUT_POSE, NewFurther, tell_dropped};
 pub use further::{Further, MappingState, Placing};
 pub use picture::{MapDisplay, MapPicture};
 pub use probe::ProbeReport;
+pub(super) use results::{take_compared, take_mapped};
 pub use shown_files::{FileShare, ShownFile};
 pub use stamped_rows::{StampedRow, StampedState};
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 
 use self::further::{set_pose, set_units};
 use super::facts::match_pose;
-use super::follow_up::FollowUp;
 use super::work::Work;
-use super::{AppState, ColorBy, Document, Effect, NoticeLevel, Reason, Shared};
+use super::{AppState, ColorBy, Document, Effect, Reason, Shared};
 use crate::geometry::Similarity;
 use crate::jobs::{CompareMappingInput, JobKey, JobKind, MapInput, Stamp};
 use crate::mapping::{MapOptions, Quantities};
 use crate::pipeline::forming_values::{FormingValue, has_forming_value, nominal_thickness};
 use crate::pipeline::load::LoadedPart;
-use crate::pipeline::map::{
-    ComparisonRecord, ElementLists, MapRecipe, MapRecord, MapRun, OtherResult, PoseOrigin,
-    unread_line,
-};
 pub use crate::pipeline::map::{DoubtfulElement, FurtherPose, UnmappedElement};
+use crate::pipeline::map::{ElementLists, MapRecipe, MapRecord, MapRun, OtherResult, PoseOrigin};
 use crate::role::Role;
-use crate::text::{capital, counted, percent};
 use crate::units::Units;
 
 /// What undo covers of the mapping.
@@ -418,12 +414,16 @@ impl MappingState {
                 return work.cancel(JobKey::Map);
             }
             MapCommand::MapOrCancel if work.document.has_pose_to_map_at().is_err() => {}
-            MapCommand::MapOrCancel | MapCommand::MapAsLoaded => return start(work),
+            MapCommand::MapOrCancel | MapCommand::MapAsLoaded => {
+                self.restoring = None;
+                return start(work);
+            }
             MapCommand::AskOther if work.jobs.is_active(JobKey::CompareMapping) => {
                 return work.cancel(JobKey::CompareMapping);
             }
             MapCommand::AskOther => return vec![Effect::AskOtherMapping],
             MapCommand::CompareWith(file) => {
+                self.restoring = None;
                 return compare_with(work, file).into_iter().collect();
             }
             MapCommand::EndComparison => end_comparison(work),
@@ -503,40 +503,6 @@ fn end_comparison(work: &mut Work<'_>) {
     });
 }
 
-/// Takes another mapper's result over as one undo step.
-pub(super) fn take_compared(
-    work: &mut Work<'_>,
-    run: &Arc<MapRun>,
-    other: Arc<OtherResult>,
-    comparison: ComparisonRecord,
-    took: Duration,
-) {
-    let current = work.document.current_mapping();
-    // Mapped anew meanwhile: the comparison that follows from it is on its way.
-    if current.is_none_or(|result| !Arc::ptr_eq(&result.run.to_arc(), run)) {
-        return;
-    }
-    let text = format!(
-        "compared with {}: {} have values in both, {} only here, {} only there",
-        file_names(&comparison.files),
-        counted(comparison.n_both, "element"),
-        counted(comparison.n_only_here, "element"),
-        counted(comparison.n_only_other, "element"),
-    );
-    work.log_step("map", None, text, Some(took));
-    let file = other.files.first().cloned();
-    work.commit("Compare with another mapping", |document| {
-        document.mapping.compare_with = file;
-        if let Some(result) = &mut document.mapping.result {
-            let mut record = MapRecord::clone(&result.record);
-            record.comparison = Some(comparison);
-            result.record = Arc::new(record).into();
-            result.other = Some(other.into());
-        }
-    });
-    work.follow(FollowUp::MappingCompared);
-}
-
 /// Names of files without their folders.
 pub fn file_names(paths: &[String]) -> String {
     let name = |path: &String| {
@@ -544,47 +510,4 @@ pub fn file_names(paths: &[String]) -> String {
         name.map_or_else(|| path.clone(), |name| name.to_string_lossy().into_owned())
     };
     paths.iter().map(name).collect::<Vec<_>>().join(", ")
-}
-
-/// Takes a mapping over as one undo step, and compares it with the file that mappings are compared with.
-pub(super) fn take_mapped(
-    work: &mut Work<'_>,
-    (run, record, lists): (Arc<MapRun>, Arc<MapRecord>, Arc<ElementLists>),
-    further: Vec<Arc<LoadedPart>>,
-    took: Duration,
-) -> Vec<Effect> {
-    let other = work.document.mapping.compare_with.clone();
-    let text = format!(
-        "{} of the area of {} mapped",
-        percent(record.mapped_area),
-        counted(record.n_elements, "element")
-    );
-    // What could not be read was told when the file was.
-    let crash = work.document.part(Role::Crash).map(|part| &part.loaded);
-    let parts = crash.into_iter().chain(work.document.all_stamped());
-    let told: Vec<String> = parts.filter_map(|part| unread_line(part)).collect();
-    for warning in record.warnings.iter().filter(|one| !told.contains(one)) {
-        work.log_at(NoticeLevel::Warning, "map", None, capital(warning), None);
-    }
-    work.log_step("map", None, text, Some(took));
-    let stamp = work.document.stamp();
-    work.commit("Map forming results", |document| {
-        let mapping = &mut document.mapping;
-        let before = mapping.result.as_ref();
-        // The probe stays where the same elements were mapped anew.
-        if before.is_none_or(|before| before.run.shells != run.shells) {
-            mapping.probe = None;
-        }
-        mapping.result = Some(MapResult {
-            run: run.into(),
-            record: record.into(),
-            lists: lists.into(),
-            stamp,
-            further: further.into_iter().map(Shared::from).collect(),
-            other: None,
-        });
-    });
-    work.follow(FollowUp::Mapped);
-    let compared = other.and_then(|file| compare_with(work, file));
-    compared.into_iter().collect()
 }

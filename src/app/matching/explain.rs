@@ -147,13 +147,18 @@ impl AppState {
 
     fn units_cause(&self, assessment: &Assessment) -> Option<Cause> {
         let check = &assessment.scale_check;
-        check.unit.as_ref()?;
-        Some(Cause {
-            title: "Different units".to_owned(),
-            evidence: format!(
+        let evidence = match (&check.unit, self.unit_hint()) {
+            (Some(_), _) => format!(
                 "The crash part is {} times as large as the stamped part.",
                 length(check.size_ratio)
             ),
+            // Among the parts of a whole model sizes say nothing, but the files do.
+            (None, Some(hint)) => sentence(&hint.text()),
+            (None, None) => return None,
+        };
+        Some(Cause {
+            title: "Different units".to_owned(),
+            evidence,
             remedy: self.unit_remedy(),
         })
     }

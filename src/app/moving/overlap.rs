@@ -5,13 +5,16 @@ use crate::app::work::Work;
 use crate::app::{AppState, Effect};
 use crate::geometry::Similarity;
 use crate::jobs::{JobKey, JobKind, MeasureInput, Stamp};
+use crate::role::Role;
 
 /// How much of the better covered part lies on the other, measured after each move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseOverlap {
     /// The state it was measured at.
     pub stamp: Stamp,
-    /// Share of the area, 0 to 1.
+    /// The part that is covered better.
+    pub of: Role,
+    /// Share of its area, 0 to 1.
     pub overlap: f64,
     /// Distance up to which a place counts as covered.
     pub limit: f64,
@@ -51,12 +54,19 @@ impl MovingState {
         vec![work.start(JobKind::Overlap(input))]
     }
 
-    pub(in crate::app) fn take_overlap(&mut self, overlap: f64, limit: f64, stamp: Stamp) {
+    pub(in crate::app) fn take_overlap(
+        &mut self,
+        of: Role,
+        overlap: f64,
+        limit: f64,
+        stamp: Stamp,
+    ) {
         let before = self
             .overlap
             .filter(|known| known.stamp.parts == stamp.parts);
         self.overlap = Some(PoseOverlap {
             stamp,
+            of,
             overlap,
             limit,
             change: before.map(|before| overlap - before.overlap),

@@ -112,8 +112,8 @@ impl ProjectState {
         vec![work.start(JobKind::OpenProject(request))]
     }
 
-    /// A file that was not found is somewhere else, or done without; when none is left to be asked
-    /// for, the project is opened.
+    /// A file that was not found is somewhere else, or done without. The others may have moved with the one that
+    /// was found: opening looks for them and asks for what is missing then.
     fn locate(
         &mut self,
         work: &mut Work<'_>,
@@ -124,9 +124,10 @@ impl ProjectState {
         let Some((mut request, mut missing)) = self.missing.take() else {
             return Vec::new();
         };
+        let is_found = matches!(located, Located::At(_));
         request.located.insert(file, located);
         missing.retain(|(missing, _)| *missing != file);
-        if !missing.is_empty() {
+        if !missing.is_empty() && !is_found {
             self.missing = Some((request, missing));
             return Vec::new();
         }

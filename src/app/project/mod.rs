@@ -47,6 +47,11 @@ impl ProjectState {
         Some(stem.to_string_lossy().into_owned())
     }
 
+    /// The document as it is now is what its file says.
+    pub(in crate::app) fn keep_as_saved(&mut self, document: &Document) {
+        self.saved = Some(document.clone());
+    }
+
     /// The newest session that its program did not live to save.
     pub fn lost_session(&self) -> Option<&RecoveredSession> {
         self.sessions.iter().find(|session| session.is_lost)
@@ -74,6 +79,7 @@ impl AppState {
             further_stamped: self.further_entries(),
             mapping_compared_with: document.mapping.compare_with.as_deref().map(absolute),
             mapping_pins: document.mapping.pins.clone(),
+            is_mapped: document.current_mapping().is_some(),
             result: document.result.as_ref().map(|result| ResultEntry {
                 is_current: document.current_result().is_some(),
                 alternative: result.alternative,

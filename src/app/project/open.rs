@@ -52,12 +52,16 @@ impl AppState {
         let effects = self.place_project(&name, &project, parts, window.as_ref());
         self.show_project(&project, window);
         self.view.hidden_files = hidden_files(&project, parts);
+        let is_as_mapped = project.is_mapped && is_all_same(&project, parts);
         let filed = self.file_project(request, &project);
         let text = format!("opened {name}: {}", self.work_title());
         self.work().log_step("project", None, text, Some(took));
         let mut all = vec![Effect::SaveSettings];
         all.extend(filed);
         all.extend(effects);
+        if is_as_mapped {
+            all.extend(self.restore_mapping());
+        }
         all
     }
 
@@ -247,6 +251,20 @@ impl AppState {
         }
         Vec::new()
     }
+}
+
+/// True if every file is there and is the one the project was saved with.
+fn is_all_same(
+    project: &Project,
+    (parts, further): (&PerRole<Option<OpenedPart>>, &[Option<FoundPart>]),
+) -> bool {
+    let parts = [&parts.crash, &parts.stamped].map(|part| part.as_ref().map(|p| p.is_changed));
+    let further = further
+        .iter()
+        .map(|found| found.as_ref().map(|f| f.is_changed));
+    let n_found = further.len();
+    let mut all = parts.into_iter().chain(further);
+    n_found == project.further_stamped.len() && all.all(|is_changed| is_changed == Some(false))
 }
 
 /// The stamped files that were not drawn, where they lie now.

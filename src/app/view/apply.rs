@@ -171,19 +171,24 @@ impl ViewState {
     }
 
     fn refit(&mut self, role: Role, scene: &Scene<'_>) {
+        // Its own window shows the stamped part where it really is, also while the other tries out poses.
+        let stamped_pose = match role {
+            Role::Crash => scene.pose,
+            Role::Stamped => *scene.document.crash_from_stamped(),
+        };
         let mut points = Vec::new();
         for of in self.shown_in(role) {
             if let Some(part) = scene.document.part(*of) {
                 let pose = match of {
                     Role::Crash => Similarity::identity(),
-                    Role::Stamped => scene.pose,
+                    Role::Stamped => stamped_pose,
                 };
                 points.extend(spread(&part.loaded, pose));
             }
         }
         if self.shown_in(role).contains(&Role::Stamped) {
             for file in &scene.further {
-                points.extend(spread(&file.loaded, file.own_pose.unwrap_or(scene.pose)));
+                points.extend(spread(&file.loaded, file.own_pose.unwrap_or(stamped_pose)));
             }
         }
         // One camera sees all first poses, and stays where it is from one to the next.

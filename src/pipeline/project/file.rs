@@ -211,6 +211,8 @@ pub struct Project {
     pub mapping_compared_with: Option<PathBuf>,
     /// Ids of the crash elements that the report of a mapping tells of one by one.
     pub mapping_pins: Vec<u64>,
+    /// True if the forming results were mapped with parts and pose as they are: the window maps them again.
+    pub is_mapped: bool,
     /// The last match.
     pub result: Option<ResultEntry>,
     /// The tables of the last sweep.
@@ -238,6 +240,8 @@ struct Written<'a> {
     mapping_compared_with: Option<PathBuf>,
     #[serde(skip_serializing_if = "<[u64]>::is_empty")]
     mapping_pins: &'a [u64],
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    is_mapped: bool,
     window: &'a Option<Value>,
     #[serde(flatten)]
     others: &'a Map<String, Value>,
@@ -296,6 +300,21 @@ pub enum ProjectError {
 }
 
 impl Project {
+    /// Every file that is read with it.
+    pub fn files(&self) -> Vec<ProjectFile> {
+        let parts = Role::ALL.map(ProjectFile::Part);
+        let further = (0..self.further_stamped.len()).map(ProjectFile::Further);
+        parts.into_iter().chain(further).collect()
+    }
+
+    /// What is stored of a file.
+    pub fn entry(&self, file: ProjectFile) -> Option<&PartEntry> {
+        match file {
+            ProjectFile::Part(role) => self.parts.get(role).as_ref(),
+            ProjectFile::Further(n) => Some(&self.further_stamped.get(n)?.part),
+        }
+    }
+
     /// Reads a project; the second value tells, a sentence each, what was not understood and left
     /// out.
     pub fn read(path: &Path) -> Result<(Self, Vec<String>), ProjectError> {
@@ -361,6 +380,7 @@ impl Project {
             further_stamped: reader.take_or_tell("further_stamped").unwrap_or_default(),
             mapping_compared_with: reader.take_or_tell("mapping_compared_with"),
             mapping_pins: reader.take_or_tell("mapping_pins").unwrap_or_default(),
+            is_mapped: reader.take_or_tell("is_mapped").unwrap_or_default(),
             result: reader.take_or_tell("result"),
             sweep: reader.take_or_tell("sweep"),
             window: reader
@@ -416,6 +436,7 @@ impl Project {
                 .as_deref()
                 .map(|other| relative(other, folder_of(path))),
             mapping_pins: &self.mapping_pins,
+            is_mapped: self.is_mapped,
             window: &self.window,
             others: &self.others,
             result: &self.result,

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::{PartEntry, Project, ProjectFile};
+use crate::formats::{Disk, FileHash};
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::{LoadedPart, PartSource};
@@ -62,10 +63,11 @@ pub struct FoundPart {
 
 /// Reads a project and its parts, both of the match at the same time.
 pub fn open_project(
-    request: ProjectRequest,
+    mut request: ProjectRequest,
     monitor: &Monitor,
 ) -> Result<FoundProject, PipelineError> {
-    let (project, notes) = Project::read(&request.path).map_err(Box::new)?;
+    let (mut project, mut notes) = Project::read(&request.path).map_err(Box::new)?;
+    follow_moved(&mut project, &mut request, &mut notes, monitor)?;
     let mut missing = Vec::new();
     let mut source_of = |file: ProjectFile, entry: &PartEntry| {
         let usual = Located::AsStored;
@@ -109,6 +111,68 @@ pub fn open_project(
         further: further_parts,
         missing,
     })
+}
+
+/// Files often move together: what is missing is looked for where it would lie beside a file that the user
+/// pointed at, as it lay beside that one before, and in its folder. Only the same content is taken.
+fn follow_moved(
+    project: &mut Project,
+    request: &mut ProjectRequest,
+    notes: &mut Vec<String>,
+    monitor: &Monitor,
+) -> Result<(), PipelineError> {
+    let pointed_at = |(file, located): (&ProjectFile, &Located)| match located {
+        Located::At(now) => Some((project.entry(*file)?.file.clone()?, now.clone())),
+        Located::AsStored | Located::Without => None,
+    };
+    let moves: Vec<(PathBuf, PathBuf)> = request.located.iter().filter_map(pointed_at).collect();
+    if moves.is_empty() {
+        return Ok(());
+    }
+    for file in project.files() {
+        let is_told =
+            request.located.get(&file).unwrap_or(&Located::AsStored) != &Located::AsStored;
+        let Some(entry) = project.entry(file).filter(|_| !is_told) else {
+            continue;
+        };
+        let (Some(stored), Some(hash)) = (&entry.file, entry.hash) else {
+            continue;
+        };
+        if entry.locate(&request.path).is_some() {
+            continue;
+        }
+        for place in moves.iter().flat_map(|moved| moved_with(stored, moved)) {
+            let found = FileHash::of_file(&Disk, &place, monitor).ok();
+            monitor.check()?;
+            if found == Some(hash) {
+                notes.push(format!("found again: {}", place.display()));
+                request.located.insert(file, Located::At(place));
+                break;
+            }
+        }
+    }
+    if let Some(other) = &mut project.mapping_compared_with
+        && !other.is_file()
+    {
+        let mut places = moves.iter().flat_map(|moved| moved_with(other, moved));
+        if let Some(place) = places.find(|place| place.is_file()) {
+            *other = place;
+        }
+    }
+    Ok(())
+}
+
+/// Where a file may lie now that another one moved from `before` to `now`.
+fn moved_with(file: &Path, (before, now): &(PathBuf, PathBuf)) -> Vec<PathBuf> {
+    let (Some(before), Some(now)) = (before.parent(), now.parent()) else {
+        return Vec::new();
+    };
+    // From the lowest folder that held both before.
+    let as_before = before.ancestors().zip(now.ancestors());
+    let as_before =
+        as_before.filter_map(|(before, now)| Some(now.join(file.strip_prefix(before).ok()?)));
+    let beside = file.file_name().map(|name| now.join(name));
+    as_before.take(1).chain(beside).collect()
 }
 
 /// Where a part is to be read; the path that was looked for in vain is an error.

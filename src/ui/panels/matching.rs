@@ -220,7 +220,7 @@ fn status_ui(ui: &mut Ui, state: &AppState) {
     }
     if let Some(latest) = job.latest {
         text += &format!(
-            "start {}/{n_starts} · iteration {} · residual {} · overlap {} · ",
+            "start {}/{n_starts} · iteration {} · residual {} · kept {} · ",
             latest.start + 1,
             latest.number + 1,
             state.lengths().of(latest.record.rmse),
@@ -271,7 +271,7 @@ fn over_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut display = state.view.display.clone();
     for (role, name) in [(Role::Crash, "■ opacity"), (Role::Stamped, "▲ opacity")] {
         form_row(ui, name, 72.0, |ui| {
-            ui.spacing_mut().slider_width = ui.available_width() - 64.0;
+            slider_room(ui);
             let value = display.opacity.get_mut(role);
             ui.add(egui::Slider::new(value, 0.0..=1.0).fixed_decimals(2));
         });
@@ -281,7 +281,7 @@ fn over_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             .document
             .part(Role::Stamped)
             .map_or(1.0, |p| p.bounds().diagonal());
-        ui.spacing_mut().slider_width = ui.available_width() - 64.0;
+        slider_room(ui);
         let slider = egui::Slider::new(&mut display.separation, 0.0..=0.25 * size);
         ui.add(slider.max_decimals(1).suffix(state.document.unit_suffix()))
             .on_hover_text("Draws the stamped part apart from where it is; the matrix stays");
@@ -300,4 +300,13 @@ fn over_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if display != state.view.display {
         commands.push(ViewCommand::SetDisplay(Box::new(display)).into());
     }
+}
+
+/// A slider takes what its number leaves; the numbers of all are as wide, whether they have a unit or not.
+fn slider_room(ui: &mut Ui) {
+    const NUMBER: f32 = 72.0;
+    let spacing = ui.spacing_mut();
+    spacing.interact_size.x = NUMBER;
+    let beside = NUMBER + spacing.item_spacing.x;
+    ui.spacing_mut().slider_width = ui.available_width() - beside;
 }

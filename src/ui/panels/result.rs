@@ -270,8 +270,8 @@ fn figures_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
 fn coverage_ui(ui: &mut Ui, state: &AppState, coverage: &Coverage) {
     let limit = state.lengths().of(coverage.limit);
     let over = |one: &OneSided| format!("{} within {limit}", percent(one.overlap));
-    figure(ui, "stamped → crash", &over(&coverage.source_on_target));
-    figure(ui, "crash → stamped", &over(&coverage.target_on_source));
+    figure(ui, "Overlap ▲ stamped", &over(&coverage.source_on_target));
+    figure(ui, "Overlap ■ crash", &over(&coverage.target_on_source));
     let (rms, p95) = (
         state.lengths().number(coverage.rmse()),
         state.lengths().of(coverage.p95()),

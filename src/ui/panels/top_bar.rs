@@ -1,8 +1,8 @@
 //! Menus, search, unit, bell.
 
 use egui::{
-    Align, Button, Id, Key, Layout, MenuBar, Modifiers, Popup, Response, RichText, Sense, Ui, pos2,
-    vec2,
+    Align, Button, Event, Id, Key, Layout, MenuBar, Modifiers, Popup, Response, RichText, Sense,
+    Ui, pos2, vec2,
 };
 
 use super::rail::fold_ui;
@@ -60,17 +60,21 @@ fn menus_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) -> Vec<R
     titles
 }
 
-/// F10 opens the first menu or closes the open one; Left and Right go from one open menu to the next.
+/// F10 or Alt opens the first menu or closes the open one; Left and Right go from one open menu to the next.
 fn turn_by_keys(ui: &Ui, titles: &[Response]) {
     let ctx = ui.ctx();
+    for title in titles {
+        focus_ring(ui, title.rect, title);
+    }
     let ids: Vec<Id> = titles.iter().map(Popup::default_response_id).collect();
     let open = ids.iter().position(|id| Popup::is_id_open(ctx, *id));
     let is_other_open = open.is_none() && Popup::is_any_open(ctx);
     let is_pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    let is_wanted = was_alt_alone(ui) || is_pressed(Key::F10);
     let next = match open {
         _ if is_other_open => None,
-        None => is_pressed(Key::F10).then_some(0),
-        Some(at) if is_pressed(Key::F10) => {
+        None => is_wanted.then_some(0),
+        Some(at) if is_wanted => {
             Popup::close_id(ctx, ids[at]);
             None
         }
@@ -82,6 +86,36 @@ fn turn_by_keys(ui: &Ui, titles: &[Response]) {
         Popup::open_id(ctx, ids[next]);
         titles[next].request_focus();
     }
+}
+
+/// True when Alt is let go after it was pressed with nothing else: no key, no click, no other window.
+fn was_alt_alone(ui: &Ui) -> bool {
+    let id = Id::unique("alt alone");
+    let mut is_alone: bool = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    let mut is_let_go = false;
+    ui.input(|input| {
+        for event in &input.events {
+            match event {
+                Event::Key {
+                    key: Key::AltLeft,
+                    pressed,
+                    ..
+                } => {
+                    is_let_go |= is_alone && !pressed;
+                    is_alone = *pressed && !input.pointer.any_down();
+                }
+                Event::Key { .. }
+                | Event::Text(_)
+                | Event::PointerButton { .. }
+                | Event::MouseWheel { .. }
+                | Event::WindowFocused(_) => is_alone = false,
+                _ => {}
+            }
+        }
+    });
+    ui.data_mut(|data| data.insert_temp(id, is_alone));
+    // There it writes other letters.
+    is_let_go && !ui.ctx().os().is_mac()
 }
 
 /// The items of a menu; the table of actions says which.

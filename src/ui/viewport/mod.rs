@@ -123,7 +123,7 @@ impl Viewports {
             state,
             look: &Look::of(ui.visuals().dark_mode),
             plane,
-            cuts: &self.sections.cuts(state),
+            cuts: &self.sections.cuts(Role::Crash, state),
             gaps: gaps.as_deref(),
         };
         drawing.show(ui, commands);
@@ -242,7 +242,7 @@ impl Viewports {
             })
             .collect();
         self.sections.update(view.window, state, &placed, ui.ctx());
-        let cuts = self.sections.cuts(state);
+        let cuts = self.sections.cuts(view.window, state);
         let fields = self.fields.get(view.window, state, &drawn, ui.ctx());
         let layers = drawn
             .into_iter()

@@ -19,6 +19,8 @@ use crate::ui::theme::Look;
 /// What a cut was made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct CutKey {
+    /// The window that shows it: each may show the same part at another pose.
+    window: Role,
     role: Role,
     /// The number of a stamped file; 0 for the first and for the crash part.
     number: usize,
@@ -26,6 +28,9 @@ struct CutKey {
     plane: Plane,
     world_from_mesh: Similarity,
 }
+
+/// The window that shows a part, and the part.
+type Place = (Role, Role, usize);
 
 /// A part that is to be cut: whose it is, the number of its file, its mesh, where it lies.
 pub(super) type Uncut = (Role, usize, Arc<ShownMesh>, Similarity);
@@ -91,8 +96,8 @@ pub(super) struct Cut {
 }
 
 impl CutKey {
-    fn place(&self) -> (Role, usize) {
-        (self.role, self.number)
+    fn place(&self) -> Place {
+        (self.window, self.role, self.number)
     }
 }
 
@@ -218,7 +223,7 @@ fn shown_files(state: &AppState) -> Vec<usize> {
 /// The outlines of all parts.
 pub(super) struct SectionStore {
     background: Background<CutKey, Cut>,
-    ready: BTreeMap<(Role, usize), (CutKey, Arc<Cut>)>,
+    ready: BTreeMap<Place, (CutKey, Arc<Cut>)>,
     failed: Vec<CutKey>,
     /// Of gaps, the key of the crash part's cut first.
     measuring: Background<Vec<CutKey>, Gaps>,
@@ -248,6 +253,7 @@ impl SectionStore {
         let keys = plane.into_iter().flat_map(|plane| {
             let key = move |(role, number, mesh, pose): &Uncut| {
                 let key = CutKey {
+                    window,
                     role: *role,
                     number: *number,
                     mesh: mesh.key(),
@@ -258,11 +264,17 @@ impl SectionStore {
             };
             meshes.iter().map(key)
         });
+        let keys: Vec<_> = keys.collect();
+        // What a window shows no longer is not taken for what it shows.
+        self.ready.retain(|place, _| {
+            place.0 != window || keys.iter().any(|(key, _)| key.place() == *place)
+        });
         let is_missing = |key: &CutKey| {
             let ready = self.ready.get(&key.place());
             ready.is_none_or(|(of, _)| of != key) && !self.failed.contains(key)
         };
         let wanted = keys
+            .into_iter()
             .filter(|(key, _)| is_missing(key))
             .map(|(key, mesh)| Task {
                 key,
@@ -280,6 +292,12 @@ impl SectionStore {
         self.measure(window, state, wake);
     }
 
+    /// The newest outline of a part in a window, or in the other one.
+    fn newest(&self, window: Role, role: Role, number: usize) -> Option<&(CutKey, Arc<Cut>)> {
+        let of = |window| self.ready.get(&(window, role, number));
+        of(window).or_else(|| of(window.other()))
+    }
+
     /// Asks for the gaps between the newest outlines.
     fn measure(&mut self, window: Role, state: &AppState, wake: &egui::Context) {
         let task = self.ungauged(state).into_iter().collect();
@@ -291,11 +309,13 @@ impl SectionStore {
     /// The gaps that are to be measured, if these are not the ones that are known.
     fn ungauged(&self, state: &AppState) -> Option<Task<Vec<CutKey>, Gaps>> {
         state.inspect.section.shown()?;
-        let (crash_key, crash) = self.ready.get(&(Role::Crash, 0))?;
+        // The crash part's window is the one that shows both.
+        let newest = |role, number| self.newest(Role::Crash, role, number);
+        let (crash_key, crash) = newest(Role::Crash, 0)?;
         let mut key = vec![*crash_key];
         let mut stamped = Vec::new();
         for number in shown_files(state) {
-            let (of, cut) = self.ready.get(&(Role::Stamped, number))?;
+            let (of, cut) = newest(Role::Stamped, number)?;
             if of.plane != crash_key.plane {
                 return None;
             }
@@ -323,14 +343,14 @@ impl SectionStore {
         })
     }
 
-    /// The newest outlines of the parts that are loaded, while the section is shown.
-    pub fn cuts(&self, state: &AppState) -> Cuts {
+    /// The newest outlines of the parts that are loaded, as a window shows them, while the section is shown.
+    pub fn cuts(&self, window: Role, state: &AppState) -> Cuts {
         let mut cuts = Cuts::default();
         if state.inspect.section.shown().is_none() {
             return cuts;
         }
-        let ready = |place, part: &Shared<LoadedPart>| {
-            let (_, cut) = self.ready.get(&place)?;
+        let ready = |(role, number), part: &Shared<LoadedPart>| {
+            let (_, cut) = self.newest(window, role, number)?;
             let is_of_part = Arc::ptr_eq(&part.to_arc(), &cut.mesh.source.part);
             is_of_part.then(|| Arc::clone(cut))
         };

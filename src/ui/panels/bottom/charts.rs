@@ -32,13 +32,11 @@ fn mark_text(mark: GridMark) -> String {
 
 /// A still chart of logarithms, with the numbers themselves along the axes.
 pub fn log_chart(ui: &Ui, name: &str, size: Vec2) -> Plot<'static> {
-    still_chart(ui, name, size)
+    with_log_upright(still_chart(ui, name, size))
         .y_axis_label(name.to_owned())
         .y_axis_min_width(44.0)
         .x_axis_formatter(|mark, _| decade_text(mark.value))
-        .y_axis_formatter(|mark, _| decade_text(mark.value))
         .x_grid_spacer(|input| decades(input.bounds))
-        .y_grid_spacer(|input| decades(input.bounds))
 }
 
 /// The number whose logarithm this is: 0.01, 3, 20k. Two digits count.
@@ -61,6 +59,41 @@ pub fn decade_text(log: f64) -> String {
         &text
     };
     format!("{text}{unit}")
+}
+
+/// A chart of logarithms upright, with the numbers themselves along the axis.
+pub fn with_log_upright(plot: Plot<'_>) -> Plot<'_> {
+    plot.y_axis_formatter(|mark, _| decade_text(mark.value))
+        .y_grid_spacer(|input| decades(input.bounds))
+}
+
+/// A chart of shares upright, with two to five round ones along the axis, but at most `most`.
+pub fn with_round_shares(plot: Plot<'_>, most: usize) -> Plot<'_> {
+    plot.y_axis_formatter(|mark, _| share_text(mark.value))
+        .y_grid_spacer(move |input| {
+            let mut ticks = round_shares(input.bounds);
+            if ticks.len() > most {
+                // The ends say most.
+                ticks.drain(1..ticks.len() - 1);
+            }
+            let ticks = ticks.into_iter();
+            // A mark is labelled when its step is wide on the screen.
+            let step_size = input.bounds.1 - input.bounds.0;
+            ticks.map(|value| GridMark { value, step_size }).collect()
+        })
+}
+
+/// Multiples of the coarsest round step of which there are two.
+fn round_shares((low, high): (f64, f64)) -> Vec<f64> {
+    let steps = (0..6).flat_map(|n| [1.0, 0.5, 0.2].map(|factor| factor * 0.1_f64.powi(n)));
+    let among = |step: f64| {
+        let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
+        (first..=last)
+            .map(|n| n as f64 * step)
+            .collect::<Vec<f64>>()
+    };
+    let mut ticks = steps.map(among);
+    ticks.find(|ticks| ticks.len() >= 2).unwrap_or_default()
 }
 
 /// Grid of a logarithmic axis: decades, and 2 and 5 between them where few decades are seen.
@@ -250,6 +283,16 @@ mod tests {
         let [low, high] = margined([2.0, f64::NAN, 2.0].into_iter()).unwrap();
         assert!(low < 2.0 && high > 2.0);
         assert_eq!(margined([f64::NAN].into_iter()), None);
+    }
+
+    #[test]
+    fn shares_upright_have_two_to_five_round_numbers() {
+        assert_eq!(round_shares((-0.05, 1.05)), [0.0, 1.0]);
+        assert_eq!(round_shares((0.19, 1.0)), [0.5, 1.0]);
+        for (low, high) in [(0.91, 0.985), (0.99, 0.9999), (0.4, 0.41)] {
+            let ticks = round_shares((low, high));
+            assert!((2..=5).contains(&ticks.len()), "{low} {high}: {ticks:?}");
+        }
     }
 
     #[test]

@@ -1,16 +1,16 @@
-//! Residual and overlap over the iterations of every start, live. Pointing at the curve of the chosen
+//! Residual and share of kept pairs over the iterations of every start, live. Pointing at the curve of the chosen
 //! start shows the pose of that iteration, a click or the arrow keys keep it.
 
-use egui::{Button, ComboBox, Key, Modifiers, Ui, vec2};
-use egui_plot::{GridMark, Line, PlotPoints, VLine};
+use egui::{Button, ComboBox, Key, Modifiers, RichText, Ui, vec2};
+use egui_plot::{Line, PlotPoints, VLine};
 
 use super::charts;
 use crate::app::{AppState, Command, Preview, PreviewCommand};
 use crate::registration::{IterationRecord, StartRecord};
 use crate::report::start_name;
-use crate::text::{Lengths, whole_percent};
+use crate::text::Lengths;
 use crate::ui::theme::{Palette, ROW};
-use crate::ui::widgets::{caption, icon_button, nothing_yet, percent};
+use crate::ui::widgets::{icon_button, nothing_yet, percent};
 
 /// The curves of one frame.
 struct Curves<'a> {
@@ -69,7 +69,7 @@ pub fn convergence_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
     let size = vec2((ui.available_width() - 16.0) / 2.0, ui.available_height());
     let mut pointed = Pointed::default();
     ui.horizontal_top(|ui| {
-        for chart in [RMS, OVERLAP] {
+        for chart in [RMS, KEPT] {
             let at = chart.show(ui, &curves, size);
             pointed.is_inside |= at.is_inside;
             pointed.is_clicked |= at.is_clicked;
@@ -140,22 +140,12 @@ fn has_others(ui: &Ui) -> bool {
 /// Which start, its figures, and the steps through its iterations.
 fn head_ui(ui: &mut Ui, state: &AppState, curves: &mut Curves<'_>, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let leader = curves.leader;
-        ComboBox::from_id_salt("start of the curve")
-            .selected_text(start_text(leader, &curves.starts[leader]))
-            .width(230.0)
-            .truncate()
-            .show_ui(ui, |ui| {
-                for (number, start) in curves.starts.iter().enumerate() {
-                    let is_on = number == leader;
-                    let text = start_text(number, start);
-                    if ui.selectable_label(is_on, text).clicked() {
-                        commands.push(PreviewCommand::ChooseStart(Some(number)).into());
-                    }
-                }
-            })
-            .response
-            .accessible_name("Start of the curve");
+        // The figures beside it are seen whole.
+        let width = (ui.available_width() - FIGURES).clamp(150.0, 360.0);
+        ui.scope(|ui| {
+            ui.set_max_width(width);
+            start_choice(ui, curves, width, commands);
+        });
         let mut has_others = curves.has_others;
         if ui.checkbox(&mut has_others, "All starts").changed() {
             ui.data_mut(|data| data.insert_temp(others_id(), has_others));
@@ -167,14 +157,37 @@ fn head_ui(ui: &mut Ui, state: &AppState, curves: &mut Curves<'_>, commands: &mu
                 step(state, curves, way, commands);
             }
         }
-        figures_ui(ui, curves);
         if state.previews.pinned.is_some() {
             let button = Button::new("Back to the result").min_size(vec2(0.0, ROW));
             if ui.add(button).clicked() {
                 commands.push(PreviewCommand::Pin(None).into());
             }
         }
+        figures_ui(ui, curves);
     });
+}
+
+/// Room for what stands beside the choice of the start.
+const FIGURES: f32 = 460.0;
+
+/// The start that stands out.
+fn start_choice(ui: &mut Ui, curves: &Curves<'_>, width: f32, commands: &mut Vec<Command>) {
+    let leader = curves.leader;
+    ComboBox::from_id_salt("start of the curve")
+        .selected_text(start_text(leader, &curves.starts[leader]))
+        .width(width)
+        .truncate()
+        .show_ui(ui, |ui| {
+            for (number, start) in curves.starts.iter().enumerate() {
+                let is_on = number == leader;
+                let text = start_text(number, start);
+                if ui.selectable_label(is_on, text).clicked() {
+                    commands.push(PreviewCommand::ChooseStart(Some(number)).into());
+                }
+            }
+        })
+        .response
+        .accessible_name("Start of the curve");
 }
 
 fn figures_ui(ui: &mut Ui, curves: &Curves<'_>) {
@@ -182,7 +195,7 @@ fn figures_ui(ui: &mut Ui, curves: &Curves<'_>) {
     let n_steps = iterations.len();
     let words = |step: &IterationRecord| {
         format!(
-            "residual {} · overlap {}",
+            "residual {} · kept {}",
             curves.lengths.of(step.rmse),
             percent(step.fraction)
         )
@@ -199,12 +212,18 @@ fn figures_ui(ui: &mut Ui, curves: &Curves<'_>) {
             .last()
             .map(|step| format!("{n_steps} iterations · {}", words(step))),
     };
-    caption(ui, text.unwrap_or_else(|| "no iteration yet".to_owned()));
+    let text = text.unwrap_or_else(|| "no iteration yet".to_owned());
+    let text = RichText::new(text).small();
+    let text = text.color(Palette::of(ui).secondary);
+    ui.add(egui::Label::new(text).truncate());
 }
 
 fn start_text(number: usize, start: &StartRecord) -> String {
     format!("{} · {}", number + 1, start_name(start))
 }
+
+/// A chart lower than this has no names along its axes.
+const LOW: f32 = 100.0;
 
 struct Chart {
     name: &'static str,
@@ -217,8 +236,9 @@ const RMS: Chart = Chart {
     value: |iteration| iteration.rmse,
     is_length: true,
 };
-const OVERLAP: Chart = Chart {
-    name: "overlap",
+/// Share of the stamped part's area whose pairs an iteration keeps: no overlap, which the verdict states.
+const KEPT: Chart = Chart {
+    name: "kept",
     value: |iteration| iteration.fraction,
     is_length: false,
 };
@@ -242,49 +262,50 @@ impl Chart {
     fn show(&self, ui: &mut Ui, curves: &Curves<'_>, size: egui::Vec2) -> Pointed {
         let palette = Palette::of(ui);
         let is_length = self.is_length;
-        let format = move |mark: GridMark, _: &std::ops::RangeInclusive<f64>| {
-            if !is_length {
-                return whole_percent(mark.value);
-            }
-            let is_decade = mark.value.fract().abs() < 1e-6;
-            if is_decade {
-                10_f64.powf(mark.value).to_string()
-            } else {
-                String::new()
-            }
-        };
         let label = if is_length {
             format!("{}{}", self.name, curves.lengths.suffix())
         } else {
             self.name.to_owned()
         };
-        let shown = charts::still_chart(ui, self.name, size)
-            .x_axis_label("iteration")
-            .y_axis_label(label)
-            .y_axis_min_width(48.0)
-            .y_axis_formatter(format)
-            .show(ui, |plot| {
-                let quiet = palette.secondary.gamma_multiply(0.5);
-                let leader = curves.leader;
-                let others = curves.starts.iter().enumerate();
-                let others = others.filter(|(number, _)| curves.has_others && *number != leader);
-                for (number, start) in others {
-                    let name = format!("start {}", number + 1);
-                    let line = Line::new(name, self.points(start));
-                    plot.line(line.color(quiet).width(1.0).allow_hover(false));
-                }
-                let name = format!("start {}", leader + 1);
-                let line = Line::new(name, self.points(&curves.starts[leader]));
-                plot.line(line.color(palette.accent_text).width(2.0));
-                if let Some(at) = curves.shown {
-                    let line = VLine::new("shown", at as f64);
-                    plot.vline(line.color(palette.secondary));
-                }
-                let response = plot.response();
-                let is_over = response.hovered();
-                let at = plot.pointer_coordinate().filter(|_| is_over);
-                (at, response.clicked(), is_over)
-            });
+        let chart = charts::still_chart(ui, self.name, size).y_axis_min_width(48.0);
+        let chart = if is_length {
+            charts::with_log_upright(chart)
+        } else {
+            charts::with_round_shares(chart, if size.y < LOW { 2 } else { 5 })
+        };
+        // Names of axes take a third of a low chart; there what is drawn stands in it.
+        let chart = if size.y < LOW {
+            let at = ui.cursor().min + vec2(size.x - 8.0, 2.0);
+            let font = egui::TextStyle::Small.resolve(ui.style());
+            let color = palette.secondary;
+            ui.painter()
+                .text(at, egui::Align2::RIGHT_TOP, label, font, color);
+            chart
+        } else {
+            chart.x_axis_label("iteration").y_axis_label(label)
+        };
+        let shown = chart.show(ui, |plot| {
+            let quiet = palette.secondary.gamma_multiply(0.5);
+            let leader = curves.leader;
+            let others = curves.starts.iter().enumerate();
+            let others = others.filter(|(number, _)| curves.has_others && *number != leader);
+            for (number, start) in others {
+                let name = format!("start {}", number + 1);
+                let line = Line::new(name, self.points(start));
+                plot.line(line.color(quiet).width(1.0).allow_hover(false));
+            }
+            let name = format!("start {}", leader + 1);
+            let line = Line::new(name, self.points(&curves.starts[leader]));
+            plot.line(line.color(palette.accent_text).width(2.0));
+            if let Some(at) = curves.shown {
+                let line = VLine::new("shown", at as f64);
+                plot.vline(line.color(palette.secondary));
+            }
+            let response = plot.response();
+            let is_over = response.hovered();
+            let at = plot.pointer_coordinate().filter(|_| is_over);
+            (at, response.clicked(), is_over)
+        });
         let (at, is_clicked, is_inside) = shown.inner;
         let over = at.map(|at| at.x.round()).filter(|x| *x >= 0.0);
         Pointed {

@@ -33,8 +33,14 @@ pub fn mapping_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         return one_by_one_ui(ui, state, result, commands);
     }
     let (width, height) = (ui.available_width(), ui.available_height());
-    // The names of the checks are read whole, and six percentiles stand beside each other.
-    let widths = [0.39 * width, 0.285 * width, 0.325 * width - 44.0];
+    // The names of the checks are read whole, and six percentiles stand beside each other. While no element is
+    // probed, the checks have most of its room.
+    let probe = if state.document.mapping.probe.is_some() {
+        0.325 * width
+    } else {
+        0.19 * width
+    };
+    let widths = [0.715 * width - probe, 0.285 * width, probe - 44.0];
     // In a wide pane a number stays beside its name.
     let widths = [0, 1, 2].map(|i| widths[i].min(WIDEST[i]));
     ui.horizontal_top(|ui| {

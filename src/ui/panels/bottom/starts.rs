@@ -10,13 +10,16 @@ use crate::geometry::Similarity;
 use crate::registration::{StartGroup, StartOutcome, StartRecord, group_starts};
 use crate::report::{outcome_words, start_kind_help, start_name};
 use crate::text::Lengths;
-use crate::ui::theme::Palette;
+use crate::ui::theme::{Palette, UNIT};
 use crate::ui::widgets::{caption, nothing_yet, percent, tight};
 
 /// Height of a row with its picture.
 const HEIGHT: f32 = 44.0;
 /// Width of a picture.
 const PICTURE: f32 = 64.0;
+/// Least width of where a start came from, and width of what became of it.
+const NAME: f32 = 170.0;
+const OUTCOME: f32 = 190.0;
 
 /// One line of the table: a start, and the group if it leads one.
 struct Line<'a> {
@@ -113,32 +116,25 @@ fn head_ui(ui: &mut Ui, table: &Table<'_>) {
 /// The rows; the preview of the one under the pointer.
 fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Option<Preview> {
     let unit = table.state.document.unit_suffix();
-    let titles = [
-        String::new(),
-        "start".to_owned(),
-        "outcome".to_owned(),
-        "overlap".to_owned(),
-        format!("residual{unit}"),
-        format!("P95{unit}"),
-        "iterations".to_owned(),
-        "time".to_owned(),
-        format!("to best{unit}"),
-    ];
+    let figures = Figure::fitting(ui.available_width());
+    let mut titles = vec![String::new(), "start".to_owned(), "outcome".to_owned()];
+    titles.extend(figures.iter().map(|figure| figure.title(unit)));
     let mut hovered = None;
     let thumbnails = Thumbnails::of(ui.ctx());
     let mut thumbnails = thumbnails.lock();
     ui.spacing_mut().item_spacing.y = 0.0;
     let mut builder = TableBuilder::new(ui)
-        .id_salt("starts")
+        // A table keeps its columns: one for each choice of them.
+        .id_salt(("starts", figures.len()))
         .sense(Sense::click())
         .min_scrolled_height(0.0)
         .auto_shrink([false, false])
         .cell_layout(Layout::left_to_right(Align::Center))
         .column(Column::exact(PICTURE + 8.0))
-        .column(Column::remainder().at_least(170.0).clip(true))
-        .column(Column::exact(190.0).clip(true));
-    for width in [62.0, 84.0, 68.0, 60.0, 64.0, 72.0] {
-        builder = builder.column(Column::exact(width));
+        .column(Column::remainder().at_least(NAME).clip(true))
+        .column(Column::exact(OUTCOME).clip(true));
+    for figure in &figures {
+        builder = builder.column(Column::exact(figure.width()));
     }
     builder
         .header(20.0, |mut header| {
@@ -151,7 +147,7 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
         .body(|body| {
             body.rows(HEIGHT, table.lines.len(), |mut row| {
                 let line = &table.lines[row.index()];
-                row_ui(&mut row, table, line, &mut thumbnails, commands);
+                row_ui(&mut row, table, (line, &figures), &mut thumbnails, commands);
                 let index = line.number;
                 let response = row.response();
                 if response.hovered() {
@@ -169,7 +165,7 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
 fn row_ui(
     row: &mut TableRow<'_, '_>,
     table: &Table<'_>,
-    line: &Line<'_>,
+    (line, figures): (&Line<'_>, &[Figure]),
     thumbnails: &mut Thumbnails,
     commands: &mut Vec<Command>,
 ) {
@@ -199,7 +195,8 @@ fn row_ui(
         };
         cell(ui, format!("{sign} {words}"), color);
     });
-    for text in figures(line, table.state.lengths()) {
+    for figure in figures {
+        let text = figure.text(line, table.state.lengths());
         row.col(|ui| {
             let palette = Palette::of(ui);
             let color = if is_best { palette.good } else { palette.text };
@@ -265,22 +262,91 @@ fn outcome_text(start: &StartRecord, state: &AppState) -> [String; 2] {
     [sign.to_owned(), words]
 }
 
-fn figures(line: &Line<'_>, lengths: Lengths) -> [String; 6] {
-    let dash = || "–".to_owned();
-    let start = line.start;
-    let has_ended = start.outcome.is_some();
-    let last = start.iterations.last();
-    let number = |value: Option<f64>| value.map_or_else(dash, |value| lengths.number(value));
-    [
-        last.map_or_else(dash, |step| percent(step.fraction)),
-        number(last.map(|step| step.rmse)),
-        number(Some(start.p95).filter(|p95| p95.is_finite())),
-        start.iterations.len().to_string(),
-        if has_ended {
-            duration_text(start.took)
-        } else {
-            dash()
-        },
-        number(line.distance),
-    ]
+/// A number of a start, in the order of the columns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Figure {
+    Kept,
+    Residual,
+    P95,
+    Iterations,
+    Time,
+    ToBest,
+}
+
+impl Figure {
+    const ALL: [Self; 6] = [
+        Self::Kept,
+        Self::Residual,
+        Self::P95,
+        Self::Iterations,
+        Self::Time,
+        Self::ToBest,
+    ];
+    /// What is left out first where not all have room.
+    const LEAST: [Self; 4] = [Self::Time, Self::Iterations, Self::P95, Self::Kept];
+
+    /// Those that have room in a table of this width.
+    fn fitting(width: f32) -> Vec<Self> {
+        const GAP: f32 = UNIT;
+        let beside = PICTURE + 8.0 + NAME + OUTCOME + 4.0 * GAP;
+        let mut shown = Self::ALL.to_vec();
+        for least in Self::LEAST {
+            let needed: f32 = shown.iter().map(|figure| figure.width() + GAP).sum();
+            if beside + needed > width {
+                shown.retain(|figure| *figure != least);
+            }
+        }
+        shown
+    }
+
+    fn title(self, unit: &str) -> String {
+        match self {
+            Self::Kept => "kept".to_owned(),
+            Self::Residual => format!("residual{unit}"),
+            Self::P95 => format!("P95{unit}"),
+            Self::Iterations => "iterations".to_owned(),
+            Self::Time => "time".to_owned(),
+            Self::ToBest => format!("to best{unit}"),
+        }
+    }
+
+    fn width(self) -> f32 {
+        match self {
+            Self::Kept => 62.0,
+            Self::Residual => 84.0,
+            Self::P95 => 68.0,
+            Self::Iterations => 60.0,
+            Self::Time => 64.0,
+            Self::ToBest => 72.0,
+        }
+    }
+
+    fn text(self, line: &Line<'_>, lengths: Lengths) -> String {
+        let start = line.start;
+        let last = start.iterations.last();
+        let number = |value: Option<f64>| value.map(|value| lengths.number(value));
+        let text = match self {
+            Self::Kept => last.map(|step| percent(step.fraction)),
+            Self::Residual => number(last.map(|step| step.rmse)),
+            Self::P95 => number(Some(start.p95).filter(|p95| p95.is_finite())),
+            Self::Iterations => Some(start.iterations.len().to_string()),
+            Self::Time => start.outcome.map(|_| duration_text(start.took)),
+            Self::ToBest => number(line.distance),
+        };
+        text.unwrap_or_else(|| "–".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_says_least_is_left_out_first() {
+        assert_eq!(Figure::fitting(1000.0), Figure::ALL);
+        let narrow = Figure::fitting(660.0);
+        assert!(narrow.contains(&Figure::Residual) && narrow.contains(&Figure::ToBest));
+        assert!(!narrow.contains(&Figure::Time));
+        assert_eq!(Figure::fitting(0.0), [Figure::Residual, Figure::ToBest]);
+    }
 }

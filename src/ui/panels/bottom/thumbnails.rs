@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use egui::{Color32, ColorImage, Context, Rect, Sense, TextureHandle, TextureOptions, Ui, Vec2};
 
 use crate::app::{AppState, Part};
-use crate::geometry::{Camera, MergedMesh, Similarity, TriMesh};
+use crate::geometry::{Camera, MergedMesh, Point3, Similarity, TriMesh};
 use crate::monitor::Monitor;
 use crate::pipeline::load::LoadedPart;
 use crate::report::picture::{Paint, Picture, PictureMesh, picture};
@@ -18,8 +18,10 @@ use crate::ui::theme::Palette;
 const SIZE: [usize; 2] = [144, 90];
 /// Triangles of a mesh that is drawn so small.
 const MAX_TRIANGLES: usize = 2000;
-/// A stamped part that lies beside the crash part is still partly seen.
+/// Air around what is seen.
 const AIR: f64 = 1.2;
+/// The stamped part is seen as a whole unless the crash part would become so many times smaller for it.
+const MOST_SMALLER: f64 = 2.5;
 /// Pictures kept at most.
 const KEPT: usize = 256;
 
@@ -185,8 +187,7 @@ fn key_of(state: &AppState, pose: &Similarity, is_dark: bool) -> Key {
     }
 }
 
-/// All pictures of a pair are seen from one place: along the sheet's mean normal, the crash part filling
-/// the picture but for some air.
+/// All pictures of a pair are seen along the sheet's mean normal.
 fn camera(crash: &Part) -> Camera {
     let mut camera = Camera::default();
     let normal = crash.facts.mean_normal;
@@ -196,15 +197,36 @@ fn camera(crash: &Part) -> Camera {
     camera
 }
 
+/// The camera that has both parts in the picture, or the crash part where the other lies far away.
+fn around(camera: Camera, crash: &[Point3], stamped: &[Point3], pose: &Similarity) -> Camera {
+    let aspect = SIZE[0] as f64 / SIZE[1] as f64;
+    let mut alone = camera;
+    alone.fit_to_points(crash, aspect);
+    let mut both = camera;
+    let stamped = stamped.iter().map(|point| pose.apply(point));
+    let points: Vec<Point3> = crash.iter().copied().chain(stamped).collect();
+    both.fit_to_points(&points, aspect);
+    let mut camera = if both.height <= MOST_SMALLER * alone.height {
+        both
+    } else {
+        alone
+    };
+    camera.height *= AIR;
+    camera
+}
+
 fn draw(
     [crash, stamped]: [&SmallMesh; 2],
     pose: &Similarity,
-    mut camera: Camera,
+    camera: Camera,
     [crash_color, stamped_color]: [[u8; 3]; 2],
 ) -> Picture {
-    let aspect = SIZE[0] as f64 / SIZE[1] as f64;
-    camera.fit_to_points(crash.get().positions(), aspect);
-    camera.height *= AIR;
+    let camera = around(
+        camera,
+        crash.get().positions(),
+        stamped.get().positions(),
+        pose,
+    );
     let fixed = Similarity::identity();
     let meshes = [
         PictureMesh {
@@ -220,4 +242,24 @@ fn draw(
     ];
     let drawn = picture(SIZE, &camera, None, &meshes, &Monitor::silent());
     drawn.expect("a silent monitor is never cancelled")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Vector3;
+
+    #[test]
+    fn both_parts_are_seen_unless_one_lies_far_away() {
+        let crash = [Point3::new(-1.0, -1.0, 0.0), Point3::new(1.0, 1.0, 0.0)];
+        let height = |away: f64| {
+            let pose = Similarity {
+                translation: Vector3::new(away, 0.0, 0.0),
+                ..Similarity::identity()
+            };
+            around(Camera::default(), &crash, &crash, &pose).height
+        };
+        assert!(height(1.0) > 1.1 * height(0.0));
+        assert_eq!(height(100.0), height(0.0));
+    }
 }

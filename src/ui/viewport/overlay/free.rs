@@ -2,7 +2,7 @@
 
 use egui::{CornerRadius, Rect, Shape, Ui, UiBuilder, vec2};
 
-use super::header::fitted;
+use super::header::{fitted, shield};
 use super::{MARGIN, Overlay};
 use crate::app::{AppState, Command, FreeWindow, ViewCommand};
 use crate::role::Role;
@@ -71,6 +71,7 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
         over.frame.look.plate,
     );
     painter.add(ground);
+    shield(ui, area.expand(4.0));
     ui.scope_builder(UiBuilder::new().max_rect(area), |ui| {
         free_choice(ui, over.frame.state, width, commands);
     });
@@ -78,12 +79,13 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
     let weak = over.frame.look.weak;
     // A narrow window has the legend beside it.
     let beside = if room < NARROW { LEGEND } else { 8.0 };
-    let text = fitted(
-        &painter,
-        says(over.frame.state, free).to_owned(),
-        11.5,
-        (weak, room - beside),
-    );
+    let fitted = |text: &str| fitted(&painter, text.to_owned(), 11.5, (weak, room - beside));
+    let says = says(over.frame.state, free);
+    let mut text = fitted(says);
+    if text.elided {
+        // What is seen comes first; how it is seen is left out rather than cut.
+        text = fitted(says.split(" · ").next().unwrap_or_default());
+    }
     let plate = Rect::from_min_size(corner, text.size() + vec2(16.0, 8.0));
     painter.rect_filled(plate, CornerRadius::same(6), over.frame.look.plate);
     painter.galley(corner + vec2(8.0, 4.0), text, weak);

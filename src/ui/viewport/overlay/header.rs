@@ -287,11 +287,16 @@ fn stripes(over: &Overlay<'_>) -> Option<String> {
     ))
 }
 
-/// How warm the pose is, with the change since the last one.
+/// How warm the pose is, with the change since the last one. Not where the verdict states the overlap: this one is
+/// of few points.
 fn overlap(state: &AppState) -> Option<String> {
-    let known = state.current_overlap().filter(|_| !state.is_preview())?;
+    let is_measured = state.document.current_result().is_some();
+    let known = state
+        .current_overlap()
+        .filter(|_| !is_measured && !state.is_preview())?;
     let mut text = format!(
-        "overlap {} within {}",
+        "overlap of {} {} within {}",
+        known.of.word(),
         whole_percent(known.overlap),
         state.lengths().of(known.limit)
     );
@@ -342,6 +347,12 @@ fn has_buttons(over: &Overlay<'_>) -> bool {
     over.frame.rect().width() >= LEAST_NAMES + 8.0 + BUTTONS.x + 2.0 * MARGIN
 }
 
+/// Wheel and drags do not reach through to the part from here: buttons alone take clicks only. Tab passes it by.
+pub(super) fn shield(ui: &Ui, area: Rect) {
+    let id = ui.scope_id().with(("shield", area.min.x as i32));
+    ui.interact(area, id, Sense::CLICK | Sense::DRAG);
+}
+
 /// Buttons of the camera, top right.
 pub(super) fn buttons(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>) {
     if is_free(over) || !has_buttons(over) {
@@ -367,6 +378,7 @@ pub(super) fn buttons(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Comman
     );
     let area = Rect::from_min_size(corner, BUTTONS);
     let plate = ui.painter().add(Shape::Noop);
+    shield(ui, area);
     let builder = UiBuilder::new()
         .max_rect(area.shrink(2.0))
         .layout(Layout::right_to_left(Align::Center));

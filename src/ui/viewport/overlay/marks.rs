@@ -118,9 +118,16 @@ fn readout(painter: &Painter, over: &Overlay<'_>, taken: f32, legend: Option<Rec
         let font = FontId::monospace(11.0);
         let room = (right - left - MARGIN - 20.0).max(0.0);
         let color = over.frame.look.text;
-        let mut job = egui::text::LayoutJob::simple(text.clone(), font, color, room);
-        job.wrap.max_rows = READOUT_ROWS;
-        let galley = painter.layout_job(job);
+        let lay = |text: String, max_rows: usize| {
+            let mut job = egui::text::LayoutJob::simple(text, font.clone(), color, room);
+            job.wrap.max_rows = max_rows;
+            painter.layout_job(job)
+        };
+        let mut galley = lay(text.clone(), READOUT_ROWS);
+        if galley.elided {
+            // Too narrow for a place: better broken than cut.
+            galley = lay(text.replace(",\u{a0}", ", "), 2 * READOUT_ROWS);
+        }
         let size = galley.size() + vec2(14.0, 8.0);
         let mut corner = Pos2::new(right, window.bottom()) - Vec2::splat(MARGIN) - size;
         if corner.x < taken + 6.0 {
