@@ -40,7 +40,7 @@ const SAME_WAY: f64 = 0.985;
 /// Another pose takes the place of the result if so much more of the borders lies where it belongs, as a
 /// share of them.
 const MORE_HELD: f64 = 0.005;
-/// Up to this share of them lies beside others by chance.
+/// Where no holes hold a pose, up to this share of the borders lies where it belongs by chance.
 const BY_CHANCE: f64 = 0.15;
 /// So much less of the borders where they belong makes a pose count as twice as bad.
 const TWICE_AS_BAD: f64 = 0.05;
@@ -360,8 +360,9 @@ impl<'a> Pair<'a> {
                 && result.worst_hole <= self.remainder
                 && other.worst_hole > self.remainder;
             let more = result.held + result.grain.max(MORE_HELD);
+            let is_chance = other.n_holes == 0 && other.held <= BY_CHANCE;
             let holds_more =
-                other.held > more.max(BY_CHANCE) && !misplaces_holes && !beats(result, other);
+                other.held > more && !is_chance && !misplaces_holes && !beats(result, other);
             !is_close || holds_more || beats(other, result)
         };
         let better: Vec<&Settled> = rivals.iter().filter(|other| is_better(other)).collect();
