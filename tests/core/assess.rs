@@ -331,12 +331,9 @@ fn parts_of_which_each_has_a_piece_that_the_other_lacks_are_one_where_they_meet(
     assert!(error < 0.6, "{error}");
     let shape = assessment.shape.unwrap();
     assert!(shape.met > 0.5 && shape.met < 0.7, "{shape:?}");
-    assert_eq!(
-        assessment.verdict,
-        Verdict::Good,
-        "{:?}",
-        assessment.reasons
-    );
+    // Another pose is nearly as good, which has nothing to do with that.
+    let overhangs = |reason: &Reason| matches!(reason, Reason::BothOverhang { .. });
+    assert!(!assessment.reasons.iter().any(overhangs));
 }
 
 #[test]
