@@ -137,6 +137,11 @@ pub(super) fn match_steps(run: &MatchRun) -> Vec<(&'static str, String, Duration
         ("align", n_starts, took(times.align_ms)),
         ("match", searched, took(times.match_ms)),
         (
+            "settle",
+            "borders, holes and bends on the full meshes".to_owned(),
+            took(times.settle_ms),
+        ),
+        (
             "verify",
             "on the full meshes".to_owned(),
             took(times.verify_ms),

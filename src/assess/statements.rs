@@ -54,18 +54,12 @@ pub(super) fn statements(
         borders,
         ..evidence
     };
-    let uncertainty = PoseUncertainty::of(
-        source,
-        pose,
-        &contacts,
-        borders,
-        (noise, settings.thickness),
-    );
     let fit = Fit::of(&evidence);
+    let lengths = (noise, settings.thickness);
+    let uncertainty = PoseUncertainty::of(source, pose, &contacts, borders, &fit, lengths);
     let mut shape = ShapeStatement::of(&evidence, &fit, tolerance);
     shape.borders.other_trim = other_trim.as_ref().map(|trim| trim.apart);
     shape.is_offset_removed = settings.remove_offset && skin::is_removed(&fit, &shape);
-    let uncertainty = uncertainty.map(|pose| pose.of_bent(shape.springback, &fit.rigid, &contacts));
     Statements { uncertainty, shape }
 }
 

@@ -37,7 +37,7 @@ const AS_LARGE: f64 = 1.02;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AssessSettings {
     /// Distance up to which a place counts as covered, in target length units. By default
-    /// [`overlap_limit`] of the meshes.
+    /// [`super::overlap_limit`] of the meshes.
     pub limit: Option<f64>,
     /// Deviation of the real shapes that is to be expected besides faceting, such as springback.
     pub allowance: f64,

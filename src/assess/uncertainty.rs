@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::borders::Borders;
 use super::contact::{Contacts, Six, robust_weights, solve};
-use super::fit::LEAST_OWN;
+use super::fit::{Fit, LEAST_OWN};
 use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 use crate::registration::Surface;
@@ -90,13 +90,14 @@ pub struct PoseUncertainty {
 }
 
 impl PoseUncertainty {
-    /// Measures the uncertainty of a pose. `noise` is a distance that means nothing, `thickness` that of the
+    /// Measures the uncertainty of a pose. `fit` takes the gaps apart, `noise` is a distance that means nothing, `thickness` that of the
     /// sheet, if it is known. `None` where the parts do not meet.
     pub(super) fn of(
         source: &Surface,
         pose: &Similarity,
         contacts: &Contacts,
         borders: &Borders,
+        fit: &Fit,
         (noise, thickness): (f64, Option<f64>),
     ) -> Option<Self> {
         let (mut motions, offset_as_motion) = replicates(contacts, borders, noise);
@@ -105,6 +106,7 @@ impl PoseUncertainty {
         let motions: Vec<SmallMotion> = motions
             .iter()
             .map(|six| SmallMotion::of(six, contacts))
+            .chain(bent(fit, contacts))
             .collect();
         let mut found = Self {
             largest: 0.0,
@@ -127,26 +129,6 @@ impl PoseUncertainty {
         found.direction = found.direction_at(&place);
         found.along = along(source, pose, &found.direction);
         Some(found)
-    }
-
-    /// The same for a part that is bent by `bend`: least squares over nodes and over surfaces, or over one half and
-    /// the other, leave poses that differ by a share of it; and a smoothly curved part slides along itself by many
-    /// times its bend. `step` is the motion by which the part lies elsewhere if the bends are counted as its shape,
-    /// given as in [`Contacts::row`].
-    #[must_use]
-    pub(super) fn of_bent(mut self, bend: f64, step: &Six, contacts: &Contacts) -> Self {
-        let by = BEND_SHARE * bend;
-        let shifts = Matrix3::identity() * (by / 3.0_f64.sqrt());
-        self.motions
-            .extend(shifts.column_iter().map(|shift| SmallMotion {
-                turn: Vector3::zeros(),
-                shift: shift.into(),
-            }));
-        let step = SmallMotion::of(step, contacts);
-        let off = step.at(&(self.place - self.center)).norm();
-        self.motions.push(step);
-        self.largest = self.largest.hypot(by).hypot(off);
-        self
     }
 
     /// The uncertainty at a place of the target's frame, in target length units.
@@ -257,6 +239,21 @@ impl Evidence {
         let own = whole - mixed.dot(&motion);
         (motion, own / whole.max(f64::MIN_POSITIVE))
     }
+}
+
+/// What a bend leaves open: least squares over nodes and over surfaces, or over one half and the other, leave poses
+/// that differ by a share of it, and the part may lie where it does if the bends are counted as its shape. A smoothly
+/// curved part slides along itself by many times its bend.
+fn bent(fit: &Fit, contacts: &Contacts) -> impl Iterator<Item = SmallMotion> + use<> {
+    let by = BEND_SHARE * contacts.at_share(&fit.smooth, 0.95);
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let shifts = axes.map(|axis| SmallMotion {
+        turn: Vector3::zeros(),
+        shift: axis * (by / 3.0_f64.sqrt()),
+    });
+    shifts
+        .into_iter()
+        .chain([SmallMotion::of(&fit.rigid, contacts)])
 }
 
 /// Motions whose squares sum to the square of the uncertainty: those of the jackknife, and the steps by

@@ -71,7 +71,7 @@ impl Reason {
             Self::Uncertain { by, limit, along } => {
                 let [by, limit] = lengths.compared([*by, *limit]);
                 let along = along.words();
-                format!("the pose may be off by {by}, mostly {along}, more than {limit}")
+                format!("the pose may be off by {by}, {along}, more than {limit}")
             }
             Self::Shape { difference } => difference.words(lengths),
             Self::NearAlternative { score_ratio, twin } => format!(
@@ -290,13 +290,13 @@ impl ShapeStatement {
 }
 
 impl PartDirection {
-    /// "along the part".
+    /// "mostly along the part".
     pub fn words(self) -> &'static str {
         match self {
-            Self::Along => "along the part",
-            Self::Across => "across the part",
-            Self::Through => "at right angles to the sheet",
-            Self::Oblique => "in no main direction of the part",
+            Self::Along => "mostly along the part",
+            Self::Across => "mostly across the part",
+            Self::Through => "mostly at right angles to the sheet",
+            Self::Oblique => "oblique to the axes of the part",
         }
     }
 }
@@ -335,7 +335,7 @@ impl PoseStatement {
         let offset = stated.words_of_unknown_offset(lengths);
         let offset = offset.map_or_else(String::new, |words| format!("; {words}"));
         format!(
-            "{label}: ± {}, mostly {} (tolerance {}{offset})",
+            "{label}: ± {}, {} (tolerance {}{offset})",
             lengths.of(stated.largest),
             stated.along.words(),
             lengths.of(self.tolerance)

@@ -118,6 +118,7 @@ fn times(text: &mut String, record: &MatchRecord) {
         ("reduce", t.reduce_ms),
         ("align", t.align_ms),
         ("match", t.match_ms),
+        ("settle", t.settle_ms),
         ("verify", t.verify_ms),
         ("total", t.total_ms),
     ];

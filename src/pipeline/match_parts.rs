@@ -31,6 +31,9 @@ pub struct MatchTimes {
     pub align_ms: f64,
     /// All starts, and the finish of the winner.
     pub match_ms: f64,
+    /// Borders, holes and bends on the full meshes; 0 in results of earlier versions.
+    #[serde(default)]
+    pub settle_ms: f64,
     /// The independent check.
     pub verify_ms: f64,
     /// Time of the whole run in milliseconds.
@@ -141,7 +144,9 @@ pub fn match_parts<'a>(
         ..check
     };
     monitor.check()?;
+    let begin_settle = Instant::now();
     settle(&mut outcome, [source, target], &settings, &placing, monitor)?;
+    times.settle_ms = millis_since(begin_settle);
     monitor.check()?;
     times.align_ms = prepare_ms + outcome.timings.align.as_secs_f64() * 1e3;
     times.match_ms = (outcome.timings.total - outcome.timings.align).as_secs_f64() * 1e3;

@@ -251,6 +251,8 @@ pub struct TimingsRecord {
     pub align_ms: f64,
     /// All starts and the refinement of the best.
     pub match_ms: f64,
+    /// Borders, holes and bends on the full meshes.
+    pub settle_ms: f64,
     /// The independent check.
     pub verify_ms: f64,
     /// Time of the whole run in milliseconds.

@@ -1479,7 +1479,7 @@ fn the_papers_story_with_the_real_worker() {
     }
     let rows: Vec<&str> = state.log.rows().iter().map(|row| row.step).collect();
     for step in [
-        "load", "reduce", "measure", "align", "match", "verify", "result",
+        "load", "reduce", "measure", "align", "match", "settle", "verify", "result",
     ] {
         assert!(rows.contains(&step), "{step} is not in {rows:?}");
     }

@@ -160,7 +160,9 @@ fn the_record_has_its_keys() {
     for key in keys {
         assert!(record.get(key).is_some(), "no key {key}");
     }
-    for key in ["read", "reduce", "align", "match", "verify", "total"] {
+    for key in [
+        "read", "reduce", "align", "match", "settle", "verify", "total",
+    ] {
         let time = &record["timings"][format!("{key}_ms")];
         assert!(time.is_f64(), "no time {key}");
     }

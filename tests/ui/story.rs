@@ -106,7 +106,7 @@ fn load_reduce_move_over_align_match_detail_copy() {
         assert!(off < 0.01 * part.bounds().diagonal(), "off by {off}");
     }
     for step in [
-        "load", "reduce", "measure", "align", "match", "verify", "result",
+        "load", "reduce", "measure", "align", "match", "settle", "verify", "result",
     ] {
         assert!(state.log.latest(step).is_some(), "{step} is not in the log");
     }

@@ -39,6 +39,7 @@ pub fn match_record(run: &MatchRun, parts: PerRole<&LoadedPart>) -> MatchRecord 
             reduce_ms: run.times.reduce_ms,
             align_ms: run.times.align_ms,
             match_ms: run.times.match_ms,
+            settle_ms: run.times.settle_ms,
             verify_ms: run.times.verify_ms,
             total_ms: read + run.times.total_ms,
         },

@@ -34,7 +34,7 @@ impl Report<'_> {
             h3 { "How far it may be off" }
             p {
                 "At no node of the stamped part by more than about ± " (lengths.of(stated.largest))
-                ", mostly " (stated.along.words()) " (direction " (vector(stated.direction.into(), 3))
+                ", " (stated.along.words()) " (direction " (vector(stated.direction.into(), 3))
                 "), there at " (vector(stated.place.into(), 1))
                 ". Each patch of the part in turn was left out and the pose found again; a wholly \
                  different pose would not show here."

@@ -172,6 +172,7 @@ impl Report<'_> {
             ("Reduce", t.reduce_ms),
             ("Align", t.align_ms),
             ("Match", t.match_ms),
+            ("Settle", t.settle_ms),
             ("Verify", t.verify_ms),
             ("Total", t.total_ms),
         ];
