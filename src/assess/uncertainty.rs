@@ -24,6 +24,9 @@ const OFFSET_LEAVES: f64 = 0.25;
 /// brought the errors beyond three times the statement from five to three; twice as much mended no other.
 const BEND_SHARE: f64 = 0.3;
 
+/// Bends that are so many times what remains are bends.
+const CLEARLY_BENT: f64 = 2.0;
+
 /// A turn about the centre and a shift, in the target's frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct SmallMotion {
@@ -100,13 +103,16 @@ impl PoseUncertainty {
         fit: &Fit,
         (noise, thickness): (f64, Option<f64>),
     ) -> Option<Self> {
-        let (mut motions, offset_as_motion) = replicates(contacts, borders, noise);
+        let [bend, left] = [&fit.smooth, &fit.left].map(|values| contacts.at_share(values, 0.95));
+        // Where about as much remains as is bent, the bends stand for something else.
+        let unbent = Some(fit.rigid).filter(|_| bend > CLEARLY_BENT * left);
+        let (mut motions, offset_as_motion) = replicates(contacts, borders, noise, unbent);
         let unknown_offset = offset_as_motion.and(thickness).map_or(0.0, |t| 0.5 * t);
         motions.extend(offset_as_motion.map(|motion| motion * unknown_offset));
         let motions: Vec<SmallMotion> = motions
             .iter()
             .map(|six| SmallMotion::of(six, contacts))
-            .chain(bent(fit, contacts))
+            .chain(bent(bend))
             .collect();
         let mut found = Self {
             largest: 0.0,
@@ -241,26 +247,26 @@ impl Evidence {
     }
 }
 
-/// What a bend leaves open: least squares over nodes and over surfaces, or over one half and the other, leave poses
-/// that differ by a share of it, and the part may lie where it does if the bends are counted as its shape. A smoothly
-/// curved part slides along itself by many times its bend.
-fn bent(fit: &Fit, contacts: &Contacts) -> impl Iterator<Item = SmallMotion> + use<> {
-    let by = BEND_SHARE * contacts.at_share(&fit.smooth, 0.95);
-    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
-    let shifts = axes.map(|axis| SmallMotion {
+/// What a bend of this size leaves open whatever is solved for: least squares over nodes and over surfaces, or over
+/// one half and the other, leave poses that differ by a share of it.
+fn bent(bend: f64) -> [SmallMotion; 3] {
+    let by = BEND_SHARE * bend;
+    [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| SmallMotion {
         turn: Vector3::zeros(),
         shift: axis * (by / 3.0_f64.sqrt()),
-    });
-    shifts
-        .into_iter()
-        .chain([SmallMotion::of(&fit.rigid, contacts)])
+    })
 }
 
-/// Motions whose squares sum to the square of the uncertainty: those of the jackknife, and the steps by
-/// which borders or an offset of the sheets would move the pose. Where an offset is what the gaps are, it
+/// Motions whose squares sum to the square of the uncertainty: those of the jackknife, and the step by which
+/// borders, an offset of the sheets or a bend (`unbent`) would move the pose. Where an offset is what the gaps are, it
 /// is solved for with every motion. With them the motion that cannot be told from an offset of one, if there
 /// is one.
-fn replicates(contacts: &Contacts, borders: &Borders, noise: f64) -> (Vec<Six>, Option<Six>) {
+fn replicates(
+    contacts: &Contacts,
+    borders: &Borders,
+    noise: f64,
+    unbent: Option<Six>,
+) -> (Vec<Six>, Option<Six>) {
     let gaps: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();
     let areas: Vec<f64> = contacts.list.iter().map(|c| c.weight).collect();
     let weights = robust_weights(&gaps, &areas, noise);
@@ -302,10 +308,15 @@ fn replicates(contacts: &Contacts, borders: &Borders, noise: f64) -> (Vec<Six>, 
             six((all.without(&part).solved() - whole) * ((n - 1.0) / n).sqrt())
         })
         .collect();
-    // Nobody knows whether an offset that explains only some of the gaps is one: the farther of both poses
+    // Nobody knows whether an offset or a bend that explains only some of the gaps is one: the farthest of the poses
     // counts.
     let steps = [six(whole), six(explained)];
-    motions.push(steps[usize::from(steps[1].norm() > steps[0].norm())]);
+    motions.extend(
+        steps
+            .into_iter()
+            .chain(unbent)
+            .max_by(|a, b| a.norm().total_cmp(&b.norm())),
+    );
     let matrix = all.matrix.fixed_view::<6, 6>(0, 0).into_owned();
     motions.extend(weak_motions(&matrix, &weights, &gaps, contacts, noise));
     (motions, (!is_separable).then(|| six(offset_as_motion)))

@@ -1,4 +1,4 @@
-//! Signs that the fonts of the program lack, Chinese, Japanese and Korean ones above all, come from a font of the
+//! Glyphs that the fonts of the program lack, Chinese, Japanese and Korean ones above all, come from a font of the
 //! system, where there is one.
 
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ const MAX_BYTES: u64 = 64 << 20;
 /// Folders in folders that are looked into.
 const MAX_DEPTH: usize = 5;
 
-/// Fonts that have the signs, the best first; together the fonts of a row have all.
+/// Fonts that have the glyphs, the best first; together the fonts of a row have all.
 #[cfg(target_os = "windows")]
 const FONTS: &[&[&str]] = &[&["msyh.ttc", "malgun.ttf"], &["simsun.ttc"]];
 #[cfg(target_os = "macos")]
@@ -36,7 +36,7 @@ const FONTS: &[&[&str]] = &[
 /// what could be drawn before looks as it did.
 pub(super) fn add(ctx: &egui::Context) {
     let ctx = ctx.clone();
-    // Without a thread such signs stay boxes.
+    // Without a thread such glyphs stay boxes.
     run_once("fonts", move || {
         for (name, bytes) in read() {
             let families = [FontFamily::Proportional, FontFamily::Monospace];

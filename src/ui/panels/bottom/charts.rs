@@ -121,41 +121,46 @@ fn decades((low, high): (f64, f64)) -> Vec<GridMark> {
 /// Share of a narrow chart at either end where a number would reach beyond it, and least share between two.
 const END: f64 = 0.2;
 const APART: f64 = 0.45;
+/// Pixels that a digit takes along a chart, and the air between two numbers.
+const DIGIT: f64 = 7.2;
+const AIR: f64 = 4.0;
 
-/// The share of a chart of this width in pixels that two numbers need between them.
-fn apart(width: f32) -> f64 {
-    // Between the ends that stay free there is little more than a half.
-    f64::from(0.9 * NUMBER / width.max(1.0)).clamp(APART, 0.57)
-}
-
-/// Two round numbers along a narrow chart, this share of it apart, with the step that they are multiples of;
-/// none near its ends.
-fn inner_ticks((low, high): (f64, f64), apart: f64) -> (Vec<f64>, f64) {
+/// Two round numbers along a chart of so many pixels that do not meet, none near its ends, with the decimals that
+/// they need; a single one where two have no room.
+fn inner_ticks((low, high): (f64, f64), pixels: f64) -> (Vec<f64>, usize) {
     let width = high - low;
     if !(width > 0.0 && width.is_finite()) {
-        return (Vec::new(), 1.0);
+        return (Vec::new(), 0);
     }
     let (first, last) = (low + END * width, high - END * width);
+    let mut single = None;
     let mut decade = 10_f64.powf(width.log10().ceil());
-    loop {
+    while decade > 1e-3 * width {
         for factor in [1.0, 0.5, 0.2] {
             let step = factor * decade;
             let ends = [(first / step).ceil() * step, (last / step).floor() * step];
-            if ends[1] - ends[0] > apart * width {
-                return (ends.to_vec(), step);
+            let n_decimals = (-step.log10() + 1e-9).ceil().clamp(0.0, 9.0) as usize;
+            let letters = ends.map(|end| tick_number(end, n_decimals).chars().count());
+            let room = DIGIT * letters[0].max(letters[1]) as f64 + AIR;
+            if ends[1] >= ends[0] {
+                single.get_or_insert((vec![ends[0]], n_decimals));
+            }
+            if (ends[1] - ends[0]) / width * pixels > room.max(APART * pixels) {
+                return (ends.to_vec(), n_decimals);
             }
         }
         decade /= 10.0;
     }
+    single.unwrap_or_default()
 }
 
-/// A narrow chart, of this width without its axis, with two numbers along its values, none of which reaches
+/// A narrow chart, of this width without its axis, with numbers along its values that neither meet nor reach
 /// beyond it.
 pub fn with_inner_numbers(plot: Plot<'_>, width: f32) -> Plot<'_> {
-    let apart = apart(width);
-    plot.x_grid_spacer(move |input| inner_marks(input.bounds, apart))
+    let pixels = f64::from(width);
+    plot.x_grid_spacer(move |input| inner_marks(input.bounds, pixels))
         .x_axis_formatter(move |mark, range| {
-            inner_text(mark.value, (*range.start(), *range.end()), apart)
+            inner_text(mark.value, (*range.start(), *range.end()), pixels)
         })
 }
 
@@ -239,18 +244,16 @@ fn share_text(share: f64) -> String {
 }
 
 /// Grid of a narrow chart that has its numbers inside.
-fn inner_marks(bounds: (f64, f64), apart: f64) -> Vec<GridMark> {
+fn inner_marks(bounds: (f64, f64), pixels: f64) -> Vec<GridMark> {
     // A mark is labelled when its step is wide on the screen.
     let step_size = bounds.1 - bounds.0;
-    let marks = inner_ticks(bounds, apart).0.into_iter();
+    let marks = inner_ticks(bounds, pixels).0.into_iter();
     marks.map(|value| GridMark { value, step_size }).collect()
 }
 
 /// The number at a mark of [`inner_marks`], with the digits that its step needs.
-fn inner_text(value: f64, bounds: (f64, f64), apart: f64) -> String {
-    let (_, step) = inner_ticks(bounds, apart);
-    let n_decimals = (-step.log10() + 1e-9).ceil().clamp(0.0, 9.0) as usize;
-    tick_number(value, n_decimals)
+fn inner_text(value: f64, bounds: (f64, f64), pixels: f64) -> String {
+    tick_number(value, inner_ticks(bounds, pixels).1)
 }
 
 /// The range of some values with a margin, for an axis that must not touch its curves.
@@ -296,35 +299,29 @@ mod tests {
     }
 
     #[test]
-    fn a_narrow_chart_has_two_numbers_inside() {
-        for (low, high) in [
-            (0.0, 1.0),
-            (0.7085, 0.7915),
-            (-312.0, 420.0),
-            (0.0099, 0.0101),
-            (3.0, 3.37),
-            (-1e-7, 1e-7),
+    fn a_narrow_chart_has_numbers_inside_that_do_not_meet() {
+        for (low, high, n) in [
+            (0.0, 1.0, 2),
+            (0.7085, 0.7915, 2),
+            (-312.0, 420.0, 2),
+            (3.0, 3.37, 2),
+            (0.0408, 0.0473, 2),
+            (0.041_002, 0.041_061, 1),
+            (-1e-7, 1e-7, 1),
         ] {
             let bounds = (low, high);
-            let apart = apart(87.0);
-            let marks = inner_marks(bounds, apart);
-            assert_eq!(marks.len(), 2, "{bounds:?}");
-            assert!(
-                marks
-                    .iter()
-                    .all(|mark| low < mark.value && mark.value < high)
-            );
-            let mut texts: Vec<_> = marks
-                .iter()
-                .map(|m| inner_text(m.value, bounds, apart))
-                .collect();
-            texts.dedup();
-            assert_eq!(texts.len(), marks.len(), "{texts:?}");
-            // Numbers of six letters do not meet.
-            let between = (marks[1].value - marks[0].value) / (high - low);
-            assert!(87.0 * between > 44.0, "{bounds:?}");
+            let marks = inner_marks(bounds, 87.0);
+            let texts = marks.iter().map(|m| inner_text(m.value, bounds, 87.0));
+            let texts: Vec<String> = texts.collect();
+            assert_eq!(marks.len(), n, "{bounds:?} {texts:?}");
+            assert!(marks.iter().all(|m| low < m.value && m.value < high));
+            if let [a, b] = &marks[..] {
+                let between = 87.0 * (b.value - a.value) / (high - low);
+                let letters = texts.iter().map(|text| text.chars().count()).max();
+                assert!(between > DIGIT * letters.unwrap() as f64, "{texts:?}");
+            }
         }
-        assert!(inner_marks((1.0, 1.0), APART).is_empty());
+        assert!(inner_marks((1.0, 1.0), 87.0).is_empty());
     }
 
     #[test]
