@@ -4,10 +4,10 @@
 
 use rayon::prelude::*;
 
-use super::contact::MAX_NODES;
+use super::contact::{ContactSearch, FEW_NODES, MAX_NODES};
 use super::held::HeldPose;
 use super::settle::{Least, Settling};
-use super::shape::{ShapeReason, ShapeStatement};
+use super::shape::{ELSEWHERE, OVERHANGS, ShapeReason, ShapeStatement};
 use super::statements::statements;
 use super::tolerance::{AssessSettings, Distances};
 use crate::geometry::Similarity;
@@ -21,12 +21,15 @@ const MORE_DIFFERENCES: f64 = 1.5;
 const AS_CLOSE: f64 = 1.5;
 /// … and so many tolerances more.
 const LITTLE_REMAINDER: f64 = 0.25;
+/// Where each part has a piece that the other lacks, a pose under which at least this share of the smaller part meets
+/// the other is as likely as one under which more does.
+const LEAST_SHARED: f64 = 0.5;
 /// Lengths of so many tolerances are differences whatever the facets are and however the part is bent.
 const CLEARLY: f64 = 2.0;
 
 /// The pose of `outcome` or one of its alternatives that scores nearly as well, whichever has the fewest differences
-/// between the shapes. Alternatives with more of them than the pose chosen score worse. `None` where no other pose
-/// scores nearly as well. O(alternatives · (border edges + nodes · log triangles)).
+/// between the shapes. Alternatives with more of them than the pose chosen score worse; where each part has a piece that
+/// the other lacks, those that fit as well with less overlap score as well. `None` where no other pose is looked at. O(alternatives · (border edges + nodes · log triangles)).
 pub fn chosen_by_shape(
     source: &Surface,
     target: &Surface,
@@ -34,20 +37,28 @@ pub fn chosen_by_shape(
     settings: &AssessSettings,
     monitor: &Monitor,
 ) -> Result<Option<HeldPose>, Cancelled> {
-    let scores_alike = |other: &&Alternative| other.score_ratio < MORE_DIFFERENCES;
-    let near: Vec<&Alternative> = outcome.alternatives.iter().filter(scores_alike).collect();
+    let found = &outcome.target_from_source;
+    let pair = [source, target];
+    let distances = Distances::of(source, target, found.scale, settings);
+    let few = ContactSearch::new(pair, found.scale, distances.reach, FEW_NODES);
+    let met = few.clone().at(found).map_or(0.0, |contacts| contacts.share);
+    let overhangs = met < OVERHANGS;
+    let is_near = |other: &&Alternative| overhangs || other.score_ratio < MORE_DIFFERENCES;
+    let near: Vec<&Alternative> = outcome.alternatives.iter().filter(is_near).collect();
     if near.is_empty() {
         return Ok(None);
     }
-    let found = &outcome.target_from_source;
-    let settling = Settling::new([source, target], found.scale, settings, MAX_NODES);
-    let result = Candidate::at(*found, &statements(source, target, found, settings).shape);
+    let settling = Settling::new(pair, found.scale, settings, MAX_NODES);
+    let at = |pose: Similarity| {
+        let shape = statements(source, target, &pose, settings).shape;
+        let elsewhere = overhangs.then(|| 1.0 - shape.met - few.overhang(&pose));
+        Candidate::at(pose, &shape, elsewhere)
+    };
+    let result = at(*found);
     let candidate = |other: &&Alternative| {
         monitor.check()?;
         let pose = other.target_from_source;
-        let pose = settling.settled(&pose, Least::Facets).unwrap_or(pose);
-        let shape = statements(source, target, &pose, settings).shape;
-        Ok(Candidate::at(pose, &shape))
+        Ok(at(settling.settled(&pose, Least::Facets).unwrap_or(pose)))
     };
     let candidates: Result<Vec<Candidate>, Cancelled> = near.par_iter().map(candidate).collect();
     let candidates = candidates?;
@@ -61,9 +72,13 @@ pub fn chosen_by_shape(
         start: outcome.winner,
     });
     let part = source.measures().into();
-    let with_shape = |(k, other): (usize, &Alternative)| {
-        let is_beaten = candidates.get(k).is_some_and(|c| winner.beats(c));
-        ranked(*other, is_beaten)
+    let with_shape = |(k, other): (usize, &Alternative)| match candidates.get(k) {
+        Some(candidate) if winner.beats(candidate) => ranked(*other, true),
+        Some(candidate) if candidate.fits_elsewhere_as_well_as(winner, &distances) => Alternative {
+            score_ratio: other.score_ratio.min(1.0),
+            ..*other
+        },
+        _ => *other,
     };
     // The alternatives come sorted by score, so that those looked at are the first.
     let others = outcome.alternatives.iter().enumerate().map(with_shape);
@@ -99,8 +114,8 @@ pub fn is_pulled_aside(
     let (before, after) = rayon::join(|| shape(by_surfaces), || shape(by_borders));
     let little = LITTLE_REMAINDER * tolerance.remainder;
     let has_grown = surfaces_hold && after.remainder > AS_CLOSE * before.remainder + little;
-    let before = Candidate::at(*by_surfaces, &before);
-    let after = Candidate::at(*by_borders, &after);
+    let before = Candidate::at(*by_surfaces, &before, None);
+    let after = Candidate::at(*by_borders, &after, None);
     before.beats(&after) || has_grown && before.n_differences <= after.n_differences
 }
 
@@ -121,10 +136,16 @@ struct Candidate {
     /// Holes with a counterpart, and those where the other part is solid.
     n_holes: usize,
     n_alone: usize,
+    /// Share of the smaller part that meets the other, and, where each has a piece that the other lacks, the share that
+    /// lies neither on the other part nor beyond its borders.
+    met: f64,
+    elsewhere: Option<f64>,
+    /// How far the surfaces lie apart by a bend and besides it.
+    apart: [f64; 2],
 }
 
 impl Candidate {
-    fn at(pose: Similarity, shape: &ShapeStatement) -> Self {
+    fn at(pose: Similarity, shape: &ShapeStatement, elsewhere: Option<f64>) -> Self {
         let differences = shape.reasons.iter().filter_map(is_clear);
         let (n_differences, n_clear) =
             differences.fold((0, 0), |(n, clear), is| (n + 1, clear + usize::from(is)));
@@ -134,7 +155,24 @@ impl Candidate {
             n_clear,
             n_holes: shape.borders.n_holes,
             n_alone: shape.borders.only_source + shape.borders.only_target,
+            met: shape.met,
+            elsewhere,
+            apart: [shape.springback, shape.remainder],
         }
+    }
+
+    /// Whether the parts, each of which has a piece that the other lacks, share enough under this pose too, and what
+    /// they share is as much alike. That more overlaps under one of two such poses says nothing: a row of like features
+    /// may be shifted by one of them.
+    fn fits_elsewhere_as_well_as(&self, other: &Self, distances: &Distances) -> bool {
+        let is_trimmed_off = self.elsewhere.is_some_and(|share| share < ELSEWHERE);
+        let mut pairs = self.apart.iter().zip(&other.apart);
+        let most = |apart: f64| AS_CLOSE * apart + distances.little_more(LITTLE_REMAINDER, apart);
+        is_trimmed_off
+            && self.met >= LEAST_SHARED
+            && self.n_differences <= other.n_differences
+            && self.n_alone <= other.n_alone
+            && pairs.all(|(own, other)| *own <= most(*other))
     }
 
     /// Whether the shapes surely differ less under this pose: there are fewer differences, or as many while holes
@@ -174,7 +212,7 @@ mod tests {
             reasons: reasons.to_vec(),
             ..ShapeStatement::nothing_met(tolerance)
         };
-        Candidate::at(Similarity::identity(), &shape)
+        Candidate::at(Similarity::identity(), &shape, None)
     }
 
     #[test]

@@ -273,11 +273,6 @@ impl BorderPlaces {
 }
 
 impl Borders {
-    /// Compares the borders that lie within `near` of each other. O(border edges + near triangles).
-    pub(super) fn find(source: &Surface, target: &Surface, pose: &Similarity, near: f64) -> Self {
-        BorderComparison::new([source, target], pose.scale, near).at(pose)
-    }
-
     /// Pairs of holes that are the same but for a little, then those that overlap.
     pub(super) fn all_holes(&self) -> impl Iterator<Item = &HolePair> {
         self.holes.iter().chain(&self.overlapping)
@@ -482,27 +477,30 @@ mod tests {
         Surface::new(&mesh, "source").unwrap()
     }
 
+    /// The borders of parts that lie where they are.
+    fn compared(source: &Surface, target: &Surface) -> Borders {
+        BorderComparison::new([source, target], 1.0, 3.0).at(&Similarity::identity())
+    }
+
     #[test]
     fn a_longer_part_misses_its_borders_and_a_shifted_hole_is_found() {
-        let still = Similarity::identity();
         let (plain, longer, moved) = (sheet(30, 5), sheet(32, 5), sheet(30, 6));
         let least = |borders: &Borders| borders.pairs.iter().map(|p| p.gap).fold(0.0, f64::min);
-        let same = Borders::find(&plain, &plain, &still, 3.0);
+        let same = compared(&plain, &plain);
         assert!(same.pairs.len() > 500 && same.pairs.iter().all(|p| p.gap == 0.0));
         assert_eq!(same.holes.len(), 1);
-        let other = Borders::find(&plain, &longer, &still, 3.0);
+        let other = compared(&plain, &longer);
         assert!((least(&other) + 2.0).abs() < 1e-9);
-        let hole = Borders::find(&plain, &moved, &still, 3.0);
+        let hole = compared(&plain, &moved);
         assert_eq!(hole.holes.len(), 1);
         assert!((hole.holes[0].off + Vector3::x()).norm() < 1e-9);
     }
 
     #[test]
     fn noise_that_bends_every_edge_hides_no_border_and_widens_no_hole() {
-        let still = Similarity::identity();
         let (plain, noisy) = (sheet(30, 5), noisy_sheet(30, 5, 0.8));
         for pair in [[&plain, &noisy], [&noisy, &plain]] {
-            let borders = Borders::find(pair[0], pair[1], &still, 3.0);
+            let borders = compared(pair[0], pair[1]);
             assert!(borders.share() > 0.95, "{}", borders.share());
             assert!(borders.pairs.iter().all(|p| p.gap.abs() < 0.6));
             assert_eq!(borders.holes.len(), 1);
@@ -512,10 +510,9 @@ mod tests {
 
     #[test]
     fn a_hole_is_missed_by_no_shift() {
-        let still = Similarity::identity();
         let plain = sheet(30, 5);
         for shift in 1..=12 {
-            let borders = Borders::find(&plain, &sheet(30, 5 + shift), &still, 3.0);
+            let borders = compared(&plain, &sheet(30, 5 + shift));
             let off = borders.all_holes().map(|pair| pair.off.norm()).next();
             let n_alone = borders.missing.each_ref().map(Vec::len);
             match off {
@@ -559,9 +556,8 @@ mod tests {
 
     #[test]
     fn holes_on_different_sides_are_missing_both_ways() {
-        let still = Similarity::identity();
         let (left, right) = (sheet(30, 3), sheet(30, 22));
-        let borders = Borders::find(&left, &right, &still, 3.0);
+        let borders = compared(&left, &right);
         assert!(borders.holes.is_empty());
         assert_eq!(borders.missing.each_ref().map(Vec::len), [1, 1]);
     }

@@ -12,6 +12,8 @@ use crate::search::{ClosestPoint, SurfaceHit};
 
 /// Nodes of the smaller part that are looked at; more change no figure by a percent.
 pub(super) const MAX_NODES: usize = 8000;
+/// Nodes of the smaller part that poses are compared on.
+pub(super) const FEW_NODES: usize = 2000;
 /// Surfaces that turn away from each other by more than this do not lie on each other: cosine of 50°.
 const MIN_FACING: f64 = 0.64;
 /// Motions that meet less than this share of the resistance of the stiffest are left alone.
@@ -83,6 +85,15 @@ impl<'a> ContactSearch<'a> {
             stride,
             closest: vec![None; n_nodes.div_ceil(stride)],
         }
+    }
+
+    /// Source and target.
+    pub(super) fn surfaces(&self) -> [&'a Surface; 2] {
+        [self.source, self.target]
+    }
+
+    pub(super) fn reach(&self) -> f64 {
+        self.reach
     }
 
     /// The places where the parts meet under a pose. O(nodes · log triangles), less for a pose near the
@@ -189,16 +200,6 @@ impl<'a> ContactSearch<'a> {
 }
 
 impl Contacts {
-    /// Finds the places within `reach` of the other part. O(nodes · log triangles).
-    pub(super) fn find(
-        source: &Surface,
-        target: &Surface,
-        pose: &Similarity,
-        reach: f64,
-    ) -> Option<Self> {
-        ContactSearch::new([source, target], pose.scale, reach, MAX_NODES).at(pose)
-    }
-
     /// Places where parts meet, of which the smaller has the area `total` at the nodes looked at.
     fn of(list: Vec<Contact>, total: f64, nodes_per_place: f64) -> Option<Self> {
         let sum: f64 = list.iter().map(|c| c.weight).sum();

@@ -9,7 +9,7 @@ use super::ambiguity::Clarity;
 use super::assessment::Assessment;
 use super::pose::{PoseKind, PoseStatement};
 use super::reason::Reason;
-use super::shape::{ShapeReason, ShapeStatement};
+use super::shape::{ELSEWHERE, ShapeReason, ShapeStatement};
 use super::sliding::FreeMotionKind;
 use super::tolerance::UNREMARKABLE;
 use super::verdict::Verdict;
@@ -17,8 +17,6 @@ use crate::registration::{MatchOutcome, Termination};
 
 /// Fraction of the smaller part that meets the other one for GOOD.
 const ENOUGH_MET: f64 = 0.75;
-/// Where less meets, at most this fraction may lie neither on the other part nor beyond its borders.
-const ELSEWHERE: f64 = 0.03;
 /// Holes in common that hold a part whose surface can slide.
 const HOLES_THAT_HOLD: usize = 2;
 /// Scores of the opposite hand below this fraction of the result's fit clearly better.

@@ -3,10 +3,9 @@
 mod bends;
 mod equations;
 
-use super::borders::Borders;
-use super::contact::{ContactSearch, Contacts, MAX_NODES, Six, robust_weights, solve};
+use super::contact::{Contacts, Six, robust_weights, solve};
+use super::evidence::PoseEvidence;
 use crate::geometry::{Point3, Similarity, Vector3};
-use crate::registration::Surface;
 
 pub(super) use bends::Bends;
 use bends::N_BENDS;
@@ -17,28 +16,6 @@ pub(super) use equations::{N_SMOOTH, Row};
 const ROUNDS: usize = 4;
 /// Share of an offset that nothing else can imitate; with less it is not told apart.
 pub(super) const LEAST_OWN: f64 = 0.02;
-
-/// Two parts under a pose, and where they meet.
-#[derive(Clone, Copy)]
-pub(super) struct ShapeEvidence<'a> {
-    pub(super) source: &'a Surface,
-    pub(super) target: &'a Surface,
-    pub(super) pose: &'a Similarity,
-    pub(super) contacts: &'a Contacts,
-    pub(super) borders: &'a Borders,
-    /// Faceting of both meshes.
-    pub(super) noise: f64,
-    /// Surfaces within it are compared.
-    pub(super) reach: f64,
-}
-
-impl ShapeEvidence<'_> {
-    /// Share of the smaller part's area that lies beyond the borders of the other.
-    pub(super) fn overhang(&self) -> f64 {
-        let pair = [self.source, self.target];
-        ContactSearch::new(pair, self.pose.scale, self.reach, MAX_NODES).overhang(self.pose)
-    }
-}
 
 /// The gaps taken apart.
 pub(super) struct Fit {
@@ -79,12 +56,18 @@ impl Fit {
         self.is_separable.then_some(self.offset)
     }
 
+    /// The pose of the evidence that this is the fit of, moved to where the source belongs.
+    pub(super) fn corrected(&self, evidence: &PoseEvidence<'_>) -> Similarity {
+        let correction = evidence.contacts.undo(&self.rigid);
+        correction.after(&evidence.pose)
+    }
+
     /// Robust least squares over a rigid motion, an offset and the bends of a plate that keep lengths
     /// (second and third order). Borders take part, so that a slide of the pose along the part is no
     /// difference of the shape. O(places).
-    pub(super) fn of(evidence: &ShapeEvidence<'_>) -> Self {
-        let (contacts, borders) = (evidence.contacts, evidence.borders);
-        let bends = Bends::of(evidence.source, evidence.pose, contacts);
+    pub(super) fn of(evidence: &PoseEvidence<'_>) -> Self {
+        let (contacts, borders) = (&evidence.contacts, &evidence.borders);
+        let bends = Bends::of(evidence.source, &evidence.pose, contacts);
         let row = |point: &Point3, direction: &Vector3, offset: f64| {
             explaining(contacts, &bends, point, direction, offset)
         };

@@ -4,9 +4,10 @@
 use rayon::prelude::*;
 
 use super::borders::{BorderComparison, Borders, PairKind};
-use super::contact::{ContactSearch, MAX_NODES};
+use super::contact::{ContactSearch, FEW_NODES, MAX_NODES};
 use super::coverage::overlap_limit;
 use super::settle::{Least, Settling};
+use super::shape::OVERHANGS;
 use super::slide::slid;
 use super::sliding::{FreeMotion, FreeMotionKind, weak_motion};
 use super::tolerance::{AssessSettings, Distances};
@@ -20,8 +21,6 @@ const NEAR_SHARE: f64 = 0.03;
 const MOST_POSES: usize = 64;
 /// Poses that the search along the free motion adds.
 const MOST_SLID: usize = 8;
-/// Nodes of the smaller part that poses are compared on; the winner is moved on all that are looked at.
-const N_NODES: usize = 2000;
 /// Of all these so many, with the best borders, are moved until they fit.
 const MOST_SETTLED: usize = 8;
 /// Where the borders of one pose lie together, those of others that lie apart by more than so many times as much,
@@ -68,8 +67,6 @@ const MUCH_MORE: f64 = 1.3;
 const AS_MUCH: f64 = 0.9;
 /// Shares of the part that meet the other are the same up to this much.
 const SAME_MET: f64 = 0.005;
-/// Of parts of which the smaller meets the other by less than this share, each has a piece that the other lacks.
-const OVERHANGS: f64 = 0.95;
 /// A pose with fewer holes and no more of anything else counts as at least so many times as bad.
 const FEWER_HOLES: f64 = 1.5;
 
@@ -289,6 +286,17 @@ impl Settled {
         }
     }
 
+    /// How much less of the borders lies where it belongs than under the winner. Where each part has a piece that the
+    /// other lacks, borders beyond the other part say nothing: shifting the parts by one hole of a row leaves more of
+    /// them alone and is as likely.
+    fn behind(&self, winner: &Self) -> f64 {
+        if winner.met < OVERHANGS {
+            winner.held_of_paired() - self.held_of_paired()
+        } else {
+            winner.held - self.held
+        }
+    }
+
     fn is_as_close_as(&self, other: &Self, pair: &Pair<'_>) -> bool {
         let little = pair.distances.little_more(LITTLE_GAP, other.gap);
         let mut most = AS_CLOSE * other.gap + little;
@@ -329,8 +337,8 @@ impl<'a> Pair<'a> {
             source,
             target,
             borders: BorderComparison::new(pair, scale, near),
-            roughly: Settling::within(pair, scale, settings, N_NODES, near),
-            finely: Settling::new(pair, scale, settings, N_NODES),
+            roughly: Settling::within(pair, scale, settings, FEW_NODES, near),
+            finely: Settling::new(pair, scale, settings, FEW_NODES),
             near,
             springback: tolerance.springback,
             remainder: tolerance.remainder,
@@ -433,7 +441,7 @@ impl<'a> Pair<'a> {
     /// Share of the smaller part that meets the other under a pose, and how far apart they lie there.
     fn surfaces_met(&self, pose: &Similarity) -> Option<(f64, f64)> {
         let pair = [self.source, self.target];
-        let mut contacts = ContactSearch::new(pair, pose.scale, self.near, N_NODES);
+        let mut contacts = ContactSearch::new(pair, pose.scale, self.near, FEW_NODES);
         let contacts = contacts.at(pose)?;
         Some((contacts.share, contacts.typical_gap(self.remainder)))
     }
@@ -528,14 +536,7 @@ impl<'a> Pair<'a> {
                 return *other;
             };
             let grain = pose.grain.max(winner.grain);
-            let behind = if winner.met < OVERHANGS {
-                // Borders beyond the other part say nothing: where each has a piece that the other lacks, shifting
-                // them by one hole of a row leaves more of them alone and is as likely.
-                winner.held_of_paired() - pose.held_of_paired()
-            } else {
-                winner.held - pose.held
-            };
-            let by_borders = ratio_by_borders(apart(behind, grain));
+            let by_borders = ratio_by_borders(apart(pose.behind(winner), grain));
             let by_holes = if winner.has_more_holes_than(&pose, self.remainder) {
                 FEWER_HOLES
             } else {
@@ -570,5 +571,59 @@ impl<'a> Pair<'a> {
         }
         distinct.truncate(MOST_ALTERNATIVES.max(outcome.alternatives.len()));
         distinct
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point3, TriMesh};
+
+    /// A pose of parts that lie on each other but for their borders.
+    fn settled(held: f64, paired: f64, n_holes: usize) -> Settled {
+        Settled {
+            pose: Similarity::identity(),
+            held,
+            paired,
+            grain: 0.002,
+            n_holes,
+            worst_hole: 0.0,
+            missing: 0.0,
+            met: 1.0,
+            gap: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_few_borders_hold_no_pose_unless_a_hole_is_among_them() {
+        let points = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0]].map(Point3::from);
+        let mesh = TriMesh::new(points.to_vec(), vec![[0, 1, 2]]).unwrap();
+        let plate = Surface::new(&mesh, "source").unwrap();
+        let pair = Pair::new(&plate, &plate, 1.0, &AssessSettings::default());
+        for (result, rival, wins) in [
+            (settled(0.0, 0.3, 0), settled(0.14, 0.3, 0), false),
+            (settled(0.0, 0.3, 0), settled(0.14, 0.3, 1), true),
+            (settled(0.0, 0.3, 0), settled(0.4, 0.6, 0), true),
+            (settled(0.4, 0.6, 0), settled(0.401, 0.6, 0), false),
+            (settled(0.4, 0.6, 2), settled(0.4, 0.6, 1), false),
+        ] {
+            let choice = pair.choice(&result, true, &[rival]);
+            assert_eq!(choice.is_some(), wins, "{} of {}", rival.held, result.held);
+        }
+    }
+
+    #[test]
+    fn borders_beyond_the_other_part_count_only_where_one_part_covers_the_other() {
+        let (winner, shifted) = (settled(0.8, 0.8, 4), settled(0.6, 0.6, 3));
+        assert!((shifted.behind(&winner) - 0.2).abs() < 1e-12);
+        let overhanging = |pose: Settled| Settled { met: 0.9, ..pose };
+        let behind = overhanging(shifted).behind(&overhanging(winner));
+        assert!(behind.abs() < 1e-12, "{behind}");
+        // Those beside the other part's that lie apart count all the same.
+        let apart = Settled {
+            held: 0.3,
+            ..overhanging(shifted)
+        };
+        assert!((apart.behind(&overhanging(winner)) - 0.5).abs() < 1e-12);
     }
 }

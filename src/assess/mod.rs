@@ -1,7 +1,7 @@
 //! Is the pose right? Measured anew on the full meshes, without anything the search believed.
 //!
 //! From the bottom up: `tolerance` says how far parts may differ; `contact` and `borders` find where two parts meet
-//! under a pose, `fit` takes the gaps apart; `trims`, `stretch` and `shape` say what the parts differ in, `uncertainty`
+//! under a pose, `evidence` joins what they found, `fit` takes the gaps apart; `trims`, `stretch` and `shape` say what the parts differ in, `uncertainty`
 //! how far the pose may be off. With these statements `settle`, `slide`, `held`, `alternatives`, `unbent` and `skin` improve
 //! or choose a pose before it is assessed, and `decide` makes the verdict of an [`Assessment`].
 
@@ -14,6 +14,7 @@ mod contact;
 mod coverage;
 mod decide;
 pub mod deviation;
+mod evidence;
 mod fit;
 mod held;
 mod pose;

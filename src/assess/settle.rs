@@ -3,7 +3,7 @@
 
 use super::borders::{BorderComparison, Borders};
 use super::contact::{ContactSearch, MAX_NODES, quantile};
-use super::fit::{Fit, ShapeEvidence};
+use super::evidence::EvidenceSearch;
 use super::tolerance::{AssessSettings, Distances};
 use super::trims;
 use crate::geometry::Similarity;
@@ -88,53 +88,38 @@ impl<'a> Settling<'a> {
 
     /// [`settled`], from this first step on.
     pub(super) fn settled(&self, pose: &Similarity, least: Least) -> Option<Similarity> {
-        let [source, target] = self.surfaces;
         let Distances {
             tolerance,
             reach,
             noise,
             ..
         } = self.distances;
+        let source = self.surfaces[0];
         let corners = source.mesh().aabb().corners();
-        let mut contacts = ContactSearch::new(self.surfaces, pose.scale, reach, self.max_nodes);
+        let contacts = ContactSearch::new(self.surfaces, pose.scale, reach, self.max_nodes);
+        let mut search = EvidenceSearch::new(contacts, &self.borders, &self.distances);
         let mut moved = *pose;
-        let (mut first_misfit, mut first_gap, mut first_share) = (None, None, None);
+        let mut first = None;
         let mut is_still = false;
         for step in 0..=STEPS {
-            let contacts = contacts.at(&moved)?;
-            let borders = self.borders.at(&moved);
-            if borders.share() < LEAST_PAIRED {
+            let mut evidence = search.at(&moved)?;
+            let share = evidence.borders.share();
+            if share < LEAST_PAIRED {
                 return None;
             }
-            let facets = borders.unremarkable();
-            let misfit = misfit(&borders);
-            let first = *first_misfit.get_or_insert(misfit);
-            let gap = contacts.typical_gap(tolerance.remainder);
-            let first_gap = *first_gap.get_or_insert(gap);
-            let first_share = *first_share.get_or_insert(borders.share());
+            let facets = evidence.borders.unremarkable();
+            let misfit = misfit(&evidence.borders);
+            let gap = evidence.contacts.typical_gap(tolerance.remainder);
+            let (first_misfit, first_gap, first_share) = *first.get_or_insert((misfit, gap, share));
             if step == STEPS || is_still {
                 let little = self.distances.little_more(LITTLE_GAP, first_gap);
                 let most = AS_CLOSE * first_gap + noise + little;
                 let fits = misfit < tolerance.remainder + facets && gap < most;
-                let is_closer = gap < BETTER * first_gap && borders.share() >= first_share;
-                return (fits && misfit < BETTER * first || is_closer).then_some(moved);
+                let is_closer = gap < BETTER * first_gap && share >= first_share;
+                return (fits && misfit < BETTER * first_misfit || is_closer).then_some(moved);
             }
-            let evidence = ShapeEvidence {
-                source,
-                target,
-                pose: &moved,
-                contacts: &contacts,
-                borders: &borders,
-                noise,
-                reach,
-            };
-            let trusted = trims::trusted(&evidence, borders.limit(&tolerance));
-            let borders = trusted.as_ref().unwrap_or(&borders);
-            let evidence = ShapeEvidence {
-                borders,
-                ..evidence
-            };
-            let next = contacts.undo(&Fit::of(&evidence).rigid).after(&moved);
+            let limit = evidence.borders.limit(&tolerance);
+            let next = trims::trusted_fit(&mut evidence, limit).corrected(&evidence);
             if step == 0 && least == Least::Facets && largest_motion(source, pose, &next) <= facets
             {
                 return None;

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::borders::{Borders, LEAST_PAIRED};
 use super::contact::Contacts;
-use super::fit::{Fit, ShapeEvidence};
+use super::evidence::PoseEvidence;
+use super::fit::Fit;
 use super::stretch::{PartAxis, Stretch, stretch};
 use super::tolerance::{ShapeTolerance, UNREMARKABLE};
 use super::trims::{self, BorderApart};
@@ -20,6 +21,10 @@ const LEAST_MET: f64 = 0.5;
 /// Parts that meet over less than this share, and differ where they meet, are different parts too: a
 /// trimmed part keeps its shape.
 const MOSTLY_MET: f64 = 0.75;
+/// Of parts of which the smaller meets the other by less than this share, each has a piece that the other lacks,
+pub(super) const OVERHANGS: f64 = 0.95;
+/// unless more than this share lies neither on the other part nor beyond its borders.
+pub(super) const ELSEWHERE: f64 = 0.03;
 /// A remainder of so many tolerances is that of a different part.
 const DIFFERENT: f64 = 6.0;
 /// Distances up to so many times the faceting, or [`UNREMARKABLE`] of the tolerance, mean nothing at most of the
@@ -196,8 +201,8 @@ pub struct ShapeStatement {
 
 impl ShapeStatement {
     /// Compares the shapes at a pose; `fit` is that of the evidence.
-    pub(super) fn of(evidence: &ShapeEvidence<'_>, fit: &Fit, tolerance: ShapeTolerance) -> Self {
-        let contacts = evidence.contacts;
+    pub(super) fn of(evidence: &PoseEvidence<'_>, fit: &Fit, tolerance: ShapeTolerance) -> Self {
+        let contacts = &evidence.contacts;
         let mut statement = Self {
             kind: ShapeKind::Same,
             tolerance,
@@ -208,7 +213,7 @@ impl ShapeStatement {
             offset: Some(fit.offset).filter(|o| o.abs() > FACETING * evidence.noise),
             is_offset_separable: fit.is_separable,
             is_offset_removed: false,
-            borders: border_fit(evidence.borders, fit, &tolerance),
+            borders: border_fit(&evidence.borders, fit, &tolerance),
             reasons: Vec::new(),
         };
         statement.reasons = statement.find_reasons(evidence, fit);
@@ -233,7 +238,7 @@ impl ShapeStatement {
         }
     }
 
-    fn find_reasons(&self, evidence: &ShapeEvidence<'_>, fit: &Fit) -> Vec<ShapeReason> {
+    fn find_reasons(&self, evidence: &PoseEvidence<'_>, fit: &Fit) -> Vec<ShapeReason> {
         let mut reasons = Vec::new();
         let differs = self.remainder > self.tolerance.remainder;
         if self.met < LEAST_MET || differs && self.met < MOSTLY_MET {
@@ -241,7 +246,7 @@ impl ShapeStatement {
         }
         let limit = self.tolerance.remainder;
         if self.remainder > limit {
-            let at = worst_place(evidence.contacts, &fit.left);
+            let at = worst_place(&evidence.contacts, &fit.left);
             reasons.push(ShapeReason::Surface {
                 by: self.remainder,
                 limit,
@@ -269,8 +274,8 @@ impl ShapeStatement {
         reasons
     }
 
-    fn border_reasons(&self, evidence: &ShapeEvidence<'_>, fit: &Fit) -> Vec<ShapeReason> {
-        let borders = evidence.borders;
+    fn border_reasons(&self, evidence: &PoseEvidence<'_>, fit: &Fit) -> Vec<ShapeReason> {
+        let borders = &evidence.borders;
         let limit = borders.limit(&self.tolerance);
         let mut reasons = Vec::new();
         let holes = borders.all_holes().zip(&fit.holes);

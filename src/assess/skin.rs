@@ -2,7 +2,8 @@
 
 use super::borders::BorderComparison;
 use super::contact::{ContactSearch, MAX_NODES};
-use super::fit::{Fit, ShapeEvidence};
+use super::evidence::EvidenceSearch;
+use super::fit::Fit;
 use super::shape::{FACETING, ShapeStatement};
 use super::tolerance::{AssessSettings, Distances};
 use crate::geometry::Similarity;
@@ -25,30 +26,19 @@ pub fn without_offset(
     pose: &Similarity,
     settings: &AssessSettings,
 ) -> Option<Similarity> {
-    let Distances {
-        reach, near, noise, ..
-    } = Distances::of(source, target, pose.scale, settings);
+    let distances = Distances::of(source, target, pose.scale, settings);
     let corners = source.mesh().aabb().corners();
     let pair = [source, target];
-    let mut contacts = ContactSearch::new(pair, pose.scale, reach, MAX_NODES);
-    let borders = BorderComparison::new(pair, pose.scale, near);
+    let contacts = ContactSearch::new(pair, pose.scale, distances.reach, MAX_NODES);
+    let borders = BorderComparison::new(pair, pose.scale, distances.near);
+    let mut search = EvidenceSearch::new(contacts, &borders, &distances);
     let mut moved = *pose;
     let mut offset = 0.0;
     for _ in 0..STEPS {
-        let contacts = contacts.at(&moved)?;
-        let borders = borders.at(&moved);
-        let evidence = ShapeEvidence {
-            source,
-            target,
-            pose: &moved,
-            contacts: &contacts,
-            borders: &borders,
-            noise,
-            reach,
-        };
+        let evidence = search.at(&moved)?;
         let fit = Fit::of(&evidence);
         offset = fit.separate_offset()?;
-        let next = contacts.undo(&fit.rigid).after(&moved);
+        let next = fit.corrected(&evidence);
         let step = next.max_displacement(&moved, &corners);
         moved = next;
         if step <= STILL * offset.abs() {
@@ -56,7 +46,7 @@ pub fn without_offset(
         }
     }
     let far = moved.max_displacement(pose, &corners);
-    (offset.abs() > FACETING * noise && far <= FARTHEST * offset.abs()).then_some(moved)
+    (offset.abs() > FACETING * distances.noise && far <= FARTHEST * offset.abs()).then_some(moved)
 }
 
 /// Whether an offset is all that is left of the gaps: it does not push the pose aside any more.

@@ -1,9 +1,10 @@
 //! The two statements about a pair under a pose: how far the pose may be off, and whether the shapes are one.
 
-use super::borders::Borders;
-use super::contact::Contacts;
+use super::borders::BorderComparison;
+use super::contact::{ContactSearch, MAX_NODES};
 use super::decide::NEAR_MIRROR;
-use super::fit::{Fit, ShapeEvidence};
+use super::evidence::EvidenceSearch;
+use super::fit::Fit;
 use super::shape::ShapeStatement;
 use super::tolerance::{AssessSettings, Distances};
 use super::uncertainty::PoseUncertainty;
@@ -24,41 +25,28 @@ pub(super) fn statements(
     pose: &Similarity,
     settings: &AssessSettings,
 ) -> Statements {
-    let Distances {
-        tolerance,
-        reach,
-        near,
-        noise,
-    } = Distances::of(source, target, pose.scale, settings);
+    let distances = Distances::of(source, target, pose.scale, settings);
     let millimetre = settings.length_of_millimetre();
-    let tolerance = tolerance.for_bends(target.measures().diagonal, millimetre);
-    let Some(contacts) = Contacts::find(source, target, pose, reach) else {
+    let diagonal = target.measures().diagonal;
+    let tolerance = distances.tolerance.for_bends(diagonal, millimetre);
+    let pair = [source, target];
+    let contacts = ContactSearch::new(pair, pose.scale, distances.reach, MAX_NODES);
+    let borders = BorderComparison::new(pair, pose.scale, distances.near);
+    let mut search = EvidenceSearch::new(contacts, &borders, &distances);
+    let Some(mut evidence) = search.at(pose) else {
         return Statements {
             uncertainty: None,
             shape: ShapeStatement::nothing_met(tolerance),
         };
     };
-    let borders = Borders::find(source, target, pose, near);
-    let evidence = ShapeEvidence {
-        source,
-        target,
-        pose,
-        contacts: &contacts,
-        borders: &borders,
-        noise,
-        reach,
-    };
-    let other_trim = trims::other_trim(&evidence, &tolerance);
-    let borders = other_trim.as_ref().map_or(&borders, |trim| &trim.left);
-    let evidence = ShapeEvidence {
-        borders,
-        ..evidence
-    };
+    let other_trim = trims::other_trim(&evidence, &tolerance).map(|trim| {
+        evidence.borders = trim.left;
+        trim.apart
+    });
     let fit = Fit::of(&evidence);
-    let lengths = (noise, settings.thickness);
-    let uncertainty = PoseUncertainty::of(source, pose, &contacts, borders, &fit, lengths);
+    let uncertainty = PoseUncertainty::of(&evidence, &fit, settings.thickness);
     let mut shape = ShapeStatement::of(&evidence, &fit, tolerance);
-    shape.borders.other_trim = other_trim.as_ref().map(|trim| trim.apart);
+    shape.borders.other_trim = other_trim;
     shape.is_offset_removed = settings.remove_offset && skin::is_removed(&fit, &shape);
     Statements { uncertainty, shape }
 }

@@ -10,7 +10,8 @@ use super::borders::{BorderPair, HolePair, LEAST_PAIRED, PairKind};
 use super::contact::{
     Contact, ContactSearch, Contacts, MAX_NODES, Six, quantile, robust_weights, solve,
 };
-use super::fit::{Bends, N_SMOOTH, ShapeEvidence, explaining};
+use super::evidence::PoseEvidence;
+use super::fit::{Bends, N_SMOOTH, explaining};
 use super::scaled::Scaled;
 use super::tolerance::{ShapeTolerance, UNREMARKABLE};
 use crate::geometry::{Point3, Similarity, Vector3};
@@ -62,13 +63,13 @@ pub(super) struct Stretch {
 /// The stretch that explains at least half of the gaps between the parts, if it makes one of them longer than
 /// the other by more than what may remain on both sides, and neither outlines nor holes speak against it.
 /// O(nodes · log triangles).
-pub(super) fn stretch(evidence: &ShapeEvidence<'_>, tolerance: &ShapeTolerance) -> Option<Stretch> {
+pub(super) fn stretch(evidence: &PoseEvidence<'_>, tolerance: &ShapeTolerance) -> Option<Stretch> {
     let limit = 2.0 * tolerance.remainder;
     let frame = Frame::of(evidence);
     let surfaces = [evidence.source, evidence.target];
     let scale = evidence.pose.scale;
     let mut search = ContactSearch::new(surfaces, scale, evidence.reach, N_PLACES);
-    let gaps = Gaps::of(&search.at(evidence.pose)?, &frame);
+    let gaps = Gaps::of(&search.at(&evidence.pose)?, &frame);
     let (_, before) = gaps.explained(N_SMOOTH, evidence.noise);
     if before <= evidence.noise {
         // What facets leave open says nothing, least of all about the length of an extruded part.
@@ -81,7 +82,7 @@ pub(super) fn stretch(evidence: &ShapeEvidence<'_>, tolerance: &ShapeTolerance) 
     }
     for _ in 0..ROUNDS {
         let back = frame.scaled(shares.map(|share| 1.0 / (1.0 + share)));
-        let gaps = Gaps::of(&search.at_scaled(evidence.pose, Some(&back))?, &frame);
+        let gaps = Gaps::of(&search.at_scaled(&evidence.pose, Some(&back))?, &frame);
         let found;
         (found, after) = gaps.explained(N, evidence.noise);
         for (share, further) in shares.iter_mut().zip(frame.shares(&found)) {
@@ -104,7 +105,7 @@ pub(super) fn stretch(evidence: &ShapeEvidence<'_>, tolerance: &ShapeTolerance) 
 /// Whether one part that is longer, wider or higher than the other explains how their outlines lie apart, and
 /// neither surfaces nor holes speak against it. `limit` is how far borders may lie apart.
 /// O(nodes · log triangles).
-pub(super) fn explains_outlines(evidence: &ShapeEvidence<'_>, limit: f64) -> bool {
+pub(super) fn explains_outlines(evidence: &PoseEvidence<'_>, limit: f64) -> bool {
     let frame = Frame::of(evidence);
     frame.of_outlines(evidence, limit).is_some_and(|found| {
         !frame.misplaces_holes(evidence, &found, limit) && frame.keeps_surfaces(evidence, &found)
@@ -115,8 +116,12 @@ pub(super) fn explains_outlines(evidence: &ShapeEvidence<'_>, limit: f64) -> boo
 struct Frame(Bends);
 
 impl Frame {
-    fn of(evidence: &ShapeEvidence<'_>) -> Self {
-        Self(Bends::of(evidence.source, evidence.pose, evidence.contacts))
+    fn of(evidence: &PoseEvidence<'_>) -> Self {
+        Self(Bends::of(
+            evidence.source,
+            &evidence.pose,
+            &evidence.contacts,
+        ))
     }
 
     /// The part with its lengths along the axes multiplied.
@@ -154,7 +159,7 @@ impl Frame {
     }
 
     /// The motion and the stretches that lay the outlines on each other; `None` where none does.
-    fn of_outlines(&self, evidence: &ShapeEvidence<'_>, limit: f64) -> Option<Placed> {
+    fn of_outlines(&self, evidence: &PoseEvidence<'_>, limit: f64) -> Option<Placed> {
         let OutlineFit {
             found,
             before,
@@ -165,14 +170,10 @@ impl Frame {
 
     /// Lays the outlines on each other in robust least squares: by a motion and the stretches, or by a motion
     /// where the stretches are given.
-    fn fit_outlines(
-        &self,
-        evidence: &ShapeEvidence<'_>,
-        stretches: Option<[f64; 3]>,
-    ) -> OutlineFit {
-        let ShapeEvidence {
+    fn fit_outlines(&self, evidence: &PoseEvidence<'_>, stretches: Option<[f64; 3]>) -> OutlineFit {
+        let PoseEvidence {
             contacts, borders, ..
-        } = *evidence;
+        } = evidence;
         let outlines = borders.pairs().iter();
         let outlines: Vec<&BorderPair> =
             outlines.filter(|p| p.kind == PairKind::Outlines).collect();
@@ -221,7 +222,7 @@ impl Frame {
     /// than borders may, if one part were longer by these shares, or a hole farther off than it does and may.
     fn misplaces_borders(
         &self,
-        evidence: &ShapeEvidence<'_>,
+        evidence: &PoseEvidence<'_>,
         shares: &[f64; 3],
         limit: f64,
     ) -> bool {
@@ -237,11 +238,11 @@ impl Frame {
     }
 
     /// Whether a hole would lie farther off than it does, and farther than borders may.
-    fn misplaces_holes(&self, evidence: &ShapeEvidence<'_>, found: &Placed, limit: f64) -> bool {
+    fn misplaces_holes(&self, evidence: &PoseEvidence<'_>, found: &Placed, limit: f64) -> bool {
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
         evidence.borders.holes.iter().any(|pair| {
             let HolePair { hole, off, .. } = pair;
-            let row = |axis: Vector3| self.placed(evidence.contacts, &hole.center, &axis);
+            let row = |axis: Vector3| self.placed(&evidence.contacts, &hole.center, &axis);
             let moved = Vector3::from(axes.map(|axis| row(axis).dot(found)));
             let within = |off: Vector3| (off - hole.normal * off.dot(&hole.normal)).norm();
             let after = within(off - moved);
@@ -250,13 +251,13 @@ impl Frame {
     }
 
     /// Whether the surfaces still lie on each other with the source moved and stretched back.
-    fn keeps_surfaces(&self, evidence: &ShapeEvidence<'_>, found: &Placed) -> bool {
-        let ShapeEvidence { pose, noise, .. } = *evidence;
+    fn keeps_surfaces(&self, evidence: &PoseEvidence<'_>, found: &Placed) -> bool {
+        let PoseEvidence { pose, noise, .. } = evidence;
         let surfaces = [evidence.source, evidence.target];
         let mut search = ContactSearch::new(surfaces, pose.scale, evidence.reach, N_PLACES);
         let mut left_at = |pose: &Similarity, scaled: Option<&Scaled>| {
             let gaps = Gaps::of(&search.at_scaled(pose, scaled)?, self);
-            Some(gaps.explained(N_SMOOTH, noise).1)
+            Some(gaps.explained(N_SMOOTH, *noise).1)
         };
         let factors = [0, 1, 2].map(|k| 1.0 / (1.0 + found[6 + k] / self.0.half[k]));
         let six: Six = found.fixed_rows::<6>(0).into();
@@ -265,7 +266,7 @@ impl Frame {
         let scaled = left_at(&moved, Some(&self.scaled(factors)));
         as_it_is
             .zip(scaled)
-            .is_some_and(|(as_it_is, scaled)| scaled <= REFUTED * as_it_is.max(noise))
+            .is_some_and(|(as_it_is, scaled)| scaled <= REFUTED * as_it_is.max(*noise))
     }
 
     /// Stretches of a solution as shares of the length.

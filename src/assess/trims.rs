@@ -3,9 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::borders::{Borders, PairKind};
+use super::borders::{BorderPair, Borders, PairKind};
 use super::contact::quantile;
-use super::fit::{Fit, ShapeEvidence};
+use super::evidence::PoseEvidence;
+use super::fit::Fit;
 use super::stretch;
 use super::tolerance::ShapeTolerance;
 use crate::geometry::Point3;
@@ -32,7 +33,7 @@ pub struct BorderApart {
 }
 
 /// What is left of the borders of parts that were trimmed differently.
-pub(super) struct OtherTborder {
+pub(super) struct OtherTrim {
     /// The borders that say something about the parts.
     pub(super) left: Borders,
     /// How far the others lie apart, at 90 % of them.
@@ -42,24 +43,31 @@ pub(super) struct OtherTborder {
 /// The borders without the outlines that lie apart because the parts were trimmed differently; `None` where they
 /// lie together, or where one part looks like a longer, wider or higher version of the other.
 pub(super) fn other_trim(
-    evidence: &ShapeEvidence<'_>,
+    evidence: &PoseEvidence<'_>,
     tolerance: &ShapeTolerance,
-) -> Option<OtherTborder> {
+) -> Option<OtherTrim> {
     let limit = evidence.borders.limit(tolerance);
     let outlines = Outlines::of(evidence, limit)?;
     if outlines.share_apart() <= 1.0 - STATED || stretch::explains_outlines(evidence, limit) {
         return None;
     }
-    Some(OtherTborder {
+    Some(OtherTrim {
         apart: outlines.distance(),
         left: outlines.trusted(),
     })
 }
 
-/// The borders that say where the part belongs; `None` where all do. `limit` is how far borders may lie apart.
-pub(super) fn trusted(evidence: &ShapeEvidence<'_>, limit: f64) -> Option<Borders> {
-    let outlines = Outlines::of(evidence, limit)?;
-    (outlines.share_apart() > MOST_APART).then(|| outlines.trusted())
+/// The fit of the evidence. Borders that do not say where the part belongs are taken out of it; `limit` is how far
+/// they may lie apart. O(places).
+pub(super) fn trusted_fit(evidence: &mut PoseEvidence<'_>, limit: f64) -> Fit {
+    match Outlines::of(evidence, limit) {
+        Some(outlines) if outlines.share_apart() > MOST_APART => {
+            evidence.borders = outlines.trusted();
+            Fit::of(evidence)
+        }
+        Some(outlines) => outlines.fit,
+        None => Fit::of(evidence),
+    }
 }
 
 /// The stretch of the borders that lies farthest apart, if by more than `limit`; `left` are the distances across
@@ -84,45 +92,34 @@ struct Outlines<'a> {
     borders: &'a Borders,
     /// Of each pair of borders, whether it is of outlines that lie apart.
     is_apart: Vec<bool>,
+    /// The fit with all borders.
+    fit: Fit,
 }
 
 impl<'a> Outlines<'a> {
     /// `None` where hardly any lies apart. O(places), less where they lie together at once.
-    fn of(evidence: &ShapeEvidence<'a>, limit: f64) -> Option<Self> {
-        let borders = evidence.borders;
-        let apart = |left: &dyn Fn(usize) -> f64| {
-            let pairs = borders.pairs().iter().enumerate();
-            pairs
-                .map(|(i, pair)| {
-                    pair.kind == PairKind::Outlines
-                        && left(i).abs() > limit.max(LEFT * pair.gap.abs())
-                })
-                .collect()
+    fn of(evidence: &'a PoseEvidence<'_>, limit: f64) -> Option<Self> {
+        let borders = &evidence.borders;
+        let is_apart = |(pair, left): (&BorderPair, f64)| {
+            pair.kind == PairKind::Outlines && left.abs() > limit.max(LEFT * pair.gap.abs())
         };
-        let as_they_are = Self {
-            borders,
-            is_apart: apart(&|i| borders.pairs()[i].gap),
-        };
-        if as_they_are.share_apart() <= 1.0 - STATED {
+        let pairs = borders.pairs().iter();
+        let as_they_are: Vec<bool> = pairs.map(|pair| is_apart((pair, pair.gap))).collect();
+        if share_apart(borders, &as_they_are) <= 1.0 - STATED {
             return None;
         }
         let fit = Fit::of(evidence);
+        let pairs = borders.pairs().iter().zip(fit.borders.iter().copied());
         Some(Self {
             borders,
-            is_apart: apart(&|i| fit.borders[i]),
+            is_apart: pairs.map(is_apart).collect(),
+            fit,
         })
     }
 
     /// Share of the outlines that lies apart.
     fn share_apart(&self) -> f64 {
-        let (mut apart, mut whole) = (0.0, 0.0);
-        for (pair, &is_apart) in self.borders.pairs().iter().zip(&self.is_apart) {
-            if pair.kind == PairKind::Outlines {
-                whole += pair.weight;
-                apart += if is_apart { pair.weight } else { 0.0 };
-            }
-        }
-        if whole > 0.0 { apart / whole } else { 0.0 }
+        share_apart(self.borders, &self.is_apart)
     }
 
     /// How far those lie apart, at 90 % of them.
@@ -140,4 +137,16 @@ impl<'a> Outlines<'a> {
         self.borders
             .filtered(|i, pair| !self.is_apart[i] && (!none || pair.kind == PairKind::Holes))
     }
+}
+
+/// Share of the outlines that lies apart, given which pairs of borders do.
+fn share_apart(borders: &Borders, is_apart: &[bool]) -> f64 {
+    let (mut apart, mut whole) = (0.0, 0.0);
+    for (pair, &is_apart) in borders.pairs().iter().zip(is_apart) {
+        if pair.kind == PairKind::Outlines {
+            whole += pair.weight;
+            apart += if is_apart { pair.weight } else { 0.0 };
+        }
+    }
+    if whole > 0.0 { apart / whole } else { 0.0 }
 }

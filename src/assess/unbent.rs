@@ -2,7 +2,8 @@
 
 use super::borders::{BorderComparison, LEAST_PAIRED};
 use super::contact::{ContactSearch, MAX_NODES};
-use super::fit::{Fit, ShapeEvidence};
+use super::evidence::EvidenceSearch;
+use super::fit::Fit;
 use super::shape::FACETING;
 use super::tolerance::{AssessSettings, Distances, UNREMARKABLE};
 use super::trims;
@@ -29,52 +30,37 @@ pub fn without_bend(
     pose: &Similarity,
     settings: &AssessSettings,
 ) -> Option<Similarity> {
-    let Distances {
-        tolerance,
-        reach,
-        near,
-        noise,
-    } = Distances::of(source, target, pose.scale, settings);
+    let distances = Distances::of(source, target, pose.scale, settings);
+    let tolerance = distances.tolerance;
     let corners = source.mesh().aabb().corners();
     let pair = [source, target];
-    let mut search = ContactSearch::new(pair, pose.scale, reach, MAX_NODES);
-    let hardly = (UNREMARKABLE * tolerance.remainder).max(FACETING * noise);
-    if search.at(pose)?.typical_gap(f64::INFINITY) <= CLOSE * hardly {
+    let mut contacts = ContactSearch::new(pair, pose.scale, distances.reach, MAX_NODES);
+    let hardly = (UNREMARKABLE * tolerance.remainder).max(FACETING * distances.noise);
+    if contacts.at(pose)?.typical_gap(f64::INFINITY) <= CLOSE * hardly {
         return None;
     }
-    let comparison = BorderComparison::new(pair, pose.scale, near);
+    let borders = BorderComparison::new(pair, pose.scale, distances.near);
+    let mut search = EvidenceSearch::new(contacts, &borders, &distances);
     let mut moved = *pose;
     let mut first = None;
     for step in 0..=STEPS {
-        let contacts = search.at(&moved)?;
-        let borders = comparison.at(&moved);
-        let evidence = ShapeEvidence {
-            source,
-            target,
-            pose: &moved,
-            contacts: &contacts,
-            borders: &borders,
-            noise,
-            reach,
-        };
-        let holding = if borders.share() < LEAST_PAIRED {
+        let mut evidence = search.at(&moved)?;
+        let fit = if evidence.borders.share() < LEAST_PAIRED {
             // What lies beside each other by chance holds nothing.
-            Some(borders.filtered(|_, _| false))
+            evidence.borders = evidence.borders.filtered(|_, _| false);
+            Fit::of(&evidence)
         } else {
-            trims::trusted(&evidence, borders.limit(&tolerance))
+            let limit = evidence.borders.limit(&tolerance);
+            trims::trusted_fit(&mut evidence, limit)
         };
-        let borders = holding.as_ref().unwrap_or(&borders);
-        let fit = Fit::of(&ShapeEvidence {
-            borders,
-            ..evidence
-        });
+        let contacts = &evidence.contacts;
         let [bend, left] = [&fit.smooth, &fit.left].map(|values| contacts.at_share(values, 0.95));
         let (first_bend, first_left, first_share) =
             *first.get_or_insert((bend, left, contacts.share));
         if first_bend <= hardly {
             return None;
         }
-        let next = contacts.undo(&fit.rigid).after(&moved);
+        let next = fit.corrected(&evidence);
         let is_still = next.max_displacement(&moved, &corners) <= STILL * first_bend;
         if is_still || step == STEPS {
             let far = moved.max_displacement(pose, &corners);

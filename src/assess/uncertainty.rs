@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::borders::Borders;
 use super::contact::{Contacts, Six, robust_weights, solve};
+use super::evidence::PoseEvidence;
 use super::fit::{Fit, LEAST_OWN};
 use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
@@ -93,20 +94,23 @@ pub struct PoseUncertainty {
 }
 
 impl PoseUncertainty {
-    /// Measures the uncertainty of a pose. `fit` takes the gaps apart, `noise` is a distance that means nothing, `thickness` that of the
-    /// sheet, if it is known. `None` where the parts do not meet.
+    /// Measures the uncertainty of the evidence's pose. `fit` takes its gaps apart, `thickness` is that of the
+    /// sheet, if it is known. `None` where the part has no area.
     pub(super) fn of(
-        source: &Surface,
-        pose: &Similarity,
-        contacts: &Contacts,
-        borders: &Borders,
+        evidence: &PoseEvidence<'_>,
         fit: &Fit,
-        (noise, thickness): (f64, Option<f64>),
+        thickness: Option<f64>,
     ) -> Option<Self> {
+        let PoseEvidence {
+            source,
+            pose,
+            contacts,
+            ..
+        } = evidence;
         let [bend, left] = [&fit.smooth, &fit.left].map(|values| contacts.at_share(values, 0.95));
         // Where about as much remains as is bent, the bends stand for something else.
         let unbent = Some(fit.rigid).filter(|_| bend > CLEARLY_BENT * left);
-        let (mut motions, offset_as_motion) = replicates(contacts, borders, noise, unbent);
+        let (mut motions, offset_as_motion) = replicates(evidence, unbent);
         let unknown_offset = offset_as_motion.and(thickness).map_or(0.0, |t| 0.5 * t);
         motions.extend(offset_as_motion.map(|motion| motion * unknown_offset));
         let motions: Vec<SmallMotion> = motions
@@ -186,14 +190,14 @@ type Seven = SVector<f64, 7>;
 
 /// Normal equations of the whole and of every patch.
 #[derive(Clone)]
-struct Evidence {
+struct NormalEquations {
     matrix: SMatrix<f64, 7, 7>,
     right: Seven,
     /// Squares of the gaps.
     squares: f64,
 }
 
-impl Evidence {
+impl NormalEquations {
     fn none() -> Self {
         Self {
             matrix: SMatrix::zeros(),
@@ -261,17 +265,13 @@ fn bent(bend: f64) -> [SmallMotion; 3] {
 /// borders, an offset of the sheets or a bend (`unbent`) would move the pose. Where an offset is what the gaps are, it
 /// is solved for with every motion. With them the motion that cannot be told from an offset of one, if there
 /// is one.
-fn replicates(
-    contacts: &Contacts,
-    borders: &Borders,
-    noise: f64,
-    unbent: Option<Six>,
-) -> (Vec<Six>, Option<Six>) {
+fn replicates(evidence: &PoseEvidence<'_>, unbent: Option<Six>) -> (Vec<Six>, Option<Six>) {
+    let (contacts, noise) = (&evidence.contacts, evidence.noise);
     let gaps: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();
     let areas: Vec<f64> = contacts.list.iter().map(|c| c.weight).collect();
     let weights = robust_weights(&gaps, &areas, noise);
-    let parts = evidence_of_patches(contacts, borders, &weights, noise);
-    let mut all = Evidence::none();
+    let parts = equations_of_patches(contacts, &evidence.borders, &weights, noise);
+    let mut all = NormalEquations::none();
     for part in &parts {
         all.matrix += part.matrix;
         all.right += part.right;
@@ -322,15 +322,15 @@ fn replicates(
     (motions, (!is_separable).then(|| six(offset_as_motion)))
 }
 
-fn evidence_of_patches(
+fn equations_of_patches(
     contacts: &Contacts,
     borders: &Borders,
     weights: &[f64],
     noise: f64,
-) -> Vec<Evidence> {
+) -> Vec<NormalEquations> {
     let patch_of = contacts.patches(LEVELS);
     let n_patches = patch_of.iter().max().map_or(0, |last| last + 1);
-    let mut parts: Vec<Evidence> = (0..n_patches).map(|_| Evidence::none()).collect();
+    let mut parts: Vec<NormalEquations> = (0..n_patches).map(|_| NormalEquations::none()).collect();
     for ((contact, &weight), &patch) in contacts.list.iter().zip(weights).zip(&patch_of) {
         let row = contacts.row(&contact.point, &contact.normal);
         parts[patch].add(&row, 1.0, contact.gap, weight);

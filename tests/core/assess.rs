@@ -337,6 +337,44 @@ fn parts_of_which_each_has_a_piece_that_the_other_lacks_are_one_where_they_meet(
 }
 
 #[test]
+fn that_more_of_both_parts_overlaps_tells_no_row_of_waves_from_the_next() {
+    // Ends that are cut against each other: under every pose each part has a piece that the other lacks.
+    let rail = |n: u32, slant: f64, cut_at: f64| {
+        sheet(n, |u, v| {
+            let x = 440.0 * u + slant * (v - 0.5) + cut_at;
+            let waves = (std::f64::consts::TAU * x / 40.0).sin() * (4.0 + 3.0 * v);
+            Point3::new(x, 100.0 * v, waves + 15.0 * v * v)
+        })
+    };
+    let truth = placement(5);
+    let stamped = rail(90, 140.0, 0.0).transformed(&truth.inverse());
+    let crash = rail(110, -140.0, 25.0);
+    let [source, target] = [&stamped, &crash].map(|mesh| Surface::new(mesh, "source").unwrap());
+    let input = MatchInput {
+        source: &source,
+        target: &target,
+        reduced: None,
+    };
+    let silent = Monitor::silent();
+    let mut outcome = match_surfaces(&input, &MatchSettings::default(), &silent).unwrap();
+    let settings = AssessSettings::default();
+    let chosen = chosen_by_shape(&source, &target, &outcome, &settings, &silent).unwrap();
+    let chosen = chosen.unwrap();
+    outcome.target_from_source = chosen.target_from_source;
+    outcome.alternatives = chosen.alternatives;
+    let assessment = assess(&source, &target, &outcome, &settings, &silent).unwrap();
+    let shape = assessment.shape.unwrap();
+    assert!(shape.met > 0.7 && shape.met < 0.95, "{shape:?}");
+    assert_eq!(assessment.ambiguity.clarity, Clarity::Ambiguous);
+    // Each of the like poses lies a whole number of waves from the true one.
+    for other in outcome.alternatives.iter().filter(|a| a.score_ratio < 1.1) {
+        let off = other.target_from_source.after(&truth.inverse());
+        let waves = off.translation.x / 40.0;
+        assert!((waves - waves.round()).abs() < 0.05, "{waves}");
+    }
+}
+
+#[test]
 fn a_bend_does_not_push_a_curved_strip_along_itself() {
     // A strip of 1,000 mm that is cut elsewhere at both ends, bent by 2 mm.
     let strip = |n: u32, longer: f64, bend: f64| {

@@ -2,7 +2,7 @@
 //! most of the area says.
 
 use crate::assess::contact::Contact;
-use crate::assess::fit::ShapeEvidence;
+use crate::assess::evidence::PoseEvidence;
 use crate::geometry::{Point3, Vector3};
 use crate::registration::Surface;
 
@@ -31,11 +31,11 @@ pub(super) struct LocalDifference {
 /// short, at which `left`, what neither bends nor facets explain, exceeds `limit` to one side.
 /// O(k² + k · outlines) for k places beyond the limit.
 pub(super) fn local_difference(
-    evidence: &ShapeEvidence<'_>,
+    evidence: &PoseEvidence<'_>,
     left: &[f64],
     limit: f64,
 ) -> Option<LocalDifference> {
-    let contacts = evidence.contacts;
+    let contacts = &evidence.contacts;
     let beyond: Vec<(&Contact, f64)> = contacts
         .list
         .iter()
@@ -113,7 +113,7 @@ fn groups(places: &[(&Contact, f64)], size: impl Fn(&Contact) -> f64) -> Vec<Vec
 }
 
 /// Vertices of the outlines of both parts, in the target's frame.
-fn outlines(evidence: &ShapeEvidence<'_>) -> Vec<Point3> {
+fn outlines(evidence: &PoseEvidence<'_>) -> Vec<Point3> {
     let of_source = outline(evidence.source).map(|at| evidence.pose.apply(&at));
     of_source.chain(outline(evidence.target)).collect()
 }

@@ -1,0 +1,65 @@
+//! What two parts show under one pose after another: where their surfaces and their borders lie beside each other.
+
+use super::borders::{BorderComparison, Borders};
+use super::contact::{ContactSearch, Contacts, MAX_NODES};
+use super::tolerance::Distances;
+use crate::geometry::Similarity;
+use crate::registration::Surface;
+
+/// Two parts under a pose, and where they meet.
+pub(super) struct PoseEvidence<'a> {
+    pub(super) source: &'a Surface,
+    pub(super) target: &'a Surface,
+    pub(super) pose: Similarity,
+    pub(super) contacts: Contacts,
+    pub(super) borders: Borders,
+    /// Faceting of both meshes.
+    pub(super) noise: f64,
+    /// Surfaces within it are compared.
+    pub(super) reach: f64,
+}
+
+impl PoseEvidence<'_> {
+    /// Share of the smaller part's area that lies beyond the borders of the other.
+    pub(super) fn overhang(&self) -> f64 {
+        let pair = [self.source, self.target];
+        ContactSearch::new(pair, self.pose.scale, self.reach, MAX_NODES).overhang(&self.pose)
+    }
+}
+
+/// The search for what two parts show. Both are prepared once for all poses of one scale.
+pub(super) struct EvidenceSearch<'a, 'b> {
+    contacts: ContactSearch<'a>,
+    borders: &'b BorderComparison<'a>,
+    noise: f64,
+}
+
+impl<'a, 'b> EvidenceSearch<'a, 'b> {
+    pub(super) fn new(
+        contacts: ContactSearch<'a>,
+        borders: &'b BorderComparison<'a>,
+        distances: &Distances,
+    ) -> Self {
+        Self {
+            contacts,
+            borders,
+            noise: distances.noise,
+        }
+    }
+
+    /// What the parts show under a pose; `None` where their surfaces do not meet.
+    /// O(border edges + nodes · log triangles), less for a pose near the last one.
+    pub(super) fn at(&mut self, pose: &Similarity) -> Option<PoseEvidence<'a>> {
+        let contacts = self.contacts.at(pose)?;
+        let [source, target] = self.contacts.surfaces();
+        Some(PoseEvidence {
+            source,
+            target,
+            pose: *pose,
+            contacts,
+            borders: self.borders.at(pose),
+            noise: self.noise,
+            reach: self.contacts.reach(),
+        })
+    }
+}
