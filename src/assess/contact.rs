@@ -324,16 +324,27 @@ fn facet_error(model: &Surface, triangle: usize, normal: &Vector3) -> f64 {
     longest * cos.fold(1.0, f64::min).acos() / 4.0
 }
 
-/// Weighted quantile; sorts. 0 without weight.
+/// Weighted quantile; reorders. 0 without values. O(values).
 pub(super) fn quantile(values: &mut [(f64, f64)], share: f64) -> f64 {
-    values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let total: f64 = values.iter().map(|(_, weight)| weight).sum();
-    let mut below = 0.0;
-    let found = values.iter().find(|(_, weight)| {
-        below += weight;
-        below >= share * total
-    });
-    found.map_or(0.0, |(value, _)| *value)
+    let weight_of = |values: &[(f64, f64)]| values.iter().map(|(_, weight)| weight).sum::<f64>();
+    let mut wanted = share * weight_of(values);
+    let mut rest = values;
+    while !rest.is_empty() {
+        let by_value =
+            |a: &(f64, f64), b: &(f64, f64)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
+        let (below, &mut (value, weight), above) =
+            rest.select_nth_unstable_by(rest.len() / 2, by_value);
+        let weight_below = weight_of(below);
+        if weight_below >= wanted && !below.is_empty() {
+            rest = below;
+        } else if weight_below + weight >= wanted || above.is_empty() {
+            return value;
+        } else {
+            wanted -= weight_below + weight;
+            rest = above;
+        }
+    }
+    0.0
 }
 
 /// Least squares over `N` unknowns; directions that the rows do not fix stay zero.
@@ -365,4 +376,32 @@ pub(super) fn solve<const N: usize>(
         }
     }
     solution
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_weighted_quantile_is_that_of_the_sorted_values() {
+        for n in 1..40 {
+            // Whole weights, so that sums do not depend on their order; some values and weights repeat.
+            let values: Vec<(f64, f64)> = (0..n)
+                .map(|i| (f64::from(i * 17 % 11), f64::from(i * 7 % 5)))
+                .collect();
+            let mut sorted = values.clone();
+            sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+            let total: f64 = values.iter().map(|(_, weight)| weight).sum();
+            for share in [0.0, 0.25, 0.5, 0.75, 0.9, 1.0] {
+                let mut below = 0.0;
+                let expected = sorted.iter().find(|(_, weight)| {
+                    below += weight;
+                    below >= share * total
+                });
+                let found = quantile(&mut values.clone(), share);
+                assert_eq!(found, expected.unwrap().0, "{share} of {n}");
+            }
+        }
+        assert_eq!(quantile(&mut [], 0.5), 0.0);
+    }
 }

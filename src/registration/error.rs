@@ -18,7 +18,8 @@ pub enum RegistrationError {
     },
     /// Paired points need the same count on both sides.
     #[error(
-        "paired points need equal counts, but the source has {n_source} and the target {n_target}"
+        "Umeyama pairs points in their order, but the source (stamped part) has {n_source} and the target \
+         (crash part) {n_target}; take another method (--method) for meshes that differ"
     )]
     UnequalCounts {
         /// Points of the source.

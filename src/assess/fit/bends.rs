@@ -39,9 +39,9 @@ impl Bends {
         let (mut inertia, mut moment) = (Matrix3::zeros(), Vector3::zeros());
         let (mut sum, mut total) = (Vector3::zeros(), 0.0);
         for contact in &contacts.list {
-            let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
-            let moved = axes.map(|axis| self.row(&contact.point, &axis).dot(sizes));
-            let moved = Vector3::from(moved);
+            let of_each = self.displacements(&contact.point);
+            let along_axes: Vector3 = of_each.iter().zip(sizes).map(|(by, size)| by * *size).sum();
+            let moved = self.axes * along_axes;
             let arm = (contact.point - contacts.center) / contacts.radius;
             let weight = contact.weight;
             inertia += (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * weight;
@@ -62,10 +62,15 @@ impl Bends {
         point: &Point3,
         direction: &Vector3,
     ) -> SVector<f64, N_BENDS> {
+        let direction = self.axes.transpose() * direction;
+        SVector::from(self.displacements(point).map(|by| by.dot(&direction)))
+    }
+
+    /// How each of the bends, of size 1 at the border, displaces a place, along the axes.
+    fn displacements(&self, point: &Point3) -> [Vector3; N_BENDS] {
         let arm = self.axes.transpose() * (point - self.center);
-        let normal = self.axes.transpose() * direction;
         let (x, y) = (arm.x / self.half[0], arm.y / self.half[1]);
-        // Value, slope along x, slope along y.
+        // Deflection, slope along x, slope along y.
         let bends = [
             [x * x, 2.0 * x, 0.0],
             [x * y, y, x],
@@ -75,11 +80,9 @@ impl Bends {
             [x * y * y, y * y, 2.0 * x * y],
             [y * y * y, 0.0, 3.0 * y * y],
         ];
-        let moved = bends.map(|[value, along_x, along_y]| {
-            let in_plane = -arm.z * along_x / self.half[0] * normal.x
-                - arm.z * along_y / self.half[1] * normal.y;
-            value * normal.z + in_plane
-        });
-        SVector::from(moved)
+        bends.map(|[deflection, along_x, along_y]| {
+            let [in_x, in_y] = [along_x / self.half[0], along_y / self.half[1]];
+            Vector3::new(-arm.z * in_x, -arm.z * in_y, deflection)
+        })
     }
 }
