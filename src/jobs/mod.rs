@@ -2,7 +2,7 @@
 //!
 //! The window submits a [`JobKind`] and goes on drawing. [`Worker::events`] tells without waiting
 //! what has started and ended, and none of that is ever lost; [`Worker::live`] is a slot that
-//! holds only the latest progress and pose, for which a slow window simply sees fewer pictures.
+//! holds only the latest progress and pose, of which a slow window simply sees fewer.
 
 mod event;
 mod export;

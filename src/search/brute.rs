@@ -1,4 +1,4 @@
-//! Closest points by asking every triangle: what the tree is held against.
+//! Closest points by asking every triangle: what the tree is compared with.
 
 use std::sync::Arc;
 

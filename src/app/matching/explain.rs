@@ -1,4 +1,4 @@
-//! Why a match is weak: the likely causes with what speaks for them, and one thing to do about each.
+//! Why a match is weak: the likely causes with their evidence, and a remedy for each.
 
 use crate::app::{Action, AppState, Command, FileCommand, MatchCommand, PartCommand};
 use crate::assess::{Assessment, Clarity, Reason, ShapeReason, Verdict, error_beside};
