@@ -26,7 +26,7 @@
 //! - [`report`]: the matrix in all its forms, LS-DYNA cards, the record of a run.
 //! - [`pipeline`]: load, find parts, reduce, match, map, export and measure, as one call each.
 //! - [`jobs`]: the worker thread of the window: stop, cancel, events.
-//! - [`app`]: the window without the window, by topic: state, commands, undo.
+//! - [`app`]: what the window knows and does, by topic, without drawing it: state, commands, undo.
 //! - `ui` (feature `gui`): the window; draws the state, emits commands.
 //! - `render` (feature `gui`): scenes into pictures with wgpu.
 //! - [`cli`]: the command line.

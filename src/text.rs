@@ -88,7 +88,7 @@ pub fn vector(components: [f64; 3], decimals: usize) -> String {
     format!("({})", components.map(|x| fixed(x, decimals)).join(", "))
 }
 
-/// Lengths that differ in no decimal up to this one are told as equal.
+/// Lengths that differ in no decimal up to this one are stated as equal.
 const MOST_DECIMALS: usize = 7;
 
 /// Lengths below this are rounding.
@@ -225,7 +225,7 @@ impl Lengths {
         Self { decimals, ..self }
     }
 
-    /// The number alone: `0.381`. Of less than a micrometre only that is told: nobody reads more zeros, and
+    /// The number alone: `0.381`. Of less than a micrometre only that is stated: nobody reads more zeros, and
     /// no sheet is known so well.
     pub fn number(self, value: f64) -> String {
         match (self.decimals, self.unit) {

@@ -1,5 +1,5 @@
-//! What follows from each command: the topic it belongs to is given its state and the work, and what
-//! other topics have to follow comes after it.
+//! Carries out each command: its topic is given its own state and the work, and what other topics must do
+//! about it comes after.
 
 use super::{
     AppState, Command, Dialog, Effect, FreeWindow, MatchCommand, NoticeCommand, Section, Settings,

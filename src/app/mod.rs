@@ -1,12 +1,12 @@
-//! The window without the window: what it knows, what can be asked of it, and what follows.
+//! What the window knows, what can be asked of it, and what follows; without drawing anything.
 //!
 //! Panels read [`AppState`] and queue [`Command`]s; the shell hands each to [`AppState::apply`] and
 //! carries out the [`Effect`]s that come back. The state is composed by topic: `parts`, `reduce`,
-//! `matching`, `moving`, `pairs`, `inspect`, `view`, `export`, `project`, `history` and `log` each have
-//! their commands, their own state and what follows from them. A topic is lent its own state and the
-//! work (document, history, jobs, preferences, messages), nothing else; what others have to follow, it
-//! says as a `FollowUp`, and `follow_up.rs` is the only place where topics meet. Nothing here draws, waits or touches the disk, so
-//! every behaviour of the window has a test without one.
+//! `matching`, `mapping`, `moving`, `pairs`, `inspect`, `view`, `export`, `project`, `history` and `log`
+//! each have their commands, their own state and what follows from them. A topic is lent its own state
+//! and the work (document, history, jobs, preferences, messages), nothing else; what other topics must do
+//! after a change, it states as a `FollowUp`, and `follow_up.rs` is the only place where topics meet.
+//! Nothing here draws, waits or touches the disk, so every behaviour of the window has a test without one.
 
 mod action;
 mod apply;

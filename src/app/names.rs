@@ -1,4 +1,4 @@
-//! Names of files where several of one name stand beside each other.
+//! Names of files, with as much of the folder as distinguishes those of the same name.
 
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
-//! The choice between poses by what the shapes say under each of them. Facets and springback raise all scores, so
-//! that half a turn of a part with waves costs a few percent of the score; that a hole, a bead or a border lies
-//! elsewhere then is seen all the same.
+//! The choice between poses by the shapes under each of them. Facets and springback raise all scores, so that a
+//! part with waves, turned by half a turn, may score only a few percent worse; that a hole, a bead or a border
+//! then lies elsewhere shows all the same.
 
 use rayon::prelude::*;
 
@@ -28,8 +28,9 @@ const LEAST_SHARED: f64 = 0.5;
 const CLEARLY: f64 = 2.0;
 
 /// The pose of `outcome` or one of its alternatives that scores nearly as well, whichever has the fewest differences
-/// between the shapes. Alternatives with more of them than the pose chosen score worse; where each part has a piece that
-/// the other lacks, those that fit as well with less overlap score as well. `None` where no other pose is looked at. O(alternatives · (border edges + nodes · log triangles)).
+/// between the shapes. Alternatives with more of them than the pose chosen score worse; where each part has a piece
+/// that the other lacks, those that fit as well with less overlap score as well. `None` where no other pose is looked
+/// at. O(alternatives · (border edges + nodes · log triangles)).
 pub fn chosen_by_shape(
     source: &Surface,
     target: &Surface,

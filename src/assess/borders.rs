@@ -22,8 +22,8 @@ const N_PLACES: usize = 600;
 const PARALLEL: f64 = 0.8;
 /// Holes whose radii differ by more than this factor are not the same hole.
 const SAME_RADIUS: f64 = 1.6;
-/// Of holes that overlap and are not the same, one is a pilot hole or an opening cut later if its radius is so many times
-/// smaller.
+/// Of holes that overlap and are not the same, one is a pilot hole or an opening cut later if its radius is so many
+/// times smaller.
 const ANOTHER_KIND: f64 = 4.0;
 /// A place is paired if nothing nearer than this share of its distance is beside its counterpart.
 const MUTUAL: f64 = 0.7;

@@ -1,4 +1,4 @@
-//! The verdict is the most severe of what speaks against the pose and against one shape.
+//! The verdict: the most severe of the reasons against the pose and against both parts having one shape.
 //!
 //! Every limit is a length that the user sees and can set ([`super::ShapeTolerance`]), a ratio of scores,
 //! or a fraction of the smaller part. None depends on the size of the elements.

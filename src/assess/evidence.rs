@@ -1,4 +1,5 @@
-//! What two parts show under one pose after another: where their surfaces and their borders lie beside each other.
+//! The evidence of a pose: where the surfaces and the borders of two parts meet under it. The search for it is
+//! prepared once and asked for one pose after another.
 
 use super::borders::{BorderComparison, Borders};
 use super::contact::{ContactSearch, Contacts, MAX_NODES};

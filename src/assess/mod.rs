@@ -1,9 +1,10 @@
 //! Is the pose right? Measured anew on the full meshes, without anything the search believed.
 //!
 //! From the bottom up: `tolerance` says how far parts may differ; `contact` and `borders` find where two parts meet
-//! under a pose, `evidence` joins what they found, `fit` takes the gaps apart; `trims`, `stretch` and `shape` say what the parts differ in, `uncertainty`
-//! how far the pose may be off. With these statements `settle`, `slide`, `held`, `alternatives`, `unbent` and `skin` improve
-//! or choose a pose before it is assessed, and `decide` makes the verdict of an [`Assessment`].
+//! under a pose, `evidence` joins what they found, `fit` splits the gaps into a motion, an offset and bends; `trims`,
+//! `stretch` and `shape` say how the parts differ, `uncertainty` how far the pose may be off. With these, `settle`,
+//! `slide`, `held`, `alternatives`, `unbent` and `skin` improve or choose a pose before it is assessed, and `decide`
+//! makes the verdict of an [`Assessment`].
 
 mod alternatives;
 mod ambiguity;

@@ -1,7 +1,7 @@
 //! The command line: runs the pipeline without a window. The only place that prints.
 //!
-//! Results go to standard output, messages to standard error. Exit status: 0 pose found (good or
-//! check), 3 pose found but poor, 1 failed, 2 wrong usage.
+//! Results go to standard output, messages to standard error. Exit status: 0 done, with a pose that is good
+//! or to be checked where there is one; 3 done, but the pose is poor; 1 failed; 2 wrong usage.
 
 mod args;
 mod bench;

@@ -26,7 +26,7 @@ pub enum ColorMap {
     /// The old fringe colours. Their lightness goes up and down, so only for comparison with old pictures.
     Rainbow,
     /// Light to dark grey; for prints and copies without colours. Values with a sign are the darker the
-    /// farther they are from zero, and a pattern tells their side.
+    /// farther they are from zero, and a pattern shows their side.
     Grey,
     /// Two colours, for two classes: a calm one below the middle, a loud one above.
     Classes,

@@ -22,7 +22,7 @@ pub struct ColorScale {
     pub n_bands: Option<u8>,
     /// Turns the map round.
     pub reversed: bool,
-    /// A pattern tells the sign of values beyond the tolerance, for those who do not see the hues.
+    /// A pattern shows the sign of values beyond the tolerance, for those who do not see the hues.
     pub has_pattern: bool,
 }
 

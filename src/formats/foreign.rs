@@ -1,4 +1,4 @@
-//! Files that are something else: what they are and what to do about it.
+//! Files that are refused: what they are instead of a mesh, and what to do about it.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! Names for the content of files, so that a result can say what it was made from.
+//! Hashes of files, so that a result can state what it was made from.
 
 use std::fmt;
 use std::io::{self, Read as _};

@@ -1,4 +1,4 @@
-//! A model laid elsewhere.
+//! A model at another pose: nodes moved, tensors turned, corners renumbered under a mirror.
 
 use super::model::{Forming, Model, Solid, StrainPoint, StressPoint};
 use crate::geometry::tensor::{Tensor, rotated};

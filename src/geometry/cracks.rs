@@ -9,8 +9,8 @@ use crate::monitor::{Cancelled, Monitor};
 /// the small elements lies a fifth of the chord above it, and noise adds to that. A slot has other nodes at its ends,
 /// and more than one edge along its sides.
 const BESIDE: f64 = 0.3;
-/// In the plane of the triangle on the long edge they lie much closer to it: what curves the sheet takes them out of the
-/// plane, while the corner of a hole that a reduction left three edges lies within it.
+/// In the plane of the triangle on the long edge they lie much closer to it: what curves the sheet takes them out
+/// of the plane, while the corner of a hole that a reduction left three edges lies within it.
 const WITHIN_PLANE: f64 = 0.15;
 /// Short edges beside a long one: elements are halved once or twice, rarely four times.
 const MOST_SHORT: usize = 16;

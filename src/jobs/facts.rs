@@ -15,7 +15,7 @@ pub struct PartFacts {
     pub parts: Vec<PartSummary>,
     /// Ids of the parts that are matched.
     pub used: BTreeSet<u64>,
-    /// Ids of parts that are no formed sheet but tools, where the file tells.
+    /// Ids of parts that are no formed sheet but tools, where the file says so.
     pub tools: BTreeSet<u64>,
     /// Box around each of them, in the crash model's unit.
     pub part_bounds: BTreeMap<u64, Aabb>,

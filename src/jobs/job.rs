@@ -188,7 +188,7 @@ pub struct SweepInput {
 pub struct VerdictInput {
     /// The two parts.
     pub parts: PerRole<Arc<LoadedPart>>,
-    /// The match that is judged.
+    /// The match that is assessed.
     pub run: Arc<MatchRun>,
     /// The tolerance, in length units of the crash part; 0 for the automatic one.
     pub shape_tolerance: f64,
@@ -351,7 +351,7 @@ impl JobKind {
 pub struct FoundCrash {
     /// The crash part with these chosen.
     pub part: Arc<LoadedPart>,
-    /// What is told of it.
+    /// What is reported of it.
     pub facts: Arc<PartFacts>,
     /// Ids of others that fit about as well.
     pub rivals: Vec<u64>,

@@ -1,8 +1,8 @@
 //! Work off the window's thread: one worker, a queue with one place per kind of work, events back.
 //!
-//! The window submits a [`JobKind`] and goes on drawing. [`Worker::events`] tells without waiting
+//! The window submits a [`JobKind`] and goes on drawing. [`Worker::events`] says without waiting
 //! what has started and ended, and none of that is ever lost; [`Worker::live`] is a slot that
-//! holds only the latest progress and pose, for which a slow window simply sees fewer pictures.
+//! holds only the latest progress and pose, of which a slow window simply sees fewer.
 
 mod event;
 mod export;

@@ -80,7 +80,7 @@ impl Worker {
         })
     }
 
-    /// Queues a job. A waiting job with the same key is replaced and told as cancelled.
+    /// Queues a job. A waiting job with the same key is replaced and reported as cancelled.
     pub fn submit(&self, kind: JobKind, stamp: Stamp) -> JobId {
         let key = kind.key();
         let mut queue = self.shared.lock();
@@ -182,7 +182,7 @@ fn take_waiting(queue: &mut Queue, is_meant: impl Fn(&Request) -> bool) -> Vec<R
     dropped.into()
 }
 
-/// The thread: waits for a request, runs it, tells how it ended.
+/// The thread: waits for a request, runs it, reports how it ended.
 fn work(shared: &Shared, events: &Sender<JobEvent>, mut runner: impl Runner) {
     while let Some((request, monitor)) = next(shared) {
         let (id, key, stamp) = (request.id, request.kind.key(), request.stamp);

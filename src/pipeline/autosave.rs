@@ -1,8 +1,8 @@
 //! Saves projects on a thread of its own, so that neither a frame nor a match waits: those the user
-//! saves, and the session itself after each step, in case the program does not live to save it.
+//! saves, and the session itself after each step, in case the program ends without saving.
 //!
 //! Each run of the program keeps its session in one file of the user's data folder. A lock beside it
-//! tells whether its program still runs; the system drops it however that ended.
+//! tells whether its program still runs; the system releases the lock however the program ended.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};

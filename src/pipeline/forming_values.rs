@@ -58,7 +58,7 @@ impl FormingValue {
         matches!(self, Self::MajorStrain | Self::MinorStrain)
     }
 
-    /// What it is multiplied by where people read it: thinning is told in per cent.
+    /// What it is multiplied by where people read it: thinning is stated in per cent.
     pub fn shown_factor(self) -> f64 {
         if self == Self::Thinning { 100.0 } else { 1.0 }
     }

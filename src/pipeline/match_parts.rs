@@ -207,7 +207,7 @@ pub fn with_alternative(
     })
 }
 
-/// The run judged anew with another shape tolerance (crash length units, 0 for the automatic one) on the
+/// The run assessed again with another shape tolerance (crash length units, 0 for the automatic one) on the
 /// full meshes. Nothing is searched: a match with that tolerance finds the same pose.
 pub fn judged_anew(
     run: &MatchRun,

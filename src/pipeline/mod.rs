@@ -1,4 +1,4 @@
-//! The work of the program as one call each: load, reduce, match, export, and the paper's tables.
+//! The work of the program as one call each: load, reduce, match, map, export, and the benchmarks.
 //!
 //! From here up the two meshes have roles: the *crash* part is fixed (target), the *stamped* part
 //! moves (source). Each stage returns what it did and how long it took; nothing here prints.

@@ -1,4 +1,4 @@
-//! What the process itself has used, for the benchmarks. Linux tells it in `/proc`; elsewhere nothing is
+//! What the process itself has used, for the benchmarks. Linux has it in `/proc`; elsewhere nothing is
 //! known.
 
 use std::fs::read_to_string;

@@ -107,7 +107,7 @@ pub struct MatchingRow {
     pub paper_ms: Option<f64>,
 }
 
-/// A row that is ready, told as soon as it is.
+/// A row that is ready, reported at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SweepRow {
     /// Of the reduction table.

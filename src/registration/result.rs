@@ -1,4 +1,4 @@
-//! The product of a match and the story of its starts.
+//! The result of a match, and what became of its starts.
 
 use std::time::Duration;
 

@@ -4,9 +4,10 @@
 //! A mesh is prepared once on the CPU ([`RenderMesh`], in a job), uploaded once ([`Renderer`] keeps
 //! it as long as someone holds it), and drawn into the multisampled textures of one viewport
 //! ([`ViewTarget`]), again only if something changed. Where that would take long, the window asks for
-//! it in steps ([`Renderer::draw_step`]): a coarse picture while the view moves, the exact one at rest. Depth is a 32-bit float, 1 near and 0 far.
-//! Colours are blended in sRGB, which is what the target holds. Nothing beyond the default limits
-//! and features of wgpu is used, so that software drivers and OpenGL draw the same picture.
+//! it in steps ([`Renderer::draw_step`]): a coarse picture while the view moves, the exact one at rest.
+//! Depth is a 32-bit float, 1 near and 0 far. Colours are blended in sRGB, which is what the target holds.
+//! Nothing beyond the default limits and features of wgpu is used, so that software drivers and OpenGL
+//! draw the same picture.
 
 mod coarse;
 mod context;

@@ -223,7 +223,7 @@ pub enum ParseMatrixError {
 
 /// Reads a pose from text: numbers between blanks, tabs, commas, semicolons, bracketed or not,
 /// also with decimal commas, by rows or by columns, or JSON with a `matrix`. Lines that begin with
-/// `#`, `$`, `%` or `//` are comments. Says what it understood; order is told by where 0 0 0 1
+/// `#`, `$`, `%` or `//` are comments. Says what it understood; the order follows from where 0 0 0 1
 /// stands.
 pub fn parse_matrix(text: &str) -> Result<ParsedMatrix, ParseMatrixError> {
     let is_comment = |line: &str| ["#", "$", "%", "//"].iter().any(|c| line.starts_with(c));

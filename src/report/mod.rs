@@ -1,4 +1,4 @@
-//! What the program hands over: the record of a file or a run, the matrix in all its forms, cards.
+//! What the program writes: the record of a file or a match, the matrix in all its forms, cards, HTML reports.
 
 mod card_reader;
 pub mod cards;

@@ -1,11 +1,11 @@
-//! Closest points by asking every triangle: what the tree is held against.
+//! Closest points by asking every triangle: what the tree is compared with.
 
 use std::sync::Arc;
 
 use super::{ClosestPoint, NormalFilter, SurfaceHit, closest_point_on_triangle};
 use crate::geometry::{Point3, TriMesh};
 
-/// Asks every triangle. The measure that the tree is held against, and the quickest way for a
+/// Asks every triangle. The measure that the tree is compared with, and the quickest way for a
 /// handful of triangles. O(triangles) per query.
 #[derive(Debug, Clone)]
 pub struct BruteForce {

@@ -298,7 +298,7 @@ mod tests {
             .collect()
     }
 
-    /// The plain loop that the sweeps are held against.
+    /// The plain loop that the sweeps are compared with.
     fn nearest_distance(grid: &FeatureGrid, query: [f32; 3]) -> f32 {
         let distances = grid.features().iter().map(|f| distance_sq(f.point, query));
         distances.fold(f32::INFINITY, f32::min).sqrt()

@@ -1,6 +1,6 @@
 //! The tree itself: binary trees, built by obvhs over pieces of the items, are folded to nodes of four
 //! children whose boxes lie side by side, with leaves of up to four items in the same manner. One query
-//! then tests four boxes or four items with the instructions of one.
+//! then tests four boxes or four items at once.
 //!
 //! Everything here is `f32` in a frame in which the items fill the cube −1 … 1. It only rules items
 //! out; what remains is decided in `f64` by the caller.

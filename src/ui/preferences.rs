@@ -12,7 +12,7 @@ use crate::pipeline::preferences::PreferencesFile;
 pub struct WindowPlace {
     /// Inner width and height in points.
     pub size: [f32; 2],
-    /// Outer corner, where the desktop tells it.
+    /// Outer corner, where the desktop reports it.
     pub corner: Option<[f32; 2]>,
     /// It filled the screen.
     pub is_maximized: bool,

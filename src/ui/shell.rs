@@ -100,7 +100,7 @@ pub struct Shell {
     drop: Option<PendingDrop>,
     place: Option<WindowPlace>,
     is_unsaved: bool,
-    /// It was told that they cannot be saved; once is enough.
+    /// The user was told that they cannot be saved; once is enough.
     has_told_unsaved: bool,
     /// The question about unsaved work was answered.
     may_close: bool,
@@ -309,7 +309,7 @@ impl Shell {
         }
     }
 
-    /// Draws the pictures that are wanted and tells what became of earlier ones.
+    /// Draws the pictures that are wanted and reports what became of earlier ones.
     fn take_pictures(&mut self, ctx: &egui::Context) {
         let news = self.pictures.take(&self.state, &mut self.viewports, ctx);
         for (level, text) in news {

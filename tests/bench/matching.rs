@@ -3,7 +3,7 @@
 //!
 //! The pair is the floor sample: 34,808 stamped triangles on the crash side's own mesh. "prepare"
 //! joins, orients, measures and builds both trees; "match" is the search and the finish; "assess"
-//! is the independent check. `RESULTS.md` holds the figures with their date and machine.
+//! is the independent check. `RESULTS.md` holds the figures with their machine.
 
 use std::hint::black_box;
 

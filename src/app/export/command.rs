@@ -1,4 +1,4 @@
-//! What can leave the program.
+//! What can be exported.
 
 use std::path::PathBuf;
 

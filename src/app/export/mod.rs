@@ -1,4 +1,4 @@
-//! Which exports are possible now, and their questions.
+//! Which exports are possible now, and what is asked before them.
 
 mod apply;
 mod command;

@@ -21,7 +21,7 @@ pub struct Coloring {
     pub is_reversed: bool,
     /// So many plain colours instead of a smooth map.
     pub n_bands: Option<u8>,
-    /// A pattern tells the sign too, for grey prints.
+    /// A pattern shows the sign too, for grey prints.
     pub has_pattern: bool,
     /// Values at the ends of the deviation's colours; `None` follows the values.
     pub limits: Option<[f64; 2]>,

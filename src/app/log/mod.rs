@@ -1,4 +1,4 @@
-//! What is told to the user: the rows of the log, toasts and bell, and what time it is.
+//! Messages to the user: the rows of the log, toasts and bell; and the time.
 
 mod command;
 mod notice;
@@ -18,9 +18,9 @@ pub struct LogState {
     log: Log,
     /// Toasts and bell.
     pub notices: Notices,
-    /// Time since the program began, as the shell last told.
+    /// Time since the program began, as the shell last reported.
     pub now: Duration,
-    /// When the program began, as the shell told.
+    /// When the program began, as the shell reported.
     pub clock: Clock,
 }
 

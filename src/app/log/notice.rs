@@ -86,7 +86,7 @@ pub struct Notice {
     pub is_unread: bool,
     /// What the user may want to do about it, beside closing it.
     pub offer: Option<Action>,
-    /// The job that failed, if it tells of one.
+    /// The job that failed, if it reports one.
     of_job: Option<JobKey>,
     is_toast: bool,
 }
@@ -185,7 +185,7 @@ impl Notices {
         }
     }
 
-    /// The newest message tells that a job failed.
+    /// The newest message reports a failed job.
     pub(in crate::app) fn last_is_of(&mut self, job: JobKey) {
         if let Some(last) = self.items.last_mut() {
             last.of_job = Some(job);

@@ -308,7 +308,7 @@ impl MapResult {
     }
 }
 
-/// True if a quantity is told by layers.
+/// True if a quantity has a value for each layer.
 pub(super) fn layered(by: ColorBy) -> Option<FormingValue> {
     by.forming().filter(|value| value.has_layers())
 }

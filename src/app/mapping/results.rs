@@ -1,4 +1,4 @@
-//! Mappings and comparisons that were asked for come back, and the one of a project is made again.
+//! Takes over mappings and comparisons when their jobs end, and makes the mapping of an opened project again.
 
 use std::sync::Arc;
 use std::time::Duration;

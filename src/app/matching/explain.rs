@@ -1,4 +1,4 @@
-//! Why a match is weak: the likely causes with what speaks for them, and one thing to do about each.
+//! Why a match is weak: the likely causes with their evidence, and a remedy for each.
 
 use crate::app::{Action, AppState, Command, FileCommand, MatchCommand, PartCommand};
 use crate::assess::{Assessment, Clarity, Reason, ShapeReason, Verdict, error_beside};
@@ -249,7 +249,7 @@ impl AppState {
         })
     }
 
-    /// A shape tolerance that accepts a difference; the match is judged with it at once.
+    /// A shape tolerance that accepts a difference; the verdict follows it at once.
     fn allow(&self, by: f64) -> (String, Vec<Command>) {
         let digit = 10f64.powf(by.log10().floor() - 1.0);
         let tolerance = (by / digit).ceil() * digit;

@@ -1,4 +1,4 @@
-//! Showing and taking of first poses and of the starts of a match.
+//! Shows and takes over first poses and the starts of a match.
 
 use std::sync::Arc;
 use std::time::Duration;

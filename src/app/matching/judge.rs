@@ -1,4 +1,4 @@
-//! The verdict follows the shape tolerance: the match is judged anew, its pose stays.
+//! The verdict follows the shape tolerance: the match is assessed again, its pose stays.
 
 use std::sync::Arc;
 use std::time::Duration;

@@ -85,7 +85,7 @@ impl MatchState {
         self.live_starts.clear();
     }
 
-    /// The running match told how far it is.
+    /// The running match reported its progress.
     pub(super) fn take_live(&mut self, work: &mut Work<'_>, live: Live) {
         if let Some(best) = &live.best {
             work.previews.live = Some(best.target_from_source);

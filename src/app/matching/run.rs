@@ -1,4 +1,4 @@
-//! Beginning, stopping and cancelling of alignment and match.
+//! Starts, stops and cancels alignment and match.
 
 use std::sync::Arc;
 

@@ -85,7 +85,7 @@ impl MatchState {
         self.match_starts(document).get(number)
     }
 
-    /// True if the running match, or the last one that gave no result, told of starts.
+    /// True if the running match, or the last one that gave no result, reported starts.
     pub(in crate::app) fn has_live_starts(&self) -> bool {
         !self.live_starts.is_empty()
     }

@@ -1,4 +1,4 @@
-//! Pairs of points that the user picked on both parts, and the pose they stand for.
+//! Pairs of points that the user picked on both parts, and the pose that fits them.
 
 mod apply;
 mod command;

@@ -1,4 +1,4 @@
-//! Files that changed on disk after they were read: told, and read again on request.
+//! Files that changed on disk after they were read: reported, and read again on request.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;

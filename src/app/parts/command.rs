@@ -30,7 +30,7 @@ pub enum FileCommand {
     ReloadAll,
     /// Read those parts again whose files have changed on disk.
     ReloadChanged,
-    /// These files have another content now than was read from them; the shell tells when that changes.
+    /// These files have another content now than was read from them; the shell reports when that changes.
     ChangedOnDisk(BTreeSet<PathBuf>),
     /// Forget a part.
     Close(Role),

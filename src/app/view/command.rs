@@ -32,7 +32,7 @@ pub enum ViewCommand {
     SetOrbitStyle(OrbitStyle),
     /// Pick or forget the pivot of a window.
     SetPivot(Role, Option<Point3>),
-    /// Shape of a window and what lies over it; the shell tells when it changes.
+    /// Shape of a window and what lies over it; the shell reports when it changes.
     SetRoom(Role, ViewRoom),
     /// The window that keys act on.
     SetFocus(Role),
@@ -56,7 +56,7 @@ pub enum ViewCommand {
     UseSection(Section),
     /// Fold the left column to a rail, or unfold it.
     FoldColumn(bool),
-    /// Whether the window is too narrow for the left column beside the 3D windows; the shell tells.
+    /// Whether the window is too narrow for the left column beside the 3D windows, as the shell reports.
     SetNarrow(bool),
     /// Only the 3D windows, or everything.
     ToggleGraphicsOnly,

@@ -1,4 +1,4 @@
-//! What a section says about itself, and what stands in the way of an action.
+//! The sections of the left column, what in them is out of date, and which bottom tabs have content.
 
 use super::BottomTab;
 use crate::app::{AppState, Command, MoveCommand, Part};

@@ -1,4 +1,4 @@
-//! The normal equations of the fit that takes gaps apart.
+//! The normal equations of the fit that splits gaps into a motion, an offset and bends.
 
 use nalgebra::{SMatrix, SVector};
 

@@ -1,5 +1,5 @@
 //! Puts together what the blocks of a deck hold: ids become indices, includes are moved, parts get
-//! their thickness, and what does not fit is told with its place.
+//! their thickness, and what does not fit is reported with its place.
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! Copies a deck with the thickness of some shells exchanged and everything else byte for byte.
+//! Copies a deck with the thickness of some shells replaced and everything else byte for byte.
 
 mod element;
 
@@ -74,8 +74,9 @@ pub struct ExchangedDeck {
 }
 
 /// Sets the corner thicknesses of the shells for which there are some, leaves out the results that the rules
-/// name, with the keyword of a block that has no others, and puts the states before `*END` (or at the end). Elements change to the keyword with the option `THICKNESS` where they stand; other options,
-/// comments and the order stay. Shells without a new thickness and all other lines are copied byte for byte.
+/// name, with the keyword of a block that has no others, and puts the states before `*END` (or at the end).
+/// Elements change to the keyword with the option `THICKNESS` where they stand; other options, comments and the
+/// order stay. Shells without a new thickness and all other lines are copied byte for byte.
 /// O(bytes).
 pub fn exchange_thickness(
     deck: &SourceFile,

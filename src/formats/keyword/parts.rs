@@ -1,4 +1,4 @@
-//! Parts and shell sections: titles and thickness.
+//! Parts, shell sections and `*CONTROL_SHELL`: titles, thickness, formulation, layers.
 
 use super::super::diagnostic::{DiagnosticKind, Diagnostics};
 use super::super::model::{Plies, Section, ShellControl, ShellFormulation};

@@ -312,8 +312,8 @@ impl Writer<'_> {
         self.text.extend_from_slice(text.as_bytes());
     }
 
-    /// A title on its own line, byte by byte as the deck had it; a first character that would begin a keyword or a comment is
-    /// moved from the first column.
+    /// A title on its own line, byte by byte as the deck had it; a first character that would begin a keyword or
+    /// a comment is moved from the first column.
     fn title(&mut self, model: &Model, title: &str) {
         let bytes = model.raw_titles.bytes(title);
         let end = memchr::memchr2(b'\n', b'\r', bytes).unwrap_or(bytes.len());

@@ -115,7 +115,8 @@ pub struct PartSummary {
 
 impl Model {
     /// The triangle mesh of the chosen elements. Quads are cut along the shorter diagonal (equal
-    /// ones from the first corner), concave ones along the inner one; of solids the faces used once are taken, outward. O(elements).
+    /// ones from the first corner), concave ones along the inner one; of solids the faces used once are
+    /// taken, facing outward. O(elements).
     pub fn surface(&self, selection: &Selection) -> Result<Surface, SelectionError> {
         self.build_surface(selection, &Monitor::silent())
     }

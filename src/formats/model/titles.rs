@@ -1,4 +1,4 @@
-//! The bytes of titles that are shown otherwise.
+//! The original bytes of titles that are shown decoded.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! The camera held against closed forms.
+//! The camera checked against closed forms.
 
 use super::*;
 

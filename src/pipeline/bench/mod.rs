@@ -1,4 +1,5 @@
-//! The program measured: how right matches are, how time grows with the size, and how exact the mapping is.
+//! Benchmarks on generated pairs: how often matches are right, how times grow with the size, and how exact the
+//! mapping is.
 
 pub mod growth;
 pub mod growth_page;

@@ -1,4 +1,4 @@
-//! What stands above mapped results in a deck.
+//! The comments at the head of a deck of mapped results.
 
 use super::PlacedPart;
 use super::output::MapWriter;

@@ -84,7 +84,7 @@ pub struct CheckRecord {
     pub found: String,
     /// What is asked for.
     pub limit: String,
-    /// Whether it is met; `None` for what is told and not judged.
+    /// Whether it is met; `None` for what is stated and not judged.
     pub is_met: Option<bool>,
     /// Why it is judged against something else than the stamped values as they are; in a record by its
     /// name and in words.

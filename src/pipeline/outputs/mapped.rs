@@ -1,4 +1,4 @@
-//! What leaves the window of a mapping: decks, report, table.
+//! What the window writes of a mapping: decks, report, table.
 
 use std::path::Path;
 

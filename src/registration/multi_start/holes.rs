@@ -1,4 +1,4 @@
-//! Holes of two meshes that must coincide: what tells a part from its twin when all else is equal.
+//! Holes of two meshes that must coincide: what distinguishes a pose from its twin when all else is equal.
 
 use crate::geometry::{Point3, Similarity};
 use crate::registration::surface::Surface;

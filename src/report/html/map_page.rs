@@ -34,12 +34,12 @@ pub struct QuantityReport {
     pub difference: &'static str,
 }
 
-/// A check: what is checked, found and asked for, whether it is met, and why it is judged as it is.
+/// A check: what is checked, found and asked for, whether it is met, and why it is judged so.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CheckReport {
     /// Name, finding, limit.
     pub cells: [String; 3],
-    /// Whether it is met; `None` for what is told and not judged.
+    /// Whether it is met; `None` for what is stated and not judged.
     pub is_met: Option<bool>,
     /// Why it is judged against something else than the stamped values as they are.
     pub reason: Option<&'static str>,

@@ -1,4 +1,4 @@
-//! What is asked for, and what its answers are measured by.
+//! What is asked for, and which answers are accepted.
 
 use std::path::{Path, PathBuf};
 

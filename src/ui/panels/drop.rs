@@ -1,4 +1,4 @@
-//! Files that hang over the window or were dropped on it: where they go, and the words that say so.
+//! Files dragged over the window or dropped on it: where they go, and the words that say so.
 
 use std::path::PathBuf;
 

@@ -167,7 +167,7 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     }
 }
 
-/// The tolerance the verdict was judged with; another one judges the match anew. From right to left. Says why
+/// The tolerance of the verdict; another one gives a new verdict. From right to left. Says why
 /// a typed one was refused.
 fn tolerance_ui(
     ui: &mut Ui,

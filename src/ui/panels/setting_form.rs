@@ -114,7 +114,7 @@ pub fn setting_ui<R>(
     }
 }
 
-/// A question mark that tells what a setting does.
+/// A question mark that says what a setting does.
 fn help_ui<R>(ui: &Ui, at: Rect, setting: &Setting<R>) {
     let id = ui.scope_id().with(("help", setting.option));
     let response = ui.interact(at, id, Sense::hover());

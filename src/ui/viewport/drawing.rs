@@ -15,7 +15,7 @@ use crate::ui::widgets::{file_swatch, nothing_yet, paint_role_mark, segments};
 
 /// Clicks this near to an outline take a point of it.
 const SNAP: f64 = 12.0;
-/// The gap is told this near to the crash outline.
+/// The gap is shown this near to the crash outline.
 const NEAR: f64 = 60.0;
 /// Zoom per point of the wheel.
 const ZOOM: f32 = 0.004;

@@ -9,7 +9,7 @@ use crate::geometry::Camera;
 use crate::render::{Drawn, Frame, Renderer, Scene, ViewTarget};
 use crate::role::{PerRole, Role};
 
-/// What lives on the graphics card, kept among egui's own resources.
+/// What is kept on the graphics card, kept among egui's own resources.
 pub(super) struct Gpu {
     pub renderer: Renderer,
     targets: PerRole<ViewTarget>,

@@ -12,7 +12,7 @@ use crate::role::Role;
 /// What a window remembers about the pointer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Pointing {
-    /// The part that was told to be under the pointer.
+    /// The part that was reported under the pointer.
     hovered: Option<PartRef>,
     /// What lay under the pointer when the menu was opened.
     menu: Option<Hit>,

@@ -1,4 +1,4 @@
-//! The handles held against closed forms.
+//! The handles checked against closed forms.
 
 use super::*;
 use crate::geometry::camera::{Camera, Projection, ScreenSize, StandardView};

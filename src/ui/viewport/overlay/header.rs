@@ -236,7 +236,7 @@ fn facts(over: &Overlay<'_>, role: Role) -> String {
     }
 }
 
-/// What is told for as long as something is done: the tool, a preview.
+/// What is shown for as long as something is done: the tool, a preview.
 fn passing_notes(over: &Overlay<'_>) -> Vec<String> {
     let state = over.frame.state;
     let is_left = over.role() == Role::Crash;
