@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use clap::Parser as _;
 use shapematch::cli::{self, Cli};
+use shapematch::text::without_error_number;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -17,7 +18,7 @@ fn main() -> ExitCode {
         None => open_window(&cli),
     };
     outcome.unwrap_or_else(|error| {
-        log::error!("{error:#}");
+        log::error!("{}", without_error_number(&format!("{error:#}")));
         cli::exit_status(&error)
     })
 }

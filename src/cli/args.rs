@@ -41,7 +41,7 @@ pub struct Cli {
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = threads())]
     pub threads: usize,
 
-    /// Print errors only.
+    /// Print no progress and no warnings; results and errors are still printed.
     #[arg(long, short, global = true)]
     pub quiet: bool,
 }
@@ -53,7 +53,7 @@ pub enum Task {
     Match(Box<MatchArgs>),
     /// Carry thickness, plastic strain, strain and stress of stamped parts onto a crash part.
     Map(Box<MapArgs>),
-    /// Carry the results of many stamped parts onto a crash model; which parts they are is found.
+    /// Carry the results of many stamped parts onto a crash model, each onto the part it belongs to.
     MapCar(Box<MapCarArgs>),
     /// Reduce a mesh to a maximum number of triangles.
     Reduce(ReduceArgs),
@@ -61,7 +61,7 @@ pub enum Task {
     Info(InfoArgs),
     /// Write a generated pair of parts with a known pose.
     Sample(SampleArgs),
-    /// Measure reduction and matching as in the tables of the paper.
+    /// Measure reduction and matching as in the tables of the paper; or robustness, growth or mapping.
     Bench(BenchArgs),
 }
 
@@ -93,7 +93,7 @@ pub struct InputArgs {
     /// shell-set:ID, node-set:ID, or all. Without it, the part of a whole model that fits is found.
     #[arg(long, value_name = "PART")]
     pub crash_part: Option<String>,
-    /// Part of the stamped file, as for --crash-part. Without it, the sheet: parts that are rigid, or have
+    /// Part of the stamped file, as for --crash-part, or sheet. Without it, the sheet: parts that are rigid, or have
     /// no forming results where others have them, are tools and left out.
     #[arg(long, value_name = "PART")]
     pub stamped_part: Option<String>,
@@ -156,19 +156,19 @@ pub struct OutputArgs {
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<PathBuf>,
     /// Write the 4×4 matrix as text (rows, crash from stamped).
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE|-")]
     pub matrix: Option<PathBuf>,
     /// Write LS-DYNA cards that use the pose.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE|-")]
     pub cards: Option<PathBuf>,
     /// The kind of cards.
     #[arg(long, value_name = "FORM", requires = "cards", default_value = "stamped", value_parser = card_forms())]
     pub card_form: CardForm,
     /// Write a report with pictures, tables and charts as one HTML file.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE|-")]
     pub report: Option<PathBuf>,
     /// Write the distance of every node of both parts to the other part as CSV.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE|-")]
     pub deviations: Option<PathBuf>,
     /// Write the stamped mesh at its matched pose; the file extension selects the format
     /// (.k, .dynain, .stl, .ply, .obj).
@@ -271,7 +271,7 @@ pub struct BenchArgs {
     /// Measure instead how the times of preparing and matching grow from 1,000 to 2,000,000 triangles.
     #[arg(long, conflicts_with_all = ["crash", "robustness", "mapping"])]
     pub growth: bool,
-    /// Largest pair of meshes that is measured, in triangles of both.
+    /// With --growth: the largest pair, in triangles of both meshes together.
     #[arg(
         long,
         value_name = "N",

@@ -76,7 +76,7 @@ pub(super) struct MapChoice {
     /// History variables go to parts of the same law alone.
     #[arg(long, value_name = "LAW", value_parser = law)]
     stamped_material: Option<String>,
-    /// A further folder for included files; may be given several times.
+    /// Another folder to search for included files; may be given several times.
     #[arg(long, value_name = "FOLDER")]
     include_folder: Vec<PathBuf>,
     /// Pose of a stamped part (crash from stamped): a text file, or the numbers themselves, 16 by rows.
@@ -86,21 +86,21 @@ pub(super) struct MapChoice {
     /// Take the poses from a .shapematch project, in the order of its stamped files.
     #[arg(long, value_name = "FILE", conflicts_with = "pose")]
     pub(super) project: Option<PathBuf>,
-    /// The parts already lie on each other.
+    /// Take both parts where they are, without a match.
     #[arg(long, conflicts_with_all = ["pose", "project"])]
     pub(super) identity: bool,
     /// Where the parts are matched first: whether the stamped part is the crash part's own hand, the
     /// opposite one (left for right), or either. Tensors are mirrored with it.
     #[arg(long, value_enum, default_value = "same", conflicts_with_all = ["pose", "project", "identity"])]
     hand: HandName,
-    /// Mirror what the given pose puts down, at a coordinate plane of the crash model: the stamped part
-    /// of one side of the car for the other side. Where the parts are matched first, free finds the
+    /// Mirror the stamped part at the given pose in a coordinate plane of the crash model: the part of one
+    /// side of the car for the other side. Where the parts are matched first, free finds the
     /// plane, as --hand opposite does. Tensors are mirrored with it.
     #[arg(long, value_enum, default_value = "none")]
     mirror: MirrorName,
 }
 
-/// Quantities and how they pass over.
+/// Quantities and how they are transferred.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Values")]
 pub(super) struct MapValues {
@@ -111,7 +111,7 @@ pub(super) struct MapValues {
     /// Layers of the crash elements, at most 100; from the section if not given.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = layers())]
     layers: Option<usize>,
-    /// Rule through their thickness; from the deck if not given.
+    /// Integration rule through the thickness of the crash elements; from the deck if not given.
     #[arg(long, value_enum)]
     rule: Option<RuleName>,
     /// Points in the plane of each layer; from the element formulation if not given.
@@ -126,7 +126,7 @@ pub(super) struct MapValues {
 #[command(next_help_heading = "Output")]
 struct MapOutputArgs {
     /// The mapped state as a deck.
-    #[arg(long, short, value_name = "FILE")]
+    #[arg(long, short, value_name = "FILE|-")]
     out: Option<PathBuf>,
     /// include: states, and the elements with their thickness in a second file; part: all elements of
     /// the part and the states in one file; deck: a copy of the crash file with thickness and states
@@ -147,17 +147,17 @@ struct MapOutputArgs {
     #[arg(long, requires = "require")]
     strict: bool,
     /// Status, distances and values of every crash element as CSV.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE|-")]
     csv: Option<PathBuf>,
     /// The elements without values of their own, one *SET_SHELL_LIST for each reason.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE|-")]
     unmapped: Option<PathBuf>,
     /// The result of another mapper, or the solver's own file of mapped states (INCOUT): differences
     /// element by element. May be given several times, for thickness and states in two files.
     #[arg(long, value_name = "FILE")]
     compare: Vec<PathBuf>,
     /// The mapping as one HTML file with pictures before and after.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE|-")]
     report: Option<PathBuf>,
     /// The result as JSON, to a file or to standard output with "-".
     #[arg(long, value_name = "FILE|-")]
@@ -335,6 +335,10 @@ fn finish(
         };
         log::error!("{share:.1} % of the area is mapped, {required} % are required{withheld}");
         return Ok(ExitCode::from(EXIT_GATE));
+    }
+    if record.mapped_area <= 0.0 {
+        log::error!("nothing is mapped: the parts do not lie on each other at this pose");
+        return Ok(ExitCode::FAILURE);
     }
     if !failed.is_empty() {
         return Ok(ExitCode::FAILURE);

@@ -76,7 +76,7 @@ fn describe(bench: &MapBench) -> String {
             percent(row.plastic_peak - 1.0, 1),
             percent(row.peak_of_stamped - 1.0, 1),
             percent(row.back_p95, 1),
-            fixed(row.map_ms, 0)
+            time(row.map_ms)
         );
     }
     let Some(speed) = &bench.speed else {
@@ -111,4 +111,13 @@ fn describe(bench: &MapBench) -> String {
         speed.result_bytes as f64 / 1e6
     );
     text
+}
+
+/// Milliseconds, or a dash for the row of exact values, which no mapping took time for.
+fn time(ms: f64) -> String {
+    if ms.is_nan() {
+        "–".to_owned()
+    } else {
+        fixed(ms, 0)
+    }
 }

@@ -47,7 +47,7 @@ pub struct MapCarArgs {
     lengths: LengthFactors,
     #[command(flatten)]
     stresses: StressFactors,
-    /// A further folder for included files; may be given several times.
+    /// Another folder to search for included files; may be given several times.
     #[arg(long, value_name = "FOLDER")]
     include_folder: Vec<PathBuf>,
     /// 16 columns a number instead of 10.

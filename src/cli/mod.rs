@@ -111,14 +111,15 @@ fn json_target(json: Option<&Path>) -> Option<Target> {
     })
 }
 
-/// Refuses outputs that cannot be written, share a name or would overwrite one of the `inputs`.
+/// Refuses outputs that cannot be written, share a name or would overwrite one of the `inputs`. The name of a mesh
+/// decides its format, so that none goes to standard output.
 fn check_outputs(
     targets: impl IntoIterator<Item = Target>,
     inputs: &[PathBuf],
 ) -> anyhow::Result<()> {
     let (printed, files): (Vec<Target>, Vec<Target>) = targets
         .into_iter()
-        .partition(|target| is_stdout(&target.path));
+        .partition(|target| is_stdout(&target.path) && target.content != Content::Mesh);
     let mut reasons: Vec<String> = Vec::new();
     if let [first, .., last] = &printed[..] {
         let (first, last) = (&first.name, &last.name);

@@ -232,7 +232,7 @@ pub static SETTINGS: [Setting; 26] = [
         former: &[],
         key: "remove_offset",
         label: "Remove offset",
-        help: "Take an offset of the sheets along their normals, as between skin and mid-surface, out of the pose where it can be told from a shift",
+        help: "Take an offset of the sheets along their normals, as between skin and mid-surface, out of the pose where it can be distinguished from a shift",
         group: Group::Correspondences,
         domain: Domain::Switch,
         access: at!(settings.remove_offset),

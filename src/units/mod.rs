@@ -181,7 +181,7 @@ impl UnitOrigin {
             Self::Materials => "from density and modulus",
             Self::SizeAndThickness => "guessed from size and thickness",
             Self::Size => "guessed from size",
-            Self::OtherPart => "as the other part",
+            Self::OtherPart => "assumed from the other part",
         }
     }
 

@@ -296,7 +296,7 @@ fn values_that_cannot_be_are_wrong_usage() {
         let refused = strip.0.run(&["--identity", without_out]);
         assert_eq!(refused.status.code(), Some(2), "{without_out}");
         assert!(
-            errors(&refused).contains("--out <FILE>"),
+            errors(&refused).contains("--out <FILE|->"),
             "{}",
             errors(&refused)
         );
@@ -420,4 +420,14 @@ fn the_largest_distance_is_a_length_or_the_element_size() {
     assert_eq!(auto, written("10"));
     assert_eq!(auto.0, Some(0));
     assert_eq!(written("far").0, Some(2));
+}
+
+#[test]
+fn a_mapping_of_nothing_is_no_success() {
+    let strip = Strip::new();
+    let far = "1 0 0 0  0 1 0 0  0 0 1 5000  0 0 0 1";
+    let output = strip.map(&["--pose", far]);
+    assert_eq!(output.status.code(), Some(1));
+    let told = errors(&output);
+    assert!(told.contains("nothing is mapped"), "{told}");
 }

@@ -36,7 +36,10 @@ fn unknown_units_are_said_to_be_unknown_and_can_be_set() {
     let n_done = window.state.history.n_done();
     window.apply(set(Role::Crash, UnitSystem::TonMmS));
     assert_eq!(words(&window, Role::Crash), "ton-mm-s, set by you");
-    assert_eq!(words(&window, Role::Stamped), "mm, as the other part");
+    assert_eq!(
+        words(&window, Role::Stamped),
+        "mm, assumed from the other part"
+    );
     assert_eq!(window.state.lengths().of(0.38), "0.380 mm");
     // Only a word about the file has changed: what was measured stays valid.
     assert_eq!(window.state.document.stamp(), before.stamp());
@@ -92,7 +95,10 @@ fn an_answer_is_remembered_for_the_file() {
     other.open("says_m.k", Role::Stamped);
     other.apply(FileCommand::DismissUnitHint);
     assert_eq!(other.state.unit_hint(), None);
-    assert_eq!(words(&other, Role::Stamped), "mm, as the other part");
+    assert_eq!(
+        words(&other, Role::Stamped),
+        "mm, assumed from the other part"
+    );
     let mut again = Window::new();
     again.state.settings = other.state.settings.clone();
     again.open("says_mm.k", Role::Crash);
