@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::{MapFiles, MapRun, PlacedPart, mapped_by_solver};
 use crate::formats::diagnostic::{DiagnosticKind, Severity};
-use crate::mapping::{MapOptions, Quantities, Status};
+use crate::mapping::{Facing, MapOptions, Quantities, Status};
 use crate::pipeline::load::LoadedPart;
 use crate::text::{counted, length, parts_by_id};
 
@@ -116,7 +116,7 @@ fn of_elements(run: &MapRun) -> Vec<String> {
             counted(n_filled, "element")
         ));
     }
-    if area > 0.0 && mapped.senses.contains(&None) {
+    if area > 0.0 && mapped.facings.contains(&Facing::Mixed) {
         warnings.push(
             "normals of the two parts agree on no side; sheets that lie close are told apart by \
              distance alone"
