@@ -118,6 +118,8 @@ kinds! {
     RepeatedNode, Note, "node repeated at the same place";
     /// An element id is defined twice.
     DuplicateElement, Warning, "duplicate element id";
+    /// An element is defined twice with the same part and nodes.
+    RepeatedElement, Warning, "element repeated at the same nodes";
     /// A part id is defined twice.
     DuplicatePart, Warning, "duplicate part id";
     /// An element without area.

@@ -1,7 +1,9 @@
 //! A model at another pose: nodes moved, tensors turned, corners renumbered under a mirror.
 
-use super::model::{Forming, Model, Solid, StrainPoint, StressPoint};
-use crate::geometry::tensor::{Tensor, rotated};
+use std::ops::Range;
+
+use super::model::{Forming, Model, Solid};
+use crate::geometry::tensor::rotated;
 use crate::geometry::{Matrix3, Similarity};
 
 /// Which old corner each corner of a mirrored quad is: the first edge stays, reversed.
@@ -24,6 +26,9 @@ pub fn moved(model: &Model, motion: &Similarity) -> Model {
     }
     for extra in &mut result.shell_extras {
         extra.thickness = extra.thickness.map(|t| t * motion.scale);
+    }
+    for ply in result.ply_stacks.iter_mut().flatten() {
+        *ply *= motion.scale;
     }
     for part in &mut result.parts {
         part.thickness = part.thickness.map(|own| own.map(|t| t * motion.scale));
@@ -56,25 +61,41 @@ fn turn(forming: &mut Forming, rotation: &Matrix3) {
 
 /// Reverses the order of corners and all that goes with them.
 fn reverse(model: &mut Model) {
-    for shell in &mut model.shells {
-        let [a, b, c, d] = shell.nodes;
-        shell.nodes = if shell.is_triangle() {
-            [b, a, c, c]
-        } else {
-            [b, a, d, c]
-        };
+    reverse_elements(model, 0..model.shells.len(), 0..model.solids.len());
+    let thicknesses = model.parts.iter_mut().filter_map(|p| p.thickness.as_mut());
+    let of_sections = model.sections.iter_mut().map(|s| &mut s.thickness);
+    for corners in thicknesses.chain(of_sections) {
+        *corners = REVERSED.map(|i| corners[i]);
     }
-    for extra in &mut model.shell_extras {
+    let forming = &mut model.forming;
+    reverse_points(forming, 0..forming.n_stress(), 0..forming.n_strain());
+}
+
+/// What belongs to the corners of a shell in the order 2 1 4 3. Done twice it is as before.
+pub(super) fn reversed_corners<T: Copy>([a, b, c, d]: [T; 4], is_triangle: bool) -> [T; 4] {
+    if is_triangle {
+        [b, a, c, d]
+    } else {
+        [b, a, d, c]
+    }
+}
+
+/// Reverses the order of the corners of some shells and solids, and what each of them has at its corners.
+pub(super) fn reverse_elements(model: &mut Model, shells: Range<usize>, solids: Range<usize>) {
+    let is_own = |shell: u32| shells.contains(&(shell as usize));
+    for shell in &mut model.shells[shells.clone()] {
+        shell.nodes = reversed_corners(shell.nodes, shell.is_triangle());
+    }
+    for extra in model.shell_extras.iter_mut().filter(|e| is_own(e.shell)) {
         let is_triangle = model.shells[extra.shell as usize].is_triangle();
-        let [a, b, c, d] = extra.thickness;
-        extra.thickness = if is_triangle {
-            [b, a, c, d]
-        } else {
-            [b, a, d, c]
-        };
+        extra.thickness = reversed_corners(extra.thickness, is_triangle);
         extra.beta = 0.0 - extra.beta;
     }
-    for (shell, nodes) in &mut model.mid_side {
+    for (shell, nodes) in model
+        .mid_side
+        .iter_mut()
+        .filter(|(shell, _)| is_own(*shell))
+    {
         let [of_first, of_second, of_third, of_fourth] = *nodes;
         *nodes = if !model.shells[*shell as usize].is_triangle() {
             [of_first, of_fourth, of_third, of_second]
@@ -84,15 +105,9 @@ fn reverse(model: &mut Model) {
             [of_first, of_third, of_second, of_fourth]
         };
     }
-    for solid in &mut model.solids {
+    for solid in &mut model.solids[solids] {
         solid.nodes = reversed_solid(solid);
     }
-    let thicknesses = model.parts.iter_mut().filter_map(|p| p.thickness.as_mut());
-    let of_sections = model.sections.iter_mut().map(|s| &mut s.thickness);
-    for corners in thicknesses.chain(of_sections) {
-        *corners = REVERSED.map(|i| corners[i]);
-    }
-    model.forming = reversed_points(&model.forming);
 }
 
 /// Both faces reversed; a tetrahedron whose top is one node stays written as one.
@@ -105,45 +120,53 @@ fn reversed_solid(solid: &Solid) -> [u32; 8] {
     }
 }
 
-/// Results whose points in the plane follow the corners: three or four for each layer.
-fn reversed_points(forming: &Forming) -> Forming {
-    let mut result = Forming::default();
-    result.others = forming.others;
-    for shell in forming.stresses() {
-        let order = layer_order(shell.n_plane, shell.points, |point| point.t);
-        let points: Vec<StressPoint> = order.iter().map(|&i| shell.points[i]).collect();
-        let history = order.iter().flat_map(|&i| shell.history_of(i));
-        let history: Vec<f64> = history.copied().collect();
-        let tensors = order.iter().flat_map(|&i| shell.tensors_of(i));
-        let tensors: Vec<Tensor> = tensors.copied().collect();
-        result
-            .add_state(shell.element_id, shell.n_plane, &points, &history, &tensors)
-            .expect("history and tensors have as many values as before");
+/// Brings the points in the plane of some results, three or four for each layer, into the order of the
+/// reversed corners. Each is given by its number among the stresses or strains.
+pub(super) fn reverse_points(
+    forming: &mut Forming,
+    stresses: impl IntoIterator<Item = usize>,
+    strains: impl IntoIterator<Item = usize>,
+) {
+    for index in stresses {
+        let shell = forming.stress(index);
+        let (n_history, n_tensors) = (shell.n_history, shell.n_tensors);
+        for [a, b] in exchanged(shell.n_plane, shell.points, |point| point.t) {
+            forming.stress_points_mut(index).swap(a, b);
+            swap_runs(forming.history_mut(index), n_history, a, b);
+            swap_runs(forming.tensors_mut(index), n_tensors, a, b);
+        }
     }
-    for shell in forming.strains() {
-        let order = layer_order(shell.n_plane, shell.points, |point| point.t);
-        let points: Vec<StrainPoint> = order.iter().map(|&i| shell.points[i]).collect();
-        result.add_strain(shell.element_id, shell.n_plane, &points);
+    for index in strains {
+        let shell = forming.strain(index);
+        for [a, b] in exchanged(shell.n_plane, shell.points, |point| point.t) {
+            forming.strain_points_mut(index).swap(a, b);
+        }
     }
-    result
 }
 
-/// The old index of each point. Points keep their order unless each run of `n_plane` is a layer.
-fn layer_order<T>(n_plane: usize, points: &[T], t: impl Fn(&T) -> f64) -> Vec<usize> {
+/// Exchanges what points `a` < `b` have, `n` values each.
+fn swap_runs<T>(values: &mut [T], n: usize, a: usize, b: usize) {
+    let (before, after) = values.split_at_mut(n * b);
+    before[n * a..][..n].swap_with_slice(&mut after[..n]);
+}
+
+/// The pairs of points that change places. None do unless each run of `n_plane` is a layer.
+fn exchanged<T>(n_plane: usize, points: &[T], t: impl Fn(&T) -> f64) -> Vec<[usize; 2]> {
     let is_layer =
         |layer: &[T]| layer.len() == n_plane && layer.iter().all(|p| t(p) == t(&layer[0]));
-    let has_layers = matches!(n_plane, 3 | 4) && points.chunks(n_plane).all(is_layer);
-    let old = |i: usize| match (has_layers, i % n_plane.max(1)) {
-        (true, in_plane @ 0..2) => i - in_plane + REVERSED[in_plane],
-        (true, in_plane) if n_plane == 4 => i - in_plane + REVERSED[in_plane],
-        _ => i,
-    };
-    (0..points.len()).map(old).collect()
+    if !matches!(n_plane, 3 | 4) || !points.chunks(n_plane).all(is_layer) {
+        return Vec::new();
+    }
+    let of_layer = |first| [[first, first + 1], [first + 2, first + 3]];
+    let firsts = (0..points.len()).step_by(n_plane);
+    firsts
+        .flat_map(|first| of_layer(first).into_iter().take(n_plane - 2))
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::model::SolidKind;
+    use super::super::model::{SolidKind, StressPoint};
     use super::*;
     use crate::geometry::{Point3, Pose, TriMesh, Vector3};
 

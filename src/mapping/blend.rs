@@ -6,7 +6,7 @@ use super::gather::Group;
 use super::layered::PLASTIC_STRAIN;
 use super::source::PreparedSource;
 use crate::geometry::tensor::{Turn, normal_component, smallest_rotation};
-use crate::geometry::{Matrix3, Vector3};
+use crate::geometry::{Matrix3, Point3, Vector3};
 
 /// A stress component along the normal below this share of the stress is rounding.
 const NORMAL_STRESS_ROUNDING: f64 = 1e-9;
@@ -44,10 +44,10 @@ impl<'a> Blend<'a> {
         element: usize,
         groups: &'a [Group],
         is_copy: bool,
-        fields_of: impl Fn(u32) -> &'a Fields,
+        fields_of: impl Fn(&Group) -> &'a Fields,
     ) -> Self {
         let shares = groups.iter().filter_map(|group| {
-            let fields = fields_of(group.source);
+            let fields = fields_of(group);
             let slot = fields.patch.slot(group.element)?;
             let source = &context.sources[group.source as usize];
             let out_of_frame = Matrix3::from_columns(fields.patch.frame(slot));
@@ -102,12 +102,12 @@ impl<'a> Blend<'a> {
     /// nothing if less than half of the area has them.
     pub fn states(&self, n_layers: usize, out: &mut Vec<[f64; 7]>) {
         let normal = self.context.target.mesh.normals()[self.element];
-        let rule = self.context.target.rule_of[self.element] as usize;
         let n_plane = self.context.target.planes(self.element);
         let first = out.len();
         if self.is_copy {
-            self.copy(n_plane, out, |source, element| {
-                source.states_of(rule, element)
+            self.copy(n_plane, out, |source, group, plane| {
+                let rule = self.context.rule(self.element, group.is_flipped);
+                source.states_of(rule, group.element as usize, plane)
             });
         } else {
             self.blend(n_layers, n_plane, |fields| fields.states.as_ref(), out);
@@ -121,40 +121,58 @@ impl<'a> Blend<'a> {
     /// Appends the strains of each layer; nothing if less than half of the area has them.
     pub fn strains(&self, n_layers: usize, out: &mut Vec<[f64; 6]>) {
         if self.is_copy {
-            let rule = self.context.strain_rule(self.element);
-            self.copy(1, out, |source, element| source.strains_of(rule, element));
+            self.copy(1, out, |source, group, _| {
+                let rule = self.context.strain_rule(self.element, group.is_flipped);
+                source.strains_of(rule, group.element as usize)
+            });
         } else {
             self.blend(n_layers, 1, |fields| fields.strains.as_ref(), out);
         }
     }
 
-    /// The values of the one partner as they are, turned by the pose.
+    /// The values of the one partner as they are, turned by the pose: of each point in the plane those of the
+    /// partner's point at the same corner.
     fn copy<const N: usize>(
         &self,
         n_plane: usize,
         out: &mut Vec<[f64; N]>,
-        values_of: impl Fn(&PreparedSource<'_>, usize) -> Option<Vec<[f64; N]>>,
+        values_of: impl Fn(&PreparedSource<'_>, &Group, Option<usize>) -> Option<Vec<[f64; N]>>,
     ) {
         let Some(share) = self.shares.first() else {
             return;
         };
         let source = &self.context.sources[share.group.source as usize];
-        let Some(mut values) = values_of(source, share.group.element as usize) else {
+        let planes: Vec<Option<usize>> = if n_plane == 1 {
+            vec![None]
+        } else {
+            let own = self.context.target.mesh.corner_points(self.element);
+            let theirs = source.mesh.corner_points(share.group.element as usize);
+            let apart = |corner: &Point3, at: usize| (theirs[at] - corner).norm_squared();
+            let nearest = |corner: Point3| {
+                (0..4).min_by(|&a, &b| apart(&corner, a).total_cmp(&apart(&corner, b)))
+            };
+            own.map(nearest).to_vec()
+        };
+        let points: Option<Vec<Vec<[f64; N]>>> = planes
+            .into_iter()
+            .map(|plane| values_of(source, share.group, plane))
+            .collect();
+        let Some(mut points) = points else {
             return;
         };
         if share.group.is_flipped {
-            values.reverse();
+            points.iter_mut().for_each(|values| values.reverse());
         }
         let pose = source.pose.rotation;
         if pose != Matrix3::identity() {
             let turn = Turn::new(&pose);
-            for value in &mut values {
+            for value in points.iter_mut().flatten() {
                 let turned = turn.apply(&tensor_of(value));
                 value[..6].copy_from_slice(&turned);
             }
         }
-        let of_layer = |value| std::iter::repeat_n(value, n_plane);
-        out.extend(values.into_iter().flat_map(of_layer));
+        let n_layers = points.first().map_or(0, Vec::len);
+        out.extend((0..n_layers).flat_map(|layer| points.iter().map(move |values| values[layer])));
     }
 
     fn blend<const N: usize>(

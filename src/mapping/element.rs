@@ -7,7 +7,7 @@ use super::layered::PLASTIC_STRAIN;
 use super::options::{MapMethod, MapOptions, Status};
 use super::points::PointRules;
 use super::source::{PartnerFilter, PreparedSource};
-use super::target::{ElementReport, MappedLayers, Partner, TargetPart};
+use super::target::{ElementReport, Facing, MappedLayers, Partner, TargetPart};
 use super::uniqueness::AMBIGUOUS_RATIO;
 
 /// Corners closer than this share of the element's size are the same.
@@ -18,7 +18,9 @@ pub(super) struct Context<'a> {
     pub sources: &'a [PreparedSource<'a>],
     pub target: &'a TargetPart,
     pub options: &'a MapOptions,
-    pub senses: &'a [Option<bool>],
+    pub facings: &'a [Facing],
+    /// For each rule the one that the other side of the sheet sees: those of the target come first.
+    pub turned_over: &'a [usize],
     pub points: PointRules,
     pub min_cos: f64,
     pub strains_at_surfaces: bool,
@@ -90,9 +92,9 @@ impl Context<'_> {
             let groups = &partners.groups[first..partners.ends[at]];
             first = partners.ends[at];
             if out.reports[at].status.has_values() {
-                let rule = self.target.rule_of[element] as usize;
-                let fields_of = |source: u32| -> &Fields {
-                    let of_source = &fields[self.field_index(source as usize, rule)];
+                let fields_of = |group: &Group| -> &Fields {
+                    let rule = self.rule(element, group.is_flipped);
+                    let of_source = &fields[self.field_index(group.source as usize, rule)];
                     of_source.as_ref().expect("loaded for every group")
                 };
                 let blend = Blend::new(self, element, groups, partners.is_copy[at], fields_of);
@@ -136,34 +138,49 @@ impl Context<'_> {
         }
     }
 
-    /// Number of the rule at whose layers the strains of an element stand.
-    pub(super) fn strain_rule(&self, element: usize) -> usize {
+    /// Number of the rule at whose layers a source element has what the element's layers take, in rising T of its
+    /// own: that of the element, as the other side of the sheet sees it if the normals are opposite.
+    pub(super) fn rule(&self, element: usize, is_flipped: bool) -> usize {
+        let rule = self.target.rule_of[element] as usize;
+        if is_flipped {
+            self.turned_over[rule]
+        } else {
+            rule
+        }
+    }
+
+    /// The same for strains.
+    pub(super) fn strain_rule(&self, element: usize, is_flipped: bool) -> usize {
         if self.strains_at_surfaces {
             0
         } else {
-            self.target.rule_of[element] as usize
+            self.rule(element, is_flipped)
         }
     }
 
     fn field_index(&self, source: usize, rule: usize) -> usize {
-        source * self.target.rules.len() + rule
+        source * self.turned_over.len() + rule
     }
 
     /// Fits the fields that the elements need, each once.
     fn load_fields(&self, elements: &[u32], partners: &Partners, fields: &mut Vec<Option<Fields>>) {
-        let n_rules = self.target.rules.len();
+        let n_rules = self.turned_over.len();
         fields.resize_with(self.sources.len() * n_rules, || None);
-        let rule_at = |at: usize| self.target.rule_of[elements[at] as usize] as usize;
-        let mut rules: Vec<usize> = (0..elements.len()).map(rule_at).collect();
+        let sides_at = |at: usize| {
+            let element = elements[at] as usize;
+            [false, true].map(|is_flipped| self.rule(element, is_flipped))
+        };
+        let mut rules: Vec<usize> = (0..elements.len()).flat_map(sides_at).collect();
         rules.sort_unstable();
         rules.dedup();
         for (source, prepared) in self.sources.iter().enumerate() {
             for &rule in &rules {
                 let strain_rule = if self.strains_at_surfaces { 0 } else { rule };
-                let own = (0..elements.len()).filter(|&at| rule_at(at) == rule);
+                let own = (0..elements.len()).filter(|&at| sides_at(at).contains(&rule));
                 let groups = own.flat_map(|at| {
                     let first = at.checked_sub(1).map_or(0, |before| partners.ends[before]);
-                    &partners.groups[first..partners.ends[at]]
+                    let all = partners.groups[first..partners.ends[at]].iter();
+                    all.filter(move |group| sides_at(at)[usize::from(group.is_flipped)] == rule)
                 });
                 let groups = groups.filter(|group| group.source as usize == source);
                 let of_rule = fields[self.field_index(source, rule)]
@@ -255,7 +272,7 @@ impl Context<'_> {
         PartnerFilter {
             normal: self.target.mesh.normals()[element],
             min_cos: self.min_cos,
-            sense: self.senses[source],
+            facing: self.facings[source],
         }
     }
 

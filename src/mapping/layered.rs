@@ -14,6 +14,38 @@ pub struct Layered<const N: usize> {
     records: Vec<(u32, u16)>,
     rules: Vec<LayerRule>,
     values: Vec<[f64; N]>,
+    in_plane: InPlane<N>,
+}
+
+/// The points of elements that have four in each layer, whose means are the values there.
+#[derive(Debug, Clone, PartialEq)]
+struct InPlane<const N: usize> {
+    /// For each element up to the last one with such points, where these begin.
+    starts: Vec<Option<u32>>,
+    /// Layer by layer in rising T, in a layer in the order of the file.
+    points: Vec<[f64; N]>,
+}
+
+impl<const N: usize> InPlane<N> {
+    /// Takes the points of an element, with their places; `None` for other points than four in each layer.
+    fn set(&mut self, element: usize, points: Option<Vec<(f64, [f64; N])>>) {
+        if let Some(points) = points {
+            let n_known = self.starts.len().max(element + 1);
+            self.starts.resize(n_known, None);
+            self.starts[element] = Some(self.points.len() as u32);
+            let values = points.into_iter().map(|(_, values)| values);
+            self.points.extend(values);
+        } else if let Some(start) = self.starts.get_mut(element) {
+            *start = None;
+        }
+    }
+
+    /// What one of the four points of each layer has; `None` for an element without such points.
+    fn of(&self, element: usize, plane: usize, n_layers: usize) -> Option<Vec<[f64; N]>> {
+        let start = (*self.starts.get(element)?)?;
+        let all = &self.points[start as usize..][..4 * n_layers];
+        Some(all.iter().skip(plane).step_by(4).copied().collect())
+    }
 }
 
 const NO_RULE: u16 = u16::MAX;
@@ -56,6 +88,10 @@ impl<const N: usize> Layered<N> {
             records: vec![(0, NO_RULE); n_elements],
             rules: Vec::new(),
             values: Vec::new(),
+            in_plane: InPlane {
+                starts: Vec::new(),
+                points: Vec::new(),
+            },
         }
     }
 
@@ -71,14 +107,20 @@ impl<const N: usize> Layered<N> {
     /// one layer are averaged, layers sorted by T. Nothing is set without points, with a value that is
     /// not finite, or beyond 65,534 different rules.
     pub fn set(&mut self, element: usize, points: impl Iterator<Item = (f64, [f64; N])>) {
-        let points: Vec<(f64, [f64; N])> = points.collect();
+        let mut points: Vec<(f64, [f64; N])> = points.collect();
         let finite = |(t, values): &(f64, [f64; N])| {
             t.is_finite() && values.iter().all(|value| value.is_finite())
         };
         if points.is_empty() || !points.iter().all(finite) {
             return;
         }
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Places that differ by rounding would bring the points of a layer into another order.
+        let is_layer = |four: &[(f64, [f64; N])]| four.len() == 4 && four[3].0 == four[0].0;
+        let in_plane = points.chunks(4).all(is_layer).then(|| points.clone());
         let layers = into_layers(points);
+        // Eight points in one place are no two layers of four.
+        let in_plane = in_plane.filter(|points| points.len() == 4 * layers.len());
         let places: Vec<f64> = layers.iter().map(|(t, _)| *t).collect();
         let first = self.values.len();
         self.values
@@ -90,6 +132,7 @@ impl<const N: usize> Layered<N> {
         });
         if rule < NO_RULE as usize {
             self.records[element] = (first as u32, rule as u16);
+            self.in_plane.set(element, in_plane);
         }
     }
 
@@ -163,6 +206,41 @@ pub(super) struct AtLayers<'a, const N: usize> {
     n_layers: usize,
 }
 
+impl<const N: usize> AtLayers<'_, N> {
+    /// What an element has at each layer, at one of its four points in the plane if it has some and one is asked
+    /// for; `None` if it has nothing.
+    pub(super) fn of(&self, element: usize, plane: Option<usize>) -> Option<Vec<[f64; N]>> {
+        let (rule, mean) = self.from.of(element)?;
+        let own = plane.and_then(|plane| self.from.in_plane.of(element, plane, rule.len()));
+        let given = own.as_deref().unwrap_or(mean);
+        let mut values = Vec::with_capacity(self.n_layers);
+        let (_, rule) = self.from.records[element];
+        self.push_at_layers(given, &self.matrices[rule as usize], &mut values);
+        Some(values)
+    }
+
+    /// Appends what the layers of a target have, from those of an element.
+    fn push_at_layers(
+        &self,
+        given: &[[f64; N]],
+        matrices: &[LayerMatrix; N],
+        out: &mut Vec<[f64; N]>,
+    ) {
+        if matrices[0].is_identity() {
+            out.extend_from_slice(given);
+            return;
+        }
+        let first = out.len();
+        out.resize(first + self.n_layers, [0.0; N]);
+        for (number, matrix) in matrices.iter().enumerate() {
+            for (layer, row) in matrix.rows().enumerate() {
+                let terms = row.iter().zip(given).map(|(w, v)| w * v[number]);
+                out[first + layer][number] = terms.sum();
+            }
+        }
+    }
+}
+
 impl<const N: usize> Numbers<N> for AtLayers<'_, N> {
     fn n_layers(&self) -> usize {
         self.n_layers
@@ -173,25 +251,14 @@ impl<const N: usize> Numbers<N> for AtLayers<'_, N> {
     }
 
     fn push(&self, element: usize, out: &mut Vec<[f64; N]>) {
-        let first = out.len();
         let (at, rule) = self.from.records[element];
         let Some(matrices) = self.matrices.get(rule as usize) else {
-            out.resize(first + self.n_layers, [0.0; N]);
+            out.resize(out.len() + self.n_layers, [0.0; N]);
             return;
         };
         let n_source = self.from.rules[rule as usize].len();
         let given = &self.from.values[at as usize..][..n_source];
-        if matrices[0].is_identity() {
-            out.extend_from_slice(given);
-            return;
-        }
-        out.resize(first + self.n_layers, [0.0; N]);
-        for (number, matrix) in matrices.iter().enumerate() {
-            for (layer, row) in matrix.rows().enumerate() {
-                let terms = row.iter().zip(given).map(|(w, v)| w * v[number]);
-                out[first + layer][number] = terms.sum();
-            }
-        }
+        self.push_at_layers(given, matrices, out);
     }
 }
 

@@ -41,7 +41,7 @@ pub use options::{MapMethod, MapOptions, NormalSense, Overlap, Quantities, Statu
 pub use rule::{LayerRule, RuleKind, SAME_PLACE};
 pub use shells::ShellMesh;
 pub use source::SourcePart;
-pub use target::{ElementReport, Mapped, MappedLayers, Partner, TargetPart};
+pub use target::{ElementReport, Facing, Mapped, MappedLayers, Partner, TargetPart};
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -92,10 +92,11 @@ pub fn map(
         rules.all(|rule| rule.has_places(surfaces.places()))
     };
     let strains_at_surfaces = sources.iter().all(has_surfaces_only);
+    let (rules, turned_over) = rules_of_both_sides(&target.rules);
     let strain_rules = if strains_at_surfaces {
         vec![surfaces]
     } else {
-        target.rules.clone()
+        rules.clone()
     };
     let mut prepared = Vec::with_capacity(sources.len());
     for (number, placed) in sources.iter().enumerate() {
@@ -104,7 +105,7 @@ pub fn map(
         prepared.push(PreparedSource::new(
             placed.part,
             &placed.target_from_source,
-            &target.rules,
+            &rules,
             &strain_rules,
             options,
             monitor,
@@ -116,16 +117,17 @@ pub fn map(
         .map(|source| usual_size(&source.mesh))
         .collect();
     monitor.check()?;
-    let senses: Vec<Option<bool>> = prepared
+    let facings: Vec<Facing> = prepared
         .iter()
         .zip(&source_sizes)
-        .map(|(source, &size)| sense(source, target, options, size))
+        .map(|(source, &size)| facing(source, target, options, size))
         .collect();
     let context = Context {
         sources: &prepared,
         target,
         options,
-        senses: &senses,
+        facings: &facings,
+        turned_over: &turned_over,
         points: PointRules::new(),
         min_cos,
         strains_at_surfaces,
@@ -186,23 +188,37 @@ fn check(
     Ok(())
 }
 
+/// The rules, and behind them those of which the other side sees other layers, as it sees them; of each of all the
+/// number of the one seen from the other side.
+fn rules_of_both_sides(rules: &[LayerRule]) -> (Vec<LayerRule>, Vec<usize>) {
+    let mut all = rules.to_vec();
+    let mut turned_over: Vec<usize> = (0..rules.len()).collect();
+    for (number, rule) in rules.iter().enumerate() {
+        if !rule.is_symmetric() {
+            turned_over[number] = all.len();
+            turned_over.push(number);
+            all.push(rule.turned_over());
+        }
+    }
+    (all, turned_over)
+}
+
 /// Mean element size, doubled so that the coarser regions of a graded mesh count too.
 fn usual_size(mesh: &ShellMesh) -> f64 {
     2.0 * (mesh.area() / mesh.len().max(1) as f64).sqrt()
 }
 
-/// Which side the normals agree on, by area, if they do.
-fn sense(
+/// Which side the normals point to, by area.
+fn facing(
     source: &PreparedSource<'_>,
     target: &TargetPart,
     options: &MapOptions,
     source_size: f64,
-) -> Option<bool> {
-    if options.normal_sense == NormalSense::Either {
-        return None;
-    }
-    if options.normal_sense == NormalSense::Signed {
-        return Some(false);
+) -> Facing {
+    match options.normal_sense {
+        NormalSense::Either => return Facing::Mixed,
+        NormalSense::Signed => return Facing::Same,
+        NormalSense::Auto => {}
     }
     // A thousand elements spread over the mesh tell the sign of all.
     let step = (target.mesh.len() / 1000).max(1);
@@ -211,7 +227,7 @@ fn sense(
         let filter = PartnerFilter {
             normal: target.mesh.normals()[element],
             min_cos: options.max_angle_deg.to_radians().cos(),
-            sense: None,
+            facing: Facing::Mixed,
         };
         let own = target.mesh.size(element).max(source_size);
         let reach = options.max_distance.unwrap_or(own);
@@ -227,11 +243,11 @@ fn sense(
     }
     let all = same + opposite;
     if all > 0.0 && same >= SIGNED_SHARE * all {
-        Some(false)
+        Facing::Same
     } else if all > 0.0 && opposite >= SIGNED_SHARE * all {
-        Some(true)
+        Facing::Opposite
     } else {
-        None
+        Facing::Mixed
     }
 }
 
@@ -306,7 +322,7 @@ fn assemble(
         strains: wanted.strain.then_some(strains),
         strains_are_at_surfaces: context.strains_at_surfaces,
         history: None,
-        senses: context.senses.to_vec(),
+        facings: context.facings.to_vec(),
         median_offset,
         n_distant,
     })

@@ -239,6 +239,22 @@ impl LayerRule {
         rule
     }
 
+    /// The layers as they are seen from the other side of the sheet.
+    #[must_use]
+    pub fn turned_over(&self) -> Self {
+        Self {
+            places: self.places.iter().rev().map(|place| 0.0 - place).collect(),
+            weights: self.weights.iter().rev().copied().collect(),
+            is_quadrature: self.is_quadrature,
+        }
+    }
+
+    /// True if both sides see the same layers, to rounding.
+    pub fn is_symmetric(&self) -> bool {
+        let mut pairs = self.places.iter().zip(self.places.iter().rev());
+        pairs.all(|(a, b)| (a + b).abs() < 1e-14)
+    }
+
     /// Number of layers.
     pub fn len(&self) -> usize {
         self.places.len()
@@ -341,6 +357,12 @@ mod tests {
         let uneven = LayerRule::of_plies(&[0.25, 0.75]);
         assert_eq!(uneven.places(), [-0.75, 0.25]);
         assert_eq!(uneven.weights(), [0.5, 1.5]);
+        assert!(rule.is_symmetric() && !uneven.is_symmetric());
+        let over = uneven.turned_over();
+        assert_eq!(
+            (over.places(), over.weights()),
+            (&[-0.25, 0.75][..], &[1.5, 0.5][..])
+        );
     }
 
     #[test]

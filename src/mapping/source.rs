@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use super::field::{Field, Fields};
 use super::history::SourceHistory;
-use super::layered::{AtLayers, Layered, Numbers, PLASTIC_STRAIN, PerElement};
+use super::layered::{AtLayers, Layered, PLASTIC_STRAIN, PerElement};
 use super::layers::{LayerBalance, LayerMatrix};
 use super::links::{Links, Neighbours};
 use super::options::MapOptions;
 use super::patch::{Patch, is_weld_line};
 use super::rule::LayerRule;
 use super::shells::ShellMesh;
+use super::target::Facing;
 use crate::geometry::{Point3, Similarity, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::search::{Bvh, ClosestPoint, Feature, Nearby, NormalFilter, SurfaceHit};
@@ -199,14 +200,20 @@ impl<'a> PreparedSource<'a> {
         fields.fit();
     }
 
-    /// The layer values of an element as they are, in the source's frame; `None` if it has none.
-    pub fn states_of(&self, rule: usize, element: usize) -> Option<Vec<[f64; 7]>> {
-        self.states.get(rule).and_then(|at| copied(at, element))
+    /// The layer values of an element as they are, in the source's frame; `None` if it has none. Those of one of
+    /// its points in the plane, where it has four and one is asked for.
+    pub fn states_of(
+        &self,
+        rule: usize,
+        element: usize,
+        plane: Option<usize>,
+    ) -> Option<Vec<[f64; 7]>> {
+        self.states.get(rule)?.of(element, plane)
     }
 
-    /// The same for strains.
+    /// The same for strains, whose points in the plane are not told apart.
     pub fn strains_of(&self, rule: usize, element: usize) -> Option<Vec<[f64; 6]>> {
-        self.strains.get(rule).and_then(|at| copied(at, element))
+        self.strains.get(rule)?.of(element, None)
     }
 
     /// A displacement in the target's frame as it is in the source's.
@@ -220,7 +227,7 @@ impl<'a> PreparedSource<'a> {
     }
 
     /// The closest point within `max_distance` whose element's normal is within the angle of
-    /// `normal`; of both signs the nearer one if `sense` is `None`.
+    /// `normal`; of both signs the nearer one if both count.
     pub fn closest(
         &self,
         query: &Point3,
@@ -250,7 +257,7 @@ impl<'a> PreparedSource<'a> {
         distance <= radius
             && [false, true].into_iter().all(|is_flipped| {
                 let nearby = &mut around.nearby[usize::from(is_flipped)];
-                !filter.takes(is_flipped)
+                !filter.facing.takes(is_flipped)
                     || self
                         .bvh
                         .collect(center, reach, &filter.cone(is_flipped), nearby)
@@ -273,7 +280,7 @@ impl<'a> PreparedSource<'a> {
         })
     }
 
-    /// The nearer of the senses that count; of equal ones the one that is not flipped.
+    /// The nearer of the facings that count; of equal ones the one that is not flipped.
     fn nearer(
         &self,
         filter: &PartnerFilter,
@@ -282,7 +289,7 @@ impl<'a> PreparedSource<'a> {
     ) -> Option<(u32, SourcePoint)> {
         let mut best: Option<(SurfaceHit, bool)> = None;
         for is_flipped in [false, true] {
-            if !filter.takes(is_flipped) {
+            if !filter.facing.takes(is_flipped) {
                 continue;
             }
             let reach = best.map_or(max_distance, |(hit, _)| hit.distance_sq.sqrt());
@@ -363,15 +370,10 @@ pub(super) struct PartnerFilter {
     /// Normal of the target element.
     pub normal: Vector3,
     pub min_cos: f64,
-    /// `Some(false)`: the same side only; `Some(true)`: the opposite side only; `None`: either.
-    pub sense: Option<bool>,
+    pub facing: Facing,
 }
 
 impl PartnerFilter {
-    fn takes(&self, is_flipped: bool) -> bool {
-        self.sense.is_none_or(|sense| sense == is_flipped)
-    }
-
     fn cone(&self, is_flipped: bool) -> NormalFilter {
         NormalFilter {
             direction: if is_flipped {
@@ -399,12 +401,6 @@ pub(super) struct Around {
 fn is_uneven(corners: &[f64; 4]) -> bool {
     let mean = mean_thickness(corners);
     mean.is_finite() && corners.iter().any(|t| (t - mean).abs() > 1e-9 * mean)
-}
-
-fn copied<const N: usize>(at: &AtLayers<'_, N>, element: usize) -> Option<Vec<[f64; N]>> {
-    let mut values = Vec::with_capacity(at.n_layers());
-    at.has(element).then(|| at.push(element, &mut values))?;
-    Some(values)
 }
 
 /// Stresses by the chosen balance, plastic strains always linear.

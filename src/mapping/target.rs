@@ -49,6 +49,38 @@ impl TargetPart {
     }
 }
 
+/// Which side of the target the normals of a source point to, and with it which source elements may be
+/// partners.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Facing {
+    /// That of the target's normals.
+    Same,
+    /// The other one: all layers are taken from the other end.
+    Opposite,
+    /// Now this one, now that one: each pair of elements decides for itself.
+    Mixed,
+}
+
+impl Facing {
+    /// True if an element may be a partner, given whether its normal points to the opposite side.
+    pub(super) fn takes(self, is_flipped: bool) -> bool {
+        match self {
+            Self::Same => !is_flipped,
+            Self::Opposite => is_flipped,
+            Self::Mixed => true,
+        }
+    }
+
+    /// The cosine between the target's normal and a source's, `cos` from corner orders, as it counts.
+    pub(super) fn cosine(self, cos: f64) -> f64 {
+        match self {
+            Self::Same => cos,
+            Self::Opposite => -cos,
+            Self::Mixed => cos.abs(),
+        }
+    }
+}
+
 /// The source element nearest to the centre of a target element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Partner {
@@ -161,9 +193,8 @@ pub struct Mapped {
     pub history: Option<MappedHistory>,
     /// True if the strains are those of the two surfaces.
     pub strains_are_at_surfaces: bool,
-    /// For each source, which sense of its normals was taken: `Some(false)` the same side,
-    /// `Some(true)` the opposite side, `None` either.
-    pub senses: Vec<Option<bool>>,
+    /// For each source, the side that its normals point to.
+    pub facings: Vec<Facing>,
     /// Median signed distance between the sheets along the target's normals: a constant offset such
     /// as half a thickness, or 0 without partners.
     pub median_offset: f64,

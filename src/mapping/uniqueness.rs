@@ -45,11 +45,7 @@ impl Context<'_> {
     fn is_compatible(&self, element: usize, source: usize, other: u32) -> bool {
         let normal = self.target.mesh.normals()[element];
         let cos = self.sources[source].mesh.normals()[other as usize].dot(&normal);
-        match self.senses[source] {
-            Some(false) => cos >= self.min_cos,
-            Some(true) => -cos >= self.min_cos,
-            None => cos.abs() >= self.min_cos,
-        }
+        self.facings[source].cosine(cos) >= self.min_cos
     }
 }
 

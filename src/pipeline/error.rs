@@ -105,6 +105,11 @@ pub enum PipelineError {
         /// Layers of its section.
         n_layers: usize,
     },
+    /// More stacks of plies than the layers of elements can tell apart.
+    #[error(
+        "the elements have more than 65,536 different stacks of plies; name layers and rule (--layers, --rule)"
+    )]
+    TooManyRules,
     /// The section's layers lie where a rule of the user's puts them.
     #[error(
         "the section of part {part} has an integration rule of its own (QR/IRID below 0), which is not read; \

@@ -370,7 +370,7 @@ mod tests {
             shell: 1,
             thickness: [0.75, 0.75, 0.75, 0.0],
             beta: 0.0,
-            n_plies: 0,
+            plies: None,
         });
         prepare(path, model.into(), &LoadSettings::default(), &monitor).unwrap()
     }

@@ -49,7 +49,7 @@ fn model(n: u32, size: f64, formed: bool) -> Model {
                 shell: 0,
                 thickness: [1.0; 4],
                 beta: 0.0,
-                n_plies: 0,
+                plies: None,
             });
     } else {
         let mut second = model.parts[0].clone();

@@ -91,7 +91,7 @@ fn add_elements(model: &mut Model, first: u64) {
         shell,
         thickness: [1.1, 1.2, 1.3, 1.4],
         beta,
-        n_plies: 0,
+        plies: None,
     };
     model.shell_extras = vec![extra(0, 0.0), extra(2, 30.0)];
     let solid = |n: u64, kind: SolidKind| Solid {
@@ -239,6 +239,10 @@ proptest! {
         for (a, b) in expected.nodes.positions().iter().zip(found.nodes.positions()) {
             prop_assert!((a - b).norm() <= 1e-8, "{} {}", a, b);
         }
+        prop_assert_eq!(&expected.shells, &found.shells);
+        prop_assert_eq!(&expected.shell_extras, &found.shell_extras);
+        prop_assert_eq!(&expected.solids, &found.solids);
+        prop_assert_eq!(&expected.mid_side, &found.mid_side);
         let stresses = |model: &Model| -> Vec<[f64; 6]> {
             let shells = model.forming.stresses();
             shells.flat_map(|shell| shell.points.iter().map(|p| p.stress)).collect()

@@ -340,27 +340,39 @@ fn every_spelling_of_an_element_survives() {
         square(105, 7, 4, 8)
     );
     expected += "*INITIAL_STRESS_SHELL\n";
-    for id in [101, 102, 103, 105] {
+    for id in [101, 102, 103] {
         expected += &three_layers_written(id);
     }
+    // The layers of a shell with plies are these.
+    let card = three_layers_written(104).replace("         3", "         2");
+    let lines: Vec<&str> = card.lines().collect();
+    expected += &format!("{}\n", lines[0]);
+    for t in [" -5.00000000E-01", "  5.00000000E-01"] {
+        expected += &format!("{t}{}\n{}\n", &lines[1][16..], lines[2]);
+    }
+    expected += &three_layers_written(105);
     expected += "*END\n";
     assert_eq!(written, expected);
     let back = model(&pair.path("out.k"));
-    assert_eq!(back.forming.n_stress(), 4);
-    let own: Vec<(f64, f64, u32)> = back
+    assert_eq!(back.forming.n_stress(), 5);
+    let own: Vec<(f64, f64, Option<u32>)> = back
         .shell_extras
         .iter()
-        .map(|e| (e.thickness[3], e.beta, e.n_plies))
+        .map(|e| (e.thickness[3], e.beta, e.plies))
         .collect();
-    let plain = (0.9, 0.0, 0);
-    assert_eq!(own, [(0.9, 45.0, 0), plain, plain, (1.0, 0.0, 2), plain]);
+    let plain = (0.9, 0.0, None);
+    let with_plies = (1.0, 0.0, Some(0));
+    assert_eq!(own, [(0.9, 45.0, None), plain, plain, with_plies, plain]);
+    assert_eq!(back.ply_stacks, [[0.5, 0.5]]);
     // The same is told, and a file of all elements is refused because it would lose one.
     let told = pair.map(&["--out", "out.k"]);
     assert!(
-        errors(&told).contains("nothing is written for 1 element with plies"),
+        errors(&told).contains("no thickness is written for 1 element with plies"),
         "{}",
         errors(&told)
     );
+    let told = pair.map(&["--out", "out.k", "--quantities", "plastic"]);
+    assert_eq!(errors(&told), "");
     let part = pair.map(&["--out", "out.k", "--write", "part"]);
     assert_eq!(part.status.code(), Some(1));
     assert!(errors(&part).contains("would lose"), "{}", errors(&part));
@@ -597,6 +609,75 @@ fn plies_are_the_layers_of_their_part() {
         let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
         let mean = &json["plastic_strain"]["stamped"]["mean"];
         assert!((mean.as_f64().unwrap() - 0.16).abs() < 1e-12, "{json:#}");
+    }
+}
+
+#[test]
+fn plies_of_an_element_are_its_layers() {
+    let ply = |thickness: &str| format!("         1{thickness:>10}       0.0          ");
+    let three = [
+        (
+            "",
+            format!("{}{}\n{}\n", ply("0.2"), ply("0.6"), ply("0.2")),
+        ),
+        (
+            "_LONG",
+            ["0.2", "0.6", "0.2"].map(|t| ply(t) + "\n").concat(),
+        ),
+    ];
+    let rest = " 1.000E+02 5.000E+01 0.000E+00 0.000E+00 0.000E+00 0.000E+00 1.000E-01\n";
+    for (option, plies) in three {
+        let composite = |deck: String, first: &str| {
+            let card = deck
+                .lines()
+                .find(|line| line.starts_with(first))
+                .unwrap()
+                .to_owned()
+                + "\n";
+            let others = deck.replace("*END\n", "").replacen(&card, "", 1);
+            format!("{others}*ELEMENT_SHELL_COMPOSITE{option}\n{card}{plies}")
+        };
+        // The second element has the layers of its section, which a part of plies alone does without.
+        let deck = composite(crash(2, ""), "     101       7");
+        let pair = Pair::new(&deck, &stamped(2, &stresses(1..=2)));
+        let written = pair.written(&["--quantities", "plastic,stress", "--large", "no"]);
+        let card = |n: u32| {
+            format!(
+                "       101         1{n:>10}         0         0         0         0         0\n"
+            )
+        };
+        let layers = ["-8.000E-01", " 0.000E+00", " 8.000E-01"].map(|t| format!("{t}{rest}"));
+        let expected = card(3) + &layers.concat();
+        assert!(written.contains(&expected), "{written}");
+        assert!(written.contains("-7.746E-01"), "{written}");
+        let bare = deck.replace(&deck[..deck.find("*NODE").unwrap()], "*KEYWORD\n");
+        let both = composite(bare, "     102       7");
+        let pair = Pair::new(&both, &stamped(2, &stresses(1..=2)));
+        let written = pair.written(&["--quantities", "plastic,stress", "--large", "no"]);
+        assert!(written.contains(&expected), "{written}");
+        // Those who name layers get them.
+        let written = pair.written(&["--layers", "2", "--large", "no"]);
+        assert!(written.contains(&card(2)), "{written}");
+        // In a stamped file they weigh the layers, and their sum is the thickness.
+        let state =
+            |t: f64, strain: f64| format!("{t:>10}{}{strain:>10}\n", "       0.0".repeat(6));
+        let layers = state(-0.8, 0.3) + &state(0.0, 0.1) + &state(0.8, 0.2);
+        let states = |id| format!("*INITIAL_STRESS_SHELL\n{id:>10}         1         3\n{layers}");
+        let plain = crash(2, "")
+            .replace("     101 ", "       1 ")
+            .replace("     102 ", "       2 ");
+        let first = composite(plain, "       1       7");
+        let dynain = composite(first, "       2       7");
+        let dynain = dynain + &states(1) + &states(2);
+        let json = Pair::new(&crash(2, ""), &dynain).map(&["--json", "-"]);
+        let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+        for (quantity, expected) in [("plastic_strain", 0.16), ("thickness", 1.0)] {
+            let mean = &json[quantity]["stamped"]["mean"];
+            assert!(
+                (mean.as_f64().unwrap() - expected).abs() < 1e-12,
+                "{json:#}"
+            );
+        }
     }
 }
 

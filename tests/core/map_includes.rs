@@ -184,6 +184,122 @@ fn states_are_not_put_where_the_deck_would_turn_them() {
     );
 }
 
+/// x → −x.
+const MIRROR: &str = "*DEFINE_TRANSFORMATION\n         5\nMIRROR           0.0       0.0       0.0       1.0       0.0       0.0\n";
+
+/// A deck with all x mirrored and its elements' corners as they were.
+fn mirrored(deck: &str) -> String {
+    let line = |line: &str| match line[8.min(line.len())..]
+        .get(..16)
+        .map(|x| x.trim().parse::<f64>())
+    {
+        Some(Ok(x)) if line.len() == 56 => {
+            format!("{}{:>16.1}{}\n", &line[..8], 0.0 - x, &line[24..])
+        }
+        _ => format!("{line}\n"),
+    };
+    deck.lines().map(line).collect()
+}
+
+/// Bending: plastic strains 0.1, 0.2, 0.3 from the lower side to the upper one, and shear.
+fn bent() -> String {
+    let results = stresses(1..=2).replace("50.0       0.0       0.0", "50.0       0.0       7.0");
+    let mut n = 0;
+    let layer = |line: &str| match line.strip_suffix("0.1") {
+        Some(rest) => {
+            n += 1;
+            format!("{rest}0.{}\n", (n - 1) % 3 + 1)
+        }
+        None => format!("{line}\n"),
+    };
+    results.lines().map(layer).collect()
+}
+
+/// Stress xy and plastic strain of the layers of each shell.
+fn layers(model: &Model) -> Vec<Vec<(f64, f64)>> {
+    let of_points = model.forming.stresses().map(|card| card.points);
+    of_points
+        .map(|points| {
+            points
+                .iter()
+                .map(|p| (p.stress[3], p.plastic_strain))
+                .collect()
+        })
+        .collect()
+}
+
+#[test]
+fn a_mirrored_include_of_a_stamped_file_is_what_a_mirrored_pose_makes_of_it() {
+    let sheet = mirrored(&stamped(2, &bent()));
+    let main = format!("*KEYWORD\n{MIRROR}*INCLUDE_TRANSFORM\nhalf.k\n\n\n\n         5\n*END\n");
+    let states = |deck: &str, pose: &[&str]| {
+        let pair = Pair::new(&crash(2, ""), deck);
+        std::fs::write(pair.path("half.k"), &sheet).unwrap();
+        let output = pair.run(&[&options("include", FULL)[..], pose].concat());
+        assert!(output.status.success(), "{}", errors(&output));
+        layers(&model(&pair.path("out.k")))
+    };
+    let included = states(&main, &["--identity"]);
+    let posed = states(&sheet, &["--pose", "-1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"]);
+    assert_eq!(included, posed);
+    // The corners go the other way round in the mirrored file, so the crash part's upper side is its lower one.
+    let layer = |plastic: f64| (-7.0, plastic);
+    assert_eq!(included, vec![vec![layer(0.3), layer(0.2), layer(0.1)]; 2]);
+}
+
+#[test]
+fn a_crash_part_that_an_include_mirrors_keeps_its_sides() {
+    let sheet = stamped(2, &bent());
+    let part = mirrored(&crash(2, "")).replace("*ELEMENT_SHELL\n", "*ELEMENT_SHELL_BETA\n");
+    let cards =
+        "             1.0             1.0             1.0             1.0            30.0\n";
+    let with_angle = |line: &str| match line.starts_with("     10") {
+        true => format!("{line}\n{cards}"),
+        false => format!("{line}\n"),
+    };
+    let part: String = part.lines().map(with_angle).collect();
+    let deck = format!("*KEYWORD\n{MIRROR}{}*END\n", include([0, 1000, 0], 1.0, 5));
+    let pair = Pair::new(&deck, &sheet);
+    std::fs::write(pair.path("part.k"), &part).unwrap();
+    let read = model(&pair.path("crash.k"));
+    // The card has 1 3 4 2.
+    let ids = read.shells[0]
+        .nodes
+        .map(|node| read.nodes.ids()[node as usize]);
+    assert_eq!(ids, [3, 1, 2, 4]);
+    assert_eq!(read.shell_extras[0].beta, -30.0);
+    assert!(read.files[1].included_as.is_mirrored && !read.files[0].included_as.is_mirrored);
+    // Seen in the mirror the sheet's normals are opposite to those of the stamped part.
+    for kind in ["include", "part"] {
+        let states = written(&pair, kind, FULL);
+        let file = if kind == "part" {
+            "out.k"
+        } else {
+            "out_elements.k"
+        };
+        let elements = std::fs::read_to_string(pair.path(file)).unwrap();
+        let card = "*ELEMENT_SHELL_BETA\n    1101       7       3       1       2       4\n";
+        assert!(elements.contains(card), "{elements}");
+        assert!(
+            elements.contains("  9.00000000E-01 -3.00000000E+01\n"),
+            "{elements}"
+        );
+        assert!(states.contains("*INITIAL_STRESS_SHELL"), "{states}");
+        let layer = |plastic: f64| (7.0, plastic);
+        let expected = vec![vec![layer(0.3), layer(0.2), layer(0.1)]; 2];
+        assert_eq!(layers(&model(&pair.path("out.k"))), expected);
+    }
+    // A copy of the file has its own order, which the deck mirrors.
+    let corners = &options("deck", "thickness")[..];
+    let output = pair.map(&[corners, &["--corner-thickness", "yes"]].concat());
+    assert!(output.status.success(), "{}", errors(&output));
+    let copy = std::fs::read_to_string(pair.path("out.k")).unwrap();
+    assert!(
+        copy.contains("     101       7       1       3       4       2\n"),
+        "{copy}"
+    );
+}
+
 #[test]
 fn a_file_that_is_included_twice_has_no_copy() {
     let twice = include([0, 0, 0], 1.0, 0) + &include([500, 1000, 20], 1.0, 5);

@@ -297,6 +297,97 @@ fn elements_of_one_id_are_named() {
     );
 }
 
+/// A dynain whose elements stand in it without their thickness too, and a deck likewise.
+#[test]
+fn an_element_that_is_listed_again_with_its_thickness_is_one() {
+    let sheet = stamped(2, &stresses(1..=2));
+    let plain = crash(2, "")
+        .replace("     10", "       ")
+        .replace("       7", "       1");
+    let plain = &plain[plain.find("*ELEMENT_SHELL").unwrap()..plain.find("*END").unwrap()];
+    for cards in [
+        sheet.replace(
+            "*ELEMENT_SHELL_THICKNESS",
+            &format!("{plain}*ELEMENT_SHELL_THICKNESS"),
+        ),
+        sheet.replace(
+            "*ELEMENT_SHELL_THICKNESS",
+            &format!("{plain}{plain}*ELEMENT_SHELL_THICKNESS"),
+        ),
+    ] {
+        let pair = Pair::new(&crash(2, ""), &cards);
+        let output = pair.map(&["--out", "out.k", "--quantities", "full"]);
+        assert!(output.status.success());
+        assert_eq!(errors(&output), "");
+        let told = text(&output.stdout);
+        assert!(told.contains("2 thicknesses, 2 stress"), "{told}");
+        let read = model(&pair.path("stamped.dynain"));
+        assert_eq!(read.shells.len(), 2);
+        assert_eq!(read.shell_thickness(1), Some([0.9; 4]));
+    }
+    // In the crash deck one card alone can be exchanged.
+    let first = "     101       7       1       3       4       2\n";
+    let twice = crash(2, "").replace(first, &format!("{first}{first}"));
+    let output = Pair::new(&twice, &sheet).map(&["--out", "out.k"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        errors(&output)
+            .contains("1 of the elements that are mapped onto are defined more than once"),
+        "{}",
+        errors(&output)
+    );
+}
+
+#[test]
+fn a_given_pose_of_a_file_in_another_unit_is_asked_about() {
+    let in_metres = |line: &str| match line.len() {
+        56 if !line.contains('E') => {
+            let at = |range: std::ops::Range<usize>| line[range].trim().parse::<f64>();
+            match (at(8..24), at(24..40)) {
+                (Ok(x), Ok(y)) => {
+                    format!("{}{:>16}{:>16}{:>16}\n", &line[..8], x / 1e3, y / 1e3, 0)
+                }
+                _ => format!("{line}\n"),
+            }
+        }
+        _ => format!("{line}\n"),
+    };
+    let sheet: String = stamped(2, "")
+        .replace("  0.9", " 9E-4")
+        .lines()
+        .map(in_metres)
+        .collect();
+    let pair = Pair::new(&crash(2, ""), &sheet);
+    let told = pair.map(&["--quantities", "thickness"]);
+    assert!(
+        errors(&told).contains("--stamped-length-factor 1000 would convert it"),
+        "{}",
+        errors(&told)
+    );
+    let told = pair.map(&[
+        "--quantities",
+        "thickness",
+        "--stamped-length-factor",
+        "1000",
+    ]);
+    assert_eq!(errors(&told), "");
+}
+
+/// A number that does not fit its columns costs its element alone, also where it begins the line.
+#[test]
+fn stars_in_place_of_a_number_cost_one_element() {
+    let results = stresses(1..=2).replacen(" -.7745967", "**********", 1);
+    let pair = Pair::new(&crash(2, ""), &stamped(2, &results));
+    let output = pair.map(&["--out", "out.k", "--quantities", "plastic,stress"]);
+    assert!(output.status.success());
+    assert!(
+        errors(&output).contains("found \"**********\""),
+        "{}",
+        errors(&output)
+    );
+    assert_eq!(model(&pair.path("out.k")).forming.n_stress(), 1);
+}
+
 #[test]
 fn results_of_no_shell_and_doubled_ones_are_told_and_not_counted() {
     let results = stresses(1..=3) + &stresses(2..=2);

@@ -243,6 +243,36 @@ fn area_centroid(mesh: &ShellMesh, element: usize) -> Point3 {
     Point3::from((m1 + m2) / (a1 + a2))
 }
 
+/// Plastic strains, and stresses xy ten times as large, at four points in each of three Gauss layers.
+fn four_points(
+    mesh: &ShellMesh,
+    element: usize,
+    plastic: impl Fn(&Point3, f64) -> f64,
+) -> Vec<(f64, [f64; 7])> {
+    let near = (1.0 + 1.0 / 3.0_f64.sqrt()) / 2.0;
+    let far = 1.0 - near;
+    let corners = mesh.corner_points(element);
+    let mut points = Vec::new();
+    for &t in LayerRule::new(RuleKind::Gauss, 3).places() {
+        for first in 0..4 {
+            let weights = [near * near, near * far, far * far, near * far];
+            let around = (0..4).map(|i| corners[(first + i) % 4].coords * weights[i]);
+            let value = plastic(&Point3::from(around.sum::<Vector3>()), t);
+            points.push((t, [0.0, 0.0, 0.0, 10.0 * value, 0.0, 0.0, value]));
+        }
+    }
+    points
+}
+
+/// The same for all elements.
+fn of_four_points(mesh: &ShellMesh, plastic: impl Fn(&Point3, f64) -> f64) -> Layered<7> {
+    let mut states = Layered::new(mesh.len());
+    for element in 0..mesh.len() {
+        states.set(element, four_points(mesh, element, &plastic).into_iter());
+    }
+    states
+}
+
 #[test]
 fn a_linear_field_on_a_plane_is_exact() {
     let linear = |p: &Point3| 0.2 + 0.004 * p.x + 0.003 * p.y;
@@ -260,14 +290,19 @@ fn a_linear_field_on_a_plane_is_exact() {
             jitter: 0.2,
         };
         let onto = target(inner.mesh(|u, v| Point3::new(u + 20.3, v + 15.1, 0.0)), 3);
-        let no_limit = map_one(&part, Similarity::identity(), &onto, &full());
-        for element in 0..onto.mesh.len() {
-            let expected = linear(&area_centroid(&onto.mesh, element));
-            let found = no_limit.states.as_ref().unwrap().of(element)[1][6];
-            assert!(
-                (found - expected).abs() < 1e-12,
-                "{from} → {to}: {found} against {expected}"
-            );
+        // The same from four points in each layer.
+        let mut of_four = part.clone();
+        of_four.states = of_four_points(&part.mesh, |p, _| linear(p));
+        for part in [part, of_four] {
+            let mapped = map_one(&part, Similarity::identity(), &onto, &full());
+            for element in 0..onto.mesh.len() {
+                let expected = linear(&area_centroid(&onto.mesh, element));
+                let found = mapped.states.as_ref().unwrap().of(element)[1][6];
+                assert!(
+                    (found - expected).abs() < 1e-12,
+                    "{from} → {to}: {found} against {expected}"
+                );
+            }
         }
     }
 }
@@ -418,6 +453,82 @@ fn the_same_mesh_moved_keeps_every_bit() {
 }
 
 #[test]
+fn uneven_plies_of_a_flipped_target_take_the_layers_at_their_own_places() {
+    let mesh = Blank::new(5.0).mesh(flat);
+    // In line through the thickness, in the strains with more layers than the surfaces.
+    let mut part = source(mesh.clone(), 3, |_, t, _| {
+        [40.0 * t, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5 + 0.4 * t]
+    });
+    for element in 0..mesh.len() {
+        let layer = |t: f64| (t, [0.01 * t, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        part.strains
+            .set(element, [-0.8, 0.1, 0.9].map(layer).into_iter());
+    }
+    let rule = LayerRule::of_plies(&[0.1, 0.2, 0.7]);
+    let shifted = Similarity {
+        translation: Vector3::new(1.7, 0.9, 0.0),
+        ..Similarity::identity()
+    };
+    let options = MapOptions {
+        keep_force_and_moment: false,
+        ..full()
+    };
+    // Copied, and averaged.
+    for pose in [Similarity::identity(), shifted] {
+        for (target_mesh, sign) in [(mesh.clone(), 1.0), (flipped(&mesh), -1.0)] {
+            let onto = TargetPart::uniform(target_mesh, rule.clone(), 1.0);
+            let mapped = map_one(&part, pose, &onto, &options);
+            let (states, strains) = (mapped.states.unwrap(), mapped.strains.unwrap());
+            for (element, report) in mapped.elements.iter().enumerate() {
+                if !report.status.has_values() {
+                    continue;
+                }
+                let found = states.of(element).iter().zip(strains.of(element));
+                for (&t, (state, strain)) in rule.places().iter().zip(found) {
+                    assert!((state[0] - sign * 40.0 * t).abs() < 1e-12, "{t}: {state:?}");
+                    assert!((state[6] - (0.5 + sign * 0.4 * t)).abs() < 1e-12);
+                    assert!((strain[0] - sign * 0.01 * t).abs() < 1e-14);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_copy_keeps_the_points_of_each_layer() {
+    let mesh = Blank::new(5.0).mesh(flat);
+    let mut part = source(mesh.clone(), 3, uniform);
+    let plastic = |p: &Point3, t: f64| 0.5 + 0.004 * p.x + 0.0003 * p.y * p.x + 0.1 * t;
+    part.states = of_four_points(&mesh, plastic);
+    for pose in [Similarity::identity(), some_pose(), Similarity::mirror_x()] {
+        let moved = mesh.moved(&pose);
+        for corners in [[0, 1, 2, 3], [1, 2, 3, 0], [0, 3, 2, 1], [2, 1, 0, 3]] {
+            let turned = moved.corners().iter().map(|own| corners.map(|i| own[i]));
+            let turned = ShellMesh::new(
+                moved.positions().to_vec(),
+                turned.collect(),
+                moved.parts().to_vec(),
+            );
+            let mut onto = target(turned.unwrap(), 3);
+            onto.n_plane.fill(4);
+            let mapped = map_one(&part, pose, &onto, &full());
+            for element in 0..mesh.len() {
+                let is_flipped = mapped.elements[element].partner.unwrap().is_flipped;
+                let found = mapped.states.as_ref().unwrap().of(element);
+                let own = four_points(&mesh, element, plastic);
+                for (i, state) in found.iter().enumerate() {
+                    let layer = if is_flipped { 2 - i / 4 } else { i / 4 };
+                    let (_, own) = own[4 * layer + corners[i % 4]];
+                    assert_eq!(state[6], own[6]);
+                    let own: Tensor = std::array::from_fn(|i| own[i]);
+                    assert_tensor(&state[..6], &rotated(&own, &pose.rotation), 1e-12 * 10.0);
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn a_flipped_target_takes_the_layers_from_the_other_side() {
     let mesh = Blank::new(5.0).mesh(flat);
     let part = source(mesh.clone(), 5, |_, t, _| {
@@ -425,7 +536,7 @@ fn a_flipped_target_takes_the_layers_from_the_other_side() {
     });
     let onto = target(flipped(&mesh), 5);
     let mapped = map_one(&part, Similarity::identity(), &onto, &full());
-    assert_eq!(mapped.senses, [Some(true)]);
+    assert_eq!(mapped.facings, [Facing::Opposite]);
     let straight = map_one(&part, Similarity::identity(), &target(mesh, 5), &full());
     for element in 0..onto.mesh.len() {
         let reversed: Vec<_> = mapped

@@ -41,13 +41,13 @@ fn model() -> Model {
             shell: 0,
             thickness: [1.0, 2.0, 3.0, 4.0],
             beta: 30.0,
-            n_plies: 0,
+            plies: None,
         },
         ShellExtra {
             shell: 1,
             thickness: [5.0, 6.0, 7.0, 0.0],
             beta: 0.0,
-            n_plies: 0,
+            plies: None,
         },
     ];
     let solid = |id: u64, nodes: [u32; 8]| Solid {

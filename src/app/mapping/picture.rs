@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::MapResult;
 use crate::app::{AppState, ColorBy, Display, FreeWindow};
-use crate::mapping::Status;
+use crate::mapping::{Facing, Status};
 use crate::pipeline::forming_values::{FormingValue, LayerChoice};
 use crate::pipeline::map::{CheckPicture, ShownValue};
 use crate::role::Role;
@@ -219,7 +219,8 @@ impl AppState {
     pub fn stamped_layer(&self, by: ColorBy, file: usize) -> Option<LayerChoice> {
         let layer = self.shown_layer(by)?;
         let run = self.document.current_mapping().map(|result| &result.run);
-        let is_flipped = run.is_some_and(|run| run.mapped.senses.get(file) == Some(&Some(true)));
+        let is_flipped =
+            run.is_some_and(|run| run.mapped.facings.get(file) == Some(&Facing::Opposite));
         Some(if is_flipped {
             layer.turned_over()
         } else {

@@ -120,8 +120,12 @@ pub(crate) enum Motion {
     /// The transformation of an include.
     Include {
         nodes: Range<usize>,
-        /// The forming results in the file and those it includes.
+        /// The shells and the solids, by their number, and the forming results in the file and those it includes.
+        shells: Range<usize>,
+        solids: Range<usize>,
         results: Range<FormingCount>,
+        /// The file and those it includes.
+        files: Range<usize>,
         transformation: u64,
         position: Position,
     },
@@ -162,6 +166,9 @@ pub(crate) struct Assembly {
     pub(super) shell_origins: Vec<Origin>,
     pub(super) mid_side: Vec<(u32, [u64; 4])>,
     pub(super) extras: Vec<ShellExtra>,
+    /// Plies of shells, each stack once, and where a stack is, by its bits.
+    pub(super) ply_stacks: Vec<Vec<f64>>,
+    stack_index: HashMap<Vec<u64>, u32>,
     pub(super) solids: Vec<RawSolid>,
     pub(super) solid_origins: Vec<Origin>,
     part_index: HashMap<u64, u32>,
@@ -181,6 +188,16 @@ impl Assembly {
     /// Number of nodes so far.
     pub(crate) fn n_nodes(&self) -> usize {
         self.node_ids.len()
+    }
+
+    /// Number of shells so far.
+    pub(crate) fn n_shells(&self) -> usize {
+        self.shells.len()
+    }
+
+    /// Number of solids so far.
+    pub(crate) fn n_solids(&self) -> usize {
+        self.solids.len()
     }
 
     pub(crate) fn add_motion(&mut self, motion: Motion) {
@@ -219,8 +236,11 @@ impl Assembly {
         let mid_side = chunk.mid_side.into_iter();
         self.mid_side
             .extend(mid_side.map(|(shell, nodes)| (shell + by, nodes)));
+        let stacks = chunk.stacks.into_iter();
+        let stacks: Vec<u32> = stacks.map(|stack| self.stack_number(stack)).collect();
         let extras = chunk.extras.into_iter().map(|extra| ShellExtra {
             shell: extra.shell + by,
+            plies: extra.plies.map(|stack| stacks[stack as usize]),
             ..extra
         });
         self.extras.extend(extras);
@@ -320,6 +340,15 @@ impl Assembly {
         }
     }
 
+    /// Index of a stack of plies.
+    fn stack_number(&mut self, stack: Vec<f64>) -> u32 {
+        let bits = stack.iter().map(|ply| ply.to_bits()).collect();
+        *self.stack_index.entry(bits).or_insert_with(|| {
+            self.ply_stacks.push(stack);
+            (self.ply_stacks.len() - 1) as u32
+        })
+    }
+
     /// Index of a part id; a part that only elements name so far is added.
     fn part_number(&mut self, id: u64) -> u32 {
         *self.part_index.entry(id).or_insert_with(|| {
@@ -357,10 +386,24 @@ impl Assembly {
         origin_of(&self.shell_origins, index).map(|origin| origin.element(shell.id, part))
     }
 
-    /// Tells the origins which shells are left: `n_kept(i)` of the first `i`.
+    /// Tells origins and motions which shells are left: `n_kept(i)` of the first `i`.
     pub(super) fn renumber_shells(&mut self, n_kept: impl Fn(usize) -> usize) {
         for origin in &mut self.shell_origins {
             origin.first = n_kept(origin.first);
+        }
+        for motion in &mut self.motions {
+            if let Motion::Include { shells, .. } = motion {
+                *shells = n_kept(shells.start)..n_kept(shells.end);
+            }
+        }
+    }
+
+    /// Tells motions which solids are left, likewise.
+    pub(super) fn renumber_solids(&mut self, n_kept: &[usize]) {
+        for motion in &mut self.motions {
+            if let Motion::Include { solids, .. } = motion {
+                *solids = n_kept[solids.start]..n_kept[solids.end];
+            }
         }
     }
 

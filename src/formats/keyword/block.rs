@@ -245,13 +245,19 @@ impl<'a> Blocks<'a> {
     fn find_star(&self, from: usize) -> Option<usize> {
         let bytes = self.file.bytes();
         let mut at = from;
+        let mut is_star = bytes.get(at) == Some(&b'*');
         loop {
-            if bytes.get(at) != Some(&b'*') {
+            if !is_star {
                 at += memmem::find(bytes.get(at..)?, b"\n*")? + 1;
             }
             let after = self.encrypted.partition_point(|range| range.end <= at);
             match self.encrypted.get(after) {
-                Some(range) if range.contains(&at) => at = range.end,
+                Some(range) if range.contains(&at) => {
+                    at = range.end;
+                    is_star = bytes.get(at) == Some(&b'*');
+                }
+                // More than one is a number that was too large for its columns.
+                _ if bytes.get(at + 1) == Some(&b'*') => is_star = false,
                 _ => return Some(at),
             }
         }
@@ -361,6 +367,16 @@ mod tests {
             .map(|&(n, l, c)| (n.to_owned(), l, c))
             .collect();
         assert_eq!(names(deck), expected);
+    }
+
+    #[test]
+    fn a_number_written_as_stars_begins_no_keyword() {
+        let deck = "*NODE\n1\n********** 0.5\n2\n*END\n";
+        let expected = [("NODE", 3), ("END", 0)];
+        let names = names(deck);
+        let found: Vec<(&str, usize)> = names.iter().map(|(n, _, c)| (&n[..], *c)).collect();
+        assert_eq!(found, expected);
+        assert!(super::tests::names("**\n").is_empty());
     }
 
     #[test]

@@ -346,8 +346,11 @@ impl Reader<'_> {
         let Some(child) = self.open_include(file, include)? else {
             return Ok(());
         };
-        let first_node = self.assembly.n_nodes();
-        let first_result = FormingCount::of(&self.assembly.forming);
+        let assembly = &self.assembly;
+        let first_node = assembly.n_nodes();
+        let (first_shell, first_solid) = (assembly.n_shells(), assembly.n_solids());
+        let (first_result, first_file) =
+            (FormingCount::of(&assembly.forming), assembly.files.len());
         self.parameters.push_scope();
         let read = self.file(&child, context.inside(include, block.suffix));
         self.parameters.pop_scope();
@@ -364,7 +367,10 @@ impl Reader<'_> {
         if include.transformation != 0 {
             self.assembly.add_motion(Motion::Include {
                 nodes,
+                shells: first_shell..self.assembly.n_shells(),
+                solids: first_solid..self.assembly.n_solids(),
                 results: first_result..FormingCount::of(&self.assembly.forming),
+                files: first_file..self.assembly.files.len(),
                 transformation: include.transformation,
                 position: file.position(include.at),
             });

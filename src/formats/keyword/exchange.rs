@@ -279,8 +279,10 @@ impl Copy<'_> {
             }
             match exchange {
                 Exchange::Thickness(new) => {
-                    let factor = self.rules.included_as.length_factor;
-                    let card = self.set_thickness(&element, &new.map(|t| t / factor));
+                    let place = &self.rules.included_as;
+                    let of_file = element.corners_as_in(place, new);
+                    let of_file = of_file.map(|t| t / place.length_factor);
+                    let card = self.set_thickness(&element, &of_file);
                     self.list(&element, &keyword, Some((&new, &card)));
                 }
                 Exchange::Listed => self.list(&element, &keyword, None),

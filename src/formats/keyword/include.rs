@@ -117,6 +117,7 @@ impl Context {
             system_offset: self.offsets.define,
             length_factor: self.length,
             stress_factor: self.stress,
+            is_mirrored: false,
         }
     }
 

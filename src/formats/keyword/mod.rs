@@ -28,6 +28,7 @@ pub mod expression;
 pub mod fixed_width;
 mod forming;
 pub(crate) mod include;
+mod link;
 pub mod materials;
 mod mesh;
 pub(crate) mod names;

@@ -1,25 +1,25 @@
-//! The end of reading a deck: ids become indices, motions are carried out, thickness is handed out.
+//! The end of reading a deck: nodes are numbered, motions are carried out, thickness is handed out.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics, Position};
-use super::super::model::{
-    AppliedMotion, IdIndex, Model, Nodes, Set, Sets, Shell, ShellExtra, Solid, has_area,
-};
+use super::super::model::{AppliedMotion, Model, Nodes, Set, Sets, Shell, ShellExtra, has_area};
+use super::super::moved::reverse_elements;
 use super::super::{MAX_LENGTH, ReadOptions};
 use super::assemble::{Assembly, Motion};
-use super::results::{Results, Turned};
+use super::link;
+use super::results::{Results, Turned, mirrors};
 use super::set_members::{Intervals, Surroundings, resolve_sets};
 use super::sets::SetKind;
 use crate::geometry::Matrix4;
 use crate::monitor::{Cancelled, Monitor};
 
 /// Marks a node that does not exist.
-const MISSING: u32 = u32::MAX;
+pub(super) const MISSING: u32 = u32::MAX;
 /// Elements per piece of parallel work. Fixed, so that results do not depend on threads.
-const PIECE: usize = 1 << 14;
+pub(super) const PIECE: usize = 1 << 14;
 
 /// Puts the model together.
 pub(super) fn finish(
@@ -35,9 +35,9 @@ pub(super) fn finish(
     };
     let repeated = number_nodes(&mut assembly, &mut model);
     monitor.check()?;
-    link_shells(&mut assembly, &mut model);
+    link::link_shells(&mut assembly, &mut model);
     monitor.check()?;
-    link_solids(&mut assembly, &mut model);
+    link::link_solids(&mut assembly, &mut model);
     monitor.check()?;
     assembly.number_labelled_parts();
     give_thickness_to_parts(&mut assembly, &mut model);
@@ -138,159 +138,11 @@ fn tell_no_elements(assembly: &mut Assembly, model: &Model) {
     assembly.found.push(diagnostic);
 }
 
-fn with_position(diagnostic: Diagnostic, position: Option<Position>) -> Diagnostic {
+pub(super) fn with_position(diagnostic: Diagnostic, position: Option<Position>) -> Diagnostic {
     match position {
         Some(position) => diagnostic.at(position),
         None => diagnostic,
     }
-}
-
-/// Turns packed node ids into indices, in place, and leaves out shells with missing nodes.
-fn link_shells(assembly: &mut Assembly, model: &mut Model) {
-    tell_duplicate_shells(assembly);
-    let packed = std::mem::take(&mut assembly.packed);
-    let nodes = &model.nodes;
-    let link = |shell: &Shell| {
-        shell
-            .nodes
-            .map(|p| nodes.index_of(packed.unpack(p)).unwrap_or(MISSING))
-    };
-    let is_broken = |shell: &Shell| link(shell).contains(&MISSING);
-    let n_broken: usize = assembly
-        .shells
-        .par_chunks(PIECE)
-        .map(|shells| shells.iter().filter(|shell| is_broken(shell)).count())
-        .sum();
-    let mut kept = Vec::new();
-    if n_broken > 0 {
-        let mut found = Diagnostics::default();
-        let mut n_kept = 0;
-        for (index, shell) in assembly.shells.iter().enumerate() {
-            let broken = is_broken(shell);
-            kept.push(if broken { MISSING } else { n_kept });
-            n_kept += u32::from(!broken);
-            if broken {
-                found.push_with(DiagnosticKind::MissingNode, || {
-                    let ids = shell.nodes.map(|p| packed.unpack(p));
-                    let position = assembly.shell_position(index, shell);
-                    missing_node("shell", shell.id, &ids, nodes, position)
-                });
-            }
-        }
-        assembly.found.append(found);
-    }
-    let mut shells = std::mem::take(&mut assembly.shells);
-    let n_before = shells.len() - n_broken;
-    if n_broken > 0 {
-        // The new index of the first kept shell from `first` on.
-        let n_kept = |first: usize| {
-            let mut later = kept[first..].iter();
-            later
-                .find(|&&new| new != MISSING)
-                .map_or(n_before, |&new| new as usize)
-        };
-        assembly.renumber_shells(n_kept);
-        let mut index = 0;
-        shells.retain(|_| {
-            index += 1;
-            kept[index - 1] != MISSING
-        });
-    }
-    shells.par_chunks_mut(PIECE).for_each(|shells| {
-        for shell in shells {
-            shell.nodes = link(shell);
-        }
-    });
-    model.shells = shells;
-    let new_index = |old: u32| match kept.get(old as usize) {
-        Some(&MISSING) => None,
-        Some(&new) => Some(new),
-        None => Some(old),
-    };
-    let extras = std::mem::take(&mut assembly.extras).into_iter();
-    model.shell_extras = extras
-        .filter_map(|extra| new_index(extra.shell).map(|shell| ShellExtra { shell, ..extra }))
-        .collect();
-    let mid_side = std::mem::take(&mut assembly.mid_side).into_iter();
-    model.mid_side = mid_side
-        .filter_map(|(shell, ids)| {
-            let indices = ids.map(|id| nodes.index_of(id).unwrap_or(MISSING));
-            new_index(shell).map(|shell| (shell, indices))
-        })
-        .collect();
-}
-
-fn missing_node(
-    what: &str,
-    id: u64,
-    node_ids: &[u64],
-    nodes: &Nodes,
-    position: Option<Position>,
-) -> Diagnostic {
-    let missing = node_ids.iter().find(|&&id| nodes.index_of(id).is_none());
-    let missing = missing.copied().unwrap_or_default();
-    let message = format!("{what} {id} names node {missing}, which is not defined");
-    with_position(
-        Diagnostic::new(DiagnosticKind::MissingNode, message),
-        position,
-    )
-}
-
-fn tell_duplicate_shells(assembly: &mut Assembly) {
-    let is_rising = assembly
-        .shells
-        .windows(2)
-        .all(|pair| pair[0].id < pair[1].id);
-    if is_rising {
-        return;
-    }
-    let ids: Vec<u64> = assembly.shells.iter().map(|shell| shell.id).collect();
-    let (_, repeated) = IdIndex::new(&ids);
-    let mut found = Diagnostics::default();
-    for index in repeated {
-        found.push_with(DiagnosticKind::DuplicateElement, || {
-            let message = format!("shell {} is defined again, both count", ids[index as usize]);
-            with_position(
-                Diagnostic::new(DiagnosticKind::DuplicateElement, message),
-                assembly.shell_position(index as usize, &assembly.shells[index as usize]),
-            )
-        });
-    }
-    assembly.found.append(found);
-}
-
-fn link_solids(assembly: &mut Assembly, model: &mut Model) {
-    let mut found = Diagnostics::default();
-    let mut seen: HashMap<u64, ()> = HashMap::with_capacity(assembly.solids.len());
-    for (index, raw) in assembly.solids.iter().enumerate() {
-        if seen.insert(raw.id, ()).is_some() {
-            found.push_with(DiagnosticKind::DuplicateElement, || {
-                let message = format!("solid {} is defined again, both count", raw.id);
-                with_position(
-                    Diagnostic::new(DiagnosticKind::DuplicateElement, message),
-                    assembly.raw_solid_position(index),
-                )
-            });
-        }
-        let nodes = raw
-            .nodes
-            .map(|id| model.nodes.index_of(id).unwrap_or(MISSING));
-        if nodes.contains(&MISSING) {
-            found.push_with(DiagnosticKind::MissingNode, || {
-                let position = assembly.raw_solid_position(index);
-                missing_node("solid", raw.id, &raw.nodes, &model.nodes, position)
-            });
-            continue;
-        }
-        model.solids.push(Solid {
-            id: raw.id,
-            nodes,
-            part: raw.part,
-            kind: raw.kind,
-        });
-    }
-    assembly.found.append(found);
-    assembly.solids = Vec::new();
 }
 
 /// Parts take the thickness of their section, unless plies gave them one.
@@ -399,7 +251,7 @@ fn spread_node_thickness(
             shell: index,
             thickness: [0.0; 4],
             beta: 0.0,
-            n_plies: 0,
+            plies: None,
         });
         for (own, of_node) in merged.thickness.iter_mut().zip(of_nodes) {
             if *own == 0.0 {
@@ -538,7 +390,10 @@ fn carry_out(
     }
     let turned = match motion {
         Motion::Scale { .. } => Turned::default(),
-        Motion::Include { results: span, .. } => results.turn_span(span, &matrix),
+        Motion::Include { results: span, .. } => {
+            reverse_mirrored(model, motion, &matrix);
+            results.turn_span(span, &matrix)
+        }
         Motion::NodeSet { .. } => results.turn_moved(model, &indices, &matrix),
     };
     for what in turned.complaints(id) {
@@ -553,6 +408,23 @@ fn carry_out(
         n_nodes: indices.len(),
     });
     Ok(())
+}
+
+/// Reverses the corners of an include's elements where the motion mirrors it.
+fn reverse_mirrored(model: &mut Model, motion: &Motion, matrix: &Matrix4) {
+    if let Motion::Include {
+        shells,
+        solids,
+        files,
+        ..
+    } = motion
+        && mirrors(matrix)
+    {
+        reverse_elements(model, shells.clone(), solids.clone());
+        for file in &mut model.files[files.clone()] {
+            file.included_as.is_mirrored ^= true;
+        }
+    }
 }
 
 fn matrix(assembly: &Assembly, model: &Model, id: u64) -> Result<Matrix4, String> {

@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Forming, IdIndex, Model};
+use super::super::moved::reverse_points;
 use super::forming::RawForming;
 use super::source_file::Place;
 use crate::geometry::tensor::rotated;
@@ -161,7 +162,7 @@ impl Results {
         self.forming
     }
 
-    /// Turns what was read between two moments.
+    /// Turns what was read between two moments, for shells whose corners a mirror reverses.
     pub(super) fn turn_span(&mut self, span: &Range<FormingCount>, motion: &Matrix4) -> Turned {
         let (from, to) = (span.start, span.end);
         let of_sets = |source: &[usize], n_own: usize, range: Range<usize>| {
@@ -175,7 +176,11 @@ impl Results {
         stress.extend(of_sets(&self.stress_source, self.n_own_stress, set_stress));
         let mut strain: Vec<usize> = (from.strain..to.strain).collect();
         strain.extend(of_sets(&self.strain_source, self.n_own_strain, set_strain));
-        self.turn(&stress, &strain, motion)
+        let turned = self.turn(&stress, &strain, motion);
+        if mirrors(motion) {
+            reverse_points(&mut self.forming, stress, strain);
+        }
+        turned
     }
 
     /// Turns the results of shells whose corners are all among the moved nodes.
@@ -274,6 +279,11 @@ fn tell_doubtful(
             Diagnostic::new(kind, format!("shell {id} has {what} {why}"))
         });
     }
+}
+
+/// True if a motion turns right hands into left ones.
+pub(super) fn mirrors(motion: &Matrix4) -> bool {
+    motion.fixed_view::<3, 3>(0, 0).determinant() < 0.0
 }
 
 /// What a motion does to directions.

@@ -96,7 +96,10 @@ pub(crate) struct ShellChunk {
     pub parts: PartIds,
     pub packed: PackedIds,
     pub mid_side: Vec<(u32, [u64; 4])>,
+    /// Their plies are an index into `stacks`.
     pub extras: Vec<ShellExtra>,
+    /// Plies of the composite shells, of each by itself.
+    pub stacks: Vec<Vec<f64>>,
     pub diagnostics: Diagnostics,
     pub had_tabs: bool,
 }
@@ -257,7 +260,7 @@ impl Reader<'_> {
                     shell: self.chunk.shells.len() as u32 - 1,
                     thickness: thickness.map(|t| t * self.offsets.length),
                     beta: if self.options.beta { angle } else { 0.0 },
-                    n_plies: 0,
+                    plies: None,
                 });
             }
             Ok(_) => {}
@@ -289,10 +292,9 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Passes over the plies of a composite shell and keeps their number and the sum of their thicknesses.
+    /// Reads the plies of a composite shell, whose thickness is their sum unless it has its own.
     fn plies(&mut self, cards: &mut Cards<'_>, is_kept: bool) {
-        let mut sum = 0.0;
-        let mut n_plies = 0;
+        let mut plies = Vec::new();
         loop {
             let before = cards.clone();
             let Some(card) = cards.next() else { break };
@@ -300,27 +302,31 @@ impl Reader<'_> {
                 *cards = before;
                 break;
             }
-            n_plies += 1;
-            sum += card.length_or_zero(EIGHT_BY_10, 1).unwrap_or(0.0);
+            let thickness = |index| card.length_or_zero(EIGHT_BY_10, index).unwrap_or(0.0);
+            plies.push(thickness(1) * self.offsets.length);
             // `_LONG` has a ply id in place of the second ply, without a thickness.
             if !card.is_empty_field(EIGHT_BY_10, 4) && is_real_text(card.field(EIGHT_BY_10, 5).text)
             {
-                n_plies += 1;
-                sum += card.length_or_zero(EIGHT_BY_10, 5).unwrap_or(0.0);
+                plies.push(thickness(5) * self.offsets.length);
             }
         }
-        let last = self.chunk.shells.len() as u32;
+        let sum: f64 = plies.iter().sum();
+        let has_layers = plies.iter().all(|ply| *ply >= 0.0) && sum > 0.0;
+        if !is_kept || !has_layers {
+            return;
+        }
+        let shell = self.chunk.shells.len() as u32 - 1;
+        let stack = self.chunk.stacks.len() as u32;
+        self.chunk.stacks.push(plies);
         let own = self.chunk.extras.last_mut();
-        let own = own.filter(|extra| is_kept && extra.shell + 1 == last);
-        if let Some(extra) = own {
-            extra.n_plies = n_plies;
-        } else if is_kept && sum > 0.0 {
-            self.chunk.extras.push(ShellExtra {
-                shell: last - 1,
-                thickness: [sum * self.offsets.length; 4],
+        match own.filter(|extra| extra.shell == shell) {
+            Some(extra) => extra.plies = Some(stack),
+            None => self.chunk.extras.push(ShellExtra {
+                shell,
+                thickness: [sum; 4],
                 beta: 0.0,
-                n_plies,
-            });
+                plies: Some(stack),
+            }),
         }
     }
 }

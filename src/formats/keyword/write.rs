@@ -425,7 +425,7 @@ mod tests {
             shell: 1,
             thickness: [1.5, 1.6, 1.7, 0.0],
             beta: 30.0,
-            n_plies: 0,
+            plies: None,
         });
         let point = StressPoint {
             t: -1.0,

@@ -218,6 +218,13 @@ impl Forming {
         &mut self.stress_points[record.first_point..][..record.n_points as usize]
     }
 
+    /// The history variables of the `index`-th shell with stresses.
+    pub(crate) fn history_mut(&mut self, index: usize) -> &mut [f64] {
+        let record = &self.stress[index];
+        let n = record.n_points as usize * record.n_history as usize;
+        &mut self.history[record.first_history..][..n]
+    }
+
     /// The tensors of the `index`-th shell with stresses, to be turned.
     pub fn tensors_mut(&mut self, index: usize) -> &mut [Tensor] {
         let record = &self.stress[index];

@@ -115,8 +115,8 @@ pub struct ShellExtra {
     pub thickness: [f64; 4],
     /// Material angle in degrees; 0 if none was given.
     pub beta: f64,
-    /// Plies of its own, which are its layers; 0 if it has none.
-    pub n_plies: u32,
+    /// Plies of its own, which are its layers: an index into [`Model::ply_stacks`].
+    pub plies: Option<u32>,
 }
 
 /// Kind of a solid element.
@@ -268,6 +268,8 @@ pub struct IncludedAs {
     pub length_factor: f64,
     /// Factor on stresses.
     pub stress_factor: f64,
+    /// The deck mirrors it: corners of shells and solids in the order 2 1 4 3 of their cards.
+    pub is_mirrored: bool,
 }
 
 impl Default for IncludedAs {
@@ -283,12 +285,13 @@ impl Default for IncludedAs {
             system_offset: 0,
             length_factor: 1.0,
             stress_factor: 1.0,
+            is_mirrored: false,
         }
     }
 }
 
 impl IncludedAs {
-    /// True if ids and lengths in the file are those of the whole deck.
+    /// True if ids, lengths and corners in the file are those of the whole deck.
     pub fn keeps_numbers(&self) -> bool {
         let offsets = [
             self.element_offset,
@@ -296,7 +299,7 @@ impl IncludedAs {
             self.part_offset,
             self.system_offset,
         ];
-        offsets == [0; 4] && self.length_factor == 1.0
+        offsets == [0; 4] && self.length_factor == 1.0 && !self.is_mirrored
     }
 }
 
@@ -333,6 +336,9 @@ pub struct Model {
     pub mid_side: Vec<(u32, [u32; 4])>,
     /// Corner thickness and material angle of the shells that have their own.
     pub shell_extras: Vec<ShellExtra>,
+    /// Thickness of the plies, from the bottom side up, of shells that have their own (`_COMPOSITE`); stacks that
+    /// are alike stand here once.
+    pub ply_stacks: Vec<Vec<f64>>,
     /// Solids and thick shells whose nodes all exist.
     pub solids: Vec<Solid>,
     /// Parts, the defined ones and those that only elements name, in the order they were met.
@@ -347,7 +353,8 @@ pub struct Model {
     pub sets: Sets,
     /// Forming results. Tensors are in the global frame: those of a file that was included under a
     /// transformation, or of shells that `*NODE_TRANSFORM` moved, are turned with its rotation.
-    /// The sides of a shell are those of its corner order, as in the deck, also after a mirror.
+    /// The sides of a shell are those of its corner order, which an include that is mirrored reverses with its
+    /// normals, as the solver does; `*NODE_TRANSFORM` moves nodes alone.
     pub forming: Forming,
     /// Motions that includes and `*NODE_TRANSFORM` brought, in the order they were carried out.
     pub motions: Vec<AppliedMotion>,
@@ -415,6 +422,12 @@ impl Model {
             corners[3] = a + ((b - a) + (c - a)) / 3.0;
         }
         Some(corners)
+    }
+
+    /// The plies of a shell that has its own: their index and thickness. O(log shells).
+    pub fn shell_plies(&self, shell: u32) -> Option<(u32, &[f64])> {
+        let index = self.shell_extra(shell)?.plies?;
+        Some((index, &self.ply_stacks[index as usize]))
     }
 
     /// Thickness and material angle written with the shell itself. O(log shells).

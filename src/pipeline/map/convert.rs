@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::{MapRecipe, mesh_error, parts_in_use};
+use super::{Layers, MapRecipe, mesh_error, parts_in_use};
 use crate::formats::Model;
 use crate::geometry::Point3;
 use crate::mapping::{
@@ -86,8 +86,14 @@ pub(super) fn source_part(
     let named = if has_results { &shells.shells[..] } else { &[] };
     let index = element_index(model, named, monitor)?;
     let parts = parts_in_use(shells).into_iter();
-    let plies = parts.filter_map(|part| model.parts[part as usize].plies.as_ref());
-    let plies = plies.map(|plies| LayerRule::of_plies(&plies.thickness));
+    let of_parts = parts.filter_map(|part| model.parts[part as usize].plies.as_ref());
+    let of_parts = of_parts.map(|plies| plies.thickness.as_slice());
+    let of_shells = shells.shells.iter();
+    let of_shells = of_shells.filter_map(|&shell| model.shell_plies(shell));
+    let of_shells: BTreeMap<u32, &[f64]> = of_shells.collect();
+    let plies = of_parts
+        .chain(of_shells.into_values())
+        .map(LayerRule::of_plies);
     let mut states = Layered::with_rules(shells.shells.len(), plies.collect());
     let mut history = SourceHistory::new(shells.shells.len());
     for (number, stress) in model.forming.stresses().enumerate() {
@@ -170,32 +176,40 @@ pub(super) struct TargetLayers {
     pub n_plane: u8,
 }
 
-/// The crash part with the layers of each of its parts.
+/// The crash part with the layers of its elements.
 pub(super) fn target_part(
     part: &LoadedPart,
     shells: &PartShells,
-    layers_of_part: &BTreeMap<u32, TargetLayers>,
+    layers: &Layers<'_>,
     monitor: &Monitor,
-) -> Result<TargetPart, Cancelled> {
+) -> Result<TargetPart, PipelineError> {
     let model = &part.model;
     let factor = part.settings.length_factor;
     let mut rules: Vec<LayerRule> = Vec::new();
-    let of_parts = layers_of_part.iter().map(|(&part, layers)| {
-        let known = rules.iter().position(|rule| *rule == layers.rule);
-        let rule = known.unwrap_or_else(|| {
-            rules.push(layers.rule.clone());
-            rules.len() - 1
-        });
-        (part, (rule as u16, layers.n_plane))
-    });
-    let of_parts: BTreeMap<u32, (u16, u8)> = of_parts.collect();
+    // By part and stack of plies.
+    let mut known: BTreeMap<(u32, Option<u32>), (u16, u8)> = BTreeMap::new();
     let mut rule_of = Vec::with_capacity(shells.shells.len());
     let mut n_plane = Vec::with_capacity(shells.shells.len());
-    for (element, &of_part) in shells.mesh.parts().iter().enumerate() {
+    for (element, (&shell, &of_part)) in shells.shells.iter().zip(shells.mesh.parts()).enumerate() {
         if element % CHUNK == 0 {
             monitor.check()?;
         }
-        let (rule, points) = of_parts[&of_part];
+        let plies = model.shell_plies(shell);
+        let key = (of_part, plies.map(|(stack, _)| stack));
+        let (rule, points) = match known.get(&key) {
+            Some(&known) => known,
+            None => {
+                let own = layers.of(of_part, plies.map(|(_, plies)| plies))?;
+                let same = rules.iter().position(|rule| *rule == own.rule);
+                let rule = same.unwrap_or_else(|| {
+                    rules.push(own.rule);
+                    rules.len() - 1
+                });
+                let rule = u16::try_from(rule).map_err(|_| PipelineError::TooManyRules)?;
+                known.insert(key, (rule, own.n_plane));
+                (rule, own.n_plane)
+            }
+        };
         rule_of.push(rule);
         n_plane.push(points);
     }

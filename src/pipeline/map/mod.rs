@@ -21,7 +21,7 @@ mod values;
 mod verdict;
 mod warnings;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
@@ -219,15 +219,11 @@ pub fn map_parts(
     let crash_shells = part_shells(crash, monitor)?;
     let layers = Layers { crash, recipe };
     let crash_parts = parts_in_use(&crash_shells);
-    let mut layers_of = BTreeMap::new();
-    for &part in &crash_parts {
-        layers_of.insert(part, layers.of(part)?);
-    }
     let wanted = recipe.options.quantities;
     if wanted.stress || wanted.history {
         ready::check_axes(crash, &crash_parts)?;
     }
-    let target = target_part(crash, &crash_shells, &layers_of, monitor)?;
+    let target = target_part(crash, &crash_shells, &layers, monitor)?;
     let mut shells = Vec::with_capacity(stamped.len());
     for placed in stamped {
         shells.push(part_shells(placed.part, monitor)?);
@@ -303,17 +299,20 @@ struct Layers<'a> {
 }
 
 impl Layers<'_> {
-    /// The layers of a part: as asked for, else as its section says; an error if neither does and
-    /// layer values are wanted.
-    fn of(&self, part: u32) -> Result<TargetLayers, PipelineError> {
+    /// The layers of a part's shells: as asked for, else `own` plies or those of the part, else as its section
+    /// says; an error if none does and layer values are wanted.
+    fn of(&self, part: u32, own: Option<&[f64]>) -> Result<TargetLayers, PipelineError> {
         let model = &self.crash.model;
         let section = model.shell_formulation(part);
         let wanted = self.recipe.options.quantities;
         let needs_layers =
             wanted.plastic_strain || wanted.stress || wanted.strain || wanted.history;
         let id = model.parts[part as usize].id;
+        let of_part = model.parts[part as usize].plies.as_ref();
+        let plies = own.or(of_part.map(|plies| &plies.thickness[..]));
         let n_layers = match (self.recipe.n_layers, section) {
             (Some(n), _) => n,
+            (None, _) if plies.is_some() => plies.map_or(0, <[f64]>::len),
             (None, Some(section)) if !section.has_own_rule => section.n_layers as usize,
             (None, _) if !needs_layers => 1,
             (None, Some(_)) => return Err(PipelineError::OwnLayerRule { part: id }),
@@ -329,9 +328,8 @@ impl Layers<'_> {
         } else {
             RuleKind::Gauss
         };
-        let plies = model.parts[part as usize].plies.as_ref();
         let rule = match (plies, self.recipe.n_layers, self.recipe.rule) {
-            (Some(plies), None, None) => LayerRule::of_plies(&plies.thickness),
+            (Some(plies), None, None) => LayerRule::of_plies(plies),
             (_, _, rule) => LayerRule::new(rule.unwrap_or(of_deck), n_layers),
         };
         Ok(TargetLayers {

@@ -109,7 +109,7 @@ pub struct MapFiles {
     pub n_stress: usize,
     /// Elements with a strain card.
     pub n_strain: usize,
-    /// Mapped elements that were left as they are, because they have plies of their own.
+    /// Mapped elements that keep their thickness, because they have plies of their own.
     pub n_composite: usize,
     /// Largest difference between a value and what reading the files gives, relative to the largest
     /// value of its kind.
@@ -266,10 +266,10 @@ fn thickness_by_id(
     Ok(by_id)
 }
 
-/// True if an element has plies, which are its layers, whatever its section says.
+/// True if an element has plies, whose thicknesses are its own.
 fn is_composite(run: &MapRun, model: &Model, element: usize) -> bool {
     let extra = model.shell_extra(run.shells[element]);
-    extra.is_some_and(|extra| extra.n_plies > 0)
+    extra.is_some_and(|extra| extra.plies.is_some())
 }
 
 pub(super) struct MapWriter<'a> {
@@ -378,6 +378,13 @@ impl MapWriter<'_> {
         }
         let n_found: usize = decks.iter().map(|(_, deck)| deck.n_exchanged).sum();
         let n_wanted = self.thickness.len();
+        if n_found > n_wanted {
+            return Err(PipelineError::MapOutput(format!(
+                "{} of the elements that are mapped onto are defined more than once; leave one card of each in the \
+                 crash deck (shapematch info names all)",
+                n_found - n_wanted
+            )));
+        }
         if n_found < n_wanted {
             let missing = n_wanted - n_found;
             return Err(PipelineError::MapOutput(format!(
@@ -511,7 +518,7 @@ impl MapWriter<'_> {
         }
     }
 
-    /// What is written for an element; no values for one that has plies of its own.
+    /// What is written for an element.
     pub(super) fn state_of(&self, element: usize) -> ShellState<'_> {
         let mapped = &self.run.mapped;
         let rule = &self.run.target.rules[self.run.target.rule_of[element] as usize];
@@ -529,9 +536,6 @@ impl MapWriter<'_> {
             strain_places,
             strains: &[],
         };
-        if is_composite(self.run, self.model, element) {
-            return state;
-        }
         if let Some(history) = &mapped.history {
             let kept = history.of(element);
             (state.history, state.tensors) = (kept.values, kept.tensors);
@@ -550,7 +554,7 @@ impl MapWriter<'_> {
         state
     }
 
-    /// Elements that are mapped but have plies, so that they are left as they are.
+    /// Elements with a mapped thickness but plies, whose thicknesses stay.
     fn n_composite(&self) -> Result<usize, Cancelled> {
         let mut n = 0;
         for_chunks(self.run.shells.len(), self.monitor, |range| {

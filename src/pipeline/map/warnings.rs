@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::{MapFiles, MapRun, PlacedPart, mapped_by_solver};
+use super::{MapFiles, MapRun, PlacedPart, PoseOrigin, mapped_by_solver};
 use crate::formats::diagnostic::{DiagnosticKind, Severity};
-use crate::mapping::{MapOptions, Quantities, Status};
+use crate::mapping::{Facing, MapOptions, Quantities, SourcePart, Status};
 use crate::pipeline::load::LoadedPart;
+use crate::registration::guess_unit;
 use crate::text::{counted, length, parts_by_id};
 
 /// The parts of a stamped file that have neither stresses nor strains, and no thickness but that of their
@@ -48,6 +49,7 @@ pub(super) fn warnings(
     let sources = stamped.iter().zip(&run.source_shells);
     warnings.extend(sources.filter_map(|(placed, shells)| without_results(placed, shells)));
     warnings.extend(of_elements(run));
+    warnings.extend(other_unit(run, stamped));
     if let Some(ratio) = run.unusual_thickness() {
         warnings.push(format!(
             "the mapped thickness is {} times that of the section; another gauge or another unit?",
@@ -72,9 +74,11 @@ pub(super) fn warnings(
             law(&gap.target)
         ));
     }
-    if let Some(files) = files.filter(|files| files.n_composite > 0) {
+    let keeps_thickness =
+        |files: &&MapFiles| files.n_composite > 0 && run.recipe.options.quantities.thickness;
+    if let Some(files) = files.filter(keeps_thickness) {
         warnings.push(format!(
-            "nothing is written for {} with plies in the element's card (_COMPOSITE)",
+            "no thickness is written for {} with plies in the card (_COMPOSITE), whose own thicknesses stay",
             counted(files.n_composite, "element")
         ));
     }
@@ -83,6 +87,27 @@ pub(super) fn warnings(
         warnings.extend(old_states_warning(run, files));
     }
     warnings
+}
+
+/// Asks about the unit of a stamped file whose given pose puts it beside the crash part, from the sizes of both.
+/// A match says so itself.
+fn other_unit(run: &MapRun, stamped: &[PlacedPart<'_>]) -> Vec<String> {
+    if run.mapped.mapped_area(&run.target.mesh) >= run.recipe.wanted_area() {
+        return Vec::new();
+    }
+    let hint = |(placed, source): (&PlacedPart<'_>, &SourcePart)| {
+        let is_given = placed.origin == PoseOrigin::Given && placed.crash_from_stamped.scale == 1.0;
+        let ratio = run.target.mesh.area() / source.mesh.area();
+        let unit = guess_unit(ratio.sqrt()).filter(|_| is_given)?;
+        Some(format!(
+            "{}: by its size in {}, and the crash part in {}? --stamped-length-factor {} would convert it",
+            placed.part.file_name(),
+            unit.source.plural(),
+            unit.target.plural(),
+            length(unit.factor() * placed.part.settings.length_factor)
+        ))
+    };
+    stamped.iter().zip(&run.sources).filter_map(hint).collect()
 }
 
 /// What is to be told of the status of the elements and of where they lie.
@@ -116,7 +141,7 @@ fn of_elements(run: &MapRun) -> Vec<String> {
             counted(n_filled, "element")
         ));
     }
-    if area > 0.0 && mapped.senses.contains(&None) {
+    if area > 0.0 && mapped.facings.contains(&Facing::Mixed) {
         warnings.push(
             "normals of the two parts agree on no side; sheets that lie close are told apart by \
              distance alone"

@@ -1,9 +1,10 @@
 //! The cards of one shell as they are copied, exchanged and listed.
 
 use super::super::super::model::IncludedAs;
+use super::super::super::moved::reversed_corners;
 use super::super::block::Block;
 use super::super::card::{Card, FIVE_BY_16, Layout, TEN_BY_8};
-use super::super::exponential::push_int;
+use super::super::exponential::{push_exponential, push_int};
 use super::super::mesh::ShellCards;
 use super::super::nodes::shifted;
 use super::super::state_cards::push_thickness;
@@ -47,6 +48,16 @@ impl Element<'_> {
         cards.collect()
     }
 
+    /// What the corners have in the whole deck, in the order of its card, and the other way round.
+    pub(super) fn corners_as_in<T: Copy>(&self, place: &IncludedAs, corners: [T; 4]) -> [T; 4] {
+        if place.is_mirrored {
+            let [third, fourth] = [4, 5].map(|index| self.card.id(TEN_BY_8, index).unwrap_or(0));
+            reversed_corners(corners, fourth == 0 || fourth == third)
+        } else {
+            corners
+        }
+    }
+
     /// The thickness cards as they stand; `None` if there are none.
     pub(super) fn old_thickness_cards(&self, line_end: &[u8]) -> Option<Vec<u8>> {
         let old = [&self.thickness, &self.second_thickness];
@@ -65,7 +76,9 @@ impl Element<'_> {
         line_end: &[u8],
     ) -> Option<(Layout, Vec<u8>, Option<Vec<u8>>)> {
         let has_other_length = place.length_factor != 1.0;
-        let has_nodes = keyword.has_scalar_nodes && place.node_offset != 0;
+        let moves_nodes = place.node_offset != 0 || place.is_mirrored;
+        let has_nodes =
+            keyword.has_scalar_nodes && moves_nodes || self.is_quadratic && place.is_mirrored;
         let keeps_second = new.is_none() && self.second_thickness.is_some();
         if has_nodes || has_other_length && (self.cards.n_passed_over > 0 || keeps_second) {
             return None;
@@ -79,6 +92,8 @@ impl Element<'_> {
             };
             *id = shifted(self.card.id(TEN_BY_8, index).ok()?, offset);
         }
+        let corners = self.corners_as_in(place, [ids[2], ids[3], ids[4], ids[5]]);
+        ids[2..6].copy_from_slice(&corners);
         let layout = match (self.card.layout(), *ids.iter().max()?) {
             (Layout::Long, _) => Layout::Long,
             (layout, ..=99_999_999) => layout,
@@ -98,7 +113,7 @@ impl Element<'_> {
                 for (index, t) in old.iter_mut().enumerate() {
                     *t = card.real_or_zero(FIVE_BY_16, index).ok()? * place.length_factor;
                 }
-                Some(old)
+                Some(self.corners_as_in(place, old))
             }
         };
         let Some(corners) = new.copied().or(old) else {
@@ -109,6 +124,17 @@ impl Element<'_> {
             && let (Some((_, line, _)), Some(second)) = (&self.second_thickness, cards.get_mut(1))
         {
             *second = line.to_vec();
+        }
+        if let Some((card, ..)) = &self.thickness
+            && self.cards.beta
+            && place.is_mirrored
+            && !card.is_empty_field(FIVE_BY_16, 4)
+        {
+            let angle = 0.0 - card.real_or_zero(FIVE_BY_16, 4).ok()?;
+            let text = &mut cards[0];
+            text.clear();
+            push_thickness(text, &corners, layout);
+            push_exponential(text, angle, layout.width(FIVE_BY_16[4]), 8);
         }
         // Without BETA the fifth field is a coordinate system.
         if let Some((card, ..)) = &self.thickness
