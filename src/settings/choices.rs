@@ -68,7 +68,7 @@ choices! { DataSide:
 choices! { PairWith:
     Node => "node", "Closest node",
         "Pairs nodes with nodes; only as accurate as the mesh is fine";
-    Triangle => "triangle", "Closest point on a triangle",
+    Triangle => "triangle", "Closest point",
         "Pairs nodes with points on triangles; accurate on any mesh";
 }
 

@@ -2,8 +2,9 @@
 
 use egui::{Event, Modifiers};
 
+use super::palette;
 use crate::app::{
-    Action, AppState, Axis, Command, Key, KeyMode, ModalInput, MoveCommand, NoticeCommand,
+    Action, AppState, Axis, Command, Dialog, Key, KeyMode, ModalInput, MoveCommand, NoticeCommand,
     NoticeLevel, Shortcut, ViewCommand,
 };
 
@@ -70,11 +71,25 @@ impl Keyboard {
         let (events, held) = ctx.input(|input| (input.events.clone(), input.modifiers));
         let is_moving = state.moving.tool.is_some() && owner == KeyOwner::Window;
         let mut commands = Vec::new();
-        for event in &events {
+        for (index, event) in events.iter().enumerate() {
             if is_moving && let Some(input) = modal_input(event) {
                 commands.push(MoveCommand::Input(input).into());
-            } else {
-                commands.extend(of_event(event, held, owner, state));
+                continue;
+            }
+            let Some(command) = of_event(event, held, owner, state) else {
+                continue;
+            };
+            let opened = match command {
+                Command::View(ViewCommand::SetDialog(dialog)) => dialog,
+                _ => None,
+            };
+            commands.push(command);
+            if let Some(dialog) = opened {
+                // The rest is meant for what opens.
+                if dialog == Dialog::Palette {
+                    palette::begin_with(ctx, &events[index + 1..]);
+                }
+                break;
             }
         }
         commands

@@ -5,6 +5,7 @@
 
 mod background;
 pub mod dialogs;
+mod focus;
 pub mod gizmo;
 mod help;
 pub mod keyboard;

@@ -1,6 +1,8 @@
 //! Search over all commands, recent files and exports.
 
-use egui::{Align, Key, Layout, Modifiers, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2};
+use egui::{
+    Align, Event, Key, Layout, Modifiers, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2,
+};
 
 use super::theme::{Palette, ROW, UNIT};
 use super::widgets::{caption, draft, secondary, set_draft, text_field};
@@ -17,7 +19,13 @@ pub fn palette_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mu
     let mut text = before.clone();
     let mut at: usize = ui.data(|data| data.get_temp(ids[1])).unwrap_or(0);
     let steps = arrow_steps(ui);
+    let id = egui::Id::unique("palette field");
+    if !ui.memory(|memory| memory.has_focus(id)) {
+        // What is typed while the search opens.
+        ui.input(|input| text.extend(typed(&input.events)));
+    }
     let field = egui::TextEdit::singleline(&mut text)
+        .id(id)
         .hint_text("Search commands, recent files, exports")
         .desired_width(f32::INFINITY)
         .margin(egui::Margin::symmetric(8, 6));
@@ -72,6 +80,20 @@ fn ids() -> [egui::Id; 2] {
         egui::Id::unique("palette search"),
         egui::Id::unique("palette choice"),
     ]
+}
+
+/// The texts among some events.
+fn typed(events: &[Event]) -> impl Iterator<Item = &str> {
+    events.iter().filter_map(|event| match event {
+        Event::Text(text) => Some(text.as_str()),
+        _ => None,
+    })
+}
+
+/// Begins the search with what was typed right behind the key that opens it.
+pub fn begin_with(ctx: &egui::Context, events: &[Event]) {
+    let text: String = typed(events).collect();
+    ctx.data_mut(|data| data.insert_temp(ids()[0], text));
 }
 
 /// Empties the field, so that the search begins anew when it is opened again.

@@ -12,7 +12,7 @@ use super::panels::drop::DropTarget;
 use super::pictures::{Pictures, Wanted};
 use super::preferences::{Preferences, UserFiles, WindowPlace};
 use super::viewport::Viewports;
-use super::{overlays, panels, project_dialogs, system_fonts, theme, toasts};
+use super::{focus, overlays, panels, project_dialogs, system_fonts, theme, toasts};
 use crate::app::{
     AppState, Clock, Command, Document, Effect, FileCommand, NoticeCommand, NoticeLevel,
     PictureChoice, PictureSize, ProjectCommand, Settings, StartupOptions, Theme,
@@ -444,6 +444,7 @@ fn clock() -> Clock {
 
 impl eframe::App for Shell {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        focus::follow(ctx);
         self.state.tick(self.begin.elapsed());
         // Read in this order and applied in the other, no news of a job that ended is lost.
         let events: Vec<JobEvent> = self.worker.events().collect();

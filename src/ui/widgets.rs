@@ -1,5 +1,6 @@
 //! Small pieces that every panel uses, so that they look alike everywhere.
 
+use super::focus::is_ringed;
 use super::theme::{Palette, ROW, TALL, UNIT, color, ink};
 use crate::app::{Action, AppState, Command, NoticeLevel};
 use crate::assess::Verdict;
@@ -247,7 +248,7 @@ pub fn icon_button(ui: &mut Ui, sign: &str, name: &str, is_enabled: bool) -> Res
 
 /// The ring around a widget of our own that has the keyboard.
 pub fn focus_ring(ui: &Ui, rect: Rect, response: &Response) {
-    if response.has_focus() {
+    if is_ringed(response) {
         let ring = Stroke::new(1.5, Palette::of(ui).accent_text);
         let inside = egui::StrokeKind::Inside;
         ui.painter().rect_stroke(rect, 4.0, ring, inside);

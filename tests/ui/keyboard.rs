@@ -3,10 +3,11 @@
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use shapematch::app::{Axis, MoveCommand, PartCommand, PartRef};
+use shapematch::app::{Axis, Dialog, MoveCommand, PartCommand, PartRef};
 use shapematch::role::Role;
 use shapematch::ui::Shell;
 
+use super::pairs::click_in;
 use super::story::{click, finish, window};
 
 type Window = Harness<'static, Shell>;
@@ -250,4 +251,101 @@ fn alt_alone_opens_the_menus_and_with_another_key_does_not() {
     assert!(!press(&[alt(true)]));
     assert!(press(&[alt(false)]));
     assert!(!press(&[alt(true), alt(false)]));
+}
+
+/// Whether a line is drawn around the named thing, at its edge or a point inside it.
+fn is_framed(window: &Window, rect: egui::Rect) -> bool {
+    fn any(shape: &egui::Shape, rect: egui::Rect) -> bool {
+        match shape {
+            egui::Shape::Vec(shapes) => shapes.iter().any(|shape| any(shape, rect)),
+            egui::Shape::Rect(drawn) => {
+                let edges = [drawn.rect.min - rect.min, rect.max - drawn.rect.max];
+                let is_at = |x: f32| (0.0..=4.5).contains(&x);
+                drawn.stroke.width > 0.9 && edges.iter().all(|e| is_at(e.x) && is_at(e.y))
+            }
+            _ => false,
+        }
+    }
+    let shapes = &window.output().shapes;
+    shapes.iter().any(|clipped| any(&clipped.shape, rect))
+}
+
+#[test]
+fn the_ring_follows_the_keyboard_and_not_the_pointer() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    let canvas = |window: &Window| {
+        let is_crash = |label: &str| label.starts_with("Crash part");
+        let node = window.get_by(|node| {
+            node.role() == egui::accesskit::Role::Canvas
+                && node.label().is_some_and(|label| is_crash(&label))
+        });
+        assert!(node.is_focused());
+        node.rect()
+    };
+    click_in(&mut window, Role::Crash, egui::vec2(90.0, 60.0));
+    let rect = canvas(&window);
+    assert!(!is_framed(&window, rect), "after a click");
+    window.key_press(Key::ArrowLeft);
+    window.run_steps(4);
+    assert!(is_framed(&window, canvas(&window)), "after an arrow key");
+    click_in(&mut window, Role::Crash, egui::vec2(90.0, 60.0));
+    assert!(!is_framed(&window, rect), "after a click again");
+
+    tab_to(&mut window, "3 Match");
+    let ring = |window: &Window| {
+        let style = window.ctx.global_style();
+        style.visuals.widgets.active.bg_stroke.width > 1.2
+    };
+    assert!(ring(&window), "what Tab goes to is ringed");
+    assert!(is_framed(&window, window.get_by_label("3 Match").rect()));
+    click_in(&mut window, Role::Crash, egui::vec2(90.0, 60.0));
+    assert!(!ring(&window), "what is pressed is not");
+}
+
+#[test]
+fn what_is_typed_while_the_search_opens_is_searched() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    let key = |key, modifiers| egui::Event::Key {
+        key,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers,
+    };
+    // All in one frame, and then one letter a frame.
+    for n_at_once in [3, 0] {
+        let mut events = vec![key(Key::K, Modifiers::COMMAND)];
+        // Let go, or the next one would count as repeated.
+        window.key_up(Key::K);
+        window.step();
+        for (letter, text) in [(Key::M, "m"), (Key::O, "o"), (Key::E, "e")] {
+            events.push(key(letter, Modifiers::NONE));
+            events.push(egui::Event::Text(text.to_owned()));
+        }
+        let rest = events.split_off(1 + 2 * n_at_once);
+        window.input_mut().events.extend(events);
+        window.step();
+        for pair in rest.chunks(2) {
+            window.input_mut().events.extend(pair.iter().cloned());
+            window.step();
+        }
+        window.run_steps(3);
+        let dialog = window.state().state().view.dialog;
+        assert_eq!(dialog, Some(Dialog::Palette), "{n_at_once} at once");
+        let role = egui::accesskit::Role::TextInput;
+        let field = window.get_by_role_and_label(role, "Search commands");
+        assert_eq!(field.accesskit_node().value().as_deref(), Some("moe"));
+        let view = &window.state().state().view;
+        assert!(
+            !view.is_moved_over && !view.display.has_edges,
+            "no key acts beside it"
+        );
+        window.key_press(Key::Escape);
+        window.run_steps(2);
+        assert!(window.state().state().view.dialog.is_none());
+    }
 }

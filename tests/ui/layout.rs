@@ -217,6 +217,8 @@ fn the_question_about_the_mouse_is_seen_whole_below_recent_files() {
     ]
     .map(std::path::PathBuf::from)
     .to_vec();
+    let just_now = settings.recent.iter().map(|path| (path.clone(), 1));
+    settings.opened = just_now.collect();
     let commands = vec![Command::Settings(Box::new(settings))];
     window.state_mut().run_commands(commands, &ctx);
     for [width, height] in [[1280.0, 720.0], [1280.0, 640.0], [1600.0, 900.0]] {
@@ -233,6 +235,12 @@ fn the_question_about_the_mouse_is_seen_whole_below_recent_files() {
         );
         let listed = texts.iter().filter(|text| text.text == "crash.k").count();
         assert!(listed >= 1, "{width}: no recent file");
+        // Names short and long begin at the same place.
+        let [short, long] = ["crash.k", "a_rather"].map(|start| {
+            let name = texts.iter().find(|text| text.text.starts_with(start));
+            name.expect("listed").rect.left().round()
+        });
+        assert_eq!(short, long, "{width}");
     }
 }
 
@@ -318,6 +326,27 @@ fn the_largest_deviations_are_seen_whole_without_scrolling() {
         };
         assert!(rows.any(is_whole), "{name} is cut");
     }
+}
+
+/// A result that comes into sight in a column lower than its card shows its verdict.
+#[test]
+fn the_verdict_is_seen_where_its_card_is_higher_than_the_column() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    window.set_size(Vec2::new(1000.0, 360.0));
+    window.run_steps(4);
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Enter);
+    window.run_steps(2);
+    finish(&mut window);
+    window.run_steps(40);
+    let texts = texts(&window);
+    let is_verdict = |text: &&Painted| text.text.ends_with("GOOD") && text.rect.height() > 18.0;
+    let verdict = texts.iter().find(is_verdict).expect("the verdict is drawn");
+    assert!(
+        verdict.rect.top() >= verdict.clip.top(),
+        "the verdict is cut"
+    );
 }
 
 /// The mapping's difference in a small window: what its colours mean, and what lies under the pointer,

@@ -9,7 +9,7 @@ use shapematch::ui::Shell;
 use super::story::{click, finish, window};
 
 /// Presses and lets go in the middle of a window, a little off.
-fn click_in(window: &mut Harness<'static, Shell>, role: Role, off: egui::Vec2) {
+pub(crate) fn click_in(window: &mut Harness<'static, Shell>, role: Role, off: egui::Vec2) {
     let name = match role {
         Role::Crash => "Crash part",
         Role::Stamped => "Stamped part",

@@ -193,6 +193,20 @@ pub fn drag(harness: &mut Harness<'_, Desk>, button: PointerButton, from: Pos2, 
     harness.run_steps(2);
 }
 
+/// Two notches of the wheel at a place.
+fn turn_wheel(harness: &mut Harness<'_, Desk>, at: Pos2) {
+    harness.event(Event::PointerMoved(at));
+    harness.step();
+    harness.event(Event::MouseWheel {
+        unit: MouseWheelUnit::Line,
+        delta: vec2(0.0, 2.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: egui::Modifiers::NONE,
+    });
+    harness.run_steps(30);
+}
+
 fn screen_of(area: Rect) -> ScreenSize {
     ScreenSize {
         width: f64::from(area.width()),
@@ -253,16 +267,7 @@ fn the_wheel_zooms_to_the_cursor() {
     let before = harness.state().camera(Role::Crash);
     let pixel = [f64::from(at.x - area.left()), f64::from(at.y - area.top())];
     let anchor = before.unproject(pixel, screen_of(area), &before.target);
-    harness.event(Event::PointerMoved(at));
-    harness.step();
-    harness.event(Event::MouseWheel {
-        unit: MouseWheelUnit::Line,
-        delta: vec2(0.0, 2.0),
-        phase: egui::TouchPhase::Move,
-        source: egui::MouseWheelSource::Wheel,
-        modifiers: egui::Modifiers::NONE,
-    });
-    harness.run_steps(30);
+    turn_wheel(&mut harness, at);
     let after = harness.state().camera(Role::Crash);
     assert!(after.height < 0.9 * before.height, "closer");
     let seen = after.project(&anchor, screen_of(area)).unwrap();
@@ -649,15 +654,6 @@ fn the_wheel_over_the_view_buttons_does_not_zoom() {
     let before = harness.state().camera(Role::Crash);
     let button = harness.get_by_label("Look along Y (crash)");
     let at = button.rect().center();
-    harness.event(Event::PointerMoved(at));
-    harness.step();
-    harness.event(Event::MouseWheel {
-        unit: MouseWheelUnit::Line,
-        delta: vec2(0.0, 2.0),
-        phase: egui::TouchPhase::Move,
-        source: egui::MouseWheelSource::Wheel,
-        modifiers: egui::Modifiers::NONE,
-    });
-    harness.run_steps(30);
+    turn_wheel(&mut harness, at);
     assert_eq!(harness.state().camera(Role::Crash), before);
 }

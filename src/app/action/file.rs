@@ -41,7 +41,7 @@ const OPEN: &[ActionRow] = &[
     },
     ActionRow {
         action: Action::OpenRealisticExample,
-        label: "Open the realistic example",
+        label: "Open the realistic pair",
         tooltip: "Load a generated pair that differs as real pairs do: springback, trim, skin against \
                   mid-surface, noise",
         keys: Keys::NONE,

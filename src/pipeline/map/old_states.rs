@@ -43,15 +43,15 @@ impl NewStates {
 
     /// Elements of the mapping of which the deck has a card that nothing takes the place of.
     pub(super) fn n_kept(&self, run: &MapRun, model: &Model) -> usize {
-        let own = run
-            .shells
-            .iter()
-            .map(|&shell| model.shells[shell as usize].id);
-        let own: HashSet<u64> = own.collect();
         let all = cards_of(model);
-        let kept =
-            all.filter(|(is_stress, id)| !self.of(*is_stress).contains(id) && own.contains(id));
-        kept.map(|(_, id)| id).collect::<BTreeSet<u64>>().len()
+        let other = all.filter(|(is_stress, id)| !self.of(*is_stress).contains(id));
+        let other: HashSet<u64> = other.map(|(_, id)| id).collect();
+        if other.is_empty() {
+            return 0;
+        }
+        let ids = run.shells.iter();
+        let ids = ids.map(|&shell| model.shells[shell as usize].id);
+        ids.filter(|id| other.contains(id)).count()
     }
 
     /// Cards of stresses and of strains in the deck that nothing takes the place of.
@@ -275,7 +275,12 @@ pub(super) fn read_copies(
 impl MapWriter<'_> {
     /// Elements that get a card of stresses, and elements that get one of strains.
     pub(super) fn new_states(&self) -> Result<NewStates, Cancelled> {
-        let mut new = NewStates::default();
+        // Without room for all it would grow in one long step.
+        let room = || HashSet::with_capacity(self.run.shells.len());
+        let mut new = NewStates {
+            stressed: room(),
+            strained: room(),
+        };
         for_chunks(self.run.shells.len(), self.monitor, |range| {
             for state in range.map(|element| self.state_of(element)) {
                 if !state.states.is_empty() {

@@ -134,7 +134,7 @@ pub fn write_mapping(
     comments: &[String],
     monitor: &Monitor,
 ) -> Result<MapFiles, PipelineError> {
-    check_ids(run, &crash.model)?;
+    check_ids(run, &crash.model, monitor)?;
     let factor = crash.settings.length_factor;
     let mut thickness = thickness_by_id(run, &crash.model, factor, monitor)?;
     let n_mapped = thickness.len();
@@ -215,13 +215,14 @@ pub fn write_mapping(
 }
 
 /// Results are written for ids, so none may stand for two elements.
-fn check_ids(run: &MapRun, model: &Model) -> Result<(), PipelineError> {
+fn check_ids(run: &MapRun, model: &Model, monitor: &Monitor) -> Result<(), PipelineError> {
+    let id_of = |element: usize| model.shells[run.shells[element] as usize].id;
     let mut known = HashSet::with_capacity(run.shells.len());
-    let ids = run
-        .shells
-        .iter()
-        .map(|&shell| model.shells[shell as usize].id);
-    match ids.into_iter().find(|id| !known.insert(*id)) {
+    let mut twice = None;
+    for_chunks(run.shells.len(), monitor, |range| {
+        twice = twice.or_else(|| range.map(id_of).find(|id| !known.insert(*id)));
+    })?;
+    match twice {
         Some(id) => Err(PipelineError::MapOutput(format!(
             "shell {id} is defined twice among the elements that are mapped onto; give each an id of its own in \
              the crash deck (shapematch info names all)"

@@ -312,7 +312,7 @@ fn invitation_ui(
         action_button(ui, state, Action::OpenExample, example, commands);
         let has_room = ui.clip_rect().height() > 340.0;
         if !is_narrow && has_room {
-            let realistic = ("A realistic pair", Look::Plain, vec2(width, TALL));
+            let realistic = ("Open the realistic pair", Look::Plain, vec2(width, TALL));
             action_button(ui, state, Action::OpenRealisticExample, realistic, commands);
         }
     }
@@ -359,7 +359,8 @@ fn recent_ui(ui: &mut Ui, role: Role, (state, n): (&AppState, usize), commands: 
             button = button.right_text(RichText::new(age).small().color(Palette::of(ui).secondary));
         }
         let button = button.frame_when_inactive(false).min_size(vec2(width, ROW));
-        let link = ui.add(button);
+        // One as wide as the other, whatever their names.
+        let link = ui.allocate_ui(vec2(width, ROW), |ui| ui.add(button)).inner;
         if link.on_hover_text(path.display().to_string()).clicked() {
             let (paths, role) = (vec![path.clone()], Some(role));
             commands.push(FileCommand::Open { paths, role }.into());

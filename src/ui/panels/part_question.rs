@@ -25,11 +25,13 @@ pub fn part_question_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
             "{n_used} crash parts are chosen. Most like the stamped part: {title}{what_now}"
         );
         ui.add(Label::new(text).wrap());
-        if ui.button("Match only this").clicked() {
-            commands.push(PartCommand::UseOnly(more.part).into());
-        }
-        if ui.button("Use all").clicked() {
-            commands.push(PartCommand::UseAll(Role::Crash).into());
-        }
+        ui.horizontal_wrapped(|ui| {
+            if ui.button("Match only this").clicked() {
+                commands.push(PartCommand::UseOnly(more.part).into());
+            }
+            if ui.button("Use all").clicked() {
+                commands.push(PartCommand::UseAll(Role::Crash).into());
+            }
+        });
     });
 }

@@ -50,7 +50,8 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let seen: Option<crate::jobs::Stamp> = ui.data(|data| data.get_temp(id));
     if seen != Some(result.stamp) {
         ui.data_mut(|data| data.insert_temp(id, result.stamp));
-        let bottom = ui.cursor().top() + 3.0 * ROW;
+        // Of a card that is higher than the column its beginning, with the verdict.
+        let bottom = (ui.cursor().top() + 3.0 * ROW).min(top + ui.clip_rect().height());
         let x = ui.max_rect().x_range();
         ui.scroll_to_rect(egui::Rect::from_x_y_ranges(x, top..=bottom), None);
     }
@@ -147,11 +148,7 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     });
     refusal(ui, refused);
     if let Some(score_ratio) = score_ratio(result) {
-        let text = format!(
-            "An alternative: its error is {} higher than that of the best pose.",
-            whole_percent(score_ratio - 1.0)
-        );
-        paragraph(ui, text);
+        paragraph(ui, alternative_words(score_ratio));
         return;
     }
     let is_unit_in_doubt = state.is_unit_in_doubt();
@@ -218,6 +215,16 @@ fn tolerance_ui(
         commands.push(MatchCommand::SetRecipe(Box::new(recipe)).into());
     }
     refused
+}
+
+/// How well an alternative fits beside the best pose.
+fn alternative_words(score_ratio: f64) -> String {
+    let worse = whole_percent(score_ratio - 1.0);
+    if worse == whole_percent(0.0) {
+        "An alternative: it fits as well as the best pose.".to_owned()
+    } else {
+        format!("An alternative: its error is {worse} higher than that of the best pose.")
+    }
 }
 
 /// How much worse the shown alternative is than the best pose, 1 = equally good.
@@ -397,4 +404,17 @@ fn moved_ui(ui: &mut Ui, state: &AppState) {
             number(record.scale)
         ),
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_equal_alternative_is_not_called_worse() {
+        let equal = "An alternative: it fits as well as the best pose.";
+        assert_eq!(alternative_words(1.0), equal);
+        assert_eq!(alternative_words(1.003), equal);
+        assert!(alternative_words(1.082).contains(&format!("{} higher", whole_percent(0.08))));
+    }
 }

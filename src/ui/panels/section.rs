@@ -7,6 +7,7 @@ use egui::{
 
 use crate::app::{AppState, Command, Section, ViewCommand};
 use crate::role::PerRole;
+use crate::ui::focus::is_ringed;
 use crate::ui::theme::{Palette, TALL, UNIT};
 
 /// A section: its header is always there, its body while it is unfolded.
@@ -178,10 +179,10 @@ fn header_ui(
     if index > 0 {
         painter.hline(rect.x_range(), rect.top(), Stroke::new(1.0, palette.line));
     }
-    if response.hovered() || response.has_focus() {
+    if response.hovered() || is_ringed(&response) {
         let inner = rect.shrink2(vec2(4.0, 2.0));
         painter.rect_filled(inner, 4.0, palette.card);
-        if response.has_focus() {
+        if is_ringed(&response) {
             let ring = Stroke::new(1.5, palette.accent_text);
             painter.rect_stroke(inner, 4.0, ring, egui::StrokeKind::Inside);
         }

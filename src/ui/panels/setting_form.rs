@@ -14,7 +14,7 @@ use crate::ui::typed::{Takes, refusal, told_field};
 use crate::ui::widgets::{caption, form_row, tight};
 
 /// Width of the column of labels.
-const LABEL: f32 = 112.0;
+const LABEL: f32 = 104.0;
 /// The level that reducing for the search begins with.
 pub const USUAL_LEVEL: usize = 2000;
 /// A length that is left to the program, as the command line calls it.
@@ -162,6 +162,8 @@ fn value_ui<R>(ui: &mut Ui, state: &AppState, setting: &Setting<R>, value: &mut 
         (Domain::Number { unit, range, step }, Value::Number(number)) => {
             let takes = match unit {
                 Unit::Length => Takes::length(setting.label, lengths, range.clone()),
+                // The whole words have no room; the help says them.
+                Unit::EdgeLengths => Takes::number(setting.label, " edges", range.clone()),
                 _ => Takes::number(setting.label, unit.suffix(lengths), range.clone()),
             };
             let field = takes.field(number).speed(*step).max_decimals(6);
@@ -203,13 +205,19 @@ fn choice_ui<R>(ui: &mut Ui, setting: &Setting<R>, name: &mut &'static str) {
             .width(ui.available_width())
             .truncate()
             .show_ui(ui, |ui| {
-                for words in words {
+                for words in &words {
                     ui.selectable_value(name, words.name, words.label)
                         .on_hover_text(words.help);
                 }
             })
             .response
-            .on_hover_text(setting.help);
+            .on_hover_ui(|ui| {
+                ui.label(setting.help);
+                // The menu may have had no room for its words.
+                if let Some(words) = chosen {
+                    ui.label(format!("{}: {}", words.label, words.help));
+                }
+            });
     });
 }
 

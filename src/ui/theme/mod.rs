@@ -151,6 +151,19 @@ pub fn install(ctx: &egui::Context) {
     ctx.options_mut(|options| options.zoom_with_keyboard = false);
 }
 
+/// Whether what has the keyboard has a ring: it is drawn as what is pressed.
+pub fn set_ring(ctx: &egui::Context, is_shown: bool) {
+    ctx.all_styles_mut(|style| {
+        let accent = Palette::of_visuals(&style.visuals).accent_text;
+        let widgets = &mut style.visuals.widgets;
+        widgets.active.bg_stroke = if is_shown {
+            Stroke::new(1.5, accent)
+        } else {
+            widgets.hovered.bg_stroke
+        };
+    });
+}
+
 /// Whether menus, folds and lists glide into place or are there at once.
 pub fn set_motion(ctx: &egui::Context, moves: bool) {
     ctx.all_styles_mut(|style| {
@@ -238,9 +251,9 @@ fn visuals(palette: &Palette, is_dark: bool) -> Visuals {
         widget.expansion = 0.0;
     }
     visuals.widgets.noninteractive.bg_stroke = hair;
-    // What has the keyboard is drawn as what is pressed: this is the ring around it.
-    visuals.widgets.active.bg_stroke = Stroke::new(1.5, palette.accent_text);
-    visuals.widgets.hovered.bg_stroke = Stroke::new(1.0, palette.secondary.gamma_multiply(0.6));
+    let edge = Stroke::new(1.0, palette.secondary.gamma_multiply(0.6));
+    visuals.widgets.active.bg_stroke = edge;
+    visuals.widgets.hovered.bg_stroke = edge;
     visuals.selection.bg_fill = palette.accent;
     visuals.selection.stroke = Stroke::new(1.0, palette.on_accent);
     visuals.weak_text_color = Some(palette.secondary);

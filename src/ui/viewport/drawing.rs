@@ -4,12 +4,13 @@
 use egui::{Align, Button, Color32, Layout, RichText, Sense, Ui, Vec2, WidgetInfo, vec2};
 use egui_plot::{Line, LineStyle, Plot, PlotBounds, PlotPoints, PlotUi, Points};
 
+use super::coordinates::with_coordinates;
 use super::outlines::{Lie, Outline, around};
 use super::sections::{self, Cuts, Gaps};
 use crate::app::{Action, AppState, Command, InspectCommand, SectionView};
 use crate::geometry::{Gap, Plane, Point3, SectionLine, Vector3, gap_to_nearest, nearest_on_lines};
 use crate::role::Role;
-use crate::text::{capital, tick_number};
+use crate::text::capital;
 use crate::ui::theme::{Look, UNIT, color};
 use crate::ui::widgets::{file_swatch, nothing_yet, paint_role_mark, segments};
 
@@ -278,29 +279,9 @@ impl Drawing<'_> {
             .take()
             .and_then(|zoom| self.bounds(zoom, &outlines, size));
         let unit = self.state.document.unit_suffix();
-        let number = move |mark: egui_plot::GridMark, _: &std::ops::RangeInclusive<f64>| {
-            format!("{}{unit}", tick_text(mark.value, mark.step_size))
-        };
-        let (painter, font) = (
-            ui.painter().clone(),
-            egui::TextStyle::Body.resolve(ui.style()),
-        );
         let width = size.x.max(40.0);
-        // A number that would be cut at the right edge is left out.
-        let tick_across = move |mark: egui_plot::GridMark,
-                                range: &std::ops::RangeInclusive<f64>| {
-            let (from, to) = (range.start(), range.end());
-            let text = number(mark, range);
-            let galley = painter.layout_no_wrap(text.clone(), font.clone(), Color32::WHITE);
-            let share = ((to - mark.value) / (to - from)) as f32;
-            if share * (width - AXIS) < 0.5 * galley.size().x {
-                String::new()
-            } else {
-                text
-            }
-        };
         ui.visuals_mut().extreme_bg_color = Color32::TRANSPARENT;
-        let shown = Plot::new(("section", view))
+        let plot = Plot::new(("section", view))
             .width(width)
             .height(size.y.max(40.0))
             .data_aspect(1.0)
@@ -309,21 +290,19 @@ impl Drawing<'_> {
             .allow_scroll(false)
             .allow_boxed_zoom(false)
             .allow_axis_zoom_drag(false)
-            .x_axis_formatter(tick_across)
-            .y_axis_formatter(number)
             .y_axis_min_width(AXIS)
             .set_margin_fraction(vec2(0.06, 0.06))
             .show_crosshair(false)
-            .label_formatter(|_| None)
-            .show(ui, |plot| {
-                if let Some(bounds) = zoom {
-                    plot.set_plot_bounds(bounds);
-                }
-                Self::lines(plot, outlines);
-                zoom_by_wheel(plot);
-                self.measured(plot, &choices.picked);
-                self.look_at(plot, &mut seen);
-            });
+            .label_formatter(|_| None);
+        let shown = with_coordinates(ui, plot, (width - AXIS, unit)).show(ui, |plot| {
+            if let Some(bounds) = zoom {
+                plot.set_plot_bounds(bounds);
+            }
+            Self::lines(plot, outlines);
+            zoom_by_wheel(plot);
+            self.measured(plot, &choices.picked);
+            self.look_at(plot, &mut seen);
+        });
         let response = shown.response;
         response.widget_info(|| {
             WidgetInfo::labeled(egui::Role::Canvas, true, "Outlines in the section plane")
@@ -573,10 +552,4 @@ fn zoom_by_wheel(plot: &mut PlotUi<'_>) {
 
 fn distance(a: &Point3, b: &Point3) -> f64 {
     (a - b).norm()
-}
-
-/// A coordinate with the digits of its grid.
-fn tick_text(value: f64, step: f64) -> String {
-    let digits = (-step.abs().max(1e-12).log10()).ceil().clamp(0.0, 6.0) as usize;
-    tick_number(value, digits)
 }

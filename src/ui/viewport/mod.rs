@@ -1,6 +1,7 @@
 //! The two 3D windows: crash left, stamped right. They draw what the state says and turn mouse and
 //! keys into commands.
 
+mod coordinates;
 mod drawing;
 mod fields;
 mod frame;

@@ -231,7 +231,7 @@ fn checks_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
 const SIGN: f32 = 14.0;
 
 /// Widths of the names and of what was found, by their longest texts. Where not all of a row has room, what
-/// was found is cut first, then what is asked for, and the names last.
+/// was found is cut to three tenths of it first, then what is asked for, and the names last.
 fn check_columns(ui: &Ui, checks: &[CheckRecord]) -> [f32; 2] {
     let widest = |style: TextStyle, text: fn(&CheckRecord) -> &str| {
         let font = style.resolve(ui.style());
@@ -256,7 +256,8 @@ fn check_columns(ui: &Ui, checks: &[CheckRecord]) -> [f32; 2] {
 fn column_widths(room: f32, [name, found, limit]: [f32; 3]) -> [f32; 2] {
     const LEAST: [f32; 3] = [80.0, 62.0, 60.0];
     let name = name.min((room - LEAST[1] - LEAST[2]).max(LEAST[0]));
-    let found = found.min((room - name - limit).max(LEAST[1]));
+    let fair = (room - name - limit).max(0.3 * room);
+    let found = found.min(fair.min(room - name - LEAST[2]).max(LEAST[1]));
     [name, found]
 }
 
@@ -560,6 +561,8 @@ mod tests {
         assert_eq!(column_widths(500.0, [180.0, 100.0, 90.0]), [180.0, 100.0]);
         // A long finding gives way before the names do.
         assert_eq!(column_widths(400.0, [180.0, 300.0, 90.0]), [180.0, 130.0]);
+        // The words of the pose have room beside a limit that is long.
+        assert_eq!(column_widths(354.0, [150.0, 85.0, 190.0]), [150.0, 85.0]);
         assert_eq!(column_widths(300.0, [180.0, 300.0, 90.0]), [178.0, 62.0]);
     }
 

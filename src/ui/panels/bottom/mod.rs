@@ -170,7 +170,12 @@ fn tab_ui(ui: &mut Ui, tab: BottomTab, state: &AppState, commands: &mut Vec<Comm
     let button = Button::new(text)
         .frame_when_inactive(false)
         .min_size(vec2(0.0, ROW));
-    let response = ui.add(button);
+    let response = ui.scope(|ui| {
+        // A frame would look like the keyboard's.
+        ui.visuals_mut().widgets.hovered.bg_stroke = Stroke::NONE;
+        ui.add(button)
+    });
+    let response = response.inner;
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Tab, true, is_on, tab.label()));
     if is_on {
         let rect = response.rect;

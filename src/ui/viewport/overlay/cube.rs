@@ -8,6 +8,7 @@ use super::{MARGIN, Overlay};
 use crate::app::{Command, ViewCommand};
 use crate::geometry::camera::StandardView;
 use crate::geometry::{Camera, Vector3};
+use crate::ui::focus::is_ringed;
 
 /// Width and height of the disc it stands on.
 pub(super) const SIZE: f32 = 80.0;
@@ -62,7 +63,7 @@ fn touch(ui: &mut Ui, over: &Overlay<'_>, center: Pos2) -> Response {
     let response = ui.interact(rect, id, Sense::click());
     let label = format!("View cube ({})", over.role().word());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &label));
-    if response.has_focus() {
+    if is_ringed(&response) {
         let painter = over.painter(ui);
         let stroke = Stroke::new(1.5, over.frame.look.tool);
         painter.circle_stroke(center, 0.5 * SIZE, stroke);

@@ -13,6 +13,7 @@ use crate::geometry::camera::StandardView;
 use crate::report::start_kind_words;
 use crate::role::Role;
 use crate::text::{counted, whole_percent};
+use crate::ui::focus::is_ringed;
 use crate::ui::viewport::visible_parts::visible_parts;
 
 /// Width and height of the row of camera buttons, and the least width of the names beside it.
@@ -180,7 +181,7 @@ fn frame(over: &Overlay<'_>, painter: &Painter, color: Color32) {
     let strength = if is_target { 1.0 } else { 0.28 };
     let line = Rect::from_min_size(over.frame.rect().min, vec2(over.frame.rect().width(), 2.0));
     painter.rect_filled(line, 0.0, color.gamma_multiply(strength));
-    if over.frame.response.has_focus() {
+    if is_ringed(over.frame.response) {
         let inner = over.frame.rect().shrink(1.0);
         let stroke = Stroke::new(1.0, color.gamma_multiply(0.7));
         painter.rect_stroke(inner, 0.0, stroke, egui::StrokeKind::Inside);

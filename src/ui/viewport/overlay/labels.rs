@@ -10,6 +10,7 @@ use egui::{
 use super::{MARGIN, Overlay, legend};
 use crate::app::{BottomTab, Command, InspectCommand, Label, ViewCommand};
 use crate::role::Role;
+use crate::ui::focus::is_ringed;
 use crate::ui::theme::color;
 use crate::ui::viewport::navigation::{pixel_of, pos_of, screen_of};
 
@@ -212,7 +213,7 @@ fn one(
         let name = format!("Label {}: {}", texts[1], texts[0]);
         WidgetInfo::labeled(egui::Role::Button, true, name)
     });
-    let is_hovered = response.hovered() || response.has_focus();
+    let is_hovered = response.hovered() || is_ringed(&response);
     let strength = if placed.is_hidden && !is_hovered {
         0.45
     } else {
