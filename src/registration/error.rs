@@ -19,7 +19,7 @@ pub enum RegistrationError {
     /// Paired points need the same count on both sides.
     #[error(
         "Umeyama pairs points in their order, but the source (stamped part) has {n_source} and the target \
-         (crash part) {n_target}; take another method (--method) for meshes that differ"
+         (crash part) {n_target}; take another method for meshes that differ"
     )]
     UnequalCounts {
         /// Points of the source.

@@ -228,6 +228,18 @@ impl MatchSettings {
         let mut counts = counts.into_iter();
         counts.try_for_each(|(name, value)| within(name, value as f64, range.clone()))
     }
+
+    /// Takes another method with its own settings; start, rotation step, hand and tolerances stay.
+    pub fn set_method(&mut self, method: Method) {
+        let mut new = Self::of(method);
+        new.starts.method = self.starts.method;
+        new.starts.angle_segment_deg = self.starts.angle_segment_deg;
+        new.hand = self.hand;
+        new.allowance = self.allowance;
+        new.shape_tolerance = self.shape_tolerance;
+        new.remove_offset = self.remove_offset;
+        *self = new;
+    }
 }
 
 /// The ranges outside of which a match refuses a setting.

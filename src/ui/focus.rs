@@ -1,7 +1,7 @@
 //! The ring around what has the keyboard: shown where the keyboard is used to go from one to the next, and not
 //! after a click, which says where it went.
 
-use egui::{Context, Event, Id, Key, Response};
+use egui::{ComboBox, Context, Event, Id, InnerResponse, Key, Response, Ui};
 
 use super::theme;
 
@@ -20,6 +20,43 @@ pub fn follow(ctx: &Context) {
 /// Whether a widget has the keyboard and is to say so.
 pub fn is_ringed(response: &Response) -> bool {
     response.has_focus() && is_shown_in(&response.ctx)
+}
+
+/// A menu of choices that the keyboard enters when it opens, at the choice that holds ([`chosen`]), and leaves for
+/// its button when it closes.
+pub fn menu<R>(
+    ui: &mut Ui,
+    menu: ComboBox,
+    choices: impl FnOnce(&mut Ui) -> R,
+) -> InnerResponse<Option<R>> {
+    let shown = menu.show_ui(ui, choices);
+    let is_open = shown.inner.is_some();
+    let was_open = shown.response.id.with("was open");
+    let before =
+        ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(was_open), is_open));
+    if before && !is_open {
+        shown.response.request_focus();
+    }
+    shown
+}
+
+/// Gives the keyboard to the choice that holds, in the frame in which its menu opens, and closes the menu after a choice.
+/// Called for every choice, with whether it holds.
+pub fn chosen(ui: &Ui, holds: bool, choice: Response) -> Response {
+    let opened = ui.scope_id().with("opened");
+    let pass = ui.ctx().cumulative_pass_nr();
+    if holds {
+        let last: Option<u64> = ui.data(|data| data.get_temp(opened));
+        ui.data_mut(|data| data.insert_temp(opened, pass));
+        if last.is_none_or(|last| last + 1 < pass) {
+            choice.request_focus();
+        }
+    }
+    if choice.clicked() {
+        // A menu closes by itself after a press of the pointer alone.
+        ui.close();
+    }
+    choice
 }
 
 fn is_shown_in(ctx: &Context) -> bool {

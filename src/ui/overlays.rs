@@ -2,6 +2,7 @@
 
 use egui::{Align, Layout, Modal, RichText, ScrollArea, Ui, vec2};
 
+use super::focus;
 use super::help::help_ui;
 use super::palette::{self, palette_ui};
 use super::picture_options::picture_ui;
@@ -167,16 +168,18 @@ fn display_ui(ui: &mut Ui, settings: &mut Settings) {
 /// The colours of one kind of values.
 fn map_row(ui: &mut Ui, name: &str, map: &mut ColorMap) {
     form_row(ui, name, LABEL, |ui| {
-        let choice = egui::ComboBox::from_id_salt(name)
+        let menu = egui::ComboBox::from_id_salt(name)
             .selected_text(map.label())
-            .width(200.0)
-            .show_ui(ui, |ui| {
-                for choice in ColorMap::ALL {
-                    ui.selectable_value(map, choice, choice.label());
-                }
-            });
-        let response = choice.response;
-        response
+            .width(200.0);
+        let shown = focus::menu(ui, menu, |ui| {
+            for choice in ColorMap::ALL {
+                let holds = *map == choice;
+                let row = ui.selectable_value(map, choice, choice.label());
+                focus::chosen(ui, holds, row);
+            }
+        });
+        shown
+            .response
             .on_hover_text("Holds at once and for new work; the legend can choose another map")
             .accessible_name(name);
     });
@@ -222,15 +225,16 @@ fn messages_choice(ui: &mut Ui, settings: &mut Settings) {
 
 /// A menu of mouse habits.
 pub fn mouse_choice(ui: &mut Ui, settings: &mut Settings) {
-    egui::ComboBox::from_id_salt("mouse scheme")
+    let menu = egui::ComboBox::from_id_salt("mouse scheme")
         .selected_text(settings.mouse.label())
-        .width(200.0)
-        .show_ui(ui, |ui| {
-            for scheme in MouseScheme::ALL {
-                ui.selectable_value(&mut settings.mouse, scheme, scheme.label())
-                    .on_hover_text(scheme.help());
-            }
-        });
+        .width(200.0);
+    focus::menu(ui, menu, |ui| {
+        for scheme in MouseScheme::ALL {
+            let holds = settings.mouse == scheme;
+            let choice = ui.selectable_value(&mut settings.mouse, scheme, scheme.label());
+            focus::chosen(ui, holds, choice).on_hover_text(scheme.help());
+        }
+    });
 }
 
 /// When, what, and a way to take it along.

@@ -4,7 +4,7 @@ use shapematch::app::*;
 use shapematch::assess::{Reason, ShapeReason, Twin, TwinAxis, Verdict};
 use shapematch::geometry::{Point3, Rotation, Similarity, TriMesh, Vector3};
 use shapematch::jobs::{JobEvent, JobKey, JobStage};
-use shapematch::registration::Surface;
+use shapematch::registration::{Method, Surface};
 use shapematch::role::Role;
 use shapematch::samples::SampleVariant;
 use shapematch::text::Lengths;
@@ -132,6 +132,25 @@ fn a_failed_match_leaves_the_pose_and_says_what_to_try() {
     window.holds = false;
     window.act(Action::MatchOrStop);
     assert_eq!(window.state.match_failure(), None);
+}
+
+#[test]
+fn umeyama_needs_the_same_nodes_and_says_so() {
+    let mut window = Window::with_both_and_no_rivals();
+    let mut recipe = window.state.document.recipe.clone();
+    recipe.settings.set_method(Method::Umeyama);
+    window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
+    window.act(Action::MatchOrStop);
+    let message = window.state.match_failure().unwrap();
+    assert!(message.contains("another method"), "{message}");
+    let causes = window.state.failure_causes();
+    assert_eq!(causes.len(), 1);
+    let (label, commands) = causes.into_iter().next().unwrap().remedy.unwrap();
+    assert!(label.contains("Fractional ICP"));
+    for command in commands {
+        window.apply(command);
+    }
+    assert!(window.state.document.current_result().is_some());
 }
 
 #[test]

@@ -4,7 +4,9 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use shapematch::app::{Axis, Dialog, MoveCommand, PartCommand, PartRef};
+use shapematch::registration::Method;
 use shapematch::role::Role;
+use shapematch::settings::Choice as _;
 use shapematch::ui::Shell;
 
 use super::pairs::click_in;
@@ -302,6 +304,50 @@ fn the_ring_follows_the_keyboard_and_not_the_pointer() {
     assert!(is_framed(&window, window.get_by_label("3 Match").rect()));
     click_in(&mut window, Role::Crash, egui::vec2(90.0, 60.0));
     assert!(!ring(&window), "what is pressed is not");
+}
+
+#[test]
+fn a_menu_of_choices_is_walked_by_arrows_and_left_for_its_button() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    let method = |window: &Window| {
+        let recipe = &window.state().state().document.recipe;
+        recipe.settings.method
+    };
+    assert_eq!(method(&window), Method::Fractional);
+    // The pointer opens it, the keyboard goes on.
+    let button = window.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Method");
+    button.click();
+    window.run_steps(4);
+    assert_eq!(
+        focused(&window).as_deref(),
+        Some(Method::Fractional.label())
+    );
+    for (key, at) in [
+        (Key::ArrowDown, Method::Umeyama),
+        (Key::ArrowDown, Method::Icp),
+    ] {
+        window.key_press(key);
+        window.run_steps(4);
+        assert_eq!(focused(&window).as_deref(), Some(at.label()));
+    }
+    window.key_press(Key::Enter);
+    window.run_steps(6);
+    assert_eq!(method(&window), Method::Icp);
+    assert_eq!(
+        focused(&window).as_deref(),
+        Some("Method"),
+        "the button of the menu"
+    );
+    window.key_press(Key::Enter);
+    window.run_steps(4);
+    window.key_press(Key::ArrowUp);
+    window.run_steps(4);
+    assert_eq!(focused(&window).as_deref(), Some(Method::Umeyama.label()));
+    window.key_press(Key::Escape);
+    window.run_steps(6);
+    assert_eq!(method(&window), Method::Icp);
 }
 
 #[test]

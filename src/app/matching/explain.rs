@@ -1,9 +1,10 @@
 //! Why a match is weak: the likely causes with their evidence, and a remedy for each.
 
+use super::Failure;
 use crate::app::{Action, AppState, Command, FileCommand, MatchCommand, PartCommand};
 use crate::assess::{Assessment, Clarity, Reason, ShapeReason, Verdict, error_beside};
 use crate::pipeline::match_parts::MatchRecipe;
-use crate::registration::{Hand, StartMethod};
+use crate::registration::{Hand, Method, StartMethod};
 use crate::role::Role;
 use crate::text::{capital, length, sentence, whole_percent};
 
@@ -59,19 +60,30 @@ impl AppState {
 
     /// Why the last match gave no pose, if these are still its parts.
     pub fn match_failure(&self) -> Option<&str> {
+        self.failure().map(|failure| failure.message.as_str())
+    }
+
+    fn failure(&self) -> Option<&Failure> {
         let parts = self.document.stamp().parts;
-        let failed = self
-            .matching
-            .failure
-            .as_ref()
-            .filter(|(of, _)| *of == parts);
-        failed.map(|(_, message)| message.as_str())
+        let last = self.matching.failure.as_ref();
+        last.filter(|failure| failure.parts == parts)
     }
 
     /// What to try after a match that gave no pose.
     pub fn failure_causes(&self) -> Vec<Cause> {
-        if self.match_failure().is_none() {
+        let Some(failure) = self.failure() else {
             return Vec::new();
+        };
+        if failure.method == Method::Umeyama {
+            // It knows neither starts nor contact.
+            return vec![Cause {
+                title: "Meshes that differ".to_owned(),
+                evidence: "Umeyama takes two meshes with the same nodes in the same order."
+                    .to_owned(),
+                remedy: self.retry("Match with Fractional ICP", |recipe| {
+                    recipe.settings.set_method(Method::Fractional);
+                }),
+            }];
         }
         let units = self.unit_remedy().map(|remedy| Cause {
             title: "Different units".to_owned(),

@@ -21,7 +21,18 @@ use super::{AppState, Effect, Reason, Shared};
 use crate::assess::Coverage;
 use crate::jobs::{JobKind, Live, Stamp, SweepRows};
 use crate::pipeline::sweep::Sweep;
+use crate::registration::Method;
 use crate::role::PerRole;
+
+/// A match that gave no pose.
+#[derive(Debug, Clone)]
+struct Failure {
+    /// The parts it was run on, and how.
+    parts: PerRole<u64>,
+    method: Method,
+    /// What it said.
+    message: String,
+}
 
 /// What alignment, match, measurement and sweep gave, beside the result in the document.
 #[derive(Debug, Clone, Default)]
@@ -30,8 +41,8 @@ pub struct MatchState {
     starts: Option<Starts>,
     /// The starts of the running match, or of the last one if it gave no result.
     live_starts: LiveStarts,
-    /// Why the last match gave no result, with the parts it was run on.
-    failure: Option<(PerRole<u64>, String)>,
+    /// Why the last match gave no result.
+    failure: Option<Failure>,
     /// Distances and overlap with the state they were measured in.
     measurement: Option<(Stamp, Shared<Coverage>)>,
     /// The state of the alternative that was measured last without being asked for.
@@ -103,6 +114,10 @@ impl MatchState {
 
     /// The last match gave no pose.
     pub(super) fn match_failed(&mut self, work: &Work<'_>, message: String) {
-        self.failure = Some((work.document.stamp().parts, message));
+        self.failure = Some(Failure {
+            parts: work.document.stamp().parts,
+            method: work.document.recipe.settings.method,
+            message,
+        });
     }
 }

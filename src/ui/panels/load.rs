@@ -13,6 +13,7 @@ use crate::app::{
 use crate::jobs::JobKey;
 use crate::role::Role;
 use crate::text::counted;
+use crate::ui::focus;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, chip, grouped, icon_button, role_mark, secondary, square, tight,
@@ -260,23 +261,23 @@ fn display_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
             secondary(ui, "Colour");
             ui.name_inputs("Colour by", |ui| {
-                egui::ComboBox::from_id_salt("colour by")
+                let menu = egui::ComboBox::from_id_salt("colour by")
                     .selected_text(state.color_by(Role::Crash).label())
                     .width(ui.available_width())
                     .truncate()
                     // All choices at once: nobody looks for what lies below the edge of a list.
-                    .height(ui.ctx().content_rect().height())
-                    .show_ui(ui, |ui| {
-                        ui.spacing_mut().item_spacing.y = 1.0;
-                        let mut group = "";
-                        for by in ColorBy::ALL {
-                            if by.group() != group {
-                                group = by.group();
-                                caption(ui, group);
-                            }
-                            color_row(ui, state, &mut display.color_by, by);
+                    .height(ui.ctx().content_rect().height());
+                focus::menu(ui, menu, |ui| {
+                    ui.spacing_mut().item_spacing.y = 1.0;
+                    let mut group = "";
+                    for by in ColorBy::ALL {
+                        if by.group() != group {
+                            group = by.group();
+                            caption(ui, group);
                         }
-                    });
+                        color_row(ui, state, &mut display.color_by, by);
+                    }
+                });
             });
         });
     });
@@ -290,6 +291,7 @@ fn color_row(ui: &mut Ui, state: &AppState, chosen: &mut ColorBy, by: ColorBy) {
     let reason = state.missing_for(by);
     let row = egui::Button::selectable(*chosen == by, by.label());
     let response = ui.add_enabled(reason.is_none(), row);
+    let response = focus::chosen(ui, *chosen == by, response);
     let response = match reason {
         Some(reason) => response.on_disabled_hover_text(reason),
         None => response,

@@ -13,6 +13,7 @@ use crate::registration::{Method, StartMethod};
 use crate::role::Role;
 use crate::settings::Choice as _;
 use crate::text::whole_percent;
+use crate::ui::focus;
 use crate::ui::theme::{Palette, ROW, TALL, UNIT};
 use crate::ui::widgets::{
     Look, action_button, caption, form_row, paragraph, secondary, segments, tight, wide_action,
@@ -130,32 +131,33 @@ fn chain_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let is_free = state.jobs.locking_job().is_none();
     ui.add_enabled_ui(is_free, |ui| {
         form_row(ui, "Start", LABEL, |ui| {
-            ComboBox::from_id_salt("start")
+            let menu = ComboBox::from_id_salt("start")
                 .selected_text(start_label(recipe.settings.starts.method))
-                .width(ui.available_width())
-                .show_ui(ui, |ui| {
-                    for &method in StartMethod::ALL {
-                        let value = &mut recipe.settings.starts.method;
-                        let (label, help) = (start_label(method), start_help(method));
-                        ui.selectable_value(value, method, label)
-                            .on_hover_text(help);
-                    }
-                });
+                .width(ui.available_width());
+            focus::menu(ui, menu, |ui| {
+                for &method in StartMethod::ALL {
+                    let value = &mut recipe.settings.starts.method;
+                    let holds = *value == method;
+                    let choice = ui.selectable_value(value, method, start_label(method));
+                    focus::chosen(ui, holds, choice).on_hover_text(start_help(method));
+                }
+            });
         });
         form_row(ui, "Method", LABEL, |ui| {
             let room = ui.available_width() - ROW - UNIT;
-            ComboBox::from_id_salt("method")
+            let menu = ComboBox::from_id_salt("method")
                 .selected_text(recipe.settings.method.label())
-                .width(room)
-                .show_ui(ui, |ui| {
-                    for &method in Method::ALL {
-                        let is_on = recipe.settings.method == method;
-                        let response = ui.selectable_label(is_on, method.label());
-                        if response.on_hover_text(method.help()).clicked() && !is_on {
-                            recipe::set_method(&mut recipe.settings, method);
-                        }
+                .width(room);
+            focus::menu(ui, menu, |ui| {
+                for &method in Method::ALL {
+                    let is_on = recipe.settings.method == method;
+                    let choice = ui.selectable_label(is_on, method.label());
+                    let choice = focus::chosen(ui, is_on, choice);
+                    if choice.on_hover_text(method.help()).clicked() && !is_on {
+                        recipe.settings.set_method(method);
                     }
-                });
+                }
+            });
             recipe::GEAR.ui(ui, recipe::has_own_settings(&recipe));
         });
         recipe::recipe_ui(ui, state, &mut recipe);

@@ -15,18 +15,6 @@ pub const GEAR: Gear = Gear {
     what: "match settings",
 };
 
-/// Another method brings its own settings; start, rotation step, hand and tolerances stay.
-pub fn set_method(settings: &mut MatchSettings, method: Method) {
-    let mut new = MatchSettings::of(method);
-    new.starts.method = settings.starts.method;
-    new.starts.angle_segment_deg = settings.starts.angle_segment_deg;
-    new.hand = settings.hand;
-    new.allowance = settings.allowance;
-    new.shape_tolerance = settings.shape_tolerance;
-    new.remove_offset = settings.remove_offset;
-    *settings = new;
-}
-
 /// The form, while the gear is on.
 pub fn recipe_ui(ui: &mut Ui, state: &AppState, recipe: &mut MatchRecipe) {
     if !GEAR.is_on(ui) {
@@ -69,7 +57,7 @@ fn usual(recipe: &MatchRecipe) -> MatchRecipe {
 fn presets_ui(ui: &mut Ui, recipe: &mut MatchRecipe) {
     let preset = |method, max_triangles| {
         let mut settings = recipe.settings.clone();
-        set_method(&mut settings, method);
+        settings.set_method(method);
         settings.starts.angle_segment_deg = MatchSettings::of(method).starts.angle_segment_deg;
         MatchRecipe {
             settings,

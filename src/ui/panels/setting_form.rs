@@ -9,6 +9,7 @@ use crate::mapping::limits::POSITIVE;
 use crate::registration::{Floor, limits};
 use crate::settings::{Domain, Setting, Unit, Value};
 use crate::text::{Lengths, capital};
+use crate::ui::focus;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::typed::{Takes, refusal, told_field};
 use crate::ui::widgets::{caption, form_row, tight};
@@ -200,24 +201,24 @@ fn choice_ui<R>(ui: &mut Ui, setting: &Setting<R>, name: &mut &'static str) {
     let words = words();
     form_row(ui, setting.label, LABEL, |ui| {
         let chosen = words.iter().find(|words| words.name == *name);
-        ComboBox::from_id_salt(setting.option)
+        let menu = ComboBox::from_id_salt(setting.option)
             .selected_text(chosen.map_or("", |words| words.label))
             .width(ui.available_width())
-            .truncate()
-            .show_ui(ui, |ui| {
-                for words in &words {
-                    ui.selectable_value(name, words.name, words.label)
-                        .on_hover_text(words.help);
-                }
-            })
-            .response
-            .on_hover_ui(|ui| {
-                ui.label(setting.help);
-                // The menu may have had no room for its words.
-                if let Some(words) = chosen {
-                    ui.label(format!("{}: {}", words.label, words.help));
-                }
-            });
+            .truncate();
+        let shown = focus::menu(ui, menu, |ui| {
+            for words in &words {
+                let holds = *name == words.name;
+                let choice = ui.selectable_value(name, words.name, words.label);
+                focus::chosen(ui, holds, choice).on_hover_text(words.help);
+            }
+        });
+        shown.response.on_hover_ui(|ui| {
+            ui.label(setting.help);
+            // The menu may have had no room for its words.
+            if let Some(words) = chosen {
+                ui.label(format!("{}: {}", words.label, words.help));
+            }
+        });
     });
 }
 
@@ -228,19 +229,19 @@ fn floor_ui<R>(ui: &mut Ui, setting: &Setting<R>, floor: &mut Floor, lengths: Le
             Floor::Length(_) => "Length",
             Floor::None => "None",
         };
-        ComboBox::from_id_salt(setting.option)
+        let menu = ComboBox::from_id_salt(setting.option)
             .selected_text(words(floor))
-            .width(ui.available_width())
-            .show_ui(ui, |ui| {
-                for choice in [Floor::Auto, Floor::Length(0.1), Floor::None] {
-                    let is_on = words(&choice) == words(floor);
-                    if ui.selectable_label(is_on, words(&choice)).clicked() && !is_on {
-                        *floor = choice;
-                    }
+            .width(ui.available_width());
+        let shown = focus::menu(ui, menu, |ui| {
+            for choice in [Floor::Auto, Floor::Length(0.1), Floor::None] {
+                let is_on = words(&choice) == words(floor);
+                let row = ui.selectable_label(is_on, words(&choice));
+                if focus::chosen(ui, is_on, row).clicked() && !is_on {
+                    *floor = choice;
                 }
-            })
-            .response
-            .on_hover_text(setting.help);
+            }
+        });
+        shown.response.on_hover_text(setting.help);
     });
     // Beside the choice it would lie below the help of the row.
     if let Floor::Length(length) = floor {

@@ -9,6 +9,7 @@ use crate::app::{AppState, Command, Preview, PreviewCommand};
 use crate::registration::{IterationRecord, StartRecord};
 use crate::report::start_name;
 use crate::text::Lengths;
+use crate::ui::focus;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{icon_button, nothing_yet, percent};
 
@@ -173,21 +174,20 @@ const FIGURES: f32 = 460.0;
 /// The start that stands out.
 fn start_choice(ui: &mut Ui, curves: &Curves<'_>, width: f32, commands: &mut Vec<Command>) {
     let leader = curves.leader;
-    ComboBox::from_id_salt("start of the curve")
+    let menu = ComboBox::from_id_salt("start of the curve")
         .selected_text(start_text(leader, &curves.starts[leader]))
         .width(width)
-        .truncate()
-        .show_ui(ui, |ui| {
-            for (number, start) in curves.starts.iter().enumerate() {
-                let is_on = number == leader;
-                let text = start_text(number, start);
-                if ui.selectable_label(is_on, text).clicked() {
-                    commands.push(PreviewCommand::ChooseStart(Some(number)).into());
-                }
+        .truncate();
+    let shown = focus::menu(ui, menu, |ui| {
+        for (number, start) in curves.starts.iter().enumerate() {
+            let is_on = number == leader;
+            let choice = ui.selectable_label(is_on, start_text(number, start));
+            if focus::chosen(ui, is_on, choice).clicked() {
+                commands.push(PreviewCommand::ChooseStart(Some(number)).into());
             }
-        })
-        .response
-        .accessible_name("Start of the curve");
+        }
+    });
+    shown.response.accessible_name("Start of the curve");
 }
 
 fn figures_ui(ui: &mut Ui, curves: &Curves<'_>) {

@@ -6,6 +6,7 @@ use super::header::{fitted, shield};
 use super::{MARGIN, Overlay};
 use crate::app::{AppState, Command, FreeWindow, ViewCommand};
 use crate::role::Role;
+use crate::ui::focus;
 use crate::ui::widgets::segments;
 
 /// Size of the choice.
@@ -42,10 +43,12 @@ fn free_menu(ui: &mut Ui, state: &AppState, width: f32, commands: &mut Vec<Comma
         .width(width)
         .truncate();
     ui.name_inputs("Use of the right window", |ui| {
-        menu.show_ui(ui, |ui| {
+        focus::menu(ui, menu, |ui| {
             for free in FreeWindow::ALL {
-                let row = egui::Button::selectable(now == Some(free), free.label());
-                if ui.add_enabled(state.can_use_free(free), row).clicked() {
+                let is_on = now == Some(free);
+                let row = egui::Button::selectable(is_on, free.label());
+                let choice = ui.add_enabled(state.can_use_free(free), row);
+                if focus::chosen(ui, is_on, choice).clicked() {
                     commands.push(ViewCommand::SetFreeWindow(free).into());
                 }
             }
