@@ -5,11 +5,11 @@
 use rayon::prelude::*;
 
 use super::contact::{ContactSearch, FEW_NODES, MAX_NODES};
-use super::held::HeldPose;
+use super::held::{HeldPose, distinct};
 use super::settle::{Least, Settling};
 use super::shape::{ELSEWHERE, OVERHANGS, ShapeReason, ShapeStatement};
 use super::statements::statements;
-use super::tolerance::{AssessSettings, Distances};
+use super::tolerance::{AssessSettings, Distances, UNREMARKABLE};
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
@@ -75,10 +75,17 @@ pub fn chosen_by_shape(
     let part = source.measures().into();
     let with_shape = |(k, other): (usize, &Alternative)| match candidates.get(k) {
         Some(candidate) if winner.beats(candidate) => ranked(*other, true),
-        Some(candidate) if candidate.fits_elsewhere_as_well_as(winner, &distances) => Alternative {
-            score_ratio: other.score_ratio.min(1.0),
-            ..*other
-        },
+        // One that settles at the winner's pose is no other.
+        Some(candidate)
+            if candidate.fits_elsewhere_as_well_as(winner, &distances)
+                && !same_pose(&candidate.pose, &winner.pose, &part) =>
+        {
+            Alternative {
+                target_from_source: candidate.pose,
+                score_ratio: other.score_ratio.min(1.0),
+                ..*other
+            }
+        }
         _ => *other,
     };
     // The alternatives come sorted by score, so that those looked at are the first.
@@ -90,7 +97,7 @@ pub fn chosen_by_shape(
     alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
     Ok(Some(HeldPose {
         target_from_source: winner.pose,
-        alternatives,
+        alternatives: distinct(&alternatives, source),
     }))
 }
 
@@ -168,7 +175,7 @@ impl Candidate {
     fn fits_elsewhere_as_well_as(&self, other: &Self, distances: &Distances) -> bool {
         let is_trimmed_off = self.elsewhere.is_some_and(|share| share < ELSEWHERE);
         let mut pairs = self.apart.iter().zip(&other.apart);
-        let most = |apart: f64| AS_CLOSE * apart + distances.little_more(LITTLE_REMAINDER, apart);
+        let most = |apart: f64| AS_CLOSE * apart + distances.little_more(UNREMARKABLE, apart);
         is_trimmed_off
             && self.met >= LEAST_SHARED
             && self.n_differences <= other.n_differences

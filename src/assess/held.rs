@@ -21,6 +21,9 @@ const NEAR_SHARE: f64 = 0.03;
 const MOST_POSES: usize = 64;
 /// Poses that the search along the free motion adds.
 const MOST_SLID: usize = 8;
+/// Nodes of the smaller part that hold a pose while it is moved to where its borders fit; the winner is moved on all
+/// that are looked at.
+const N_SETTLED: usize = 1000;
 /// Of all these so many, with the best borders, are moved until they fit.
 const MOST_SETTLED: usize = 8;
 /// Where the borders of one pose lie together, those of others that lie apart by more than so many times as much,
@@ -213,6 +216,20 @@ pub fn hand_by_borders(
     Ok(fits_as_well.then(|| ratio.max(least)))
 }
 
+/// Of alternatives that are the same pose the first.
+pub(super) fn distinct(alternatives: &[Alternative], source: &Surface) -> Vec<Alternative> {
+    let part = source.measures().into();
+    let mut distinct: Vec<Alternative> = Vec::new();
+    for other in alternatives {
+        let is_known =
+            |a: &Alternative| same_pose(&a.target_from_source, &other.target_from_source, &part);
+        if !distinct.iter().any(is_known) {
+            distinct.push(*other);
+        }
+    }
+    distinct
+}
+
 /// Distance within which surfaces leave a motion free: what overlaps, and what springback explains.
 fn free_limit(source: &Surface, target: &Surface, scale: f64, settings: &AssessSettings) -> f64 {
     let springback = Distances::of(source, target, scale, settings)
@@ -337,8 +354,8 @@ impl<'a> Pair<'a> {
             source,
             target,
             borders: BorderComparison::new(pair, scale, near),
-            roughly: Settling::within(pair, scale, settings, FEW_NODES, near),
-            finely: Settling::new(pair, scale, settings, FEW_NODES),
+            roughly: Settling::within(pair, scale, settings, N_SETTLED, near),
+            finely: Settling::new(pair, scale, settings, N_SETTLED),
             near,
             springback: tolerance.springback,
             remainder: tolerance.remainder,
@@ -560,15 +577,7 @@ impl<'a> Pair<'a> {
             .map(|other| with_borders(&other))
             .collect();
         alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
-        let mut distinct: Vec<Alternative> = Vec::new();
-        for other in alternatives {
-            let is_known = |a: &Alternative| {
-                same_pose(&a.target_from_source, &other.target_from_source, &part)
-            };
-            if !distinct.iter().any(is_known) {
-                distinct.push(other);
-            }
-        }
+        let mut distinct = distinct(&alternatives, self.source);
         distinct.truncate(MOST_ALTERNATIVES.max(outcome.alternatives.len()));
         distinct
     }
