@@ -120,6 +120,7 @@ pub fn error_beside(score_ratio: f64) -> String {
         (score_ratio, "higher")
     };
     match times {
+        t if t < 1.0005 => "equal error".to_owned(),
         // Less than half a percent is said with the digit that tells it from none.
         t if t < 1.005 => format!("error {:.1} % {how}", 100.0 * (score_ratio - 1.0).abs()),
         t if t < 2.0 => format!("error {:.0} % {how}", 100.0 * (score_ratio - 1.0).abs()),
@@ -437,7 +438,7 @@ mod tests {
     fn ratios_are_read_as_differences_of_the_error() {
         let pairs = [
             (1.08, "error 8 % higher"),
-            (1.0004, "error 0.0 % higher"),
+            (1.0004, "equal error"),
             (1.003, "error 0.3 % higher"),
             (0.93, "error 7 % lower"),
             (0.18, "error 5.6 × lower"),
