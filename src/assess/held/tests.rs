@@ -1,0 +1,52 @@
+//! Which of several poses borders and holes speak for.
+
+use super::*;
+use crate::geometry::{Point3, TriMesh};
+
+/// A pose of parts that lie on each other but for their borders.
+fn settled(held: f64, paired: f64, n_holes: usize) -> Settled {
+    Settled {
+        pose: Similarity::identity(),
+        held,
+        paired,
+        grain: 0.002,
+        n_holes,
+        worst_hole: 0.0,
+        missing: 0.0,
+        met: 1.0,
+        gap: 0.0,
+    }
+}
+
+#[test]
+fn a_few_borders_hold_no_pose_unless_a_hole_is_among_them() {
+    let points = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0]].map(Point3::from);
+    let mesh = TriMesh::new(points.to_vec(), vec![[0, 1, 2]]).unwrap();
+    let plate = Surface::new(&mesh, "source").unwrap();
+    let pair = Pair::new(&plate, &plate, 1.0, &AssessSettings::default());
+    for (result, rival, wins) in [
+        (settled(0.0, 0.3, 0), settled(0.14, 0.3, 0), false),
+        (settled(0.0, 0.3, 0), settled(0.14, 0.3, 1), true),
+        (settled(0.0, 0.3, 0), settled(0.4, 0.6, 0), true),
+        (settled(0.4, 0.6, 0), settled(0.401, 0.6, 0), false),
+        (settled(0.4, 0.6, 2), settled(0.4, 0.6, 1), false),
+    ] {
+        let choice = pair.choice(&result, true, &[rival]);
+        assert_eq!(choice.is_some(), wins, "{} of {}", rival.held, result.held);
+    }
+}
+
+#[test]
+fn borders_beyond_the_other_part_count_only_where_one_part_covers_the_other() {
+    let (winner, shifted) = (settled(0.8, 0.8, 4), settled(0.6, 0.6, 3));
+    assert!((shifted.behind(&winner) - 0.2).abs() < 1e-12);
+    let overhanging = |pose: Settled| Settled { met: 0.9, ..pose };
+    let behind = overhanging(shifted).behind(&overhanging(winner));
+    assert!(behind.abs() < 1e-12, "{behind}");
+    // Those beside the other part's that lie apart count all the same.
+    let apart = Settled {
+        held: 0.3,
+        ..overhanging(shifted)
+    };
+    assert!((apart.behind(&overhanging(winner)) - 0.5).abs() < 1e-12);
+}
