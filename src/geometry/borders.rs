@@ -1,6 +1,6 @@
 //! The borders of a sheet: its trim and its holes.
 
-use super::{BorderLoop, Point3, Topology, TriMesh, Vector3};
+use super::{BorderEdges, BorderLoop, Point3, TriMesh, Vector3};
 
 /// The sheet lies around a hole: the way out of it points to the middle with at least this mean cosine.
 const INWARD: f64 = 0.3;
@@ -23,8 +23,8 @@ pub struct Border {
 impl Border {
     /// The borders of a mesh that is joined at equal positions, each starting at its smallest vertex and
     /// ordered by it. `normals` are those of the vertices. O(edges).
-    pub fn all(mesh: &TriMesh, topology: &Topology, normals: &[Vector3]) -> Vec<Self> {
-        let loops = topology.border_loops(mesh).into_iter();
+    pub fn all(mesh: &TriMesh, edges: &BorderEdges, normals: &[Vector3]) -> Vec<Self> {
+        let loops = edges.loops().into_iter();
         loops.map(|chain| Self::of(chain, mesh, normals)).collect()
     }
 
@@ -80,6 +80,7 @@ fn segments<'a>(
 
 #[cfg(test)]
 mod tests {
+    use super::super::Topology;
     use super::*;
 
     /// A flat sheet of 10 × 10 unit squares without the one in column and row 2.
@@ -106,7 +107,8 @@ mod tests {
                 );
             let mesh = TriMesh::new(mesh.positions().to_vec(), triangles.collect()).unwrap();
             let normals = vec![normal; mesh.n_vertices()];
-            let borders = Border::all(&mesh, &Topology::of(&mesh), &normals);
+            let edges = BorderEdges::of(&mesh, &Topology::of(&mesh));
+            let borders = Border::all(&mesh, &edges, &normals);
             let [trim, hole] = &borders[..] else {
                 panic!("{} borders", borders.len());
             };

@@ -165,7 +165,7 @@ impl<'a> SingleEdges<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Border;
+    use super::super::{Border, BorderEdges};
     use super::*;
 
     /// A plate of `n` by `n` cells of two millimetres whose height is `height(x)`. Cells chosen by `is_fine` are
@@ -203,8 +203,8 @@ mod tests {
     }
 
     fn borders(mesh: &TriMesh) -> Vec<Border> {
-        let topology = Topology::of(mesh);
-        Border::all(mesh, &topology, &mesh.vertex_normals())
+        let edges = BorderEdges::of(mesh, &Topology::of(mesh));
+        Border::all(mesh, &edges, &mesh.vertex_normals())
     }
 
     #[test]

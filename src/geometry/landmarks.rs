@@ -79,7 +79,7 @@ fn corners(mesh: &TriMesh, border: &Border) -> Vec<Point3> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Topology, Vector3};
+    use super::super::{BorderEdges, Topology, Vector3};
     use super::*;
 
     /// A plate of 40 × 20 with a hole of radius 4 in the middle: a ring of quads between both borders.
@@ -113,7 +113,8 @@ mod tests {
     fn holes_and_corners_are_found() {
         let plate = plate();
         let normals = vec![Vector3::z(); plate.n_vertices()];
-        let borders = Border::all(&plate, &Topology::of(&plate), &normals);
+        let edges = BorderEdges::of(&plate, &Topology::of(&plate));
+        let borders = Border::all(&plate, &edges, &normals);
         let found = Landmarks::of(&plate, &borders);
         assert_eq!(found.holes.len(), 1);
         assert!(found.holes[0].center.coords.norm() < 1e-9);

@@ -236,6 +236,12 @@ impl TriMesh {
         }
     }
 
+    /// Whether triangle `t` runs along an edge from its first to its second end.
+    pub(crate) fn runs_along(&self, t: usize, [u, v]: [u32; 2]) -> bool {
+        let corners = self.triangles[t];
+        (0..3).any(|i| corners[i] == u && corners[(i + 1) % 3] == v)
+    }
+
     /// The same surface with every triangle, and so every normal, reversed.
     pub fn flipped(mut self) -> Self {
         for corners in &mut self.triangles {

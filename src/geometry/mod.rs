@@ -1,6 +1,7 @@
 //! Points, boxes, triangle meshes, their topology, and poses. Everything is `f64`.
 
 mod aabb;
+mod border_edges;
 mod borders;
 pub mod camera;
 pub(crate) mod chunks;
@@ -20,6 +21,7 @@ mod weld;
 mod z_order;
 
 pub use aabb::Aabb;
+pub use border_edges::{BorderEdge, BorderEdges, BorderLoop};
 pub use borders::Border;
 pub use camera::{Camera, Projection};
 pub use clean::CleanMesh;
@@ -33,7 +35,7 @@ pub use section::{
     outline_gaps, section,
 };
 pub use similarity::{MatrixError, Similarity};
-pub use topology::{BorderLoop, Topology, orient_consistently};
+pub use topology::{Topology, orient_consistently};
 pub use weld::{Welded, weld};
 pub use z_order::{z_order, z_order_for};
 

@@ -71,8 +71,18 @@ pub struct CornerNormals {
     /// Those of the vertices, then those that only some corners of a vertex have.
     normals: Vec<Vector3>,
     n_vertices: usize,
-    /// Place in `normals` of each corner.
-    of_corner: Vec<[u32; 3]>,
+    sharp: SharpTriangles,
+}
+
+/// The triangles with a corner that does not have its vertex's normal, numbered in their order.
+#[derive(Debug, Clone, Default)]
+struct SharpTriangles {
+    /// A bit for each triangle of the mesh.
+    is_sharp: Vec<u64>,
+    /// For each 64 triangles how many sharp ones come before them.
+    n_before: Vec<u32>,
+    /// Place of the normal of each corner of each sharp triangle.
+    places: Vec<[u32; 3]>,
 }
 
 impl CornerNormals {
@@ -82,10 +92,49 @@ impl CornerNormals {
         &self.normals[..self.n_vertices]
     }
 
-    /// The normals at the three corners of a triangle.
+    /// The normals at the three corners of a triangle of the mesh that these are made of.
     #[inline]
-    pub fn of_triangle(&self, triangle: usize) -> [Vector3; 3] {
-        self.of_corner[triangle].map(|place| self.normals[place as usize])
+    pub fn of_triangle(&self, mesh: &TriMesh, triangle: usize) -> [Vector3; 3] {
+        let places = self.sharp.places_of(triangle);
+        let places = places.unwrap_or(&mesh.triangles()[triangle]);
+        places.map(|place| self.normals[place as usize])
+    }
+}
+
+impl SharpTriangles {
+    /// `own` are the corners with a normal of their own, each with its place, in rising order.
+    fn of(mesh: &TriMesh, own: &[(u32, u32)]) -> Self {
+        let mut is_sharp = vec![0_u64; mesh.n_triangles().div_ceil(64)];
+        let mut places = Vec::new();
+        for of_triangle in own.chunk_by(|a, b| a.0 / 3 == b.0 / 3) {
+            let triangle = of_triangle[0].0 as usize / 3;
+            is_sharp[triangle / 64] |= 1 << (triangle % 64);
+            let mut corners = mesh.triangles()[triangle];
+            for &(corner, place) in of_triangle {
+                corners[corner as usize % 3] = place;
+            }
+            places.push(corners);
+        }
+        let mut n = 0;
+        let count = |bits: &u64| {
+            let before = n;
+            n += bits.count_ones();
+            before
+        };
+        let n_before = is_sharp.iter().map(count).collect();
+        Self {
+            is_sharp,
+            n_before,
+            places,
+        }
+    }
+
+    #[inline]
+    fn places_of(&self, triangle: usize) -> Option<&[u32; 3]> {
+        let (block, bit) = (triangle / 64, 1_u64 << (triangle % 64));
+        let bits = self.is_sharp[block];
+        let among = (bits & (bit - 1)).count_ones();
+        (bits & bit != 0).then(|| &self.places[(self.n_before[block] + among) as usize])
     }
 }
 
@@ -106,7 +155,7 @@ pub fn corner_normals(
     let n_chunks = n_vertices.div_ceil(CHUNK);
     let mut normals = Vec::with_capacity(n_vertices);
     let mut of_some = Vec::new();
-    let mut of_corner = mesh.triangles().to_vec();
+    let mut own = Vec::new();
     // A few chunks at a time, because what they found is held twice until it is joined.
     for start in (0..n_chunks).step_by(CHUNKS_PER_WAVE) {
         let wave = start..n_chunks.min(start + CHUNKS_PER_WAVE);
@@ -123,19 +172,18 @@ pub fn corner_normals(
             .collect::<Result<_, Cancelled>>()?;
         for chunk in chunks {
             let before = n_vertices + of_some.len();
-            for (corner, place) in chunk.own {
-                let (triangle, i) = (corner as usize / 3, corner as usize % 3);
-                of_corner[triangle][i] = (before + place) as u32;
-            }
+            let moved = chunk.own.into_iter();
+            own.extend(moved.map(|(corner, place)| (corner, (before + place) as u32)));
             normals.extend(chunk.of_vertices);
             of_some.extend(chunk.of_some);
         }
     }
     normals.extend(of_some);
+    own.sort_unstable();
     Ok(CornerNormals {
         normals,
         n_vertices,
-        of_corner,
+        sharp: SharpTriangles::of(mesh, &own),
     })
 }
 
@@ -225,7 +273,7 @@ mod tests {
         let fans = VertexFans::of(mesh, &monitor).unwrap();
         let found = corner_normals(mesh, &faces, &fans, max_angle, &monitor).unwrap();
         (0..mesh.n_triangles())
-            .map(|t| found.of_triangle(t))
+            .map(|t| found.of_triangle(mesh, t))
             .collect()
     }
 

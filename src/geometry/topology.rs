@@ -1,20 +1,9 @@
-//! Edges of a mesh with the triangles around them; border loops, components, common orientation.
-
-use std::collections::HashMap;
+//! Edges of a mesh with the triangles around them; components, common orientation.
 
 use super::TriMesh;
 use super::chunks::{for_chunks, map_chunks};
 use super::cracks::without_cracks;
 use crate::monitor::{Cancelled, Monitor};
-
-/// One chain of border edges, vertex by vertex. A closed loop does not repeat its first vertex.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct BorderLoop {
-    /// Vertex indices in walking order, the surface to the left when seen along the normal.
-    pub vertices: Vec<u32>,
-    /// False where a non-manifold vertex ended the walk early.
-    pub closed: bool,
-}
 
 /// Edge adjacency of a mesh. Edges are undirected; an edge with one triangle is a border edge unless it is a side
 /// of a crack between elements of different size, one with three or more a non-manifold one.
@@ -79,44 +68,6 @@ impl Topology {
     /// crack.
     pub fn border_edges(&self) -> impl Iterator<Item = usize> + '_ {
         self.borders.iter().map(|&edge| edge as usize)
-    }
-
-    /// Border edges chained to loops, each starting at its smallest vertex, ordered by it.
-    pub fn border_loops(&self, mesh: &TriMesh) -> Vec<BorderLoop> {
-        // A border edge runs in its triangle's direction, so each border vertex has one successor
-        // unless two fans touch there.
-        let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
-        let mut starts = Vec::new();
-        for edge in self.border_edges() {
-            let [u, v] = self.edges[edge];
-            let corners = mesh.triangles()[self.triangles_of(edge)[0] as usize];
-            let forward = (0..3).any(|i| corners[i] == u && corners[(i + 1) % 3] == v);
-            let (from, to) = if forward { (u, v) } else { (v, u) };
-            next.entry(from).or_default().push(to);
-            starts.push(from);
-        }
-        for targets in next.values_mut() {
-            targets.sort_unstable_by(|a, b| b.cmp(a));
-        }
-        starts.sort_unstable();
-        let mut loops = Vec::new();
-        for start in starts {
-            let mut vertices = vec![start];
-            let mut at = start;
-            let mut closed = false;
-            while let Some(to) = next.get_mut(&at).and_then(Vec::pop) {
-                if to == start {
-                    closed = true;
-                    break;
-                }
-                vertices.push(to);
-                at = to;
-            }
-            if vertices.len() > 1 {
-                loops.push(BorderLoop { vertices, closed });
-            }
-        }
-        loops
     }
 
     /// Component number of every triangle (connected over edges), counted from 0 in order of each
@@ -196,12 +147,6 @@ impl EdgeSides {
     }
 }
 
-/// Whether a triangle runs along an edge from its first to its second end.
-fn runs_forward(mesh: &TriMesh, triangle: u32, [u, v]: [u32; 2]) -> bool {
-    let corners = mesh.triangles()[triangle as usize];
-    (0..3).any(|i| corners[i] == u && corners[(i + 1) % 3] == v)
-}
-
 /// Turns triangles so that neighbours over manifold edges agree, component by component, each kept
 /// on the side that most of its area already faces. Returns the mesh and how many were turned; a
 /// mesh whose triangles agree is handed on as it is. `topology` is that of the mesh, before and after.
@@ -216,7 +161,7 @@ pub fn orient_consistently(
         match *topology.triangles_of(edge) {
             [s, t] if s != t => {
                 let ends = topology.edges[edge];
-                runs_forward(&mesh, s, ends) == runs_forward(&mesh, t, ends)
+                mesh.runs_along(s as usize, ends) == mesh.runs_along(t as usize, ends)
             }
             _ => false,
         }
@@ -301,7 +246,7 @@ fn turned_triangles(
 
 #[cfg(test)]
 mod tests {
-    use super::super::Point3;
+    use super::super::{BorderEdges, Point3};
     use super::*;
 
     /// An n × n grid of quads with the middle quad left out.
@@ -353,7 +298,7 @@ mod tests {
     fn finds_border_and_hole() {
         let mesh = plate_with_hole(5);
         let topology = Topology::of(&mesh);
-        let loops = topology.border_loops(&mesh);
+        let loops = BorderEdges::of(&mesh, &topology).loops();
         let mut lengths: Vec<_> = loops.iter().map(|l| (l.vertices.len(), l.closed)).collect();
         lengths.sort_unstable();
         assert_eq!(lengths, vec![(4, true), (20, true)]);

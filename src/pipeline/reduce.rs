@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::load::LoadedPart;
 use super::{PipelineError, millis_since};
 use crate::geometry::chunks::for_chunks;
-use crate::geometry::{Point3, Topology, TriMesh};
+use crate::geometry::{BorderEdges, Point3, Topology, TriMesh};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::Surface;
 use crate::search::{Bvh, ClosestPoint};
@@ -141,7 +141,7 @@ impl Levels {
             None => {
                 let made = match &self.prepared {
                     Some(full) => {
-                        Trees::new(full.topology(), Arc::clone(full.shared_bvh()), monitor)?
+                        Trees::new(full.border_edges(), Arc::clone(full.shared_bvh()), monitor)?
                     }
                     None => Trees::of(&self.full, monitor)?,
                 };
@@ -190,21 +190,21 @@ fn n_flipped(
 
 impl Trees {
     fn of(mesh: &Arc<TriMesh>, monitor: &Monitor) -> Result<Self, Cancelled> {
-        let topology = Topology::build(mesh, monitor)?;
+        let edges = BorderEdges::of(mesh, &Topology::build(mesh, monitor)?);
         let surface = Bvh::build_for(Arc::clone(mesh), monitor)?;
-        Self::new(&topology, Arc::new(surface), monitor)
+        Self::new(&edges, Arc::new(surface), monitor)
     }
 
-    fn new(topology: &Topology, surface: Arc<Bvh>, monitor: &Monitor) -> Result<Self, Cancelled> {
+    fn new(edges: &BorderEdges, surface: Arc<Bvh>, monitor: &Monitor) -> Result<Self, Cancelled> {
         let mesh = surface.mesh();
         // A border edge as a triangle without area: the tree then answers for the line.
-        let segments = topology.border_edges().map(|e| {
-            let [u, v] = topology.edges[e];
+        let segments = edges.iter().map(|edge| {
+            let [u, v] = edge.ends;
             [u, v, v]
         });
         let border = TriMesh::new(mesh.positions().to_vec(), segments.collect())
             .expect("every edge names vertices of the mesh");
-        let n_loops = topology.border_loops(mesh).len();
+        let n_loops = edges.loops().len();
         Ok(Self {
             border: Bvh::build_for(Arc::new(border), monitor)?,
             n_loops,

@@ -7,8 +7,8 @@ use nalgebra::SymmetricEigen;
 use super::RegistrationError;
 use crate::geometry::chunks::{for_chunks, map_chunks};
 use crate::geometry::{
-    Border, CleanMesh, CornerNormals, Matrix3, Point3, Similarity, Topology, TriMesh, Vector3,
-    VertexFans, corner_normals,
+    Border, BorderEdges, CleanMesh, CornerNormals, Matrix3, Point3, Similarity, Topology, TriMesh,
+    Vector3, VertexFans, corner_normals,
 };
 use crate::monitor::{Cancelled, Monitor};
 use crate::search::{Bvh, Feature, PointTree, SurfaceHit};
@@ -16,18 +16,19 @@ use crate::search::{Bvh, Feature, PointTree, SurfaceHit};
 /// Triangles that meet at more than this angle form a sharp edge, which stays flat-sided.
 const SHARP_EDGE_DEG: f64 = 40.0;
 
-/// A mesh joined at equal positions and consistently oriented, with its edges, its tree, its normals
+/// A mesh joined at equal positions and consistently oriented, with its border, its tree, its normals
 /// and its measures. Made once per mesh; registration, assessment, report and the views share it.
 pub struct Surface {
     mesh: Arc<TriMesh>,
-    topology: Topology,
+    border_edges: BorderEdges,
     bvh: Arc<Bvh>,
     /// The tree for nearest nodes, made when first asked for.
     nodes: OnceLock<PointTree>,
     vertex_of: Vec<u32>,
     normals: CornerNormals,
     vertex_areas: Vec<f64>,
-    border_edges: Vec<u8>,
+    /// For each triangle a bit for each side that is a border edge.
+    border_sides: Vec<u8>,
     border_vertices: Vec<bool>,
     /// Outlines and holes, found when first asked for.
     borders: OnceLock<Vec<Border>>,
@@ -90,6 +91,34 @@ impl Surface {
             ..
         } = clean;
         drop((vertex_of, triangle_of));
+        Self::assemble(mesh, side, monitor, |mesh, vectors| {
+            let chordal_error = chordal_error(mesh, &topology, vectors, monitor)?;
+            let border_edges = BorderEdges::of(mesh, &topology);
+            // Nothing later asks for inner edges, and they take as much as the mesh.
+            drop(topology);
+            Ok((border_edges, chordal_error))
+        })
+    }
+
+    /// The surface mirrored at x = 0; what does not change is not made again.
+    pub(super) fn mirrored(&self, monitor: &Monitor) -> Result<Self, RegistrationError> {
+        let mesh = self.mesh.transformed(&Similarity::mirror_x());
+        Self::assemble(mesh, "source", monitor, |_, _| {
+            Ok((self.border_edges.flipped(), self.measures.chordal_error))
+        })
+    }
+
+    /// `of_edges` finds what the edges of the mesh tell, given the area vectors of its triangles: its border and
+    /// its chordal error.
+    fn assemble<F>(
+        mesh: TriMesh,
+        side: &'static str,
+        monitor: &Monitor,
+        of_edges: F,
+    ) -> Result<Self, RegistrationError>
+    where
+        F: FnOnce(&TriMesh, &[Vector3]) -> Result<(BorderEdges, f64), Cancelled> + Send,
+    {
         let vectors = map_chunks(mesh.n_triangles(), monitor, |t| mesh.area_vector(t))?;
         let area: f64 = vectors.iter().map(Vector3::norm).sum();
         if area <= 0.0 || !area.is_finite() {
@@ -97,19 +126,38 @@ impl Surface {
         }
         let mesh = Arc::new(mesh);
         // The tree last, so that one thread has given up `vectors` before it makes the tree.
-        let ((normals, measures), bvh) = rayon::join(
+        let (prepared, bvh) = rayon::join(
             || {
                 let vectors = vectors;
-                rayon::join(
+                let (normals, (of_edges, frame)) = rayon::join(
                     || normals_and_areas(&mesh, &vectors, monitor),
-                    || measures(&mesh, &topology, (&vectors, area), monitor),
-                )
+                    || {
+                        rayon::join(
+                            || of_edges(&mesh, &vectors),
+                            || principal_frame(&mesh, &vectors, area, monitor),
+                        )
+                    },
+                );
+                let (border_edges, chordal_error) = of_edges?;
+                let (centroid, principal_axes, principal_spread) = frame?;
+                monitor.check()?;
+                let measures = Measures {
+                    area,
+                    centroid,
+                    mean_normal: vectors.iter().sum::<Vector3>() / area,
+                    principal_axes,
+                    principal_spread,
+                    diagonal: mesh.aabb().diagonal(),
+                    mean_edge_length: mesh.mean_edge_length(),
+                    chordal_error,
+                };
+                Ok::<_, Cancelled>((normals?, border_edges, measures))
             },
             || Bvh::build_for(mesh.clone(), monitor),
         );
-        let ((normals, vertex_areas), measures) = (normals?, measures?);
+        let ((normals, vertex_areas), border_edges, measures) = prepared?;
         monitor.check()?;
-        let (border_edges, border_vertices) = borders(&mesh, &topology);
+        let (border_sides, border_vertices) = border_marks(&mesh, &border_edges);
         Ok(Self {
             bvh: Arc::new(bvh?),
             nodes: OnceLock::new(),
@@ -117,23 +165,12 @@ impl Surface {
             normals,
             vertex_areas,
             border_edges,
+            border_sides,
             border_vertices,
             borders: OnceLock::new(),
             measures,
-            topology,
             mesh,
         })
-    }
-
-    /// The surface mirrored at x = 0; what does not change is not made again.
-    pub(super) fn mirrored(&self, monitor: &Monitor) -> Result<Self, RegistrationError> {
-        let mirrored = CleanMesh {
-            mesh: self.mesh.transformed(&Similarity::mirror_x()),
-            // Edges do not know on which side of them their triangles lie.
-            topology: self.topology.clone(),
-            ..CleanMesh::default()
-        };
-        Self::prepare(mirrored, "source", monitor)
     }
 
     /// The mesh after joining and orienting.
@@ -141,9 +178,9 @@ impl Surface {
         &self.mesh
     }
 
-    /// The edges of [`Surface::mesh`].
-    pub fn topology(&self) -> &Topology {
-        &self.topology
+    /// The border edges of [`Surface::mesh`].
+    pub fn border_edges(&self) -> &BorderEdges {
+        &self.border_edges
     }
 
     /// The tree over [`Surface::mesh`].
@@ -186,7 +223,7 @@ impl Surface {
     /// The unit normal at a hit, interpolated between the triangle's corners; across sharp edges
     /// the corners do not share their normals.
     pub fn normal_at(&self, hit: &SurfaceHit) -> Vector3 {
-        let normals = self.normals.of_triangle(hit.triangle as usize);
+        let normals = self.normals.of_triangle(&self.mesh, hit.triangle as usize);
         let sum: Vector3 = (0..3).map(|i| normals[i] * hit.barycentric[i]).sum();
         sum.try_normalize(0.0)
             .unwrap_or_else(|| self.mesh.normal(hit.triangle as usize))
@@ -197,7 +234,7 @@ impl Surface {
     /// tessellation, Boubekeur and Alexa 2008, with α = ½). Corners stay where they are.
     pub fn curved_point(&self, hit: &SurfaceHit) -> Point3 {
         let corners = self.mesh.corners(hit.triangle as usize);
-        let normals = self.normals.of_triangle(hit.triangle as usize);
+        let normals = self.normals.of_triangle(&self.mesh, hit.triangle as usize);
         let pull: Vector3 = (0..3)
             .map(|i| {
                 let normal = normals[i];
@@ -212,7 +249,7 @@ impl Surface {
         let triangle = hit.triangle as usize;
         match hit.feature {
             Feature::Face => false,
-            Feature::Edge(edge) => self.border_edges[triangle] >> edge & 1 == 1,
+            Feature::Edge(edge) => self.border_sides[triangle] >> edge & 1 == 1,
             Feature::Vertex(corner) => {
                 let vertex = self.mesh.triangles()[triangle][usize::from(corner)];
                 self.border_vertices[vertex as usize]
@@ -223,7 +260,7 @@ impl Surface {
     /// Outlines and holes.
     pub fn borders(&self) -> &[Border] {
         self.borders
-            .get_or_init(|| Border::all(&self.mesh, &self.topology, self.vertex_normals()))
+            .get_or_init(|| Border::all(&self.mesh, &self.border_edges, self.vertex_normals()))
     }
 
     /// The vertex closest to `query` within `max_distance`, as (vertex, squared distance).
@@ -269,63 +306,35 @@ fn normals_and_areas(
     Ok((normals, areas))
 }
 
-/// Per triangle a bit for each border edge, and which vertices lie on a border.
-fn borders(mesh: &TriMesh, topology: &Topology) -> (Vec<u8>, Vec<bool>) {
-    let mut edges = vec![0u8; mesh.n_triangles()];
+/// For each triangle a bit for each side on the border, and which vertices lie on it.
+fn border_marks(mesh: &TriMesh, border_edges: &BorderEdges) -> (Vec<u8>, Vec<bool>) {
+    let mut sides = vec![0u8; mesh.n_triangles()];
     let mut vertices = vec![false; mesh.n_vertices()];
-    for edge in topology.border_edges() {
-        let [u, v] = topology.edges[edge];
+    for edge in border_edges.iter() {
+        let [u, v] = edge.ends;
         vertices[u as usize] = true;
         vertices[v as usize] = true;
-        let triangle = topology.triangles_of(edge)[0] as usize;
+        let triangle = edge.triangle as usize;
         let corners = mesh.triangles()[triangle];
         for i in 0..3 {
-            let (a, b) = (corners[i], corners[(i + 1) % 3]);
-            if (a, b) == (u, v) || (a, b) == (v, u) {
-                edges[triangle] |= 1 << i;
+            if [corners[i], corners[(i + 1) % 3]] == [u, v] {
+                sides[triangle] |= 1 << i;
             }
         }
     }
-    (edges, vertices)
+    (sides, vertices)
 }
 
-fn measures(
-    mesh: &TriMesh,
-    topology: &Topology,
-    (vectors, area): (&[Vector3], f64),
-    monitor: &Monitor,
-) -> Result<Measures, Cancelled> {
-    let (of_triangles, chordal_error) = rayon::join(
-        || {
-            let centroid = mesh.centroid();
-            monitor.check()?;
-            let frame = principal_frame(mesh, vectors, (&centroid, area), monitor)?;
-            Ok((centroid, frame, vectors.iter().sum::<Vector3>() / area))
-        },
-        || chordal_error(mesh, topology, vectors, monitor),
-    );
-    let (centroid, (principal_axes, principal_spread), mean_normal) = of_triangles?;
-    monitor.check()?;
-    Ok(Measures {
-        area,
-        centroid,
-        mean_normal,
-        principal_axes,
-        principal_spread,
-        diagonal: mesh.aabb().diagonal(),
-        mean_edge_length: mesh.mean_edge_length(),
-        chordal_error: chordal_error?,
-    })
-}
-
-/// Eigenvectors and square roots of the eigenvalues of the surface's covariance, exact over each
-/// triangle.
+/// The centroid with eigenvectors and square roots of the eigenvalues of the surface's covariance, exact over
+/// each triangle.
 fn principal_frame(
     mesh: &TriMesh,
     vectors: &[Vector3],
-    (centroid, area): (&Point3, f64),
+    area: f64,
     monitor: &Monitor,
-) -> Result<(Matrix3, Vector3), Cancelled> {
+) -> Result<(Point3, Matrix3, Vector3), Cancelled> {
+    let centroid = mesh.centroid();
+    monitor.check()?;
     let mut covariance = Matrix3::zeros();
     for_chunks(vectors.len(), monitor, |range| {
         for t in range {
@@ -343,7 +352,7 @@ fn principal_frame(
     let second: Vector3 = eigen.eigenvectors.column(order[1]).into();
     let axes = Matrix3::from_columns(&[first, second, first.cross(&second)]);
     let spread = Vector3::from(order.map(|i| eigen.eigenvalues[i].max(0.0).sqrt()));
-    Ok((axes, spread))
+    Ok((centroid, axes, spread))
 }
 
 /// Over every smooth interior edge the sagitta h·φ/8 of an arc of span h (mean height of both

@@ -1,6 +1,5 @@
 //! A mesh prepared for drawing.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -25,8 +24,6 @@ pub struct MeshInput<'a> {
     /// Element index of each triangle: edges inside one element are not drawn, so that a quadrilateral
     /// split in two looks like one. `None` if every triangle is an element.
     pub element_of_triangle: Option<&'a [u32]>,
-    /// The edges of the mesh, if they are at hand.
-    pub topology: Option<&'a Topology>,
 }
 
 impl<'a> MeshInput<'a> {
@@ -36,7 +33,6 @@ impl<'a> MeshInput<'a> {
             mesh,
             part_of_triangle: None,
             element_of_triangle: None,
-            topology: None,
         }
     }
 }
@@ -124,9 +120,7 @@ impl RenderMesh {
                 corner_normals(mesh, &faces, &fans, crease, &monitor).expect(NEVER)
             },
             || {
-                let topology = input
-                    .topology
-                    .map_or_else(|| Cow::Owned(Topology::of(mesh)), Cow::Borrowed);
+                let topology = Topology::of(mesh);
                 let classes = EdgeClasses::of(&topology, &faces, input.element_of_triangle);
                 (topology, classes)
             },
@@ -137,7 +131,7 @@ impl RenderMesh {
             .enumerate()
             .map(|(corner, &vertex)| Corner {
                 position: near(&mesh.positions()[vertex as usize]),
-                normal: mesh_build::octahedral(&normals.of_triangle(corner / 3)[corner % 3]),
+                normal: mesh_build::octahedral(&normals.of_triangle(mesh, corner / 3)[corner % 3]),
                 part: part(corner / 3),
             })
             .collect();

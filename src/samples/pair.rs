@@ -253,6 +253,7 @@ fn neighbours(part: SamplePart, placement: &Pose) -> Vec<SampleMesh> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::{BorderEdges, Topology};
 
     #[test]
     fn every_node_of_both_sides_lies_on_the_border_curves_or_the_surface() {
@@ -264,8 +265,9 @@ mod tests {
                 let trim = design.stamped_trim(variant);
                 let flat = mesher::mesh(&design.sheet, &trim, &design.stamped);
                 let mesh = lift(part, &design, &flat).to_trimesh();
-                let on_border: Vec<usize> = crate::geometry::Topology::of(&mesh)
-                    .border_loops(&mesh)
+                let edges = BorderEdges::of(&mesh, &Topology::of(&mesh));
+                let on_border: Vec<usize> = edges
+                    .loops()
                     .iter()
                     .flat_map(|border| border.vertices.iter().map(|&v| v as usize))
                     .collect();

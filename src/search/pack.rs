@@ -8,13 +8,11 @@ use crate::geometry::{Vector3, any_perpendicular};
 /// Height over longest edge below which the direction of a triangle's normal is left to `f64`.
 const NEEDLE: f64 = 1e-6;
 
-/// Edges shorter than this, in local units, count as points; far less than `f32` can tell apart.
-const NO_LENGTH: f64 = 1e-12;
-
 /// Four triangles, each in a frame of its own: corner a at the origin, b on the first axis, c in
 /// the plane of the first two. a–b is the longest edge, which keeps needles well-conditioned.
+///
+/// 13 rows of 16 bytes: what a division tells is not stored, because large meshes have a million of these.
 #[derive(Debug, Clone)]
-#[repr(C, align(64))]
 pub(super) struct TrianglePack {
     origin: [Vec4; 3],
     first_axis: [Vec4; 3],
@@ -22,10 +20,6 @@ pub(super) struct TrianglePack {
     /// First coordinate of b; its second is zero.
     b: Vec4,
     c: [Vec4; 2],
-    /// One over the squared length of b–c; zero where it has no length.
-    inv_bc: Vec4,
-    /// One over the squared length of a–c; zero where it has no length.
-    inv_ac: Vec4,
     ids: [u32; WIDTH],
 }
 
@@ -79,8 +73,6 @@ impl Pack for TrianglePack {
             second_axis: [Vec4::ZERO, Vec4::ONE, Vec4::ZERO],
             b: Vec4::ZERO,
             c: [Vec4::ZERO; 2],
-            inv_bc: Vec4::ZERO,
-            inv_ac: Vec4::ZERO,
             ids: [u32::MAX; WIDTH],
         };
         for (slot, &id) in ids.iter().enumerate() {
@@ -109,12 +101,12 @@ impl Pack for TrianglePack {
 
         let (ex, ey) = (self.c[0] - self.b, self.c[1]);
         let from_b = x - self.b;
-        let t = clamp_unit((from_b * ex + y * ey) * self.inv_bc);
+        let t = clamp_unit((from_b * ex + y * ey) / length_sq(ex, ey));
         let (rx, ry) = (from_b - ex * t, y - ey * t);
         let bc_sq = rx * rx + ry * ry;
 
         let (fx, fy) = (self.c[0], self.c[1]);
-        let t = clamp_unit((x * fx + y * fy) * self.inv_ac);
+        let t = clamp_unit((x * fx + y * fy) / length_sq(fx, fy));
         let (rx, ry) = (x - fx * t, y - fy * t);
         let ac_sq = rx * rx + ry * ry;
 
@@ -129,6 +121,12 @@ impl Pack for TrianglePack {
     }
 }
 
+/// Squared length of an edge to divide by: without length, whatever is divided is zero too.
+#[inline]
+fn length_sq(x: Vec4, y: Vec4) -> Vec4 {
+    (x * x + y * y).max(Vec4::splat(f32::MIN_POSITIVE))
+}
+
 #[inline]
 fn clamp_unit(t: Vec4) -> Vec4 {
     t.max(Vec4::ZERO).min(Vec4::ONE)
@@ -140,8 +138,7 @@ impl TrianglePack {
         let longer = |best, i| if side_sq[i] > side_sq[best] { i } else { best };
         let start = (1..3).fold(0, longer);
         let [a, b, c] = [0, 1, 2].map(|i| corners[(start + i) % 3]);
-        let [ab_sq, bc_sq, ac_sq] = [0, 1, 2].map(|i| side_sq[(start + i) % 3]);
-        let (length, ac) = (ab_sq.sqrt(), c - a);
+        let (length, ac) = (side_sq[start].sqrt(), c - a);
         let first = if length > 0.0 {
             (b - a) * (1.0 / length)
         } else {
@@ -161,13 +158,6 @@ impl TrianglePack {
             any_perpendicular(&first)
         };
         let cy = ac.dot(&second).max(0.0);
-        let inverse = |length_sq: f64| {
-            if length_sq < NO_LENGTH * NO_LENGTH {
-                0.0
-            } else {
-                (1.0 / length_sq) as f32
-            }
-        };
         for axis in 0..3 {
             self.origin[axis][slot] = a[axis] as f32;
             self.first_axis[axis][slot] = first[axis] as f32;
@@ -176,8 +166,6 @@ impl TrianglePack {
         self.b[slot] = length as f32;
         self.c[0][slot] = cx as f32;
         self.c[1][slot] = cy as f32;
-        self.inv_bc[slot] = inverse(bc_sq);
-        self.inv_ac[slot] = inverse(ac_sq);
     }
 }
 

@@ -1,6 +1,6 @@
 //! How far borders moved.
 
-use crate::geometry::{Aabb, Point3, Topology, TriMesh, Vector3};
+use crate::geometry::{Aabb, BorderEdges, Point3, Topology, TriMesh, Vector3};
 
 /// Samples per original edge length, at least; long edges get more.
 const SAMPLES_PER_BORDER: usize = 4096;
@@ -94,11 +94,11 @@ struct Border {
 
 impl Border {
     fn of(mesh: &TriMesh) -> Self {
-        let topology = Topology::of(mesh);
-        let segments = topology
-            .border_edges()
+        let edges = BorderEdges::of(mesh, &Topology::of(mesh));
+        let segments = edges
+            .iter()
             .map(|edge| {
-                let [u, v] = topology.edges[edge].map(|v| mesh.positions()[v as usize]);
+                let [u, v] = edge.ends.map(|v| mesh.positions()[v as usize]);
                 Segment {
                     start: u,
                     along: v - u,
@@ -107,7 +107,7 @@ impl Border {
             .collect();
         Self {
             segments,
-            n_loops: topology.border_loops(mesh).len(),
+            n_loops: edges.loops().len(),
         }
     }
 

@@ -4,7 +4,7 @@ use std::io::{Read, Write};
 use std::path::Path;
 
 use shapematch::formats::{self, Memory, Model, Severity};
-use shapematch::geometry::{Topology, TriMesh, orient_consistently};
+use shapematch::geometry::{BorderEdges, Topology, TriMesh, orient_consistently};
 use shapematch::monitor::Monitor;
 use shapematch::samples::{
     SampleMesh, SamplePart, SampleSettings, SampleVariant, bundled, bundled_settings, files,
@@ -28,7 +28,7 @@ fn the_floor_is_the_paper_s() {
     let diagonal = stamped.aabb().diagonal();
     assert!((diagonal - 1632.0).abs() < 2.0, "{diagonal}");
     for mesh in [&stamped, &pair.crash.to_trimesh()] {
-        let loops = Topology::of(mesh).border_loops(mesh);
+        let loops = BorderEdges::of(mesh, &Topology::of(mesh)).loops();
         assert_eq!(loops.len(), 13);
         assert!(loops.iter().all(|border| border.closed));
     }

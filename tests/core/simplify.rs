@@ -1,7 +1,7 @@
 //! The simplifier as its callers see it.
 
 use proptest::prelude::*;
-use shapematch::geometry::{Point3, Topology, TriMesh};
+use shapematch::geometry::{BorderEdges, Point3, Topology, TriMesh};
 use shapematch::monitor::Monitor;
 use shapematch::search::{Bvh, ClosestPoint};
 use shapematch::simplify::{
@@ -18,7 +18,7 @@ fn reduce(mesh: &TriMesh, max_triangles: usize) -> Simplified {
 }
 
 fn n_loops(mesh: &TriMesh) -> usize {
-    let loops = Topology::of(mesh).border_loops(mesh);
+    let loops = BorderEdges::of(mesh, &Topology::of(mesh)).loops();
     assert!(loops.iter().all(|l| l.closed));
     loops.len()
 }

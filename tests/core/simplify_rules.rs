@@ -1,6 +1,6 @@
 //! One small mesh for each rule that a collapse must obey.
 
-use shapematch::geometry::{Point3, Topology, TriMesh};
+use shapematch::geometry::{BorderEdges, Point3, Topology, TriMesh};
 use shapematch::monitor::Monitor;
 use shapematch::simplify::{
     CollapseSequence, Simplified, SimplifySettings, Speed, StopReason, simplify,
@@ -26,7 +26,7 @@ fn fewest(mesh: &TriMesh, may_close_loops: bool) -> Simplified {
 }
 
 fn n_loops(mesh: &TriMesh) -> usize {
-    Topology::of(mesh).border_loops(mesh).len()
+    BorderEdges::of(mesh, &Topology::of(mesh)).loops().len()
 }
 
 fn widest_edge(mesh: &TriMesh) -> usize {

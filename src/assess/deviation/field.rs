@@ -3,7 +3,7 @@
 use super::DeviationSettings;
 use super::offset::{ConstantPart, Sample};
 use crate::geometry::chunks::{for_chunks, map_chunks};
-use crate::geometry::{Similarity, Vector3};
+use crate::geometry::{Similarity, Topology, Vector3};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::Surface;
 use crate::search::{Feature, SearchLimits, SurfaceHit, closest_many};
@@ -305,7 +305,7 @@ struct Sides {
 impl Sides {
     fn of(surface: &Surface, monitor: &Monitor) -> Result<Self, Cancelled> {
         let mesh = surface.mesh();
-        let topology = surface.topology();
+        let topology = Topology::build(mesh, monitor)?;
         let mut beyond = vec![[NOBODY; 3]; mesh.n_triangles()];
         let mut are_known = true;
         for_chunks(topology.edges.len(), monitor, |range| {

@@ -58,11 +58,13 @@ pub fn worst_spots(
 /// Vertices with no neighbour that deviates more; of equal neighbours the first.
 fn peaks(surface: &Surface, value: impl Fn(u32) -> Option<f64>) -> Vec<(u32, f64)> {
     let mut is_peak = vec![true; surface.mesh().n_vertices()];
-    for &[u, v] in &surface.topology().edges {
-        if let (Some(a), Some(b)) = (value(u), value(v)) {
-            // u comes before v.
-            let lower = if b.abs() > a.abs() { u } else { v };
-            is_peak[lower as usize] = false;
+    for &[a, b, c] in surface.mesh().triangles() {
+        for (u, v) in [(a, b), (b, c), (c, a)] {
+            let (first, second) = (u.min(v), u.max(v));
+            if let (Some(a), Some(b)) = (value(first), value(second)) {
+                let lower = if b.abs() > a.abs() { first } else { second };
+                is_peak[lower as usize] = false;
+            }
         }
     }
     let vertices = 0..is_peak.len() as u32;

@@ -94,10 +94,6 @@ impl ShownMesh {
             mesh,
             part_of_triangle: Some(&part_of_triangle),
             element_of_triangle: elements.as_deref(),
-            topology: source
-                .level
-                .is_none()
-                .then(|| source.part.surface.topology()),
         };
         let is_level = source.level.is_some();
         let (drawn, tree_of_level) = rayon::join(
