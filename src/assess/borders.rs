@@ -332,6 +332,21 @@ impl Borders {
         }
     }
 
+    /// Root mean square distance of the smaller part's borders from those of the other, which were looked for within
+    /// `near`; a border or a hole without counterpart lies that far away too.
+    pub(super) fn apart(&self, near: f64) -> f64 {
+        let share = self.share().min(1.0);
+        let paired: f64 = self.pairs.iter().map(|p| p.weight).sum();
+        let gaps = self.pairs.iter().map(|p| p.weight * p.gap * p.gap);
+        let mean_sq = if paired > 0.0 {
+            gaps.sum::<f64>() / paired
+        } else {
+            0.0
+        };
+        let alone = (1.0 - share) + self.missing_share();
+        (share * mean_sq + alone * near * near).sqrt()
+    }
+
     /// The pairs' weights, less for those that lie far apart beside the others.
     pub(super) fn weights(&self, noise: f64) -> Vec<f64> {
         let gaps: Vec<f64> = self.pairs.iter().map(|p| p.gap).collect();

@@ -18,6 +18,8 @@ pub(super) struct PoseEvidence<'a> {
     pub(super) noise: f64,
     /// Surfaces within it are compared.
     pub(super) reach: f64,
+    /// The largest offset between two skins of one sheet.
+    pub(super) most_offset: f64,
 }
 
 impl PoseEvidence<'_> {
@@ -33,6 +35,7 @@ pub(super) struct EvidenceSearch<'a, 'b> {
     contacts: ContactSearch<'a>,
     borders: &'b BorderComparison<'a>,
     noise: f64,
+    most_offset: f64,
 }
 
 impl<'a, 'b> EvidenceSearch<'a, 'b> {
@@ -45,6 +48,7 @@ impl<'a, 'b> EvidenceSearch<'a, 'b> {
             contacts,
             borders,
             noise: distances.noise,
+            most_offset: distances.most_offset,
         }
     }
 
@@ -61,6 +65,7 @@ impl<'a, 'b> EvidenceSearch<'a, 'b> {
             borders: self.borders.at(pose),
             noise: self.noise,
             reach: self.contacts.reach(),
+            most_offset: self.most_offset,
         })
     }
 }

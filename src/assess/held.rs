@@ -230,6 +230,11 @@ pub(super) fn distinct(alternatives: &[Alternative], source: &Surface) -> Vec<Al
     distinct
 }
 
+/// Distance within which borders are looked for.
+pub(super) fn near(target: &Surface) -> f64 {
+    NEAR_SHARE * target.measures().diagonal
+}
+
 /// Distance within which surfaces leave a motion free: what overlaps, and what springback explains.
 fn free_limit(source: &Surface, target: &Surface, scale: f64, settings: &AssessSettings) -> f64 {
     let springback = Distances::of(source, target, scale, settings)
@@ -348,7 +353,7 @@ impl<'a> Pair<'a> {
     ) -> Self {
         let distances = Distances::of(source, target, scale, settings);
         let tolerance = distances.tolerance;
-        let near = NEAR_SHARE * target.measures().diagonal;
+        let near = near(target);
         let pair = [source, target];
         Self {
             source,
@@ -406,7 +411,7 @@ impl<'a> Pair<'a> {
     ) -> Result<Vec<Similarity>, Cancelled> {
         let apart = |pose: &Similarity| {
             monitor.check()?;
-            Ok((self.borders_apart(pose), *pose))
+            Ok((self.borders.at(pose).apart(self.near), *pose))
         };
         let sorted: Result<Vec<(f64, Similarity)>, Cancelled> =
             poses.par_iter().map(apart).collect();
@@ -492,22 +497,6 @@ impl<'a> Pair<'a> {
             }
         }
         roots
-    }
-
-    /// Root mean square distance of the smaller part's borders from those of the other, at most `near`;
-    /// a hole without counterpart lies that far away too.
-    fn borders_apart(&self, pose: &Similarity) -> f64 {
-        let borders = self.borders.at(pose);
-        let share = borders.share().min(1.0);
-        let paired: f64 = borders.pairs().iter().map(|p| p.weight).sum();
-        let gaps = borders.pairs().iter().map(|p| p.weight * p.gap * p.gap);
-        let mean_sq = if paired > 0.0 {
-            gaps.sum::<f64>() / paired
-        } else {
-            0.0
-        };
-        let alone = (1.0 - share) + borders.missing_share();
-        (share * mean_sq + alone * self.near * self.near).sqrt()
     }
 
     /// Share of the smaller part's borders that lies within the tolerance of a like border of the other part, less

@@ -3,9 +3,10 @@
 //! From the bottom up: `tolerance` says how far parts may differ; `contact` and `borders` find where two parts meet
 //! under a pose, `evidence` joins what they found, `fit` splits the gaps into a motion, an offset and bends; `trims`,
 //! `stretch` and `shape` say how the parts differ, `uncertainty` how far the pose may be off. With these, `settle`,
-//! `slide`, `held`, `alternatives`, `unbent` and `skin` improve or choose a pose before it is assessed, and `decide`
+//! `slide`, `all_pairs`, `held`, `alternatives`, `unbent` and `skin` improve or choose a pose before it is assessed, and `decide`
 //! makes the verdict of an [`Assessment`].
 
+mod all_pairs;
 mod alternatives;
 mod ambiguity;
 mod assessment;
@@ -35,6 +36,7 @@ mod uncertainty;
 mod verdict;
 mod words;
 
+pub use all_pairs::is_better_with_all_pairs;
 pub use alternatives::{chosen_by_shape, is_pulled_aside};
 pub use ambiguity::{Ambiguity, Clarity, Twin, TwinAxis};
 pub use assessment::Assessment;

@@ -118,7 +118,12 @@ pub(super) struct Distances {
     pub(super) near: f64,
     /// Faceting of both meshes and the allowance: distances of this size mean nothing.
     pub(super) noise: f64,
+    /// The largest offset between two skins of one sheet; what is larger is a difference of the shapes.
+    pub(super) most_offset: f64,
 }
+
+/// From one skin to the other it is the thickness; the parts' thicknesses may differ, and facets add to it.
+const MOST_OFFSET: f64 = 1.2;
 
 impl Distances {
     pub(super) fn of(
@@ -137,6 +142,9 @@ impl Distances {
             reach,
             near: (BORDER_REACH * tolerance.remainder).min(reach),
             noise: facets.max(NOTHING * tolerance.remainder) + settings.allowance,
+            most_offset: settings
+                .thickness
+                .map_or(f64::INFINITY, |t| MOST_OFFSET * t),
         }
     }
 

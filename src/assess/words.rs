@@ -319,7 +319,7 @@ impl PoseUncertainty {
     pub fn words_of_unknown_offset(&self, lengths: Lengths) -> Option<String> {
         (self.unknown_offset > 0.0).then(|| {
             format!(
-                "the parts are too flat to tell skin from mid-surface, half the thickness is {}",
+                "the normals vary too little to tell skin from mid-surface, half the thickness is {}",
                 lengths.of(self.unknown_offset)
             )
         })

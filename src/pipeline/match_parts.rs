@@ -262,6 +262,13 @@ pub(super) fn settle(
     if !is_searched || outcome.termination == Termination::Stopped {
         return Ok(());
     }
+    if let Some(pose) = outcome.with_all_pairs.take() {
+        let poses = [&outcome.target_from_source, &pose];
+        if assess::is_better_with_all_pairs(source, target, poses, check) {
+            outcome.target_from_source = pose;
+        }
+    }
+    monitor.check()?;
     let found = outcome.target_from_source;
     let is_kept = |pose: &Similarity, surfaces_hold| {
         !assess::is_pulled_aside(source, target, [&found, pose], surfaces_hold, check)

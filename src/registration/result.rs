@@ -194,6 +194,10 @@ pub struct MatchOutcome {
     /// the result; else other poses may fit as well. False in results of earlier versions.
     #[serde(default)]
     pub rivals_sought: bool,
+    /// Where the last stage left pairs out, the pose that keeping all of them leads to from the result. Whoever
+    /// assesses the result chooses between both.
+    #[serde(skip)]
+    pub with_all_pairs: Option<Similarity>,
     /// Every start, in the order of their numbers.
     pub starts: Vec<StartRecord>,
     /// Index of the start that won.

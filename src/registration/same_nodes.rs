@@ -55,6 +55,7 @@ pub(super) fn match_same_nodes(
         objective: rmse,
         floor: 0.0,
         alternatives: Vec::new(),
+        with_all_pairs: None,
         rivals_sought: false,
         winner: 0,
         starts: vec![StartRecord {

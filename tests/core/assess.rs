@@ -400,3 +400,43 @@ fn a_bend_does_not_push_a_curved_strip_along_itself() {
     let found = without_bend(&plain, &target, &Similarity::identity(), &settings);
     assert_eq!(found, None);
 }
+
+#[test]
+fn a_twist_does_not_turn_a_bowed_panel_about_its_normal() {
+    // Turned by five degrees, the bow is the twist: the panel fits but for three pads, which the closest pairs leave out.
+    let panel = |n: u32, wider: f64, twist: f64| {
+        sheet(n, |u, v| {
+            let (x, y) = ((600.0 + wider) * (u - 0.5), (400.0 + wider) * (v - 0.5));
+            let pads = [(-200.0, 110.0), (150.0, -120.0), (60.0, 130.0)];
+            let pads = pads.map(|(at_x, at_y): (f64, f64)| {
+                let far = ((x - at_x).powi(2) + (y - at_y).powi(2)) / (25.0 * 25.0);
+                6.0 * (-far).exp()
+            });
+            let (along, across) = (x / 300.0, y / 200.0);
+            let bent = 12.0 * along * along + twist * along * across;
+            Point3::new(x, y, bent + pads.iter().sum::<f64>())
+        })
+    };
+    let truth = placement(3);
+    let stamped = panel(80, 20.0, 1.5).transformed(&truth.inverse());
+    let [source, target] =
+        [&stamped, &panel(60, 0.0, 0.0)].map(|mesh| Surface::new(mesh, "source").unwrap());
+    let input = MatchInput {
+        source: &source,
+        target: &target,
+        reduced: None,
+    };
+    let silent = Monitor::silent();
+    let outcome = match_surfaces(&input, &MatchSettings::default(), &silent).unwrap();
+    let off = |pose: &Similarity| worst_node(&stamped, &truth, pose);
+    let (closest, all) = (outcome.target_from_source, outcome.with_all_pairs.unwrap());
+    assert!(
+        off(&closest) > 10.0 && off(&all) < 2.0,
+        "{} {}",
+        off(&closest),
+        off(&all)
+    );
+    let settings = AssessSettings::default();
+    let is_better = |poses| is_better_with_all_pairs(&source, &target, poses, &settings);
+    assert!(is_better([&closest, &all]) && !is_better([&all, &closest]));
+}

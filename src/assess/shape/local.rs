@@ -3,6 +3,7 @@
 
 use crate::assess::contact::Contact;
 use crate::assess::evidence::PoseEvidence;
+use crate::assess::tolerance::is_source_smaller;
 use crate::geometry::{Point3, Vector3};
 use crate::registration::Surface;
 
@@ -14,8 +15,8 @@ const BESIDE: f64 = 1.7;
 /// outline may have been cut.
 const FROM_OUTLINE: f64 = 2.0;
 
-/// Elements cut narrow beads and the edges of wide ones short. A group that is not so many edges of the coarser mesh
-/// wide may be that.
+/// Elements cut narrow beads and the edges of wide ones short. A group that is not so many edges wide may be that: edges
+/// of the mesh that the places were measured against, because the places themselves are nodes, which lie on the sheet.
 const LEAST_WIDTH: f64 = 2.5;
 
 /// A group of places in the middle of the sheet where the surfaces lie apart.
@@ -55,11 +56,13 @@ pub(super) fn local_difference(
             outlines.iter().all(is_far)
         })
     };
-    let edges = [
-        evidence.source.measures().mean_edge_length * evidence.pose.scale,
-        evidence.target.measures().mean_edge_length,
-    ];
-    let narrow = LEAST_WIDTH * edges[0].max(edges[1]);
+    let (source, target, scale) = (evidence.source, evidence.target, evidence.pose.scale);
+    let narrow = LEAST_WIDTH
+        * if is_source_smaller(source, target, scale) {
+            target.measures().mean_edge_length
+        } else {
+            source.measures().mean_edge_length * scale
+        };
     let is_wide = |group: &[usize]| {
         let places = || group.iter().map(|&place| beyond[place].0);
         let area: f64 = places().map(|contact| size(contact).powi(2)).sum();

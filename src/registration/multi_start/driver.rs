@@ -19,8 +19,8 @@ use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::RegistrationError;
 use crate::registration::icp::{
-    Data, Floor, Frames, Run, Selection, Stage, StageInput, advance, edge_length, natural_floor,
-    stage_rules,
+    Data, Floor, Frames, Run, Selection, Stage, StageInput, StageRules, advance, edge_length,
+    natural_floor, stage_rules,
 };
 use crate::registration::input::MatchInput;
 use crate::registration::observer::MatchMonitor;
@@ -53,6 +53,8 @@ const REACH: f64 = 0.1;
 const N_FULL_POINTS: usize = 150_000;
 /// Poses of the opposite hand that are looked at, of those that survive the wide search.
 const N_OPPOSITE: usize = 3;
+/// A run that kept this share of the pairs left out nothing that matters.
+const ALL_KEPT: f64 = 0.99;
 
 /// The search for one hand of the source: its choices of data and model with their candidates.
 pub(crate) struct MultiStart<'a> {
@@ -104,6 +106,8 @@ pub(crate) struct Refined {
     pub(crate) data_side: Side,
     pub(crate) flipped: bool,
     pub(crate) floor: f64,
+    /// Where pairs were left out, where keeping all of them leads from there.
+    pub(crate) with_all_pairs: Option<Similarity>,
 }
 
 impl<'a> MultiStart<'a> {
@@ -470,6 +474,7 @@ impl<'a> MultiStart<'a> {
                 data_side: choice.data_side(),
                 flipped,
                 floor: rules.selection.floor,
+                with_all_pairs: None,
             });
         }
         let swaps = self.settings.data_side == DataSide::Auto && last_stage_swaps(choice.fine);
@@ -505,12 +510,30 @@ impl<'a> MultiStart<'a> {
             grid: None,
         };
         advance(run, &input, rules.max_iterations, monitor)?;
+        let all = if left_pairs_out(run, &rules) && !monitor.stop_requested() {
+            let n_points = self.settings.n_refine_points;
+            let mut few = Data::new(subsample(pairing.data, n_points, monitor.monitor)?);
+            if flipped {
+                few = few.flipped();
+            }
+            Some(with_all_pairs(
+                run,
+                &StageInput {
+                    data: &few,
+                    ..input
+                },
+                monitor.monitor,
+            )?)
+        } else {
+            None
+        };
         let refined = Refined {
             target_from_source: frames.target_from_source(&run.model_from_data),
             run: run.clone(),
             data_side: frames.data_side(),
             flipped,
             floor: rules.selection.floor,
+            with_all_pairs: all.map(|pose| frames.target_from_source(&pose)),
         };
         // The record of the start keeps the roles it was run in.
         if swaps {
@@ -518,6 +541,41 @@ impl<'a> MultiStart<'a> {
         }
         Ok(refined)
     }
+}
+
+/// True if a run that was free to choose left out more pairs than trims do.
+fn left_pairs_out(run: &Run, rules: &StageRules) -> bool {
+    let chooses = matches!(
+        rules.selection.selection,
+        Selection::Fractional { .. } | Selection::TrimmedSearch
+    );
+    chooses && run.fraction < ALL_KEPT
+}
+
+/// Where a run goes on to with all pairs. A bent part fits best in its middle, turned or slid until the rest, which
+/// is left out, lies elsewhere.
+fn with_all_pairs(
+    run: &Run,
+    input: &StageInput<'_>,
+    monitor: &Monitor,
+) -> Result<Similarity, Cancelled> {
+    let mut rules = *input.rules;
+    rules.selection.selection = Selection::All;
+    rules.step.likely_motion = f64::INFINITY;
+    rules.least_reach = None;
+    let mut all = Run::new(run.start_idx, run.model_from_data);
+    let unobserved = monitor.without_observer();
+    let input = StageInput {
+        rules: &rules,
+        ..*input
+    };
+    advance(
+        &mut all,
+        &input,
+        rules.max_iterations,
+        &MatchMonitor::from(&unobserved),
+    )?;
+    Ok(all.model_from_data)
 }
 
 /// True if the deviation of the shapes is for the match to find out.

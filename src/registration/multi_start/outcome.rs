@@ -47,6 +47,7 @@ pub(crate) fn decide(
         data_side,
         flipped,
         floor,
+        with_all_pairs,
     } = refined;
     let alternatives = alternatives(input, &ranked, &target_from_source, &searches);
     let pairs = fit_kept(&run);
@@ -71,6 +72,7 @@ pub(crate) fn decide(
         floor,
         alternatives,
         rivals_sought,
+        with_all_pairs,
         winner: run.start_idx,
         starts,
         scale_check: ScaleCheck::new(input.source, input.target, pair_scale),
