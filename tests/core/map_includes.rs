@@ -289,6 +289,16 @@ fn a_crash_part_that_an_include_mirrors_keeps_its_sides() {
         let expected = vec![vec![layer(0.3), layer(0.2), layer(0.1)]; 2];
         assert_eq!(layers(&model(&pair.path("out.k"))), expected);
     }
+    // Stresses in a copy of the file would be mirrored with it.
+    let told = pair.map(&options("deck", FULL));
+    assert!(
+        errors(&told).contains(
+            "part.k is turned or mirrored by the deck (*INCLUDE_TRANSFORM), which would turn the stresses and \
+             strains in its copy too; write an include of the whole deck instead (--write include)"
+        ),
+        "{}",
+        errors(&told)
+    );
     // A copy of the file has its own order, which the deck mirrors.
     let corners = &options("deck", "thickness")[..];
     let output = pair.map(&[corners, &["--corner-thickness", "yes"]].concat());

@@ -12,6 +12,7 @@ use super::nodes::shifted;
 use super::parts::PartOffsets;
 use super::sets::SetOffsets;
 use super::shells::ElementOffsets;
+use crate::geometry::Matrix3;
 
 /// What `*INCLUDE_TRANSFORM` adds to the ids of a file, summed over all files around it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -118,6 +119,7 @@ impl Context {
             length_factor: self.length,
             stress_factor: self.stress,
             is_mirrored: false,
+            rotation: Matrix3::identity(),
         }
     }
 
