@@ -3,12 +3,11 @@
 
 use std::path::PathBuf;
 
-use clap::builder::RangedU64ValueParser;
 use clap::{Args, Parser, Subcommand};
 
 use super::map::MapArgs;
 use super::map_car::MapCarArgs;
-use super::numbers::{at_least_one, positive};
+use super::numbers::{at_least_one, count, positive};
 use super::setting_args::SettingArgs;
 use super::words::{card_forms, units};
 use crate::report::CardForm;
@@ -38,7 +37,8 @@ pub struct Cli {
     pub realistic: bool,
 
     /// Number of threads, at most 1024; 0 uses one per core.
-    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = threads())]
+    // More threads than any machine of today has cores only take its memory.
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, default_value_t = 0, value_parser = count(0..=1024))]
     pub threads: usize,
 
     /// Print no progress and no warnings; results and errors are still printed.
@@ -110,6 +110,7 @@ pub struct InputArgs {
         long,
         value_name = "FACTOR",
         allow_negative_numbers = true,
+        value_parser = positive,
         default_value_t = 1.0
     )]
     pub stamped_length_factor: f64,
@@ -118,14 +119,15 @@ pub struct InputArgs {
         long,
         value_name = "FACTOR",
         allow_negative_numbers = true,
+        value_parser = positive,
         default_value_t = 1.0
     )]
     pub crash_length_factor: f64,
     /// Maximum triangles of the crash part for the search (overrides --triangles).
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = at_least_one())]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = at_least_one)]
     pub crash_triangles: Option<usize>,
     /// Maximum triangles of the stamped part for the search (overrides --triangles).
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = at_least_one())]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = at_least_one)]
     pub stamped_triangles: Option<usize>,
     /// Another folder to search for included files; may be given several times.
     #[arg(long, value_name = "FOLDER")]
@@ -182,7 +184,7 @@ pub struct OutputArgs {
     #[arg(long, value_name = "FILE")]
     pub crash_mesh: Option<PathBuf>,
     /// Report and write this one of the poses that fit nearly as well: 1 is the best, 2 the next.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = at_least_one())]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = at_least_one)]
     pub pose_number: Option<usize>,
 }
 
@@ -192,7 +194,7 @@ pub struct ReduceArgs {
     /// The file to read.
     pub input: PathBuf,
     /// Maximum number of triangles.
-    #[arg(long, short = 'n', value_name = "N", allow_negative_numbers = true, value_parser = at_least_one())]
+    #[arg(long, short = 'n', value_name = "N", allow_negative_numbers = true, value_parser = at_least_one)]
     pub triangles: usize,
     /// File to write; its extension selects the format (.k, .stl, .ply, .obj).
     #[arg(long, short, value_name = "FILE")]
@@ -304,11 +306,6 @@ pub struct BenchArgs {
     /// Write the table with plots as a page.
     #[arg(long, value_name = "FILE", requires = "page")]
     pub html: Option<PathBuf>,
-}
-
-/// More threads than any machine of today has cores only take its memory.
-fn threads() -> RangedU64ValueParser<usize> {
-    RangedU64ValueParser::new().range(0..=1024)
 }
 
 const MATCH_HELP: &str = "\

@@ -109,7 +109,7 @@ pub(super) struct MapValues {
     #[arg(long, value_name = "LIST", default_value = "usual", value_parser = quantities)]
     quantities: Quantities,
     /// Layers of the crash elements, at most 100; from the section if not given.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = layers())]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = layers)]
     layers: Option<usize>,
     /// Integration rule through the thickness of the crash elements; from the deck if not given.
     #[arg(long, value_enum)]

@@ -2,8 +2,6 @@
 
 use std::ops::RangeInclusive;
 
-use clap::builder::RangedU64ValueParser;
-
 use crate::mapping::limits;
 use crate::text::trimmed;
 
@@ -56,13 +54,28 @@ pub(super) fn points_in_plane(word: &str) -> Result<u8, String> {
     }
 }
 
+/// Takes whole numbers in a range.
+pub(super) fn count(
+    range: RangeInclusive<usize>,
+) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
+    move |word| {
+        let number = word.trim().parse().ok();
+        number.filter(|n| range.contains(n)).ok_or_else(|| {
+            let (low, high) = (range.start(), range.end());
+            match *high {
+                usize::MAX => format!("it must be a whole number from {low}"),
+                high => format!("it must be a whole number from {low} to {high}"),
+            }
+        })
+    }
+}
+
 /// A number of things.
-pub(super) fn at_least_one() -> RangedU64ValueParser<usize> {
-    RangedU64ValueParser::new().range(1..)
+pub(super) fn at_least_one(word: &str) -> Result<usize, String> {
+    count(1..=usize::MAX)(word)
 }
 
 /// Layers of a shell.
-pub(super) fn layers() -> RangedU64ValueParser<usize> {
-    let range = limits::LAYERS;
-    RangedU64ValueParser::new().range(*range.start() as u64..=*range.end() as u64)
+pub(super) fn layers(word: &str) -> Result<usize, String> {
+    count(limits::LAYERS)(word)
 }

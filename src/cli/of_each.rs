@@ -15,7 +15,7 @@ use crate::text::counted;
 pub(super) struct LengthFactors {
     /// Factor on the stamped coordinates and thicknesses, for files in another length unit. Give one for all
     /// files or one for each.
-    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true, value_parser = positive)]
     stamped_length_factor: Vec<f64>,
 }
 

@@ -2,13 +2,11 @@
 
 use std::ops::RangeInclusive;
 
-use clap::builder::{
-    BoolishValueParser, PossibleValue, PossibleValuesParser, RangedU64ValueParser,
-};
+use clap::builder::{BoolishValueParser, PossibleValue, PossibleValuesParser};
 use clap::error::Result;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
-use super::numbers::{number, within};
+use super::numbers::{count, number, within};
 use crate::mapping::{MapOptions, limits as map_limits};
 use crate::registration::{Floor, limits};
 use crate::settings::{ChoiceWords, Domain, MAP_SETTINGS, SETTINGS, Setting, Unit, Value};
@@ -121,9 +119,7 @@ fn arg<R: Default>(setting: &'static Setting<R>) -> Arg {
             .hide_possible_values(true)
             .value_parser(BoolishValueParser::new()),
         Domain::Count(range) | Domain::Limit(range) => {
-            let range = *range.start() as u64..=*range.end() as u64;
-            let parser = RangedU64ValueParser::<usize>::new().range(range);
-            arg.value_name("N").value_parser(parser)
+            arg.value_name("N").value_parser(count(range.clone()))
         }
         Domain::Number { unit, range, .. } => arg
             .value_name(match unit {

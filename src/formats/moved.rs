@@ -2,12 +2,9 @@
 
 use std::ops::Range;
 
-use super::model::{Forming, Model, Solid};
+use super::model::{Forming, Model, Part, ShellExtra, Solid};
 use crate::geometry::tensor::rotated;
 use crate::geometry::{Matrix3, Similarity};
-
-/// Which old corner each corner of a mirrored quad is: the first edge stays, reversed.
-const REVERSED: [usize; 4] = [1, 0, 3, 2];
 
 /// The model under `motion`: nodes moved, stress and strain tensors turned with them (they are in
 /// the global frame), thicknesses scaled. Ids stay. Nodes whose id is repeated are moved like all
@@ -17,8 +14,8 @@ const REVERSED: [usize; 4] = [1, 0, 3, 2];
 /// Under a mirror the corners of shells and solids change to the order 2 1 4 3, and with them
 /// corner thicknesses, mid-side nodes and integration points in the plane. The mirrored sheet then
 /// has the same material on the side of its normal as before, so places through the thickness keep
-/// their sign, and the first edge is the same one, so material angles only change theirs. Corner
-/// thicknesses of parts and sections are exchanged as those of quads.
+/// their sign, and the first edge is the same one, so material angles only change theirs. Different corner
+/// thicknesses of a section become those of its shells.
 pub fn moved(model: &Model, motion: &Similarity) -> Model {
     let mut result = model.clone();
     for position in result.nodes.positions_mut() {
@@ -62,11 +59,6 @@ fn turn(forming: &mut Forming, rotation: &Matrix3) {
 /// Reverses the order of corners and all that goes with them.
 fn reverse(model: &mut Model) {
     reverse_elements(model, 0..model.shells.len(), 0..model.solids.len());
-    let thicknesses = model.parts.iter_mut().filter_map(|p| p.thickness.as_mut());
-    let of_sections = model.sections.iter_mut().map(|s| &mut s.thickness);
-    for corners in thicknesses.chain(of_sections) {
-        *corners = REVERSED.map(|i| corners[i]);
-    }
     let forming = &mut model.forming;
     reverse_points(forming, 0..forming.n_stress(), 0..forming.n_strain());
 }
@@ -82,6 +74,7 @@ pub(super) fn reversed_corners<T: Copy>([a, b, c, d]: [T; 4], is_triangle: bool)
 
 /// Reverses the order of the corners of some shells and solids, and what each of them has at its corners.
 pub(super) fn reverse_elements(model: &mut Model, shells: Range<usize>, solids: Range<usize>) {
+    make_thickness_own(model, shells.clone());
     let is_own = |shell: u32| shells.contains(&(shell as usize));
     for shell in &mut model.shells[shells.clone()] {
         shell.nodes = reversed_corners(shell.nodes, shell.is_triangle());
@@ -108,6 +101,38 @@ pub(super) fn reverse_elements(model: &mut Model, shells: Range<usize>, solids: 
     for solid in &mut model.solids[solids] {
         solid.nodes = reversed_solid(solid);
     }
+}
+
+/// Gives shells that take different corner thicknesses from their part these as their own: the part's are in the
+/// order of corners that are not reversed.
+fn make_thickness_own(model: &mut Model, shells: Range<usize>) {
+    let is_uneven = |part: &Part| {
+        let corners = part.thickness.unwrap_or_default();
+        corners.iter().any(|t| *t != corners[0])
+    };
+    let is_uneven: Vec<bool> = model.parts.iter().map(is_uneven).collect();
+    if !is_uneven.contains(&true) {
+        return;
+    }
+    let mut made: Vec<ShellExtra> = Vec::new();
+    for index in shells {
+        let (shell, number) = (&model.shells[index], index as u32);
+        let own = model.shell_extra(number).copied().unwrap_or(ShellExtra {
+            shell: number,
+            thickness: [0.0; 4],
+            beta: 0.0,
+            plies: None,
+        });
+        let takes_any = own.thickness[..shell.corners().len()].contains(&0.0);
+        if takes_any && is_uneven[shell.part as usize] {
+            let thickness = model.shell_thickness(number).unwrap_or(own.thickness);
+            made.push(ShellExtra { thickness, ..own });
+        }
+    }
+    let is_made = |shell: u32| made.binary_search_by_key(&shell, |e| e.shell).is_ok();
+    model.shell_extras.retain(|extra| !is_made(extra.shell));
+    model.shell_extras.extend(made);
+    model.shell_extras.sort_unstable_by_key(|extra| extra.shell);
 }
 
 /// Both faces reversed; a tetrahedron whose top is one node stays written as one.

@@ -175,7 +175,12 @@ impl Context<'_> {
         rules.dedup();
         for (source, prepared) in self.sources.iter().enumerate() {
             for &rule in &rules {
-                let strain_rule = if self.strains_at_surfaces { 0 } else { rule };
+                let rules = [rule, self.turned_over[rule]];
+                let strain_rules = if self.strains_at_surfaces {
+                    [0; 2]
+                } else {
+                    rules
+                };
                 let own = (0..elements.len()).filter(|&at| sides_at(at).contains(&rule));
                 let groups = own.flat_map(|at| {
                     let first = at.checked_sub(1).map_or(0, |before| partners.ends[before]);
@@ -183,10 +188,10 @@ impl Context<'_> {
                     all.filter(move |group| sides_at(at)[usize::from(group.is_flipped)] == rule)
                 });
                 let groups = groups.filter(|group| group.source as usize == source);
-                let of_rule = fields[self.field_index(source, rule)]
-                    .get_or_insert_with(|| prepared.fields(rule, strain_rule));
+                let of_rule =
+                    fields[self.field_index(source, rule)].get_or_insert_with(|| prepared.fields());
                 let wanted = groups.map(|group| group.element);
-                prepared.load(of_rule, wanted, (rule, strain_rule));
+                prepared.load(of_rule, wanted, [rules, strain_rules]);
             }
         }
     }

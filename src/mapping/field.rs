@@ -75,15 +75,22 @@ impl<const N: usize> Field<N> {
         if Self::IS_TENSOR { 6 } else { 0 }
     }
 
-    /// Takes the values of a patch; fields start flat.
-    pub fn load(&mut self, numbers: &impl Numbers<N>, patch: &Patch) {
+    /// Takes the values of a patch; fields start flat. The second numbers are those at the places of the layers as
+    /// the other side of the sheet sees them, for the elements that are seen from there.
+    pub fn load<T: Numbers<N>>(&mut self, [numbers, from_below]: [&T; 2], patch: &Patch) {
         self.n_layers = numbers.n_layers();
         self.values.clear();
         self.is_present.clear();
-        for (slot, &element) in patch.elements().iter().enumerate() {
-            self.is_present.push(numbers.has(element as usize));
+        for (slot, seen) in patch.seen().iter().enumerate() {
+            let element = seen.element as usize;
+            self.is_present.push(numbers.has(element));
             let first = self.values.len();
-            numbers.push(element as usize, &mut self.values);
+            if seen.from_below {
+                from_below.push(element, &mut self.values);
+                self.values[first..].reverse();
+            } else {
+                numbers.push(element, &mut self.values);
+            }
             if !Self::IS_TENSOR {
                 continue;
             }
@@ -196,7 +203,8 @@ impl Fields {
     /// One number of each element, as thickness, fitted on a patch.
     pub fn of_thickness(patch: Patch, numbers: &[f64]) -> Self {
         let mut field = Field::default();
-        field.load(&PerElement(numbers), &patch);
+        let numbers = PerElement(numbers);
+        field.load([&numbers; 2], &patch);
         let mut fields = Self {
             patch,
             thickness: Some(field),

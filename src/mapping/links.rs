@@ -61,21 +61,28 @@ impl Links {
             })
             .collect::<Result<_, Cancelled>>()?;
         let mut links = Self {
-            neighbours: Neighbours(Lists {
-                start: Vec::with_capacity(mesh.len() + 1),
-                items: Vec::with_capacity(chunks.iter().map(|chunk| chunk.items.len()).sum()),
-            }),
+            neighbours: Neighbours {
+                lists: Lists {
+                    start: Vec::with_capacity(mesh.len() + 1),
+                    items: Vec::with_capacity(chunks.iter().map(|chunk| chunk.items.len()).sum()),
+                },
+                is_reversed: Vec::new(),
+            },
             border_edges: Vec::with_capacity(mesh.len()),
             is_border_node: Vec::new(),
         };
-        let Neighbours(Lists { start, items }) = &mut links.neighbours;
+        let Lists { start, items } = &mut links.neighbours.lists;
         start.push(0);
+        let any_opposed = chunks.iter().any(|chunk| chunk.any_opposed);
         for chunk in chunks {
             monitor.check()?;
             let first = items.len() as u32;
             start.extend(chunk.ends.iter().map(|end| first + end));
             items.extend_from_slice(&chunk.items);
             links.border_edges.extend_from_slice(&chunk.border_edges);
+        }
+        if any_opposed {
+            links.neighbours.find_reversed(&corners_of, monitor)?;
         }
         links.leave_out_cracks(mesh, &merged, &corners_of, monitor)?;
         let mut is_border = vec![false; n_merged];
@@ -194,6 +201,8 @@ struct Chunk {
     ends: Vec<u32>,
     items: Vec<u32>,
     border_edges: Vec<u8>,
+    /// Two elements go along their common edge the same way, so that their normals point to opposite sides.
+    any_opposed: bool,
 }
 
 impl Chunk {
@@ -208,6 +217,7 @@ impl Chunk {
             ends: Vec::with_capacity(chunk.len()),
             items: Vec::with_capacity(8 * chunk.len()),
             border_edges: Vec::with_capacity(chunk.len()),
+            any_opposed: false,
         };
         let mut found = Vec::new();
         for (element, corners) in (first..).zip(chunk) {
@@ -225,13 +235,18 @@ impl Chunk {
             for [i, j] in edges(corners) {
                 let ends = [corners[i], corners[j]];
                 // An edge of no length is none.
-                let is_shared = ends[0] == ends[1]
-                    || around_node.of(ends[0] as usize).iter().any(|&other| {
-                        other != element
-                            && has_area(other)
-                            && has_edge(&corners_of[other as usize], ends)
-                    });
-                bits |= u8::from(!is_shared) << i;
+                if ends[0] == ends[1] {
+                    continue;
+                }
+                let mut others = around_node.of(ends[0] as usize).iter();
+                let across = others.find_map(|&other| {
+                    let is_other = other != element && has_area(other);
+                    is_other
+                        .then(|| goes_along(&corners_of[other as usize], ends))
+                        .flatten()
+                });
+                bits |= u8::from(across.is_none()) << i;
+                links.any_opposed |= across == Some(true);
             }
             links.border_edges.push(bits);
         }
@@ -239,21 +254,73 @@ impl Chunk {
     }
 }
 
-fn has_edge(corners: &[u32; 4], ends: [u32; 2]) -> bool {
-    edges(corners).any(|[i, j]| {
-        let own = [corners[i], corners[j]];
-        own == ends || own == [ends[1], ends[0]]
+/// Whether an element goes along an edge from its first end to its second; `None` if it has no such edge.
+fn goes_along(corners: &[u32; 4], ends: [u32; 2]) -> Option<bool> {
+    edges(corners).find_map(|[i, j]| match [corners[i], corners[j]] {
+        own if own == ends => Some(true),
+        [from, to] if [to, from] == ends => Some(false),
+        _ => None,
     })
 }
 
 /// The elements around each element.
 #[derive(Debug, Clone)]
-pub struct Neighbours(Lists);
+pub struct Neighbours {
+    lists: Lists,
+    /// Of each element, whether its corners go the other way round than those of the first element of its sheet;
+    /// empty where all go alike.
+    is_reversed: Vec<bool>,
+}
 
 impl Neighbours {
     /// Elements that share a node with `element`, in rising order.
     pub fn of(&self, element: usize) -> &[u32] {
-        self.0.of(element)
+        self.lists.of(element)
+    }
+
+    /// True if two elements of one sheet have their normals on opposite sides of it. What a fold does to normals
+    /// does not count.
+    pub fn are_opposed(&self, a: usize, b: usize) -> bool {
+        self.is_reversed.get(a) != self.is_reversed.get(b)
+    }
+
+    /// Goes through each sheet from edge to edge. O(elements).
+    fn find_reversed(
+        &mut self,
+        corners_of: &[[u32; 4]],
+        monitor: &Monitor,
+    ) -> Result<(), Cancelled> {
+        let mut is_reversed: Vec<Option<bool>> = vec![None; corners_of.len()];
+        let mut waiting = Vec::new();
+        for first in 0..corners_of.len() {
+            if is_reversed[first].is_some() {
+                continue;
+            }
+            is_reversed[first] = Some(false);
+            waiting.push((first, false));
+            let mut n_found = 0_usize;
+            while let Some((element, of_element)) = waiting.pop() {
+                if n_found.is_multiple_of(CHUNK) {
+                    monitor.check()?;
+                }
+                n_found += 1;
+                let corners = &corners_of[element];
+                for &other in self.lists.of(element) {
+                    let other = other as usize;
+                    if is_reversed[other].is_some() {
+                        continue;
+                    }
+                    let mut ends = edges(corners).map(|[i, j]| [corners[i], corners[j]]);
+                    let same_way = ends.find_map(|ends| goes_along(&corners_of[other], ends));
+                    if let Some(same_way) = same_way {
+                        is_reversed[other] = Some(of_element != same_way);
+                        waiting.push((other, of_element != same_way));
+                    }
+                }
+            }
+        }
+        self.is_reversed = is_reversed.into_iter().map(|r| r == Some(true)).collect();
+        Ok(())
     }
 }
 

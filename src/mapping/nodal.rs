@@ -1,5 +1,6 @@
 //! Means at the nodes and shape functions between them: how most tools interpolate values of elements.
 
+use super::patch::cos_between;
 use super::shells::ShellMesh;
 use super::source::{PreparedSource, SourcePoint};
 use crate::geometry::Point3;
@@ -21,24 +22,23 @@ pub(super) fn around_nodes(
     let min_cos = MOST_BENT_DEG.to_radians().cos();
     let corners = mesh.corner_points(own);
     let weights = shape_functions(mesh, own, &at.point);
+    let neighbours = source.neighbours();
     for (corner, weight) in corners.iter().zip(weights) {
         if weight == 0.0 {
             continue;
         }
-        let others = source.neighbours().of(own).iter().copied();
+        let others = neighbours.of(own).iter().copied();
         let around = std::iter::once(at.element)
             .chain(others)
             .filter(|&element| {
                 let element = element as usize;
-                let cos = mesh.normals()[element].dot(&mesh.normals()[own]);
                 source.gauge[element] == source.gauge[own]
-                    && cos.abs() >= min_cos
+                    && cos_between(mesh, neighbours, own, element) >= min_cos
                     && mesh.corner_points(element).contains(corner)
             });
         let around: Vec<u32> = around.collect();
         for &element in &around {
-            let cos = mesh.normals()[element as usize].dot(&mesh.normals()[own]);
-            let is_flipped = at.is_flipped != (cos < 0.0);
+            let is_flipped = at.is_flipped != neighbours.are_opposed(own, element as usize);
             add(element, is_flipped, weight / around.len() as f64);
         }
     }

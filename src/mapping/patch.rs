@@ -1,5 +1,6 @@
 //! The elements of a source that a chunk of the target takes its values from, with the neighbours and
-//! the weights that make gradients of their values.
+//! the weights that make gradients of their values. A neighbour whose normal is on the other side of the sheet is
+//! seen from there.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -34,14 +35,35 @@ pub(super) struct Spin {
     pub sin2: f64,
 }
 
+/// An element as one side of the sheet sees it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Seen {
+    pub element: u32,
+    /// Not the side that its normal points to: its layers come in the opposite order.
+    pub from_below: bool,
+}
+
+impl Seen {
+    fn from_above(element: u32) -> Self {
+        Self {
+            element,
+            from_below: false,
+        }
+    }
+
+    fn key(self) -> u64 {
+        u64::from(self.element) << 1 | u64::from(self.from_below)
+    }
+}
+
 /// Elements numbered by slots: first those around which fields are fitted, then their neighbours.
 #[derive(Default)]
 pub(super) struct Patch {
-    slots: HashMap<u32, u32, BuildHasherDefault<Scatter>>,
-    elements: Vec<u32>,
+    slots: HashMap<u64, u32, BuildHasherDefault<Scatter>>,
+    seen: Vec<Seen>,
     starts: Vec<u32>,
     links: Vec<Link>,
-    /// Of every slot: two directions that span the tangent plane, and the normal.
+    /// Of every slot: two directions that span the tangent plane, and the normal on the side that sees it.
     frames: Vec<[Vector3; 3]>,
     corners: Vec<[[f64; 2]; 4]>,
 }
@@ -60,17 +82,17 @@ impl Patch {
         thickness: &[f64],
     ) {
         self.slots.clear();
-        self.elements.clear();
+        self.seen.clear();
         self.frames.clear();
         for element in elements {
-            self.slot_or_new(element, mesh);
+            self.slot_or_new(Seen::from_above(element), mesh);
         }
         self.starts.clear();
         self.starts.push(0);
         self.links.clear();
         self.corners.clear();
-        for slot in 0..self.elements.len() {
-            let element = self.elements[slot] as usize;
+        for slot in 0..self.seen.len() {
+            let element = self.seen[slot].element as usize;
             let centre = mesh.centroids()[element];
             let corners = mesh.corner_points(element);
             let in_plane = |corner| self.in_plane(slot, &(corner - centre));
@@ -81,12 +103,12 @@ impl Patch {
         }
     }
 
-    fn slot_or_new(&mut self, element: u32, mesh: &ShellMesh) -> u32 {
-        let next = self.elements.len() as u32;
-        let slot = *self.slots.entry(element).or_insert(next);
+    fn slot_or_new(&mut self, seen: Seen, mesh: &ShellMesh) -> u32 {
+        let next = self.seen.len() as u32;
+        let slot = *self.slots.entry(seen.key()).or_insert(next);
         if slot == next {
-            self.elements.push(element);
-            self.frames.push(frame(mesh, element as usize));
+            self.seen.push(seen);
+            self.frames.push(frame(mesh, seen));
         }
         slot
     }
@@ -98,12 +120,11 @@ impl Patch {
         (mesh, neighbours, thickness): (&ShellMesh, &Neighbours, &[f64]),
     ) {
         let first = self.links.len();
-        let normal = mesh.normals()[element];
         let centre = mesh.centroids()[element];
         let [mut xx, mut xy, mut yy] = [0.0; 3];
         for &other in neighbours.of(element) {
             let n = other as usize;
-            if normal.dot(&mesh.normals()[n]) < MAX_DIHEDRAL_COS
+            if cos_between(mesh, neighbours, element, n) < MAX_DIHEDRAL_COS
                 || is_weld_line(mesh, thickness, element, n)
             {
                 continue;
@@ -123,7 +144,11 @@ impl Patch {
             xx += weight * x * x;
             xy += weight * x * y;
             yy += weight * y * y;
-            let slot = self.slot_or_new(other, mesh);
+            let seen = Seen {
+                element: other,
+                from_below: neighbours.are_opposed(element, n),
+            };
+            let slot = self.slot_or_new(seen, mesh);
             self.links.push(Link {
                 slot,
                 weight: [weight * x, weight * y],
@@ -146,8 +171,8 @@ impl Patch {
     }
 
     /// Elements by slot.
-    pub fn elements(&self) -> &[u32] {
-        &self.elements
+    pub fn seen(&self) -> &[Seen] {
+        &self.seen
     }
 
     /// Number of slots around which fields are fitted.
@@ -157,7 +182,7 @@ impl Patch {
 
     /// The slot of an element that fields are fitted around.
     pub fn slot(&self, element: u32) -> Option<usize> {
-        let slot = *self.slots.get(&element)? as usize;
+        let slot = *self.slots.get(&Seen::from_above(element).key())? as usize;
         (slot < self.n_fitted()).then_some(slot)
     }
 
@@ -194,21 +219,22 @@ impl Hasher for Scatter {
 
     fn write(&mut self, bytes: &[u8]) {
         for &byte in bytes {
-            self.write_u32(u32::from(byte));
+            self.write_u64(u64::from(byte));
         }
     }
 
-    fn write_u32(&mut self, number: u32) {
+    fn write_u64(&mut self, number: u64) {
         // Fibonacci hashing: both ends of the word are well mixed.
-        let mixed = (self.0 ^ u64::from(number)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ number).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         self.0 = mixed ^ (mixed >> 32);
     }
 }
 
-/// Two unit directions that span the tangent plane, and the normal.
-fn frame(mesh: &ShellMesh, element: usize) -> [Vector3; 3] {
-    let normal = mesh.normals()[element];
-    let x = mesh.corner_points(element);
+/// Two unit directions that span the tangent plane, and the normal on the side that sees it.
+fn frame(mesh: &ShellMesh, seen: Seen) -> [Vector3; 3] {
+    let normal = mesh.normals()[seen.element as usize];
+    let normal = if seen.from_below { -normal } else { normal };
+    let x = mesh.corner_points(seen.element as usize);
     let along = x[2] - x[0];
     let along = (along - normal * along.dot(&normal))
         .try_normalize(0.0)
@@ -227,6 +253,16 @@ fn spin(from: &[Vector3; 3], to: &[Vector3; 3]) -> Spin {
         sin,
         cos2: cos * cos - sin * sin,
         sin2: 2.0 * cos * sin,
+    }
+}
+
+/// Cosine of the angle by which the sheet is bent between two neighbours, whichever side their normals are on.
+pub(super) fn cos_between(mesh: &ShellMesh, neighbours: &Neighbours, a: usize, b: usize) -> f64 {
+    let cos = mesh.normals()[a].dot(&mesh.normals()[b]);
+    if neighbours.are_opposed(a, b) {
+        -cos
+    } else {
+        cos
     }
 }
 

@@ -162,22 +162,23 @@ impl<'a> PreparedSource<'a> {
         })
     }
 
-    /// Room for the fields at a layer rule of the target; strains are those of `strain_rule`.
-    pub fn fields(&self, rule: usize, strain_rule: usize) -> Fields {
+    /// Room for the fields.
+    pub fn fields(&self) -> Fields {
         Fields {
             patch: Patch::default(),
             thickness: self.wants_thickness.then(Field::default),
-            states: self.states.get(rule).map(|_| Field::default()),
-            strains: self.strains.get(strain_rule).map(|_| Field::default()),
+            states: self.states.first().map(|_| Field::default()),
+            strains: self.strains.first().map(|_| Field::default()),
         }
     }
 
-    /// Fits the fields anew around `elements`. O(elements · layers).
+    /// Fits the fields anew around `elements`, at layer rules of the target: that of the states and that of the
+    /// strains, each with what it is from the other side of the sheet. O(elements · layers).
     pub fn load(
         &self,
         fields: &mut Fields,
         elements: impl Iterator<Item = u32>,
-        (rule, strain_rule): (usize, usize),
+        [rules, strain_rules]: [[usize; 2]; 2],
     ) {
         let patch = &mut fields.patch;
         patch.load(
@@ -187,15 +188,16 @@ impl<'a> PreparedSource<'a> {
             &self.thickness,
         );
         if let Some(field) = &mut fields.thickness {
-            field.load(&PerElement(&self.thickness), patch);
+            let thickness = PerElement(&self.thickness);
+            field.load([&thickness; 2], patch);
         }
         if let Some(field) = &mut fields.states {
-            field.load(&self.states[rule], patch);
+            field.load(rules.map(|rule| &self.states[rule]), patch);
             // Extrapolated plastic strains may be negative.
             field.change(|value| value[PLASTIC_STRAIN] = value[PLASTIC_STRAIN].max(0.0));
         }
         if let Some(field) = &mut fields.strains {
-            field.load(&self.strains[strain_rule], patch);
+            field.load(strain_rules.map(|rule| &self.strains[rule]), patch);
         }
         fields.fit();
     }

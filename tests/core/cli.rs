@@ -465,3 +465,42 @@ fn wrong_usage_and_missing_files_have_their_own_status() {
     assert_eq!(wide.status.code(), Some(2));
     assert!(text(&wide.stderr).contains("60°"), "{}", text(&wide.stderr));
 }
+
+#[test]
+fn values_that_cannot_be_say_what_they_must_be() {
+    for (line, told) in [
+        (
+            "reduce a.k --triangles 0",
+            "it must be a whole number from 1",
+        ),
+        (
+            "info a.k --threads x",
+            "it must be a whole number from 0 to 1024",
+        ),
+        (
+            "map a.k b.k --layers 101",
+            "it must be a whole number from 1 to 100",
+        ),
+        ("map a.k b.k --fill -1", "it must be a whole number from 0"),
+        (
+            "map a.k b.k --stamped-length-factor 1,5",
+            "it is not a number",
+        ),
+        (
+            "match a.k b.k --crash-length-factor 0",
+            "it must be above 0",
+        ),
+    ] {
+        let words: Vec<&str> = line.split(' ').collect();
+        let output = shapematch(&words);
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        let message = text(&output.stderr);
+        assert!(message.contains(told), "{line}: {message}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    std::fs::write(&file, "").unwrap();
+    let output = shapematch(&["sample", file.to_str().unwrap()]);
+    let message = text(&output.stderr);
+    assert!(message.contains("it is a file, not a folder"), "{message}");
+}

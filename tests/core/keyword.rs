@@ -245,6 +245,17 @@ mod gaps {
     }
 
     #[test]
+    fn expressions_in_fields() {
+        check(concat!(
+            "*PARAMETER\nR        w    1.5E-3\nI        n         2\n",
+            "*NODE\n       1             0.0             0.0             0.0\n",
+            "    <&n>        <&w/2*2>             0.0             0.0\n",
+            "<&n + 1>              &w        <n - 1.>             0.0\n",
+            "       4             0.0             1.0             <0>\n",
+        ));
+    }
+
+    #[test]
     fn i10_suffix() {
         check(concat!(
             "*NODE %\n         1             0.0             0.0             0.0\n",

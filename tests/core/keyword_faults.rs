@@ -367,6 +367,37 @@ mod bounds {
     }
 
     #[test]
+    fn lines_and_names_of_any_length_take_no_time() {
+        for text in ["1 * ", "  *"] {
+            let curve = format!("*DEFINE_CURVE\n{}\n", text.repeat(1_000_000));
+            let model = read_text(format!("{NODES}{PART}{SHELL}{curve}"));
+            assert!(model.diagnostics.is_empty(), "{:?}", all(&model));
+        }
+        let deck = format!("{NODES}{PART}{SHELL}*{}\n", "A".repeat(5_000_000));
+        assert_eq!(only(&read_text(deck)).kind, DiagnosticKind::UnknownKeyword);
+        let name = "a/".repeat(200_000);
+        let deck = format!("{NODES}{PART}{SHELL}*INCLUDE\n{name}x.k\n");
+        let told = only(&read_text(deck)).message;
+        assert!(told.contains("more than 4096 characters"), "{told}");
+    }
+
+    #[test]
+    fn broken_shells_in_many_blocks_take_no_time() {
+        let n = 200_000;
+        let mut deck = format!("{NODES}{PART}");
+        for id in 1..=n {
+            writeln!(deck, "*ELEMENT_SHELL\n{id},1,1,2,9,4").unwrap();
+        }
+        deck += "*ELEMENT_SHELL\n300000,1,1,2,3,4\n300001,1,2,2,2,2\n300002,5,1,2,3,4\n";
+        let model = read_text(&*deck);
+        assert_eq!(model.diagnostics.count(DiagnosticKind::MissingNode), n);
+        assert_eq!(model.shells.len(), 2);
+        let mut found = model.diagnostics.iter();
+        let part = found.find(|d| d.kind == DiagnosticKind::UndefinedPart);
+        assert_eq!(line(part.unwrap()), deck.lines().count() as u64);
+    }
+
+    #[test]
     fn a_chain_of_many_sets_is_followed_to_its_end() {
         let n = 100_000;
         let mut deck = format!("{NODES}{PART}{SHELL}*SET_NODE_LIST\n{n}\n1,2,3\n");
@@ -378,6 +409,20 @@ mod bounds {
         assert_eq!(model.sets.nodes[&1].ids, [1, 2, 3]);
         let ring = format!("{NODES}{PART}{SHELL}*SET_NODE_ADD\n1\n2\n*SET_NODE_ADD\n2\n1\n");
         assert_eq!(only(&read_text(ring)).kind, DiagnosticKind::BadSet);
+    }
+
+    #[test]
+    fn sums_of_sets_of_several_kinds_take_those_of_nodes() {
+        let sets = "*SET_NODE_LIST\n5\n1,2\n*SET_NODE_LIST\n6\n4\n*SET_SHELL_LIST\n1\n1\n";
+        let add = "*SET_NODE_ADD_ADVANCED_TITLE\nsum\n9\n5,1,6\n";
+        let model = read_text(format!("{NODES}{PART}{SHELL}{sets}{add}"));
+        assert!(model.diagnostics.is_empty(), "{:?}", all(&model));
+        assert_eq!(model.sets.nodes[&9].ids, [1, 2, 4]);
+        let model = read_text(format!("{NODES}{PART}{SHELL}{sets}{add}1,2\n"));
+        let told = only(&model);
+        assert_eq!(told.kind, DiagnosticKind::Unsupported);
+        assert_eq!((line(&told), told.found.as_deref()), (24, Some("2")));
+        assert_eq!(model.sets.nodes[&9].ids, [1, 2, 4]);
     }
 
     /// Nodes in a row with ids from 1.

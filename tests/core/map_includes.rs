@@ -5,7 +5,7 @@ use std::path::Path;
 
 use shapematch::formats::Model;
 
-use crate::map_decks::{Pair, crash, errors, model, stamped, stresses};
+use crate::map_decks::{Pair, SECTION, crash, errors, model, square, stamped, stresses, strip};
 
 /// A pair whose crash deck includes `part.k`, which holds part 7 (elements 101 and 102), by these cards.
 fn pair(include: &str, part: &str) -> Pair {
@@ -289,6 +289,16 @@ fn a_crash_part_that_an_include_mirrors_keeps_its_sides() {
         let expected = vec![vec![layer(0.3), layer(0.2), layer(0.1)]; 2];
         assert_eq!(layers(&model(&pair.path("out.k"))), expected);
     }
+    // Stresses in a copy of the file would be mirrored with it.
+    let told = pair.map(&options("deck", FULL));
+    assert!(
+        errors(&told).contains(
+            "part.k is turned or mirrored by the deck (*INCLUDE_TRANSFORM), which would turn the stresses and \
+             strains in its copy too; write an include of the whole deck instead (--write include)"
+        ),
+        "{}",
+        errors(&told)
+    );
     // A copy of the file has its own order, which the deck mirrors.
     let corners = &options("deck", "thickness")[..];
     let output = pair.map(&[corners, &["--corner-thickness", "yes"]].concat());
@@ -298,6 +308,53 @@ fn a_crash_part_that_an_include_mirrors_keeps_its_sides() {
         copy.contains("     101       7       1       3       4       2\n"),
         "{copy}"
     );
+}
+
+#[test]
+fn a_mirrored_include_keeps_the_thickness_of_a_section_at_each_node() {
+    let section = SECTION.replace(
+        "       1.0       1.0       1.0       1.0",
+        "       1.0       2.0       3.0       4.0",
+    );
+    let cards = format!(
+        "*ELEMENT_SHELL\n{}{}*ELEMENT_SHELL_THICKNESS\n{}             9.0             0.0\n",
+        square(101, 7, 0, 8),
+        "     102       7       3       5       6       6\n",
+        "     103       7       3       6       4       4\n",
+    );
+    let part = format!("*KEYWORD\n{section}{}{cards}*END\n", strip(2, [8, 16]));
+    let deck = format!("*KEYWORD\n{MIRROR}{}*END\n", include([0, 0, 0], 1.0, 5));
+    let pair = Pair::new(&deck, "");
+    std::fs::write(pair.path("part.k"), part).unwrap();
+    let read = model(&pair.path("crash.k"));
+    let expected: [&[(u64, f64)]; 3] = [
+        &[(1, 1.0), (3, 2.0), (4, 3.0), (2, 4.0)],
+        &[(3, 1.0), (5, 2.0), (6, 3.0)],
+        &[(3, 9.0), (6, 2.0), (4, 3.0)],
+    ];
+    for (shell, (index, expected)) in read.shells.iter().zip((0..).zip(expected)) {
+        let thickness = read.shell_thickness(index).unwrap();
+        let nodes = shell.corners().iter();
+        let ids = nodes.map(|&node| read.nodes.ids()[node as usize]);
+        let mut found: Vec<(u64, f64)> = ids.zip(thickness).collect();
+        // The corners go the other way round.
+        found.reverse();
+        let first = found.iter().position(|corner| *corner == expected[0]);
+        found.rotate_left(first.unwrap());
+        assert_eq!(found, expected);
+    }
+}
+
+#[test]
+fn plies_are_no_elements_of_their_file() {
+    // Eight columns of the material's id are the id of a mapped element.
+    let other = "*KEYWORD\n*ELEMENT_SHELL_COMPOSITE\n     901       8       1       3       4       2\n     10100       0.5       0.0\n*END\n";
+    let deck = crash(2, "*INCLUDE\nother.k\n");
+    let pair = Pair::new(&deck, &stamped(2, &stresses(1..=2)));
+    std::fs::write(pair.path("other.k"), other).unwrap();
+    let options = options("deck", FULL);
+    let output = pair.map(&[&options[..], &["--crash-part", "7"]].concat());
+    assert!(output.status.success(), "{}", errors(&output));
 }
 
 #[test]

@@ -281,7 +281,7 @@ fn values_that_cannot_be_are_wrong_usage() {
             &["--stress-factor=1", "--stress-factor=2"],
             "2 stress factors for 1 stamped file",
         ),
-        (&["--layers", "101"], "1..=100"),
+        (&["--layers", "101"], "from 1 to 100"),
         (&["--n-plane", "2"], "1 or 4"),
         (&["--quantities", "full,nothing"], "\"nothing\" is none of"),
         (&["--pose", "1 2 3"], "--pose"),

@@ -307,6 +307,83 @@ fn a_linear_field_on_a_plane_is_exact() {
     }
 }
 
+/// The mesh with about half of its elements reversed, here and there.
+fn flipped_at_random(mesh: &ShellMesh) -> ShellMesh {
+    let corners = (0_u32..).zip(mesh.corners()).map(|(i, &[a, b, c, d])| {
+        let is_reversed = i.wrapping_mul(2_654_435_761) >> 31 == 0;
+        match (is_reversed, c == d) {
+            (true, true) => [a, c, b, b],
+            (true, false) => [a, d, c, b],
+            (false, _) => [a, b, c, d],
+        }
+    });
+    let corners = corners.collect();
+    ShellMesh::new(mesh.positions().to_vec(), corners, mesh.parts().to_vec()).unwrap()
+}
+
+/// A field that is linear in the plane and through the thickness, given on the side of z. Whatever side the elements
+/// of either mesh have their normals on, the values are those of the same material.
+#[test]
+fn a_linear_field_is_exact_whichever_side_normals_are_on() {
+    let field = |p: &Point3, z: f64| -> [f64; 7] {
+        let at = |c: [f64; 4]| c[0] + c[1] * p.x + c[2] * p.y + c[3] * z;
+        [
+            at([50.0, 0.4, -0.3, 20.0]),
+            at([-20.0, -0.2, 0.5, -35.0]),
+            0.0,
+            at([10.0, 0.1, 0.2, 8.0]),
+            0.0,
+            0.0,
+            at([0.4, 0.001, 0.001, 0.1]),
+        ]
+    };
+    let inner = Blank {
+        length: 60.0,
+        width: 30.0,
+        size: 5.0,
+        jitter: 0.2,
+    };
+    let inner = inner.mesh(|u, v| Point3::new(u + 20.3, v + 15.1, 0.0));
+    let fine = Blank::new(2.5).mesh(flat);
+    let plies = LayerRule::of_plies(&[0.1, 0.2, 0.7]);
+    let options = MapOptions {
+        keep_force_and_moment: false,
+        ..full()
+    };
+    for mesh in [flipped_at_random(&fine), flipped_at_random(&cut(&fine))] {
+        let part = source(mesh, 5, |e, t, mesh| {
+            field(&mesh.centroids()[e], t * mesh.normals()[e].z)
+        });
+        for onto in [inner.clone(), flipped_at_random(&inner)] {
+            for rule in [LayerRule::new(RuleKind::Gauss, 3), plies.clone()] {
+                let onto = TargetPart::uniform(onto.clone(), rule.clone(), 1.0);
+                let mapped = map_one(&part, Similarity::identity(), &onto, &options);
+                assert_eq!(mapped.facings, [Facing::Mixed]);
+                for element in 0..onto.mesh.len() {
+                    let centroid = area_centroid(&onto.mesh, element);
+                    let states = mapped.states.as_ref().unwrap().of(element);
+                    for (&t, found) in rule.places().iter().zip(states) {
+                        let side = onto.mesh.normals()[element].z;
+                        let expected = field(&centroid, side * t);
+                        for (a, b) in found.iter().zip(expected) {
+                            let digits = 1e-12 * b.abs().max(1.0);
+                            assert!((a - b).abs() < digits, "{found:?} against {expected:?}");
+                        }
+                    }
+                    let strains = mapped.strains.as_ref().unwrap().of(element);
+                    for (t, found) in [-1.0, 1.0].into_iter().zip(strains) {
+                        let side = onto.mesh.normals()[element].z;
+                        let expected = field(&centroid, side * t);
+                        for (a, b) in found.iter().zip(expected) {
+                            assert!((a - 1e-3 * b).abs() < 1e-13, "{found:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
 fn sine(p: &Point3) -> f64 {
     0.3 + 0.2
         * (std::f64::consts::TAU * p.x / 40.0).sin()

@@ -114,8 +114,22 @@ fn the_surface_is_that_of_the_mirrored_mesh() {
 
 #[test]
 fn what_belongs_to_a_corner_stays_with_its_node() {
-    let (before, motion) = (model(), mirror());
-    let after = moved(&before, &motion);
+    let own = model();
+    // The part's thickness at all corners, and at those that have none of their own.
+    let mut of_part = own.clone();
+    of_part.shell_extras.clear();
+    let mut of_both = own.clone();
+    of_both.shell_extras.remove(0);
+    of_both.shell_extras[0].thickness = [0.0, 6.0, 0.0, 0.0];
+    for before in [own, of_part, of_both] {
+        stays_with_its_node(&before);
+    }
+}
+
+#[track_caller]
+fn stays_with_its_node(before: &Model) {
+    let motion = mirror();
+    let after = moved(before, &motion);
     for (index, (old, new)) in (0u32..).zip(before.shells.iter().zip(&after.shells)) {
         let thickness = |model: &Model, node: u32| {
             let shell = &model.shells[index as usize];
@@ -123,7 +137,7 @@ fn what_belongs_to_a_corner_stays_with_its_node() {
             model.shell_thickness(index).unwrap()[at]
         };
         for &node in old.corners() {
-            assert_eq!(thickness(&after, node), 2.0 * thickness(&before, node));
+            assert_eq!(thickness(&after, node), 2.0 * thickness(before, node));
         }
         assert_eq!(new.is_triangle(), old.is_triangle());
         // A mid-side node lies on the edge between the same corners.

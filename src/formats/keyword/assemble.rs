@@ -386,14 +386,14 @@ impl Assembly {
         origin_of(&self.shell_origins, index).map(|origin| origin.element(shell.id, part))
     }
 
-    /// Tells origins and motions which shells are left: `n_kept(i)` of the first `i`.
-    pub(super) fn renumber_shells(&mut self, n_kept: impl Fn(usize) -> usize) {
+    /// Tells origins and motions which shells are left: `n_kept[i]` of the first `i`.
+    pub(super) fn renumber_shells(&mut self, n_kept: &[usize]) {
         for origin in &mut self.shell_origins {
-            origin.first = n_kept(origin.first);
+            origin.first = n_kept[origin.first];
         }
         for motion in &mut self.motions {
             if let Motion::Include { shells, .. } = motion {
-                *shells = n_kept(shells.start)..n_kept(shells.end);
+                *shells = n_kept[shells.start]..n_kept[shells.end];
             }
         }
     }

@@ -86,9 +86,11 @@ impl<'a> Block<'a> {
         let stars = memchr::memchr_iter(b'*', &bytes[self.body.clone()]);
         let starts = stars.filter_map(|star| {
             let before = &bytes[self.body.start..self.body.start + star];
-            let blanks = before.len() - before.trim_ascii_end().len();
-            let line = memchr::memrchr(b'\n', before).map_or(0, |at| at + 1);
-            (blanks > 0 && before.len() - line <= blanks).then_some(self.body.start + line)
+            let is_blank = |byte: &&u8| byte.is_ascii_whitespace() && **byte != b'\n';
+            let n_blanks = before.iter().rev().take_while(is_blank).count();
+            let line = before.len() - n_blanks;
+            let begins_line = before[..line].last().is_none_or(|&byte| byte == b'\n');
+            (n_blanks > 0 && begins_line).then_some(self.body.start + line)
         });
         let mut cards = starts.filter_map(|start| self.cards_in(start..self.body.end).next());
         cards.find(Card::is_misplaced_keyword)

@@ -85,7 +85,7 @@ pub enum Value {
 
 /// Knows the value of `&name`.
 pub trait Parameters: Sync {
-    /// The value of a parameter; its name comes without `&`, in any letter case.
+    /// The value of a parameter, whose name comes without `&` in any letter case, or of an expression.
     fn value(&self, name: &str) -> Option<Value>;
 }
 
@@ -350,11 +350,20 @@ impl<'a> Card<'a> {
         Ok(text::decoded(field.text).into_owned())
     }
 
-    /// The sign before `&` and the parameter's value.
+    /// The sign before `&` and the parameter's value, or the value of an expression in `<>`.
     fn parameter(&self, field: Field<'_>) -> Result<(bool, Value), FieldError> {
         let (negative, name) = match field.text {
             [b'-', b'&', name @ ..] => (true, name),
             [b'+', b'&', name @ ..] | [b'&', name @ ..] => (false, name),
+            [b'<', expression @ .., b'>'] => {
+                return match self.value_of(expression) {
+                    Some(value) => Ok((false, value)),
+                    None => {
+                        let kind = DiagnosticKind::BadField;
+                        Err(field_error(kind, field, "an expression that has a value"))
+                    }
+                };
+            }
             _ => return Err(field_error(DiagnosticKind::BadField, field, "a number")),
         };
         let name = String::from_utf8_lossy(name.trim_ascii());
@@ -371,13 +380,19 @@ impl<'a> Card<'a> {
         }
     }
 
+    fn value_of(&self, expression: &[u8]) -> Option<Value> {
+        // In brackets, so that nothing is taken for a parameter's name.
+        let text = format!("({})", String::from_utf8_lossy(expression));
+        self.parameters?.value(&text)
+    }
+
     #[cold]
     fn int_by_parameter(&self, field: Field<'_>) -> Result<i64, FieldError> {
         let bad = || field_error(DiagnosticKind::BadField, field, "an integer");
         if is_non_finite_word(field.text) {
             return Err(field_error(DiagnosticKind::NotFinite, field, "an integer"));
         }
-        if !field.text.contains(&b'&') {
+        if !field.text.contains(&b'&') && field.text.first() != Some(&b'<') {
             let digits = field.text.strip_prefix(b"-").unwrap_or(field.text);
             return Err(if digits.iter().all(u8::is_ascii_digit) {
                 let kind = DiagnosticKind::NumberTooLarge;

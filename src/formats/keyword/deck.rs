@@ -92,14 +92,14 @@ impl Reader<'_> {
         self.report_encrypted(file, &blocks);
         while let Some(block) = blocks.next() {
             self.monitor.check()?;
-            match block.name.as_str() {
-                "END" => break,
-                "KEYWORD" => {
-                    context.layout = self.layout(&block, &context);
-                    blocks.set_layout(context.layout);
-                }
-                _ => self.block(file, &block, &context)?,
+            if block.name == "END" {
+                break;
             }
+            if let Some(own) = layout_of_keyword(&block) {
+                context.layout = self.layout(own, &block, &context);
+                blocks.set_layout(context.layout);
+            }
+            self.block(file, &block, &context)?;
         }
         self.monitor.progress("read deck", self.n_bytes, None);
         Ok(())
@@ -117,12 +117,9 @@ impl Reader<'_> {
         }
     }
 
-    /// The layout after a `*KEYWORD` line: the suffix of the include wins over the file's own wish,
+    /// The layout after a `*KEYWORD` line: the suffix of the include wins over the file's `own` wish,
     /// and that over the including file's layout.
-    fn layout(&mut self, block: &Block<'_>, context: &Context) -> Layout {
-        let Some(own) = layout_of_keyword(block.remark) else {
-            return context.layout;
-        };
+    fn layout(&mut self, own: Layout, block: &Block<'_>, context: &Context) -> Layout {
         let is_included = self.open.len() > 1;
         if is_included && own != context.layout {
             let kind = DiagnosticKind::FormatMismatch;

@@ -10,6 +10,7 @@ use super::forming::{ResultUnits, result_cards};
 use super::include::layout_of_keyword;
 use super::mesh::{ElementKeyword, ShellCards, element_keyword};
 use super::nodes::shifted;
+use super::shells::is_ply;
 use super::source_file::SourceFile;
 use crate::monitor::{Cancelled, Monitor};
 use element::{Element, Keyword};
@@ -108,8 +109,7 @@ pub fn exchange_thickness(
     let mut end = None;
     while let Some(block) = blocks.next() {
         monitor.check()?;
-        if block.name == "KEYWORD"
-            && let Some(layout) = layout_of_keyword(block.remark)
+        if let Some(layout) = layout_of_keyword(&block)
             && !rules.included_as.layout_is_fixed
         {
             copy.result.layout = layout;
@@ -240,7 +240,7 @@ impl Copy<'_> {
                 monitor.check()?;
             }
             let card = lines.card(first, at);
-            if card.is_blank() {
+            if card.is_blank() || cards.plies && is_ply(&card) {
                 continue;
             }
             let id = card.required_id(TEN_BY_8, 0).ok();
@@ -258,7 +258,6 @@ impl Copy<'_> {
             let exchange = id.map_or(Exchange::Other, self.rules.exchange_of);
             self.result.n_found += usize::from(exchange != Exchange::Other);
             if cards.plies {
-                // How many plies follow is known to the reader of the keyword alone.
                 self.result.n_composite += usize::from(exchange != Exchange::Other);
                 continue;
             }

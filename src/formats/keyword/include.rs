@@ -12,6 +12,7 @@ use super::nodes::shifted;
 use super::parts::PartOffsets;
 use super::sets::SetOffsets;
 use super::shells::ElementOffsets;
+use crate::geometry::Matrix3;
 
 /// What `*INCLUDE_TRANSFORM` adds to the ids of a file, summed over all files around it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -118,6 +119,7 @@ impl Context {
             length_factor: self.length,
             stress_factor: self.stress,
             is_mirrored: false,
+            rotation: Matrix3::identity(),
         }
     }
 
@@ -285,6 +287,9 @@ fn file_name(cards: &mut Cards<'_>) -> Option<(String, usize)> {
     Some((unquoted.unwrap_or(name).to_owned(), at?))
 }
 
+/// A longer name is no file's.
+const LONGEST_NAME: usize = 4096;
+
 /// Where included files are looked for.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SearchPath {
@@ -318,6 +323,9 @@ impl SearchPath {
     /// What [`SearchPath::find`] tries, in words.
     pub(crate) fn tried(&self, folder: &Path, name: &str) -> String {
         const MAX_LISTED: usize = 4;
+        if name.len() > LONGEST_NAME {
+            return format!("nothing, as the name has more than {LONGEST_NAME} characters");
+        }
         let listed = |all: Vec<String>| {
             let n_more = all.len().saturating_sub(MAX_LISTED);
             let mut text = all[..all.len() - n_more].join(", ");
@@ -347,8 +355,11 @@ impl SearchPath {
     }
 }
 
-/// A file name as given, with slashes, and with ever fewer leading folders.
+/// A file name as given, with slashes, and with ever fewer leading folders; nothing of one that is too long.
 fn names_of(name: &str) -> Vec<String> {
+    if name.len() > LONGEST_NAME {
+        return Vec::new();
+    }
     let with_slashes = name.replace('\\', "/");
     let mut names = vec![name.to_owned()];
     let mut rest = with_slashes.as_str();
@@ -365,9 +376,13 @@ fn names_of(name: &str) -> Vec<String> {
     names
 }
 
-/// What a `*KEYWORD` line says about the width of fields: `LONG=Y`, `I10 = Y`.
-pub(crate) fn layout_of_keyword(remark: &[u8]) -> Option<Layout> {
-    let text = String::from_utf8_lossy(remark).to_ascii_uppercase();
+/// What a `*KEYWORD` line, also one with an option (`_ID`), says about the width of fields: `LONG=Y`, `I10 = Y`.
+/// `None` for other blocks.
+pub(crate) fn layout_of_keyword(block: &Block<'_>) -> Option<Layout> {
+    if block.name.split('_').next() != Some("KEYWORD") {
+        return None;
+    }
+    let text = String::from_utf8_lossy(block.remark).to_ascii_uppercase();
     let value_of = |option: &str| {
         let at = text.find(option)?;
         let rest = text[at + option.len()..].trim_start().strip_prefix('=')?;
@@ -420,8 +435,14 @@ mod tests {
             ("MEMORY=500000000 NCPU=16", None),
             ("", None),
         ];
+        let asked = |line: String| {
+            let file = SourceFile::new("t.k", line);
+            layout_of_keyword(&Blocks::new(&file, Layout::Standard).next().unwrap())
+        };
         for (remark, layout) in cases {
-            assert_eq!(layout_of_keyword(remark.as_bytes()), *layout, "{remark}");
+            assert_eq!(asked(format!("*KEYWORD {remark}\n")), *layout, "{remark}");
+            assert_eq!(asked(format!("*KEYWORD_ID {remark}\nrun")), *layout);
+            assert_eq!(asked(format!("*KEYWORDS {remark}\n")), None);
         }
     }
 

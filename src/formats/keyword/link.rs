@@ -26,15 +26,14 @@ pub(super) fn link_shells(assembly: &mut Assembly, model: &mut Model) {
         .par_chunks(PIECE)
         .any(|shells| shells.iter().any(is_broken));
     let leaves_out = any_broken || !replaced.is_empty();
-    let mut kept = Vec::new();
-    let mut n_kept = 0;
+    // For each shell, how many of those before it are kept, and last how many of all.
+    let mut n_kept = vec![0];
     if leaves_out {
         let mut found = Diagnostics::default();
         for (index, shell) in assembly.shells.iter().enumerate() {
             let broken = is_broken(shell);
             let is_kept = !broken && !replaced.contains(&(index as u32));
-            kept.push(if is_kept { n_kept } else { MISSING });
-            n_kept += u32::from(is_kept);
+            n_kept.push(n_kept[index] + usize::from(is_kept));
             if broken {
                 found.push_with(DiagnosticKind::MissingNode, || {
                     let ids = shell.nodes.map(|p| packed.unpack(p));
@@ -47,17 +46,11 @@ pub(super) fn link_shells(assembly: &mut Assembly, model: &mut Model) {
     }
     let mut shells = std::mem::take(&mut assembly.shells);
     if leaves_out {
-        // The new index of the first kept shell from `first` on.
-        let n_kept = |first: usize| {
-            let mut later = kept[first..].iter();
-            let found = later.find(|&&new| new != MISSING);
-            found.map_or(n_kept, |&new| new) as usize
-        };
-        assembly.renumber_shells(n_kept);
+        assembly.renumber_shells(&n_kept);
         let mut index = 0;
         shells.retain(|_| {
             index += 1;
-            kept[index - 1] != MISSING
+            n_kept[index] > n_kept[index - 1]
         });
     }
     shells.par_chunks_mut(PIECE).for_each(|shells| {
@@ -66,10 +59,11 @@ pub(super) fn link_shells(assembly: &mut Assembly, model: &mut Model) {
         }
     });
     model.shells = shells;
-    let new_index = |old: u32| match kept.get(old as usize) {
-        Some(&MISSING) => None,
-        Some(&new) => Some(new),
-        None => Some(old),
+    let new_index = |old: u32| {
+        let Some(&[before, after]) = n_kept.get(old as usize..old as usize + 2) else {
+            return Some(old);
+        };
+        (after > before).then_some(before as u32)
     };
     let extras = std::mem::take(&mut assembly.extras).into_iter();
     model.shell_extras = extras
@@ -148,12 +142,12 @@ fn replaced_shells(assembly: &mut Assembly) -> HashSet<u32> {
 
 pub(super) fn link_solids(assembly: &mut Assembly, model: &mut Model) {
     let mut found = Diagnostics::default();
-    let mut seen: HashMap<u64, ()> = HashMap::with_capacity(assembly.solids.len());
+    let mut seen: HashSet<u64> = HashSet::with_capacity(assembly.solids.len());
     // For each solid, how many of those before it are kept.
     let mut n_kept = Vec::with_capacity(assembly.solids.len() + 1);
     for (index, raw) in assembly.solids.iter().enumerate() {
         n_kept.push(model.solids.len());
-        if seen.insert(raw.id, ()).is_some() {
+        if !seen.insert(raw.id) {
             found.push_with(DiagnosticKind::DuplicateElement, || {
                 let message = format!("solid {} is defined again, both count", raw.id);
                 with_position(

@@ -89,6 +89,9 @@ pub(crate) fn is_known(name: &str) -> bool {
 pub(crate) fn probably_meant(name: &str) -> Option<&'static str> {
     let family = family(name);
     let is_near = |known: &&&str| {
+        if family.len() != known.len() + 1 {
+            return false;
+        }
         let mut shorter = (0..family.len()).map(|at| {
             let mut text = family.to_owned();
             text.remove(at);
@@ -114,5 +117,7 @@ mod tests {
         assert!(!is_known("NODES") && !is_known("HEADING"));
         assert_eq!(probably_meant("NODES"), Some("NODE"));
         assert_eq!(probably_meant("HEADING"), None);
+        // Of any length.
+        assert_eq!(probably_meant(&"A".repeat(10_000_000)), None);
     }
 }

@@ -30,13 +30,11 @@ pub struct DeckIncludes {
 fn for_blocks(deck: &SourceFile, included_as: &IncludedAs, mut take: impl FnMut(&Block<'_>)) {
     let mut blocks = Blocks::new(deck, included_as.layout);
     while let Some(block) = blocks.next() {
-        match block.name.as_str() {
-            "END" => break,
-            "KEYWORD" if !included_as.layout_is_fixed => {
-                if let Some(layout) = layout_of_keyword(block.remark) {
-                    blocks.set_layout(layout);
-                }
-            }
+        if block.name == "END" {
+            break;
+        }
+        match layout_of_keyword(&block) {
+            Some(layout) if !included_as.layout_is_fixed => blocks.set_layout(layout),
             _ => take(&block),
         }
     }

@@ -10,7 +10,7 @@ use super::super::moved::reverse_elements;
 use super::super::{MAX_LENGTH, ReadOptions};
 use super::assemble::{Assembly, Motion};
 use super::link;
-use super::results::{Results, Turned, mirrors};
+use super::results::{Results, Turned, mirrors, turn_of};
 use super::set_members::{Intervals, Surroundings, resolve_sets};
 use super::sets::SetKind;
 use crate::geometry::Matrix4;
@@ -391,7 +391,7 @@ fn carry_out(
     let turned = match motion {
         Motion::Scale { .. } => Turned::default(),
         Motion::Include { results: span, .. } => {
-            reverse_mirrored(model, motion, &matrix);
+            tell_files(model, motion, &matrix);
             results.turn_span(span, &matrix)
         }
         Motion::NodeSet { .. } => results.turn_moved(model, &indices, &matrix),
@@ -410,20 +410,25 @@ fn carry_out(
     Ok(())
 }
 
-/// Reverses the corners of an include's elements where the motion mirrors it.
-fn reverse_mirrored(model: &mut Model, motion: &Motion, matrix: &Matrix4) {
-    if let Motion::Include {
+/// Tells the files of an include how the motion turns them, and reverses the corners of their elements where it
+/// mirrors them.
+fn tell_files(model: &mut Model, motion: &Motion, matrix: &Matrix4) {
+    let Motion::Include {
         shells,
         solids,
         files,
         ..
     } = motion
-        && mirrors(matrix)
-    {
+    else {
+        return;
+    };
+    let (is_mirror, rotation) = (mirrors(matrix), turn_of(matrix));
+    if is_mirror {
         reverse_elements(model, shells.clone(), solids.clone());
-        for file in &mut model.files[files.clone()] {
-            file.included_as.is_mirrored ^= true;
-        }
+    }
+    for file in &mut model.files[files.clone()] {
+        file.included_as.is_mirrored ^= is_mirror;
+        file.included_as.rotation = rotation * file.included_as.rotation;
     }
 }
 

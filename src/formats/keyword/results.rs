@@ -286,6 +286,14 @@ pub(super) fn mirrors(motion: &Matrix4) -> bool {
     motion.fixed_view::<3, 3>(0, 0).determinant() < 0.0
 }
 
+/// The rotation by which a motion turns tensors.
+pub(super) fn turn_of(motion: &Matrix4) -> Matrix3 {
+    match rotation_of(motion) {
+        Rotation::Rigid(rotation) | Rotation::Stretched(rotation) => rotation,
+        Rotation::None | Rotation::Flat => Matrix3::identity(),
+    }
+}
+
 /// What a motion does to directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Rotation {

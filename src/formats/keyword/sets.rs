@@ -1,6 +1,7 @@
 //! `*SET_PART…`, `*SET_SHELL…`, `*SET_NODE…`.
 
 use super::super::diagnostic::{DiagnosticKind, Diagnostics};
+use super::super::text;
 use super::block::Block;
 use super::card::{Card, EIGHT_BY_10, FieldError};
 use super::nodes::shifted;
@@ -142,6 +143,8 @@ enum Form {
     GenerateIncrement,
     /// Ids of sets.
     Add,
+    /// Pairs of a set's id and of a number for its kind.
+    AddAdvanced,
     /// An option and up to seven ids.
     General,
 }
@@ -153,6 +156,8 @@ impl Form {
             Self::GenerateIncrement
         } else if has("GENERATE") {
             Self::Generate
+        } else if has("ADD") && has("ADVANCED") {
+            Self::AddAdvanced
         } else if has("ADD") {
             Self::Add
         } else if has("GENERAL") {
@@ -206,6 +211,22 @@ impl Form {
             Self::Add => {
                 for index in 0..8 {
                     let set = shifted(card.id(EIGHT_BY_10, index)?, offsets.set);
+                    into.extend(Some(set).filter(|&id| id != 0).map(Member::Set));
+                }
+            }
+            Self::AddAdvanced => {
+                for index in [0, 2, 4, 6] {
+                    let set = shifted(card.id(EIGHT_BY_10, index)?, offsets.set);
+                    let of_nodes = matches!(card.int_or_zero(EIGHT_BY_10, index + 1)?, 0 | 1);
+                    if set != 0 && !of_nodes {
+                        let field = card.field(EIGHT_BY_10, index + 1);
+                        return Err(FieldError {
+                            kind: DiagnosticKind::Unsupported,
+                            column: field.column,
+                            found: text::decoded(field.text).into_owned(),
+                            expected: "1, the set of nodes",
+                        });
+                    }
                     into.extend(Some(set).filter(|&id| id != 0).map(Member::Set));
                 }
             }

@@ -332,7 +332,7 @@ impl Reader<'_> {
 }
 
 /// A ply card has up to eight ten-wide fields of which the second is written as a real.
-fn is_ply(card: &Card<'_>) -> bool {
+pub(crate) fn is_ply(card: &Card<'_>) -> bool {
     card.n_fields(10) <= 8
         && is_real_text(card.field(EIGHT_BY_10, 1).text)
         && card.int(EIGHT_BY_10, 0).is_ok()

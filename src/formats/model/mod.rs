@@ -20,7 +20,7 @@ pub use titles::RawTitles;
 use super::diagnostic::{Diagnostics, Position};
 use super::hash::FileHash;
 use super::keyword::card::Layout;
-use crate::geometry::{Matrix4, Point3, TriMesh};
+use crate::geometry::{Matrix3, Matrix4, Point3, TriMesh};
 use crate::units::KnownUnits;
 
 /// Nodes in the order of the files, found by id.
@@ -270,6 +270,8 @@ pub struct IncludedAs {
     pub stress_factor: f64,
     /// The deck mirrors it: corners of shells and solids in the order 2 1 4 3 of their cards.
     pub is_mirrored: bool,
+    /// How the deck turns it, and with it the tensors in it.
+    pub rotation: Matrix3,
 }
 
 impl Default for IncludedAs {
@@ -286,11 +288,17 @@ impl Default for IncludedAs {
             length_factor: 1.0,
             stress_factor: 1.0,
             is_mirrored: false,
+            rotation: Matrix3::identity(),
         }
     }
 }
 
 impl IncludedAs {
+    /// True if tensors in it are others in the whole deck; a turn by less than 1e-9 is rounding.
+    pub fn is_turned(&self) -> bool {
+        (self.rotation - Matrix3::identity()).norm() > 1e-9
+    }
+
     /// True if ids, lengths and corners in the file are those of the whole deck.
     pub fn keeps_numbers(&self) -> bool {
         let offsets = [

@@ -65,7 +65,8 @@ fn a_linear_field_has_its_gradient() {
     let numbers = scalars(&mesh, f);
     let mut fields = fitted(&mesh, &numbers, &[]);
     let mut field = Field::default();
-    field.load(&First(&numbers), &fields.patch);
+    let first = First(&numbers);
+    field.load([&first; 2], &fields.patch);
     fields.strains = Some(field);
     fields.fit();
     let field = fields.strains.unwrap();
@@ -158,4 +159,43 @@ fn a_spin_within_the_plane_is_the_smallest_rotation_between_planes() {
         }
     }
     assert!(n_links > 20);
+}
+
+/// A sheet folded flat onto itself, with its normals in one sense along it and with all of them upwards.
+#[test]
+fn a_fold_is_no_neighbour_seen_from_below() {
+    let flat = sheet(6);
+    let is_beyond = |p: &Point3| p.x > 3.5;
+    let fold = |p: &Point3| match is_beyond(p) {
+        true => Point3::new(6.0 - p.x, p.y, 0.05 * (p.x - 2.0)),
+        false => *p,
+    };
+    let positions: Vec<Point3> = flat.positions().iter().map(fold).collect();
+    let own = |element: usize| flat.centroids()[element].x > 3.0;
+    let upwards = (0..flat.len()).map(|element| {
+        let [a, b, c, d] = flat.corners()[element];
+        if own(element) {
+            [a, d, c, b]
+        } else {
+            [a, b, c, d]
+        }
+    });
+    let upwards: Vec<[u32; 4]> = upwards.collect();
+    for (corners, n_opposed) in [(flat.corners().to_vec(), 0), (upwards, 16)] {
+        let mesh = ShellMesh::new(positions.clone(), corners, flat.parts().to_vec()).unwrap();
+        let neighbours = mesh.neighbours();
+        let pairs = (0..mesh.len()).flat_map(|a| neighbours.of(a).iter().map(move |&b| (a, b)));
+        let opposed =
+            pairs.filter(|&(a, b)| a < b as usize && neighbours.are_opposed(a, b as usize));
+        assert_eq!(opposed.count(), n_opposed);
+        let mut patch = Patch::default();
+        patch.load(0..mesh.len() as u32, &mesh, &neighbours, &[]);
+        for slot in 0..mesh.len() {
+            for link in patch.links(slot) {
+                let seen = patch.seen()[link.slot as usize];
+                assert!(!seen.from_below);
+                assert_eq!(own(seen.element as usize), own(slot));
+            }
+        }
+    }
 }

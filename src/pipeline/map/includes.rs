@@ -1,10 +1,10 @@
-//! What the written copies of a deck's files include: other copies under their new names, and files that are
-//! not found from another folder.
+//! Copies of a deck's files: which of them may be written, and what they include, other copies under their new
+//! names and files that are not found from another folder.
 
 use std::path::{Path, PathBuf};
 
 use super::PipelineError;
-use super::output::MapFile;
+use super::output::{MapFile, MapWriter};
 use crate::formats::keyword::include::SearchPath;
 use crate::formats::keyword::rename::{includes_of, rename_includes};
 use crate::formats::keyword::source_file::SourceFile;
@@ -12,6 +12,46 @@ use crate::formats::model::ReadFile;
 use crate::formats::{self, Disk};
 use crate::monitor::Monitor;
 use crate::pipeline::load::LoadedPart;
+
+impl MapWriter<'_> {
+    /// What an include does to a file must not be done to the states in its copy, nor to another part.
+    pub(super) fn check_copy(&self, file: &ReadFile, n_old: usize) -> Result<(), PipelineError> {
+        if n_old > 0 && !self.replaces_states() {
+            return Err(PipelineError::MapOutput(format!(
+                "{n_old} of the elements have initial stresses or strains in the crash deck already, which \
+                 would count beside the mapped ones; leave them out of the copy (--replace-states yes), or map \
+                 the thickness alone (--quantities thickness)"
+            )));
+        }
+        let refused = |why: String| {
+            let name = file.path.display();
+            let message = format!(
+                "{name} {why}; write an include of the whole deck instead (--write include)"
+            );
+            Err(PipelineError::MapOutput(message))
+        };
+        let same = |other: &&ReadFile| other.path == file.path;
+        let n_times = self.model.files.iter().filter(same).count();
+        if n_times > 1 {
+            return refused(format!(
+                "is included {n_times} times, and its copy would change all of them"
+            ));
+        }
+        // Cards of plastic strains alone have stresses of zero.
+        let wanted = self.run.recipe.options.quantities;
+        let has_stress = self.run.mapped.states.is_some() && (wanted.stress || wanted.history);
+        if has_stress && file.included_as.stress_factor != 1.0 {
+            return refused("has a unit of stress of its own (*INCLUDE_TRANSFORM)".to_owned());
+        }
+        let has_tensors = has_stress || self.run.mapped.strains.is_some();
+        if has_tensors && file.included_as.is_turned() {
+            let why = "is turned or mirrored by the deck (*INCLUDE_TRANSFORM), which would turn the stresses \
+                       and strains in its copy too";
+            return refused(why.to_owned());
+        }
+        Ok(())
+    }
+}
 
 /// Lets copies include the copies of other files in their place, where their lines can be changed, and marks
 /// those that nothing includes.

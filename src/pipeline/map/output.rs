@@ -407,38 +407,6 @@ impl MapWriter<'_> {
         Ok(())
     }
 
-    /// What an include does to a file must not be done to the states in its copy, nor to another part.
-    fn check_copy(&self, file: &ReadFile, n_old: usize) -> Result<(), PipelineError> {
-        if n_old > 0 && !self.replaces_states() {
-            return Err(PipelineError::MapOutput(format!(
-                "{n_old} of the elements have initial stresses or strains in the crash deck already, which \
-                 would count beside the mapped ones; leave them out of the copy (--replace-states yes), or map \
-                 the thickness alone (--quantities thickness)"
-            )));
-        }
-        let refused = |why: String| {
-            let name = file.path.display();
-            let message = format!(
-                "{name} {why}; write an include of the whole deck instead (--write include)"
-            );
-            Err(PipelineError::MapOutput(message))
-        };
-        let same = |other: &&ReadFile| other.path == file.path;
-        let n_times = self.model.files.iter().filter(same).count();
-        if n_times > 1 {
-            return refused(format!(
-                "is included {n_times} times, and its copy would change all of them"
-            ));
-        }
-        // Cards of plastic strains alone have stresses of zero.
-        let wanted = self.run.recipe.options.quantities;
-        let has_stress = self.run.mapped.states.is_some() && (wanted.stress || wanted.history);
-        if has_stress && file.included_as.stress_factor != 1.0 {
-            return refused("has a unit of stress of its own (*INCLUDE_TRANSFORM)".to_owned());
-        }
-        Ok(())
-    }
-
     /// The number of each element in the run by its id in the deck.
     pub(super) fn elements_by_id(&self) -> Result<HashMap<u64, usize>, Cancelled> {
         let shells = &self.run.shells;

@@ -26,8 +26,7 @@ impl MapWriter<'_> {
         let failed = |what: String| {
             let hint = match kind {
                 WriteKind::Deck => {
-                    "; if the deck turns the elements (*INCLUDE_TRANSFORM, *NODE_TRANSFORM), write an \
-                     include (--write include)"
+                    "; if the deck turns the elements (*NODE_TRANSFORM), write an include (--write include)"
                 }
                 WriteKind::Include | WriteKind::Part => "",
             };
