@@ -92,7 +92,7 @@ pub fn vector(components: [f64; 3], decimals: usize) -> String {
 const MOST_DECIMALS: usize = 7;
 
 /// Lengths below this are rounding.
-const NOTHING: f64 = 5e-8;
+pub const NOTHING: f64 = 5e-8;
 /// In millimetres.
 const MICROMETRE: f64 = 0.001;
 

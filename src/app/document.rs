@@ -31,6 +31,8 @@ pub struct Document {
     pub mapping: Mapping,
     /// Values pinned to nodes, oldest first.
     pub labels: Vec<Label>,
+    /// Number of the project it comes from, a new one whenever one is opened; 0 before.
+    pub project: u64,
 }
 
 /// The pose of the stamped part with the number of its state.

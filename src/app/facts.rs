@@ -154,10 +154,10 @@ pub(super) fn match_steps(run: &MatchRun) -> Vec<(&'static str, String, Duration
     steps
 }
 
-/// "stamped → crash 87.0 %, crash → stamped 96.0 % within 1.50 mm; RMS 0.380 mm".
+/// "overlap stamped 87.0 %, crash 96.0 % within 1.50 mm; RMS 0.380 mm".
 pub(super) fn measure_line(coverage: &Coverage, lengths: Lengths) -> String {
     format!(
-        "stamped → crash {}, crash → stamped {} within {}; RMS {}",
+        "overlap stamped {}, crash {} within {}; RMS {}",
         percent(coverage.source_on_target.overlap),
         percent(coverage.target_on_source.overlap),
         lengths.of(coverage.limit),

@@ -1,4 +1,4 @@
-//! Is there a second pose that fits as well?
+//! Is there another pose that fits as well?
 
 use serde::{Deserialize, Serialize};
 

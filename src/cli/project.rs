@@ -131,9 +131,9 @@ fn describe(project: &Project, path: &Path) -> String {
 fn describe_part(entry: &PartEntry, project: &Path) -> String {
     let Some(file) = &entry.file else {
         return if entry.is_realistic_example {
-            "the realistic example that comes with the program".to_owned()
+            "the realistic pair that comes with the program".to_owned()
         } else {
-            "the example that comes with the program".to_owned()
+            "the example pair that comes with the program".to_owned()
         };
     };
     let mut text = format!(

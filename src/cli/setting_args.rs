@@ -123,7 +123,7 @@ fn arg<R: Default>(setting: &'static Setting<R>) -> Arg {
         }
         Domain::Number { unit, range, .. } => arg
             .value_name(match unit {
-                Unit::Length => "LENGTH",
+                Unit::Length | Unit::LengthOrAuto => "LENGTH",
                 Unit::Degrees => "DEG",
                 Unit::One | Unit::EdgeLengths => "NUMBER",
             })

@@ -8,11 +8,16 @@ use crate::registration::{StartKind, StartOutcome, StartRecord, Termination};
 
 /// How a start came to be: "surface normal 40°, stamped nodes, normals flipped".
 pub fn start_name(start: &StartRecord) -> String {
-    let mut name = format!(
-        "{}, {} nodes",
+    format!(
+        "{}, {}",
         start_kind_words(start.kind),
-        role_of(start.data_side).word()
-    );
+        start_data_words(start)
+    )
+}
+
+/// Which nodes a start pairs, and how: "stamped nodes, normals flipped".
+pub fn start_data_words(start: &StartRecord) -> String {
+    let mut name = format!("{} nodes", role_of(start.data_side).word());
     if start.flipped {
         name += ", normals flipped";
     }

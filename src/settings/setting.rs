@@ -101,6 +101,8 @@ pub enum Unit {
     One,
     /// The length unit of the crash part.
     Length,
+    /// The same, and 0 leaves the length to the program.
+    LengthOrAuto,
     /// Angle in degrees.
     Degrees,
     /// Mean edge lengths.
@@ -112,12 +114,15 @@ impl Unit {
     pub fn suffix(self, lengths: Lengths) -> &'static str {
         match self {
             Self::One => "",
-            Self::Length => lengths.suffix(),
+            Self::Length | Self::LengthOrAuto => lengths.suffix(),
             Self::Degrees => "°",
             Self::EdgeLengths => " edge lengths",
         }
     }
 }
+
+/// A length that the program finds, in words for people.
+const AUTOMATIC: &str = "automatic";
 
 /// How a setting is read from and written to a recipe.
 #[derive(Debug)]
@@ -154,12 +159,16 @@ impl<R> Setting<R> {
             Value::Count(n) | Value::Limit(Some(n)) => grouped(*n),
             Value::Limit(None) => "full meshes".to_owned(),
             Value::Number(value) => match &self.domain {
+                Domain::Number {
+                    unit: Unit::LengthOrAuto,
+                    ..
+                } if *value == 0.0 => AUTOMATIC.to_owned(),
                 Domain::Number { unit, .. } => trimmed(*value, 9) + unit.suffix(lengths),
                 _ => trimmed(*value, 9),
             },
             Value::Floor(Floor::Auto) => "estimated".to_owned(),
             Value::Floor(Floor::None) => "none".to_owned(),
-            Value::Reach(None) => "automatic".to_owned(),
+            Value::Reach(None) => AUTOMATIC.to_owned(),
             Value::Floor(Floor::Length(value)) | Value::Reach(Some(value)) => lengths.of(*value),
             Value::Poses(poses) => counted(poses.len(), "pose"),
         }

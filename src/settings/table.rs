@@ -223,7 +223,7 @@ pub static SETTINGS: [Setting; 26] = [
         label: "Shape tolerance",
         help: "How far the shapes may differ besides springback; 0 takes the larger of 1 mm and the thickness",
         group: Group::Correspondences,
-        domain: number(Unit::Length, limits::LENGTH, 0.05),
+        domain: number(Unit::LengthOrAuto, limits::LENGTH, 0.05),
         access: at!(settings.shape_tolerance),
     },
     Setting {

@@ -1,6 +1,6 @@
 //! Questions about the work as a whole: save it, restore it, find its files.
 
-use egui::{Align2, Button, Frame, Margin, RichText, Stroke, Ui, vec2};
+use egui::{Button, Frame, Margin, Panel, RichText, Stroke, Ui, vec2};
 
 use super::theme::{Palette, ROW, UNIT};
 use super::widgets::{caption, paragraph, role_mark, secondary};
@@ -14,7 +14,7 @@ const BUTTON: f32 = 104.0;
 pub fn unsaved_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.set_width(400.0);
     ui.heading("Save changes before closing?");
-    let name = state.project.name().unwrap_or_else(|| state.work_title());
+    let name = state.project_name().unwrap_or_else(|| state.work_title());
     paragraph(ui, name);
     paragraph(
         ui,
@@ -83,8 +83,9 @@ pub fn missing_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
-/// Work that its program did not live to save, offered until something was loaded.
-pub fn restore_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Command>) {
+/// Work that its program did not live to save, offered until something was loaded: a strip of its own, so
+/// that it covers neither the ways to open files nor the log.
+pub fn restore_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let is_empty = state.document.parts.iter().all(|(_, part)| part.is_none());
     let is_new = is_empty && state.history.names().next().is_none();
     let Some(work) = state
@@ -94,40 +95,28 @@ pub fn restore_ui(ctx: &egui::Context, state: &AppState, commands: &mut Vec<Comm
     else {
         return;
     };
-    // Over the log, which is empty then: the ways to open files stay free.
-    let aside = super::panels::graphics::area(ctx).center().x - ctx.content_rect().center().x;
-    let area = egui::Area::new(egui::Id::unique("restore"))
-        .anchor(Align2::CENTER_BOTTOM, vec2(aside, -UNIT))
-        .order(egui::Order::Middle);
-    area.show(ctx, |ui| {
-        let palette = Palette::of(ui);
-        let frame = Frame::new()
-            .fill(palette.card)
-            .stroke(Stroke::new(1.0, palette.accent))
-            .corner_radius(8)
-            .shadow(ui.visuals().popup_shadow)
-            .inner_margin(Margin::symmetric(20, 16));
-        frame.show(ui, |ui| {
-            ui.set_width(400.0);
-            ui.spacing_mut().item_spacing.y = UNIT;
-            ui.label(
-                RichText::new(format!(
-                    "Recover unsaved project from {}?",
-                    state.when_text(work.saved_at)
-                ))
-                .size(16.0),
-            );
+    let palette = Palette::of(ui);
+    let frame = Frame::new()
+        .fill(palette.card)
+        .stroke(Stroke::new(1.0, palette.line))
+        .inner_margin(Margin::symmetric(16, 6));
+    Panel::top("recovery").frame(frame).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(UNIT, 4.0);
+            let when = state.when_text(work.saved_at);
+            ui.label(format!("Recover unsaved project from {when}?"))
+                .on_hover_text("The program ended before it was saved.");
             secondary(ui, work.title.clone());
-            caption(ui, "The program ended before it was saved.");
-            ui.horizontal(|ui| {
-                if primary(ui, "Restore").clicked() {
-                    commands.push(ProjectCommand::Restore(work.path.clone()).into());
-                }
-                if plain(ui, "Not now").clicked() {
-                    commands.push(ProjectCommand::DismissRecovery.into());
-                }
+            if primary(ui, "Restore").clicked() {
+                commands.push(ProjectCommand::Restore(work.path.clone()).into());
+            }
+            if plain(ui, "Not now").clicked() {
+                commands.push(ProjectCommand::DismissRecovery.into());
+            }
+            // Where it would wrap, the menu alone says it.
+            if ui.available_size_before_wrap().x > 240.0 {
                 caption(ui, "Also under File › Recovered sessions");
-            });
+            }
         });
     });
 }

@@ -12,7 +12,7 @@ use super::panels::drop::DropTarget;
 use super::pictures::{Pictures, Wanted};
 use super::preferences::{Preferences, UserFiles, WindowPlace};
 use super::viewport::Viewports;
-use super::{focus, overlays, panels, project_dialogs, system_fonts, theme, toasts};
+use super::{focus, overlays, panels, system_fonts, theme, toasts};
 use crate::app::{
     AppState, Clock, Command, Document, Effect, FileCommand, NoticeCommand, NoticeLevel,
     PictureChoice, PictureSize, ProjectCommand, Settings, StartupOptions, Theme,
@@ -33,7 +33,7 @@ const FIRST_SIZE: [f32; 2] = [1400.0, 900.0];
 ///
 /// Fails, before anything is drawn, if there is no display or no graphics adapter.
 pub fn run(options: StartupOptions) -> anyhow::Result<ExitCode> {
-    let files = if options.forget_settings {
+    let mut files = if options.forget_settings {
         UserFiles::none()
     } else {
         UserFiles::of_user()
@@ -406,7 +406,7 @@ impl Shell {
             (None, None) => None,
         };
         let mark = if self.state.is_unsaved() { "● " } else { "" };
-        let title = match self.state.project.name().or(work) {
+        let title = match self.state.project_name().or(work) {
             Some(name) => format!("{mark}{name} – shapematch"),
             None => "shapematch".to_owned(),
         };
@@ -492,7 +492,6 @@ impl eframe::App for Shell {
         let mut commands = Vec::new();
         panels::window_ui(ui, &self.state, &mut self.viewports, &mut commands);
         toasts::toasts_ui(&ctx, &self.state, &mut commands);
-        project_dialogs::restore_ui(&ctx, &self.state, &mut commands);
         let is_on_processor = self.viewports.is_on_processor();
         overlays::overlays_ui(&ctx, &self.state, is_on_processor, &mut commands);
         self.dialogs.show(&ctx, &mut commands);
@@ -520,7 +519,9 @@ fn from_autosave(event: AutosaveEvent<Box<Document>>) -> Vec<Command> {
             vec![ProjectCommand::Written(path, document).into()]
         }
         AutosaveEvent::SaveFailed(reason) => {
-            let text = format!("the project is not saved: {reason}");
+            let text = format!(
+                "The project is not saved: {reason}. File › Save project as… writes it elsewhere"
+            );
             vec![
                 NoticeCommand::Tell(NoticeLevel::Error, text).into(),
                 ProjectCommand::NotWritten.into(),

@@ -1735,11 +1735,11 @@ fn the_free_window_has_a_use_of_its_own_and_the_left_camera() {
     window.apply(ViewCommand::ToggleMoveOver);
     assert_eq!(window.state.free_window(), Some(FreeWindow::FullMesh));
     assert_eq!(window.state.camera_of(Role::Stamped), Role::Crash);
-    window.apply(ViewCommand::SetFreeWindow(FreeWindow::SecondPose));
+    window.apply(ViewCommand::SetFreeWindow(FreeWindow::Alternative));
     assert_eq!(
         window.state.free_window(),
         Some(FreeWindow::FullMesh),
-        "there is no second pose without a match"
+        "there is no other pose without a match"
     );
     window.apply(ViewCommand::SetFreeWindow(FreeWindow::Section));
     assert_eq!(window.state.free_window(), Some(FreeWindow::Section));

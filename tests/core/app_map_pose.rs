@@ -42,11 +42,11 @@ fn without_a_match_a_mapping_is_asked_for_by_name() {
     assert!(window.state.document.current_mapping().is_none());
     window.act(Action::MapAsLoaded);
     let (check, warnings) = pose_of(&window);
-    assert_eq!(check.found, "no match yet: as loaded");
+    assert_eq!(check.found, "as loaded, no match");
     assert_eq!(check.is_met, Some(false));
-    let warning = "the pose of stamped.dynain: no match yet: as loaded";
+    let warning = "the pose of stamped.dynain: as loaded, no match";
     assert!(warnings.iter().any(|one| one == warning), "{warnings:?}");
-    let told = |row: &shapematch::app::LogRow| row.text.contains("no match yet");
+    let told = |row: &shapematch::app::LogRow| row.text.contains("as loaded, no match");
     assert!(window.state.log.rows().iter().any(told));
 }
 
@@ -58,7 +58,7 @@ fn a_mapping_tells_the_match_it_stands_on_and_how_far_it_was_moved_from_there() 
     assert!(Action::MapAsLoaded.enabled(&window.state).is_err());
     window.act(Action::MapOrCancel);
     let (check, warnings) = pose_of(&window);
-    assert_eq!(check.found, "match: GOOD");
+    assert_eq!(check.found, "GOOD match");
     assert_eq!(check.is_met, Some(true));
     assert!(
         !warnings.iter().any(|one| one.contains("pose")),

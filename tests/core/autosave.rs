@@ -130,11 +130,49 @@ fn a_project_is_never_saved_over_one_of_its_parts() {
 fn preferences_come_back_and_rubbish_is_as_none() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("deep/settings.json");
-    let file = PreferencesFile::at(&path);
+    let mut file = PreferencesFile::at(&path);
     assert!(file.read::<Vec<u8>>().is_empty());
     file.write(&vec![1, 2]).unwrap();
     assert_eq!(file.read::<Vec<u8>>(), [1, 2]);
     std::fs::write(&path, "{ not json").unwrap();
     assert!(file.read::<Vec<u8>>().is_empty());
     PreferencesFile::none().write(&0).unwrap();
+}
+
+#[test]
+fn programs_that_run_at_once_keep_what_the_others_prefer() {
+    #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+    #[serde(default)]
+    struct Wishes {
+        theme: String,
+        sizes: [Option<f32>; 2],
+        recent: Vec<String>,
+        opened: std::collections::BTreeMap<String, u64>,
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("settings.json");
+    let [mut one, mut other] = [(), ()].map(|()| PreferencesFile::at(&path));
+    let [mut first, mut second]: [Wishes; 2] = [one.read(), other.read()];
+    first.theme = "light".to_owned();
+    first.recent = vec!["a.k".to_owned(), "b.k".to_owned()];
+    first.opened.insert("a.k".to_owned(), 1);
+    one.write(&first).unwrap();
+    second.sizes = [None, Some(200.0)];
+    second.recent = vec!["c.k".to_owned()];
+    second.opened.insert("c.k".to_owned(), 2);
+    other.write(&second).unwrap();
+    // The first ends, with nothing new to say.
+    one.write(&first).unwrap();
+    let both: Wishes = PreferencesFile::at(&path).read();
+    assert_eq!(both.theme, "light");
+    assert_eq!(both.sizes, second.sizes);
+    assert_eq!(both.recent, ["c.k", "a.k", "b.k"]);
+    assert_eq!(both.opened.len(), 2);
+    // What one of them forgets is forgotten, and what it changes again holds.
+    second.opened.clear();
+    second.sizes = [None; 2];
+    other.write(&second).unwrap();
+    let both: Wishes = PreferencesFile::at(&path).read();
+    assert_eq!(both.opened.into_keys().collect::<Vec<_>>(), ["a.k"]);
+    assert_eq!(both.sizes, [None; 2]);
 }

@@ -318,6 +318,10 @@ fn numbers_are_those_of_a_plain_sum() {
     assert!((sum + bins.below + bins.above - 1.0).abs() < 1e-9);
     assert!((bins.above - 0.5).abs() < 0.05 && bins.below < 1e-6);
     assert_eq!(stats.round_limit(), 2.0);
+    // What rounding leaves is nothing to see.
+    let same = sheet(30, |u, v| Point3::new(100.0 * u, 100.0 * v, 1e-11 * u));
+    let stats = default_comparison(&same, &plate).source_on_target.stats;
+    assert_eq!(stats.round_limit(), 1.0);
 }
 
 #[test]

@@ -103,6 +103,29 @@ fn open(path: &Path) -> Window {
     window
 }
 
+/// The step back over the opening of a project leads to work that is not of its file.
+#[test]
+fn the_step_before_a_project_was_opened_is_not_saved_into_its_file() {
+    let (_folder, [crash, stamped, path]) = folder();
+    let mut first = worked(&crash, &stamped);
+    save(&mut first, &path);
+    let mut window = Window::real();
+    window.apply(FileCommand::OpenExample);
+    window.apply(FileCommand::Open {
+        paths: vec![path.clone()],
+        role: None,
+    });
+    assert_eq!(window.state.project_path(), Some(&path));
+    window.act(Action::Undo);
+    assert_eq!(window.state.project_path(), None);
+    window.effects.clear();
+    window.act(Action::SaveProject);
+    let mut effects = window.effects.iter();
+    assert!(effects.any(|effect| matches!(effect, Effect::AskSaveProject(_))));
+    window.act(Action::Redo);
+    assert_eq!(window.state.project_path(), Some(&path));
+}
+
 fn pose_bits(pose: &Similarity) -> Vec<u64> {
     let numbers = pose.rotation.iter().chain(pose.translation.iter());
     numbers.chain([&pose.scale]).map(|x| x.to_bits()).collect()
@@ -144,7 +167,7 @@ fn a_project_brings_everything_back() {
     assert!(window.state.is_unsaved());
     save(&mut window, &path);
     assert!(!window.state.is_unsaved());
-    assert_eq!(window.state.project.name().as_deref(), Some("floor"));
+    assert_eq!(window.state.project_name().as_deref(), Some("floor"));
     let text = std::fs::read_to_string(&path).unwrap();
     assert!(
         text.starts_with("{\n  \"schema\": \"shapematch.project/1\""),
@@ -161,7 +184,7 @@ fn a_project_brings_everything_back() {
     assert_same_work(&window, &again);
     assert!(!again.state.is_unsaved());
     assert_eq!(again.state.history.n_done(), 1);
-    assert_eq!(again.state.project.path, Some(path.clone()));
+    assert_eq!(again.state.project_path(), Some(&path));
     assert_eq!(again.state.settings.recent.first(), Some(&path));
 
     // The whole folder goes elsewhere, and the project is written again: the same work.
@@ -527,7 +550,7 @@ fn work_is_kept_after_each_step_and_restored_as_unsaved() {
     assert!(again.state.document.result.is_some());
     assert!(again.state.document.current_result().is_none());
     assert!(again.state.is_unsaved());
-    assert_eq!(again.state.project.path, None);
+    assert_eq!(again.state.project_path(), None);
     again.act(Action::Undo);
     assert!(again.state.document.part(Role::Crash).is_none());
 }
@@ -569,7 +592,7 @@ fn leaving_asks_only_if_something_would_be_lost() {
     let folder = tempfile::tempdir().unwrap();
     save(&mut window, &folder.path().join("a"));
     assert!(window.effects.iter().any(|e| matches!(e, Effect::Quit)));
-    assert_eq!(window.state.project.name().as_deref(), Some("a"));
+    assert_eq!(window.state.project_name().as_deref(), Some("a"));
 
     // A dialog that was closed keeps the window open, also after a later save.
     window.act(Action::FlipY);

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use egui::{Pos2, Rect, Shape, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use shapematch::app::{Action, Command, NoticeCommand, Theme, ViewCommand};
+use shapematch::app::{Action, BottomTab, Command, NoticeCommand, Theme, ViewCommand};
 use shapematch::geometry::camera::ScreenSize;
 use shapematch::role::Role;
 use shapematch::text::capital;
@@ -34,7 +34,8 @@ pub(super) fn texts<S>(window: &Harness<'static, S>) -> Vec<Painted> {
 fn collect(shape: &Shape, clip: Rect, found: &mut Vec<Painted>) {
     match shape {
         Shape::Vec(shapes) => shapes.iter().for_each(|shape| collect(shape, clip, found)),
-        Shape::Text(text) => {
+        // The name of an upright axis is turned, and its letters are not where its layout has them.
+        Shape::Text(text) if text.angle == 0.0 => {
             for row in &text.galley.rows {
                 let (Some(first), Some(last)) = (row.glyphs.first(), row.glyphs.last()) else {
                     continue;
@@ -203,6 +204,33 @@ fn nothing_is_cut_at_any_size_and_scale_in_any_theme() {
     assert!(all.is_empty(), "{n} faults\n{}", all.join("\n"));
 }
 
+/// What the tabs below the windows show, at every size and scale: the starts' table ran out of its pane.
+#[test]
+fn nothing_is_cut_in_any_tab() {
+    let mut window = matched();
+    let map = Action::MapOrCancel.command(window.state().state());
+    act(&mut window, map.into_iter().collect());
+    finish(&mut window);
+    let mut all = Vec::new();
+    for tab in BottomTab::ALL {
+        act(&mut window, vec![ViewCommand::SetTab(tab).into()]);
+        finish(&mut window);
+        dismiss_toasts(&mut window);
+        for scale in SCALES {
+            set(&mut window, Theme::Light, scale);
+            for [width, height] in SIZES {
+                window.set_size(Vec2::new(width, height) / scale);
+                window.run_steps(3);
+                let place = format!("{tab:?}, {width} × {height}, {scale}");
+                let found = faults(&window).into_iter();
+                all.extend(found.map(|fault| format!("{place}: {fault}")));
+            }
+        }
+    }
+    let n = all.len();
+    assert!(all.is_empty(), "{n} faults\n{}", all.join("\n"));
+}
+
 /// The first start of a small window after files were opened: the question about the mouse is seen whole.
 #[test]
 fn the_question_about_the_mouse_is_seen_whole_below_recent_files() {
@@ -253,7 +281,7 @@ fn the_uses_of_the_right_window_have_room_around_their_names() {
     for width in [1400.0, 1280.0, 1180.0] {
         window.set_size(Vec2::new(width, 720.0));
         window.run_steps(4);
-        for name in ["Full mesh", "Second pose"] {
+        for name in ["Full mesh", "Alternative"] {
             let Some(cell) = window.query_by_label(name) else {
                 continue;
             };

@@ -149,6 +149,90 @@ fn set_pose(window: &mut Window) {
     point_at_map(window);
 }
 
+/// The sentences of the places that would take the files which hang over the window.
+fn hints(window: &mut Window, n_files: usize) -> Vec<String> {
+    window.input_mut().hovered_files = vec![egui::HoveredFile::default(); n_files];
+    window.run_steps(1);
+    let painted = texts(window).into_iter().map(|text| text.text);
+    let hints = painted.filter(|text| text.starts_with("Drop") && !text.ends_with("here"));
+    let hints = hints.collect();
+    window.input_mut().hovered_files.clear();
+    window.run_steps(1);
+    hints
+}
+
+fn point_at(window: &mut Window, x: f32, y: f32) {
+    window.event(Event::PointerMoved(pos2(x, y)));
+    window.run_steps(1);
+}
+
+#[test]
+fn files_that_hang_over_the_window_are_told_where_they_go() {
+    let mut window = window();
+    point_at(&mut window, 600.0, 300.0);
+    assert_eq!(hints(&mut window, 1), ["Drop as the crash part"]);
+    point_at(&mut window, 1200.0, 300.0);
+    assert_eq!(hints(&mut window, 1), ["Drop as the stamped part"]);
+    let pair = ["Drop: the content tells which is which"; 2];
+    assert_eq!(hints(&mut window, 2), pair);
+    assert_eq!(hints(&mut window, 3), ["Drop: the first two are opened"; 2]);
+    // Over the left column, where it is taken too.
+    point_at(&mut window, 100.0, 600.0);
+    let beside = ["Drop: the content tells which part it is"; 2];
+    assert_eq!(hints(&mut window, 1), beside);
+    // A desktop without a pointer while something is dragged.
+    window.event(Event::PointerGone);
+    window.run_steps(1);
+    let both = ["Drop as the crash part", "Drop as the stamped part"];
+    assert_eq!(hints(&mut window, 1), both);
+}
+
+#[test]
+fn a_dropped_file_that_cannot_be_read_says_so_and_replaces_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let [crash, stamped] = files(folder.path());
+    let mut window = window();
+    drop_files(&mut window, &[&crash, &stamped]);
+    finish(&mut window);
+    let before = Role::ALL.map(|role| part_of(&window, role));
+    let broken = folder.path().join("picture.k");
+    std::fs::write(&broken, [0xFF, 0x00, 0x17].repeat(50)).unwrap();
+    for (file, says) in [
+        (folder.path().join("gone.k"), "gone.k"),
+        (folder.path().to_owned(), "folder"),
+        (broken, "picture.k"),
+    ] {
+        point_at(&mut window, 600.0, 300.0);
+        drop_files(&mut window, &[&file]);
+        finish(&mut window);
+        assert_eq!(Role::ALL.map(|role| part_of(&window, role)), before);
+        let mut toasts = window.state().state().log.notices.toasts();
+        let error = toasts.next().unwrap();
+        assert_eq!(error.level, shapematch::app::NoticeLevel::Error, "{says}");
+        assert!(error.text.contains(says), "{says}: {}", error.text);
+    }
+}
+
+#[test]
+fn what_is_dropped_during_a_match_is_answered() {
+    let folder = tempfile::tempdir().unwrap();
+    let [crash, stamped] = files(folder.path());
+    let mut window = window();
+    drop_files(&mut window, &[&crash, &stamped]);
+    finish(&mut window);
+    click(&mut window, "Match the parts");
+    assert!(window.state().state().jobs.locking_job().is_some());
+    point_at(&mut window, 600.0, 300.0);
+    drop_files(&mut window, &[&stamped]);
+    let is_told = {
+        let mut toasts = window.state().state().log.notices.toasts();
+        toasts.any(|toast| toast.text == "Not opened. A match is running. Stop it first.")
+    };
+    assert!(is_told);
+    finish(&mut window);
+    assert_eq!(part_of(&window, Role::Crash), Some(PartSource::File(crash)));
+}
+
 fn stamped_names(window: &Window) -> Vec<String> {
     let rows = window.state().state().stamped_rows();
     rows.into_iter().map(|row| row.name).collect()
@@ -220,7 +304,7 @@ fn a_project_that_is_dropped_on_section_4_is_opened() {
     );
     drop_files(&mut window, &[&project]);
     finish(&mut window);
-    let opened = window.state().state().project.path.clone();
+    let opened = window.state().state().project_path().cloned();
     assert_eq!(opened, Some(project));
     assert_eq!(stamped_names(&window), ["stamped.dynain"]);
 }

@@ -46,7 +46,8 @@ fn numbers<R>(table: &'static [Setting<R>]) -> Vec<(&'static str, [(&'static str
             Domain::Count(_) => ("whole number", "1e12"),
             Domain::Limit(_) => ("whole number", "0"),
             Domain::Number {
-                unit: Unit::Length, ..
+                unit: Unit::Length | Unit::LengthOrAuto,
+                ..
             }
             | Domain::Reach
             | Domain::Floor => ("length", "-1"),
@@ -200,6 +201,19 @@ fn a_tolerance_that_is_none_is_refused_beside_the_verdict() {
     ];
     is_refused(&mut window, "Shape tolerance", &typed);
     assert_eq!(tolerance(&window), 0.0);
+    // The form of the settings calls it as the card does.
+    click(&mut window, "Match settings");
+    let painted = super::layout::texts(&window);
+    let label = painted.iter().find(|text| text.text == "Shape tolerance");
+    let middle = label.expect("in the form").rect.center().y;
+    let beside = |text: &&super::layout::Painted| (text.rect.center().y - middle).abs() < 6.0;
+    let row: Vec<&str> = painted
+        .iter()
+        .filter(beside)
+        .map(|text| text.text.as_str())
+        .collect();
+    assert!(row.contains(&"auto"), "{row:?}");
+    click(&mut window, "Hide the match settings");
     type_into(&mut window, "Shape tolerance", "0,2 cm");
     finish(&mut window);
     assert_eq!(tolerance(&window), 2.0);

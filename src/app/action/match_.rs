@@ -19,7 +19,7 @@ pub(super) const GROUPS: &[MenuGroup] = &[
 const MAP: &[ActionRow] = &[
     ActionRow {
         action: Action::AddStamped,
-        label: "Add stamped file…",
+        label: "Add file…",
         tooltip: "One more stamped file for the same crash part, for example of a patch or of the other \
                   half: it is matched by itself, and mapped from with the others",
         keys: Keys::NONE,

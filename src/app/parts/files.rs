@@ -37,7 +37,12 @@ impl PartsState {
             self.tell_changed(work, files);
             return Vec::new();
         }
-        if work.is_unlocked().is_err() {
+        if let Err(reason) = work.is_unlocked() {
+            // The actions are disabled then; a file can be dropped all the same.
+            if matches!(command, FileCommand::Open { .. }) {
+                let text = format!("Not opened. {} Stop it first.", reason.0);
+                work.notify(NoticeLevel::Note, text);
+            }
             return Vec::new();
         }
         match command {

@@ -73,14 +73,14 @@ impl ProjectState {
     }
 
     fn save(&self, work: &mut Work<'_>) -> Vec<Effect> {
-        match self.path.clone() {
+        match self.path_of(work.document).cloned() {
             Some(path) => write(work, path),
             None => self.ask_save(work.document),
         }
     }
 
     fn ask_save(&self, document: &Document) -> Vec<Effect> {
-        let known = self.path.clone();
+        let known = self.path_of(document).cloned();
         let suggested = known.unwrap_or_else(|| suggested_path(document));
         vec![Effect::AskSaveProject(suggested)]
     }
@@ -88,10 +88,11 @@ impl ProjectState {
     fn written(&mut self, work: &mut Work<'_>, path: PathBuf, document: Document) -> Vec<Effect> {
         let text = format!("project saved: {}", path.display());
         work.log_at(NoticeLevel::Success, "project", None, text, None);
+        let project = document.project;
         self.saved = Some(document);
         let now = work.unix_now();
         work.settings.remember_path(&path, now);
-        self.path = Some(path);
+        self.file = Some((path, project));
         if std::mem::take(&mut self.quits_when_saved) {
             work.follow(FollowUp::Quit);
         }

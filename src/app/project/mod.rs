@@ -24,8 +24,8 @@ use crate::role::{PerRole, Role};
 /// The project that is worked on.
 #[derive(Debug, Clone, Default)]
 pub struct ProjectState {
-    /// Its file, if it has one.
-    pub path: Option<PathBuf>,
+    /// The file opened or saved last, and the number of the project in it.
+    file: Option<(PathBuf, u64)>,
     /// Sessions of the last runs, newest first.
     pub sessions: Vec<RecoveredSession>,
     /// Its files that were not found, and what was asked for.
@@ -41,10 +41,12 @@ pub struct ProjectState {
 }
 
 impl ProjectState {
-    /// The name of the project's file without its ending.
-    pub fn name(&self) -> Option<String> {
-        let stem = self.path.as_ref()?.file_stem()?;
-        Some(stem.to_string_lossy().into_owned())
+    /// The file of a document's project, if it has one. The step back over the opening of a project leads to
+    /// work that is not of its file.
+    fn path_of(&self, document: &Document) -> Option<&PathBuf> {
+        let file = self.file.as_ref();
+        file.filter(|(_, project)| *project == document.project)
+            .map(|(path, _)| path)
     }
 
     /// The document as it is now is what its file says.
@@ -59,6 +61,17 @@ impl ProjectState {
 }
 
 impl AppState {
+    /// The file of the project, if it has one.
+    pub fn project_path(&self) -> Option<&PathBuf> {
+        self.project.path_of(&self.document)
+    }
+
+    /// The name of the project's file without its ending.
+    pub fn project_name(&self) -> Option<String> {
+        let stem = self.project_path()?.file_stem()?;
+        Some(stem.to_string_lossy().into_owned())
+    }
+
     /// The work as a project; `saved_at` is in seconds since 1970.
     pub fn to_project(&self, saved_at: u64) -> Project {
         let document = &self.document;

@@ -112,6 +112,7 @@ impl AppState {
                 crash_from_stamped: project.pose,
                 revision: self.history.next_revision(),
             },
+            project: self.history.next_revision(),
             ..Document::default()
         };
         for role in Role::ALL {
@@ -239,14 +240,14 @@ impl AppState {
                 let path = window.get("project")?.as_str()?;
                 Some(PathBuf::from(path))
             });
-            self.project.path = path;
+            self.project.file = path.map(|path| (path, self.document.project));
             self.project.saved = None;
             // From here on this run keeps it.
             return self.project.dismiss_recovery();
         } else {
             let now = self.work().unix_now();
             self.settings.remember_path(&request.path, now);
-            self.project.path = Some(request.path);
+            self.project.file = Some((request.path, self.document.project));
             self.project.saved = Some(self.document.clone());
         }
         Vec::new()

@@ -69,7 +69,7 @@ impl WindowEntry {
     pub(super) fn of(state: &AppState) -> Self {
         let view = &state.view;
         Self {
-            project: state.project.path.clone(),
+            project: state.project_path().cloned(),
             cameras: view.cameras,
             are_linked: view.are_linked,
             orbit_style: view.orbit_style,

@@ -21,8 +21,9 @@ pub enum FreeWindow {
     Section,
     /// Both parts as they were read, without reduction.
     FullMesh,
-    /// The stamped part at the best pose that differs from the result.
-    SecondPose,
+    /// The stamped part at the best pose beside the shown one.
+    #[serde(alias = "second-pose")]
+    Alternative,
 }
 
 impl FreeWindow {
@@ -33,7 +34,7 @@ impl FreeWindow {
         Self::Deviation,
         Self::Stamped,
         Self::Section,
-        Self::SecondPose,
+        Self::Alternative,
     ];
 
     /// True for what is seen with the camera of the left window.
@@ -49,7 +50,7 @@ impl FreeWindow {
             Self::Stamped => "Stamped",
             Self::Section => "Section",
             Self::FullMesh => "Full mesh",
-            Self::SecondPose => "Second pose",
+            Self::Alternative => "Alternative",
         }
     }
 }
@@ -86,14 +87,14 @@ impl AppState {
     /// True if the right window could be used so now.
     pub fn can_use_free(&self, free: FreeWindow) -> bool {
         match free {
-            FreeWindow::SecondPose => self.second_pose().is_some(),
+            FreeWindow::Alternative => self.other_pose().is_some(),
             FreeWindow::Stamped => self.is_mapping_shown(),
             _ => true,
         }
     }
 
     /// The best pose of the last match beside the one that is shown.
-    pub fn second_pose(&self) -> Option<Similarity> {
+    pub fn other_pose(&self) -> Option<Similarity> {
         let result = self.document.current_result()?;
         match result.alternative {
             Some(_) => Some(result.run.crash_from_stamped),

@@ -2,6 +2,7 @@
 
 use super::offset::ConstantOffset;
 use super::{DeviationField, OverlapClass};
+use crate::text::NOTHING;
 
 /// Numbers over the area that has a counterpart (`Matched` and `OffByMore`), each vertex weighted
 /// with its area. Lengths in target length units.
@@ -156,10 +157,10 @@ impl DeviationStats {
     }
 
     /// A limit for the colours: the 99th percentile of the distances, rounded up to 1, 2 or 5 times
-    /// a power of ten. 1 if there is nothing to see.
+    /// a power of ten. 1 if there is nothing to see but rounding.
     pub fn round_limit(&self) -> f64 {
         let wanted = self.distance_of_share(0.99);
-        if wanted <= 0.0 || !wanted.is_finite() {
+        if wanted < NOTHING || !wanted.is_finite() {
             return 1.0;
         }
         let power = 10f64.powf(wanted.log10().floor());

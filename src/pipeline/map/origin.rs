@@ -47,15 +47,15 @@ impl PoseOrigin {
     pub fn words(&self, lengths: Lengths) -> String {
         match self {
             Self::Given => "given".to_owned(),
-            Self::Match { verdict } => format!("match: {}", verdict.label()),
+            Self::Match { verdict } => format!("{} match", verdict.label()),
             Self::Alternative => "an alternative of the match".to_owned(),
             Self::Moved { distance, verdict } => format!(
                 "moved by hand, {} from the match ({})",
                 lengths.of(*distance),
                 verdict.label()
             ),
-            Self::ByHand => "no match: placed by hand".to_owned(),
-            Self::AsLoaded => "no match yet: as loaded".to_owned(),
+            Self::ByHand => "placed by hand, no match".to_owned(),
+            Self::AsLoaded => "as loaded, no match".to_owned(),
         }
     }
 

@@ -406,21 +406,28 @@ fn drop_hint(ui: &Ui, state: &AppState, crash: Rect, stamped: Rect) {
         return;
     }
     let palette = Palette::of(ui);
+    if let Err(reason) = state.jobs.is_unlocked() {
+        let text = format!("{} Stop it first.", reason.0);
+        drop::hint(ui, crash.union(stamped), palette.check, text);
+        return;
+    }
     if target == DropTarget::Project {
         let text = "Drop to open the project".to_owned();
         drop::hint(ui, crash.union(stamped), palette.text, text);
         return;
     }
     let at = ui.ctx().pointer_latest_pos();
+    let is_beside = at.is_some_and(|at| !crash.union(stamped).contains(at));
     for (role, rect) in [(Role::Crash, crash), (Role::Stamped, stamped)] {
-        let is_meant = n_files > 1 || at.is_none_or(|at| rect.contains(at));
-        if is_meant {
-            let color = palette.role(role);
-            let text = match n_files {
-                1 => format!("Drop as the {} part", role.word()),
-                _ => "Drop: the content tells which is which".to_owned(),
-            };
-            drop::hint(ui, rect, color, text);
-        }
+        let text = match n_files {
+            1 if is_beside => "Drop: the content tells which part it is".to_owned(),
+            1 if at.is_none_or(|at| rect.contains(at)) => {
+                format!("Drop as the {} part", role.word())
+            }
+            1 => continue,
+            2 => "Drop: the content tells which is which".to_owned(),
+            _ => "Drop: the first two are opened".to_owned(),
+        };
+        drop::hint(ui, rect, palette.role(role), text);
     }
 }

@@ -5,7 +5,7 @@ use egui::{Align, Layout, Ui, vec2};
 use super::drop;
 use super::section::section_ui;
 use super::setting_form::{Gear, setting_ui};
-use super::stamped_files::{add_stamped_ui, stamped_files_ui};
+use super::stamped_files::stamped_files_ui;
 use crate::app::{
     Action, AppState, BottomTab, ColorBy, Command, DoubtfulElement, InspectCommand, MapCommand,
     MapPicture, MapResult, Quantity, Section, UnmappedElement, ViewCommand,
@@ -20,7 +20,7 @@ use crate::settings::{MAP_SETTINGS, Setting};
 use crate::text::{fixed, grouped, length, percent, sentence};
 use crate::ui::theme::{Palette, ROW, TALL};
 use crate::ui::widgets::{
-    Look, action_button, caption, card, chip, paragraph, secondary, wide_action,
+    Look, action_button, caption, card, chip, paragraph, plain_action, secondary, wide_action,
 };
 
 /// Quantities beside each other.
@@ -93,7 +93,7 @@ fn quantities_ui(ui: &mut Ui, state: &AppState, has_list: bool, commands: &mut V
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     GEAR.ui(ui, has_own);
                     if !has_list {
-                        add_stamped_ui(ui, state, "Add file…", commands);
+                        plain_action(ui, state, Action::AddStamped, commands);
                     }
                 });
             }

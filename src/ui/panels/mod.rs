@@ -24,6 +24,7 @@ pub mod units;
 
 use egui::{Frame, Margin, Panel, ScrollArea, Sense, Ui, UiBuilder, vec2};
 
+use super::project_dialogs::restore_ui;
 use super::theme::{Palette, UNIT};
 use super::viewport::Viewports;
 use crate::app::{AppState, Command, Settings, ViewCommand};
@@ -61,6 +62,7 @@ pub fn window_ui(
     Panel::top("top bar")
         .frame(bar)
         .show(ui, |ui| top_bar::top_bar_ui(ui, state, commands));
+    restore_ui(ui, state, commands);
     let shown = &*viewports;
     let bottom = |ui: &mut Ui, commands: &mut Vec<Command>| {
         let room = ui.available_height();

@@ -151,8 +151,9 @@ fn strip_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let is_free = state.can_reduce().is_ok();
     ui.add_enabled_ui(is_free, |ui| {
         ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
-            ui.spacing_mut().button_padding.x = 7.0;
+            // So narrow that all usual levels and their menu have one row.
+            ui.spacing_mut().item_spacing = vec2(3.0, 4.0);
+            ui.spacing_mut().button_padding.x = 5.0;
             let full = chip(ui, "full", wanted.is_none());
             if with_result(ui, full, state, None).clicked() {
                 commands.push(ReduceCommand::Full(roles).into());
@@ -173,6 +174,9 @@ fn strip_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         });
         result_ui(ui, state, wanted);
         let least = 200.min(n_full);
+        if least == n_full {
+            return;
+        }
         let mut n = wanted.unwrap_or(n_full).clamp(least, n_full);
         ui.spacing_mut().slider_width = ui.available_width();
         let slider = Slider::new(&mut n, least..=n_full)

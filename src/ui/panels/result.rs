@@ -164,6 +164,10 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     }
 }
 
+const TOLERANCE_HELP: &str = "Shape tolerance: how far the shapes may differ besides springback. The \
+                              verdict follows at once; the pose stays. An empty field takes the automatic \
+                              tolerance";
+
 /// The tolerance of the verdict; another one gives a new verdict. From right to left. Says why
 /// a typed one was refused.
 fn tolerance_ui(
@@ -191,24 +195,17 @@ fn tolerance_ui(
         if auto.clicked() {
             *tolerance = 0.0;
         }
-            let takes = Takes::length(setting.label, state.lengths(), limits::LENGTH);
-            let field = takes
-                .field(&mut shown)
-                .speed(0.01 * usual)
-                .max_decimals(4);
-            let (field, why) = told_field(ui, setting.label, field, |text| match text.trim() {
-                // The automatic one.
-                "" => Ok(0.0),
-                text => takes.read(text),
-            });
-            refused = why;
-            let field = field.on_hover_text(
-                "Shape tolerance: how far the shapes may differ besides springback. The verdict follows \
-                 at once; the pose stays. An empty field takes the automatic tolerance",
-            );
-            if field.changed() {
-                *tolerance = shown;
-            }
+        let takes = Takes::length(setting.label, state.lengths(), limits::LENGTH);
+        let field = takes.field(&mut shown).speed(0.01 * usual).max_decimals(4);
+        let (field, why) = told_field(ui, setting.label, field, |text| match text.trim() {
+            // The automatic one.
+            "" => Ok(0.0),
+            text => takes.read(text),
+        });
+        refused = why;
+        if field.on_hover_text(TOLERANCE_HELP).changed() {
+            *tolerance = shown;
+        }
         caption(ui, "within");
     });
     if recipe != state.document.recipe {

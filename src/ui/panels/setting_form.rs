@@ -160,6 +160,14 @@ fn value_ui<R>(ui: &mut Ui, state: &AppState, setting: &Setting<R>, value: &mut 
             let field = takes.field(n).speed(1.0);
             typed_ui(ui, setting, field, |text| takes.read(text));
         }
+        (
+            Domain::Number {
+                unit: Unit::LengthOrAuto,
+                range,
+                step,
+            },
+            Value::Number(length),
+        ) => auto_length_ui(ui, setting, length, (lengths, range.clone(), *step)),
         (Domain::Number { unit, range, step }, Value::Number(number)) => {
             let takes = match unit {
                 Unit::Length => Takes::length(setting.label, lengths, range.clone()),
@@ -170,7 +178,12 @@ fn value_ui<R>(ui: &mut Ui, state: &AppState, setting: &Setting<R>, value: &mut 
             let field = takes.field(number).speed(*step).max_decimals(6);
             typed_ui(ui, setting, field, |text| takes.read(text));
         }
-        (Domain::Reach, Value::Reach(length)) => reach_ui(ui, setting, length, lengths),
+        (Domain::Reach, Value::Reach(reach)) => {
+            // No reach is 0; it stands for the word.
+            let mut length = reach.unwrap_or(0.0);
+            auto_length_ui(ui, setting, &mut length, (lengths, POSITIVE, 0.05));
+            *reach = Some(length).filter(|length| *length > 0.0);
+        }
         (Domain::Floor, Value::Floor(floor)) => floor_ui(ui, setting, floor, lengths),
         (Domain::Limit(_), Value::Limit(limit)) => limit_ui(ui, state, setting, limit),
         // The window takes its poses from the parts and from picked pairs.
@@ -254,17 +267,21 @@ fn floor_ui<R>(ui: &mut Ui, setting: &Setting<R>, floor: &mut Floor, lengths: Le
     }
 }
 
-/// A length, or "auto", which an empty field says too.
-fn reach_ui<R>(ui: &mut Ui, setting: &Setting<R>, reach: &mut Option<f64>, lengths: Lengths) {
-    // No length is 0; it stands for the word.
-    let mut length = reach.unwrap_or(0.0);
-    let takes = Takes::length(setting.label, lengths, POSITIVE);
+/// A length, or "auto", which an empty field says too and for which the length is 0.
+fn auto_length_ui<R>(
+    ui: &mut Ui,
+    setting: &Setting<R>,
+    length: &mut f64,
+    (lengths, range, step): (Lengths, RangeInclusive<f64>, f64),
+) {
+    let is_auto = *length == 0.0;
+    let takes = Takes::length(setting.label, lengths, range);
     let field = takes
-        .field(&mut length)
+        .field(length)
         .range(0.0..=f64::MAX)
-        .speed(0.05)
+        .speed(step)
         .max_decimals(6)
-        .suffix(reach.map_or("", |_| lengths.suffix()))
+        .suffix(if is_auto { "" } else { lengths.suffix() })
         .custom_formatter(|length, decimals| {
             if length > 0.0 {
                 egui::emath::format_with_decimals_in_range(length, decimals)
@@ -276,7 +293,6 @@ fn reach_ui<R>(ui: &mut Ui, setting: &Setting<R>, reach: &mut Option<f64>, lengt
         "" | AUTO => Ok(0.0),
         text => takes.read(text),
     });
-    *reach = Some(length).filter(|length| *length > 0.0);
 }
 
 /// Levels of section 2 come before one of the settings.

@@ -11,7 +11,7 @@ use crate::role::Role;
 use crate::text::sentence;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{
-    Look, action_button, caption, eye, file_swatch, icon_button, role_mark, verdict_color,
+    caption, eye, file_swatch, icon_button, plain_action, role_mark, verdict_color,
 };
 
 /// The list of stamped files, and the way to one more.
@@ -20,7 +20,7 @@ pub fn stamped_files_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
     ui.horizontal(|ui| {
         caption(ui, "Stamped files");
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            add_stamped_ui(ui, state, "Add…", commands);
+            plain_action(ui, state, Action::AddStamped, commands);
         });
     });
     for row in &rows {
@@ -31,13 +31,6 @@ pub fn stamped_files_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comman
             ui.add(egui::Label::new(text).wrap());
         }
     }
-}
-
-/// The way to one more stamped file.
-pub fn add_stamped_ui(ui: &mut Ui, state: &AppState, label: &str, commands: &mut Vec<Command>) {
-    let look = (label, Look::Plain, vec2(0.0, ROW));
-    let button = action_button(ui, state, Action::AddStamped, look, commands);
-    button.accessible_name(Action::AddStamped.row().label);
 }
 
 /// Name, verdict, pose, and the way out of the list.

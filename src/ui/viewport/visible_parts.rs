@@ -161,7 +161,7 @@ fn beside(state: &AppState, view: &ViewFrame, free: FreeWindow) -> Vec<PartInsta
         ..full(role, world_from_part)
     };
     let pose = match free {
-        FreeWindow::SecondPose => state.second_pose().unwrap_or(view.pose),
+        FreeWindow::Alternative => state.other_pose().unwrap_or(view.pose),
         _ => view.pose,
     };
     let both = [(Role::Crash, Similarity::identity()), (Role::Stamped, pose)];
@@ -171,7 +171,7 @@ fn beside(state: &AppState, view: &ViewFrame, free: FreeWindow) -> Vec<PartInsta
         FreeWindow::Nothing | FreeWindow::Section => false,
         FreeWindow::Deviation => *colored.get(instance.role),
         FreeWindow::Stamped => instance.role == Role::Stamped,
-        FreeWindow::FullMesh | FreeWindow::SecondPose => true,
+        FreeWindow::FullMesh | FreeWindow::Alternative => true,
     };
     let parts = parts.filter(is_shown);
     match free {

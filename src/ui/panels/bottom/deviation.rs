@@ -23,6 +23,9 @@ const LINE: f32 = 20.0;
 /// Height of a row of numbers, so that the largest stand there without scrolling.
 const NUMBER: f32 = 16.0;
 
+/// A pane narrower than this has room for two lists.
+const NARROW: f32 = 640.0;
+
 /// Head line and three lists side by side.
 pub fn deviation_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some(comparison) = state.comparison() else {
@@ -46,11 +49,23 @@ pub fn deviation_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) 
     head_ui(ui, state, comparison, commands);
     let height = ui.available_height();
     let width = ui.available_width();
-    let columns: [(f32, Column3); 3] = [
-        (300.0_f32.min(0.34 * width), Column3::Numbers),
-        (0.36 * width, Column3::Spots),
-        (0.24 * width, Column3::Labels),
-    ];
+    let has_labels = state.document.shown_labels().next().is_some();
+    let columns = match (width < NARROW, has_labels) {
+        (false, _) => vec![
+            (300.0_f32.min(0.34 * width), Column3::Numbers),
+            (0.36 * width, Column3::Spots),
+            (0.24 * width, Column3::Labels),
+        ],
+        (true, false) => vec![
+            (0.48 * width, Column3::Numbers),
+            (0.46 * width, Column3::Spots),
+        ],
+        // What was pinned is looked at.
+        (true, true) => vec![
+            (0.5 * width, Column3::Spots),
+            (0.44 * width, Column3::Labels),
+        ],
+    };
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 20.0;
         for (width, column) in columns {
@@ -172,8 +187,9 @@ fn numbers_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison) {
         ui.add(egui::Label::new(text).wrap());
     }
     let unit = state.document.unit_suffix();
+    let width = ui.available_width().round() as i32;
     TableBuilder::new(ui)
-        .id_salt("deviation numbers")
+        .id_salt(("deviation numbers", width))
         .min_scrolled_height(0.0)
         .auto_shrink([false, false])
         .cell_layout(Layout::left_to_right(Align::Center))
@@ -223,8 +239,12 @@ fn spots_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison, commands: &m
         return;
     }
     ui.spacing_mut().item_spacing.y = 0.0;
+    // A mark is as high as this, and would make each row reach into the next.
+    ui.spacing_mut().interact_size.y = LINE;
+    // A table keeps its columns: one for each width.
+    let width = ui.available_width().round() as i32;
     TableBuilder::new(ui)
-        .id_salt("worst places")
+        .id_salt(("worst places", width))
         .sense(Sense::click())
         .min_scrolled_height(0.0)
         .auto_shrink([false, false])

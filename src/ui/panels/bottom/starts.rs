@@ -8,7 +8,9 @@ use super::thumbnails::Thumbnails;
 use crate::app::{AppState, Command, MatchCommand, Preview, PreviewCommand, duration_text};
 use crate::geometry::Similarity;
 use crate::registration::{StartGroup, StartOutcome, StartRecord, group_starts};
-use crate::report::{outcome_words, start_kind_help, start_name};
+use crate::report::{
+    outcome_words, start_data_words, start_kind_help, start_kind_words, start_name,
+};
 use crate::text::Lengths;
 use crate::ui::theme::{Palette, UNIT};
 use crate::ui::widgets::{caption, nothing_yet, percent, tight};
@@ -17,9 +19,13 @@ use crate::ui::widgets::{caption, nothing_yet, percent, tight};
 const HEIGHT: f32 = 44.0;
 /// Width of a picture.
 const PICTURE: f32 = 64.0;
-/// Least width of where a start came from, and width of what became of it.
-const NAME: f32 = 170.0;
+/// Least width of where a start came from.
+const NAME: f32 = 150.0;
+/// Width of what became of it, and where only its sign and a word have room.
 const OUTCOME: f32 = 190.0;
+const SHORT_OUTCOME: f32 = 100.0;
+/// Between the columns.
+const GAP: f32 = UNIT;
 
 /// One line of the table: a start, and the group if it leads one.
 struct Line<'a> {
@@ -116,7 +122,8 @@ fn head_ui(ui: &mut Ui, table: &Table<'_>) {
 /// The rows; the preview of the one under the pointer.
 fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Option<Preview> {
     let unit = table.state.document.unit_suffix();
-    let figures = Figure::fitting(ui.available_width());
+    let columns = Columns::fitting(ui.available_width());
+    let figures = &columns.figures;
     let mut titles = vec![String::new(), "start".to_owned(), "outcome".to_owned()];
     titles.extend(figures.iter().map(|figure| figure.title(unit)));
     let mut hovered = None;
@@ -125,15 +132,15 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
     ui.spacing_mut().item_spacing.y = 0.0;
     let mut builder = TableBuilder::new(ui)
         // A table keeps its columns: one for each choice of them.
-        .id_salt(("starts", figures.len()))
+        .id_salt(("starts", figures.len(), columns.is_short))
         .sense(Sense::click())
         .min_scrolled_height(0.0)
         .auto_shrink([false, false])
         .cell_layout(Layout::left_to_right(Align::Center))
         .column(Column::exact(PICTURE + 8.0))
         .column(Column::remainder().at_least(NAME).clip(true))
-        .column(Column::exact(OUTCOME).clip(true));
-    for figure in &figures {
+        .column(Column::exact(columns.outcome()).clip(true));
+    for figure in figures {
         builder = builder.column(Column::exact(figure.width()));
     }
     builder
@@ -147,7 +154,7 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
         .body(|body| {
             body.rows(HEIGHT, table.lines.len(), |mut row| {
                 let line = &table.lines[row.index()];
-                row_ui(&mut row, table, (line, &figures), &mut thumbnails, commands);
+                row_ui(&mut row, table, (line, &columns), &mut thumbnails, commands);
                 let index = line.number;
                 let response = row.response();
                 if response.hovered() {
@@ -165,7 +172,7 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
 fn row_ui(
     row: &mut TableRow<'_, '_>,
     table: &Table<'_>,
-    (line, figures): (&Line<'_>, &[Figure]),
+    (line, columns): (&Line<'_>, &Columns),
     thumbnails: &mut Thumbnails,
     commands: &mut Vec<Command>,
 ) {
@@ -175,14 +182,13 @@ fn row_ui(
         thumbnails.show(ui, table.state, pose, egui::vec2(PICTURE, HEIGHT - 4.0));
     });
     row.col(|ui| {
-        let has_more = line.group.is_some_and(|group| group.members.len() > 1);
         ui.vertical(|ui| {
             ui.spacing_mut().interact_size.y = 18.0;
-            ui.add_space(if has_more { 3.0 } else { 12.0 });
+            ui.add_space(3.0);
             name_ui(ui, table, line, commands);
         });
     });
-    let [sign, words] = outcome_text(start, table.state);
+    let outcome = outcome_text(start, table.state, columns.is_short);
     let is_best = start.outcome == Some(StartOutcome::Won);
     row.col(|ui| {
         let palette = Palette::of(ui);
@@ -193,9 +199,9 @@ fn row_ui(
             }
             _ => palette.text,
         };
-        cell(ui, format!("{sign} {words}"), color);
+        cell(ui, outcome, color);
     });
-    for figure in figures {
+    for figure in &columns.figures {
         let text = figure.text(line, table.state.lengths());
         row.col(|ui| {
             let palette = Palette::of(ui);
@@ -205,20 +211,34 @@ fn row_ui(
     }
 }
 
-/// Number and origin, and the others that ended here.
+/// Number and origin; below, the others that ended here and which nodes were paired.
 fn name_ui(ui: &mut Ui, table: &Table<'_>, line: &Line<'_>, commands: &mut Vec<Command>) {
     let index = line.number;
     let indent = if line.group.is_some() { "" } else { "   " };
-    let text = format!("{indent}{} · {}", index + 1, start_name(line.start));
+    let origin = start_kind_words(line.start.kind);
+    let text = format!("{indent}{} · {origin}", index + 1);
     let can = table.state.can_move().is_ok();
     let button = Button::new(text).frame(false).truncate();
     let response = tight(ui, |ui| ui.add_enabled(can, button));
     let name = format!("Use the pose of start {}", index + 1);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, can, &name));
-    let response = response.on_hover_text(start_kind_help(line.start.kind));
+    let help = start_kind_help(line.start.kind);
+    let response = response.on_hover_text(format!("{}\n{help}", start_name(line.start)));
     if response.clicked() {
         commands.push(MatchCommand::UseMatchStart(index).into());
     }
+    ui.horizontal(|ui| {
+        group_ui(ui, table, line);
+        let color = Palette::of(ui).secondary;
+        let words = format!("{indent}{}", start_data_words(line.start));
+        let text = RichText::new(words).small().color(color);
+        ui.add(Label::new(text).truncate());
+    });
+}
+
+/// How many ended here, which unfolds them.
+fn group_ui(ui: &mut Ui, table: &Table<'_>, line: &Line<'_>) {
+    let index = line.number;
     let Some(group) = line.group.filter(|group| group.members.len() > 1) else {
         return;
     };
@@ -243,8 +263,8 @@ fn cell(ui: &mut Ui, text: String, color: Color32) {
     ui.add(Label::new(RichText::new(text).color(color)).truncate());
 }
 
-/// Sign and words of what became of a start.
-fn outcome_text(start: &StartRecord, state: &AppState) -> [String; 2] {
+/// Sign and words of what became of a start; of the words only the first where room is short.
+fn outcome_text(start: &StartRecord, state: &AppState, is_short: bool) -> String {
     let (sign, words) = match start.outcome {
         Some(outcome) => {
             let sign = match outcome {
@@ -259,7 +279,46 @@ fn outcome_text(start: &StartRecord, state: &AppState) -> [String; 2] {
         None if state.jobs.locking_job().is_some() => ("▶", "running".to_owned()),
         None => ("■", "not ended".to_owned()),
     };
-    [sign.to_owned(), words]
+    let end = words.find(' ').filter(|_| is_short).unwrap_or(words.len());
+    format!("{sign} {}", &words[..end])
+}
+
+/// What a table of some width has room for.
+struct Columns {
+    figures: Vec<Figure>,
+    /// Outcomes are cut to their first word.
+    is_short: bool,
+}
+
+impl Columns {
+    fn fitting(width: f32) -> Self {
+        let mut columns = Self {
+            figures: Figure::ALL.to_vec(),
+            is_short: false,
+        };
+        for least in Figure::LEAST {
+            // Words are cut before the error stands alone.
+            columns.is_short = least == Figure::ToBest && columns.width() > width;
+            if columns.width() > width {
+                columns.figures.retain(|figure| *figure != least);
+            }
+        }
+        columns
+    }
+
+    fn outcome(&self) -> f32 {
+        if self.is_short {
+            SHORT_OUTCOME
+        } else {
+            OUTCOME
+        }
+    }
+
+    /// The least width.
+    fn width(&self) -> f32 {
+        let figures = self.figures.iter().map(|figure| figure.width() + GAP);
+        PICTURE + 8.0 + NAME + self.outcome() + 4.0 * GAP + figures.sum::<f32>()
+    }
 }
 
 /// A number of a start, in the order of the columns.
@@ -283,21 +342,13 @@ impl Figure {
         Self::ToBest,
     ];
     /// What is left out first where not all have room.
-    const LEAST: [Self; 4] = [Self::Time, Self::Iterations, Self::P95, Self::Kept];
-
-    /// Those that have room in a table of this width.
-    fn fitting(width: f32) -> Vec<Self> {
-        const GAP: f32 = UNIT;
-        let beside = PICTURE + 8.0 + NAME + OUTCOME + 4.0 * GAP;
-        let mut shown = Self::ALL.to_vec();
-        for least in Self::LEAST {
-            let needed: f32 = shown.iter().map(|figure| figure.width() + GAP).sum();
-            if beside + needed > width {
-                shown.retain(|figure| *figure != least);
-            }
-        }
-        shown
-    }
+    const LEAST: [Self; 5] = [
+        Self::Time,
+        Self::Iterations,
+        Self::P95,
+        Self::Kept,
+        Self::ToBest,
+    ];
 
     fn title(self, unit: &str) -> String {
         match self {
@@ -343,10 +394,13 @@ mod tests {
 
     #[test]
     fn what_says_least_is_left_out_first() {
-        assert_eq!(Figure::fitting(1000.0), Figure::ALL);
-        let narrow = Figure::fitting(660.0);
-        assert!(narrow.contains(&Figure::Residual) && narrow.contains(&Figure::ToBest));
-        assert!(!narrow.contains(&Figure::Time));
-        assert_eq!(Figure::fitting(0.0), [Figure::Residual, Figure::ToBest]);
+        let wide = Columns::fitting(1000.0);
+        assert_eq!(wide.figures, Figure::ALL);
+        let narrow = Columns::fitting(660.0);
+        assert_eq!(narrow.figures, [Figure::Residual, Figure::ToBest]);
+        assert!(!narrow.is_short);
+        let small = Columns::fitting(460.0);
+        assert_eq!(small.figures, [Figure::Residual]);
+        assert!(small.is_short && small.width() <= 460.0);
     }
 }

@@ -10,7 +10,7 @@ use crate::geometry::camera::StandardView;
 use crate::geometry::{Camera, Vector3};
 use crate::ui::focus::is_ringed;
 
-/// Width and height of the disc it stands on.
+/// Width and height of its place.
 pub(super) const SIZE: f32 = 80.0;
 /// Windows lower than this have none.
 const LOW: f32 = 300.0;
@@ -19,6 +19,8 @@ const HALF: f32 = 14.5;
 /// How far an axis reaches beyond the cube, and its letter beyond that.
 const BEYOND: f32 = 5.0;
 const LETTER: f32 = 12.0;
+/// Radius of the ground below a letter.
+const BELOW_LETTER: f32 = 8.0;
 /// Edges and corners begin at this share of half a side.
 const EDGE: f32 = 0.55;
 
@@ -127,7 +129,7 @@ impl Cube {
 
     fn paint(&self, painter: &Painter, over: &Overlay<'_>, picked: Option<[i8; 3]>) {
         let look = over.frame.look;
-        painter.circle_filled(self.center, 0.5 * SIZE, look.plate.gamma_multiply(0.55));
+        // The letters alone have a ground: a plate below all would cover the part.
         let ends = [0, 1, 2].map(|axis| {
             let at = |reach: f32| {
                 let mut at = [-1.0; 3];
@@ -138,6 +140,9 @@ impl Cube {
             painter.line_segment([at(-1.0), at(reach)], Stroke::new(2.0, look.axes[axis]));
             at(1.0 + LETTER / HALF)
         });
+        for end in ends {
+            painter.circle_filled(end, BELOW_LETTER, look.plate);
+        }
         for (axis, side) in self.faces() {
             self.paint_face(painter, over, (axis, side), picked);
         }

@@ -103,6 +103,12 @@ fn says(state: &AppState, free: FreeWindow) -> &'static str {
         }
         FreeWindow::Stamped => "stamped part at its pose · same camera",
         FreeWindow::FullMesh => "both parts without reduction · same camera",
-        FreeWindow::SecondPose => "the next best pose of the match · same camera",
+        FreeWindow::Alternative => {
+            let result = state.document.current_result();
+            match result.and_then(|result| result.alternative) {
+                Some(_) => "the best pose of the match · same camera",
+                None => "the next best pose of the match · same camera",
+            }
+        }
     }
 }
