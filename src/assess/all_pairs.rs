@@ -4,7 +4,7 @@
 
 use std::cmp::Ordering;
 
-use super::borders::{BorderComparison, Borders};
+use super::borders::{BorderComparison, Borders, HolePair};
 use super::contact::{ContactSearch, MAX_NODES};
 use super::held::near;
 use super::tolerance::{AssessSettings, Distances};
@@ -17,14 +17,20 @@ const SAME: f64 = 0.2;
 /// other. An addendum keeps borders apart under both.
 const CLOSER_HOLES: f64 = 0.9;
 const CLOSER_BORDERS: f64 = 0.95;
+/// What they gain at least, as a share of what may remain of the distances.
+const LEAST_GAIN: f64 = 0.3;
+/// Where holes say nothing, the surfaces lie apart by at most this share too, over 95 % of the area: a flange of another
+/// version turns a part that otherwise fits, and hardly comes closer.
+const CLOSER_SURFACES: f64 = 0.75;
 /// The parts still meet but for this share of them.
 const AS_MUCH: f64 = 0.02;
 /// Distances that differ by less are the same.
 const AS_CLOSE: f64 = 1.02;
 
 /// Whether the second pose, which keeps all pairs, is better than the first, which keeps the closest ones: as much of
-/// the parts meets, they lie as close, and their holes, or where those say nothing their borders, lie closer together.
-/// What only one part has pulls at all pairs, and holes and borders apart. O(border edges + nodes · log triangles).
+/// the parts meets, they lie as close, and their holes lie closer together, or where those say nothing their borders
+/// and clearly their surfaces. What only one part has pulls at all pairs, and holes and borders apart.
+/// O(border edges + nodes · log triangles).
 pub fn is_better_with_all_pairs(
     source: &Surface,
     target: &Surface,
@@ -42,37 +48,47 @@ pub fn is_better_with_all_pairs(
     let pair = [source, target];
     let comparison = BorderComparison::new(pair, closest.scale, near);
     let [before, after] = [closest, all].map(|pose| comparison.at(pose));
-    let are_closer = match by_holes(&before, &after) {
-        Ordering::Greater => true,
-        Ordering::Less => false,
-        Ordering::Equal => after.apart(near) < CLOSER_BORDERS * before.apart(near),
+    let is_less = |a: f64, b: f64, share: f64| a < (share * b).min(b - LEAST_GAIN * remainder);
+    let borders_gain = is_less(after.apart(near), before.apart(near), CLOSER_BORDERS);
+    let most_of_surfaces = match by_holes(&before, &after, is_less) {
+        Ordering::Greater => f64::INFINITY,
+        Ordering::Equal if borders_gain => CLOSER_SURFACES,
+        _ => return false,
     };
-    if !are_closer {
-        return false;
-    }
     let mut contacts = ContactSearch::new(pair, closest.scale, near, MAX_NODES);
     let mut met = |pose: &Similarity| {
         let contacts = contacts.at(pose)?;
-        Some((contacts.share, contacts.typical_gap(remainder)))
+        let far = contacts.at_share(&contacts.without_offset(remainder), 0.95);
+        Some((contacts.share, contacts.typical_gap(remainder), far))
     };
     let (Some(before), Some(after)) = (met(closest), met(all)) else {
         return false;
     };
-    after.0 >= before.0 - AS_MUCH && after.1 <= AS_CLOSE * before.1
+    after.0 >= before.0 - AS_MUCH
+        && after.1 <= AS_CLOSE * before.1
+        && after.2 <= most_of_surfaces * before.2
 }
 
-/// Whether the holes speak for the borders under the second pose or under the first: more of them have their
-/// counterpart there and no more lie where the other part is solid, or as many and they lie closer together.
-fn by_holes(before: &Borders, after: &Borders) -> Ordering {
+/// Whether the holes speak for the second pose (`Greater`) or for the first: more of them have their
+/// counterpart there and no more lie where the other part is solid, or as many and they lie closer together, as
+/// `is_less` says.
+fn by_holes(
+    before: &Borders,
+    after: &Borders,
+    is_less: impl Fn(f64, f64, f64) -> bool,
+) -> Ordering {
     let n_missing = |borders: &Borders| borders.missing.iter().map(Vec::len).sum::<usize>();
     let has_more =
         |a: &Borders, b: &Borders| a.holes.len() > b.holes.len() && n_missing(a) <= n_missing(b);
     let off = |borders: &Borders| {
-        let offs = borders.holes.iter().map(|pair| pair.off.norm_squared());
-        offs.sum::<f64>().sqrt()
+        // Across its sheet the middle of a hole says what the surface says.
+        let within = |pair: &HolePair| pair.off.cross(&pair.hole.normal).norm_squared();
+        let sum: f64 = borders.holes.iter().map(within).sum();
+        (sum / borders.holes.len().max(1) as f64).sqrt()
     };
-    let is_closer =
-        |a: &Borders, b: &Borders| a.holes.len() == b.holes.len() && off(a) < CLOSER_HOLES * off(b);
+    let is_closer = |a: &Borders, b: &Borders| {
+        a.holes.len() == b.holes.len() && is_less(off(a), off(b), CLOSER_HOLES)
+    };
     if has_more(after, before) || is_closer(after, before) {
         Ordering::Greater
     } else if has_more(before, after) || is_closer(before, after) {

@@ -217,15 +217,21 @@ impl Contacts {
         })
     }
 
-    /// Root mean square distance of the surfaces where they meet, without an offset of all of them by at
-    /// most `offset`: skin and mid-surface lie apart at the right pose too.
-    pub(super) fn typical_gap(&self, offset: f64) -> f64 {
+    /// The distances of the surfaces where they meet, without an offset of all of them by at most `offset`: skin and
+    /// mid-surface lie apart at the right pose too.
+    pub(super) fn without_offset(&self, offset: f64) -> Vec<f64> {
         let weight: f64 = self.list.iter().map(|c| c.weight).sum();
         let mean = self.list.iter().map(|c| c.weight * c.gap).sum::<f64>() / weight;
         let offset = mean.clamp(-offset, offset);
-        let square = |c: &Contact| c.weight * (c.gap - offset).powi(2);
-        let gaps = self.list.iter().map(square);
-        (gaps.sum::<f64>() / weight).sqrt()
+        self.list.iter().map(|c| c.gap - offset).collect()
+    }
+
+    /// The root mean square of the distances [`Contacts::without_offset`].
+    pub(super) fn typical_gap(&self, offset: f64) -> f64 {
+        let weight: f64 = self.list.iter().map(|c| c.weight).sum();
+        let gaps = self.without_offset(offset).into_iter();
+        let squares = gaps.zip(&self.list).map(|(gap, c)| c.weight * gap.powi(2));
+        (squares.sum::<f64>() / weight).sqrt()
     }
 
     /// The size that these values, one for each place, do not exceed over this share of the area.

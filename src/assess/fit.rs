@@ -78,11 +78,17 @@ impl Fit {
         let areas: Vec<f64> = contacts.list.iter().map(|c| c.weight).collect();
         let mut left: Vec<f64> = contacts.list.iter().map(|c| c.gap).collect();
         let mut found = Row::zeros();
-        let (mut is_separable, mut has_offset) = (false, true);
+        let mut is_separable = false;
         let border_weights = borders.weights(evidence.noise);
-        let mut n_rounds = 0;
-        while n_rounds < ROUNDS {
-            n_rounds += 1;
+        for round in 0..2 * ROUNDS {
+            let has_offset = round < ROUNDS;
+            if round == ROUNDS {
+                if found[6].abs() <= evidence.most_offset {
+                    break;
+                }
+                // No offset of a sheet: one that bends undo.
+                left = contacts.list.iter().map(|c| c.gap).collect();
+            }
             let weights = robust_weights(&left, &areas, evidence.noise);
             let mut equations = Equations::default();
             for ((row, contact), weight) in places.iter().zip(&contacts.list).zip(weights) {
@@ -97,12 +103,6 @@ impl Fit {
                 equations.leave_out(6);
             }
             found = solve(&equations.matrix, &equations.right);
-            if found[6].abs() > evidence.most_offset {
-                // An offset and bends that undo each other.
-                (has_offset, n_rounds) = (false, 0);
-                left = contacts.list.iter().map(|c| c.gap).collect();
-                continue;
-            }
             for ((left, row), contact) in left.iter_mut().zip(&places).zip(&contacts.list) {
                 *left = contact.gap - row.dot(&found);
             }

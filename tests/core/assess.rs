@@ -409,8 +409,8 @@ fn a_twist_does_not_turn_a_bowed_panel_about_its_normal() {
             let (x, y) = ((600.0 + wider) * (u - 0.5), (400.0 + wider) * (v - 0.5));
             let pads = [(-200.0, 110.0), (150.0, -120.0), (60.0, 130.0)];
             let pads = pads.map(|(at_x, at_y): (f64, f64)| {
-                let far = ((x - at_x).powi(2) + (y - at_y).powi(2)) / (25.0 * 25.0);
-                6.0 * (-far).exp()
+                let far = ((x - at_x).powi(2) + (y - at_y).powi(2)) / (28.0 * 28.0);
+                25.0 * (-far).exp()
             });
             let (along, across) = (x / 300.0, y / 200.0);
             let bent = 12.0 * along * along + twist * along * across;
@@ -431,7 +431,7 @@ fn a_twist_does_not_turn_a_bowed_panel_about_its_normal() {
     let off = |pose: &Similarity| worst_node(&stamped, &truth, pose);
     let (closest, all) = (outcome.target_from_source, outcome.with_all_pairs.unwrap());
     assert!(
-        off(&closest) > 10.0 && off(&all) < 2.0,
+        off(&closest) > 10.0 && off(&all) < 3.0,
         "{} {}",
         off(&closest),
         off(&all)
