@@ -58,15 +58,27 @@ pub fn is_better_with_all_pairs(
     let mut contacts = ContactSearch::new(pair, closest.scale, near, MAX_NODES);
     let mut met = |pose: &Similarity| {
         let contacts = contacts.at(pose)?;
-        let far = contacts.at_share(&contacts.without_offset(remainder), 0.95);
-        Some((contacts.share, contacts.typical_gap(remainder), far))
+        Some(Met {
+            share: contacts.share,
+            typical: contacts.typical_gap(remainder),
+            far: contacts.at_share(&contacts.without_offset(remainder), 0.95),
+        })
     };
     let (Some(before), Some(after)) = (met(closest), met(all)) else {
         return false;
     };
-    after.0 >= before.0 - AS_MUCH
-        && after.1 <= AS_CLOSE * before.1
-        && after.2 <= most_of_surfaces * before.2
+    after.share >= before.share - AS_MUCH
+        && after.typical <= AS_CLOSE * before.typical
+        && after.far <= most_of_surfaces * before.far
+}
+
+/// How the surfaces meet under a pose.
+struct Met {
+    /// Share of the smaller part.
+    share: f64,
+    /// Distance of the surfaces there, root mean square and at 95 % of the area.
+    typical: f64,
+    far: f64,
 }
 
 /// Whether the holes speak for the second pose (`Greater`) or for the first: more of them have their

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::registration::Surface;
 
+/// The largest offset of two sheets in thicknesses: from one skin to the other it is one, the parts' thicknesses may
+/// differ, and facets add to it.
+const MOST_OFFSET: f64 = 1.2;
 /// Smooth displacement that is accepted as springback: a share of the diagonal, at most so many
 /// millimetres.
 const SPRINGBACK_SHARE: f64 = 0.005;
@@ -121,9 +124,6 @@ pub(super) struct Distances {
     /// The largest offset between two skins of one sheet; what is larger is a difference of the shapes.
     pub(super) most_offset: f64,
 }
-
-/// From one skin to the other it is the thickness; the parts' thicknesses may differ, and facets add to it.
-const MOST_OFFSET: f64 = 1.2;
 
 impl Distances {
     pub(super) fn of(

@@ -440,3 +440,29 @@ fn a_twist_does_not_turn_a_bowed_panel_about_its_normal() {
     let is_better = |poses| is_better_with_all_pairs(&source, &target, poses, &settings);
     assert!(is_better([&closest, &all]) && !is_better([&all, &closest]));
 }
+
+#[test]
+fn an_offset_is_no_larger_than_the_sheet() {
+    let target = arch(60, 0.0);
+    let settings = AssessSettings {
+        thickness: Some(1.0),
+        ..AssessSettings::default()
+    };
+    let offset_of = |offset: f64| {
+        let source = disturb::offset(&arch(71, 0.0), offset);
+        let [source, target] = [&source, &target].map(|mesh| Surface::new(mesh, "source").unwrap());
+        let input = MatchInput {
+            source: &source,
+            target: &target,
+            reduced: None,
+        };
+        let silent = Monitor::silent();
+        let mut outcome = match_surfaces(&input, &MatchSettings::default(), &silent).unwrap();
+        outcome.target_from_source = Similarity::identity();
+        let assessment = assess(&source, &target, &outcome, &settings, &silent).unwrap();
+        assessment.shape.unwrap().offset
+    };
+    let near = offset_of(0.8).unwrap();
+    assert!((near - 0.8).abs() < 0.05, "{near}");
+    assert_eq!(offset_of(2.0), None);
+}
