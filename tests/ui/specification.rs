@@ -78,6 +78,16 @@ fn wait_until(window: &mut Window, what: &str, is_so: impl Fn(&Window) -> bool) 
     }
 }
 
+/// The window after both files were dropped, with the folder that they lie in.
+fn both_dropped() -> (tempfile::TempDir, [PathBuf; 2], Window) {
+    let folder = tempfile::tempdir().unwrap();
+    let paths = files(folder.path());
+    let mut window = window();
+    drop_files(&mut window, &[&paths[0], &paths[1]]);
+    finish(&mut window);
+    (folder, paths, window)
+}
+
 #[test]
 fn two_files_dropped_the_wrong_way_round_find_their_places() {
     let folder = tempfile::tempdir().unwrap();
@@ -189,11 +199,7 @@ fn files_that_hang_over_the_window_are_told_where_they_go() {
 
 #[test]
 fn a_dropped_file_that_cannot_be_read_says_so_and_replaces_nothing() {
-    let folder = tempfile::tempdir().unwrap();
-    let [crash, stamped] = files(folder.path());
-    let mut window = window();
-    drop_files(&mut window, &[&crash, &stamped]);
-    finish(&mut window);
+    let (folder, _, mut window) = both_dropped();
     let before = Role::ALL.map(|role| part_of(&window, role));
     let broken = folder.path().join("picture.k");
     std::fs::write(&broken, [0xFF, 0x00, 0x17].repeat(50)).unwrap();
@@ -215,11 +221,7 @@ fn a_dropped_file_that_cannot_be_read_says_so_and_replaces_nothing() {
 
 #[test]
 fn what_is_dropped_during_a_match_is_answered() {
-    let folder = tempfile::tempdir().unwrap();
-    let [crash, stamped] = files(folder.path());
-    let mut window = window();
-    drop_files(&mut window, &[&crash, &stamped]);
-    finish(&mut window);
+    let (_folder, [crash, stamped], mut window) = both_dropped();
     click(&mut window, "Match the parts");
     assert!(window.state().state().jobs.locking_job().is_some());
     point_at(&mut window, 600.0, 300.0);
@@ -358,11 +360,7 @@ fn a_file_goes_to_the_window_it_is_dropped_on_whenever_the_pointer_comes_back() 
 
 #[test]
 fn a_file_that_changes_on_disk_is_offered_to_be_read_again() {
-    let folder = tempfile::tempdir().unwrap();
-    let [crash, stamped] = files(folder.path());
-    let mut window = window();
-    drop_files(&mut window, &[&crash, &stamped]);
-    finish(&mut window);
+    let (_folder, [_, stamped], mut window) = both_dropped();
     click(&mut window, "Match the parts");
     finish(&mut window);
     let has_changed = |window: &Window| window.state().state().has_changed_on_disk(Role::Stamped);
