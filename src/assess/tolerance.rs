@@ -83,6 +83,12 @@ impl ShapeTolerance {
         }
     }
 
+    /// Distances up to this mean nothing.
+    #[must_use]
+    pub fn unremarkable(&self) -> f64 {
+        UNREMARKABLE * self.remainder
+    }
+
     /// The tolerance that bends are judged with, which leaves room for the springback of small parts. The
     /// search and the pose keep to the narrower one.
     #[must_use]

@@ -23,7 +23,8 @@ const MOST_TRIED: usize = 12;
 const LEAST_LIKENESS: f64 = 0.1;
 /// Parts about as alike as the one that was found may fit as well.
 const AS_ALIKE: f64 = 0.97;
-/// They do if their surfaces lie at most so many times as far apart.
+/// They do if their surfaces lie at most so many times as far apart, or farther by a distance that means nothing: of
+/// twins with other elements the facets lie farther off.
 const AS_CLOSE: f64 = 1.25;
 /// Where a match leaves something to look at, each part must lie on the other with at least this share.
 const LEAST_SHARE: f64 = 0.3;
@@ -163,6 +164,8 @@ struct Fit {
     n_holes_apart: usize,
     /// RMS of the distances.
     rmse: f64,
+    /// Distances up to this mean nothing.
+    unremarkable: f64,
     /// The stamped part is taken for one of the other hand.
     is_mirrored: bool,
 }
@@ -179,11 +182,10 @@ impl Fit {
         }
         let key = |fit: &Self| (fit.verdict != Verdict::Good, fit.n_holes_apart);
         let order = key(self).cmp(&key(other));
-        let is_close = |a: &Self, b: &Self| a.rmse <= AS_CLOSE * b.rmse;
         if order.is_eq()
             && self.is_mirrored != other.is_mirrored
-            && is_close(self, other)
-            && is_close(other, self)
+            && self.is_as_close_as(other)
+            && other.is_as_close_as(self)
         {
             return other.is_mirrored;
         }
@@ -194,9 +196,11 @@ impl Fit {
     /// where the other part lies clearly closer: something to look at, such as a coarse hole, is no twin.
     fn is_as_good_as(&self, best: &Self) -> bool {
         let is_judged_alike = self.verdict == best.verdict || AS_CLOSE * self.rmse <= best.rmse;
-        is_judged_alike
-            && self.n_holes_apart <= best.n_holes_apart
-            && self.rmse <= AS_CLOSE * best.rmse
+        is_judged_alike && self.n_holes_apart <= best.n_holes_apart && self.is_as_close_as(best)
+    }
+
+    fn is_as_close_as(&self, other: &Self) -> bool {
+        self.rmse <= (AS_CLOSE * other.rmse).max(other.rmse + self.unremarkable)
     }
 }
 
@@ -258,6 +262,7 @@ impl Found {
             covered: stamped * crash,
             n_holes_apart: borders.map_or(0, |borders| borders.only_source + borders.only_target),
             rmse: assessment.coverage.rmse(),
+            unremarkable: shape.map_or(0.0, |shape| shape.tolerance.unremarkable()),
             is_mirrored: self.run.crash_from_stamped.is_mirrored(),
         }
     }
@@ -478,6 +483,7 @@ mod tests {
             covered: 1.0,
             n_holes_apart,
             rmse,
+            unremarkable: 0.1,
             is_mirrored: false,
         }
     }
@@ -496,7 +502,8 @@ mod tests {
         };
         assert!(own.is_better_than(&other_hand) && !other_hand.is_better_than(&own));
         assert!(other_hand.is_as_good_as(&own));
-        let far = fit(Verdict::Good, 0, 0.6);
+        let [far, coarse] = [fit(Verdict::Good, 0, 0.6), fit(Verdict::Good, 0, 0.1)];
+        assert!(coarse.is_as_good_as(&fit(Verdict::Good, 0, 0.01)));
         assert!(!far.is_as_good_as(&own));
         let bent = fit(Verdict::Check, 0, 0.4);
         assert!(without_holes.is_better_than(&bent) && !bent.is_as_good_as(&own));
