@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
+use super::all_pairs::{left_pairs_out, with_all_pairs};
 use super::candidate::{Candidate, DataChoice, Pairing};
 use super::rounds::{
     Depth, FEWEST_KEPT, drop_behind, ranking, refine, resembles, run_coarse, run_every_start,
@@ -19,8 +20,8 @@ use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::RegistrationError;
 use crate::registration::icp::{
-    Data, Floor, Frames, Run, Selection, Stage, StageInput, StageRules, advance, edge_length,
-    natural_floor, stage_rules,
+    Data, Floor, Frames, Run, Selection, Stage, StageInput, advance, edge_length, natural_floor,
+    stage_rules,
 };
 use crate::registration::input::MatchInput;
 use crate::registration::observer::MatchMonitor;
@@ -53,8 +54,6 @@ const REACH: f64 = 0.1;
 const N_FULL_POINTS: usize = 150_000;
 /// Poses of the opposite hand that are looked at, of those that survive the wide search.
 const N_OPPOSITE: usize = 3;
-/// A run that kept this share of the pairs left out nothing that matters.
-const ALL_KEPT: f64 = 0.99;
 
 /// The search for one hand of the source: its choices of data and model with their candidates.
 pub(crate) struct MultiStart<'a> {
@@ -62,6 +61,8 @@ pub(crate) struct MultiStart<'a> {
     settings: Cow<'a, MatchSettings>,
     mirror: Option<Similarity>,
     pub(crate) choices: Vec<(DataChoice<'a>, Vec<Candidate>)>,
+    /// Poses whose twins were tried, with the choice they are of.
+    asked: Vec<(usize, Similarity)>,
     scorer: PoseScorer<'a>,
     wide: Option<WideStarts<'a>>,
     /// Points farther away than this find no partner.
@@ -146,6 +147,7 @@ impl<'a> MultiStart<'a> {
             input,
             mirror,
             choices: Vec::new(),
+            asked: Vec::new(),
             timings: SearchTimings::default(),
         })
     }
@@ -177,6 +179,36 @@ impl<'a> MultiStart<'a> {
             self.add_choice(side.other());
             self.run_starts(1, &again, numbers, monitor)?;
         }
+        Ok(self.try_twins_of_winner(numbers, monitor)?)
+    }
+
+    /// Tries poses in which parts that look alike from several sides fit as well as in the winner's, where they
+    /// were made of another pose.
+    fn try_twins_of_winner(
+        &mut self,
+        numbers: &mut StartNumbers,
+        monitor: &MatchMonitor<'_>,
+    ) -> Result<(), Cancelled> {
+        let begin = Instant::now();
+        let Some(winner) = self.ranked_candidates().into_iter().next() else {
+            return Ok(());
+        };
+        let settings = &*self.settings;
+        let (choice, candidates) = &mut self.choices[winner.choice];
+        let winning = &candidates[winner.candidate];
+        let was_asked = self.asked.iter().any(|(of_choice, pose)| {
+            *of_choice == winner.choice && choice.is_same(pose, &winning.run.model_from_data)
+        });
+        if was_asked || settings.search == Search::EveryStart {
+            return Ok(());
+        }
+        let near = alike(choice, winning, self.wide.as_ref(), monitor.monitor)?;
+        let mut late = enter(choice, &near, numbers, monitor);
+        run_coarse(choice, &mut late, settings, monitor)?;
+        let n_late = late.len();
+        refine(Depth::Whole, choice, &mut late, n_late, settings, monitor)?;
+        candidates.extend(late);
+        self.timings.refine += begin.elapsed();
         Ok(())
     }
 
@@ -262,15 +294,7 @@ impl<'a> MultiStart<'a> {
         let begin = Instant::now();
         let settings = &*self.settings;
         let (choice, done) = &mut self.choices[choice_idx];
-        let mut enter = |starts: &[Start]| -> Vec<Candidate> {
-            let new = starts.iter().map(|start| {
-                let candidate = Candidate::new(choice, *start, numbers.next());
-                candidate.report(choice, monitor);
-                candidate
-            });
-            new.collect()
-        };
-        let mut candidates = enter(starts);
+        let mut candidates = enter(choice, starts, numbers, monitor);
         if settings.search == Search::EveryStart {
             run_every_start(choice, &mut candidates, settings, monitor)?;
             self.timings.coarse += begin.elapsed();
@@ -278,21 +302,22 @@ impl<'a> MultiStart<'a> {
             return Ok(());
         }
         run_coarse(choice, &mut candidates, settings, monitor)?;
+        let deepen = |depth, choice: &DataChoice<'_>, candidates: &mut [Candidate], n_distinct| {
+            refine(depth, choice, candidates, n_distinct, settings, monitor)
+        };
         let mut n_distinct = N_DISTINCT;
         // A part that is nearly symmetric has a twin pose close by which no other start need reach.
         if let Some(&best) = ranking(&candidates).first() {
             let best = &candidates[best];
-            let mut near = twins(choice, best);
-            if let Some(wide) = &self.wide {
-                near.extend(wide.alike(&best.as_start(choice), monitor.monitor)?);
-            }
+            self.asked.push((choice_idx, best.run.model_from_data));
+            let near = alike(choice, best, self.wide.as_ref(), monitor.monitor)?;
             let turned = turns(choice, best, monitor.monitor)?;
-            let mut late = enter(&near);
+            let mut late = enter(choice, &near, numbers, monitor);
             run_coarse(choice, &mut late, settings, monitor)?;
             candidates.extend(late);
             // They score alike, so that none may leave for want of room.
             for few in turned.chunks(FEWEST_KEPT) {
-                let mut turned = enter(few);
+                let mut turned = enter(choice, few, numbers, monitor);
                 run_coarse(choice, &mut turned, settings, monitor)?;
                 candidates.extend(turned);
             }
@@ -307,27 +332,13 @@ impl<'a> MultiStart<'a> {
         self.timings.coarse += begin.elapsed();
         let begin = Instant::now();
         if !resembles(choice, &candidates) {
-            refine(
-                Depth::Look,
-                choice,
-                &mut candidates,
-                n_distinct,
-                settings,
-                monitor,
-            )?;
+            deepen(Depth::Look, choice, &mut candidates, n_distinct)?;
             if let Some(&best) = ranking(&candidates).first() {
                 choice.expect_as(&candidates[best].run);
             }
         }
         if resembles(choice, &candidates) {
-            refine(
-                Depth::Whole,
-                choice,
-                &mut candidates,
-                n_distinct,
-                settings,
-                monitor,
-            )?;
+            deepen(Depth::Whole, choice, &mut candidates, n_distinct)?;
         }
         self.timings.refine += begin.elapsed();
         done.extend(candidates);
@@ -543,39 +554,33 @@ impl<'a> MultiStart<'a> {
     }
 }
 
-/// True if a run that was free to choose left out more pairs than trims do.
-fn left_pairs_out(run: &Run, rules: &StageRules) -> bool {
-    let chooses = matches!(
-        rules.selection.selection,
-        Selection::Fractional { .. } | Selection::TrimmedSearch
-    );
-    chooses && run.fraction < ALL_KEPT
+/// The starts as candidates.
+fn enter(
+    choice: &DataChoice<'_>,
+    starts: &[Start],
+    numbers: &mut StartNumbers,
+    monitor: &MatchMonitor<'_>,
+) -> Vec<Candidate> {
+    let new = starts.iter().map(|start| {
+        let candidate = Candidate::new(choice, *start, numbers.next());
+        candidate.report(choice, monitor);
+        candidate
+    });
+    new.collect()
 }
 
-/// Where a run goes on to with all pairs. A bent part fits best in its middle, turned or slid until the rest, which
-/// is left out, lies elsewhere.
-fn with_all_pairs(
-    run: &Run,
-    input: &StageInput<'_>,
+/// Poses in which parts that fit as `best` says fit too if they look alike from several sides.
+fn alike(
+    choice: &DataChoice<'_>,
+    best: &Candidate,
+    wide: Option<&WideStarts>,
     monitor: &Monitor,
-) -> Result<Similarity, Cancelled> {
-    let mut rules = *input.rules;
-    rules.selection.selection = Selection::All;
-    rules.step.likely_motion = f64::INFINITY;
-    rules.least_reach = None;
-    let mut all = Run::new(run.start_idx, run.model_from_data);
-    let unobserved = monitor.without_observer();
-    let input = StageInput {
-        rules: &rules,
-        ..*input
-    };
-    advance(
-        &mut all,
-        &input,
-        rules.max_iterations,
-        &MatchMonitor::from(&unobserved),
-    )?;
-    Ok(all.model_from_data)
+) -> Result<Vec<Start>, Cancelled> {
+    let mut near = twins(choice, best);
+    if let Some(wide) = wide {
+        near.extend(wide.alike(&best.as_start(choice), monitor)?);
+    }
+    Ok(near)
 }
 
 /// True if the deviation of the shapes is for the match to find out.

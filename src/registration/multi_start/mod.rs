@@ -4,6 +4,7 @@
 //! keep the better ones; the best distinct ones are refined, compared from both sides
 //! ([`score`]), and the winner is refined on the full meshes ([`driver`], [`outcome`]).
 
+mod all_pairs;
 mod candidate;
 mod driver;
 mod holes;
