@@ -257,7 +257,13 @@ mod tests {
         let limit = 1.0;
         let bend = ShapeReason::Bent { by: 9.0, limit };
         let hole = |by| ShapeReason::Hole { by, limit, at };
-        let bead = |by| ShapeReason::Local { by, limit, at };
+        let is_end = false;
+        let bead = |by| ShapeReason::Local {
+            by,
+            limit,
+            at,
+            is_end,
+        };
         let holes = ShapeReason::Holes {
             only_source: 1,
             only_target: 1,

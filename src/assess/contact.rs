@@ -109,75 +109,45 @@ impl<'a> ContactSearch<'a> {
         pose: &Similarity,
         scaled: Option<&Scaled>,
     ) -> Option<Contacts> {
-        let Self {
-            source,
-            target,
-            of_source,
-            ..
-        } = *self;
-        let (data, model, model_from_data, unit) = if of_source {
-            (source, target, *pose, 1.0)
-        } else {
-            (target, source, pose.inverse(), pose.scale)
-        };
-        let (stride, reach) = (self.stride, self.reach / unit);
-        let positions = data.mesh().positions();
-        let meet = |vertex: usize, closest: &mut Option<u32>| {
-            let weight = data.vertex_areas()[vertex];
-            if weight <= 0.0 {
-                return None;
-            }
-            let position = positions[vertex];
-            let moved = match scaled {
-                None => model_from_data.apply(&position),
-                Some(scaled) if of_source => scaled.apply(&model_from_data.apply(&position)),
-                Some(scaled) => model_from_data.apply(&scaled.undo(&position)),
-            };
-            let own = model_from_data.rotate(&data.vertex_normals()[vertex]);
-            let hit = model.bvh().closest(&moved, reach, *closest, None)?;
-            *closest = Some(hit.triangle);
-            let other = model.normal_at(&hit);
-            let facing = own.dot(&other);
-            let is_off_the_border = model.is_on_border(&hit) && is_beside(model, &hit, &moved);
-            if facing.abs() < MIN_FACING || is_off_the_border {
-                return None;
-            }
-            let height = (moved - model.curved_point(&hit)).dot(&other);
-            let facet = facet_error(model, hit.triangle as usize, &own) * unit;
-            Some(if of_source {
-                Contact {
-                    point: moved,
-                    normal: other,
-                    gap: height,
-                    weight,
-                    facet,
-                }
-            } else {
-                // Measured from the source; turned to the target's side.
-                let side = facing.signum();
-                Contact {
-                    point: positions[vertex],
-                    normal: pose.rotate(&other) * side,
-                    gap: -height * side * unit,
-                    weight,
-                    facet,
-                }
-            })
-        };
+        let sides = Sides::new([self.source, self.target], pose, self.of_source);
+        let (stride, reach) = (self.stride, self.reach);
         let list = self.closest.par_iter_mut().enumerate();
-        let list = list.filter_map(|(k, closest)| meet(k * stride, closest));
-        let areas = data.vertex_areas().iter().step_by(stride);
+        let list =
+            list.filter_map(|(k, closest)| sides.contact(k * stride, reach, scaled, closest));
+        let areas = sides.data.vertex_areas().iter().step_by(stride);
         Contacts::of(list.collect(), areas.sum(), stride as f64)
+    }
+
+    /// Where nodes of the larger part meet the smaller one under a pose: those that lie where `is_asked` says.
+    /// O(nodes + places · log triangles).
+    pub(super) fn of_larger(
+        &self,
+        pose: &Similarity,
+        is_asked: impl Fn(&Point3) -> bool + Sync,
+    ) -> Vec<Contact> {
+        let sides = Sides::new([self.source, self.target], pose, !self.of_source);
+        let positions = sides.data.mesh().positions();
+        let asked = (0..positions.len()).into_par_iter().filter(|&vertex| {
+            is_asked(&if sides.of_source {
+                pose.apply(&positions[vertex])
+            } else {
+                positions[vertex]
+            })
+        });
+        let list = asked.filter_map(|vertex| sides.contact(vertex, self.reach, None, &mut None));
+        list.collect()
     }
 
     /// Share of the smaller part's area that lies beyond the borders of the other part under a pose: its closest
     /// place there is a border that lies off its reach or beside it. O(nodes · log triangles).
     pub(super) fn overhang(&self, pose: &Similarity) -> f64 {
-        let (data, model, model_from_data, unit) = if self.of_source {
-            (self.source, self.target, *pose, 1.0)
-        } else {
-            (self.target, self.source, pose.inverse(), pose.scale)
-        };
+        let Sides {
+            data,
+            model,
+            model_from_data,
+            unit,
+            ..
+        } = Sides::new([self.source, self.target], pose, self.of_source);
         let reach = self.reach / unit;
         let nodes = (0..data.mesh().positions().len()).into_par_iter();
         let areas = nodes.step_by(self.stride).map(|vertex| {
@@ -196,6 +166,93 @@ impl<'a> ContactSearch<'a> {
             .into_iter()
             .fold((0.0, 0.0), |(b, t), (beyond, area)| (b + beyond, t + area));
         if total > 0.0 { beyond / total } else { 0.0 }
+    }
+}
+
+/// Whose nodes are looked at under a pose, and the surface that they are measured against.
+struct Sides<'a> {
+    pose: &'a Similarity,
+    of_source: bool,
+    data: &'a Surface,
+    model: &'a Surface,
+    model_from_data: Similarity,
+    /// Length of a unit of the model in target units.
+    unit: f64,
+}
+
+impl<'a> Sides<'a> {
+    fn new([source, target]: [&'a Surface; 2], pose: &'a Similarity, of_source: bool) -> Self {
+        let (data, model, model_from_data, unit) = if of_source {
+            (source, target, *pose, 1.0)
+        } else {
+            (target, source, pose.inverse(), pose.scale)
+        };
+        Self {
+            pose,
+            of_source,
+            data,
+            model,
+            model_from_data,
+            unit,
+        }
+    }
+
+    /// Where a node meets the model within `reach`, in target units; `closest` is the triangle to begin with, and
+    /// becomes the one found.
+    fn contact(
+        &self,
+        vertex: usize,
+        reach: f64,
+        scaled: Option<&Scaled>,
+        closest: &mut Option<u32>,
+    ) -> Option<Contact> {
+        let Self {
+            data,
+            model,
+            model_from_data,
+            unit,
+            ..
+        } = self;
+        let weight = data.vertex_areas()[vertex];
+        if weight <= 0.0 {
+            return None;
+        }
+        let position = data.mesh().positions()[vertex];
+        let moved = match scaled {
+            None => model_from_data.apply(&position),
+            Some(scaled) if self.of_source => scaled.apply(&model_from_data.apply(&position)),
+            Some(scaled) => model_from_data.apply(&scaled.undo(&position)),
+        };
+        let own = model_from_data.rotate(&data.vertex_normals()[vertex]);
+        let hit = model.bvh().closest(&moved, reach / unit, *closest, None)?;
+        *closest = Some(hit.triangle);
+        let other = model.normal_at(&hit);
+        let facing = own.dot(&other);
+        let is_off_the_border = model.is_on_border(&hit) && is_beside(model, &hit, &moved);
+        if facing.abs() < MIN_FACING || is_off_the_border {
+            return None;
+        }
+        let height = (moved - model.curved_point(&hit)).dot(&other);
+        let facet = facet_error(model, hit.triangle as usize, &own) * unit;
+        Some(if self.of_source {
+            Contact {
+                point: moved,
+                normal: other,
+                gap: height,
+                weight,
+                facet,
+            }
+        } else {
+            // Measured from the source; turned to the target's side.
+            let side = facing.signum();
+            Contact {
+                point: position,
+                normal: self.pose.rotate(&other) * side,
+                gap: -height * side * unit,
+                weight,
+                facet,
+            }
+        })
     }
 }
 

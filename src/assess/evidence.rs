@@ -2,9 +2,9 @@
 //! prepared once and asked for one pose after another.
 
 use super::borders::{BorderComparison, Borders};
-use super::contact::{ContactSearch, Contacts, MAX_NODES};
+use super::contact::{Contact, ContactSearch, Contacts, MAX_NODES};
 use super::tolerance::Distances;
-use crate::geometry::Similarity;
+use crate::geometry::{Point3, Similarity};
 use crate::registration::Surface;
 
 /// Two parts under a pose, and where they meet.
@@ -25,8 +25,18 @@ pub(super) struct PoseEvidence<'a> {
 impl PoseEvidence<'_> {
     /// Share of the smaller part's area that lies beyond the borders of the other.
     pub(super) fn overhang(&self) -> f64 {
+        self.search().overhang(&self.pose)
+    }
+
+    /// Where nodes of the larger part meet the smaller one: those that lie where `is_asked` says.
+    /// O(nodes + places · log triangles).
+    pub(super) fn of_larger(&self, is_asked: impl Fn(&Point3) -> bool + Sync) -> Vec<Contact> {
+        self.search().of_larger(&self.pose, is_asked)
+    }
+
+    fn search(&self) -> ContactSearch<'_> {
         let pair = [self.source, self.target];
-        ContactSearch::new(pair, self.pose.scale, self.reach, MAX_NODES).overhang(&self.pose)
+        ContactSearch::new(pair, self.pose.scale, self.reach, MAX_NODES)
     }
 }
 

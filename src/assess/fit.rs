@@ -3,7 +3,7 @@
 mod bends;
 mod equations;
 
-use super::contact::{Contacts, Six, robust_weights, solve};
+use super::contact::{Contact, Contacts, Six, robust_weights, solve};
 use super::evidence::PoseEvidence;
 use crate::geometry::{Point3, Similarity, Vector3};
 
@@ -31,6 +31,8 @@ pub(super) struct Fit {
     pub(super) rigid: Six,
     pub(super) offset: f64,
     pub(super) is_separable: bool,
+    bends: Bends,
+    found: Row,
 }
 
 /// How much each unknown moves a place along a direction; `offset` is what a unit of the offset does.
@@ -54,6 +56,12 @@ impl Fit {
     /// The offset of the sheets, where it can be told from a shift.
     pub(super) fn separate_offset(&self) -> Option<f64> {
         self.is_separable.then_some(self.offset)
+    }
+
+    /// What nothing explains at a place that did not take part; `contacts` are those that did.
+    pub(super) fn left_at(&self, place: &Contact, contacts: &Contacts) -> f64 {
+        let row = explaining(contacts, &self.bends, &place.point, &place.normal, 1.0);
+        beyond_facets(place.gap - row.dot(&self.found), place)
     }
 
     /// The pose of the evidence that this is the fit of, moved to where the source belongs.
@@ -109,7 +117,7 @@ impl Fit {
         }
         let smooth = places.iter().map(|row| row.dot(&found) - found[6]);
         for (left, contact) in left.iter_mut().zip(&contacts.list) {
-            *left = left.signum() * (left.abs() - contact.facet).max(0.0);
+            *left = beyond_facets(*left, contact);
         }
         let beside = beside.iter().zip(borders.pairs());
         let beside: Vec<f64> = beside.map(|(row, p)| p.gap - row.dot(&found)).collect();
@@ -133,6 +141,13 @@ impl Fit {
             left,
             offset: found[6],
             is_separable,
+            bends,
+            found,
         }
     }
+}
+
+/// What the facets of the other part leave of a distance.
+fn beyond_facets(distance: f64, place: &Contact) -> f64 {
+    distance.signum() * (distance.abs() - place.facet).max(0.0)
 }

@@ -25,7 +25,7 @@ const MOSTLY_MET: f64 = 0.75;
 pub(super) const OVERHANGS: f64 = 0.95;
 /// unless more than this share lies neither on the other part nor beyond its borders.
 pub(super) const ELSEWHERE: f64 = 0.03;
-/// A remainder of so many tolerances is that of a different part.
+/// A remainder of so many tolerances is that of a different part where most of the area exceeds the tolerance.
 const DIFFERENT: f64 = 6.0;
 /// Distances up to so many times the faceting, or [`UNREMARKABLE`] of the tolerance, mean nothing at most of the
 /// area.
@@ -98,6 +98,9 @@ pub enum ShapeReason {
         /// Point of the largest difference, in the target's frame.
         #[serde(with = "xyz")]
         at: Point3,
+        /// They differ by more than is accepted at most of the area, and not at a flange or an end only.
+        #[serde(default)]
+        mostly: bool,
     },
     /// The surfaces differ by more than the tolerance at one place: a bead, an emboss or a dent that only one
     /// part has.
@@ -109,6 +112,9 @@ pub enum ShapeReason {
         /// Point of the largest difference, in the target's frame.
         #[serde(with = "xyz")]
         at: Point3,
+        /// The place is an end or a flange, which is bent.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        is_end: bool,
     },
     /// The borders do not lie on each other.
     #[serde(rename = "rims")]
@@ -157,7 +163,9 @@ impl ShapeReason {
     pub(super) fn is_of_another_part(&self) -> bool {
         match self {
             Self::HardlyMet { .. } => true,
-            Self::Surface { by, limit, .. } => *by > DIFFERENT * limit,
+            Self::Surface {
+                by, limit, mostly, ..
+            } => *mostly && *by > DIFFERENT * limit,
             _ => false,
         }
     }
@@ -216,8 +224,9 @@ impl ShapeStatement {
             borders: border_fit(&evidence.borders, fit, &tolerance),
             reasons: Vec::new(),
         };
-        statement.reasons = statement.find_reasons(evidence, fit);
-        statement.kind = statement.judge(evidence.noise, contacts.at_share(&fit.left, SAME_SHARE));
+        let mostly = contacts.at_share(&fit.left, SAME_SHARE);
+        statement.reasons = statement.find_reasons(evidence, fit, mostly);
+        statement.kind = statement.judge(evidence.noise, mostly);
         statement
     }
 
@@ -238,7 +247,13 @@ impl ShapeStatement {
         }
     }
 
-    fn find_reasons(&self, evidence: &PoseEvidence<'_>, fit: &Fit) -> Vec<ShapeReason> {
+    /// `mostly` is the remainder at most of the area.
+    fn find_reasons(
+        &self,
+        evidence: &PoseEvidence<'_>,
+        fit: &Fit,
+        mostly: f64,
+    ) -> Vec<ShapeReason> {
         let mut reasons = Vec::new();
         let differs = self.remainder > self.tolerance.remainder;
         if self.met < LEAST_MET || differs && self.met < MOSTLY_MET {
@@ -251,11 +266,21 @@ impl ShapeStatement {
                 by: self.remainder,
                 limit,
                 at,
+                mostly: mostly > limit,
             });
-        } else if let Some(LocalDifference { by, at }) =
-            local_difference(evidence, &fit.left, limit)
-        {
-            reasons.push(ShapeReason::Local { by, limit, at });
+        } else if let Some(found) = local_difference(evidence, fit, &self.tolerance) {
+            let LocalDifference {
+                by,
+                limit,
+                at,
+                is_end,
+            } = found;
+            reasons.push(ShapeReason::Local {
+                by,
+                limit,
+                at,
+                is_end,
+            });
         }
         reasons.extend(self.border_reasons(evidence, fit));
         // Where the parts differ anyway, nothing more is learned from it.

@@ -198,11 +198,17 @@ impl ShapeReason {
                 "the surfaces differ by {by}, more than {limit}, most at {}",
                 place(at)
             ),
-            Self::Local { at, .. } => format!(
-                "only one part has a bead, an emboss or a dent: the surfaces differ there by {by}, more \
-                 than {limit}, at {}",
-                place(at)
-            ),
+            Self::Local { at, is_end, .. } => {
+                let what = if *is_end {
+                    "an end or a flange is bent"
+                } else {
+                    "only one part has a bead, an emboss or a dent"
+                };
+                format!(
+                    "{what}: the surfaces differ there by {by}, more than {limit}, at {}",
+                    place(at)
+                )
+            }
             Self::Borders { at, .. } => format!(
                 "the borders lie {by} apart, more than {limit}, most at {}",
                 place(at)

@@ -196,6 +196,7 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
             by: 40.0,
             limit,
             at,
+            mostly: true,
         }),
         Reason::EndedEarly {
             termination: Termination::NoPairs,
@@ -209,7 +210,12 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
             limit,
             along: PartDirection::Along,
         },
-        shape(ShapeReason::Surface { by: 5.0, limit, at }),
+        shape(ShapeReason::Surface {
+            by: 40.0,
+            limit,
+            at,
+            mostly: false,
+        }),
         shape(ShapeReason::Bent { by: 5.0, limit }),
         shape(ShapeReason::Borders { by: 5.0, limit, at }),
         shape(ShapeReason::Hole { by: 5.0, limit, at }),

@@ -3,114 +3,216 @@
 
 use crate::assess::contact::Contact;
 use crate::assess::evidence::PoseEvidence;
-use crate::assess::tolerance::is_source_smaller;
+use crate::assess::fit::Fit;
+use crate::assess::tolerance::{ShapeTolerance, is_source_smaller};
 use crate::geometry::{Point3, Vector3};
 use crate::registration::Surface;
 
-/// Places beside each other that differ by as much are no noise from this number on.
+/// Places that lie beside each other and differ by as much are no noise from this number on.
 const LEAST_PLACES: usize = 5;
 /// Places lie beside each other within so many times the size of what they stand for.
 const BESIDE: f64 = 1.7;
-/// What begins within so many sizes of an outline is not told: springback bends ends most, and there an
-/// outline may have been cut.
-const FROM_OUTLINE: f64 = 2.0;
+/// What reaches an outline over less than this share of how far it reaches inward is a bead that runs out there. What
+/// reaches it over more is an end, and springback bends ends most: of them as much is accepted as of the whole part.
+const LEAST_OF_END: f64 = 0.5;
 
-/// Elements cut narrow beads and the edges of wide ones short. A group that is not so many edges wide may be that: edges
-/// of the mesh that the places were measured against, because the places themselves are nodes, which lie on the sheet.
+/// Elements cut narrow beads and the edges of wide ones short. A group that is not so many edges wide may be that:
+/// edges of the mesh that the places were measured against, because the places themselves are nodes, which lie on the
+/// sheet.
 const LEAST_WIDTH: f64 = 2.5;
 
-/// A group of places in the middle of the sheet where the surfaces lie apart.
+/// A group of places where the surfaces lie apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LocalDifference {
     /// The largest distance.
     pub(super) by: f64,
-    /// Where that is, in the target's frame.
+    /// What is accepted there.
+    pub(super) limit: f64,
+    /// Where the largest distance is, in the target's frame.
     pub(super) at: Point3,
+    /// Whether the group is an end or a flange of the part.
+    pub(super) is_end: bool,
 }
 
-/// The largest group of neighbouring places, away from the outlines of both parts and wider than the elements cut
-/// short, at which `left`, what neither bends nor facets explain, exceeds `limit` to one side.
-/// O(k² + k · outlines) for k places beyond the limit.
+/// A place where the surfaces lie apart by more than the limit.
+struct Apart<'a> {
+    contact: &'a Contact,
+    /// What neither bends nor facets explain of the distance.
+    left: f64,
+    /// Edge of the square that it stands for.
+    size: f64,
+}
+
+impl Apart<'_> {
+    fn is_beside(&self, at: &Point3) -> bool {
+        (at - self.contact.point).norm_squared() <= (BESIDE * self.size).powi(2)
+    }
+}
+
+/// Places beside each other that lie apart to one side.
+struct Group<'a, 'b> {
+    places: Vec<&'a Apart<'b>>,
+    low: Point3,
+    high: Point3,
+}
+
+/// The largest group of neighbouring places at which what neither bends nor facets explain exceeds the tolerance to
+/// one side, at an end that of springback, and which elements cutting short does not explain either.
+/// O(k² + k · outlines) for k places beyond the limit, and O(nodes of the larger part) where a group is narrow.
 pub(super) fn local_difference(
     evidence: &PoseEvidence<'_>,
-    left: &[f64],
-    limit: f64,
+    fit: &Fit,
+    tolerance: &ShapeTolerance,
 ) -> Option<LocalDifference> {
     let contacts = &evidence.contacts;
-    let beyond: Vec<(&Contact, f64)> = contacts
-        .list
-        .iter()
-        .zip(left.iter().copied())
-        .filter(|(_, left)| left.abs() > limit)
-        .collect();
+    let places = contacts.list.iter().zip(fit.left.iter().copied());
+    let beyond = places.filter(|(_, left)| left.abs() > tolerance.remainder);
+    let beyond = beyond.map(|(contact, left)| Apart {
+        contact,
+        left,
+        size: (contact.weight * contacts.nodes_per_place).sqrt(),
+    });
+    let beyond: Vec<Apart> = beyond.collect();
     if beyond.len() < LEAST_PLACES {
         return None;
     }
-    let size = |contact: &Contact| (contact.weight * contacts.nodes_per_place).sqrt();
     let outlines = outlines(evidence);
-    let is_inside = |group: &[usize]| {
-        group.iter().all(|&place| {
-            let contact = beyond[place].0;
-            let far = FROM_OUTLINE * size(contact);
-            let is_far = |at: &Point3| (at - contact.point).norm_squared() > far * far;
-            outlines.iter().all(is_far)
-        })
-    };
-    let (source, target, scale) = (evidence.source, evidence.target, evidence.pose.scale);
-    let narrow = LEAST_WIDTH
-        * if is_source_smaller(source, target, scale) {
-            target.measures().mean_edge_length
-        } else {
-            source.measures().mean_edge_length * scale
+    let groups = groups(&beyond).into_iter();
+    let groups = groups.filter(|group| group.places.len() >= LEAST_PLACES);
+    let found = groups.filter_map(|group| {
+        let worst = group
+            .places
+            .iter()
+            .max_by(|a, b| a.left.abs().total_cmp(&b.left.abs()))?;
+        let is_end = group.is_end(&outlines);
+        let difference = LocalDifference {
+            by: worst.left.abs(),
+            limit: if is_end {
+                tolerance.springback
+            } else {
+                tolerance.remainder
+            },
+            at: worst.contact.point,
+            is_end,
         };
-    let is_wide = |group: &[usize]| {
-        let places = || group.iter().map(|&place| beyond[place].0);
-        let area: f64 = places().map(|contact| size(contact).powi(2)).sum();
-        let sum: Vector3 = places().map(|contact| contact.point.coords).sum();
-        let middle = Point3::from(sum / group.len() as f64);
-        let arm = |contact: &Contact| (contact.point - middle).norm();
-        let length = 2.0 * places().map(arm).fold(0.0, f64::max);
-        area >= narrow * length
-    };
-    let groups = groups(&beyond, size);
-    let inside = groups
-        .into_iter()
-        .filter(|group| group.len() >= LEAST_PLACES && is_wide(group) && is_inside(group));
-    let largest_of = |group: Vec<usize>| {
-        let places = group.into_iter().map(|place| beyond[place]);
-        places.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
-    };
-    let worst = inside
-        .filter_map(largest_of)
-        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-    Some(LocalDifference {
-        by: worst.1.abs(),
-        at: worst.0.point,
-    })
+        (difference.by > difference.limit).then_some((group, difference))
+    });
+    let narrow = LEAST_WIDTH * edge_measured_against(evidence);
+    let (mut found, slim): (Vec<_>, Vec<_>) = found.partition(|(group, _)| group.width() >= narrow);
+    found.extend(seen_by_the_larger(evidence, fit, tolerance.remainder, slim));
+    let found = found.into_iter().map(|(_, difference)| difference);
+    found.max_by(|a, b| a.by.total_cmp(&b.by))
+}
+
+/// Mean edge of the larger part's mesh.
+fn edge_measured_against(evidence: &PoseEvidence<'_>) -> f64 {
+    let (source, target, scale) = (evidence.source, evidence.target, evidence.pose.scale);
+    if is_source_smaller(source, target, scale) {
+        target.measures().mean_edge_length
+    } else {
+        source.measures().mean_edge_length * scale
+    }
+}
+
+/// Those of the groups where nodes of the larger part lie apart to the same side too. Nodes lie on the sheet and
+/// facets cut it short, so that of one sheet the nodes of each part would lie in front of the other's facets.
+fn seen_by_the_larger<'a, 'b>(
+    evidence: &PoseEvidence<'_>,
+    fit: &Fit,
+    limit: f64,
+    mut found: Vec<(Group<'a, 'b>, LocalDifference)>,
+) -> Vec<(Group<'a, 'b>, LocalDifference)> {
+    if found.is_empty() {
+        return found;
+    }
+    let nodes = evidence.of_larger(|at| {
+        found
+            .iter()
+            .any(|(group, _)| group.has_beside(at, |_| true))
+    });
+    let nodes = nodes.iter().map(|node| {
+        let left = fit.left_at(node, &evidence.contacts);
+        (node.point, left)
+    });
+    let nodes: Vec<(Point3, f64)> = nodes.filter(|(_, left)| left.abs() > limit).collect();
+    found.retain(|(group, _)| {
+        let is_alike =
+            |(at, left): &&(Point3, f64)| group.has_beside(at, |place| left * place.left > 0.0);
+        nodes.iter().filter(is_alike).count() >= LEAST_PLACES
+    });
+    found
+}
+
+impl<'a, 'b> Group<'a, 'b> {
+    fn new(places: Vec<&'a Apart<'b>>) -> Self {
+        let (mut low, mut high) = (
+            Point3::from([f64::INFINITY; 3]),
+            Point3::from([f64::NEG_INFINITY; 3]),
+        );
+        for place in &places {
+            let (at, near) = (place.contact.point, Vector3::repeat(BESIDE * place.size));
+            low = low.inf(&(at - near));
+            high = high.sup(&(at + near));
+        }
+        Self { places, low, high }
+    }
+
+    /// Whether a point lies beside a place of the group that `is_asked` accepts.
+    fn has_beside(&self, at: &Point3, is_asked: impl Fn(&Apart) -> bool) -> bool {
+        *at >= self.low
+            && *at <= self.high
+            && self
+                .places
+                .iter()
+                .any(|place| place.is_beside(at) && is_asked(place))
+    }
+
+    /// Whether it is an end of a part rather than a place in the middle or a bead that runs out at an outline.
+    fn is_end(&self, outlines: &[Point3]) -> bool {
+        let (mut along, mut inward) = (0.0_f64, 0.0_f64);
+        for place in &self.places {
+            let to = |at: &Point3| (at - place.contact.point).norm_squared();
+            let distance = outlines.iter().map(to).fold(f64::INFINITY, f64::min).sqrt();
+            if distance <= place.size {
+                along += place.size;
+            }
+            inward = inward.max(distance);
+        }
+        along > LEAST_OF_END * inward
+    }
+
+    /// Mean width of what the places stand for.
+    fn width(&self) -> f64 {
+        let area: f64 = self.places.iter().map(|place| place.size.powi(2)).sum();
+        let points = || self.places.iter().map(|place| place.contact.point);
+        let sum: Vector3 = points().map(|point| point.coords).sum();
+        let middle = Point3::from(sum / self.places.len() as f64);
+        let arms = points().map(|point| (point - middle).norm());
+        area / (2.0 * arms.fold(0.0, f64::max))
+    }
 }
 
 /// Places that lie beside each other and differ to the same side, group by group.
-fn groups(places: &[(&Contact, f64)], size: impl Fn(&Contact) -> f64) -> Vec<Vec<usize>> {
-    let mut open: Vec<usize> = (0..places.len()).collect();
+fn groups<'a, 'b>(places: &'a [Apart<'b>]) -> Vec<Group<'a, 'b>> {
+    let mut open: Vec<&Apart> = places.iter().collect();
     let mut groups = Vec::new();
     while let Some(first) = open.pop() {
         let mut group = vec![first];
         let mut done = 0;
         while let Some(&place) = group.get(done) {
-            let (contact, left) = places[place];
-            open.retain(|&other| {
-                let (there, left_there) = places[other];
-                let near = BESIDE * size(contact).max(size(there));
-                let is_beside = left.signum() == left_there.signum()
-                    && (there.point - contact.point).norm_squared() <= near * near;
+            open.retain(|&there| {
+                let near = BESIDE * place.size.max(there.size);
+                let apart = there.contact.point - place.contact.point;
+                let is_beside = place.left.signum() == there.left.signum()
+                    && apart.norm_squared() <= near * near;
                 if is_beside {
-                    group.push(other);
+                    group.push(there);
                 }
                 !is_beside
             });
             done += 1;
         }
-        groups.push(group);
+        groups.push(Group::new(group));
     }
     groups
 }

@@ -163,6 +163,42 @@ fn a_bead_that_one_part_lacks_is_told_with_its_place() {
 }
 
 #[test]
+fn a_bead_narrower_than_the_elements_can_show_is_told_where_both_meshes_say_so() {
+    let height =
+        |x: f64, y: f64| 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
+    // 4 mm high, 16 mm wide and 200 mm long.
+    let beaded = |x: f64, y: f64| {
+        let across = ((y - 51.0) / 8.0).abs().min(1.0);
+        let along = ((x - 40.0) / 100.0).abs();
+        let end = ((1.2 - along) / 0.2).clamp(0.0, 1.0);
+        height(x, y) + 2.0 * (1.0 + (PI * across).cos()) * end
+    };
+    let mesh = |n: usize, height: &dyn Fn(f64, f64) -> f64| sheet(n, [0.0, 0.0], 1.0, height);
+    let (coarse, fine) = (mesh(80, &height), mesh(148, &height));
+    let (coarse_beaded, fine_beaded) = (mesh(77, &beaded), mesh(140, &beaded));
+    for [source, target] in [
+        [&fine_beaded, &coarse],
+        [&coarse, &fine_beaded],
+        [&coarse_beaded, &fine],
+        [&coarse_beaded, &coarse],
+    ] {
+        let shape = statement(source, target);
+        assert!(
+            matches!(shape.reasons[..], [ShapeReason::Local { .. }]),
+            "{shape:?}"
+        );
+    }
+    // Elements of 6 and of 14 mm cut the bead short, and do not take it away.
+    for n in [80, 34] {
+        let cut_short = mesh(n, &beaded);
+        for [source, target] in [[&cut_short, &fine_beaded], [&fine_beaded, &cut_short]] {
+            let shape = statement(source, target);
+            assert!(shape.reasons.is_empty(), "{n}: {shape:?}");
+        }
+    }
+}
+
+#[test]
 fn noise_and_a_bent_corner_are_no_beads() {
     let height =
         |x: f64, y: f64| 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
