@@ -26,6 +26,7 @@ mod options;
 mod patch;
 mod points;
 mod rule;
+mod shared;
 mod shells;
 mod source;
 mod target;

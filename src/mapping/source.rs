@@ -10,6 +10,7 @@ use super::links::{Links, Neighbours};
 use super::options::MapOptions;
 use super::patch::{Patch, is_weld_line};
 use super::rule::LayerRule;
+use super::shared::ON_EDGE;
 use super::shells::ShellMesh;
 use super::target::Facing;
 use crate::geometry::{Point3, Similarity, Vector3};
@@ -298,15 +299,15 @@ impl<'a> PreparedSource<'a> {
         let first = !filter.facing.takes(false);
         let hit = ask(first, max_distance);
         if first || !filter.facing.takes(true) {
-            return hit.map(|hit| (hit.triangle, self.source_point(&hit, first)));
+            return hit.map(|hit| (hit.triangle, self.source_point(&hit, first, filter)));
         }
         let reach = hit.map_or(max_distance, |hit| hit.distance_sq.sqrt());
         let flipped = ask(true, reach);
         let is_nearer =
             |other: &SurfaceHit| hit.is_none_or(|hit| other.distance_sq < hit.distance_sq);
         match (flipped.filter(is_nearer), hit) {
-            (Some(hit), _) => Some((hit.triangle, self.source_point(&hit, true))),
-            (None, Some(hit)) => Some((hit.triangle, self.source_point(&hit, false))),
+            (Some(hit), _) => Some((hit.triangle, self.source_point(&hit, true, filter))),
+            (None, Some(hit)) => Some((hit.triangle, self.source_point(&hit, false, filter))),
             (None, None) => None,
         }
     }
@@ -337,47 +338,47 @@ impl<'a> PreparedSource<'a> {
         hits.map(|hit| hit.map(|hit| (self.triangle_element[hit.triangle as usize], hit.distance)))
     }
 
-    fn source_point(&self, hit: &SurfaceHit, is_flipped: bool) -> SourcePoint {
+    fn source_point(
+        &self,
+        hit: &SurfaceHit,
+        is_flipped: bool,
+        filter: &PartnerFilter,
+    ) -> SourcePoint {
         let triangle = hit.triangle as usize;
-        let element = self.triangle_element[triangle];
+        let own = self.triangle_element[triangle];
         let nodes = &self.bvh.mesh().triangles()[triangle];
-        let corners = self.mesh.corners()[element as usize];
         let is_on_border = match hit.feature {
             Feature::Face => false,
             Feature::Edge(edge) => {
                 let ends = [nodes[edge as usize], nodes[(edge as usize + 1) % 3]];
-                self.links.is_border_edge(element as usize, &corners, ends)
+                let corners = &self.mesh.corners()[own as usize];
+                self.links.is_border_edge(own as usize, corners, ends)
             }
             Feature::Vertex(corner) => self.links.is_border_node(nodes[corner as usize]),
         };
-        let is_uneven = self
-            .is_uneven
-            .get(element as usize)
-            .copied()
-            .unwrap_or(false);
+        let corners = || -> [(Point3, f64); 3] {
+            std::array::from_fn(|i| {
+                let position = self.mesh.positions()[nodes[i] as usize];
+                (position, hit.barycentric[i])
+            })
+        };
+        let (element, is_flipped) = if hit.barycentric.iter().all(|weight| *weight > ON_EDGE) {
+            (own, is_flipped)
+        } else {
+            self.lowest_sharing((own, is_flipped), &corners(), filter)
+        };
+        let is_uneven = self.is_uneven.get(element as usize);
         SourcePoint {
             element,
             point: hit.point,
             distance_sq: hit.distance_sq,
             is_on_border,
             is_flipped,
-            uneven_thickness: if is_uneven {
-                self.interpolated_thickness(hit, element)
-            } else {
-                f64::NAN
+            uneven_thickness: match is_uneven {
+                Some(true) => self.thickness_between(element, &corners()),
+                _ => f64::NAN,
             },
         }
-    }
-
-    fn interpolated_thickness(&self, hit: &SurfaceHit, element: u32) -> f64 {
-        let nodes = self.bvh.mesh().triangles()[hit.triangle as usize];
-        let corners = self.mesh.corners()[element as usize];
-        let values = self.part.thickness[element as usize];
-        let at = |node: u32| {
-            let corner = corners.iter().position(|&c| c == node);
-            corner.map_or(f64::NAN, |corner| values[corner])
-        };
-        (0..3).map(|i| hit.barycentric[i] * at(nodes[i])).sum()
     }
 }
 
