@@ -9,6 +9,7 @@
 //! Second order in the element size for smooth fields, exact for constants; the mean over the part
 //! is kept to a few hundredths of a percent (`tests/core/mapping.rs`).
 
+mod balance;
 mod blend;
 mod checks;
 mod corners;
@@ -32,6 +33,7 @@ mod source;
 mod target;
 mod uniqueness;
 
+pub use balance::ForceBalance;
 pub use checks::{Distribution, Histogram, MapBack, distribution, histogram_distance, map_back};
 pub use error::MappingError;
 pub use history::{LawGap, LayerHistory, MappedHistory, SourceHistory};
