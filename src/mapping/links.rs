@@ -285,6 +285,11 @@ impl Neighbours {
         self.is_reversed.get(a) != self.is_reversed.get(b)
     }
 
+    /// The cosine between the normals of two elements of one sheet as one side of it has them.
+    pub fn seen_cos(&self, a: usize, b: usize, cos: f64) -> f64 {
+        if self.are_opposed(a, b) { -cos } else { cos }
+    }
+
     /// Goes through each sheet from edge to edge. O(elements).
     fn find_reversed(
         &mut self,

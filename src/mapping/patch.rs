@@ -262,12 +262,7 @@ pub(super) fn spin([u, n1]: [&Vector3; 2], [x, y, n2]: &[Vector3; 3]) -> Spin {
 
 /// Cosine of the angle by which the sheet is bent between two neighbours, whichever side their normals are on.
 pub(super) fn cos_between(mesh: &ShellMesh, neighbours: &Neighbours, a: usize, b: usize) -> f64 {
-    let cos = mesh.normals()[a].dot(&mesh.normals()[b]);
-    if neighbours.are_opposed(a, b) {
-        -cos
-    } else {
-        cos
-    }
+    neighbours.seen_cos(a, b, mesh.normals()[a].dot(&mesh.normals()[b]))
 }
 
 /// True if the gauge of the sheet changes between two neighbours, or the part.
