@@ -36,7 +36,7 @@ pub use section::{
 };
 pub use similarity::{MatrixError, Similarity};
 pub use topology::{Topology, orient_consistently};
-pub use weld::{Welded, weld};
+pub use weld::{Welded, first_at_place, weld};
 pub use z_order::{z_order, z_order_for};
 
 /// A position in space.

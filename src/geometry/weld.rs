@@ -31,7 +31,7 @@ const ONE_SHARD: usize = 50_000;
 /// twice. A vertex joins the first one at its place, so vertices and triangles keep their order.
 /// O(vertices + triangles); a mesh with nothing to join is handed on without a copy.
 pub fn weld(mesh: TriMesh, monitor: &Monitor) -> Result<Welded, Cancelled> {
-    let first = first_at_place(&mesh, monitor)?;
+    let first = first_at_place(mesh.positions(), mesh.triangles(), monitor)?;
     let mut is_used = vec![false; mesh.n_vertices()];
     let mut triangle_of = Vec::with_capacity(mesh.n_triangles());
     for_chunks(mesh.n_triangles(), monitor, |range| {
@@ -77,13 +77,16 @@ pub fn weld(mesh: TriMesh, monitor: &Monitor) -> Result<Welded, Cancelled> {
     })
 }
 
-/// For every vertex the first one that a triangle names and that lies at the same place; [`NONE`]
-/// for vertices that no triangle names.
-fn first_at_place(mesh: &TriMesh, monitor: &Monitor) -> Result<Vec<u32>, Cancelled> {
-    let positions = mesh.positions();
+/// For every vertex the first one that a cell (a triangle, say) names and that lies at the same place;
+/// [`u32::MAX`] for vertices that no cell names. O(vertices + cells).
+pub fn first_at_place<const N: usize>(
+    positions: &[Point3],
+    cells: &[[u32; N]],
+    monitor: &Monitor,
+) -> Result<Vec<u32>, Cancelled> {
     let mut first = vec![NONE; positions.len()];
-    for_chunks(mesh.n_triangles(), monitor, |range| {
-        for &vertex in mesh.triangles()[range].iter().flatten() {
+    for_chunks(cells.len(), monitor, |range| {
+        for &vertex in cells[range].iter().flatten() {
             first[vertex as usize] = vertex;
         }
     })?;

@@ -1,11 +1,12 @@
 //! The values of a target element from those of its partners.
 
 use super::element::Context;
-use super::field::{Field, Fields, from_local, tensor_of};
+use super::field::{Field, Fields, Laid, from_local, tensor_of};
 use super::gather::Group;
 use super::layered::PLASTIC_STRAIN;
+use super::patch::{Seen, frame, spin};
 use super::source::PreparedSource;
-use crate::geometry::tensor::{Turn, normal_component, smallest_rotation};
+use crate::geometry::tensor::{Turn, normal_component};
 use crate::geometry::{Matrix3, Point3, Vector3};
 
 /// A stress component along the normal below this share of the stress is rounding.
@@ -24,8 +25,8 @@ struct Share<'a> {
     slot: usize,
     /// Area-weighted sum of places in its tangent plane.
     offset: [f64; 2],
-    /// From the source element's frame into the target element's plane, in the target's axes.
-    turn: Turn,
+    /// From the source element's frame into that of the target element.
+    laid: Laid,
 }
 
 /// The weighted mean of the partners' values, turned into the element's tangent plane.
@@ -33,6 +34,8 @@ pub(super) struct Blend<'a> {
     context: &'a Context<'a>,
     element: usize,
     is_copy: bool,
+    /// Two directions in the plane of the element, and its normal: tensors are added in this frame.
+    frame: [Vector3; 3],
     shares: Vec<Share<'a>>,
 }
 
@@ -46,11 +49,12 @@ impl<'a> Blend<'a> {
         is_copy: bool,
         fields_of: impl Fn(&Group) -> &'a Fields,
     ) -> Self {
-        let shares = groups.iter().filter_map(|group| {
+        let own_frame = frame(&context.target.mesh, Seen::from_above(element as u32));
+        let mut shares = Vec::with_capacity(groups.len());
+        shares.extend(groups.iter().filter_map(|group| {
             let fields = fields_of(group);
             let slot = fields.patch.slot(group.element)?;
             let source = &context.sources[group.source as usize];
-            let out_of_frame = Matrix3::from_columns(fields.patch.frame(slot));
             Some(Share {
                 group,
                 fields,
@@ -58,14 +62,15 @@ impl<'a> Blend<'a> {
                 offset: fields
                     .patch
                     .in_plane(slot, &source.in_source(&group.offset)),
-                turn: Turn::new(&(turn(context, element, group) * out_of_frame)),
+                laid: laid(source, fields.patch.frame(slot), group, &own_frame),
             })
-        });
+        }));
         Self {
             context,
             element,
             is_copy,
-            shares: shares.collect(),
+            frame: own_frame,
+            shares,
         }
     }
 
@@ -219,8 +224,8 @@ impl<'a> Blend<'a> {
                         layer
                     };
                     let mut value = field.weighted(share.slot, from, weight, &offset);
-                    let turned = from_local(&tensor_of(&value), &share.turn);
-                    value[..6].copy_from_slice(&turned);
+                    let laid = share.laid.apply(tensor_of(&value));
+                    value[..6].copy_from_slice(&laid);
                     let sum = &mut values[layer * n_plane + plane];
                     for (sum, value) in sum.iter_mut().zip(value) {
                         *sum += value;
@@ -228,19 +233,31 @@ impl<'a> Blend<'a> {
                 }
             }
         }
-        values.iter_mut().for_each(drop_dust);
+        let out_of_frame = Turn::new(&Matrix3::from_columns(&self.frame));
+        for value in values {
+            let turned = from_local(&tensor_of(value), &out_of_frame);
+            value[..6].copy_from_slice(&turned);
+            drop_dust(value);
+        }
     }
 }
 
 /// The pose's rotation and after it the smallest one from the source element's tangent plane into the
-/// target element's.
-fn turn(context: &Context<'_>, element: usize, group: &Group) -> Matrix3 {
-    let source = &context.sources[group.source as usize];
+/// target element's, whose frame is `into`.
+fn laid(
+    source: &PreparedSource<'_>,
+    [along, ..]: &[Vector3; 3],
+    group: &Group,
+    into: &[Vector3; 3],
+) -> Laid {
     let normal = source.mesh.normals()[group.element as usize];
     let side = if group.is_flipped { -normal } else { normal };
-    let into_plane = smallest_rotation(&side, &context.target.mesh.normals()[element]);
-    let pose = source.pose.rotation;
-    into_plane.map_or(pose, |into_plane| into_plane * pose)
+    let along = source.pose.rotation * along;
+    Laid::new(
+        spin([&along, &side], into),
+        source.is_mirrored,
+        group.is_flipped,
+    )
 }
 
 /// Sets components of the tensor to zero that turning it there and back has left.

@@ -44,6 +44,44 @@ fn spun([mean, half, zz, xy, yz, zx]: Tensor, spin: &Spin) -> Tensor {
     ]
 }
 
+/// How the frame of a source element lies in that of a target element, once it has been laid into its plane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Laid {
+    /// Of its first direction.
+    spin: Spin,
+    /// −1 where its second direction lies on the other side of the first, because of a mirror or a flip.
+    second: f64,
+    /// −1 where the normals are opposite.
+    normal: f64,
+}
+
+impl Laid {
+    /// `spin` takes the first direction along; what a mirror and a flip do to the others comes before.
+    pub fn new(spin: Spin, is_mirrored: bool, is_flipped: bool) -> Self {
+        let sign = |is_negative| if is_negative { -1.0 } else { 1.0 };
+        Self {
+            spin,
+            second: sign(is_mirrored != is_flipped),
+            normal: sign(is_flipped),
+        }
+    }
+
+    /// A tensor in the frame of the source element in that of the target element.
+    #[inline]
+    pub fn apply(&self, [mean, half, zz, xy, yz, zx]: Tensor) -> Tensor {
+        let (second, normal) = (self.second, self.normal);
+        let mirrored = [
+            mean,
+            half,
+            zz,
+            second * xy,
+            second * normal * yz,
+            normal * zx,
+        ];
+        spun(mirrored, &self.spin)
+    }
+}
+
 /// Square of the von Mises equivalent.
 #[inline]
 fn von_mises_sq([mean, half, zz, xy, yz, zx]: &Tensor) -> f64 {

@@ -119,7 +119,6 @@ impl Context<'_> {
         centre: Option<&Centre>,
         search: &mut Search,
     ) -> Found {
-        let mut found = Found::default();
         let mesh = &self.target.mesh;
         let corners = mesh.corner_points(element);
         let order = self.order(element, centre);
@@ -130,6 +129,10 @@ impl Context<'_> {
         } else {
             points.extend(self.points.quad(&corners, order));
         }
+        let mut found = Found {
+            groups: Vec::with_capacity(points.len()),
+            ..Found::default()
+        };
         let centre = mesh.centroids()[element];
         let radius_sq = points.iter().fold(0.0, |radius_sq: f64, point| {
             radius_sq.max((point.position - centre).norm_squared())

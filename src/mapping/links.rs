@@ -193,7 +193,8 @@ impl Links {
 /// The edges of an element by the places of their corners; a triangle has three.
 fn edges(corners: &[u32; 4]) -> impl Iterator<Item = [usize; 2]> + use<> {
     let n = if corners[2] == corners[3] { 3 } else { 4 };
-    (0..n).map(move |i| [i, (i + 1) % n])
+    // Without a division, which would take most of the time.
+    (0..n).map(move |i| [i, if i + 1 < n { i + 1 } else { 0 }])
 }
 
 /// Links of some elements that follow each other.
@@ -282,6 +283,11 @@ impl Neighbours {
     /// does not count.
     pub fn are_opposed(&self, a: usize, b: usize) -> bool {
         self.is_reversed.get(a) != self.is_reversed.get(b)
+    }
+
+    /// The cosine between the normals of two elements of one sheet as one side of it has them.
+    pub fn seen_cos(&self, a: usize, b: usize, cos: f64) -> f64 {
+        if self.are_opposed(a, b) { -cos } else { cos }
     }
 
     /// Goes through each sheet from edge to edge. O(elements).

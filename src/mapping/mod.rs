@@ -9,6 +9,7 @@
 //! Second order in the element size for smooth fields, exact for constants; the mean over the part
 //! is kept to a few hundredths of a percent (`tests/core/mapping.rs`).
 
+mod balance;
 mod blend;
 mod checks;
 mod corners;
@@ -26,11 +27,13 @@ mod options;
 mod patch;
 mod points;
 mod rule;
+mod shared;
 mod shells;
 mod source;
 mod target;
 mod uniqueness;
 
+pub use balance::ForceBalance;
 pub use checks::{Distribution, Histogram, MapBack, distribution, histogram_distance, map_back};
 pub use error::MappingError;
 pub use history::{LawGap, LayerHistory, MappedHistory, SourceHistory};
@@ -222,8 +225,7 @@ fn facing(
     }
     // A thousand elements spread over the mesh tell the sign of all.
     let step = (target.mesh.len() / 1000).max(1);
-    let (mut same, mut opposite) = (0.0, 0.0);
-    for element in (0..target.mesh.len()).step_by(step) {
+    let ask = |element: usize| {
         let filter = PartnerFilter {
             normal: target.mesh.normals()[element],
             min_cos: options.max_angle_deg.to_radians().cos(),
@@ -232,13 +234,17 @@ fn facing(
         let own = target.mesh.size(element).max(source_size);
         let reach = options.max_distance.unwrap_or(own);
         let centre = target.mesh.centroids()[element];
-        if let Some((_, found)) = source.closest(&centre, &filter, reach, None) {
-            let area = target.mesh.areas()[element];
-            if found.is_flipped {
-                opposite += area;
-            } else {
-                same += area;
-            }
+        let (_, found) = source.closest(&centre, &filter, reach, None)?;
+        Some((target.mesh.areas()[element], found.is_flipped))
+    };
+    let asked = (0..target.mesh.len().div_ceil(step)).into_par_iter();
+    let found: Vec<Option<(f64, bool)>> = asked.map(|number| ask(number * step)).collect();
+    let (mut same, mut opposite) = (0.0, 0.0);
+    for (area, is_flipped) in found.into_iter().flatten() {
+        if is_flipped {
+            opposite += area;
+        } else {
+            same += area;
         }
     }
     let all = same + opposite;
@@ -285,12 +291,16 @@ fn assemble(
         place[element as usize] = at;
     }
     let places = || place.iter().map(|at| (&chunks[at / CHUNK], at % CHUNK));
-    let mut elements: Vec<ElementReport> = places().map(|(chunk, at)| chunk.reports[at]).collect();
+    let reports =
+        || -> Vec<ElementReport> { places().map(|(chunk, at)| chunk.reports[at]).collect() };
     monitor.check()?;
     let wanted = context.options.quantities;
-    let (states, strains) = rayon::join(
+    let (states, (strains, mut elements)) = rayon::join(
         || MappedLayers::of_elements(places().map(|(chunk, at)| chunk.states.of(at))),
-        || MappedLayers::of_elements(places().map(|(chunk, at)| chunk.strains.of(at))),
+        || {
+            let strains = places().map(|(chunk, at)| chunk.strains.of(at));
+            (MappedLayers::of_elements(strains), reports())
+        },
     );
     monitor.check()?;
     let median_offset = median_offset(&elements);

@@ -44,22 +44,24 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    fn from_above(element: u32) -> Self {
+    /// From the side that its normal points to.
+    pub fn from_above(element: u32) -> Self {
         Self {
             element,
             from_below: false,
         }
     }
 
-    fn key(self) -> u64 {
-        u64::from(self.element) << 1 | u64::from(self.from_below)
+    /// A tree names two triangles of each element with 32 bits, so the topmost bit of an element's number is free.
+    fn key(self) -> u32 {
+        self.element << 1 | u32::from(self.from_below)
     }
 }
 
 /// Elements numbered by slots: first those around which fields are fitted, then their neighbours.
 #[derive(Default)]
 pub(super) struct Patch {
-    slots: HashMap<u64, u32, BuildHasherDefault<Scatter>>,
+    slots: HashMap<u32, u32, BuildHasherDefault<Scatter>>,
     seen: Vec<Seen>,
     starts: Vec<u32>,
     links: Vec<Link>,
@@ -152,7 +154,10 @@ impl Patch {
             self.links.push(Link {
                 slot,
                 weight: [weight * x, weight * y],
-                spin: spin(&self.frames[slot as usize], &self.frames[own]),
+                spin: {
+                    let [along, _, normal] = &self.frames[slot as usize];
+                    spin([along, normal], &self.frames[own])
+                },
             });
         }
         let determinant = xx * yy - xy * xy;
@@ -219,19 +224,19 @@ impl Hasher for Scatter {
 
     fn write(&mut self, bytes: &[u8]) {
         for &byte in bytes {
-            self.write_u64(u64::from(byte));
+            self.write_u32(u32::from(byte));
         }
     }
 
-    fn write_u64(&mut self, number: u64) {
+    fn write_u32(&mut self, number: u32) {
         // Fibonacci hashing: both ends of the word are well mixed.
-        let mixed = (self.0 ^ number).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ u64::from(number)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         self.0 = mixed ^ (mixed >> 32);
     }
 }
 
 /// Two unit directions that span the tangent plane, and the normal on the side that sees it.
-fn frame(mesh: &ShellMesh, seen: Seen) -> [Vector3; 3] {
+pub(super) fn frame(mesh: &ShellMesh, seen: Seen) -> [Vector3; 3] {
     let normal = mesh.normals()[seen.element as usize];
     let normal = if seen.from_below { -normal } else { normal };
     let x = mesh.corner_points(seen.element as usize);
@@ -242,10 +247,9 @@ fn frame(mesh: &ShellMesh, seen: Seen) -> [Vector3; 3] {
     [along, normal.cross(&along), normal]
 }
 
-/// Where the first direction of `from` lies in the plane of `to` after the smallest rotation that takes
-/// normal to normal: u − (n₂ · u) / (1 + n₁ · n₂) · (n₁ + n₂) for any u across n₁.
-fn spin(from: &[Vector3; 3], to: &[Vector3; 3]) -> Spin {
-    let ([u, _, n1], [x, y, n2]) = (from, to);
+/// Where the direction u across the normal n₁ lies in the plane of `to` after the smallest rotation that takes
+/// normal to normal: u − (n₂ · u) / (1 + n₁ · n₂) · (n₁ + n₂).
+pub(super) fn spin([u, n1]: [&Vector3; 2], [x, y, n2]: &[Vector3; 3]) -> Spin {
     let fold = n2.dot(u) / (1.0 + n1.dot(n2));
     let (cos, sin) = (x.dot(u) - fold * x.dot(n1), y.dot(u) - fold * y.dot(n1));
     Spin {
@@ -258,12 +262,7 @@ fn spin(from: &[Vector3; 3], to: &[Vector3; 3]) -> Spin {
 
 /// Cosine of the angle by which the sheet is bent between two neighbours, whichever side their normals are on.
 pub(super) fn cos_between(mesh: &ShellMesh, neighbours: &Neighbours, a: usize, b: usize) -> f64 {
-    let cos = mesh.normals()[a].dot(&mesh.normals()[b]);
-    if neighbours.are_opposed(a, b) {
-        -cos
-    } else {
-        cos
-    }
+    neighbours.seen_cos(a, b, mesh.normals()[a].dot(&mesh.normals()[b]))
 }
 
 /// True if the gauge of the sheet changes between two neighbours, or the part.

@@ -65,18 +65,21 @@ impl PointRules {
 
     /// The points of an element of four corners, `order` along each edge.
     pub fn quad(&self, corners: &[Point3; 4], order: usize) -> impl Iterator<Item = ElementPoint> {
-        let corners = *corners;
+        let [a, b, c, d] = corners.map(|corner| corner.coords);
+        // Bilinear in ξ and η: what stands at 1, ξ, η and ξη.
+        let [at_one, at_xi, at_eta, at_both] = [
+            a + b + c + d,
+            (b - a) + (c - d),
+            (d - a) + (c - b),
+            (a - b) + (c - d),
+        ]
+        .map(|sum: Vector3| sum * 0.25);
         let rule = &self.quads[order.clamp(1, MAX_ORDER) - 1];
         rule.iter().map(move |&([xi, eta], weight)| {
-            let (a, b) = (1.0 - xi, 1.0 + xi);
-            let (c, d) = (1.0 - eta, 1.0 + eta);
-            let sum = |w: [f64; 4]| -> Vector3 {
-                (0..4).map(|i| corners[i].coords * w[i]).sum::<Vector3>() * 0.25
-            };
-            let along_xi = sum([-c, c, d, -d]);
-            let along_eta = sum([-a, -b, b, a]);
+            let along_xi = at_xi + at_both * eta;
+            let along_eta = at_eta + at_both * xi;
             ElementPoint {
-                position: Point3::from(sum([a * c, b * c, b * d, a * d])),
+                position: Point3::from(at_one + at_xi * xi + along_eta * eta),
                 // The square has an area of 4, the weights sum to 1.
                 area: 4.0 * weight * along_xi.cross(&along_eta).norm(),
                 quadrant: match (xi > 0.0, eta > 0.0) {

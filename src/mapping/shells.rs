@@ -3,7 +3,7 @@
 
 use super::links::{Links, Neighbours};
 use crate::geometry::chunks::for_chunks;
-use crate::geometry::{MeshError, Point3, Similarity, TriMesh, Vector3, weld};
+use crate::geometry::{MeshError, Point3, Similarity, TriMesh, Vector3, first_at_place};
 use crate::monitor::{Cancelled, Monitor};
 
 /// Shells of one sheet, three or four corners each; a triangle repeats its third corner.
@@ -183,16 +183,29 @@ impl ShellMesh {
     }
 
     /// For each node, the first node at the same position: meshes whose parts do not share nodes
-    /// then have no border between them.
+    /// then have no border between them. [`u32::MAX`] for nodes that no element names, or only elements that are
+    /// a line or a point.
     pub fn merged_nodes(&self, monitor: &Monitor) -> Result<Vec<u32>, Cancelled> {
-        let all = self.corners.iter();
-        let halves = all
-            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-            .collect();
-        monitor.check()?;
-        let mesh = TriMesh::new(self.positions.clone(), halves);
-        let mesh = mesh.expect("corners and nodes were checked");
-        Ok(weld(mesh, monitor)?.vertex_of)
+        let mut merged = first_at_place(&self.positions, &self.corners, monitor)?;
+        let mut is_used = vec![false; merged.len()];
+        for_chunks(self.len(), monitor, |range| {
+            for corners in &self.corners[range] {
+                let [a, b, c, d] = corners.map(|node| merged[node as usize]);
+                for [a, b, c] in [[a, b, c], [a, c, d]] {
+                    if a != b && b != c && c != a {
+                        for node in [a, b, c] {
+                            is_used[node as usize] = true;
+                        }
+                    }
+                }
+            }
+        })?;
+        for first in &mut merged {
+            if !is_used.get(*first as usize).is_some_and(|&is_used| is_used) {
+                *first = u32::MAX;
+            }
+        }
+        Ok(merged)
     }
 
     /// The elements that share at least one merged node with each element, without itself.

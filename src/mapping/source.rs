@@ -10,6 +10,7 @@ use super::links::{Links, Neighbours};
 use super::options::MapOptions;
 use super::patch::{Patch, is_weld_line};
 use super::rule::LayerRule;
+use super::shared::ON_EDGE;
 use super::shells::ShellMesh;
 use super::target::Facing;
 use crate::geometry::{Point3, Similarity, Vector3};
@@ -79,6 +80,8 @@ pub(super) struct PreparedSource<'a> {
     part: &'a SourcePart,
     /// Fields stay in the source's frame until they reach an element of the target.
     pub pose: Similarity,
+    /// The pose mirrors.
+    pub is_mirrored: bool,
     pub mesh: ShellMesh,
     bvh: Bvh,
     triangle_element: Vec<u32>,
@@ -109,17 +112,20 @@ impl<'a> PreparedSource<'a> {
     ) -> Result<Self, Cancelled> {
         let mesh = part.mesh.moved(target_from_source);
         monitor.check()?;
-        let (triangles, triangle_element) = mesh.triangles(monitor)?;
         let thickness: Vec<f64> = part.thickness.iter().map(mean_thickness).collect();
-        let (bvh, of_links) = rayon::join(
-            || Bvh::build_for(triangles.into(), monitor),
+        let (of_tree, of_links) = rayon::join(
+            || {
+                let (triangles, triangle_element) = mesh.triangles(monitor)?;
+                let bvh = Bvh::build_for(triangles.into(), monitor)?;
+                Ok((bvh, triangle_element))
+            },
             || {
                 let links = mesh.links(monitor)?;
                 let gauge = gauges(&mesh, &links.neighbours, &thickness, monitor)?;
                 Ok((links, gauge))
             },
         );
-        let (bvh, (links, gauge)) = (bvh?, of_links?);
+        let ((bvh, triangle_element), (links, gauge)) = (of_tree?, of_links?);
         monitor.check()?;
         let states = if options.quantities.needs_states() && part.states.n_present() > 0 {
             let at = |rule| states_at(part, rule, options.stress_balance());
@@ -148,6 +154,7 @@ impl<'a> PreparedSource<'a> {
         Ok(Self {
             part,
             pose: *target_from_source,
+            is_mirrored: target_from_source.rotation.determinant() < 0.0,
             wants_thickness: options.quantities.thickness && thickness_range.0.is_finite(),
             is_uneven: part.thickness.iter().map(is_uneven).collect(),
             thickness,
@@ -289,20 +296,20 @@ impl<'a> PreparedSource<'a> {
         max_distance: f64,
         ask: impl Fn(bool, f64) -> Option<SurfaceHit>,
     ) -> Option<(u32, SourcePoint)> {
-        let mut best: Option<(SurfaceHit, bool)> = None;
-        for is_flipped in [false, true] {
-            if !filter.facing.takes(is_flipped) {
-                continue;
-            }
-            let reach = best.map_or(max_distance, |(hit, _)| hit.distance_sq.sqrt());
-            let hit = ask(is_flipped, reach);
-            let is_nearer =
-                |hit: &SurfaceHit| best.is_none_or(|(best, _)| hit.distance_sq < best.distance_sq);
-            if let Some(hit) = hit.filter(is_nearer) {
-                best = Some((hit, is_flipped));
-            }
+        let first = !filter.facing.takes(false);
+        let hit = ask(first, max_distance);
+        if first || !filter.facing.takes(true) {
+            return hit.map(|hit| (hit.triangle, self.source_point(&hit, first, filter)));
         }
-        best.map(|(hit, is_flipped)| (hit.triangle, self.source_point(&hit, is_flipped)))
+        let reach = hit.map_or(max_distance, |hit| hit.distance_sq.sqrt());
+        let flipped = ask(true, reach);
+        let is_nearer =
+            |other: &SurfaceHit| hit.is_none_or(|hit| other.distance_sq < hit.distance_sq);
+        match (flipped.filter(is_nearer), hit) {
+            (Some(hit), _) => Some((hit.triangle, self.source_point(&hit, true, filter))),
+            (None, Some(hit)) => Some((hit.triangle, self.source_point(&hit, false, filter))),
+            (None, None) => None,
+        }
     }
 
     /// Corner thicknesses of an element, as the part gives them.
@@ -316,53 +323,62 @@ impl<'a> PreparedSource<'a> {
         Some(hit.distance_sq.sqrt())
     }
 
-    /// The nearest element on the far side of `from` along `direction` within `reach`: a second sheet.
-    pub fn next_sheet(&self, from: &Point3, direction: &Vector3, reach: f64) -> Option<(u32, f64)> {
-        let hit = self.bvh.first_hit_within(from, direction, reach)?;
-        Some((self.triangle_element[hit.triangle as usize], hit.distance))
+    /// Along a unit `direction` from a place and the other way, the nearest element beyond a distance and within
+    /// `reach`, with its distance: a second sheet.
+    pub fn next_sheets(
+        &self,
+        from: &Point3,
+        direction: &Vector3,
+        beyond: [f64; 2],
+        reach: f64,
+    ) -> [Option<(u32, f64)>; 2] {
+        let hits = self
+            .bvh
+            .first_hits_both_ways(from, direction, beyond, reach);
+        hits.map(|hit| hit.map(|hit| (self.triangle_element[hit.triangle as usize], hit.distance)))
     }
 
-    fn source_point(&self, hit: &SurfaceHit, is_flipped: bool) -> SourcePoint {
+    fn source_point(
+        &self,
+        hit: &SurfaceHit,
+        is_flipped: bool,
+        filter: &PartnerFilter,
+    ) -> SourcePoint {
         let triangle = hit.triangle as usize;
-        let element = self.triangle_element[triangle];
+        let own = self.triangle_element[triangle];
         let nodes = &self.bvh.mesh().triangles()[triangle];
-        let corners = self.mesh.corners()[element as usize];
         let is_on_border = match hit.feature {
             Feature::Face => false,
             Feature::Edge(edge) => {
                 let ends = [nodes[edge as usize], nodes[(edge as usize + 1) % 3]];
-                self.links.is_border_edge(element as usize, &corners, ends)
+                let corners = &self.mesh.corners()[own as usize];
+                self.links.is_border_edge(own as usize, corners, ends)
             }
             Feature::Vertex(corner) => self.links.is_border_node(nodes[corner as usize]),
         };
-        let is_uneven = self
-            .is_uneven
-            .get(element as usize)
-            .copied()
-            .unwrap_or(false);
+        let corners = || -> [(Point3, f64); 3] {
+            std::array::from_fn(|i| {
+                let position = self.mesh.positions()[nodes[i] as usize];
+                (position, hit.barycentric[i])
+            })
+        };
+        let (element, is_flipped) = if hit.barycentric.iter().all(|weight| *weight > ON_EDGE) {
+            (own, is_flipped)
+        } else {
+            self.lowest_sharing((own, is_flipped), &corners(), filter)
+        };
+        let is_uneven = self.is_uneven.get(element as usize);
         SourcePoint {
             element,
             point: hit.point,
             distance_sq: hit.distance_sq,
             is_on_border,
             is_flipped,
-            uneven_thickness: if is_uneven {
-                self.interpolated_thickness(hit, element)
-            } else {
-                f64::NAN
+            uneven_thickness: match is_uneven {
+                Some(true) => self.thickness_between(element, &corners()),
+                _ => f64::NAN,
             },
         }
-    }
-
-    fn interpolated_thickness(&self, hit: &SurfaceHit, element: u32) -> f64 {
-        let nodes = self.bvh.mesh().triangles()[hit.triangle as usize];
-        let corners = self.mesh.corners()[element as usize];
-        let values = self.part.thickness[element as usize];
-        let at = |node: u32| {
-            let corner = corners.iter().position(|&c| c == node);
-            corner.map_or(f64::NAN, |corner| values[corner])
-        };
-        (0..3).map(|i| hit.barycentric[i] * at(nodes[i])).sum()
     }
 }
 

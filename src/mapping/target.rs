@@ -2,11 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use super::history::MappedHistory;
 use super::layered::PLASTIC_STRAIN;
 use super::options::Status;
 use super::rule::LayerRule;
 use super::shells::ShellMesh;
+
+/// Elements whose values one thread puts together at a time.
+const PIECE: usize = 4096;
 
 /// A crash part: its shells and the layers its elements want.
 #[derive(Debug, Clone)]
@@ -131,12 +136,34 @@ impl<const N: usize> Default for MappedLayers<N> {
 }
 
 impl<const N: usize> MappedLayers<N> {
-    /// The values of elements, in their order.
-    pub(super) fn of_elements<'a>(elements: impl Iterator<Item = &'a [[f64; N]]> + Clone) -> Self {
-        let n_values = elements.clone().map(<[_]>::len).sum();
-        let mut layers = Self::with_room(elements.size_hint().0, n_values);
-        elements.for_each(|values| layers.push(values));
-        layers
+    /// The values of elements, in their order, put together on all threads.
+    pub(super) fn of_elements<'a>(elements: impl Iterator<Item = &'a [[f64; N]]>) -> Self {
+        let elements: Vec<&[[f64; N]]> = elements.collect();
+        let mut starts = Vec::with_capacity(elements.len() + 1);
+        starts.push(0);
+        let mut n_values = 0;
+        starts.extend(elements.iter().map(|of_element| {
+            n_values += of_element.len() as u32;
+            n_values
+        }));
+        let mut values = vec![[0.0; N]; n_values as usize];
+        let mut rest = &mut values[..];
+        let mut pieces = Vec::with_capacity(elements.len().div_ceil(PIECE));
+        for of_piece in elements.chunks(PIECE) {
+            let n_values = of_piece.iter().map(|of_element| of_element.len()).sum();
+            let (piece, after) = rest.split_at_mut(n_values);
+            pieces.push((piece, of_piece));
+            rest = after;
+        }
+        pieces.into_par_iter().for_each(|(piece, of_piece)| {
+            let mut rest = piece;
+            for of_element in of_piece {
+                let (own, after) = rest.split_at_mut(of_element.len());
+                own.copy_from_slice(of_element);
+                rest = after;
+            }
+        });
+        Self { starts, values }
     }
 
     /// Room for that many elements with that many values in all.

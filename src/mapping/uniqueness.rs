@@ -15,18 +15,13 @@ impl Context<'_> {
         let first = centre.point.distance_sq.sqrt();
         let mut uniqueness = 1.0_f64;
         let step = 1e-6 * self.target.mesh.size(element);
-        for direction in [normal, -normal] {
-            // From just beyond the first sheet, or from the centre on the side where it does not lie: no
-            // compatible sheet is nearer than the first.
-            let along = (centre.point.point - from).dot(&direction);
-            let start = along.max(0.0) + step;
-            let origin = from + direction * start;
-            for (number, source) in self.sources.iter().enumerate() {
-                let found = source.next_sheet(&origin, &direction, reach - start);
-                let Some((other, distance)) = found else {
-                    continue;
-                };
-                let second = start + distance;
+        // From just beyond the first sheet, and from the centre on the side where it does not lie: no compatible
+        // sheet is nearer than the first.
+        let along = (centre.point.point - from).dot(&normal);
+        let beyond = [along, -along].map(|along| along.max(0.0) + step);
+        for (number, source) in self.sources.iter().enumerate() {
+            let found = source.next_sheets(&from, &normal, beyond, reach);
+            for (other, second) in found.into_iter().flatten() {
                 let partner = (centre.source as usize, centre.point.element);
                 if second >= reach
                     || second <= first + step

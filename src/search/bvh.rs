@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::Vec4;
+
 use super::pack::TrianglePack;
 use super::traverse::{Nearest, OUT_OF_SIGHT, Walk};
 use super::wide::{LocalFrame, Query, WideTree, box_around};
@@ -81,23 +83,17 @@ impl Bvh {
 
     /// Of the marked triangles of a leaf, those that a filter lets through.
     pub(super) fn admitted(&self, filter: &NormalFilter, pack: &TrianglePack, marked: u32) -> u32 {
-        let cos = pack.normal_cos(&Query::at(&filter.direction)).to_array();
-        let needles = pack.needles();
-        let mut admitted = marked;
-        for (slot, &cos) in cos.iter().enumerate() {
-            let bit = 1 << slot;
-            if marked & bit == 0 {
-                continue;
-            }
-            let doubt = cos - filter.min_cos as f32;
-            let accepted = if needles & bit != 0 || doubt.abs() <= COS_SLACK {
-                filter.accepts(&self.mesh, pack.id(slot) as usize)
-            } else {
-                doubt > 0.0
-            };
-            if !accepted {
-                admitted &= !bit;
-            }
+        let cos = pack.normal_cos(&Query::at(&filter.direction));
+        let beyond = cos - Vec4::splat(filter.min_cos as f32);
+        let slack = Vec4::splat(COS_SLACK);
+        let in_doubt = pack.needles() | beyond.abs().cmple(slack).bitmask();
+        let mut admitted = marked & !in_doubt & beyond.cmpgt(slack).bitmask();
+        let mut asked = marked & in_doubt;
+        while asked != 0 {
+            let slot = asked.trailing_zeros();
+            asked &= asked - 1;
+            let accepted = filter.accepts(&self.mesh, pack.id(slot as usize) as usize);
+            admitted |= u32::from(accepted) << slot;
         }
         admitted
     }

@@ -108,7 +108,7 @@ impl Bvh {
         let exact = |triangle| self.exact(query, max_distance, triangle);
         let limit = max_distance * self.frame.scale;
         let admit = |_: &TrianglePack, marked: u32| marked;
-        let walk = Walk::new(&self.tree, &local, limit, admit, exact);
+        let mut walk = Walk::new(&self.tree, &local, limit, admit, exact);
         let nearest = walk.run_over(&nearby.leaves);
         nearest.map(|nearest| SurfaceHit::on_triangle(nearest.id, nearest.found))
     }

@@ -4,6 +4,7 @@ use glam::Vec4;
 
 use super::Bvh;
 use super::ClosestPoint;
+use super::traverse::OUT_OF_SIGHT;
 use super::wide::{Link, Node};
 use crate::geometry::{Point3, Vector3};
 
@@ -77,6 +78,55 @@ impl Bvh {
         best
     }
 
+    /// [`Bvh::first_hit_within`] along the unit vector `direction` and the other way, each at a distance of at least
+    /// that of `beyond`; with one walk through the tree, which is half the work where both are short.
+    pub fn first_hits_both_ways(
+        &self,
+        origin: &Point3,
+        direction: &Vector3,
+        beyond: [f64; 2],
+        max_distance: f64,
+    ) -> [Option<RayHit>; 2] {
+        let start = origin - direction * max_distance;
+        let local = self.frame.to_local(&start);
+        let length = (2.0 * max_distance * self.frame.scale * (1.0 + 1e-6) + 1e-9) as f32;
+        // NaN counts as far away too.
+        if !(local.amax() <= OUT_OF_SIGHT && length.is_finite()) {
+            return [(direction, beyond[0]), (&-direction, beyond[1])].map(
+                |(direction, beyond)| {
+                    let start = origin + direction * beyond;
+                    let hit = self.first_hit_within(&start, direction, max_distance - beyond)?;
+                    Some(RayHit {
+                        distance: beyond + hit.distance,
+                        ..hit
+                    })
+                },
+            );
+        }
+        let slabs = Slabs::new(&local, direction);
+        let mut found = [None; 2];
+        let mut waiting: Vec<u64> = Vec::with_capacity(self.tree.stack_size);
+        waiting.extend(self.tree.root.map(|root| u64::from(root.0)));
+        while let Some(next) = waiting.pop() {
+            match Link(next as u32).leaf() {
+                Ok(leaf) => {
+                    for id in self.tree.packs[leaf].real_ids() {
+                        let Some(hit) = self.cross(origin, direction, id) else {
+                            continue;
+                        };
+                        let way = usize::from(hit.distance < 0.0);
+                        let distance = hit.distance.abs();
+                        if distance >= beyond[way] && distance <= max_distance {
+                            found[way] = nearer(found[way], Some(RayHit { distance, ..hit }));
+                        }
+                    }
+                }
+                Err(node) => slabs.enter(&self.tree.nodes[node], length, &mut waiting),
+            }
+        }
+        found
+    }
+
     /// The hit of a ray whose origin `f32` cannot hold: it begins beside the mesh instead, at a place that is
     /// counted from the mesh, because nothing of it would be left as a difference of the origin.
     fn hit_from_afar(
@@ -103,8 +153,14 @@ impl Bvh {
         })
     }
 
-    /// Where the ray meets one triangle (Möller and Trumbore 1997).
+    /// Where the ray meets one triangle.
     fn meet(&self, origin: &Point3, direction: &Vector3, triangle: u32) -> Option<RayHit> {
+        let hit = self.cross(origin, direction, triangle);
+        hit.filter(|hit| hit.distance >= 0.0)
+    }
+
+    /// Where the line crosses one triangle (Möller and Trumbore 1997), at a negative distance behind the origin.
+    fn cross(&self, origin: &Point3, direction: &Vector3, triangle: u32) -> Option<RayHit> {
         let [a, b, c] = self.mesh().corners(triangle as usize);
         let (ab, ac) = (b - a, c - a);
         let across = direction.cross(&ac);
@@ -116,7 +172,7 @@ impl Bvh {
         let distance = ac.dot(&turned) / determinant;
         // A hair of overlap closes the seam between neighbours; NaN fails every comparison.
         let edge = -1e-12;
-        if !(v >= edge && w >= edge && v + w <= 1.0 - edge && distance >= 0.0) {
+        if !(v >= edge && w >= edge && v + w <= 1.0 - edge) {
             return None;
         }
         let point = a + ab * v + ac * w;
@@ -196,6 +252,40 @@ impl Slabs {
 mod tests {
     use super::*;
     use crate::geometry::TriMesh;
+
+    #[test]
+    fn both_ways_at_once_meet_what_two_rays_meet() {
+        // Sheets one above the other, each of two triangles.
+        let heights = [-3.0, -1.0, 0.0, 0.5, 2.0];
+        let corners = heights.map(|z| {
+            [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Point3::new(x, y, z))
+        });
+        let halves =
+            (0..5).flat_map(|i| [[4 * i, 4 * i + 1, 4 * i + 2], [4 * i, 4 * i + 2, 4 * i + 3]]);
+        let mesh = TriMesh::new(corners.as_flattened().to_vec(), halves.collect()).unwrap();
+        let tree = Bvh::build(mesh);
+        for (x, height, beyond, reach) in [
+            (0.3, 0.1, [0.0, 0.0], 10.0),
+            (0.3, 0.1, [0.5, 0.2], 10.0),
+            (0.7, 0.1, [0.0, 0.0], 0.3),
+            (0.7, -2.0, [1.5, 1.5], 2.5),
+            (1.5, 0.0, [0.0, 0.0], 10.0),
+            // Too far away for the tree's own numbers.
+            (0.3, 1e9, [0.0, 0.0], 2e9),
+            (0.3, -1e9, [0.0, 0.0], 2e9),
+        ] {
+            let origin = Point3::new(x, 0.4, height);
+            let up = Vector3::z();
+            let found = tree.first_hits_both_ways(&origin, &up, beyond, reach);
+            let expected = [(up, beyond[0]), (-up, beyond[1])].map(|(direction, beyond)| {
+                let start = origin + direction * beyond;
+                let hit = tree.first_hit_within(&start, &direction, reach - beyond);
+                hit.map(|hit| (hit.triangle, (beyond + hit.distance) as f32))
+            });
+            let found = found.map(|hit| hit.map(|hit| (hit.triangle, hit.distance as f32)));
+            assert_eq!(found, expected, "{x} {height}");
+        }
+    }
 
     #[test]
     fn a_ray_from_beyond_the_largest_f32_meets_the_nearer_sheet() {

@@ -107,7 +107,7 @@ where
     }
 
     /// Runs the walk and returns the winner.
-    pub(super) fn run(mut self) -> Option<Nearest<T>> {
+    pub(super) fn run(&mut self) -> Option<Nearest<T>> {
         let root = self.tree.root?;
         if self.tree.stack_size <= USUAL_STACK {
             self.descend(root, &mut [0; USUAL_STACK]);
@@ -115,12 +115,12 @@ where
             self.descend(root, &mut vec![0; self.tree.stack_size]);
         }
         self.decide();
-        self.best
+        self.best.take()
     }
 
     /// The winner among the marked items of some leaves: first of the nearest one, then of those whose
     /// boxes are within reach.
-    pub(super) fn run_over(mut self, leaves: &[Leaves]) -> Option<Nearest<T>> {
+    pub(super) fn run_over(&mut self, leaves: &[Leaves]) -> Option<Nearest<T>> {
         let mut first = (f32::INFINITY, 0, 0);
         for (at, few) in leaves.iter().enumerate() {
             let distances = few.node.distance_sq(&self.query);
@@ -134,7 +134,7 @@ where
             }
         };
         if !leaves.is_empty() {
-            visit(&mut self, first.1, first.2);
+            visit(self, first.1, first.2);
         }
         for (at, few) in leaves.iter().enumerate() {
             let distances = few.node.distance_sq(&self.query);
@@ -143,12 +143,12 @@ where
                 let slot = within.trailing_zeros() as usize;
                 within &= within - 1;
                 if (at, slot) != (first.1, first.2) {
-                    visit(&mut self, at, slot);
+                    visit(self, at, slot);
                 }
             }
         }
         self.decide();
-        self.best
+        self.best.take()
     }
 
     /// Depth first, the nearest child first. Stack entries are the distance's bits above the link's,

@@ -333,7 +333,7 @@ fn checks_name_their_picture_and_add_up_with_the_mapping() {
     let (window, _folder) = mapped_in_full();
     let result = window.state.document.current_mapping().unwrap();
     let (run, record) = (&result.run, &result.record);
-    assert!(record.checks.len() >= 8, "{:?}", record.checks);
+    assert!(record.checks.len() >= 9, "{:?}", record.checks);
     let of = |name: &str| record.checks.iter().find(|c| c.name == name).unwrap();
     let area = of("Area with values");
     assert!(area.is_met == Some(true) && record.mapped_area > 0.95);
@@ -341,11 +341,16 @@ fn checks_name_their_picture_and_add_up_with_the_mapping() {
     let is_met = |check: &CheckRecord| check.is_met != Some(false);
     assert_eq!(record.checks[0].name, "Pose");
     assert!(record.checks[1..].iter().is_sorted_by_key(is_met));
-    // The ways back and the volume are told and not judged.
+    // The ways back, the volume and the forces are told and not judged.
     assert_eq!(of("Thickness there and back").is_met, None);
     assert_eq!(of("Volume of the sheet").is_met, None);
+    let forces = of("Forces left at nodes");
+    assert_eq!(forces.is_met, None);
+    assert!(forces.found.contains("(stamped "), "{}", forces.found);
+    let display = window.state.with_check(forces.picture);
+    assert_eq!(display.mapped.quantity, ColorBy::VonMises);
     let (n_met, n_judged) = record.n_met();
-    assert_eq!(n_judged, record.checks.len() - 3);
+    assert_eq!(n_judged, record.checks.len() - 4);
     let met = record.checks.iter().filter(|c| c.is_met == Some(true));
     assert_eq!(n_met, met.count());
     // The bracket's radii are as small as its crash elements, whose peak is too low for the stamped one.

@@ -615,3 +615,104 @@ fn units_are_read_from_comments_titles_control_cards_and_materials() {
     assert_eq!(units_of(&format!("*KEYWORD\n{steel}*END\n")), from_steel);
     assert_eq!(units_of("*KEYWORD\n*MAT_ELASTIC\n1, &RHO, x\n*END\n"), None);
 }
+
+#[test]
+fn a_node_that_comes_twice_keeps_its_own_thickness() {
+    let cards = [
+        ("1,1,2,3", "0.7,0.7,0.8,0.9"),
+        ("1,2,2,3", "0.7,0.8,0.8,0.9"),
+        ("1,2,3,3", "0.7,0.8,0.9,0.9"),
+        ("1,2,3,1", "0.7,0.8,0.9,0.7"),
+    ];
+    for (nodes, thickness) in cards {
+        let model = read_text(format!(
+            "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n*ELEMENT_SHELL_THICKNESS\n1,1,{nodes}\n{thickness}\n"
+        ));
+        assert_eq!(model.shells[0].nodes, [0, 1, 2, 2], "{nodes}");
+        let found = model.shell_thickness(0).unwrap();
+        assert_eq!(found[..3], [0.7, 0.8, 0.9], "{nodes}");
+        assert!((found[3] - 0.8).abs() < 1e-15, "{nodes}");
+    }
+}
+
+/// Parts and materials of plies may be parameters, whatever letters these have.
+#[test]
+fn parameters_stand_for_the_parts_and_materials_of_plies() {
+    let nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,2,0,0\n6,2,1,0\n";
+    for name in ["pid", "p", "part"] {
+        let parameters =
+            format!("*PARAMETER\nI{name:>9}         7I      mid         3R      thk      0.50\n");
+        let field = format!("&{name}");
+        let ply = "      &mid      &thk       0.0              &mid      0.25       0.0\n";
+        let elements = format!(
+            "*ELEMENT_SHELL_COMPOSITE\n       1{field:>8}       1       2       3       4\n{ply}{ply}\
+             \x20      2{field:>8}       2       5       6       3\n{ply}"
+        );
+        let model = read_text(format!("{parameters}{nodes}{elements}"));
+        let of_part = "undefined part";
+        let faults = model
+            .diagnostics
+            .iter()
+            .filter(|d| d.kind.label() != of_part);
+        assert_eq!(faults.count(), 0, "{name}: {:?}", kinds(&model));
+        let thickness = |shell| model.shell_thickness(shell).map(|corners| corners[0]);
+        assert_eq!([thickness(0), thickness(1)], [Some(1.5), Some(0.75)]);
+        assert_eq!(model.shell_plies(0).unwrap().1, [0.5, 0.25, 0.5, 0.25]);
+        assert_eq!(model.parts[0].id, 7);
+
+        let part = format!(
+            "*PART_COMPOSITE\nplies\n{field:>10}         2\n{ply}second\n         8\n{ply}"
+        );
+        let shell = format!("*ELEMENT_SHELL\n       1{field:>8}       1       2       3       4\n");
+        let model = read_text(format!("{parameters}{nodes}{part}{shell}"));
+        assert_eq!(kinds(&model), [], "{name}");
+        assert_eq!(model.shell_thickness(0), Some([0.75; 4]));
+        let ids: Vec<u64> = model.parts.iter().map(|part| part.id).collect();
+        assert_eq!(ids, [7, 8]);
+    }
+}
+
+#[test]
+fn a_negative_part_set_ends_a_range_of_sets() {
+    let lists = "*SET_PART_LIST\n5\n50\n*SET_PART_LIST\n6\n60\n*SET_PART_LIST\n9\n90,91\n*SET_PART_LIST\n12\n120\n";
+    let members = |cards: &str| {
+        let model = read_text(format!("{lists}*SET_PART_ADD\n7\n{cards}\n"));
+        let told: Vec<String> = model.diagnostics.iter().map(ToString::to_string).collect();
+        let told = told.into_iter().filter(|told| told.contains("set"));
+        (model.sets.parts[&7].ids.clone(), told.collect::<Vec<_>>())
+    };
+    assert_eq!(members("5,-9"), (vec![50, 60, 90, 91], vec![]));
+    assert_eq!(members("12,5,-6"), (vec![120, 50, 60], vec![]));
+    // A range goes on over the end of a card, and holds the set itself if its id is in it.
+    assert_eq!(
+        members("12,0,0,0,0,0,0,6\n-10"),
+        (vec![120, 60, 90, 91], vec![])
+    );
+    let (ids, told) = members("-9");
+    assert_eq!((ids, told.len()), (vec![], 1));
+    assert!(told[0].contains("ends a range of sets"), "{told:?}");
+    let (ids, told) = members("20,-30");
+    assert_eq!(ids, Vec::<u64>::new());
+    assert!(
+        told.iter()
+            .any(|told| told.contains("in which no set is defined")),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn the_mark_that_ends_files_of_dos_is_no_card() {
+    let deck = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n*PART\nsheet\n1\n*ELEMENT_SHELL\n1,1,1,2,3";
+    for end in [
+        "",
+        "\u{1a}",
+        "\n\u{1a}",
+        "\r\n\u{1a}\u{1a}\r\n",
+        "\n*END\n\u{1a}",
+        "\n*END\u{1a}",
+    ] {
+        let model = read_text(format!("{deck}{end}"));
+        assert_eq!(kinds(&model), [], "{end:?}");
+        assert_eq!(model.shells.len(), 1, "{end:?}");
+    }
+}

@@ -237,3 +237,41 @@ fn corner_thickness_follows_a_slope_and_keeps_the_mean() {
         }
     }
 }
+
+#[test]
+fn points_on_edges_take_the_same_element_whichever_way_its_corners_go() {
+    let inside = Blank::new(2.5).mesh(cylinder);
+    // Outside of the sheet many points have an edge of it as closest point.
+    let around = |u, v| {
+        let at = cylinder(u, v);
+        Point3::new(at.x, 1.01 * at.y, 1.01 * at.z)
+    };
+    let mut onto = target(Blank::new(4.1).mesh(around), 3);
+    onto.n_plane.fill(4);
+    let run = |is_reversed: &dyn Fn(usize) -> bool| {
+        let corners = inside.corners().iter().enumerate();
+        let corners = corners.map(|(e, &[a, b, c, d])| match is_reversed(e) {
+            true => [b, a, d, c],
+            false => [a, b, c, d],
+        });
+        let parts = inside.parts().to_vec();
+        let positions = inside.positions().to_vec();
+        let mesh = ShellMesh::new(positions, corners.collect(), parts).unwrap();
+        let part = source(mesh, 3, |e, t, _| {
+            let t = if is_reversed(e) { -t } else { t };
+            let x = (e as f64 * 1.7).sin() + t;
+            [10.0 * x, 5.0 * x, 3.0, x, 2.0, 1.0, 0.2 + 0.05 * x]
+        });
+        map_one(&part, Similarity::identity(), &onto, &full())
+    };
+    let plain = run(&|_| false);
+    for reversed in [run(&|_| true), run(&|e| e * 7919 % 5 < 2)] {
+        for element in 0..onto.mesh.len() {
+            let [states, others] =
+                [&plain, &reversed].map(|of| of.states.as_ref().unwrap().of(element));
+            for (a, b) in states.iter().flatten().zip(others.iter().flatten()) {
+                assert!((a - b).abs() < 1e-9, "{element}: {a} and {b}");
+            }
+        }
+    }
+}

@@ -283,6 +283,7 @@ impl AppState {
             CheckPicture::Confidence => ColorBy::MapConfidence,
             CheckPicture::Thickness => difference(ColorBy::Thickness),
             CheckPicture::PlasticStrain => difference(ColorBy::PlasticStrain),
+            CheckPicture::Stress => difference(ColorBy::VonMises),
         };
         display
     }

@@ -147,7 +147,7 @@ impl<'a> Iterator for Cards<'a> {
     }
 }
 
-/// Lines that are neither comments nor encrypted, with their offsets.
+/// Lines that are neither comments nor encrypted nor the mark that ends files of DOS, with their offsets.
 #[derive(Clone)]
 struct Lines<'a> {
     file: &'a SourceFile,
@@ -165,6 +165,7 @@ impl<'a> Iterator for Lines<'a> {
             self.next = next;
             match line.first() {
                 Some(b'$') => {}
+                Some(&END_OF_FILE) if line.iter().all(|&byte| is_end_of_file(byte)) => {}
                 Some(b'-') if line.starts_with(PGP_BEGIN) => {
                     let rest = &self.file.bytes()[offset..self.end];
                     self.next = offset + end_of_encrypted(rest);
@@ -175,6 +176,20 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
+/// Ctrl-Z, with which DOS programs end a text.
+const END_OF_FILE: u8 = 0x1a;
+
+fn is_end_of_file(byte: u8) -> bool {
+    byte == END_OF_FILE || byte.is_ascii_whitespace()
+}
+
+/// Where the mark begins that ends files of DOS, with the blanks around it; the end of the text without one.
+pub(crate) fn end_of_file_mark(text: &[u8]) -> usize {
+    let n_after = text.iter().rev().take_while(|&&byte| is_end_of_file(byte));
+    let after = text.len() - n_after.count();
+    memchr(END_OF_FILE, &text[after..]).map_or(text.len(), |at| after + at)
+}
+
 /// The line at `start`, its offset, and the offset of the line after it. Without CR and LF.
 #[inline]
 pub(crate) fn next_line(bytes: &[u8], start: usize, end: usize) -> Option<(&[u8], usize, usize)> {
@@ -183,7 +198,7 @@ pub(crate) fn next_line(bytes: &[u8], start: usize, end: usize) -> Option<(&[u8]
     }
     let (stop, next) = match memchr(b'\n', &bytes[start..end]) {
         Some(length) => (start + length, start + length + 1),
-        None => (end, end),
+        None => (start + end_of_file_mark(&bytes[start..end]), end),
     };
     let line = &bytes[start..stop];
     Some((line.strip_suffix(b"\r").unwrap_or(line), start, next))

@@ -3,14 +3,14 @@
 mod element;
 
 use super::super::model::IncludedAs;
-use super::block::{Block, Blocks};
+use super::block::{Block, Blocks, end_of_file_mark};
 use super::card::{Layout, TEN_BY_8};
 pub use super::forming::ResultCards;
 use super::forming::{ResultUnits, result_cards};
 use super::include::layout_of_keyword;
 use super::mesh::{ElementKeyword, ShellCards, element_keyword};
 use super::nodes::shifted;
-use super::shells::is_ply;
+use super::shells::{is_ply, thickness_line};
 use super::source_file::SourceFile;
 use crate::monitor::{Cancelled, Monitor};
 use element::{Element, Keyword};
@@ -106,7 +106,8 @@ pub fn exchange_thickness(
         listed_below: Vec::new(),
     };
     let mut blocks = Blocks::new(deck, rules.included_as.layout);
-    let mut end = None;
+    // What a copy adds stands before the mark that ends files of DOS.
+    let mut end = end_of_file_mark(bytes);
     while let Some(block) = blocks.next() {
         monitor.check()?;
         if let Some(layout) = layout_of_keyword(&block)
@@ -115,7 +116,7 @@ pub fn exchange_thickness(
             copy.result.layout = layout;
             blocks.set_layout(layout);
         } else if block.name == "END" {
-            end = Some(block.offset);
+            end = block.offset;
             break;
         } else if block.name.starts_with("ELEMENT_SHELL") {
             match element_keyword(&block) {
@@ -129,7 +130,7 @@ pub fn exchange_thickness(
             copy.results(&block, leaves_out);
         }
     }
-    copy.up_to(end.unwrap_or(bytes.len()));
+    copy.up_to(end);
     let states = (rules.states)(&copy.result)?;
     if !states.is_empty() {
         copy.new_line();
@@ -245,7 +246,10 @@ impl Copy<'_> {
             }
             let id = card.required_id(TEN_BY_8, 0).ok();
             let is_quadratic = card.id(TEN_BY_8, 6).is_ok_and(|node| node != 0);
-            let thickness = cards.thickness.then(|| lines.next_line()).flatten();
+            let thickness = cards
+                .thickness
+                .then(|| thickness_line(&mut lines))
+                .flatten();
             let second = (thickness.is_some() && is_quadratic)
                 .then(|| lines.next_line())
                 .flatten();
@@ -279,10 +283,11 @@ impl Copy<'_> {
             match exchange {
                 Exchange::Thickness(new) => {
                     let place = &self.rules.included_as;
-                    let of_file = element.corners_as_in(place, new);
-                    let of_file = of_file.map(|t| t / place.length_factor);
-                    let card = self.set_thickness(&element, &of_file);
-                    self.list(&element, &keyword, Some((&new, &card)));
+                    let of_file = element.on_card(place, new);
+                    let card =
+                        self.set_thickness(&element, &of_file.map(|t| t / place.length_factor));
+                    let listed = element.corners_as_in(place, of_file);
+                    self.list(&element, &keyword, Some((&listed, &card)));
                 }
                 Exchange::Listed => self.list(&element, &keyword, None),
                 Exchange::Other => {}

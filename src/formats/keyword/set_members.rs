@@ -122,6 +122,12 @@ impl Resolver<'_> {
                 let reference = match *member {
                     Member::Set(id) => (key.0, id),
                     Member::OfPartSet(id) => (SetKind::Part, id),
+                    Member::Sets { first, last } => {
+                        for other in self.sets_in(key, first, last) {
+                            references.entry(other).or_insert(definition);
+                        }
+                        continue;
+                    }
                     _ => continue,
                 };
                 references.entry(reference).or_insert(definition);
@@ -132,6 +138,13 @@ impl Resolver<'_> {
             key,
             references: references.into_iter(),
         }
+    }
+
+    /// The sets of the kind of `key` with ids in a range, without itself.
+    fn sets_in(&self, key: Key, first: u64, last: u64) -> impl Iterator<Item = Key> + use<'_> {
+        let range = (first <= last).then(|| self.by_id.range((key.0, first)..=(key.0, last)));
+        let keys = range.into_iter().flatten().map(|(&other, _)| other);
+        keys.filter(move |&other| other != key)
     }
 
     fn tell(&mut self, definition: usize, (kind, id): Key, what: &str) {
@@ -165,7 +178,13 @@ impl Resolver<'_> {
                     self.tell_limit(definition);
                     break;
                 }
-                self.add(kind, *member, &mut builder)?;
+                if let Member::Sets { first, last } = *member
+                    && self.sets_in((kind, id), first, last).next().is_none()
+                {
+                    let what = "begins a range of ids in which no set is defined";
+                    self.tell(definition, (kind, first), what);
+                }
+                self.add((kind, id), *member, &mut builder)?;
             }
         }
         Ok(Set {
@@ -189,15 +208,17 @@ impl Resolver<'_> {
         });
     }
 
-    fn add(&mut self, kind: SetKind, member: Member, to: &mut Builder) -> Result<(), Cancelled> {
+    fn add(&mut self, own: Key, member: Member, to: &mut Builder) -> Result<(), Cancelled> {
+        let (kind, _) = own;
         match member {
             Member::Range { first, last, step } => self.add_range(kind, [first, last, step], to),
-            Member::Set(id) => {
-                if to.whole.insert((kind, Some(id), true)) {
-                    let ids = self.resolved.get(&(kind, id)).map(|set| set.ids.clone());
-                    self.push_all(ids.unwrap_or_default(), to)?;
-                }
-                Ok(())
+            Member::Set(id) => self.add_set(kind, id, to),
+            Member::Sets { first, last } => {
+                let sets: Vec<Key> = self.sets_in(own, first, last).collect();
+                // Empty sets take time too.
+                self.n_left = self.n_left.saturating_sub(sets.len() as u64);
+                sets.into_iter()
+                    .try_for_each(|(kind, id)| self.add_set(kind, id, to))
             }
             Member::All => {
                 if to.whole.insert((kind, None, false)) {
@@ -227,6 +248,14 @@ impl Resolver<'_> {
                 Ok(())
             }
         }
+    }
+
+    fn add_set(&mut self, kind: SetKind, id: u64, to: &mut Builder) -> Result<(), Cancelled> {
+        if to.whole.insert((kind, Some(id), true)) {
+            let ids = self.resolved.get(&(kind, id)).map(|set| set.ids.clone());
+            self.push_all(ids.unwrap_or_default(), to)?;
+        }
+        Ok(())
     }
 
     fn add_part(&mut self, kind: SetKind, part: u64, to: &mut Builder) -> Result<(), Cancelled> {

@@ -48,6 +48,8 @@ pub(crate) enum Member {
     Range { first: u64, last: u64, step: u64 },
     /// The ids of another set of the same kind.
     Set(u64),
+    /// The ids of all other sets of the same kind whose own ids lie in a range.
+    Sets { first: u64, last: u64 },
     /// Every id there is.
     All,
     /// The elements, or their nodes, of a part.
@@ -143,6 +145,8 @@ enum Form {
     GenerateIncrement,
     /// Ids of sets.
     Add,
+    /// Ids of sets; a negative one ends a range that the id before it begins.
+    AddRanges,
     /// Pairs of a set's id and of a number for its kind.
     AddAdvanced,
     /// An option and up to seven ids.
@@ -158,6 +162,8 @@ impl Form {
             Self::Generate
         } else if has("ADD") && has("ADVANCED") {
             Self::AddAdvanced
+        } else if has("ADD") && kind == SetKind::Part {
+            Self::AddRanges
         } else if has("ADD") {
             Self::Add
         } else if has("GENERAL") {
@@ -212,6 +218,27 @@ impl Form {
                 for index in 0..8 {
                     let set = shifted(card.id(EIGHT_BY_10, index)?, offsets.set);
                     into.extend(Some(set).filter(|&id| id != 0).map(Member::Set));
+                }
+            }
+            Self::AddRanges => {
+                for index in 0..8 {
+                    let number = card.int_or_zero(EIGHT_BY_10, index)?;
+                    let set = shifted(number.unsigned_abs(), offsets.set);
+                    if number > 0 {
+                        into.push(Member::Set(set));
+                    } else if number < 0 {
+                        let Some(&Member::Set(first)) = into.last() else {
+                            let field = card.field(EIGHT_BY_10, index);
+                            return Err(FieldError {
+                                kind: DiagnosticKind::BadField,
+                                column: field.column,
+                                found: text::decoded(field.text).into_owned(),
+                                expected: "before a negative id, which ends a range of sets, the positive one \
+                                           that begins it",
+                            });
+                        };
+                        into.push(Member::Sets { first, last: set });
+                    }
                 }
             }
             Self::AddAdvanced => {

@@ -15,6 +15,10 @@ use super::number::parse_digits;
 /// Bytes of a shell's card in a compact deck; estimates of how many there are count on no less.
 const MIN_LINE: usize = 16;
 
+/// What stands in place of a thickness card that is missing.
+const FOUR_THICKNESSES: &str =
+    "four thicknesses on a card of their own, or the keyword without _THICKNESS";
+
 /// What an include adds to the ids of its elements and the lengths on their cards.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ElementOffsets {
@@ -191,25 +195,25 @@ impl Reader<'_> {
                 }
             }
         };
-        let is_kept = shell.is_some_and(|shell| self.keep(&shell, || cards.card(line, at)));
+        let kept = shell.and_then(|shell| self.keep(&shell, || cards.card(line, at)));
         if self.options.thickness {
             let has_mid_side = shell.is_some_and(|shell| shell.mid_side[0] != 0);
-            self.thickness(cards, is_kept, has_mid_side)?;
+            self.thickness(cards, kept, has_mid_side)?;
         }
         for _ in 0..self.options.n_passed_over {
             cards.next_line();
         }
         if self.options.plies {
-            self.plies(cards, is_kept);
+            self.plies(cards, kept.is_some());
         }
         Ok(())
     }
 
-    /// Adds a shell; false if it has fewer than three different corners.
-    fn keep<'a>(&mut self, shell: &ShellCard, card: impl Fn() -> Card<'a>) -> bool {
+    /// Adds a shell and says which corners of its card it has; `None` if fewer than three of them differ.
+    fn keep<'a>(&mut self, shell: &ShellCard, card: impl Fn() -> Card<'a>) -> Option<[usize; 4]> {
         let corners = shell.corners.map(|id| shifted(id, self.offsets.node));
         let id = shifted(shell.id, self.offsets.element);
-        let Some(corners) = distinct_corners(corners) else {
+        let Some(places) = distinct_corners(corners) else {
             self.chunk
                 .diagnostics
                 .push_with(DiagnosticKind::DegenerateElement, || {
@@ -217,7 +221,7 @@ impl Reader<'_> {
                     let message = format!("shell {id} has fewer than three different nodes");
                     Diagnostic::new(kind, message).at(card().position(0))
                 });
-            return false;
+            return None;
         };
         if shell.mid_side != [0; 4] {
             let nodes = shell.mid_side.map(|id| shifted(id, self.offsets.node));
@@ -225,13 +229,13 @@ impl Reader<'_> {
             self.chunk.mid_side.push((index, nodes));
         }
         let part = shifted(shell.part, self.offsets.part);
-        let nodes = corners.map(|id| self.chunk.packed.pack(id));
+        let nodes = places.map(|place| self.chunk.packed.pack(corners[place]));
         self.chunk.shells.push(Shell {
             id,
             nodes,
             part: self.chunk.parts.index(part),
         });
-        true
+        Some(places)
     }
 
     /// Reads the thickness card of the shell that was read last, and the second one that mid-side
@@ -239,7 +243,7 @@ impl Reader<'_> {
     fn thickness(
         &mut self,
         cards: &mut Cards<'_>,
-        is_kept: bool,
+        kept: Option<[usize; 4]>,
         has_mid_side: bool,
     ) -> Result<(), Irregular> {
         if has_mid_side && self.must_be_regular {
@@ -247,41 +251,48 @@ impl Reader<'_> {
         }
         let before = cards.clone();
         let Some((line, at)) = cards.next_line() else {
-            let message = "the last shell has no thickness card".to_owned();
+            let message = self.no_thickness("the last shell", kept.is_some());
             let at = before.card(b"", before.offset()).position(0);
             let missing = Diagnostic::new(DiagnosticKind::MissingCard, message).at(at);
-            self.chunk.diagnostics.push(missing);
+            self.chunk
+                .diagnostics
+                .push(missing.expected(FOUR_THICKNESSES));
             return Ok(());
         };
         let card = cards.card(line, at);
-        match thickness_card(&card) {
-            Ok((thickness, angle)) if is_kept => {
+        match (thickness_card(&card), kept) {
+            (Ok((thickness, angle)), Some(places)) => {
+                // The fourth of a triangle counts nowhere and stays as it is.
+                let of_corners = match places {
+                    [_, 1, ..] => thickness,
+                    places => places.map(|place| thickness[place]),
+                };
                 self.chunk.extras.push(ShellExtra {
                     shell: self.chunk.shells.len() as u32 - 1,
-                    thickness: thickness.map(|t| t * self.offsets.length),
+                    thickness: of_corners.map(|t| t * self.offsets.length),
                     beta: if self.options.beta { angle } else { 0.0 },
                     plies: None,
                 });
             }
-            Ok(_) => {}
+            (Ok(_), None) => {}
             // A shell's card in its place: the thickness card is missing.
-            Err(_) if looks_like_a_shell(line, &self.columns) => {
+            (Err(_), _) if is_whole_shell(&card) => {
                 if self.must_be_regular {
                     return Err(Irregular);
                 }
                 *cards = before;
                 let kind = DiagnosticKind::MissingCard;
+                let message = self.no_thickness("a shell", kept.is_some());
                 let describe = || {
-                    let message = "a shell has no thickness card";
                     let diagnostic = Diagnostic::new(kind, message).at(card.position(0));
                     diagnostic
                         .found(card.line_text())
-                        .expected("four thicknesses")
+                        .expected(FOUR_THICKNESSES)
                 };
                 self.chunk.diagnostics.push_with(kind, describe);
                 return Ok(());
             }
-            Err(error) => {
+            (Err(error), _) => {
                 let describe = || card.diagnose(&error, "the shell's thickness");
                 self.chunk.diagnostics.push_with(error.kind, describe);
             }
@@ -290,6 +301,16 @@ impl Reader<'_> {
             cards.next_line();
         }
         Ok(())
+    }
+
+    /// What is said of the shell that was read last, if it was kept.
+    fn no_thickness(&self, otherwise: &str, is_kept: bool) -> String {
+        let last = self.chunk.shells.last().filter(|_| is_kept);
+        let shell = last.map_or_else(
+            || otherwise.to_owned(),
+            |shell| format!("shell {}", shell.id),
+        );
+        format!("{shell} has no thickness card")
     }
 
     /// Reads the plies of a composite shell, whose thickness is their sum unless it has its own.
@@ -331,38 +352,47 @@ impl Reader<'_> {
     }
 }
 
-/// A ply card has up to eight ten-wide fields of which the second is written as a real.
+/// A ply card has up to eight ten-wide fields of which the second is written as a real. A parameter may be any
+/// number: the card is a ply's unless it can be read as a shell's.
 pub(crate) fn is_ply(card: &Card<'_>) -> bool {
     card.n_fields(10) <= 8
         && is_real_text(card.field(EIGHT_BY_10, 1).text)
         && card.int(EIGHT_BY_10, 0).is_ok()
+        && !(card.line_text().contains('&') && is_whole_shell(card))
 }
 
 fn is_real_text(text: &[u8]) -> bool {
     text.contains(&b'.') || text.iter().any(|b| b"eEdD".contains(b)) || text.first() == Some(&b'&')
 }
 
-/// A line of blanks and digits that fills at least five integer fields.
-fn looks_like_a_shell(line: &[u8], columns: &[usize; 11]) -> bool {
-    fixed_shell(line, columns).is_some_and(|shell| shell.part != 0 && shell.corners[2] != 0)
+/// The thickness card of a shell whose first card was the last line; `None`, and no line is taken, if the card of
+/// another shell stands in its place.
+pub(crate) fn thickness_line<'a>(cards: &mut Cards<'a>) -> Option<(&'a [u8], usize)> {
+    let before = cards.clone();
+    let (line, at) = cards.next_line()?;
+    let card = cards.card(line, at);
+    if thickness_card(&card).is_err() && is_whole_shell(&card) {
+        *cards = before;
+        return None;
+    }
+    Some((line, at))
 }
 
-/// Corners without repeated neighbours, a triangle's third one twice; `None` for less than that.
-pub(crate) fn distinct_corners(corners: [u64; 4]) -> Option<[u64; 4]> {
-    let [a, b, c, d] = corners;
-    let d = if d == 0 { c } else { d };
-    let triangle = |a, b, c| (a != b && b != c && c != a).then_some([a, b, c, c]);
+/// Which corners of a card a shell has: without repeated neighbours, a triangle's third one twice. `None` for less
+/// than that.
+pub(crate) fn distinct_corners([a, b, c, d]: [u64; 4]) -> Option<[usize; 4]> {
     if [a, b, c].contains(&0) {
         return None;
     }
-    if c == d || d == a {
-        return triangle(a, b, c);
+    let differ = |a, b, c| a != b && b != c && c != a;
+    if d == 0 || c == d || d == a {
+        return differ(a, b, c).then_some([0, 1, 2, 2]);
     }
     if a == b || b == c {
-        return triangle(a, c, d);
+        return differ(a, c, d).then_some([0, 2, 3, 3]);
     }
     // A quad folded onto its diagonal has no area but four edges; it is left to the area check.
-    Some([a, b, c, d])
+    Some([0, 1, 2, 3])
 }
 
 fn shell_name(card: &Card<'_>) -> String {
@@ -471,15 +501,15 @@ mod tests {
 
     #[test]
     fn repeated_corners_make_triangles_or_nothing() {
-        assert_eq!(distinct_corners([1, 2, 3, 4]), Some([1, 2, 3, 4]));
-        assert_eq!(distinct_corners([1, 2, 3, 3]), Some([1, 2, 3, 3]));
-        assert_eq!(distinct_corners([1, 2, 3, 0]), Some([1, 2, 3, 3]));
-        assert_eq!(distinct_corners([1, 2, 3, 1]), Some([1, 2, 3, 3]));
-        assert_eq!(distinct_corners([1, 1, 2, 3]), Some([1, 2, 3, 3]));
-        assert_eq!(distinct_corners([1, 2, 2, 3]), Some([1, 2, 3, 3]));
+        assert_eq!(distinct_corners([1, 2, 3, 4]), Some([0, 1, 2, 3]));
+        assert_eq!(distinct_corners([1, 2, 3, 3]), Some([0, 1, 2, 2]));
+        assert_eq!(distinct_corners([1, 2, 3, 0]), Some([0, 1, 2, 2]));
+        assert_eq!(distinct_corners([1, 2, 3, 1]), Some([0, 1, 2, 2]));
+        assert_eq!(distinct_corners([1, 1, 2, 3]), Some([0, 2, 3, 3]));
+        assert_eq!(distinct_corners([1, 2, 2, 3]), Some([0, 2, 3, 3]));
         assert_eq!(distinct_corners([1, 2, 2, 2]), None);
         assert_eq!(distinct_corners([1, 2, 0, 0]), None);
-        assert_eq!(distinct_corners([1, 2, 1, 2]), Some([1, 2, 1, 2]));
+        assert_eq!(distinct_corners([1, 2, 1, 2]), Some([0, 1, 2, 3]));
     }
 
     #[test]

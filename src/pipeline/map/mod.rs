@@ -1,5 +1,6 @@
 //! Carries the forming results of stamped files onto a crash part: convert, map, check, write.
 
+mod balance;
 mod compare;
 mod convert;
 mod default_thickness;

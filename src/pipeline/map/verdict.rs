@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::{Serialize, Serializer};
 
+use super::balance::force_balance;
 use super::peak::peak_at_best;
 use super::record::{MapRecord, PairRecord, StampedRecord};
 use super::{MapRun, ShownValue};
@@ -40,6 +41,8 @@ pub enum CheckPicture {
     Thickness,
     /// Difference of the plastic strain.
     PlasticStrain,
+    /// Difference of the von Mises stress.
+    Stress,
 }
 
 /// Why a check is judged against something else than the stamped values as they are.
@@ -132,6 +135,7 @@ pub(super) fn checks_of(
     monitor.check()?;
     checks.extend(beside_section(run));
     checks.extend(volume(run));
+    checks.extend(balance(run, monitor)?);
     if let Some(pair) = &record.plastic_strain {
         checks.push(peak(run, pair, monitor)?);
     }
@@ -348,6 +352,21 @@ fn volume(run: &MapRun) -> Option<CheckRecord> {
         picture: CheckPicture::Thickness,
         worst: None,
     })
+}
+
+/// What is left of the forces at the nodes inside the sheet. Told and not judged: what the stamped stresses leave
+/// tells what can be asked of the mapped ones.
+fn balance(run: &MapRun, monitor: &Monitor) -> Result<Option<CheckRecord>, Cancelled> {
+    let found = force_balance(run, monitor)?;
+    Ok(found.map(|[crash, stamped]| CheckRecord {
+        name: "Forces left at nodes".to_owned(),
+        found: format!("{} (stamped {})", percent(crash), percent(stamped)),
+        limit: "for information".to_owned(),
+        is_met: None,
+        reason: None,
+        picture: CheckPicture::Stress,
+        worst: None,
+    }))
 }
 
 /// The largest value against the stamped one, or against what the crash element there can carry of it.

@@ -7,6 +7,7 @@ use super::super::card::{Card, FIVE_BY_16, Layout, TEN_BY_8};
 use super::super::exponential::{push_exponential, push_int};
 use super::super::mesh::ShellCards;
 use super::super::nodes::shifted;
+use super::super::shells::distinct_corners;
 use super::super::state_cards::push_thickness;
 
 /// One shell of the deck.
@@ -56,6 +57,26 @@ impl Element<'_> {
         } else {
             corners
         }
+    }
+
+    /// What the corners of the shell have in the whole deck, in the order of its card in the file: a node that the
+    /// card names twice has its value twice.
+    pub(super) fn on_card(&self, place: &IncludedAs, new: [f64; 4]) -> [f64; 4] {
+        let ids = [2, 3, 4, 5].map(|index| self.card.id(TEN_BY_8, index).unwrap_or(0));
+        let places = distinct_corners(ids).unwrap_or([0, 1, 2, 3]);
+        let is_triangle = places[2] == places[3];
+        let of_file = if place.is_mirrored {
+            reversed_corners(new, is_triangle)
+        } else {
+            new
+        };
+        if !is_triangle || ids[3] == 0 || ids[3] == ids[2] {
+            return of_file;
+        }
+        ids.map(|id| {
+            let corner = places[..3].iter().position(|&place| ids[place] == id);
+            of_file[corner.unwrap_or(0)]
+        })
     }
 
     /// The thickness cards as they stand; `None` if there are none.

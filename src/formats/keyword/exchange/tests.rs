@@ -290,3 +290,71 @@ fn shells_with_mid_side_nodes_get_both_cards() {
         )
     );
 }
+
+#[test]
+fn a_node_that_a_card_names_twice_gets_its_thickness_twice() {
+    // Triangles of the corners 1 2 3 of the model with 1.0, 1.25 and 1.5.
+    let cards = [
+        ("       1       1       2       3", [1.0, 1.0, 1.25, 1.5]),
+        ("       1       2       2       3", [1.0, 1.25, 1.25, 1.5]),
+        ("       1       2       3       1", [1.0, 1.25, 1.5, 1.0]),
+    ];
+    let read = |card: &str| -> Vec<f64> {
+        let fields = card.split_whitespace();
+        fields.map(|t| t.parse().unwrap()).collect()
+    };
+    for (nodes, expected) in cards {
+        let deck = format!("*ELEMENT_SHELL\n       1       1{nodes}\n*END\n");
+        let found = exchange(&deck, &[1]);
+        let written = text(&found);
+        let card = written.lines().nth(3).unwrap();
+        assert_eq!(read(card), expected, "{nodes}");
+        let listed = String::from_utf8(found.elements).unwrap();
+        assert!(listed.contains(card), "{listed}");
+    }
+    // An include that is mirrored has the corners 2 1 3, and its card keeps its order.
+    let deck = "*ELEMENT_SHELL\n       1       1       1       1       2       3\n*END\n";
+    let mirrored = IncludedAs {
+        is_mirrored: true,
+        ..IncludedAs::default()
+    };
+    let file = SourceFile::new("a.k", deck);
+    let exchange = |_| Exchange::Thickness([1.25, 1.0, 1.5, 1.375]);
+    let found = exchanged(&file, mirrored, &exchange);
+    let written = text(&found);
+    let card = written.lines().nth(3).unwrap();
+    assert_eq!(read(card), [1.0, 1.0, 1.25, 1.5]);
+    let listed = String::from_utf8(found.elements).unwrap();
+    let listed: Vec<&str> = listed.lines().collect();
+    let nodes = "       1       1       1       1       3       2";
+    assert_eq!(listed[1], nodes);
+    assert_eq!(read(listed[2]), [1.0, 1.0, 1.5, 1.25]);
+}
+
+#[test]
+fn a_missing_thickness_card_takes_no_other_shell() {
+    let deck = "*ELEMENT_SHELL_THICKNESS\n\
+\x20      1       1       1       2       3       4\n\
+\x20      2       1       2       3       4       5\n\
+\x20            0.9             0.9             0.9             0.9\n\
+\x20      3       1       3       4       5       6\n*END\n";
+    let found = exchange(deck, &[1, 2, 3]);
+    let expected = format!(
+        "*ELEMENT_SHELL_THICKNESS\n\
+\x20      1       1       1       2       3       4\n{CARD}\n\
+\x20      2       1       2       3       4       5\n{CARD}\n\
+\x20      3       1       3       4       5       6\n{CARD}\n*INITIAL_STRESS_SHELL\n*END\n"
+    );
+    assert_eq!(text(&found), expected);
+    assert_eq!((found.n_exchanged, found.n_found), (3, 3));
+}
+
+#[test]
+fn states_stand_before_the_mark_that_ends_files_of_dos() {
+    for end in ["\u{1a}", "\u{1a}\r\n", "\u{1a}\u{1a}"] {
+        let deck = format!("*NODE\n       1             0.0\n{end}");
+        let found = exchange(&deck, &[]);
+        let expected = format!("*NODE\n       1             0.0\n*INITIAL_STRESS_SHELL\n{end}");
+        assert_eq!(text(&found), expected);
+    }
+}
