@@ -199,6 +199,47 @@ fn a_bead_narrower_than_the_elements_can_show_is_told_where_both_meshes_say_so()
 }
 
 #[test]
+fn beads_that_run_out_at_an_outline_and_bent_flanges_are_told() {
+    let height =
+        |x: f64, y: f64| 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
+    let plain = sheet(80, [0.0, 0.0], 1.0, height);
+    let told = |lift: &dyn Fn(f64, f64) -> f64| {
+        let source = sheet(74, [0.0, 0.0], 1.0, |x, y| height(x, y) + lift(x, y));
+        let shape = statement(&source, &plain);
+        assert_ne!(shape.kind, ShapeKind::Different, "{shape:?}");
+        shape.reasons.first().copied()
+    };
+    // 4 mm high and 40 mm wide, over the last 200 mm.
+    let bead = |x: f64, y: f64| {
+        let across = ((y - 30.0) / 20.0).abs().min(1.0);
+        let along = ((x - 300.0) / 40.0).clamp(0.0, 1.0);
+        2.0 * (1.0 + (PI * across).cos()) * along
+    };
+    // The last 30 mm over half the length, turned about their root.
+    let flange = |most: f64| {
+        move |x: f64, y: f64| most * ((y - 220.0) / 30.0).max(0.0) * f64::from(x.abs() < 250.0)
+    };
+    assert!(
+        matches!(told(&bead), Some(ShapeReason::Local { is_end: false, .. })),
+        "{:?}",
+        told(&bead)
+    );
+    let bent = told(&flange(9.0));
+    assert!(
+        matches!(bent, Some(ShapeReason::Local { is_end: true, by, limit, .. }) if by > 7.0 && limit == 5.0),
+        "{bent:?}"
+    );
+    assert_eq!(told(&flange(4.0)), None);
+    // A fifth of the part, turned by much, is another version of it.
+    let wide = |_: f64, y: f64| 0.25 * (y - 160.0).max(0.0);
+    let turned = told(&wide);
+    assert!(
+        matches!(turned, Some(ShapeReason::Surface { mostly: false, by, limit, .. }) if by > 6.0 * limit),
+        "{turned:?}"
+    );
+}
+
+#[test]
 fn noise_and_a_bent_corner_are_no_beads() {
     let height =
         |x: f64, y: f64| 30.0 * (x / 160.0 + 0.4).sin() + 15.0 * ((x + 2.0 * y) / 130.0).cos();
