@@ -179,6 +179,7 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
         angle: std::f64::consts::PI,
         axis: TwinAxis::Long,
         shift: 0.25,
+        is_mirrored: false,
     });
     let motion = FreeMotion {
         kind: FreeMotionKind::Extruded,
