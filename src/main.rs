@@ -8,7 +8,11 @@ use shapematch::cli::{self, Cli};
 use shapematch::text::without_error_number;
 
 fn main() -> ExitCode {
+    let first = std::env::args_os().nth(1);
+    cli::refuse_unknown(first.as_deref());
     let cli = Cli::parse();
+    // It may stand behind options.
+    cli::refuse_unknown(cli.files.first().map(|file| file.as_os_str()));
     start_logging(cli.quiet);
     if let Err(error) = threads(&cli).build_global() {
         log::warn!("the number of threads could not be set: {error}");

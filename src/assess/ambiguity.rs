@@ -1,5 +1,7 @@
 //! Is there another pose that fits as well?
 
+use std::f64::consts::PI;
+
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Similarity;
@@ -53,13 +55,20 @@ pub enum TwinAxis {
 /// The motion from the best pose to another, in the source's own terms.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Twin {
-    /// Rotation angle, 0 to π.
+    /// Rotation angle, 0 to π; of a mirrored pose the angle of what is rotated besides the mirror.
     pub angle: f64,
-    /// Axis of the motion between the poses.
+    /// Axis of the motion between the poses; of a mirrored pose the normal of the mirror's plane, where nothing is
+    /// rotated besides.
     pub axis: TwinAxis,
     /// Displacement of the part's centroid, in target length units.
     pub shift: f64,
+    /// True if the other pose is of the opposite hand: the motion is a reflection.
+    #[serde(default)]
+    pub is_mirrored: bool,
 }
+
+/// What is rotated besides a mirror counts from this angle on, about 15°.
+const NO_TURN: f64 = 0.26;
 
 /// An axis is one of the part's own within about 15°.
 const SAME_AXIS: f64 = 0.966;
@@ -69,19 +78,32 @@ impl Twin {
     pub fn of(source: &Surface, best: &Similarity, other: &Similarity) -> Self {
         let measures = source.measures();
         let turn = best.rotation.transpose() * other.rotation;
+        let is_mirrored = best.is_mirrored() != other.is_mirrored();
+        // A mirror at a plane is a half turn about its normal with every direction reversed.
+        let turn = if is_mirrored { -turn } else { turn };
         let turn = nalgebra::Rotation3::from_matrix_unchecked(turn);
+        let angle = if is_mirrored {
+            // Rounding may take the cosine beyond 1.
+            PI - ((turn.matrix().trace() - 1.0) / 2.0)
+                .clamp(-1.0, 1.0)
+                .acos()
+        } else {
+            best.angle_to(other)
+        };
         let center = &measures.centroid;
-        let axis = turn.axis().map_or(TwinAxis::Other, |axis| {
+        let has_axis = !is_mirrored || angle < NO_TURN;
+        let axis = turn.axis().filter(|_| has_axis);
+        let axis = axis.map_or(TwinAxis::Other, |axis| {
             let along = |k: usize| measures.principal_axes.column(k).dot(&axis).abs();
             let known = [TwinAxis::Long, TwinAxis::Cross, TwinAxis::Through];
             let found = (0..3).find(|&k| along(k) > SAME_AXIS);
             found.map_or(TwinAxis::Other, |k| known[k])
         });
         Self {
-            // The angle of a rotation matrix that rounding took from orthonormal can be no number.
-            angle: best.angle_to(other),
+            angle,
             axis,
             shift: (other.apply(center) - best.apply(center)).norm(),
+            is_mirrored,
         }
     }
 }
@@ -117,6 +139,43 @@ impl Ambiguity {
 mod tests {
     use super::*;
     use crate::geometry::{Rotation, TriMesh, Vector3};
+
+    #[test]
+    fn a_pose_of_the_other_hand_is_mirrored_and_not_rotated() {
+        // Twice as long in x as in y, flat in z.
+        let points = [
+            [-2.0, -1.0, 0.0],
+            [2.0, -1.0, 0.0],
+            [2.0, 1.0, 0.0],
+            [-2.0, 1.0, 0.0],
+        ];
+        let points = points.map(crate::geometry::Point3::from).to_vec();
+        let mesh = TriMesh::new(points, vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+        let source = Surface::new(&mesh, "source").unwrap();
+        let lengths = crate::text::Lengths::new(None);
+        let still = Similarity::identity();
+        for (axis, words) in [
+            (0, "mirrored along its long axis"),
+            (1, "mirrored along its short axis"),
+            (2, "mirrored at its own plane"),
+        ] {
+            let mirror = Similarity::mirror(axis);
+            for [best, other] in [[&still, &mirror], [&mirror, &still]] {
+                let twin = Twin::of(&source, best, other);
+                assert!(twin.is_mirrored && twin.angle < 1e-6, "{twin:?}");
+                assert_eq!(twin.words(lengths), words);
+            }
+        }
+        let rotation = Rotation::new(Vector3::new(0.0, 0.0, 1.0)).to_rotation_matrix();
+        let turned = Similarity {
+            rotation: *rotation.matrix(),
+            ..still
+        };
+        let mirrored = turned.after(&Similarity::mirror(0));
+        let twin = Twin::of(&source, &still, &mirrored);
+        assert_eq!(twin.words(lengths), "mirrored");
+        assert!(!Twin::of(&source, &still, &turned).is_mirrored);
+    }
 
     #[test]
     fn half_turns_have_an_angle_whatever_rounding_does() {

@@ -382,8 +382,17 @@ fn another_pose(twin: Option<Twin>, lengths: Lengths) -> String {
 }
 
 impl Twin {
-    /// "rotated by 180° about its long axis".
+    /// "rotated by 180° about its long axis", "mirrored along its long axis".
     pub fn words(&self, lengths: Lengths) -> String {
+        if self.is_mirrored {
+            let plane = match self.axis {
+                TwinAxis::Long => " along its long axis",
+                TwinAxis::Cross => " along its short axis",
+                TwinAxis::Through => " at its own plane",
+                TwinAxis::Other => "",
+            };
+            return format!("mirrored{plane}");
+        }
         if self.angle < NO_ROTATION {
             return format!("shifted by {}", lengths.of(self.shift));
         }

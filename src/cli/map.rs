@@ -23,11 +23,12 @@ use crate::assess::Verdict;
 use crate::formats::ReadOptions;
 use crate::mapping::{MapOptions, Quantities, RuleKind};
 use crate::monitor::Monitor;
+use crate::pipeline::PipelineError;
 use crate::pipeline::load::{LoadSettings, LoadedPart, load};
 use crate::pipeline::map::{
-    DefaultThickness, MapFiles, MapOutput, MapRecipe, MapRecord, OtherResult, PlacedPart,
+    DefaultThickness, MapFiles, MapOutput, MapRecipe, MapRecord, MapRun, OtherResult, PlacedPart,
     PoseOrigin, deck_comments, element_table, elements_path, map_parts, map_record, map_report,
-    unmapped_sets, write_mapping,
+    unmapped_sets, unread_line, write_mapping,
 };
 use crate::pipeline::outputs::{Content, Target};
 use crate::registration::Hand;
@@ -105,7 +106,8 @@ pub(super) struct MapChoice {
 #[command(next_help_heading = "Values")]
 pub(super) struct MapValues {
     /// Quantities, separated by commas: thickness, plastic, strain, stress, history; or usual (thickness,
-    /// plastic), or full, for everything.
+    /// plastic), or full, for everything. Between two layers, stresses, strains and plastic strain are
+    /// interpolated; history variables, some of which are flags, are those of the nearest layer.
     #[arg(long, value_name = "LIST", default_value = "usual", value_parser = quantities)]
     quantities: Quantities,
     /// Layers of the crash elements, at most 100; from the section if not given.
@@ -215,10 +217,15 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     inputs.extend(others.chain(&args.choice.project).cloned());
     check_outputs(targets(&args.output), &inputs)?;
     let (crash, stamped) = load_all(args, &monitor)?;
+    let whole = crash.clone();
     inputs.extend(crash.files());
     inputs.extend(stamped.iter().flat_map(LoadedPart::files));
     check_outputs(targets(&args.output), &inputs)?;
-    let Placed { crash, mut poses } = place(&args.choice, crash, &stamped, &monitor)?;
+    check_order(&crash, &stamped)?;
+    // Where the work ends in an error, what the reader found may be the reason.
+    let tell = |_: &anyhow::Error| warn_of_unread(std::iter::once(&whole).chain(&stamped));
+    let placed = place(&args.choice, crash, &stamped, &monitor).inspect_err(tell)?;
+    let Placed { crash, mut poses } = placed;
     if let Some(mirror) = args.choice.mirror.motion() {
         for (pose, _) in &mut poses {
             *pose = mirror.after(pose);
@@ -239,7 +246,8 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         least_area: args.output.require.map(|percent| percent / 100.0),
         ..args.values.recipe()
     };
-    let run = map_parts(&crash, &placed, &recipe, &monitor)?;
+    let run = map_parts(&crash, &placed, &recipe, &monitor);
+    let run = run.map_err(anyhow::Error::from).inspect_err(tell)?;
     let output = args.output.out.as_ref().map(|path| MapOutput {
         kind: args.output.write.kind(),
         path: path.clone(),
@@ -249,6 +257,8 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     });
     let comments = deck_comments(&crash, &placed);
     let write = |output: &MapOutput| write_mapping(&run, &crash, output, &comments, &monitor);
+    // A deck without anything mapped would pass for a result.
+    let output = output.filter(|_| !run.is_empty());
     let files = output.as_ref().map(write).transpose()?;
     if let Some(files) = &files {
         check_outputs(all_targets(&args.output, files), &inputs)?;
@@ -273,20 +283,33 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         written.extend(all.map(|file| (file.path.clone(), file.bytes.clone())));
     }
     let outputs = &args.output;
-    if let Some(path) = &outputs.csv {
-        let table = element_table(&run, &crash, &placed, other.as_ref(), &monitor)?;
-        written.push((path.clone(), table.into_bytes()));
-    }
-    if let Some(path) = &outputs.unmapped {
-        let sets = unmapped_sets(&run, &crash.model, &monitor)?;
-        written.push((path.clone(), sets.into_bytes()));
-    }
-    if let Some(path) = &outputs.report {
-        let page = map_report(&run, &record, &crash, other.as_ref(), &monitor)?;
-        written.push((path.clone(), page.into_bytes()));
-    }
+    let about = (&run, &record, &placed[..], other.as_ref());
+    written.extend(tables(outputs, &crash, about, &monitor)?);
     drop(monitor);
     finish(outputs, &record, files.as_ref(), &written)
+}
+
+/// Tables and pages about a mapping, with where they go.
+fn tables(
+    outputs: &MapOutputArgs,
+    crash: &LoadedPart,
+    (run, record, placed, other): (&MapRun, &MapRecord, &[PlacedPart<'_>], Option<&OtherResult>),
+    monitor: &Monitor,
+) -> anyhow::Result<Vec<(PathBuf, Vec<u8>)>> {
+    let mut tables = Vec::new();
+    if let Some(path) = &outputs.csv {
+        let table = element_table(run, crash, placed, other, monitor)?;
+        tables.push((path.clone(), table.into_bytes()));
+    }
+    if let Some(path) = &outputs.unmapped {
+        let sets = unmapped_sets(run, &crash.model, monitor)?;
+        tables.push((path.clone(), sets.into_bytes()));
+    }
+    if let Some(path) = &outputs.report {
+        let page = map_report(run, record, crash, other, monitor)?;
+        tables.push((path.clone(), page.into_bytes()));
+    }
+    Ok(tables)
 }
 
 /// True if less of the area carries values than was required.
@@ -337,7 +360,13 @@ fn finish(
         return Ok(ExitCode::from(EXIT_GATE));
     }
     if record.mapped_area <= 0.0 {
-        log::error!("nothing is mapped: the parts do not lie on each other at this pose");
+        let withheld = if outputs.out.is_some() {
+            "; no deck is written"
+        } else {
+            ""
+        };
+        let error = PipelineError::NothingMapped;
+        log::error!("{error}{withheld}");
         return Ok(ExitCode::FAILURE);
     }
     if !failed.is_empty() {
@@ -352,6 +381,30 @@ fn finish(
     } else {
         ExitCode::SUCCESS
     })
+}
+
+/// Refuses files whose forming results all lie on the side of the crash part: they were named in the other order.
+fn check_order(crash: &LoadedPart, stamped: &[LoadedPart]) -> anyhow::Result<()> {
+    // A crash deck may have thicknesses of its own.
+    let has_states = !crash.model.forming.is_empty();
+    if !has_states || stamped.iter().any(|part| part.model.has_results()) {
+        return Ok(());
+    }
+    let names: Vec<String> = stamped.iter().map(LoadedPart::file_name).collect();
+    let text = format!(
+        "the forming results are in {}, named first as the crash model, and there are none in {}; name the crash \
+         model first: shapematch map CRASH STAMPED",
+        crash.file_name(),
+        names.join(", ")
+    );
+    Err(UsageError(text).into())
+}
+
+/// Tells what of the files could not be read.
+fn warn_of_unread<'a>(parts: impl Iterator<Item = &'a LoadedPart>) {
+    for line in parts.filter_map(unread_line) {
+        log::warn!("{line}");
+    }
 }
 
 /// Refuses options that do not go together.

@@ -1,5 +1,6 @@
 //! `shapematch map-car`: many stamped parts onto one crash model.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -15,7 +16,7 @@ use crate::formats::ReadOptions;
 use crate::pipeline::load::{LoadSettings, load, usual_selection};
 use crate::pipeline::map::DefaultThickness;
 use crate::pipeline::map_car::{
-    CAR_COLUMNS, CarRecipe, CarRecord, CarRow, CarState, StampedFile, car_files, map_car,
+    CAR_COLUMNS, CarRecipe, CarRecord, CarRow, CarState, MASTER, StampedFile, car_files, map_car,
 };
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::pipeline::outputs::{Content, Target};
@@ -94,6 +95,7 @@ pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
             stress_factor: of_file(stress_factors, file).copied(),
         })
         .collect();
+    let stamped = named_once(stamped);
     make_folder(&args.out)?;
     let mut inputs = vec![args.car.clone()];
     inputs.extend(args.stamped.iter().cloned());
@@ -122,11 +124,40 @@ pub fn run(args: &MapCarArgs, quiet: bool) -> anyhow::Result<ExitCode> {
         print(&table(&record))?;
     }
     let is_mapped = |row: &CarRow| row.state != CarState::None;
+    if !record.rows.iter().any(is_mapped) {
+        log::error!(
+            "nothing is mapped; no deck is written{}",
+            left_behind(&args.out)
+        );
+    }
     Ok(if record.rows.iter().all(is_mapped) {
         ExitCode::SUCCESS
     } else {
         ExitCode::FAILURE
     })
+}
+
+/// The files without those that stand for one named before, which would be mapped onto itself.
+fn named_once(files: Vec<StampedFile>) -> Vec<StampedFile> {
+    let mut known = BTreeSet::new();
+    let mut is_first = |file: &StampedFile| {
+        let place = file.path.canonicalize();
+        let is_first = known.insert(place.unwrap_or_else(|_| file.path.clone()));
+        if !is_first {
+            log::warn!("{} is named twice and mapped once", file.path.display());
+        }
+        is_first
+    };
+    files.into_iter().filter(|file| is_first(file)).collect()
+}
+
+/// Says that the decks in a folder are not of this run, if there are any.
+fn left_behind(folder: &Path) -> String {
+    if folder.join(MASTER).exists() {
+        format!("; {MASTER} in {} is of an earlier run", folder.display())
+    } else {
+        String::new()
+    }
 }
 
 /// Makes the folder if the one above it is there.

@@ -4,7 +4,7 @@ use clap::ValueEnum;
 
 use crate::formats::keyword::materials::law_of as material_law;
 use crate::geometry::Similarity;
-use crate::mapping::Quantities;
+use crate::mapping::{Quantities, limits};
 use crate::pipeline::map::{DefaultThickness, WriteKind};
 use crate::registration::Hand;
 
@@ -76,7 +76,7 @@ pub(super) fn default_thickness(text: &str) -> Result<DefaultThickness, String> 
         "section" => Ok(DefaultThickness::Section),
         "nearest" => Ok(DefaultThickness::Nearest),
         _ => match text.parse::<f64>() {
-            Ok(value) if value.is_finite() && value > 0.0 => Ok(DefaultThickness::Fixed(value)),
+            Ok(value) if limits::POSITIVE.contains(&value) => Ok(DefaultThickness::Fixed(value)),
             _ => Err(format!(
                 "{text:?} is none of section, nearest and a thickness"
             )),

@@ -250,5 +250,14 @@ fn load_both(
     );
     let parts = PerRole::new(crash?, stamped?);
     warn_of_tools(&parts.stamped);
+    let PerRole { crash, stamped } = parts.as_ref();
+    if !crash.model.forming.is_empty() && !stamped.model.has_results() {
+        log::warn!(
+            "the forming results are in {}, named first as the crash part, and there are none in {}; were the files \
+             named in the other order?",
+            crash.file_name(),
+            stamped.file_name()
+        );
+    }
     Ok(parts)
 }

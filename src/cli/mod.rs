@@ -25,6 +25,7 @@ mod robustness;
 mod sample;
 mod setting_args;
 mod terminal;
+mod unknown;
 mod words;
 
 pub use args::{Cli, Task};
@@ -37,6 +38,7 @@ use anyhow::Context as _;
 use serde::Serialize;
 
 pub use self::terminal::printable;
+pub use self::unknown::refuse_unknown;
 use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::outputs::{Content, Target, check_targets, json_text};

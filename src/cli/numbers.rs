@@ -5,6 +5,9 @@ use std::ops::RangeInclusive;
 use crate::mapping::limits;
 use crate::text::trimmed;
 
+/// Ranges that end here or higher only keep out numbers without a meaning.
+pub(super) const WIDE: f64 = 1e9;
+
 /// Takes numbers in a range; `sign` follows its ends where it is told.
 pub(super) fn number(
     range: RangeInclusive<f64>,
@@ -25,13 +28,14 @@ pub(super) fn within(number: f64, range: &RangeInclusive<f64>, sign: &str) -> Re
         return Ok(number);
     }
     let (low, high) = (*range.start(), *range.end());
-    Err(if high < f64::MAX {
+    Err(if high < WIDE {
         let [low, high] = [low, high].map(|end| trimmed(end, 6));
         format!("it must be from {low}{sign} to {high}{sign}")
     } else if low == f64::MIN_POSITIVE {
-        "it must be above 0".to_owned()
+        format!("it must be above 0 and at most {high:e}{sign}")
     } else {
-        format!("it must be at least {}{sign}", trimmed(low, 6))
+        let low = trimmed(low, 6);
+        format!("it must be at least {low}{sign} and at most {high:e}{sign}")
     })
 }
 

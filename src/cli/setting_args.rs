@@ -6,7 +6,7 @@ use clap::builder::{BoolishValueParser, PossibleValue, PossibleValuesParser};
 use clap::error::Result;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
-use super::numbers::{count, number, within};
+use super::numbers::{WIDE, count, number, within};
 use crate::mapping::{MapOptions, limits as map_limits};
 use crate::registration::{Floor, limits};
 use crate::settings::{ChoiceWords, Domain, MAP_SETTINGS, SETTINGS, Setting, Unit, Value};
@@ -147,7 +147,7 @@ fn possible(words: &ChoiceWords) -> PossibleValue {
 fn help<R: Default>(setting: &Setting<R>) -> String {
     let mut help = setting.help.to_owned();
     if let Domain::Number { unit, range, .. } = &setting.domain
-        && *range.end() < f64::MAX
+        && *range.end() < WIDE
     {
         let suffix = sign(*unit);
         let [low, high] = [range.start(), range.end()].map(|end| trimmed(*end, 6));

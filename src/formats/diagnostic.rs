@@ -160,6 +160,8 @@ kinds! {
     UnknownKeyword, Warning, "unknown keyword";
     /// A deck without shells and solids.
     NoElements, Warning, "no elements";
+    /// A deck that begins with `*KEYWORD` ends among nodes, elements or results, without `*END`.
+    NoEnd, Warning, "deck without an end";
 }
 
 /// One diagnostic: where, what was found, what was expected.

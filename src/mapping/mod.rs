@@ -185,8 +185,9 @@ fn check(
     if !limits::ANGLE_DEG.contains(&options.max_angle_deg) {
         return setting("the largest angle", options.max_angle_deg, "1° to 90°");
     }
-    if !limits::POSITIVE.contains(&options.thickness_scale) {
-        return setting("the thickness factor", options.thickness_scale, "above 0");
+    if !limits::THICKNESS_SCALE.contains(&options.thickness_scale) {
+        let range = "0.001 to 1000";
+        return setting("the thickness factor", options.thickness_scale, range);
     }
     Ok(())
 }

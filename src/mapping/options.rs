@@ -112,8 +112,11 @@ pub enum Overlap {
 pub mod limits {
     use std::ops::RangeInclusive;
 
-    /// Largest distance and factor on the thickness: any number above 0.
-    pub const POSITIVE: RangeInclusive<f64> = f64::MIN_POSITIVE..=f64::MAX;
+    /// Lengths and factors above 0: the units that decks are written in lie no farther apart, and no part is
+    /// larger.
+    pub const POSITIVE: RangeInclusive<f64> = f64::MIN_POSITIVE..=1e9;
+    /// Factor on the thickness: a gauge, or another unit of length.
+    pub const THICKNESS_SCALE: RangeInclusive<f64> = 1e-3..=1e3;
     /// Largest angle between the normals, in degrees. Above 90° a sheet would take the values of one that
     /// faces away.
     pub const ANGLE_DEG: RangeInclusive<f64> = 1.0..=90.0;

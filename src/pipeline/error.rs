@@ -94,6 +94,9 @@ pub enum PipelineError {
     /// Stamped files without what is to be mapped.
     #[error("none of the results that were asked for are in {0}")]
     NoResults(String),
+    /// No crash element got values.
+    #[error("nothing is mapped: the parts do not lie on each other at this pose")]
+    NothingMapped,
     /// More layers than a mapping carries.
     #[error(
         "part {part} has {n_layers} layers, but a mapping carries 1 to {}; name fewer (--layers)",

@@ -250,8 +250,8 @@ pub mod limits {
     pub const LAMBDA: RangeInclusive<f64> = 0.01..=100.0;
     /// Fraction that Trimmed ICP keeps.
     pub const OVERLAP: RangeInclusive<f64> = 1e-3..=1.0;
-    /// Lengths: floor, allowance and shape tolerance.
-    pub const LENGTH: RangeInclusive<f64> = 0.0..=f64::MAX;
+    /// Lengths: floor, allowance and shape tolerance. No part is larger in any unit.
+    pub const LENGTH: RangeInclusive<f64> = 0.0..=1e9;
     /// Angle between the normals of a pair, in degrees.
     pub const NORMAL_ANGLE_DEG: RangeInclusive<f64> = 1.0..=180.0;
     /// Tolerance of convergence, in mean edge lengths.

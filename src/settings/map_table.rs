@@ -98,7 +98,7 @@ pub static MAP_SETTINGS: [Setting<MapOptions>; 10] = [
         group: Group::Values,
         domain: Domain::Number {
             unit: Unit::One,
-            range: limits::POSITIVE,
+            range: limits::THICKNESS_SCALE,
             step: 0.01,
         },
         access: at!(thickness_scale),

@@ -81,7 +81,9 @@ impl<'a> Takes<'a> {
         let (least, most) = (*self.range.start(), *self.range.end());
         let unit = self.suffix();
         let is_above = least == f64::MIN_POSITIVE;
-        match (is_above, most == f64::MAX) {
+        // Such an end only keeps out numbers without a meaning.
+        let is_open = most >= 1e9;
+        match (is_above, is_open) {
             (true, true) => format!("above 0{unit}"),
             (false, true) => format!("{}{unit} or more", bound(least)),
             (true, false) => format!("above 0, up to {}{unit}", bound(most)),

@@ -175,10 +175,19 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
     let (source, target, limit) = (0.1, 0.2, 4.0);
     let at = Point3::new(1.0, 2.0, 3.0);
     let shape = |difference| Reason::Shape { difference };
+    let surface = |mostly| {
+        shape(ShapeReason::Surface {
+            by: 40.0,
+            limit,
+            at,
+            mostly,
+        })
+    };
     let twin = Some(Twin {
         angle: std::f64::consts::PI,
         axis: TwinAxis::Long,
         shift: 0.25,
+        is_mirrored: false,
     });
     let motion = FreeMotion {
         kind: FreeMotionKind::Extruded,
@@ -192,12 +201,7 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
             unit,
         },
         shape(ShapeReason::HardlyMet { share: 0.2 }),
-        shape(ShapeReason::Surface {
-            by: 40.0,
-            limit,
-            at,
-            mostly: true,
-        }),
+        surface(true),
         Reason::EndedEarly {
             termination: Termination::NoPairs,
         },
@@ -210,12 +214,7 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
             limit,
             along: PartDirection::Along,
         },
-        shape(ShapeReason::Surface {
-            by: 40.0,
-            limit,
-            at,
-            mostly: false,
-        }),
+        surface(false),
         shape(ShapeReason::Bent { by: 5.0, limit }),
         shape(ShapeReason::Borders { by: 5.0, limit, at }),
         shape(ShapeReason::Hole { by: 5.0, limit, at }),

@@ -456,6 +456,16 @@ fn wrong_usage_and_missing_files_have_their_own_status() {
         message.contains("floor") && message.contains("speed"),
         "{message}"
     );
+    for (words, told) in [
+        (&["frobnicate"][..], "no such file or command: frobnicate"),
+        (&["mapp", "a", "b"], "did you mean map?"),
+        (&["--quiet", "mathc"], "did you mean match?"),
+    ] {
+        let unknown = shapematch(words);
+        assert_eq!(unknown.status.code(), Some(2), "{words:?}");
+        let message = text(&unknown.stderr);
+        assert!(message.contains(told), "{message}");
+    }
     let pair = Pair::bundled();
     // The name of a mesh says in which format it is written.
     let unnamed = pair.run(&["--moved", "-"]);
@@ -489,6 +499,10 @@ fn values_that_cannot_be_say_what_they_must_be() {
         (
             "match a.k b.k --crash-length-factor 0",
             "it must be above 0",
+        ),
+        (
+            "match a.k b.k --shape-tolerance 1e300",
+            "it must be at least 0 and at most 1e9",
         ),
     ] {
         let words: Vec<&str> = line.split(' ').collect();

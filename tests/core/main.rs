@@ -35,6 +35,7 @@ mod map_files;
 mod map_includes;
 mod map_old_states;
 mod map_options;
+mod map_refusals;
 mod map_results;
 mod mapping;
 mod mapping_checks;

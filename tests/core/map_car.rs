@@ -484,3 +484,23 @@ fn a_sheet_that_is_two_crash_parts_is_mapped_onto_both() {
 fn node(id: u64, x: f64, y: f64) -> String {
     format!("{id:>8}{x:>16.4}{y:>16.4}{:>16.4}\n", 0.0)
 }
+
+#[test]
+fn where_nothing_is_mapped_no_deck_is_written_and_a_file_named_twice_counts_once() {
+    let car = Car::new();
+    let broken = "broken.dynain";
+    let output = car.run(&[
+        "map-car", CRASH, broken, broken, "--out", "mapped", "--json", "out.json",
+    ]);
+    assert_eq!(output.status.code(), Some(1));
+    let told = errors(&output);
+    assert!(told.contains("is named twice and mapped once"), "{told}");
+    assert!(
+        told.contains("nothing is mapped; no deck is written"),
+        "{told}"
+    );
+    assert!(!car.path("mapped/mapped.k").exists());
+    let record: Value =
+        serde_json::from_slice(&std::fs::read(car.path("out.json")).unwrap()).unwrap();
+    assert_eq!(record["rows"].as_array().unwrap().len(), 1);
+}

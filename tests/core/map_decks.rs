@@ -34,6 +34,13 @@ impl Pair {
             .unwrap()
     }
 
+    /// Runs any command of the program in the folder.
+    pub(crate) fn shapematch(&self, args: &[&str]) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_shapematch"));
+        command.current_dir(self.folder.path()).args(args);
+        command.output().unwrap()
+    }
+
     /// Runs the program on both decks as they lie.
     pub(crate) fn map(&self, options: &[&str]) -> Output {
         self.run(&[&["--identity"], options].concat())

@@ -270,7 +270,9 @@ fn a_given_pose_is_mirrored_at_a_plane_of_the_crash_model() {
 fn values_that_cannot_be_are_wrong_usage() {
     let strip = Strip::new();
     let cases: &[(&[&str], &str)] = &[
-        (&["--thickness-scale", "0"], "above 0"),
+        (&["--thickness-scale", "0"], "from 0.001 to 1000"),
+        (&["--thickness-scale", "1e30"], "from 0.001 to 1000"),
+        (&["--max-distance", "1e30"], "above 0 and at most 1e9"),
         (&["--max-distance", "0"], "above 0"),
         (&["--max-distance", "-1"], "above 0"),
         (&["--max-angle", "0"], "from 1° to 90°"),

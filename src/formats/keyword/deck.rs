@@ -90,19 +90,43 @@ impl Reader<'_> {
         self.n_bytes += file.bytes().len() as u64;
         let mut blocks = Blocks::new(file, context.layout);
         self.report_encrypted(file, &blocks);
+        let mut has_head = false;
+        let mut last: Option<Block<'_>> = None;
         while let Some(block) = blocks.next() {
             self.monitor.check()?;
             if block.name == "END" {
+                last = None;
                 break;
             }
+            has_head |= block.name == "KEYWORD";
             if let Some(own) = layout_of_keyword(&block) {
                 context.layout = self.layout(own, &block, &context);
                 blocks.set_layout(context.layout);
             }
             self.block(file, &block, &context)?;
+            last = Some(block);
+        }
+        // Included files and loose cards often have neither head nor end.
+        if let Some(last) = last.filter(|_| has_head && self.open.len() == 1) {
+            self.report_cut(file, &last);
         }
         self.monitor.progress("read deck", self.n_bytes, None);
         Ok(())
+    }
+
+    /// Says that a deck ends in the middle of its data, which is what a copy that was broken off looks like.
+    fn report_cut(&mut self, file: &SourceFile, last: &Block<'_>) {
+        let name = &last.name;
+        let is_data =
+            ["NODE", "ELEMENT", "INITIAL"].contains(&name.split('_').next().unwrap_or(""));
+        if is_data {
+            let message = format!(
+                "the file ends inside *{name} without *END; the rest of it is probably missing"
+            );
+            let at = file.position(last.body.end.saturating_sub(1));
+            let diagnostic = Diagnostic::new(DiagnosticKind::NoEnd, message);
+            self.assembly.found.push(diagnostic.at(at));
+        }
     }
 
     fn report_encrypted(&mut self, file: &SourceFile, blocks: &Blocks<'_>) {

@@ -77,6 +77,12 @@ pub fn law_of(keyword: &str) -> Option<String> {
     })
 }
 
+/// True for a law of sheet metal, as [`law_of`] names it.
+pub fn is_known_law(law: &str) -> bool {
+    let is_number = |(_, number): &(&str, u32)| number.to_string() == law;
+    NUMBERS.iter().any(is_number)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -406,6 +406,16 @@ impl Model {
         u32::try_from(at).ok()
     }
 
+    /// True if the file holds results of forming: stresses, strains, or a thickness of its elements' own.
+    pub fn has_results(&self) -> bool {
+        let mut shells = 0..self.shells.len() as u32;
+        let has_thickness = |shell: u32| {
+            let extra = self.shell_extra(shell);
+            extra.is_some_and(|extra| extra.thickness != [0.0; 4])
+        };
+        !self.forming.is_empty() || shells.any(has_thickness)
+    }
+
     /// The material of a part, by index; `None` if it is not in the deck. O(materials).
     pub fn material(&self, part: u32) -> Option<&Material> {
         let id = self.parts.get(part as usize)?.material_id;

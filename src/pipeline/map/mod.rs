@@ -50,7 +50,7 @@ use super::{PipelineError, millis_since};
 use crate::geometry::Similarity;
 use crate::mapping::{
     self, Distribution, LayerRule, MapBack, MapOptions, Mapped, PlacedSource, RuleKind, SourcePart,
-    TargetPart, distribution, limits,
+    Status, TargetPart, distribution, limits,
 };
 use crate::monitor::Monitor;
 use convert::{PartShells, TargetLayers, part_shells, source_part, target_part};
@@ -108,7 +108,8 @@ pub struct PlacedPart<'a> {
 /// Means, percentiles and the way back: is the mapping right?
 #[derive(Debug, Clone, Default)]
 pub struct MapChecks {
-    /// Thickness of the covered elements of all stamped parts and of the mapped crash elements.
+    /// Thickness of the covered elements of all stamped parts and of the mapped crash elements, without those
+    /// that were filled.
     pub thickness: Option<(Distribution, Distribution)>,
     /// The same for the plastic strain, mean over the layers.
     pub plastic_strain: Option<(Distribution, Distribution)>,
@@ -158,6 +159,11 @@ impl MapRun {
         let report = self.mapped.elements.get(element)?;
         let partner = report.partner.filter(|_| report.status.has_values())?;
         Some(partner.source as usize)
+    }
+
+    /// True if no element carries values, so that there is nothing to be written.
+    pub fn is_empty(&self) -> bool {
+        self.mapped.mapped_area(&self.target.mesh) <= 0.0
     }
 
     /// Mapped thickness of an element; NaN if it has none.
@@ -363,7 +369,9 @@ fn check(
         covered_values(sources.clone().zip(&back.is_covered), value)
     };
     let on_target = |value: &dyn Fn(usize) -> f64| {
-        let all = 0..target.mesh.len();
+        // A filled element repeats its neighbours where the stamped sheet has nothing to compare with.
+        let is_filled = |element: usize| mapped.elements[element].status == Status::Filled;
+        let all = (0..target.mesh.len()).filter(|&element| !is_filled(element));
         distribution(all.map(|element| (value(element), target.mesh.areas()[element])))
     };
     let thickness = on_sources(&SourcePart::mean_thickness);

@@ -2,8 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use super::ready::stress_unit_question;
 use super::{MapFiles, MapRun, PlacedPart, PoseOrigin, mapped_by_solver};
 use crate::formats::diagnostic::{DiagnosticKind, Severity};
+use crate::formats::keyword::materials::is_known_law;
 use crate::mapping::{Facing, MapOptions, Quantities, SourcePart, Status};
 use crate::pipeline::load::LoadedPart;
 use crate::registration::guess_unit;
@@ -50,6 +52,8 @@ pub(super) fn warnings(
     warnings.extend(sources.filter_map(|(placed, shells)| without_results(placed, shells)));
     warnings.extend(of_elements(run));
     warnings.extend(other_unit(run, stamped));
+    warnings.extend(stress_units(run, crash, stamped));
+    warnings.extend(unknown_law(run));
     if let Some(ratio) = run.unusual_thickness() {
         warnings.push(format!(
             "the mapped thickness is {} times that of the section; another gauge or another unit?",
@@ -108,6 +112,35 @@ fn other_unit(run: &MapRun, stamped: &[PlacedPart<'_>]) -> Vec<String> {
         ))
     };
     stamped.iter().zip(&run.sources).filter_map(hint).collect()
+}
+
+/// Asks about the unit of stresses where nothing tells it and their size is that of another unit than usual.
+fn stress_units(run: &MapRun, crash: &LoadedPart, stamped: &[PlacedPart<'_>]) -> Vec<String> {
+    if !run.recipe.options.quantities.stress {
+        return Vec::new();
+    }
+    let crash_parts: BTreeSet<u32> = run.target.mesh.parts().iter().copied().collect();
+    let crash_parts: Vec<u32> = crash_parts.into_iter().collect();
+    let files = stamped.iter().zip(&run.sources).enumerate();
+    let open = files.filter(|(file, _)| run.recipe.stress_factor(*file).is_none());
+    open.filter_map(|(_, (placed, source))| {
+        stress_unit_question(crash, &crash_parts, placed.part, source)
+    })
+    .collect()
+}
+
+/// Says that the material law given for the stamped parts is none of those that could be meant. Where history
+/// variables are left out because of it, that is said instead.
+fn unknown_law(run: &MapRun) -> Option<String> {
+    let law = run.recipe.stamped_law.as_ref()?;
+    let is_told = run.mapped.history.iter().any(|h| !h.left_out.is_empty());
+    let is_there = run.target.laws.values().any(|known| known == law);
+    (!is_told && !is_there && !is_known_law(law)).then(|| {
+        format!(
+            "--stamped-material {law} is a material law of no crash part that is mapped onto and none of those usual for \
+             sheets"
+        )
+    })
 }
 
 /// What is to be told of the status of the elements and of where they lie.
@@ -178,7 +211,9 @@ pub fn unread_line(part: &LoadedPart) -> Option<String> {
             counted(n, "piece")
         )
     };
-    told_of(part, |kind| kind.severity() == Severity::Error, what)
+    let is_one =
+        |kind: DiagnosticKind| kind.severity() == Severity::Error || kind == DiagnosticKind::NoEnd;
+    told_of(part, is_one, what)
 }
 
 /// Says which results are taken though they may not be meant so.

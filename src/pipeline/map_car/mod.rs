@@ -14,7 +14,7 @@ use super::error::unless_cancelled;
 use super::find_parts::{FoundParts, find_parts, guessed_units, mirrored_twin};
 use super::load::{LoadSettings, LoadedPart, load, prepare};
 use super::map::{
-    DefaultThickness, LEAST_AREA, MapOutput, MapRecipe, MapRecord, NewStates, PlacedPart,
+    DefaultThickness, LEAST_AREA, MapOutput, MapRecipe, MapRecord, MapRun, NewStates, PlacedPart,
     PoseOrigin, WriteKind, bare_elements, car_copies, deck_comments, elements_path, file_lines,
     map_parts, map_record, map_report, mapped_by_solver, write_mapping,
 };
@@ -78,7 +78,7 @@ pub fn car_files(stamped: &[StampedFile], folder: &Path, has_pages: bool) -> Vec
 }
 
 /// The deck that includes the others.
-const MASTER: &str = "mapped.k";
+pub const MASTER: &str = "mapped.k";
 /// The page about all parts.
 const REPORT: &str = "report.html";
 
@@ -146,7 +146,7 @@ struct Made {
 /// and elements of each group of parts, a deck that includes all of them, and pages if these are wanted.
 ///
 /// Stamped parts that claim the same crash part are mapped onto it together. A file that cannot be read or
-/// that fits nothing is a row of the record; an error is only what concerns all: a cancel request, or a
+/// that fits nothing is a row of the record, and where nothing is mapped at all no deck is written; an error is only what concerns all: a cancel request, or a
 /// folder that cannot be written.
 pub fn map_car(
     crash: &LoadedPart,
@@ -203,8 +203,11 @@ pub fn map_car(
         rows,
         copies,
     };
-    let master = master(&record, crash, &included);
-    write_file(&recipe.folder.join(MASTER), master.as_bytes())?;
+    // A deck without anything mapped would pass for a result.
+    if !included.is_empty() {
+        let master = master(&record, crash, &included);
+        write_file(&recipe.folder.join(MASTER), master.as_bytes())?;
+    }
     if recipe.has_pages {
         let page = car_page(&record, crash);
         write_file(&recipe.folder.join(REPORT), page.as_bytes())?;
@@ -371,11 +374,8 @@ impl Group<'_> {
             .collect();
         let mut mapping = recipe.map.clone();
         // They are given for all files or for none.
-        let factors = self
-            .members
-            .iter()
-            .filter_map(|(file, _)| file.stress_factor);
-        mapping.stress_factors = factors.collect();
+        let files = self.members.iter().map(|(file, _)| file);
+        mapping.stress_factors = files.filter_map(|file| file.stress_factor).collect();
         let mut run = map_parts(&crash, &placed, &mapping, monitor)?;
         let is_good = || self.members.iter().map(|(_, claim)| claim.is_good());
         let mut is_displaced = vec![false; placed.len()];
@@ -390,6 +390,9 @@ impl Group<'_> {
                 .stress_factors
                 .retain(|_| good.next().unwrap_or(true));
             run = map_parts(&crash, &placed, &mapping, monitor)?;
+        }
+        if run.is_empty() {
+            return Err(PipelineError::NothingMapped);
         }
         let output = MapOutput {
             kind: WriteKind::Include,
@@ -410,6 +413,10 @@ impl Group<'_> {
             let page = map_report(&run, &record, &crash, None, monitor)?;
             write_file_unless_cancelled(&recipe.folder.join(name), page.as_bytes(), monitor)?;
         }
+        let mirrored_twin = match &stamped[..] {
+            [alone] => Self::twin_of(alone, &crash, &run, (recipe, monitor))?,
+            _ => None,
+        };
         Ok(Made {
             title: first_title(&crash),
             thickness: run.mean_thickness(),
@@ -427,16 +434,24 @@ impl Group<'_> {
                 .map(|part| file_lines(part, &mapping.options))
                 .collect(),
             bare: bare_elements(&run),
-            mirrored_twin: match &stamped[..] {
-                [alone] if record.mapped_area < LEAST_AREA => {
-                    let parts = PerRole::new(&crash, alone);
-                    mirrored_twin(parts, &run.poses[0], &recipe.matching, monitor)?
-                }
-                _ => None,
-            },
+            mirrored_twin,
             record,
             page,
         })
+    }
+
+    /// The pose of the mirror image of a part that is alone, where that lies on what it leaves of the crash parts.
+    fn twin_of(
+        alone: &LoadedPart,
+        crash: &LoadedPart,
+        run: &MapRun,
+        (recipe, monitor): (&CarRecipe, &Monitor),
+    ) -> Result<Option<Similarity>, PipelineError> {
+        if run.mapped.mapped_area(&run.target.mesh) >= LEAST_AREA {
+            return Ok(None);
+        }
+        let parts = PerRole::new(crash, alone);
+        mirrored_twin(parts, &run.poses[0], &recipe.matching, monitor)
     }
 
     /// The crash model with the parts of all members chosen.

@@ -11,6 +11,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::error::ProjectError;
 use super::text;
 use crate::assess::Verdict;
 use crate::formats::{Disk, FileHash, FileSource as _, ReadOptions, Selection};
@@ -32,7 +33,7 @@ pub const EXTENSION: &str = "shapematch";
 /// What the field `schema` begins with.
 const SCHEMA: &str = "shapematch.project/";
 /// The version of the format that this program writes, and the newest it reads.
-const VERSION: u32 = 1;
+pub(super) const VERSION: u32 = 1;
 
 /// A larger file is no project.
 const MAX_BYTES: u64 = 1 << 28;
@@ -249,56 +250,6 @@ struct Written<'a> {
     sweep: &'a Option<Sweep>,
 }
 
-/// Why a project cannot be opened.
-#[derive(Debug, thiserror::Error)]
-pub enum ProjectError {
-    /// It cannot be read from disk.
-    #[error("cannot read the project ({reason}): {path:?}")]
-    Read {
-        /// Path of the project file.
-        path: PathBuf,
-        /// What the system says.
-        reason: String,
-    },
-    /// It is no JSON text.
-    #[error("{path:?} is no project: line {line} {reason}")]
-    NoText {
-        /// Path of the project file.
-        path: PathBuf,
-        /// Where reading ended.
-        line: usize,
-        /// What was wrong there.
-        reason: String,
-    },
-    /// It is some other JSON text.
-    #[error("{0:?} is no project of shapematch; its field \"schema\" would say so")]
-    NoProject(PathBuf),
-    /// A later program wrote it.
-    #[error(
-        "{path:?} is a project of version {version}, written by {program}; this is {}, which reads \
-         up to version {VERSION}. Open it with the program that wrote it",
-        build_id()
-    )]
-    Newer {
-        /// Path of the project file.
-        path: PathBuf,
-        /// Version of the program that wrote it.
-        version: String,
-        /// The program that wrote it, as it calls itself.
-        program: String,
-    },
-    /// A field that everything else depends on is not understood.
-    #[error("the field {field:?} of the project {path:?} is not understood: {reason}")]
-    Field {
-        /// Path of the project file.
-        path: PathBuf,
-        /// Name of the field.
-        field: &'static str,
-        /// What is wrong.
-        reason: String,
-    },
-}
-
 impl Project {
     /// Every file that is read with it.
     pub fn files(&self) -> Vec<ProjectFile> {
@@ -329,11 +280,8 @@ impl Project {
     /// Understands the text of a project that lies at `path`.
     pub fn parse(text: &str, path: &Path) -> Result<(Self, Vec<String>), ProjectError> {
         let at = || path.to_path_buf();
-        let root: Value = serde_json::from_str(text).map_err(|error| ProjectError::NoText {
-            path: at(),
-            line: error.line(),
-            reason: error.to_string(),
-        })?;
+        let root: Value = serde_json::from_str(text)
+            .map_err(|error| ProjectError::no_text(path, text, &error))?;
         let Value::Object(mut fields) = root else {
             return Err(ProjectError::NoProject(at()));
         };

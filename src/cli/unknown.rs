@@ -1,0 +1,90 @@
+//! A first word that is neither a file nor a command.
+
+use std::ffi::OsStr;
+use std::path::Path;
+
+use clap::CommandFactory as _;
+use clap::error::ErrorKind;
+
+use super::Cli;
+
+/// A command that differs by more letters was not meant.
+const MOST_TYPOS: usize = 3;
+
+/// Ends the program with wrong usage if a word is neither an existing file nor a command and looks like no file:
+/// the window would open for it. A word with an extension or a folder is a file that is missing, which is told where
+/// it is read.
+pub fn refuse_unknown(word: Option<&OsStr>) {
+    if let Some(text) = word.and_then(unknown) {
+        Cli::command()
+            .error(ErrorKind::InvalidSubcommand, text)
+            .exit();
+    }
+}
+
+fn unknown(word: &OsStr) -> Option<String> {
+    let path = Path::new(word);
+    let command = Cli::command();
+    let mut names: Vec<&str> = command
+        .get_subcommands()
+        .map(|task| task.get_name())
+        .collect();
+    names.push("help");
+    let is_file = path.exists() || path.extension().is_some() || path.components().count() != 1;
+    let is_option = word.as_encoded_bytes().starts_with(b"-");
+    if is_file || is_option || names.iter().any(|name| word == *name) {
+        return None;
+    }
+    let word = word.to_string_lossy();
+    let nearest = names.into_iter().map(|name| (n_typos(&word, name), name));
+    let nearest = nearest
+        .min()
+        .filter(|(n, name)| *n <= MOST_TYPOS && *n < name.len());
+    let meant = nearest.map_or_else(
+        || "; shapematch help lists the commands".to_owned(),
+        |(_, name)| format!("; did you mean {name}?"),
+    );
+    Some(format!("no such file or command: {word}{meant}"))
+}
+
+/// Letters to be put in, left out or replaced to make one word the other. O(product of the lengths).
+fn n_typos(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, letter) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, other) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(letter != *other);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_that_are_no_file_and_no_command_are_refused_with_the_nearest_one() {
+        let told = |word: &str| unknown(OsStr::new(word));
+        assert_eq!(
+            told("mapp").as_deref(),
+            Some("no such file or command: mapp; did you mean map?")
+        );
+        assert!(told("mathc").is_some_and(|text| text.ends_with("did you mean match?")));
+        assert!(told("frobnicate").is_some_and(|text| text.ends_with("lists the commands")));
+        for known in [
+            "map",
+            "help",
+            "--version",
+            "missing.k",
+            "folder/part",
+            "src",
+        ] {
+            assert_eq!(told(known), None, "{known}");
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! What `shapematch map` asks about or refuses before a deck is written: other units of stress, files in the other
+//! order, decks that are cut off, names that do not exist.
+
+use super::map_decks::{Pair, crash, errors, stamped, stresses};
+
+const STEEL: &str = "*MAT_3-PARAMETER_BARLAT\n         5    7.8E-9  210000.0       0.3\n";
+const STEEL_PART: &str = "*PART\nsheet\n         1         1         5\n";
+const IN_MM: &str = "*KEYWORD\n$ units ton-mm-s\n";
+/// A pose beside the crash part.
+const BESIDE: &str = "1 0 0 5000  0 1 0 0  0 0 1 0  0 0 0 1";
+
+/// Two stamped elements with these numbers in place of 100 and 50 MPa.
+fn stressed(numbers: &str, cards: &str) -> String {
+    let stresses = stresses(1..=2).replace("     100.0      50.0", numbers);
+    stamped(2, &(stresses + cards))
+}
+
+#[test]
+fn stresses_are_compared_with_the_materials_even_where_units_agree() {
+    let in_gpa = "       0.1      0.05";
+    let material = STEEL_PART.to_owned() + STEEL;
+    for (crash, stamped, whose) in [
+        (
+            crash(2, STEEL),
+            stressed(in_gpa, &material),
+            "the crash part",
+        ),
+        (crash(2, STEEL), stressed(in_gpa, ""), "the crash part"),
+        (
+            crash(2, ""),
+            stressed(in_gpa, &material),
+            "its own material",
+        ),
+    ] {
+        let pair = Pair::new(&crash, &stamped);
+        let asked = pair.map(&["--quantities", "stress"]);
+        let told = errors(&asked);
+        assert_eq!(asked.status.code(), Some(1), "{told}");
+        assert!(told.contains("--stress-factor 1e3"), "{told}");
+        assert!(told.contains(&format!("modulus of {whose}")), "{told}");
+        let answered = pair.map(&["--quantities", "stress", "--stress-factor", "1e3"]);
+        assert!(answered.status.success(), "{}", errors(&answered));
+    }
+    let usual = stressed("     100.0      50.0", &material);
+    let usual = Pair::new(&crash(2, STEEL), &usual).map(&["--quantities", "stress"]);
+    assert!(usual.status.success(), "{}", errors(&usual));
+}
+
+#[test]
+fn stresses_without_any_material_are_judged_by_what_sheets_bear() {
+    let crash = crash(2, "").replace("*KEYWORD\n", IN_MM);
+    let map = |numbers| Pair::new(&crash, &stressed(numbers, "")).map(&["--quantities", "stress"]);
+    let pascal = map("     1.0E8     5.0E7");
+    assert_eq!(pascal.status.code(), Some(1));
+    let told = errors(&pascal);
+    assert!(told.contains("--stress-factor 1e-6"), "{told}");
+    let open = map("       0.1      0.05");
+    assert!(open.status.success(), "{}", errors(&open));
+    assert!(errors(&open).contains("as in GPa"), "{}", errors(&open));
+    let usual = map("     100.0      50.0");
+    assert!(!errors(&usual).contains("GPa"), "{}", errors(&usual));
+}
+
+#[test]
+fn a_mapping_of_nothing_writes_no_deck() {
+    let pair = Pair::new(&crash(2, ""), &stamped(2, ""));
+    let output = pair.run(&["--pose", BESIDE, "--out", "out.k", "--json", "out.json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let told = errors(&output);
+    assert!(told.contains("nothing is mapped"), "{told}");
+    assert!(told.contains("no deck is written"), "{told}");
+    assert!(!String::from_utf8_lossy(&output.stdout).contains("read back"));
+    assert!(!pair.path("out.k").exists() && !pair.path("out_elements.k").exists());
+    // The record says why.
+    assert!(pair.path("out.json").exists());
+}
+
+#[test]
+fn filled_elements_are_no_part_of_the_means_that_are_compared() {
+    // The second of two stamped elements is thicker, and the third crash element is filled from it.
+    let thick = stamped(2, "");
+    let (first, last) = thick.split_at(thick.rfind("\n       2 ").unwrap() + 1);
+    let thick = first.to_owned() + &last.replace("0.9", "1.1");
+    assert!(thick.contains("1.1"), "{thick}");
+    let pair = Pair::new(&crash(4, ""), &thick);
+    let mean = |options: &[&str]| {
+        let output = pair.map(&[&["--json", "-"], options].concat());
+        let record: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        record["thickness"]["crash"]["mean"].as_f64().unwrap()
+    };
+    assert_eq!(mean(&["--fill", "1"]), mean(&[]));
+}
+
+#[test]
+fn what_the_reader_found_is_told_with_the_error_that_follows_from_it() {
+    let section = "         7         2     0.833         3";
+    let unknown = crash(2, "")
+        .replace(section, "         7         2     0.833      &nip")
+        .replace(&"       1.0".repeat(4), &"      &thk".repeat(4));
+    let output = Pair::new(&unknown, &stamped(2, &stresses(1..=2))).map(&[]);
+    let told = errors(&output);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(told.contains("crash.k:") && told.contains("&thk"), "{told}");
+}
+
+#[test]
+fn a_deck_that_is_cut_off_among_its_elements_is_told_by_all_commands() {
+    let whole = crash(3, "");
+    let cut = whole.trim_end_matches("*END\n");
+    let pair = Pair::new(cut, &stamped(2, &stresses(1..=2)));
+    let told = "the file ends inside *ELEMENT_SHELL without *END";
+    let line = format!("crash.k:{}", cut.lines().count());
+    let mapped = pair.map(&[]);
+    let mapped = errors(&mapped);
+    assert!(mapped.contains(told) && mapped.contains(&line), "{mapped}");
+    for command in [
+        &["info", "crash.k"][..],
+        &["match", "crash.k", "stamped.dynain"],
+    ] {
+        let output = pair.shapematch(command);
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(text.contains(told), "{command:?}: {text}");
+    }
+    // Loose cards have no end.
+    std::fs::write(pair.path("crash.k"), cut.replace("*KEYWORD\n", "")).unwrap();
+    let loose = pair.shapematch(&["info", "crash.k"]);
+    let loose = String::from_utf8_lossy(&loose.stdout).into_owned();
+    assert!(!loose.contains("without *END"), "{loose}");
+}
+
+#[test]
+fn files_in_the_other_order_are_told() {
+    let pair = Pair::new(&stamped(2, &stresses(1..=2)), &crash(2, ""));
+    let refused = pair.map(&[]);
+    assert_eq!(refused.status.code(), Some(2));
+    let told = errors(&refused);
+    let order = "the forming results are in crash.k, named first";
+    assert!(told.contains(order), "{told}");
+    assert!(told.contains("none in stamped.dynain"), "{told}");
+    let matched = pair.shapematch(&["match", "crash.k", "stamped.dynain"]);
+    assert!(errors(&matched).contains(order), "{}", errors(&matched));
+}
+
+#[test]
+fn a_material_law_that_does_not_exist_is_named() {
+    let pair = Pair::new(&crash(2, STEEL), &stamped(2, &stresses(1..=2)));
+    let told = |law| errors(&pair.map(&["--stamped-material", law])).to_owned();
+    assert!(
+        told("foo").contains("--stamped-material FOO"),
+        "{}",
+        told("foo")
+    );
+    for known in ["36", "24", "PIECEWISE_LINEAR_PLASTICITY"] {
+        assert!(!told(known).contains("--stamped-material"), "{known}");
+    }
+}
+
+#[test]
+fn a_project_that_is_none_is_told_what_it_is() {
+    let pair = Pair::new(&crash(2, ""), &stamped(2, ""));
+    let refused = pair.run(&["--project", "crash.k"]);
+    let told = errors(&refused);
+    assert!(
+        told.contains("is no project but an LS-DYNA keyword deck"),
+        "{told}"
+    );
+    assert!(told.contains(".shapematch"), "{told}");
+}
