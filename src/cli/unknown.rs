@@ -8,7 +8,7 @@ use clap::error::ErrorKind;
 
 use super::Cli;
 
-/// A command that differs by more letters was not meant.
+/// A command that differs by more letters was not meant; two that changed places are one.
 const MOST_TYPOS: usize = 3;
 
 /// Ends the program with wrong usage if a word is neither an existing file nor a command and looks like no file:
@@ -36,7 +36,9 @@ fn unknown(word: &OsStr) -> Option<String> {
         return None;
     }
     let word = word.to_string_lossy();
-    let nearest = names.into_iter().map(|name| (n_typos(&word, name), name));
+    let nearest = names
+        .into_iter()
+        .map(|name| (strsim::osa_distance(&word, name), name));
     let nearest = nearest
         .min()
         .filter(|(n, name)| *n <= MOST_TYPOS && *n < name.len());
@@ -45,22 +47,6 @@ fn unknown(word: &OsStr) -> Option<String> {
         |(_, name)| format!("; did you mean {name}?"),
     );
     Some(format!("no such file or command: {word}{meant}"))
-}
-
-/// Letters to be put in, left out or replaced to make one word the other. O(product of the lengths).
-fn n_typos(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, letter) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, other) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(letter != *other);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[b.len()]
 }
 
 #[cfg(test)]

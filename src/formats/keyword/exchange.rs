@@ -12,6 +12,7 @@ use super::mesh::{ElementKeyword, ShellCards, element_keyword};
 use super::nodes::shifted;
 use super::shells::{is_ply, thickness_line};
 use super::source_file::SourceFile;
+use super::state_cards::Pieces;
 use crate::monitor::{Cancelled, Monitor};
 use element::{Element, Keyword};
 
@@ -42,7 +43,7 @@ pub struct ExchangeRules<'a> {
     /// Which results are left out; `None` if all stay.
     pub leaves_out: Option<&'a dyn Fn(&ResultCards) -> bool>,
     /// What is put at the end of the file, given what was found in it.
-    pub states: &'a dyn Fn(&ExchangedDeck) -> Result<Vec<u8>, Cancelled>,
+    pub states: &'a dyn Fn(&ExchangedDeck) -> Result<Pieces, Cancelled>,
 }
 
 /// A deck with exchanged elements.
@@ -134,7 +135,10 @@ pub fn exchange_thickness(
     let states = (rules.states)(&copy.result)?;
     if !states.is_empty() {
         copy.new_line();
-        copy.lines(&states);
+        for piece in states {
+            monitor.check()?;
+            copy.lines(&piece);
+        }
     }
     copy.up_to(bytes.len());
     Ok(copy.result)

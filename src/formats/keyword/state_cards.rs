@@ -46,7 +46,10 @@ pub struct StateFormat {
     pub is_large: bool,
 }
 
-/// The cards of shells 0 to `n_shells`, stresses first, as text that can stand in any deck of the same
+/// Lines of a deck, in the order of these pieces. Together they may be too long to copy without a look for a cancel.
+pub type Pieces = Vec<Vec<u8>>;
+
+/// The cards of shells 0 to `n_shells`, stresses first, as lines that can stand in any deck of the same
 /// layout: where ids have more digits than its fields, the keywords ask for the long one (`+`). `state_of` gives
 /// the state of a shell; shells without states or strains get no card.
 /// Bytes do not depend on the number of threads. O(values), about 60 ns each.
@@ -55,7 +58,7 @@ pub fn write_states<'a>(
     state_of: impl Fn(usize) -> ShellState<'a> + Sync,
     format: StateFormat,
     monitor: &Monitor,
-) -> Result<Vec<u8>, Cancelled> {
+) -> Result<Pieces, Cancelled> {
     let largest = (0..n_shells).map(|shell| state_of(shell).id).max();
     let is_wider = format.layout != Layout::Long && largest > Some(MOST_IN_TEN);
     let (format, suffix) = if is_wider {
@@ -64,24 +67,24 @@ pub fn write_states<'a>(
     } else {
         (format, "")
     };
-    let mut text = Vec::new();
+    let mut pieces = Vec::new();
     let stresses = chunks(n_shells, monitor, |text, shell| {
         stress_card(text, &state_of(shell), format);
     })?;
     append(
-        &mut text,
+        &mut pieces,
         &format!("*INITIAL_STRESS_SHELL{suffix}\n"),
-        &stresses,
+        stresses,
     );
     let strains = chunks(n_shells, monitor, |text, shell| {
         strain_card(text, &state_of(shell), format);
     })?;
     append(
-        &mut text,
+        &mut pieces,
         &format!("*INITIAL_STRAIN_SHELL{suffix}\n"),
-        &strains,
+        strains,
     );
-    Ok(text)
+    Ok(pieces)
 }
 
 /// Formats the shells in pieces, in parallel, in order.
@@ -89,7 +92,7 @@ fn chunks(
     n_shells: usize,
     monitor: &Monitor,
     write: impl Fn(&mut Vec<u8>, usize) + Sync,
-) -> Result<Vec<Vec<u8>>, Cancelled> {
+) -> Result<Pieces, Cancelled> {
     (0..n_shells.div_ceil(CHUNK))
         .into_par_iter()
         .map(|chunk| {
@@ -103,15 +106,10 @@ fn chunks(
         .collect()
 }
 
-fn append(text: &mut Vec<u8>, keyword: &str, pieces: &[Vec<u8>]) {
-    let length: usize = pieces.iter().map(Vec::len).sum();
-    if length == 0 {
-        return;
-    }
-    text.reserve(keyword.len() + length);
-    text.extend_from_slice(keyword.as_bytes());
-    for piece in pieces {
-        text.extend_from_slice(piece);
+fn append(pieces: &mut Pieces, keyword: &str, cards: Pieces) {
+    if cards.iter().any(|piece| !piece.is_empty()) {
+        pieces.push(keyword.as_bytes().to_vec());
+        pieces.extend(cards);
     }
 }
 
@@ -213,7 +211,8 @@ mod tests {
             layout: Layout::Standard,
             is_large,
         };
-        let text = write_states(1, |_| state, format, &Monitor::silent()).unwrap();
+        let text = write_states(1, |_| state, format, &Monitor::silent());
+        let text = text.unwrap().concat();
         String::from_utf8(text).unwrap()
     }
 

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::formats::Memory;
 use crate::formats::keyword::card::Layout;
-use crate::formats::keyword::state_cards::{ShellState, StateFormat, write_states};
+use crate::formats::keyword::state_cards::{Pieces, ShellState, StateFormat, write_states};
 use crate::geometry::tensor::Tensor;
 use crate::mapping::{
     LayerRule, Layered, MapMethod, MapOptions, Mapped, MappedLayers, PlacedSource, Quantities,
@@ -406,7 +406,8 @@ fn speed(monitor: &Monitor) -> Result<SpeedRow, PipelineError> {
             .map(|(peak, before)| peak.saturating_sub(before));
         peak_bytes = peak_bytes.max(more);
         let start = Instant::now();
-        n_bytes = states_text(&mapped, &rule, monitor)?.len();
+        let pieces = states_text(&mapped, &rule, monitor)?;
+        n_bytes = pieces.iter().map(Vec::len).sum();
         write_ms = write_ms.min(millis_since(start));
         result_bytes = bytes_of(&source, &target, &mapped);
     }
@@ -457,7 +458,7 @@ fn states_text(
     mapped: &Mapped,
     rule: &LayerRule,
     monitor: &Monitor,
-) -> Result<Vec<u8>, PipelineError> {
+) -> Result<Pieces, PipelineError> {
     let state_of = |element: usize| ShellState {
         id: element as u64 + 1,
         places: rule.places(),

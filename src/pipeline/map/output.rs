@@ -12,7 +12,7 @@ use crate::formats::keyword::exchange::{
     Exchange, ExchangeRules, ExchangedDeck, ResultCards, exchange_thickness,
 };
 use crate::formats::keyword::source_file::SourceFile;
-use crate::formats::keyword::state_cards::{ShellState, StateFormat, write_states};
+use crate::formats::keyword::state_cards::{Pieces, ShellState, StateFormat, write_states};
 use crate::formats::model::{IncludedAs, ReadFile};
 use crate::formats::{self, Model};
 use crate::geometry::chunks::for_chunks;
@@ -314,7 +314,7 @@ impl MapWriter<'_> {
             let bytes = formats::read_text(&*from, &file.path, read, self.monitor)?;
             let source = SourceFile::new(&file.path, bytes);
             // Of a copy only the file with the elements is kept.
-            let states = |found: &ExchangedDeck| -> Result<Vec<u8>, Cancelled> {
+            let states = |found: &ExchangedDeck| -> Result<Pieces, Cancelled> {
                 if kind == WriteKind::Deck && found.n_found > 0 {
                     self.states(found.layout, &file.included_as)
                 } else {
@@ -440,7 +440,7 @@ impl MapWriter<'_> {
             );
             states.extend_from_slice(hint.as_bytes());
         }
-        states.extend_from_slice(&self.states(layout, &IncludedAs::default())?);
+        self.add_states(&mut states, layout)?;
         states.extend_from_slice(b"*END\n");
         let mut files = vec![new_file(path, states)];
         if !self.thickness.is_empty() {
@@ -457,7 +457,7 @@ impl MapWriter<'_> {
         let layout = decks.first().map_or(self.layout(), |(_, deck)| deck.layout);
         let mut text = self.elements(head, decks);
         text.truncate(text.len() - b"*END\n".len());
-        text.extend_from_slice(&self.states(layout, &IncludedAs::default())?);
+        self.add_states(&mut text, layout)?;
         text.extend_from_slice(b"*END\n");
         Ok(text)
     }
@@ -536,8 +536,17 @@ impl MapWriter<'_> {
         Ok(n)
     }
 
+    /// Adds the cards to a file that nothing includes.
+    fn add_states(&self, text: &mut Vec<u8>, layout: Layout) -> Result<(), Cancelled> {
+        for piece in self.states(layout, &IncludedAs::default())? {
+            self.monitor.check()?;
+            text.extend_from_slice(&piece);
+        }
+        Ok(())
+    }
+
     /// The cards as they stand in a file of the deck.
-    fn states(&self, layout: Layout, file: &IncludedAs) -> Result<Vec<u8>, Cancelled> {
+    fn states(&self, layout: Layout, file: &IncludedAs) -> Result<Pieces, Cancelled> {
         let state_of = |element: usize| {
             let state = self.state_of(element);
             let id = state

@@ -22,7 +22,7 @@ fn exchanged(
         list_layout: Some(Layout::Standard),
         exchange_of,
         leaves_out: None,
-        states: &|_| Ok(b"*INITIAL_STRESS_SHELL\n".to_vec()),
+        states: &|_| Ok(vec![b"*INITIAL_STRESS_SHELL\n".to_vec()]),
     };
     exchange_thickness(file, &rules, &Monitor::silent()).unwrap()
 }
