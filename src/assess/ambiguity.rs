@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::Similarity;
+use crate::geometry::{Matrix3, Similarity, Vector3};
 use crate::registration::{Alternative, Surface};
 
 /// Below this ratio two poses are equivalent.
@@ -81,18 +81,14 @@ impl Twin {
         let is_mirrored = best.is_mirrored() != other.is_mirrored();
         // A mirror at a plane is a half turn about its normal with every direction reversed.
         let turn = if is_mirrored { -turn } else { turn };
-        let turn = nalgebra::Rotation3::from_matrix_unchecked(turn);
         let angle = if is_mirrored {
-            // Rounding may take the cosine beyond 1.
-            PI - ((turn.matrix().trace() - 1.0) / 2.0)
-                .clamp(-1.0, 1.0)
-                .acos()
+            PI - cosine_of(&turn).acos()
         } else {
             best.angle_to(other)
         };
         let center = &measures.centroid;
         let has_axis = !is_mirrored || angle < NO_TURN;
-        let axis = turn.axis().filter(|_| has_axis);
+        let axis = axis_of(&turn).filter(|_| has_axis);
         let axis = axis.map_or(TwinAxis::Other, |axis| {
             let along = |k: usize| measures.principal_axes.column(k).dot(&axis).abs();
             let known = [TwinAxis::Long, TwinAxis::Cross, TwinAxis::Through];
@@ -106,6 +102,27 @@ impl Twin {
             is_mirrored,
         }
     }
+}
+
+/// Cosine of the angle of a rotation; rounding may take its trace beyond it.
+fn cosine_of(turn: &Matrix3) -> f64 {
+    ((turn.trace() - 1.0) / 2.0).clamp(-1.0, 1.0)
+}
+
+/// Direction of the axis of a rotation, of either sense; `None` where hardly anything is rotated. Half turns have no
+/// skew part to read it from, and small ones hardly any other.
+fn axis_of(turn: &Matrix3) -> Option<Vector3> {
+    let cosine = cosine_of(turn);
+    if cosine > 0.0 {
+        let skew = turn - turn.transpose();
+        return Vector3::new(skew.m32, skew.m13, skew.m21).try_normalize(1e-9);
+    }
+    // (1 − cosine) times the product of the axis with itself.
+    let square = (turn + turn.transpose()) * 0.5 - Matrix3::identity() * cosine;
+    let longest = square
+        .column_iter()
+        .max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))?;
+    longest.into_owned().try_normalize(1e-9)
 }
 
 impl Ambiguity {

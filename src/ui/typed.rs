@@ -82,7 +82,7 @@ impl<'a> Takes<'a> {
         let unit = self.suffix();
         let is_above = least == f64::MIN_POSITIVE;
         // Such an end only keeps out numbers without a meaning.
-        let is_open = most >= 1e9;
+        let is_open = most >= 1e9 && !matches!(self.kind, Kind::Count);
         match (is_above, is_open) {
             (true, true) => format!("above 0{unit}"),
             (false, true) => format!("{}{unit} or more", bound(least)),
