@@ -64,6 +64,19 @@ fn its_verdict_is_honest() {
 }
 
 #[test]
+fn its_mapping_meets_what_is_asked_for() {
+    // The largest stamped value is a narrow peak, and the largest mapped one lies on a lower and wider one.
+    let mut window = opened();
+    window.act(Action::MatchOrStop);
+    window.act(Action::MapOrCancel);
+    let mapping = window.state.document.current_mapping().unwrap();
+    let checks = &mapping.record.checks;
+    assert!(checks.iter().any(|check| check.is_met.is_some()));
+    let failed: Vec<_> = checks.iter().filter(|c| c.is_met == Some(false)).collect();
+    assert!(failed.is_empty(), "{failed:?}");
+}
+
+#[test]
 fn its_uncertainty_is_a_picture_and_its_rivals_are_named() {
     let mut window = opened();
     window.act(Action::MatchOrStop);

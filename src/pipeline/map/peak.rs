@@ -9,27 +9,57 @@ use crate::monitor::{Cancelled, Monitor};
 /// Elements around the peak belong to its sheet while their normals differ by less than 60°.
 const SAME_SHEET_COS: f64 = 0.5;
 
-/// Mean of the stamped plastic strain over an area as large as the crash element there, around its
-/// largest value: no element can carry more of a peak that is narrower than itself. `None` without
-/// plastic strain. O(elements).
+/// Mean of the stamped plastic strain over an area as large as the crash element there, around its largest value or
+/// under the largest mapped one, whichever is more: no element can carry more of a peak that is narrower than itself,
+/// and a lower and wider peak may leave more. `None` without plastic strain. O(elements).
 pub(super) fn peak_at_best(run: &MapRun, monitor: &Monitor) -> Result<Option<f64>, Cancelled> {
-    let Some((part, peak)) = largest(run, monitor)? else {
-        return Ok(None);
-    };
-    let source = &run.sources[part];
-    let mesh = &source.mesh;
-    let there = run.poses[part].apply(&mesh.centroids()[peak]);
-    let Some(crash) = nearest(&run.target.mesh, &there) else {
+    let mut best = None;
+    for place in [
+        largest_stamped(run, monitor)?,
+        under_the_largest_mapped(run, monitor)?,
+    ] {
+        let Some((part, element)) = place else {
+            continue;
+        };
+        let source = &run.sources[part];
+        let there = run.poses[part].apply(&source.mesh.centroids()[element]);
+        let Some(crash) = nearest(&run.target.mesh, &there) else {
+            continue;
+        };
+        monitor.check()?;
+        let scale = run.poses[part].scale;
+        let area = run.target.mesh.areas()[crash] / (scale * scale);
+        let mean = mean_around(source, element, area, monitor)?;
+        best = mean.into_iter().chain(best).reduce(f64::max);
+    }
+    Ok(best)
+}
+
+/// Part and element of the stamped sheet that the crash element with the largest mapped value lies on.
+fn under_the_largest_mapped(
+    run: &MapRun,
+    monitor: &Monitor,
+) -> Result<Option<(usize, usize)>, Cancelled> {
+    let elements = 0..run.target.mesh.len();
+    let values = elements.map(|element| (run.plastic_strain(element), element));
+    let known = values.filter(|(value, _)| value.is_finite());
+    let Some((_, largest)) = known.max_by(|a, b| a.0.total_cmp(&b.0)) else {
         return Ok(None);
     };
     monitor.check()?;
-    let scale = run.poses[part].scale;
-    let area = run.target.mesh.areas()[crash] / (scale * scale);
-    mean_around(source, peak, area, monitor)
+    let there = run.target.mesh.centroids()[largest];
+    let below = run.sources.iter().zip(&run.poses).enumerate();
+    let below = below.filter_map(|(part, (source, pose))| {
+        let element = nearest(&source.mesh, &pose.inverse().apply(&there))?;
+        let distance = (pose.apply(&source.mesh.centroids()[element]) - there).norm();
+        Some((distance, part, element))
+    });
+    let nearest = below.min_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(nearest.map(|(_, part, element)| (part, element)))
 }
 
 /// Part and element of the largest value that the crash part covers.
-fn largest(run: &MapRun, monitor: &Monitor) -> Result<Option<(usize, usize)>, Cancelled> {
+fn largest_stamped(run: &MapRun, monitor: &Monitor) -> Result<Option<(usize, usize)>, Cancelled> {
     let back = run.checks.map_back.as_ref();
     let mut best: Option<(f64, usize, usize)> = None;
     for (part, source) in run.sources.iter().enumerate() {
