@@ -390,7 +390,7 @@ fn reasons_stored_as_sentences_are_kept_as_they_are() {
 fn rubbish_is_refused_with_a_message() {
     let path = Path::new("a.shapematch");
     for (text, said) in [
-        ("", "line 1"),
+        ("", "no project but empty"),
         ("{", "line 1"),
         ("[1]", "no project of shapematch"),
         (
