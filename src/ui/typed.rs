@@ -81,8 +81,8 @@ impl<'a> Takes<'a> {
         let (least, most) = (*self.range.start(), *self.range.end());
         let unit = self.suffix();
         let is_above = least == f64::MIN_POSITIVE;
-        // Such an end only keeps out numbers without a meaning.
-        let is_open = most >= 1e9 && !matches!(self.kind, Kind::Count);
+        // Such an end of factors and lengths only keeps out numbers without a meaning.
+        let is_open = most == f64::MAX || is_above && most >= 1e9;
         match (is_above, is_open) {
             (true, true) => format!("above 0{unit}"),
             (false, true) => format!("{}{unit} or more", bound(least)),

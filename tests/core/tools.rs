@@ -34,6 +34,7 @@ fn write_forming_deck(folder: &Path) {
             writeln!(deck, "{id},{tool},{a},{b},{c},{d}").unwrap();
         }
     }
+    deck += "*END\n";
     std::fs::write(folder.join("forming.k"), deck).unwrap();
 }
 
