@@ -82,7 +82,8 @@ impl<'a> Takes<'a> {
         let unit = self.suffix();
         let is_above = least == f64::MIN_POSITIVE;
         // Such an end of factors and lengths only keeps out numbers without a meaning.
-        let is_open = most == f64::MAX || is_above && most >= 1e9;
+        let is_length_or_factor = is_above || matches!(self.kind, Kind::Length(_));
+        let is_open = most == f64::MAX || is_length_or_factor && most >= 1e9;
         match (is_above, is_open) {
             (true, true) => format!("above 0{unit}"),
             (false, true) => format!("{}{unit} or more", bound(least)),
