@@ -70,15 +70,20 @@ fn free_motions_are_named_with_their_axis() {
     assert_eq!(freedom(&pan(9.0, 0.0, everywhere)).motion, None);
 }
 
-fn judge(source: &TriMesh, target: &TriMesh) -> (MatchOutcome, Assessment) {
-    let surfaces = [source, target].map(|mesh| Surface::new(mesh, "source").unwrap());
+/// The usual match of two full meshes.
+fn matched(source: &Surface, target: &Surface) -> MatchOutcome {
     let input = MatchInput {
-        source: &surfaces[0],
-        target: &surfaces[1],
+        source,
+        target,
         reduced: None,
     };
+    match_surfaces(&input, &MatchSettings::default(), &Monitor::silent()).unwrap()
+}
+
+fn judge(source: &TriMesh, target: &TriMesh) -> (MatchOutcome, Assessment) {
+    let surfaces = [source, target].map(|mesh| Surface::new(mesh, "source").unwrap());
     let monitor = Monitor::silent();
-    let outcome = match_surfaces(&input, &MatchSettings::default(), &monitor).unwrap();
+    let outcome = matched(&surfaces[0], &surfaces[1]);
     let settings = AssessSettings::default();
     let assessed = assess(&surfaces[0], &surfaces[1], &outcome, &settings, &monitor).unwrap();
     (outcome, assessed)
@@ -307,12 +312,7 @@ fn error_of(part: &TriMesh, target: &TriMesh, offset: f64) -> f64 {
     let stamped = disturb::offset(part, offset).transformed(&truth.inverse());
     let surface = |mesh: &TriMesh, name| Surface::new(mesh, name).unwrap();
     let (source, target) = (surface(&stamped, "source"), surface(target, "target"));
-    let input = MatchInput {
-        source: &source,
-        target: &target,
-        reduced: None,
-    };
-    let outcome = match_surfaces(&input, &MatchSettings::default(), &Monitor::silent()).unwrap();
+    let outcome = matched(&source, &target);
     let settings = AssessSettings {
         thickness: Some(1.0),
         ..AssessSettings::default()
@@ -355,13 +355,8 @@ fn that_more_of_both_parts_overlaps_tells_no_row_of_waves_from_the_next() {
     let stamped = rail(90, 140.0, 0.0).transformed(&truth.inverse());
     let crash = rail(110, -140.0, 25.0);
     let [source, target] = [&stamped, &crash].map(|mesh| Surface::new(mesh, "source").unwrap());
-    let input = MatchInput {
-        source: &source,
-        target: &target,
-        reduced: None,
-    };
     let silent = Monitor::silent();
-    let mut outcome = match_surfaces(&input, &MatchSettings::default(), &silent).unwrap();
+    let mut outcome = matched(&source, &target);
     let settings = AssessSettings::default();
     let chosen = chosen_by_shape(&source, &target, &outcome, &settings, &silent).unwrap();
     let chosen = chosen.unwrap();
@@ -426,13 +421,7 @@ fn a_twist_does_not_turn_a_bowed_panel_about_its_normal() {
     let stamped = panel(80, 20.0, 1.5).transformed(&truth.inverse());
     let [source, target] =
         [&stamped, &panel(60, 0.0, 0.0)].map(|mesh| Surface::new(mesh, "source").unwrap());
-    let input = MatchInput {
-        source: &source,
-        target: &target,
-        reduced: None,
-    };
-    let silent = Monitor::silent();
-    let outcome = match_surfaces(&input, &MatchSettings::default(), &silent).unwrap();
+    let outcome = matched(&source, &target);
     let off = |pose: &Similarity| worst_node(&stamped, &truth, pose);
     let (closest, all) = (outcome.target_from_source, outcome.with_all_pairs.unwrap());
     assert!(
@@ -456,13 +445,8 @@ fn an_offset_is_no_larger_than_the_sheet() {
     let offset_of = |offset: f64| {
         let source = disturb::offset(&arch(71, 0.0), offset);
         let [source, target] = [&source, &target].map(|mesh| Surface::new(mesh, "source").unwrap());
-        let input = MatchInput {
-            source: &source,
-            target: &target,
-            reduced: None,
-        };
         let silent = Monitor::silent();
-        let mut outcome = match_surfaces(&input, &MatchSettings::default(), &silent).unwrap();
+        let mut outcome = matched(&source, &target);
         outcome.target_from_source = Similarity::identity();
         let assessment = assess(&source, &target, &outcome, &settings, &silent).unwrap();
         assessment.shape.unwrap().offset
