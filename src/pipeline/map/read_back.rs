@@ -7,7 +7,7 @@ use super::output::{MapFiles, MapWriter, WriteKind};
 use crate::formats::Model;
 use crate::geometry::chunks::CHUNK;
 use crate::mapping::PLASTIC_STRAIN;
-use crate::monitor::Cancelled;
+use crate::monitor::{Cancelled, FreedAside};
 
 /// Digits of a small card differ from the values by up to this share of the largest.
 const SMALL_ROUNDING: f64 = 5.1e-4;
@@ -39,12 +39,15 @@ impl MapWriter<'_> {
         let mut n_strain = 0;
         let mut n_thickness = 0;
         let copies = read_copies(self.crash, &files.files, self.monitor)?;
-        let copied = copies.iter().map(|read| (read, true));
+        let copies = FreedAside::new(copies);
+        let copied = copies.value().iter().map(|read| (read, true));
         let beside = files.files.iter().filter(|file| file.replaces.is_none());
         let beside =
             beside.map(|file| read_beside_nodes(self.model, parameters, &file.bytes, self.monitor));
         let beside: Vec<Model> = beside.collect::<Result<_, _>>()?;
-        for (read, is_copy) in copied.chain(beside.iter().map(|read| (read, false))) {
+        let beside = FreedAside::new(beside);
+        let written = beside.value().iter().map(|read| (read, false));
+        for (read, is_copy) in copied.chain(written) {
             n_stress += read.forming.n_stress();
             n_strain += read.forming.n_strain();
             largest = largest.max(self.stress_error(read)?);
@@ -57,7 +60,7 @@ impl MapWriter<'_> {
             }
         }
         // A copy keeps the cards of other elements.
-        let [other_stresses, other_strains] = match &copies {
+        let [other_stresses, other_strains] = match copies.value() {
             Some(_) => files.new_states.n_other_cards(self.model),
             None => [0; 2],
         };

@@ -1,10 +1,11 @@
 //! What each data point is paired with.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::reject::RejectRules;
+use crate::geometry::chunks::map_chunks;
 use crate::geometry::{Point3, Similarity, Vector3};
+use crate::monitor::{Cancelled, Monitor};
 use crate::registration::surface::Surface;
 use crate::search::{ClosestPoint, FeatureGrid, NormalFilter};
 
@@ -55,31 +56,28 @@ pub(crate) struct MatchRules {
     pub(crate) curved: bool,
 }
 
-/// Pairs below this count are made on the calling thread.
-const CHUNK: usize = 512;
+/// Up to so many pairs are made on the calling thread.
+const FEW: usize = 2048;
 
 /// Pairs every sample under `model_from_data`; the answer for a sample does not depend on the
-/// others, so the thread count changes nothing. `hints` holds last time's partners, or is empty.
+/// others, so the thread count changes nothing. `hints` holds last time's partners, or is empty. `monitor` is asked
+/// where there are many.
 pub(crate) fn correspond(
     samples: &[Sample],
     model: &Surface,
     model_from_data: &Similarity,
     rules: &MatchRules,
     hints: &[Correspondence],
-) -> Vec<Correspondence> {
-    let pair = |(i, sample): (usize, &Sample)| {
+    monitor: &Monitor,
+) -> Result<Vec<Correspondence>, Cancelled> {
+    let pair = |i: usize| {
         let hint = hints.get(i).map(|c| c.hint).filter(|&h| h != u32::MAX);
-        match_point(sample, model, model_from_data, rules, hint)
+        match_point(&samples[i], model, model_from_data, rules, hint)
     };
-    if samples.len() <= 4 * CHUNK {
-        return samples.iter().enumerate().map(pair).collect();
+    if samples.len() <= FEW {
+        return Ok((0..samples.len()).map(pair).collect());
     }
-    samples
-        .par_iter()
-        .with_min_len(CHUNK)
-        .enumerate()
-        .map(pair)
-        .collect()
+    map_chunks(samples.len(), monitor, pair)
 }
 
 /// Pairs every sample with the plane of a sample of the model near it, in constant time however far

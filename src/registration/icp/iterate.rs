@@ -252,14 +252,18 @@ pub(crate) fn advance(
             run.termination = Some(Termination::Stopped);
             break;
         }
-        iterate(run, input, monitor);
+        iterate(run, input, monitor)?;
     }
     run.took += begin.elapsed();
     Ok(())
 }
 
 /// One iteration: pair and reject, select, record, solve, move, converged?
-fn iterate(run: &mut Run, input: &StageInput<'_>, monitor: &MatchMonitor<'_>) {
+fn iterate(
+    run: &mut Run,
+    input: &StageInput<'_>,
+    monitor: &MatchMonitor<'_>,
+) -> Result<(), Cancelled> {
     let StageInput {
         data, model, rules, ..
     } = *input;
@@ -270,12 +274,20 @@ fn iterate(run: &mut Run, input: &StageInput<'_>, monitor: &MatchMonitor<'_>) {
         None => {
             let mut matching = rules.matching;
             matching.reject.max_distance = matching.reject.max_distance.min(run.reach);
-            correspond(&data.samples, model, &pose, &matching, &run.pairs)
+            let samples = &data.samples;
+            correspond(
+                samples,
+                model,
+                &pose,
+                &matching,
+                &run.pairs,
+                monitor.monitor,
+            )?
         }
     };
     let Some(selected) = select(&run.pairs, &rules.selection) else {
         run.termination = Some(Termination::NoPairs);
-        return;
+        return Ok(());
     };
     record(run, &selected, input, monitor);
     let step_rules = StepRules {
@@ -289,7 +301,7 @@ fn iterate(run: &mut Run, input: &StageInput<'_>, monitor: &MatchMonitor<'_>) {
     }
     let Some(increment) = increment else {
         run.termination = Some(Termination::Degenerate);
-        return;
+        return Ok(());
     };
     run.model_from_data = orthonormal(&increment.after(&pose));
     let motion = run.model_from_data.max_displacement(&pose, &data.corners);
@@ -301,6 +313,7 @@ fn iterate(run: &mut Run, input: &StageInput<'_>, monitor: &MatchMonitor<'_>) {
     } else if run.stage_iterations >= rules.max_iterations {
         run.termination = Some(Termination::MaxIterations);
     }
+    Ok(())
 }
 
 /// Notes what the present pose is worth, and reports it. The score before decides how far the next

@@ -158,7 +158,9 @@ impl<'a> PoseScorer<'a> {
             },
             curved: true,
         };
-        let mut pairs = correspond(&samples, model, model_from_data, &rules, &[]);
+        let silent = Monitor::silent();
+        let pairs = correspond(&samples, model, model_from_data, &rules, &[], &silent);
+        let mut pairs = pairs.expect("nobody cancels a silent monitor");
         let area = |pairs: &[Correspondence]| pairs.iter().map(|pair| pair.weight).sum::<f64>();
         let whole = area(&pairs);
         let is_smaller = std::ptr::eq(model, self.target) == self.source_is_smaller;
