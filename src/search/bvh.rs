@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use glam::Vec4;
+use glam::{BVec4A, Vec4};
 
+use super::cones::{ConeFilter, add_cones};
 use super::pack::TrianglePack;
-use super::traverse::{Nearest, OUT_OF_SIGHT, Walk};
-use super::wide::{LocalFrame, Query, WideTree, box_around};
+use super::traverse::{Admit, All, Nearest, OUT_OF_SIGHT, Walk};
+use super::wide::{LocalFrame, Node, Query, WideTree, box_around};
 use super::{
     ClosestPoint, NormalFilter, SurfaceHit, TrianglePoint, brute, closest_point_on_triangle,
 };
@@ -43,7 +44,8 @@ impl Bvh {
         let frame = LocalFrame::around(&mesh.aabb());
         let corners = |t: u32| mesh.corners(t as usize).map(|p| frame.to_local(&p));
         let box_of = |t: u32| box_around(&corners(t));
-        let tree = WideTree::build(mesh.n_triangles(), box_of, corners, monitor)?;
+        let mut tree = WideTree::build(mesh.n_triangles(), box_of, corners, monitor)?;
+        add_cones(&mut tree, monitor)?;
         Ok(Self { mesh, frame, tree })
     }
 
@@ -62,13 +64,13 @@ impl Bvh {
         })
     }
 
-    /// Walks the tree, letting `admit` choose among the triangles of each leaf.
+    /// Walks the tree, with the triangles that `admit` lets count.
     fn walk(
         &self,
         query: &Point3,
         max_distance: f64,
         hint: Option<u32>,
-        admit: impl Fn(&TrianglePack, u32) -> u32,
+        admit: impl Admit<TrianglePack>,
     ) -> Option<Nearest<TrianglePoint>> {
         let local = self.frame.to_local(query);
         let exact = |triangle| self.exact(query, max_distance, triangle);
@@ -99,6 +101,25 @@ impl Bvh {
     }
 }
 
+/// The triangles that a filter lets through.
+struct Facing<'a> {
+    tree: &'a Bvh,
+    filter: &'a NormalFilter,
+    cones: ConeFilter,
+}
+
+impl Admit<TrianglePack> for Facing<'_> {
+    #[inline]
+    fn items(&self, pack: &TrianglePack, marked: u32) -> u32 {
+        self.tree.admitted(self.filter, pack, marked)
+    }
+
+    #[inline]
+    fn children(&self, node: &Node) -> BVec4A {
+        node.cones.may_pass(&self.cones)
+    }
+}
+
 impl ClosestPoint for Bvh {
     fn mesh(&self) -> &TriMesh {
         &self.mesh
@@ -123,10 +144,15 @@ impl ClosestPoint for Bvh {
         };
         let hint = hint.filter(accepted);
         let nearest = match filter {
-            None => self.walk(query, max_distance, hint, |_, marked| marked),
-            Some(filter) => self.walk(query, max_distance, hint, |pack, marked| {
-                self.admitted(filter, pack, marked)
-            }),
+            None => self.walk(query, max_distance, hint, All),
+            Some(filter) => {
+                let facing = Facing {
+                    tree: self,
+                    filter,
+                    cones: ConeFilter::of(filter),
+                };
+                self.walk(query, max_distance, hint, facing)
+            }
         };
         nearest.map(|nearest| SurfaceHit::on_triangle(nearest.id, nearest.found))
     }

@@ -8,6 +8,7 @@
 
 mod brute;
 mod bvh;
+mod cones;
 mod distance;
 mod feature_grid;
 mod nearby;

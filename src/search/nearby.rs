@@ -1,8 +1,8 @@
 //! The triangles near a place, for many questions that lie close together.
 
 use super::bvh::Bvh;
-use super::pack::TrianglePack;
-use super::traverse::{OUT_OF_SIGHT, Walk, reach_of};
+use super::cones::ConeFilter;
+use super::traverse::{All, OUT_OF_SIGHT, Walk, reach_of};
 use super::wide::{Link, Node, Query, WIDTH};
 use super::{NormalFilter, SurfaceHit};
 use crate::geometry::Point3;
@@ -67,6 +67,7 @@ impl Bvh {
         let reach = reach_of(&local, (radius * self.frame.scale) as f32);
         let limit = glam::Vec4::splat(reach * reach);
         let query = Query::at(&local);
+        let cones = ConeFilter::of(filter);
         let mut n_leaves = 0;
         let mut visit = |nearby: &mut Nearby, link: Link, parent: Option<(&Node, usize)>| {
             let leaf = match link.leaf() {
@@ -86,7 +87,8 @@ impl Bvh {
         while let Some(link) = nearby.waiting.pop() {
             let Err(node) = link.leaf() else { continue };
             let node = &self.tree.nodes[node];
-            let mut within = node.distance_sq(&query).cmple(limit).bitmask();
+            let near = node.distance_sq(&query).cmple(limit);
+            let mut within = (near & node.cones.may_pass(&cones)).bitmask();
             while within != 0 {
                 let slot = within.trailing_zeros() as usize;
                 within &= within - 1;
@@ -107,8 +109,7 @@ impl Bvh {
         let local = self.frame.to_local(query);
         let exact = |triangle| self.exact(query, max_distance, triangle);
         let limit = max_distance * self.frame.scale;
-        let admit = |_: &TrianglePack, marked: u32| marked;
-        let mut walk = Walk::new(&self.tree, &local, limit, admit, exact);
+        let mut walk = Walk::new(&self.tree, &local, limit, All, exact);
         let nearest = walk.run_over(&nearby.leaves);
         nearest.map(|nearest| SurfaceHit::on_triangle(nearest.id, nearest.found))
     }

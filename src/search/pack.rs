@@ -1,6 +1,6 @@
 //! What the leaves of a [`WideTree`](super::wide::WideTree) hold: four triangles or four points.
 
-use glam::Vec4;
+use glam::{Vec3A, Vec4};
 
 use super::wide::{FAR_AWAY, Pack, Query, WIDTH};
 use crate::geometry::{Vector3, any_perpendicular};
@@ -39,6 +39,11 @@ impl TrianglePack {
             u[2] * v[0] - u[0] * v[2],
             u[0] * v[1] - u[1] * v[0],
         ]
+    }
+
+    /// Unit normal of the triangle in a place, unless it is a needle.
+    pub(super) fn normal(&self, slot: usize) -> Vec3A {
+        Vec3A::from_array(self.normals().map(|axis| axis[slot]))
     }
 
     /// Indices of the triangles without the unused places.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::pack::PointPack;
-use super::traverse::{Nearest, OUT_OF_SIGHT, Walk};
+use super::traverse::{All, Nearest, OUT_OF_SIGHT, Walk};
 use super::wide::{LocalFrame, WideTree, box_around};
 use crate::geometry::{Aabb, Point3};
 use crate::monitor::{Cancelled, Monitor};
@@ -98,7 +98,7 @@ impl PointTree {
             best
         } else {
             let limit = max_distance * self.frame.scale;
-            let mut walk = Walk::new(&self.tree, &local, limit, |_, marked| marked, exact);
+            let mut walk = Walk::new(&self.tree, &local, limit, All, exact);
             let hint = hint.filter(|&i| (i as usize) < self.points.len());
             if let Some(near) = hint.and_then(exact) {
                 let distance = near.distance_sq.sqrt() * self.frame.scale;

@@ -5,10 +5,10 @@
 //! in `f64` picks among them. So the answer is the same as if every item had been asked in `f64`,
 //! whatever the shape of the tree.
 
-use glam::Vec4;
+use glam::{BVec4A, Vec4};
 
 use super::nearby::Leaves;
-use super::wide::{Link, Pack, Query, WIDTH, WideTree};
+use super::wide::{Link, Node, Pack, Query, WIDTH, WideTree};
 use crate::geometry::Vector3;
 
 /// Queries farther out than this, in half extents of the items, ask every item: `f32` could not
@@ -49,6 +49,30 @@ impl<T> Nearest<T> {
     }
 }
 
+/// Which items of a tree count.
+pub(super) trait Admit<P> {
+    /// Of the marked places of a pack, those whose items may win.
+    fn items(&self, pack: &P, marked: u32) -> u32;
+
+    /// The children of a node below which an item may win.
+    fn children(&self, node: &Node) -> BVec4A;
+}
+
+/// All items count.
+pub(super) struct All;
+
+impl<P> Admit<P> for All {
+    #[inline]
+    fn items(&self, _: &P, marked: u32) -> u32 {
+        marked
+    }
+
+    #[inline]
+    fn children(&self, _: &Node) -> BVec4A {
+        BVec4A::splat(true)
+    }
+}
+
 /// One query on its way through a tree.
 pub(super) struct Walk<'a, P, T, A, E> {
     tree: &'a WideTree<P>,
@@ -59,8 +83,10 @@ pub(super) struct Walk<'a, P, T, A, E> {
     candidates: [(f32, u32); MAX_CANDIDATES],
     n_candidates: usize,
     best: Option<Nearest<T>>,
-    /// Of the marked places of a pack, those whose items may win.
     admit: A,
+    /// True once a leaf within reach held nothing that counts. Until then, what lies near is most likely what
+    /// counts, and the look at cones would cost more than it saves.
+    is_turned_away: bool,
     /// What an item really is to the query, or `None` if it is out of the question.
     exact: E,
 }
@@ -68,7 +94,7 @@ pub(super) struct Walk<'a, P, T, A, E> {
 impl<'a, P, T, A, E> Walk<'a, P, T, A, E>
 where
     P: Pack,
-    A: Fn(&P, u32) -> u32,
+    A: Admit<P>,
     E: Fn(u32) -> Option<Nearest<T>>,
 {
     /// A walk for the query at `local` that ends at `max_distance` (local units).
@@ -88,6 +114,7 @@ where
             n_candidates: 0,
             best: None,
             admit,
+            is_turned_away: false,
             exact,
         };
         walk.lower_bound(max_distance as f32);
@@ -195,7 +222,12 @@ where
     #[inline]
     fn children_by_distance(&self, node: usize) -> [u64; WIDTH] {
         let node = &self.tree.nodes[node];
-        let distances = node.distance_sq(&self.query).to_array();
+        let mut distances = node.distance_sq(&self.query);
+        if self.is_turned_away {
+            let beyond = Vec4::splat(f32::INFINITY);
+            distances = Vec4::select(self.admit.children(node), distances, beyond);
+        }
+        let distances = distances.to_array();
         let mut keys: [u64; WIDTH] = std::array::from_fn(|i| {
             u64::from(distances[i].to_bits()) << 32 | u64::from(node.child[i].0)
         });
@@ -214,7 +246,8 @@ where
         if within == 0 {
             return;
         }
-        let mut within = (self.admit)(pack, within);
+        let mut within = self.admit.items(pack, within);
+        self.is_turned_away |= within == 0;
         let distances = distances.to_array();
         while within != 0 {
             let slot = within.trailing_zeros() as usize;

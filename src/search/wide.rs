@@ -14,6 +14,7 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use rayon::prelude::*;
 
+use super::cones::Cones;
 use super::pieces::{Cut, cut_to_pieces};
 use crate::geometry::chunks::map_chunks;
 use crate::geometry::{Aabb, Point3, Vector3};
@@ -95,13 +96,14 @@ impl Link {
     }
 }
 
-/// Four children: their boxes, coordinate by coordinate, and where they are.
+/// Four children: their boxes, coordinate by coordinate, where they are, and the cones of their normals.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub(super) struct Node {
     min: [Vec4; 3],
     max: [Vec4; 3],
     pub(super) child: [Link; WIDTH],
+    pub(super) cones: Cones,
 }
 
 impl Node {
@@ -111,6 +113,7 @@ impl Node {
             min: [Vec4::splat(FAR_AWAY); 3],
             max: [Vec4::splat(FAR_AWAY); 3],
             child: [Link(0); WIDTH],
+            cones: Cones::of_all_directions(),
         }
     }
 
@@ -128,6 +131,9 @@ impl Node {
                 (parent.min[axis][from], parent.max[axis][from])
             });
             (self.min[axis][slot], self.max[axis][slot]) = bounds;
+        }
+        if let Some((parent, from)) = parent {
+            self.cones.copy(slot, &parent.cones, from);
         }
         self.child[slot] = link;
     }
