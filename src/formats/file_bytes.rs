@@ -36,6 +36,14 @@ impl FileBytes {
         bytes.resize(n, 0);
         Ok(Self(Storage::Few(bytes)))
     }
+
+    /// The bytes as a vector; copied where they lie in pages.
+    pub fn into_vec(self) -> Vec<u8> {
+        match self.0 {
+            Storage::Few(bytes) => bytes,
+            Storage::Many(pages) => pages.to_vec(),
+        }
+    }
 }
 
 impl<T: Into<Vec<u8>>> From<T> for FileBytes {

@@ -170,6 +170,20 @@ fn read_at(file: &File, buffer: &mut [u8], offset: u64) -> io::Result<usize> {
     std::os::windows::fs::FileExt::seek_read(file, buffer, offset)
 }
 
+/// A copy of what memory holds, in pieces on all cores.
+fn copied(from: &[u8], max_bytes: u64, monitor: &Monitor) -> io::Result<FileBytes> {
+    if from.len() as u64 > max_bytes {
+        return Err(io::Error::other(TooLarge { max_bytes }));
+    }
+    let mut bytes = FileBytes::zeroed(from.len())?;
+    for (to, from) in bytes.chunks_mut(WAVE).zip(from.chunks(WAVE)) {
+        monitor.check().map_err(interrupted)?;
+        let pieces = to.par_chunks_mut(PIECE).zip(from.par_chunks(PIECE));
+        pieces.for_each(|(to, from)| to.copy_from_slice(from));
+    }
+    Ok(bytes)
+}
+
 /// All of a stream whose length is not known beforehand.
 fn read_stream(stream: impl Read, max_bytes: u64, monitor: &Monitor) -> io::Result<FileBytes> {
     let mut bytes = Vec::new();
@@ -239,12 +253,8 @@ impl Memory {
 }
 
 impl FileSource for Memory {
-    fn open(&self, path: &Path, max_bytes: u64, _monitor: &Monitor) -> io::Result<FileBytes> {
-        let bytes = self.bytes(path)?;
-        if bytes.len() as u64 > max_bytes {
-            return Err(io::Error::other(TooLarge { max_bytes }));
-        }
-        Ok(bytes.to_vec().into())
+    fn open(&self, path: &Path, max_bytes: u64, monitor: &Monitor) -> io::Result<FileBytes> {
+        copied(self.bytes(path)?, max_bytes, monitor)
     }
 
     fn stream(&self, path: &Path) -> io::Result<Box<dyn Read + '_>> {
@@ -284,10 +294,7 @@ impl FileSource for Replaced<'_> {
         let Some(bytes) = self.of(path) else {
             return self.others.open(path, max_bytes, monitor);
         };
-        if bytes.len() as u64 > max_bytes {
-            return Err(io::Error::other(TooLarge { max_bytes }));
-        }
-        Ok(bytes.to_vec().into())
+        copied(bytes, max_bytes, monitor)
     }
 
     fn stream(&self, path: &Path) -> io::Result<Box<dyn Read + '_>> {
@@ -298,7 +305,10 @@ impl FileSource for Replaced<'_> {
     }
 
     fn find(&self, path: &Path) -> Option<PathBuf> {
-        self.others.find(path)
+        match self.of(path) {
+            Some(_) => Some(path.to_path_buf()),
+            None => self.others.find(path),
+        }
     }
 }
 

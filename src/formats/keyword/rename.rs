@@ -87,31 +87,36 @@ pub fn includes_of(deck: &SourceFile, included_as: &IncludedAs) -> DeckIncludes 
     found
 }
 
-/// The deck with those names changed for which there is another, and these names as they were. Comments within
-/// a name on several lines go with it; names whose new one is too long for any include line stay.
+/// The deck with those names changed for which there is another (`None` if there are none), and these names as they
+/// were. Comments within a name on several lines go with it; names whose new one is too long for any include line
+/// stay.
 pub fn rename_includes(
     deck: &SourceFile,
     included_as: &IncludedAs,
     new_name: impl Fn(&str) -> Option<String>,
-) -> (Vec<u8>, Vec<String>) {
+) -> (Option<Vec<u8>>, Vec<String>) {
     let bytes = deck.bytes();
     let line_end = match memchr::memchr(b'\n', bytes) {
         Some(at) if bytes[..at].ends_with(b"\r") => "\r\n",
         _ => "\n",
     };
-    let (mut copy, mut done, mut renamed) = (Vec::with_capacity(bytes.len()), 0, Vec::new());
+    let (mut copy, mut done, mut renamed) = (Vec::new(), 0, Vec::new());
     for_blocks(deck, included_as, |block| {
         for (name, place) in names(block, bytes) {
             let Some(lines) = new_name(&name).and_then(|new| on_lines(&new, line_end)) else {
                 continue;
             };
+            copy.reserve(bytes.len() - done);
             copy.extend_from_slice(&bytes[done..place.start]);
             copy.extend_from_slice(lines.as_bytes());
             done = place.end;
             renamed.push(name);
         }
     });
-    copy.extend_from_slice(&bytes[done..]);
+    let copy = (!renamed.is_empty()).then(|| {
+        copy.extend_from_slice(&bytes[done..]);
+        copy
+    });
     (copy, renamed)
 }
 
@@ -152,7 +157,7 @@ mod tests {
             .replacen("  a.k \r", "new_a.k \r", 1)
             .replacen("long/ +\n$ more\n and +\nc.k", "new_ andc.k", 1)
             .replacen("\nb.k", "\nnew_b.k", 1);
-        assert_eq!(String::from_utf8(bytes).unwrap(), expected);
+        assert_eq!(String::from_utf8(bytes.unwrap()).unwrap(), expected);
     }
 
     #[test]
@@ -160,15 +165,16 @@ mod tests {
         let as_it_is = IncludedAs::default();
         for end in ["\n", "\r\n"] {
             let deck = format!("*INCLUDE{end}a.k{end}b.k{end}");
-            let file = SourceFile::new("deck.k", deck.clone());
+            let file = SourceFile::new("deck.k", deck);
             for n in [80, 81, 158, 236, 237, 300] {
                 let name = "ü".repeat(n / 2) + &"x".repeat(n % 2);
                 let new = |old: &str| (old == "a.k").then(|| name.clone());
                 let (bytes, renamed) = rename_includes(&file, &as_it_is, new);
                 if n > 236 {
-                    assert_eq!((bytes.as_slice(), renamed.len()), (deck.as_bytes(), 0));
+                    assert_eq!((bytes, renamed.len()), (None, 0));
                     continue;
                 }
+                let bytes = bytes.unwrap();
                 let lines = bytes.split(|&byte| byte == b'\n');
                 assert!(lines.map(<[u8]>::len).max().unwrap() <= 81);
                 let copy = SourceFile::new("copy.k", bytes);

@@ -40,6 +40,11 @@ impl SourceFile {
         &self.bytes
     }
 
+    /// The bytes, taken back.
+    pub fn into_bytes(self) -> FileBytes {
+        self.bytes
+    }
+
     /// Line and column of a byte offset. The first call counts the newlines of the whole file.
     pub fn position(&self, offset: usize) -> Position {
         let offset = offset.min(self.bytes.len());

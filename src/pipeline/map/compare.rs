@@ -8,7 +8,7 @@ use super::convert::element_index;
 use super::record::{DistributionRecord, PairRecord, pair_of};
 use super::{MapRun, PipelineError, ShownValue};
 use crate::formats::keyword::write::{WriteOptions, write};
-use crate::formats::{self, Disk, Memory, Model, ReadOptions};
+use crate::formats::{self, Disk, Memory, Model, ReadOptions, Replaced};
 use crate::mapping::{Layered, PLASTIC_STRAIN, distribution};
 use crate::monitor::{Cancelled, Monitor};
 use crate::pipeline::forming_values::{FormingValue, LayerChoice};
@@ -116,21 +116,20 @@ pub(super) fn read_beside_nodes(
     };
     let mut deck = write(&nodes, &WriteOptions::default(), monitor)?;
     deck.truncate(deck.len() - b"*END\n".len());
-    let mut memory = Memory::new().with("mapped.k", bytes.to_vec());
+    let mut memory = Memory::new();
     for (number, other) in others.iter().enumerate() {
         let name = format!("other_{number}.k");
         deck.extend_from_slice(format!("*INCLUDE\n{name}\n").as_bytes());
         memory = memory.with(name, other.clone());
     }
     deck.extend_from_slice(b"*INCLUDE\nmapped.k\n*END\n");
-    let memory = memory.with("nodes.k", deck);
+    let root = Path::new("nodes.k");
+    let source = Replaced {
+        others: &memory,
+        files: &[(root, &deck), (Path::new("mapped.k"), bytes)],
+    };
     let options = ReadOptions::default();
-    Ok(formats::read_from(
-        &memory,
-        Path::new("nodes.k"),
-        &options,
-        monitor,
-    )?)
+    Ok(formats::read_from(&source, root, &options, monitor)?)
 }
 
 /// Our values less another's, over the elements that have both.

@@ -1,6 +1,7 @@
 //! Copies of a deck's files: which of them may be written, and what they include, other copies under their new
 //! names and files that are not found from another folder.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::PipelineError;
@@ -67,12 +68,14 @@ pub(super) fn include_copies(files: &mut [MapFile], crash: &LoadedPart) {
             let (old, new) = copies.iter().find(|(old, _)| is_named(old, name, crash))?;
             (old != &read.path).then_some(new)
         };
-        let source = SourceFile::new(&file.path, file.bytes.clone());
         let new_name = |name: &str| Some(copy_of(name)?.file_name()?.to_str()?.to_owned());
-        let (bytes, renamed) = rename_includes(&source, &read.included_as, new_name);
+        let rename = |source: &SourceFile| rename_includes(source, &read.included_as, new_name);
+        let (changed, renamed) = with_source(file, rename);
         let new = renamed.iter().filter_map(|name| copy_of(name));
         included.extend(new.map(|new| (new.clone(), file.path.clone())));
-        file.bytes = bytes;
+        if let Some(changed) = changed {
+            file.bytes = changed;
+        }
     }
     for file in files {
         let by = included.iter().find(|(path, _)| *path == file.path);
@@ -80,6 +83,14 @@ pub(super) fn include_copies(files: &mut [MapFile], crash: &LoadedPart) {
         let is_included = |old: &PathBuf| *old != crash.path;
         file.is_left_out = by.is_none() && file.replaces.as_ref().is_some_and(is_included);
     }
+}
+
+/// Looks through a written deck, whose bytes are lent and not copied.
+fn with_source<T>(file: &mut MapFile, look: impl FnOnce(&SourceFile) -> T) -> T {
+    let source = SourceFile::new(&file.path, std::mem::take(&mut file.bytes));
+    let found = look(&source);
+    file.bytes = source.into_bytes().into_vec();
+    found
 }
 
 /// The file of the deck that a written file is a copy of.
@@ -105,29 +116,38 @@ fn is_named(path: &Path, name: &str, crash: &LoadedPart) -> bool {
 /// of `*INCLUDE_PATH_RELATIVE` are relative to that of the whole deck, so a copy of the deck itself in another
 /// folder may lose what files include that lie where they were.
 pub(super) fn lost_includes(
-    files: &[MapFile],
+    files: &mut [MapFile],
     crash: &LoadedPart,
     monitor: &Monitor,
 ) -> Result<Option<String>, PipelineError> {
-    let copy_of = |path: &Path| {
-        let mut copies = files.iter();
-        copies.find(|file| file.replaces.as_deref() == Some(path))
-    };
     let is_moved =
         |file: &MapFile| file.path.parent() != file.replaces.as_deref().and_then(Path::parent);
     if !files.iter().any(is_moved) {
         return Ok(None);
     }
+    let mut of_copies = HashMap::new();
+    for file in files.iter_mut() {
+        if let Some(read) = original(file, crash) {
+            let includes = with_source(file, |source| includes_of(source, &read.included_as));
+            of_copies.insert(read.path.clone(), includes);
+        }
+    }
+    let files = &*files;
+    let copy_of = |path: &Path| {
+        let mut copies = files.iter();
+        copies.find(|file| file.replaces.as_deref() == Some(path))
+    };
     let mut decks = Vec::with_capacity(crash.model.files.len());
     let from = crash.file_source();
     for read in &crash.model.files {
-        let copy = copy_of(&read.path);
-        let bytes = match copy {
-            Some(copy) => copy.bytes.clone().into(),
-            None => formats::read_text(&*from, &read.path, &crash.settings.read, monitor)?,
+        let path = copy_of(&read.path).map_or(&read.path, |copy| &copy.path);
+        let includes = match of_copies.get(&read.path) {
+            Some(includes) => includes.clone(),
+            None => {
+                let bytes = formats::read_text(&*from, path, &crash.settings.read, monitor)?;
+                includes_of(&SourceFile::new(path, bytes), &read.included_as)
+            }
         };
-        let path = copy.map_or(&read.path, |copy| &copy.path);
-        let includes = includes_of(&SourceFile::new(path, bytes), &read.included_as);
         decks.push((&read.path, path, includes));
     }
     let search = |deck: &Path| {

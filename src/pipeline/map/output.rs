@@ -210,7 +210,7 @@ pub fn write_mapping(
     files.read_back_error = writer.read_back(&files, output.kind, &parameters)?;
     // Read back under the old names.
     include_copies(&mut files.files, crash);
-    files.lost_includes = lost_includes(&files.files, crash, monitor)?;
+    files.lost_includes = lost_includes(&mut files.files, crash, monitor)?;
     Ok(files)
 }
 
