@@ -33,6 +33,8 @@ pub enum Effect {
     WriteProject {
         /// File the project is written to.
         path: PathBuf,
+        /// When the only project was saved that may be written over; `None` for any.
+        replaces: Option<u64>,
         /// Content of the project file.
         project: Box<Project>,
         /// The state that it holds.

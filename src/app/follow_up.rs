@@ -73,8 +73,8 @@ pub(super) enum FollowUp {
     SectionToggled,
     /// The document is that of another step; the parts lay there before.
     SteppedInHistory(Places),
-    /// The project is to be written there.
-    WriteProject(PathBuf),
+    /// The project is to be written there, over the one that was saved at that time.
+    WriteProject(PathBuf, Option<u64>),
     /// The session is to be kept in case of a crash, if there is something new.
     Autosave,
     /// The program is to be left.
@@ -153,17 +153,22 @@ impl AppState {
                 self.parts.forget_missing(&self.document);
                 self.follow_step(&before);
             }
-            FollowUp::WriteProject(path) => {
-                return vec![Effect::WriteProject {
-                    path,
-                    project: Box::new(self.to_project(0)),
-                    document: Box::new(self.document.clone()),
-                }];
+            FollowUp::WriteProject(path, replaces) => {
+                return vec![self.write_project(path, replaces)];
             }
             FollowUp::Autosave => return self.autosave(),
             FollowUp::Quit => return self.quit(),
         }
         Vec::new()
+    }
+
+    fn write_project(&self, path: PathBuf, replaces: Option<u64>) -> Effect {
+        Effect::WriteProject {
+            path,
+            replaces,
+            project: Box::new(self.to_project(0)),
+            document: Box::new(self.document.clone()),
+        }
     }
 
     /// The cameras go with their parts, each of which lies where its own file has it now.

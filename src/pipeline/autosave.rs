@@ -4,6 +4,7 @@
 //! Each run of the program keeps its session in one file of the user's data folder. A lock beside it
 //! tells whether its program still runs; the system releases the lock however the program ended.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -37,7 +38,7 @@ pub struct RecoveredSession {
 
 /// What the thread is asked for. `S` is what the caller wants back with a project that was saved.
 enum Request<S> {
-    Save(PathBuf, Box<Project>, S),
+    Save(PathBuf, Option<u64>, Box<Project>, S),
     Autosave(Box<Project>),
     List,
     DismissRecovery,
@@ -114,9 +115,10 @@ impl<S: Send + 'static> Autosave<S> {
         })
     }
 
-    /// Saves a project where the user wants it; `state` comes back with the news.
-    pub fn save(&self, path: PathBuf, project: Box<Project>, state: S) {
-        self.request(Request::Save(path, project, state));
+    /// Saves a project where the user wants it; `state` comes back with the news. With `replaces` only the
+    /// project saved at that time, or by this run, is written over: several windows may have opened the same one.
+    pub fn save(&self, path: PathBuf, replaces: Option<u64>, project: Box<Project>, state: S) {
+        self.request(Request::Save(path, replaces, project, state));
     }
 
     /// Saves the session; of several that wait, only the last is written.
@@ -201,6 +203,8 @@ struct Session {
     lock: Option<File>,
     /// Some session was held by another program when they were listed last.
     has_seen_held: bool,
+    /// The projects that this run saved, and when.
+    saved: BTreeMap<PathBuf, u64>,
 }
 
 impl Session {
@@ -212,6 +216,7 @@ impl Session {
             name,
             lock: None,
             has_seen_held: false,
+            saved: BTreeMap::new(),
         }
     }
 
@@ -236,10 +241,14 @@ impl Session {
 
     fn carry_out<S>(&mut self, request: Request<S>) -> Option<AutosaveEvent<S>> {
         match request {
-            Request::Save(path, mut project, state) => {
+            Request::Save(path, replaces, mut project, state) => {
                 project.saved_at = unix_now();
-                Some(match save(&path, &project) {
-                    Ok(()) => AutosaveEvent::Saved(path, state),
+                let saved = self.may_replace(&path, replaces);
+                Some(match saved.and_then(|()| save(&path, &project)) {
+                    Ok(()) => {
+                        self.saved.insert(path.clone(), project.saved_at);
+                        AutosaveEvent::Saved(path, state)
+                    }
                     Err(reason) => AutosaveEvent::SaveFailed(reason),
                 })
             }
@@ -261,6 +270,25 @@ impl Session {
                 Some(AutosaveEvent::Sessions(self.sessions()))
             }
         }
+    }
+
+    /// Refuses to write over what another program saved since this one opened or saved the project.
+    fn may_replace(&self, path: &Path, replaces: Option<u64>) -> Result<(), String> {
+        let Some(opened) = replaces else {
+            return Ok(());
+        };
+        // What cannot be read holds no work.
+        let Ok((present, _)) = Project::read(path) else {
+            return Ok(());
+        };
+        let own = self.saved.get(path).copied();
+        if present.saved_at == opened || Some(present.saved_at) == own {
+            return Ok(());
+        }
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        Err(format!(
+            "another window has saved {name} since it was opened here"
+        ))
     }
 
     fn path(&self) -> Option<PathBuf> {

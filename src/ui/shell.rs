@@ -235,9 +235,10 @@ impl Shell {
             Effect::AskSaveProject(path) => self.dialogs.ask_save_project(path, ctx),
             Effect::WriteProject {
                 path,
+                replaces,
                 project,
                 document,
-            } => self.autosave.save(path, project, document),
+            } => self.autosave.save(path, replaces, project, document),
             Effect::Autosave(project) => self.autosave.autosave(project),
             Effect::DismissRecovery => self.autosave.dismiss_recovery(),
             Effect::AskPicture { choice, path } => self.dialogs.ask_picture(choice, path, ctx),

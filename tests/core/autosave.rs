@@ -113,7 +113,7 @@ fn a_project_is_never_saved_over_one_of_its_parts() {
     let deck = folder.path().join("deck.shapematch");
     std::fs::write(&deck, "*KEYWORD\n*END\n").unwrap();
     let of = run(&folder.path().join("kept"), "000000000001-1");
-    of.save(deck.clone(), project(deck.to_str().unwrap()), 7);
+    of.save(deck.clone(), None, project(deck.to_str().unwrap()), 7);
     let event = of.wait_for_event(LONG);
     assert!(
         matches!(&event, Some(AutosaveEvent::SaveFailed(reason)) if reason.contains("overwrite")),
@@ -121,9 +121,47 @@ fn a_project_is_never_saved_over_one_of_its_parts() {
     );
     assert_eq!(std::fs::read(&deck).unwrap(), b"*KEYWORD\n*END\n");
     let beside = folder.path().join("beside.shapematch");
-    of.save(beside.clone(), project(deck.to_str().unwrap()), 7);
+    of.save(beside.clone(), None, project(deck.to_str().unwrap()), 7);
     let event = of.wait_for_event(LONG);
     assert!(matches!(event, Some(AutosaveEvent::Saved(path, 7)) if path == beside));
+}
+
+/// Two windows with one project: the second one to save is told, and what the first saved stays.
+#[test]
+fn a_project_that_another_window_saved_is_not_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("work.shapematch");
+    let titled = |name: &str, saved_at| {
+        let mut project = project(name);
+        project.saved_at = saved_at;
+        project
+    };
+    titled("/opened.k", 1000).write(&path).unwrap();
+    let [first, second] = ["1", "2"].map(|n| run(&folder.path().join("kept"), n));
+    let title = || Project::read(&path).unwrap().0.title();
+    // As often as it likes, a window writes over what it opened or saved itself.
+    for name in ["/one.k", "/two.k"] {
+        first.save(path.clone(), Some(1000), project(name), 7);
+        let event = first.wait_for_event(LONG);
+        assert!(matches!(event, Some(AutosaveEvent::Saved(..))), "{event:?}");
+    }
+    second.save(path.clone(), Some(1000), project("/other.k"), 7);
+    let event = second.wait_for_event(LONG);
+    assert!(
+        matches!(&event, Some(AutosaveEvent::SaveFailed(reason)) if reason.contains("another window")),
+        "{event:?}"
+    );
+    assert_eq!(title(), "two.k");
+    // Where the dialog has asked, it does.
+    second.save(path.clone(), None, project("/other.k"), 7);
+    let event = second.wait_for_event(LONG);
+    assert!(matches!(event, Some(AutosaveEvent::Saved(..))), "{event:?}");
+    assert_eq!(title(), "other.k");
+    // A file that is gone is written anew.
+    std::fs::remove_file(&path).unwrap();
+    first.save(path.clone(), Some(1000), project("/two.k"), 7);
+    let event = first.wait_for_event(LONG);
+    assert!(matches!(event, Some(AutosaveEvent::Saved(..))), "{event:?}");
 }
 
 #[test]

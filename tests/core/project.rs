@@ -84,6 +84,7 @@ fn save(window: &mut Window, path: &Path) {
             path,
             project,
             document,
+            ..
         } = effect
         {
             project.write(&path).unwrap();

@@ -38,7 +38,8 @@ impl ProjectState {
             }
             ProjectCommand::Save => self.save(work),
             ProjectCommand::SaveAs => self.ask_save(work.document),
-            ProjectCommand::Write(path) => write(work, path),
+            // The dialog has asked about the file that is there.
+            ProjectCommand::Write(path) => write(work, path, None),
             ProjectCommand::Written(path, document) => self.written(work, path, *document),
             ProjectCommand::NotWritten => {
                 self.quits_when_saved = false;
@@ -74,7 +75,7 @@ impl ProjectState {
 
     fn save(&self, work: &mut Work<'_>) -> Vec<Effect> {
         match self.path_of(work.document).cloned() {
-            Some(path) => write(work, path),
+            Some(path) => write(work, path, self.opened_at),
             None => self.ask_save(work.document),
         }
     }
@@ -93,6 +94,8 @@ impl ProjectState {
         let now = work.unix_now();
         work.settings.remember_path(&path, now);
         self.file = Some((path, project));
+        // When that was is known where it was written.
+        self.opened_at.get_or_insert(0);
         if std::mem::take(&mut self.quits_when_saved) {
             work.follow(FollowUp::Quit);
         }
@@ -147,13 +150,13 @@ fn suggested_path(document: &Document) -> PathBuf {
     path.with_file_name(format!("{stem}.{EXTENSION}"))
 }
 
-fn write(work: &mut Work<'_>, mut path: PathBuf) -> Vec<Effect> {
+fn write(work: &mut Work<'_>, mut path: PathBuf, replaces: Option<u64>) -> Vec<Effect> {
     if !is_project(&path) {
         let mut name = path.file_name().unwrap_or_default().to_os_string();
         name.push(".");
         name.push(EXTENSION);
         path.set_file_name(name);
     }
-    work.follow(FollowUp::WriteProject(path));
+    work.follow(FollowUp::WriteProject(path, replaces));
     Vec::new()
 }

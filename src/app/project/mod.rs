@@ -26,6 +26,8 @@ use crate::role::{PerRole, Role};
 pub struct ProjectState {
     /// The file opened or saved last, and the number of the project in it.
     file: Option<(PathBuf, u64)>,
+    /// When the project that was opened last had been saved, in seconds since 1970.
+    opened_at: Option<u64>,
     /// Sessions of the last runs, newest first.
     pub sessions: Vec<RecoveredSession>,
     /// Its files that were not found, and what was asked for.

@@ -241,6 +241,7 @@ impl AppState {
                 Some(PathBuf::from(path))
             });
             self.project.file = path.map(|path| (path, self.document.project));
+            self.project.opened_at = None;
             self.project.saved = None;
             // From here on this run keeps it.
             return self.project.dismiss_recovery();
@@ -248,6 +249,7 @@ impl AppState {
             let now = self.work().unix_now();
             self.settings.remember_path(&request.path, now);
             self.project.file = Some((request.path, self.document.project));
+            self.project.opened_at = Some(project.saved_at);
             self.project.saved = Some(self.document.clone());
         }
         Vec::new()
