@@ -227,7 +227,8 @@ fn messages_choice(ui: &mut Ui, settings: &mut Settings) {
 pub fn mouse_choice(ui: &mut Ui, settings: &mut Settings) {
     let menu = egui::ComboBox::from_id_salt("mouse scheme")
         .selected_text(settings.mouse.label())
-        .width(200.0);
+        .width(200.0_f32.min(ui.available_width()))
+        .truncate();
     focus::menu(ui, menu, |ui| {
         for scheme in MouseScheme::ALL {
             let holds = settings.mouse == scheme;

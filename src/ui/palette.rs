@@ -20,9 +20,14 @@ pub fn palette_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mu
     let mut at: usize = ui.data(|data| data.get_temp(ids[1])).unwrap_or(0);
     let steps = arrow_steps(ui);
     let id = egui::Id::unique("palette field");
+    let entered: Option<bool> = ui.data_mut(|data| data.remove_temp(ids[2]));
+    let mut is_entered = entered.unwrap_or_default();
     if !ui.memory(|memory| memory.has_focus(id)) {
         // What is typed while the search opens.
-        ui.input(|input| text.extend(typed(&input.events)));
+        ui.input(|input| {
+            text.extend(typed(&input.events));
+            is_entered |= has_enter(&input.events);
+        });
     }
     let field = egui::TextEdit::singleline(&mut text)
         .id(id)
@@ -33,7 +38,7 @@ pub fn palette_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mu
     if !field.has_focus() && !field.lost_focus() {
         field.request_focus();
     }
-    let is_entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+    is_entered |= field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
     let found = state.palette(&text);
     if text != before {
         at = 0;
@@ -69,17 +74,33 @@ pub fn palette_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mu
     if is_done {
         commands.push(ViewCommand::SetDialog(None).into());
         commands.extend(chosen);
+    } else if is_entered {
+        // Nothing came of it, and the search goes on.
+        field.request_focus();
     }
     set_draft(ui, ids[0], text);
     ui.data_mut(|data| data.insert_temp(ids[1], at));
 }
 
-/// Where the text and the chosen line are kept while the search is open.
-fn ids() -> [egui::Id; 2] {
-    [
-        egui::Id::unique("palette search"),
-        egui::Id::unique("palette choice"),
-    ]
+/// Where the text, the chosen line and an Enter of before are kept while the search is open.
+fn ids() -> [egui::Id; 3] {
+    ["palette search", "palette choice", "palette enter"].map(egui::Id::unique)
+}
+
+/// True if Enter was pressed, and not only held.
+fn has_enter(events: &[Event]) -> bool {
+    events.iter().any(|event| {
+        matches!(
+            event,
+            Event::Key {
+                key: Key::Enter,
+                pressed: true,
+                repeat: false,
+                modifiers: Modifiers::NONE,
+                ..
+            }
+        )
+    })
 }
 
 /// The texts among some events.
@@ -93,15 +114,20 @@ fn typed(events: &[Event]) -> impl Iterator<Item = &str> {
 /// Begins the search with what was typed right behind the key that opens it.
 pub fn begin_with(ctx: &egui::Context, events: &[Event]) {
     let text: String = typed(events).collect();
-    ctx.data_mut(|data| data.insert_temp(ids()[0], text));
+    let [search, _, enter] = ids();
+    ctx.data_mut(|data| {
+        data.insert_temp(search, text);
+        data.insert_temp(enter, has_enter(events));
+    });
 }
 
 /// Empties the field, so that the search begins anew when it is opened again.
 pub fn forget(ctx: &egui::Context) {
-    let [text, choice] = ids();
+    let [text, choice, enter] = ids();
     ctx.data_mut(|data| {
         data.remove::<String>(text);
         data.remove::<usize>(choice);
+        data.remove::<bool>(enter);
     });
 }
 

@@ -363,9 +363,8 @@ pub fn form_row<R>(
     .inner
 }
 
-/// A name on the left and a value on the right edge, for lists of figures.
-pub fn figure(ui: &mut Ui, name: &str, value: &str) {
-    ui.spacing_mut().interact_size.y = 18.0;
+/// True if a [`figure`] of this name and value takes one line.
+pub fn figure_fits(ui: &Ui, name: &str, value: &str) -> bool {
     let font = TextStyle::Body.resolve(ui.style());
     let width = |text: &str| {
         let text = text.to_owned();
@@ -374,8 +373,13 @@ pub fn figure(ui: &mut Ui, name: &str, value: &str) {
             .layout_no_wrap(text, font.clone(), Color32::WHITE);
         laid.size().x
     };
-    let needed = width(name) + ui.spacing().item_spacing.x + width(value);
-    let has_room = needed <= ui.available_width();
+    width(name) + ui.spacing().item_spacing.x + width(value) <= ui.available_width()
+}
+
+/// A name on the left and a value on the right edge, for lists of figures.
+pub fn figure(ui: &mut Ui, name: &str, value: &str) {
+    ui.spacing_mut().interact_size.y = 18.0;
+    let has_room = figure_fits(ui, name, value);
     let value_ui = |ui: &mut Ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.label(value);

@@ -395,3 +395,60 @@ fn what_is_typed_while_the_search_opens_is_searched() {
         assert!(window.state().state().view.dialog.is_none());
     }
 }
+
+/// Enter where nothing is found changes nothing: the field keeps the keyboard, and shows it.
+#[test]
+fn enter_in_an_empty_search_leaves_the_keyboard_in_its_field() {
+    let mut window = window();
+    window.key_press_modifiers(Modifiers::COMMAND, Key::K);
+    window.run_steps(2);
+    window.event(egui::Event::Text("qqqqq".to_owned()));
+    window.run_steps(1);
+    assert!(window.query_by_label("No matching command").is_some());
+    window.key_press(Key::Enter);
+    window.run_steps(1);
+    assert_eq!(focused(&window).as_deref(), Some("Search commands"));
+    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    window.event(egui::Event::Text("about".to_owned()));
+    window.run_steps(2);
+    window.key_press(Key::Enter);
+    window.run_steps(2);
+    assert_eq!(
+        window.state().state().view.dialog,
+        Some(Dialog::About),
+        "what is typed goes on being searched"
+    );
+}
+
+/// A slow frame takes the key that opens the search, what is typed and Enter together.
+#[test]
+fn a_command_typed_and_entered_in_one_frame_is_done() {
+    let mut window = window();
+    let key = |key, modifiers| egui::Event::Key {
+        key,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers,
+    };
+    let mut events = vec![key(Key::K, Modifiers::COMMAND)];
+    events.extend("about".chars().map(|c| egui::Event::Text(c.to_string())));
+    events.push(key(Key::Enter, Modifiers::NONE));
+    for n_first in [events.len(), 1] {
+        let rest = events[n_first..].to_vec();
+        window
+            .input_mut()
+            .events
+            .extend_from_slice(&events[..n_first]);
+        window.step();
+        window.input_mut().events.extend(rest);
+        window.run_steps(3);
+        let dialog = window.state().state().view.dialog;
+        assert_eq!(dialog, Some(Dialog::About), "{n_first} in the first frame");
+        window.key_press(Key::Escape);
+        window.run_steps(2);
+        window.key_up(Key::K);
+        window.key_up(Key::Enter);
+        window.step();
+    }
+}

@@ -249,9 +249,16 @@ fn the_question_about_the_mouse_is_seen_whole_below_recent_files() {
     settings.opened = just_now.collect();
     let commands = vec![Command::Settings(Box::new(settings))];
     window.state_mut().run_commands(commands, &ctx);
-    for [width, height] in [[1280.0, 720.0], [1280.0, 640.0], [1600.0, 900.0]] {
+    for [width, height] in [
+        [1024.0, 700.0],
+        [1280.0, 720.0],
+        [1280.0, 640.0],
+        [1600.0, 900.0],
+    ] {
         window.set_size(Vec2::new(width, height));
         window.run_steps(4);
+        let choice = window.get_by_role(egui::accesskit::Role::ComboBox).rect();
+        assert!(choice.right() < width - 24.0, "{width}: {choice}");
         let ok = window.get_by_label("OK").rect();
         let texts = texts(&window);
         let text = texts.iter().find(|text| text.text == "OK").expect("drawn");
@@ -270,6 +277,10 @@ fn the_question_about_the_mouse_is_seen_whole_below_recent_files() {
         });
         assert_eq!(short, long, "{width}");
     }
+    // Where it has no room it is asked another time.
+    window.set_size(Vec2::new(640.0, 360.0));
+    window.run_steps(4);
+    assert!(window.query_by_label("OK").is_none());
 }
 
 /// Every label of a row of choices keeps off the edges of its own.
@@ -375,6 +386,33 @@ fn the_verdict_is_seen_where_its_card_is_higher_than_the_column() {
         verdict.rect.top() >= verdict.clip.top(),
         "the verdict is cut"
     );
+}
+
+/// In the narrowest column every figure of the verdict stands beside its name.
+#[test]
+fn figures_of_the_verdict_take_one_line_each_in_the_smallest_window() {
+    let mut window = matched();
+    dismiss_toasts(&mut window);
+    for (width, name) in [(1400.0, "Overlap ▲ stamped"), (800.0, "Overlap ▲")] {
+        window.set_size(Vec2::new(width, 900.0));
+        window.run_steps(4);
+        let texts = texts(&window);
+        let find = |is_it: &dyn Fn(&str) -> bool| {
+            let found: Vec<f32> = texts
+                .iter()
+                .filter(|text| is_it(&text.text))
+                .map(|text| text.rect.center().y)
+                .collect();
+            found
+        };
+        let name = find(&|text| text == name);
+        let values = find(&|text| text.contains(" % within "));
+        assert_eq!((name.len(), values.len()), (1, 2), "{width}");
+        assert!(
+            (name[0] - values[0]).abs() < 3.0,
+            "{width}: {name:?} {values:?}"
+        );
+    }
 }
 
 /// The mapping's difference in a small window: what its colours mean, and what lies under the pointer,

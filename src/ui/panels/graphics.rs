@@ -316,10 +316,10 @@ fn invitation_ui(
             action_button(ui, state, Action::OpenRealisticExample, realistic, commands);
         }
     }
-    let has_room = ui.available_width() > 240.0;
-    let has_card = role == Role::Stamped && is_empty && has_room && !state.settings.is_mouse_asked;
-    // The other window lists them too, and a question must be seen whole.
+    // The other window lists recent files too, and a question must be seen whole.
     let room = ui.clip_rect().bottom() - ui.cursor().top();
+    let has_room = ui.available_width() > 240.0 && room > CARD;
+    let has_card = role == Role::Stamped && is_empty && has_room && !state.settings.is_mouse_asked;
     let n_recent = if has_card {
         ((room - CARD - 5.0 * UNIT) / ROW).clamp(0.0, N_RECENT as f32) as usize
     } else {
@@ -334,8 +334,10 @@ fn invitation_ui(
 
 /// Files opened last that are offered, where there is room.
 const N_RECENT: usize = 3;
-/// Height of the question about the mouse with the space above it.
-const CARD: f32 = 136.0;
+/// Height of the question about the mouse with the space above it, in a narrow window.
+const CARD: f32 = 166.0;
+/// From this width on the choice stands beside its name.
+const WIDE_CARD: f32 = 300.0;
 
 fn recent_ui(ui: &mut Ui, role: Role, (state, n): (&AppState, usize), commands: &mut Vec<Command>) {
     // A file that was the other part is offered in the other window.
@@ -375,10 +377,16 @@ fn mouse_card(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.with_layout(Layout::top_down(Align::Min), |ui| {
         card(ui, |ui| {
             ui.spacing_mut().item_spacing = vec2(UNIT, 6.0);
-            ui.horizontal(|ui| {
+            let mut choice_ui = |ui: &mut Ui| {
                 ui.label("Mouse controls");
                 ui.name_inputs("Mouse controls", |ui| mouse_choice(ui, &mut settings));
-            });
+            };
+            // In a narrow window the choice stands below its name.
+            if ui.available_width() < WIDE_CARD {
+                choice_ui(ui);
+            } else {
+                ui.horizontal(choice_ui);
+            }
             paragraph(ui, settings.mouse.help());
             is_done = ui.button("OK").clicked();
         });

@@ -247,6 +247,9 @@ fn tools_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
+/// Room from which on the choice of colours has its name before it.
+const NAMED_COLOUR: f32 = 190.0;
+
 fn display_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut display: Display = state.view.display.clone();
     let size = vec2(ui.available_width(), ROW);
@@ -259,7 +262,10 @@ fn display_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             display.has_edges ^= true;
         }
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-            secondary(ui, "Colour");
+            // In a narrow column what is chosen is worth more than the word before it.
+            if ui.available_width() > NAMED_COLOUR {
+                secondary(ui, "Colour");
+            }
             ui.name_inputs("Colour by", |ui| {
                 let menu = egui::ComboBox::from_id_salt("colour by")
                     .selected_text(state.color_by(Role::Crash).label())

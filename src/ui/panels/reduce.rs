@@ -327,12 +327,12 @@ fn flipped_text(n_flipped: usize) -> Option<String> {
 /// "RMS 0.061 · max 0.72 · border 0.42 mm · 28 ms".
 fn error_text(role: Role, level: &MeasuredLevel, state: &AppState) -> String {
     let mut text = match level.deviation.get() {
-        Some(d) => format!(
+        Some(d) => unbroken(&format!(
             "RMS {} · max {} · border {}",
             state.lengths().number(d.rms),
             state.lengths().number(d.max),
             state.lengths().of(d.border_max)
-        ),
+        )),
         None if state.jobs.is_active(JobKey::MeasureLevel(role)) => {
             "measuring the distance to the full mesh…".to_owned()
         }
@@ -341,9 +341,14 @@ fn error_text(role: Role, level: &MeasuredLevel, state: &AppState) -> String {
     let rows = state.log.rows().iter().rev();
     let mut reductions = rows.filter(|r| r.step == "reduce" && r.role == Some(role));
     if let Some(took) = reductions.next().and_then(|row| row.took) {
-        text += &format!(" · {}", duration_text(took));
+        text += &format!(" · {}", unbroken(&duration_text(took)));
     }
     text
+}
+
+/// Figures that lines break between, not before a unit.
+fn unbroken(figures: &str) -> String {
+    figures.replace(' ', "\u{a0}").replace("·\u{a0}", "· ")
 }
 
 fn views_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {

@@ -14,8 +14,8 @@ use crate::ui::panels::top_bar::copy_forms_ui;
 use crate::ui::theme::{Palette, ROW, UNIT};
 use crate::ui::typed::{Takes, refusal, told_field};
 use crate::ui::widgets::{
-    Look, action_button, caption, card, chip, figure, paragraph, percent, plain_action, square,
-    tight, verdict_color,
+    Look, action_button, caption, card, chip, figure, figure_fits, paragraph, percent,
+    plain_action, square, tight, verdict_color,
 };
 
 /// Verdict, figures, alternatives, matrix.
@@ -274,8 +274,18 @@ fn figures_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
 fn coverage_ui(ui: &mut Ui, state: &AppState, coverage: &Coverage) {
     let limit = state.lengths().of(coverage.limit);
     let over = |one: &OneSided| format!("{} within {limit}", percent(one.overlap));
-    figure(ui, "Overlap ▲ stamped", &over(&coverage.source_on_target));
-    figure(ui, "Overlap ■ crash", &over(&coverage.target_on_source));
+    let [source, target] = [&coverage.source_on_target, &coverage.target_on_source];
+    let rows = [
+        ["Overlap ▲ stamped", "Overlap ▲", &over(source)],
+        ["Overlap ■ crash", "Overlap ■", &over(target)],
+    ];
+    // In a narrow column the signs alone tell the parts apart, in both rows alike.
+    let has_words = rows
+        .iter()
+        .all(|[name, _, value]| figure_fits(ui, name, value));
+    for [name, short, value] in rows {
+        figure(ui, if has_words { name } else { short }, value);
+    }
     let (rms, p95) = (
         state.lengths().number(coverage.rmse()),
         state.lengths().of(coverage.p95()),
