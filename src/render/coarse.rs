@@ -8,7 +8,9 @@ use crate::geometry::MergedMesh;
 /// Meshes of more triangles have a coarse picture.
 const LARGE: usize = 150_000;
 /// About so many triangles a coarse picture has.
-const COARSE: usize = 40_000;
+pub const COARSE: usize = 40_000;
+/// The same where a processor draws, which takes its time for each of them however small it is.
+pub const COARSE_ON_PROCESSOR: usize = 20_000;
 /// More lines than this are left out of a coarse picture.
 const MAX_LINES: usize = 60_000;
 
@@ -22,7 +24,7 @@ pub(super) fn coarse(fine: &RenderMesh, input: MeshInput<'_>) -> Option<Arc<Rend
         mesh,
         vertex_of,
         triangle_of,
-    } = MergedMesh::of(input.mesh, COARSE)?;
+    } = MergedMesh::of(input.mesh, input.n_coarse)?;
     let parts: Option<Vec<u32>> = input.part_of_triangle.map(|parts| {
         let part = |&t: &u32| parts.get(t as usize).copied().unwrap_or_default();
         triangle_of.iter().map(part).collect()

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::coarse::coarse;
+use super::coarse::{COARSE, coarse};
 use super::mesh_build::{self, EdgeClasses};
 use crate::geometry::{Aabb, Point3, Topology, TriMesh, VertexFans, corner_normals, face_normals};
 use crate::monitor::Monitor;
@@ -24,6 +24,8 @@ pub struct MeshInput<'a> {
     /// Element index of each triangle: edges inside one element are not drawn, so that a quadrilateral
     /// split in two looks like one. `None` if every triangle is an element.
     pub element_of_triangle: Option<&'a [u32]>,
+    /// About so many triangles its coarse picture has, if it is large.
+    pub n_coarse: usize,
 }
 
 impl<'a> MeshInput<'a> {
@@ -33,6 +35,7 @@ impl<'a> MeshInput<'a> {
             mesh,
             part_of_triangle: None,
             element_of_triangle: None,
+            n_coarse: COARSE,
         }
     }
 }

@@ -30,6 +30,7 @@ mod target;
 mod texture;
 mod uniforms;
 
+pub use coarse::{COARSE, COARSE_ON_PROCESSOR};
 pub use frame::Frame;
 pub use mesh::{MeshInput, RenderMesh};
 pub use pick::{PickHit, PickRequest};

@@ -1,5 +1,7 @@
 //! The textures of a viewport.
 
+use std::time::Duration;
+
 use super::context::Context;
 use super::frame::Frame;
 use super::mesh_cache::MeshCache;
@@ -13,8 +15,13 @@ use super::texture::{attachment, slice_pass, texture, view};
 use super::uniforms::Region;
 use crate::geometry::Camera;
 
-/// Pixels of the window per pixel of a coarse picture, on each axis, where a processor draws.
-const GRAIN: u32 = 2;
+/// Pixels of the window per pixel of a coarse picture, on each axis, where a processor draws: as few as leave
+/// frames quick, which are more while other work keeps it busy.
+const FINE: u32 = 2;
+const COARSEST: u32 = 4;
+/// A frame with a coarse picture that took longer makes the next one coarser, a shorter one finer.
+const SLOW: Duration = Duration::from_millis(80);
+const QUICK: Duration = Duration::from_millis(45);
 
 /// The textures of one viewport and what was last drawn into them.
 #[derive(Debug, Default)]
@@ -25,7 +32,29 @@ pub struct ViewTarget {
     /// Smaller textures for coarse pictures, and whether the last picture is in them.
     small: Option<Textures>,
     is_small: bool,
-    has_grain: bool,
+    /// Where a processor draws.
+    grain: Option<Grain>,
+}
+
+/// How coarse the pictures of a moving view are.
+#[derive(Debug)]
+struct Grain {
+    pixels: u32,
+    /// The last frame had such a picture.
+    is_drawn: bool,
+}
+
+impl Grain {
+    fn adapt(&mut self, took: Duration) {
+        if !std::mem::take(&mut self.is_drawn) {
+            return;
+        }
+        if took > SLOW {
+            self.pixels = (self.pixels + 1).min(COARSEST);
+        } else if took < QUICK {
+            self.pixels = (self.pixels - 1).max(FINE);
+        }
+    }
 }
 
 #[derive(Debug)]
@@ -60,11 +89,21 @@ impl ViewTarget {
     }
 
     /// [`ViewTarget::new`] on a device whose time goes with the pixels, as that of a software driver: coarse
-    /// pictures have half the pixels on each axis.
+    /// pictures have a half to a quarter of the pixels on each axis.
     pub fn on_processor() -> Self {
         Self {
-            has_grain: true,
+            grain: Some(Grain {
+                pixels: FINE,
+                is_drawn: false,
+            }),
             ..Self::default()
+        }
+    }
+
+    /// Tells how long the last frame took: on a processor the next coarse picture takes less or more time.
+    pub fn adapt(&mut self, took: Duration) {
+        if let Some(grain) = &mut self.grain {
+            grain.adapt(took);
         }
     }
 
@@ -139,23 +178,26 @@ impl ViewTarget {
         frame: &Frame<'_>,
     ) {
         self.drawn = None;
-        self.is_small = self.has_grain;
-        if !self.has_grain {
+        self.is_small = self.grain.is_some();
+        let Some(grain) = &mut self.grain else {
             if let Some(textures) = &mut self.textures {
                 textures.draw_all(gpu, context, cache, encoder, (frame, Detail::Coarse));
             }
             return;
-        }
+        };
+        grain.is_drawn = true;
+        let pixels = grain.pixels;
         // Widths are in points, so that lines look as wide as ever.
         let scene = Scene {
-            pixels_per_point: frame.scene.scale_factor() / GRAIN as f32,
+            pixels_per_point: frame.scene.scale_factor() / pixels as f32,
             ..frame.scene.clone()
         };
         let small = Frame {
             scene: &scene,
             camera: frame.camera,
-            size: frame.size.map(|pixels| pixels.div_ceil(GRAIN)),
+            size: frame.size.map(|side| side.div_ceil(pixels)),
         };
+        self.small.take_if(|textures| textures.size != small.size);
         let textures = self
             .small
             .get_or_insert_with(|| Textures::new(gpu.device, context, small.size));
@@ -336,5 +378,30 @@ impl Mask {
             resolved,
             group,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slow_frames_make_coarse_pictures_coarser_and_quick_ones_finer() {
+        let mut target = ViewTarget::on_processor();
+        let mut after = |millis: &[u64], is_drawn: bool| {
+            for &millis in millis {
+                if let Some(grain) = &mut target.grain {
+                    grain.is_drawn = is_drawn;
+                }
+                target.adapt(Duration::from_millis(millis));
+            }
+            target.grain.as_ref().map(|grain| grain.pixels)
+        };
+        assert_eq!(after(&[60, 60], true), Some(2), "quick enough");
+        assert_eq!(after(&[300], false), Some(2), "another kind of frame");
+        assert_eq!(after(&[90], true), Some(3));
+        assert_eq!(after(&[90, 300, 300], true), Some(4));
+        assert_eq!(after(&[60, 70], true), Some(4), "it does not swing");
+        assert_eq!(after(&[30, 30, 30, 30], true), Some(2));
     }
 }

@@ -129,16 +129,18 @@ impl Shell {
         let autosave = Autosave::start(files.sessions, move || waking.request_repaint())?;
         let waking = cc.egui_ctx.clone();
         let watch = FileWatch::start(PAUSE, move || waking.request_repaint())?;
+        let viewports = Viewports::new(cc.wgpu_render_state.as_ref());
+        let pause = viewports.progress_pause();
         let worker = Worker::spawn(
             Behind::new(PipelineRunner),
-            Arc::new(move || ctx.request_repaint()),
+            Arc::new(move || ctx.request_repaint_after(pause)),
         )?;
         let mut state = AppState::new(preferences.settings);
         state.log.clock = clock();
         let mut shell = Self {
             state,
             worker,
-            viewports: Viewports::new(cc.wgpu_render_state.as_ref()),
+            viewports,
             dialogs: Dialogs::default(),
             preferences: files.preferences,
             autosave,

@@ -1,6 +1,8 @@
 //! Between egui and the renderer: draws a viewport's picture before egui's pass and lays it into it.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 use egui::epaint::ViewportInPixels;
@@ -38,12 +40,45 @@ impl Gpu {
     }
 }
 
+/// How long the last frame took, in milliseconds; zero before the first.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Took(Arc<AtomicU64>);
+
+/// Measures a frame to its end: what was painted is dropped when it is shown, and a software driver has drawn
+/// it by then.
+pub(super) struct Stopwatch {
+    since: Instant,
+    took: Took,
+}
+
+impl Stopwatch {
+    pub fn start(took: &Took) -> Self {
+        Self {
+            since: Instant::now(),
+            took: took.clone(),
+        }
+    }
+
+    /// The time of the frame before.
+    fn last(&self) -> Duration {
+        Duration::from_millis(self.took.0.load(Ordering::Relaxed))
+    }
+}
+
+impl Drop for Stopwatch {
+    fn drop(&mut self) {
+        let millis = self.since.elapsed().as_millis() as u64;
+        self.took.0.store(millis, Ordering::Relaxed);
+    }
+}
+
 /// One viewport's picture in one frame. The renderer itself notices if nothing has changed.
 pub(super) struct ViewCallback {
     pub role: Role,
     pub scene: Arc<Scene>,
     pub camera: Camera,
     pub rect: egui::Rect,
+    pub watch: Stopwatch,
     /// To be asked for the next step of a picture that takes several.
     pub ctx: egui::Context,
 }
@@ -80,7 +115,9 @@ impl CallbackTrait for ViewCallback {
             camera: &self.camera,
             size,
         };
-        let drawn = renderer.draw_step(targets.get_mut(self.role), encoder, &frame);
+        let target = targets.get_mut(self.role);
+        target.adapt(self.watch.last());
+        let drawn = renderer.draw_step(target, encoder, &frame);
         if let Drawn::Partly(next) = drawn {
             self.ctx.request_repaint_after(next);
         }

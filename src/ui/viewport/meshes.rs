@@ -6,7 +6,7 @@ use crate::app::Part;
 use crate::geometry::{Point3, TriMesh};
 use crate::jobs::MeasuredLevel;
 use crate::pipeline::load::LoadedPart;
-use crate::render::{MeshInput, RenderMesh};
+use crate::render::{COARSE, COARSE_ON_PROCESSOR, MeshInput, RenderMesh};
 use crate::role::{PerRole, Role};
 use crate::search::{Bvh, RayHit};
 use crate::ui::background::{Background, Task};
@@ -81,8 +81,8 @@ pub(super) struct ShownMesh {
 }
 
 impl ShownMesh {
-    /// Prepares a mesh. O(triangles · log triangles).
-    pub fn new(source: MeshSource) -> Self {
+    /// Prepares a mesh, whose coarse picture has about `n_coarse` triangles. O(triangles · log triangles).
+    pub fn new(source: MeshSource, n_coarse: usize) -> Self {
         let mesh = source.mesh();
         let triangles = 0..mesh.n_triangles();
         let part_of_triangle: Vec<u32> = triangles.clone().map(|t| source.part_index(t)).collect();
@@ -94,6 +94,7 @@ impl ShownMesh {
             mesh,
             part_of_triangle: Some(&part_of_triangle),
             element_of_triangle: elements.as_deref(),
+            n_coarse,
         };
         let is_level = source.level.is_some();
         let (drawn, tree_of_level) = rayon::join(
@@ -157,11 +158,19 @@ pub(super) struct MeshStore {
     failed: Vec<MeshKey>,
     /// How many each window shows.
     n_shown: PerRole<usize>,
+    n_coarse: usize,
 }
 
 impl MeshStore {
-    pub fn new() -> Self {
+    /// `is_on_processor`: a software driver draws them.
+    pub fn new(is_on_processor: bool) -> Self {
+        let n_coarse = if is_on_processor {
+            COARSE_ON_PROCESSOR
+        } else {
+            COARSE
+        };
         Self {
+            n_coarse,
             background: Background::new("meshes"),
             ready: Vec::new(),
             failed: Vec::new(),
@@ -176,12 +185,13 @@ impl MeshStore {
         sources: &[MeshSource],
         wake: &egui::Context,
     ) -> Vec<Option<Arc<ShownMesh>>> {
+        let n_coarse = self.n_coarse;
         let wanted = sources.iter().filter(|source| !self.is_known(source.key()));
         let wanted = wanted.map(|source| {
             let source = source.clone();
             Task {
                 key: source.key(),
-                work: Box::new(move || ShownMesh::new(source)),
+                work: Box::new(move || ShownMesh::new(source, n_coarse)),
             }
         });
         let wanted = wanted.collect();

@@ -23,6 +23,7 @@ mod visible_parts;
 mod window;
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use eframe::egui_wgpu::RenderState;
 use egui::{Rect, Sense, Ui, WidgetInfo};
@@ -33,7 +34,7 @@ use crate::role::{PerRole, Role};
 use crate::ui::theme::Look;
 use fields::{FieldKind, FieldStore};
 use frame::{FrameContext, ViewFrame};
-use gpu::{Gpu, ViewCallback};
+use gpu::{Gpu, Stopwatch, Took, ViewCallback};
 use meshes::{MeshStore, ShownMesh};
 use motion::{Crossing, SmoothPose};
 pub use overlay::free_choice;
@@ -52,6 +53,8 @@ pub struct Viewports {
     crossing: Crossing,
     pose: SmoothPose,
     windows: PerRole<Window>,
+    /// How long the last frame took.
+    took: Took,
 }
 
 impl Viewports {
@@ -63,18 +66,29 @@ impl Viewports {
         }
         Self {
             render_state: render_state.cloned(),
-            meshes: MeshStore::new(),
+            meshes: MeshStore::new(render_state.is_some_and(gpu::is_software)),
             fields: FieldStore::new(),
             sections: SectionStore::new(),
             crossing: Crossing::default(),
             pose: SmoothPose::default(),
             windows: PerRole::default(),
+            took: Took::default(),
         }
     }
 
     /// True if every pixel of the window costs the processor time, as with a software driver.
     pub fn is_on_processor(&self) -> bool {
         self.render_state.as_ref().is_some_and(gpu::is_software)
+    }
+
+    /// How long the window may wait before it shows how far a job is. Where a processor draws, every frame
+    /// takes time from the job.
+    pub fn progress_pause(&self) -> Duration {
+        if self.is_on_processor() {
+            Duration::from_millis(100)
+        } else {
+            Duration::ZERO
+        }
     }
 
     /// Shows one window in the rest of `ui`.
@@ -293,6 +307,7 @@ impl Viewports {
             scene: Arc::clone(&frame.picture.scene),
             camera: frame.view.camera,
             rect,
+            watch: Stopwatch::start(&self.took),
             ctx: ui.ctx().clone(),
         };
         let size = rect.size() * ui.pixels_per_point();
