@@ -14,9 +14,14 @@ use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
 
-/// A pose with more differences of the shapes counts as at least so many times as bad as the result, and only
-/// alternatives that score better than that are looked at.
+/// A pose with more differences of the shapes counts as at least so many times as bad as the result.
 const MORE_DIFFERENCES: f64 = 1.5;
+/// Alternatives that score up to so many times as bad are looked at where they settle: they are refined no further
+/// than it takes to see that they are behind, and noise, offsets and springback may leave two poses that fit alike so
+/// far apart.
+const WORTH_SETTLING: f64 = 2.5;
+/// Where so much less of the smaller part meets the other, a pose that fits as closely does not fit as well.
+const LITTLE_LESS: f64 = 0.02;
 /// Borders may hold a pose under which what remains of the distances besides a bend is so many times as much, …
 const AS_CLOSE: f64 = 1.5;
 /// … and so many tolerances more.
@@ -44,7 +49,7 @@ pub fn chosen_by_shape(
     let few = ContactSearch::new(pair, found.scale, distances.reach, FEW_NODES);
     let met = few.clone().at(found).map_or(0.0, |contacts| contacts.share);
     let overhangs = met < OVERHANGS;
-    let is_near = |other: &&Alternative| overhangs || other.score_ratio < MORE_DIFFERENCES;
+    let is_near = |other: &&Alternative| overhangs || other.score_ratio < WORTH_SETTLING;
     let near: Vec<&Alternative> = outcome.alternatives.iter().filter(is_near).collect();
     if near.is_empty() {
         return Ok(None);
@@ -73,20 +78,28 @@ pub fn chosen_by_shape(
         start: outcome.winner,
     });
     let part = source.measures().into();
-    let with_shape = |(k, other): (usize, &Alternative)| match candidates.get(k) {
-        Some(candidate) if winner.beats(candidate) => ranked(*other, true),
-        // One that settles at the winner's pose is no other.
-        Some(candidate)
-            if candidate.fits_elsewhere_as_well_as(winner, &distances)
-                && !same_pose(&candidate.pose, &winner.pose, &part) =>
-        {
-            Alternative {
-                target_from_source: candidate.pose,
-                score_ratio: other.score_ratio.min(1.0),
-                ..*other
-            }
+    let with_shape = |(k, other): (usize, &Alternative)| {
+        let Some(candidate) = candidates.get(k) else {
+            return *other;
+        };
+        if winner.beats(candidate) {
+            return ranked(*other, true);
         }
-        _ => *other,
+        let ratio = if candidate.fits_elsewhere_as_well_as(winner, &distances) {
+            Some(1.0)
+        } else {
+            candidate.ratio_to(winner, distances.noise)
+        };
+        // One that settles at the winner's pose is no other.
+        let is_other = !same_pose(&candidate.pose, &winner.pose, &part);
+        match ratio.filter(|ratio| is_other && *ratio < other.score_ratio) {
+            Some(score_ratio) => Alternative {
+                target_from_source: candidate.pose,
+                score_ratio,
+                ..*other
+            },
+            None => *other,
+        }
     };
     // The alternatives come sorted by score, so that those looked at are the first.
     let others = outcome.alternatives.iter().enumerate().map(with_shape);
@@ -181,6 +194,17 @@ impl Candidate {
             && self.n_differences <= other.n_differences
             && self.n_alone <= other.n_alone
             && pairs.all(|(own, other)| *own <= most(*other))
+    }
+
+    /// How far the surfaces lie apart under this pose over how far they do under another, at least 1; `None` where
+    /// less meets or more differs. `noise` is what facets leave.
+    fn ratio_to(&self, other: &Self, noise: f64) -> Option<f64> {
+        let fits_as_much = self.met >= other.met - LITTLE_LESS
+            && self.n_differences <= other.n_differences
+            && self.n_alone <= other.n_alone
+            && self.n_holes >= other.n_holes;
+        let apart = |of: &Self| of.apart[0].hypot(of.apart[1]) + noise;
+        fits_as_much.then(|| (apart(self) / apart(other)).max(1.0))
     }
 
     /// Whether the shapes surely differ less under this pose: there are fewer differences, or as many while holes
@@ -287,5 +311,26 @@ mod tests {
             assert_eq!(fewer.beats(&more), beats);
             assert!(!more.beats(&fewer));
         }
+    }
+
+    #[test]
+    fn a_pose_that_settles_as_close_is_as_likely_whatever_it_scored_on_the_way() {
+        let at = |springback, remainder, met| Candidate {
+            met,
+            apart: [springback, remainder],
+            ..candidate(&[])
+        };
+        let best = at(0.1, 0.3, 0.97);
+        let near = |other: &Candidate| other.ratio_to(&best, 0.02);
+        assert!(near(&at(0.0, 0.32, 0.97)).unwrap() < 1.05);
+        assert_eq!(near(&at(0.0, 0.1, 0.97)), Some(1.0));
+        assert!(near(&at(0.1, 0.6, 0.97)).unwrap() > 1.5);
+        // What meets less does not fit as well, nor what misses a hole.
+        assert_eq!(near(&at(0.1, 0.3, 0.9)), None);
+        let alone = Candidate {
+            n_alone: 1,
+            ..at(0.1, 0.3, 0.97)
+        };
+        assert_eq!(near(&alone), None);
     }
 }

@@ -9,7 +9,7 @@ use super::coverage::overlap_limit;
 use super::settle::{Least, Settling};
 use super::shape::OVERHANGS;
 use super::slide::slid;
-use super::sliding::{FreeMotion, FreeMotionKind, weak_motion};
+use super::sliding::{FreeMotion, FreeMotionKind, weak_motion, weakest_motion};
 use super::tolerance::{AssessSettings, Distances};
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
@@ -96,7 +96,7 @@ pub fn held_by_borders(
 ) -> Result<Option<HeldPose>, Cancelled> {
     let found = &outcome.target_from_source;
     let limit = free_limit(source, target, found.scale, settings);
-    let Some(free) = weak_motion(source, target, found, limit) else {
+    let Some(free) = motion_to_search([source, target], found, limit) else {
         return Ok(None);
     };
     monitor.check()?;
@@ -140,7 +140,8 @@ pub fn held_by_borders(
     let closest = closest.copied().unwrap_or(result);
     let is_close = |pose: &Settled| pose.is_as_close_as(&closest, &pair);
     let rivals: Vec<Settled> = settled
-        .into_par_iter()
+        .par_iter()
+        .copied()
         .filter_map(|pose| {
             let closer = || pair.closer(&pose).filter(is_close);
             is_close(&pose).then_some(pose).or_else(closer)
@@ -149,7 +150,10 @@ pub fn held_by_borders(
     let choice = pair.choice(&result, is_close(&result), &rivals);
     let winner = choice.unwrap_or(result);
     let exactly = Settling::new([source, target], found.scale, settings, MAX_NODES);
-    let alternatives = pair.alternatives(&winner, choice.is_some(), &rivals, outcome);
+    let mut alternatives = pair.alternatives(&winner, choice.is_some(), &rivals, outcome);
+    let by_holes = settled.iter().filter(|other| !is_close(other));
+    alternatives.extend(pair.with_most_holes(&winner, by_holes, outcome.winner));
+    alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
     // What was found along the free motion has not been fitted to the surfaces.
     let least = if choice.is_some() {
         Least::Any
@@ -228,6 +232,29 @@ pub(super) fn distinct(alternatives: &[Alternative], source: &Surface) -> Vec<Al
         }
     }
     distinct
+}
+
+/// The motion along which borders and holes are looked for: what the surfaces leave free, or hardly resist where the
+/// holes say that the part lies aside.
+fn motion_to_search(pair: [&Surface; 2], pose: &Similarity, limit: f64) -> Option<FreeMotion> {
+    let [source, target] = pair;
+    let weak = weak_motion(source, target, pose, limit);
+    let has_path = |motion: FreeMotion| {
+        !matches!(
+            motion.kind,
+            FreeMotionKind::Spherical | FreeMotionKind::Other
+        )
+    };
+    if weak.is_some_and(has_path) || !holes_are_alone(pair, pose) {
+        return weak;
+    }
+    weakest_motion(source, target, pose, limit).or(weak)
+}
+
+/// Whether each part has holes that the other lacks under a pose, as a part has that lies aside along itself.
+fn holes_are_alone(pair: [&Surface; 2], pose: &Similarity) -> bool {
+    let borders = BorderComparison::new(pair, pose.scale, near(pair[1])).at(pose);
+    borders.missing.iter().all(|holes| !holes.is_empty())
 }
 
 /// Distance within which borders are looked for.
@@ -519,6 +546,31 @@ impl<'a> Pair<'a> {
             0.0
         };
         (of_all * held - borders.missing_share(), of_all * largest)
+    }
+
+    /// Of poses whose surfaces lie farther apart than those of the winner the one under which the most holes have their
+    /// counterpart, if more of them do: springback may lay a bent profile closer a piece along itself, and the shapes
+    /// tell which pose is right.
+    fn with_most_holes<'s>(
+        &self,
+        winner: &Settled,
+        poses: impl Iterator<Item = &'s Settled>,
+        start: usize,
+    ) -> Option<Alternative> {
+        let has_more = |pose: &&Settled| {
+            pose.n_holes > winner.n_holes
+                && pose.missing < winner.missing
+                && pose.gap <= ROUGHLY * self.springback
+        };
+        let most = poses.filter(has_more).max_by(|a, b| {
+            let more = a.n_holes.cmp(&b.n_holes);
+            more.then(a.held.total_cmp(&b.held))
+        });
+        most.map(|pose| Alternative {
+            target_from_source: pose.pose,
+            score_ratio: FEWER_HOLES,
+            start,
+        })
     }
 
     /// The other poses with what their borders say of them.

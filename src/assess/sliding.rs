@@ -1,6 +1,6 @@
 //! Motions that slide the surfaces on each other.
 
-use nalgebra::{SMatrix, SymmetricEigen};
+use nalgebra::{Const, SMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::serial::{any_float, xyz};
@@ -14,6 +14,9 @@ use crate::search::ClosestPoint;
 const FREE_BELOW: f64 = 1e-4;
 /// A motion is weak if it meets less than this fraction.
 const WEAK_BELOW: f64 = 3e-3;
+
+/// The weakest motion slides a slightly wound or arched profile along itself below this fraction.
+const WEAKEST_BELOW: f64 = 5e-2;
 
 /// Nodes that are looked at; more do not change the eigenvalues by a percent.
 const MAX_NODES: usize = 4000;
@@ -83,6 +86,42 @@ pub(super) fn weak_motion(
     motions_below(WEAK_BELOW, source, target, target_from_source, limit).motion
 }
 
+/// The one motion that the overlap resists least, as a shift or a turn, where that is no more than a profile resists
+/// that is slid along itself.
+pub(super) fn weakest_motion(
+    source: &Surface,
+    target: &Surface,
+    target_from_source: &Similarity,
+    limit: f64,
+) -> Option<FreeMotion> {
+    let resistance = Resistance::of(source, target, target_from_source, limit)?;
+    let Resistance {
+        eigen,
+        center,
+        radius,
+        ..
+    } = &resistance;
+    let weakest = eigen.eigenvalues.imin();
+    if eigen.eigenvalues[weakest] > WEAKEST_BELOW * eigen.eigenvalues.max() {
+        return None;
+    }
+    let motion = eigen.eigenvectors.column(weakest);
+    let omega = Vector3::new(motion[0], motion[1], motion[2]);
+    let shift = Vector3::new(motion[3], motion[4], motion[5]);
+    let is_shift = shift.norm() > omega.norm();
+    let direction = if is_shift { shift } else { omega };
+    let on_axis = center + omega.cross(&shift) * *radius / omega.norm_squared().max(1e-300);
+    Some(FreeMotion {
+        kind: if is_shift {
+            FreeMotionKind::Extruded
+        } else {
+            FreeMotionKind::Revolved
+        },
+        direction: direction.try_normalize(0.0)?,
+        point: if is_shift { *center } else { on_axis },
+    })
+}
+
 /// The motions that meet less than this fraction of the resistance of the stiffest one.
 fn motions_below(
     below: f64,
@@ -91,41 +130,20 @@ fn motions_below(
     target_from_source: &Similarity,
     limit: f64,
 ) -> Freedom {
-    let held = held_points(source, target, target_from_source, limit);
-    let total: f64 = held.iter().map(|(_, _, weight)| weight).sum();
-    let nothing = Freedom {
-        motion: None,
-        n_free: 6,
-        weakest: 0.0,
+    let Some(resistance) = Resistance::of(source, target, target_from_source, limit) else {
+        return Freedom {
+            motion: None,
+            n_free: 6,
+            weakest: 0.0,
+        };
     };
-    if total <= 0.0 {
-        return nothing;
-    }
-    let origin = held[0].0;
-    let sum: Vector3 = held.iter().map(|(p, _, w)| (p - origin) * *w).sum();
-    let center = origin + sum / total;
-    let radius = held
-        .iter()
-        .map(|(p, _, w)| (p - center).norm() * w)
-        .sum::<f64>()
-        / total;
-    if radius <= 0.0 {
-        return nothing;
-    }
-    let mut matrix = SMatrix::<f64, 6, 6>::zeros();
-    let mut normals = Matrix3::zeros();
-    for (point, normal, weight) in &held {
-        let lever = ((point - center) / radius).cross(normal);
-        let row =
-            SMatrix::<f64, 6, 1>::from([lever.x, lever.y, lever.z, normal.x, normal.y, normal.z]);
-        matrix += row * row.transpose() * *weight;
-        normals += normal * normal.transpose() * *weight;
-    }
-    let eigen = SymmetricEigen::new(matrix);
+    let Resistance {
+        eigen,
+        normals,
+        center,
+        radius,
+    } = resistance;
     let stiffest = eigen.eigenvalues.max();
-    if stiffest <= 0.0 {
-        return nothing;
-    }
     let free: Vec<SMatrix<f64, 6, 1>> = (0..6)
         .filter(|&k| eigen.eigenvalues[k] < below * stiffest)
         .map(|k| eigen.eigenvectors.column(k).into())
@@ -134,6 +152,56 @@ fn motions_below(
         motion: classify(&free, &normals, below * stiffest, center, radius),
         n_free: free.len(),
         weakest: (eigen.eigenvalues.min() / stiffest).max(0.0),
+    }
+}
+
+/// What the overlap resists: Σ a aᵀ and Σ n nᵀ over its points.
+struct Resistance {
+    eigen: SymmetricEigen<f64, Const<6>>,
+    normals: Matrix3,
+    /// Centroid of the points and their mean distance from it.
+    center: Point3,
+    radius: f64,
+}
+
+impl Resistance {
+    /// `None` without an overlap that resists anything.
+    fn of(
+        source: &Surface,
+        target: &Surface,
+        target_from_source: &Similarity,
+        limit: f64,
+    ) -> Option<Self> {
+        let held = held_points(source, target, target_from_source, limit);
+        let total: f64 = held.iter().map(|(_, _, weight)| weight).sum();
+        let origin = held.first().filter(|_| total > 0.0)?.0;
+        let sum: Vector3 = held.iter().map(|(p, _, w)| (p - origin) * *w).sum();
+        let center = origin + sum / total;
+        let radius = held
+            .iter()
+            .map(|(p, _, w)| (p - center).norm() * w)
+            .sum::<f64>()
+            / total;
+        if radius <= 0.0 {
+            return None;
+        }
+        let mut matrix = SMatrix::<f64, 6, 6>::zeros();
+        let mut normals = Matrix3::zeros();
+        for (point, normal, weight) in &held {
+            let lever = ((point - center) / radius).cross(normal);
+            let row = SMatrix::<f64, 6, 1>::from([
+                lever.x, lever.y, lever.z, normal.x, normal.y, normal.z,
+            ]);
+            matrix += row * row.transpose() * *weight;
+            normals += normal * normal.transpose() * *weight;
+        }
+        let eigen = SymmetricEigen::new(matrix);
+        (eigen.eigenvalues.max() > 0.0).then_some(Self {
+            eigen,
+            normals,
+            center,
+            radius,
+        })
     }
 }
 

@@ -455,3 +455,61 @@ fn an_offset_is_no_larger_than_the_sheet() {
     assert!((near - 0.8).abs() < 0.05, "{near}");
     assert_eq!(offset_of(2.0), None);
 }
+
+#[test]
+fn a_bow_does_not_leave_a_wound_profile_where_no_hole_meets_its_counterpart() {
+    // A Z profile of 1,000 mm that winds a little, with four holes in its web; bowed by 4 mm.
+    let profile = |[n_x, n_s]: [u32; 2], bow: f64| {
+        let at = |i: u32, j: u32| {
+            let x = 1000.0 * (f64::from(i) / f64::from(n_x) - 0.5);
+            (x, 100.0 * (f64::from(j) / f64::from(n_s) - 0.5))
+        };
+        let place = |(x, s): (f64, f64)| {
+            let z = 18.0 * (s / 9.0).tanh();
+            let (sin, cos) = (2.5e-4 * x).sin_cos();
+            let (y, z) = (s * cos - z * sin, s * sin + z * cos);
+            let along = x / 500.0;
+            let slope = 2.0 * bow * along / 500.0;
+            Point3::new(x - slope * z, y, z + bow * (along * along - 1.0 / 3.0))
+        };
+        let holes = [(-320.0, 0.0), (-90.0, 35.0), (140.0, -33.0), (430.0, 34.0)];
+        let is_kept = |(x, s): (f64, f64)| {
+            let far = |(hole_x, hole_s): &(f64, f64)| (x - hole_x).hypot(s - hole_s) > 9.0;
+            holes.iter().all(far)
+        };
+        let nodes = (0..=n_s).flat_map(|j| (0..=n_x).map(move |i| (i, j)));
+        let cells = (0..n_s).flat_map(|j| (0..n_x).map(move |i| (i, j)));
+        let kept = cells.filter(|&(i, j)| {
+            let ((x, s), (next_x, next_s)) = (at(i, j), at(i + 1, j + 1));
+            is_kept((0.5 * (x + next_x), 0.5 * (s + next_s)))
+        });
+        let triangles = kept.flat_map(|(i, j)| {
+            let a = j * (n_x + 1) + i;
+            [[a, a + 1, a + n_x + 2], [a, a + n_x + 2, a + n_x + 1]]
+        });
+        let positions = nodes.map(|(i, j)| place(at(i, j))).collect();
+        TriMesh::new(positions, triangles.collect()).unwrap()
+    };
+    let target = profile([125, 20], 0.0);
+    let settings = AssessSettings {
+        thickness: Some(1.0),
+        ..AssessSettings::default()
+    };
+    let monitor = Monitor::silent();
+    for (seed, bow) in [(5, 4.0), (6, -4.0)] {
+        let truth = placement(seed);
+        let stamped = profile([160, 24], bow).transformed(&truth.inverse());
+        let [source, target] =
+            [&stamped, &target].map(|mesh| Surface::new(mesh, "source").unwrap());
+        let mut outcome = matched(&source, &target);
+        let held = held_by_borders(&source, &target, &outcome, &settings, &monitor).unwrap();
+        if let Some(held) = held {
+            outcome.target_from_source = held.target_from_source;
+            outcome.alternatives = held.alternatives;
+        }
+        let chosen = chosen_by_shape(&source, &target, &outcome, &settings, &monitor).unwrap();
+        let pose = chosen.map_or(outcome.target_from_source, |pose| pose.target_from_source);
+        let error = worst_node(&stamped, &truth, &pose);
+        assert!(error < 6.0, "bow {bow}: {error} mm off");
+    }
+}

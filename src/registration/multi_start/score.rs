@@ -11,7 +11,7 @@ use crate::registration::icp::{
 };
 use crate::registration::subsample::subsample;
 use crate::registration::surface::Surface;
-use crate::search::FeatureGrid;
+use crate::search::{ClosestPoint, FeatureGrid};
 
 /// A point whose way to a surface has a part along it of more than so many cells lies beyond its border.
 const BEYOND: f64 = 3.0;
@@ -23,6 +23,11 @@ const OVERHANG_PRICE: f64 = 0.5;
 /// Where less than this fraction of the smaller part is covered, what is not covered says as much against
 /// a pose as what misses: a few points always fit.
 const SLIVER: f64 = 0.5;
+/// A point of the larger part is no counterpart of a place of the smaller one that has another at less than this share
+/// of the distance: it belongs to another sheet, such as a tool beside the blank …
+const NEARER: f64 = 0.5;
+/// … from this many times the floor on.
+const APART: f64 = 4.0;
 /// Points farther beyond the border than this fraction of the edge length overhang.
 const OVERHANG: f64 = 0.5;
 /// Fraction of the faceting that is left between nodes and the smooth surface; 0.2 to 0.5 on the
@@ -103,13 +108,20 @@ impl<'a> PoseScorer<'a> {
         let (forward, backward) = rayon::join(
             || {
                 self.one_side(
-                    &self.source_samples,
+                    (self.source, &self.source_samples),
                     self.target,
                     target_from_source,
                     flipped,
                 )
             },
-            || self.one_side(&self.target_samples, self.source, &inverse, flipped),
+            || {
+                self.one_side(
+                    (self.target, &self.target_samples),
+                    self.source,
+                    &inverse,
+                    flipped,
+                )
+            },
         );
         let [source_price, target_price] = self.hole_prices(target_from_source, &inverse);
         TwoSided {
@@ -133,7 +145,7 @@ impl<'a> PoseScorer<'a> {
 
     fn one_side(
         &self,
-        samples: &[Sample],
+        (data, samples): (&Surface, &[Sample]),
         model: &Surface,
         model_from_data: &Similarity,
         flipped: bool,
@@ -168,9 +180,23 @@ impl<'a> PoseScorer<'a> {
             Some(grid) => !is_smaller || is_beyond(grid, &pair.moved),
             None => false,
         };
-        // An overhanging point knows its triangle but has no partner.
+        let data_from_model = model_from_data.inverse();
+        // In the model's unit of length; an overhanging point knows its triangle but has no partner.
+        let has_counterpart = |pair: &Correspondence| {
+            let distance = pair.distance_sq.sqrt();
+            let nearer = || {
+                let place = data_from_model.apply(&pair.matched);
+                let reach = NEARER * distance * data_from_model.scale;
+                data.bvh().closest(&place, reach, None, None).is_some()
+            };
+            is_smaller || distance <= APART * self.floor || !nearer()
+        };
         pairs.retain(|pair| {
-            pair.distance_sq.is_finite() || pair.hint == u32::MAX && !is_far_beyond(pair)
+            if pair.distance_sq.is_finite() {
+                has_counterpart(pair)
+            } else {
+                pair.hint == u32::MAX && !is_far_beyond(pair)
+            }
         });
         let covered = area(&pairs) / whole;
         let sliver = if is_smaller {
@@ -201,4 +227,45 @@ fn is_beyond(grid: &FeatureGrid, point: &Point3) -> bool {
     let normal = Vector3::from(nearest.normal.map(f64::from));
     let along = off - normal * off.dot(&normal);
     along.norm() > BEYOND * f64::from(grid.cell())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::TriMesh;
+
+    /// Waved sheets of 100 × 60 at these heights above each other.
+    fn sheets(n: u32, heights: &[f64]) -> Surface {
+        let (mut points, mut triangles) = (Vec::new(), Vec::new());
+        for height in heights {
+            let first = points.len() as u32;
+            for i in 0..=n {
+                for j in 0..=n {
+                    let [x, y] =
+                        [(i, 100.0), (j, 60.0)].map(|(k, size)| size * f64::from(k) / f64::from(n));
+                    let wave = 4.0 * (x / 15.0).sin() * (y / 11.0).cos();
+                    points.push(Point3::new(x, y, wave + height));
+                }
+            }
+            let cells = (0..n * n).map(|cell| first + cell / n * (n + 1) + cell % n);
+            triangles
+                .extend(cells.flat_map(|a| [[a, a + n + 1, a + n + 2], [a, a + n + 2, a + 1]]));
+        }
+        Surface::new(&TriMesh::new(points, triangles).unwrap(), "source").unwrap()
+    }
+
+    #[test]
+    fn a_tool_beside_the_blank_does_not_speak_against_it() {
+        let part = sheets(23, &[0.0]);
+        let score = |stamped: &Surface| {
+            let silent = Monitor::silent();
+            let scorer = PoseScorer::new([stamped, &part], 0.0, (12.0, None), &silent).unwrap();
+            scorer.score(&Similarity::identity(), false).score()
+        };
+        let [alone, among_tools, lower] =
+            [&[0.0][..], &[0.0, 9.0, -8.0], &[2.0]].map(|heights| score(&sheets(30, heights)));
+        // Two thirds of the area lie beyond the part, which costs little.
+        assert!(among_tools < 1.4 * alone, "{among_tools} {alone}");
+        assert!(lower > 3.0 * alone, "{lower} {alone}");
+    }
 }
