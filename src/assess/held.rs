@@ -1,6 +1,8 @@
 //! The choice between poses that surfaces do not tell apart: where a part can slide on the other, its
 //! borders and holes say where it belongs.
 
+mod hand;
+
 use rayon::prelude::*;
 
 use super::borders::{BorderComparison, Borders, PairKind};
@@ -14,6 +16,8 @@ use super::tolerance::{AssessSettings, Distances};
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
+
+pub use hand::hand_by_borders;
 
 /// Borders are looked for within this share of the diagonal: first poses are that good.
 const NEAR_SHARE: f64 = 0.03;
@@ -48,18 +52,12 @@ const BY_CHANCE: f64 = 0.15;
 const TWICE_AS_BAD: f64 = 0.05;
 /// Distances of surfaces up to this share of the tolerance mean nothing.
 const NO_GAP: f64 = 0.1;
-/// Shares of the borders that differ by less than this do not tell hands apart.
-const SAME_SHARE: f64 = 0.02;
-/// The opposite hand is told by its borders if so much of them lies where it belongs; with less its score counts
-/// as at least this many times the result's.
+/// Borders of which so much lies where it belongs speak for a pose.
 const SURELY_HELD: f64 = 0.9;
-const HINT: f64 = 0.9;
 /// With less than this the borders speak against a pose.
 const HARDLY_HELD: f64 = 0.5;
 /// Poses that are not refined yet may lie so many times as far apart as springback explains.
 const ROUGHLY: f64 = 2.0;
-/// Scores of the opposite hand above this many times the result's need no other opinion.
-const OPPOSITE_IS_CLEAR: f64 = 1.3;
 /// Its surfaces may lie apart by so many times as much …
 const AS_CLOSE: f64 = 1.5;
 /// … and so many tolerances more.
@@ -164,60 +162,6 @@ pub fn held_by_borders(
         target_from_source: exactly.settled(&winner.pose, least).unwrap_or(winner.pose),
         alternatives,
     }))
-}
-
-/// Score of the opposite hand over that of the result, where the surfaces fit both: a hole on one side
-/// tells the left part from the right one. `None` where the surfaces decide, or the opposite hand found
-/// no pose.
-pub fn hand_by_borders(
-    source: &Surface,
-    target: &Surface,
-    outcome: &MatchOutcome,
-    settings: &AssessSettings,
-    monitor: &Monitor,
-) -> Result<Option<f64>, Cancelled> {
-    let check = &outcome.mirror_check;
-    let is_near = check
-        .score_ratio
-        .is_some_and(|ratio| ratio < OPPOSITE_IS_CLEAR);
-    let Some(mirrored) = check.target_from_source.as_ref().filter(|_| is_near) else {
-        return Ok(None);
-    };
-    let scale = outcome.target_from_source.scale;
-    let pair = Pair::new(source, target, scale, settings);
-    let Some(result) = pair.measured(outcome.target_from_source) else {
-        return Ok(None);
-    };
-    let limit = free_limit(source, target, scale, settings);
-    let free = weak_motion(source, target, &outcome.target_from_source, limit);
-    let slid = free.map_or_else(Vec::new, |free| {
-        slid(source, target, mirrored, &free, MOST_SLID)
-    });
-    let poses: Vec<Similarity> = slid.into_iter().chain([*mirrored]).collect();
-    let by_borders = pair.by_borders(&poses, monitor)?;
-    let settle = |pose: &Similarity| {
-        monitor.check()?;
-        Ok(pair.settle(pose, Least::Any))
-    };
-    let settled: Result<Vec<Option<Settled>>, Cancelled> =
-        by_borders.par_iter().map(settle).collect();
-    let close = settled?
-        .into_iter()
-        .flatten()
-        .filter(|other| other.is_as_close_as(&result, &pair));
-    let Some(opposite) = close.max_by(|a, b| a.held.total_cmp(&b.held)) else {
-        return Ok(None);
-    };
-    let fits_as_well = result.gap <= AS_CLOSE * opposite.gap;
-    let behind = result.held - opposite.held;
-    let ratio = ratio_by_borders(apart(behind, SAME_SHARE));
-    // Borders that fit neither hand are a hint and no more.
-    let least = if opposite.held < SURELY_HELD {
-        HINT
-    } else {
-        0.0
-    };
-    Ok(fits_as_well.then(|| ratio.max(least)))
 }
 
 /// Of alternatives that are the same pose the first.

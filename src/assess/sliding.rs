@@ -269,3 +269,41 @@ fn classify(
         point,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::TriMesh;
+
+    /// A Z profile of 1,000 mm along x that is arched and winds a little.
+    fn profile() -> Surface {
+        let (n_x, n_s) = (100_u32, 20_u32);
+        let at = |i: u32, j: u32| {
+            let x = 1000.0 * (f64::from(i) / f64::from(n_x) - 0.5);
+            let s = 100.0 * (f64::from(j) / f64::from(n_s) - 0.5);
+            let z = 18.0 * (s / 9.0).tanh();
+            let (sin, cos) = (5.5e-4 * x).sin_cos();
+            let along = x / 500.0;
+            Point3::new(
+                x,
+                s * cos - z * sin + 30.0 * along * along,
+                s * sin + z * cos + 20.0 * along.powi(3),
+            )
+        };
+        let nodes = (0..=n_s).flat_map(|j| (0..=n_x).map(move |i| at(i, j)));
+        let cells = (0..n_s).flat_map(|j| (0..n_x).map(move |i| j * (n_x + 1) + i));
+        let triangles =
+            cells.flat_map(|a| [[a, a + 1, a + n_x + 2], [a, a + n_x + 2, a + n_x + 1]]);
+        let mesh = TriMesh::new(nodes.collect(), triangles.collect()).unwrap();
+        Surface::new(&mesh, "source").unwrap()
+    }
+
+    #[test]
+    fn a_wound_profile_is_searched_along_itself() {
+        let still = Similarity::identity();
+        let wound = profile();
+        let motion = weakest_motion(&wound, &wound, &still, 1.0).unwrap();
+        assert_eq!(motion.kind, FreeMotionKind::Extruded);
+        assert!(motion.direction.x.abs() > 0.98, "{motion:?}");
+    }
+}
