@@ -5,9 +5,10 @@
 use rayon::prelude::*;
 
 use super::contact::{ContactSearch, FEW_NODES, MAX_NODES};
-use super::held::{HeldPose, distinct};
+use super::held::{HeldPose, distinct, free_limit};
 use super::settle::{Least, Settling};
 use super::shape::{ELSEWHERE, OVERHANGS, ShapeReason, ShapeStatement};
+use super::sliding::weak_motion;
 use super::statements::statements;
 use super::tolerance::{AssessSettings, Distances, UNREMARKABLE};
 use crate::geometry::Similarity;
@@ -78,6 +79,9 @@ pub fn chosen_by_shape(
         start: outcome.winner,
     });
     let part = source.measures().into();
+    // Where surfaces leave the pose free, borders and holes have compared all poses.
+    let limit = free_limit(source, target, found.scale, settings);
+    let surfaces_hold = weak_motion(source, target, &winner.pose, limit).is_none();
     let with_shape = |(k, other): (usize, &Alternative)| {
         let Some(candidate) = candidates.get(k) else {
             return *other;
@@ -88,7 +92,8 @@ pub fn chosen_by_shape(
         let ratio = if candidate.fits_elsewhere_as_well_as(winner, &distances) {
             Some(1.0)
         } else {
-            candidate.ratio_to(winner, distances.noise)
+            let ratio = candidate.ratio_to(winner, distances.noise);
+            ratio.filter(|_| surfaces_hold)
         };
         // One that settles at the winner's pose is no other.
         let is_other = !same_pose(&candidate.pose, &winner.pose, &part);

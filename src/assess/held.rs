@@ -207,7 +207,12 @@ pub(super) fn near(target: &Surface) -> f64 {
 }
 
 /// Distance within which surfaces leave a motion free: what overlaps, and what springback explains.
-fn free_limit(source: &Surface, target: &Surface, scale: f64, settings: &AssessSettings) -> f64 {
+pub(super) fn free_limit(
+    source: &Surface,
+    target: &Surface,
+    scale: f64,
+    settings: &AssessSettings,
+) -> f64 {
     let springback = Distances::of(source, target, scale, settings)
         .tolerance
         .springback;
