@@ -50,28 +50,6 @@ pub struct Monitor {
     observer: Option<Arc<dyn Observer>>,
 }
 
-/// A large value that is given back to the system on another thread, so that the work that had it, and a cancel of
-/// it, need not wait for that.
-pub(crate) struct FreedAside<T: Send + 'static>(Option<T>);
-
-impl<T: Send + 'static> FreedAside<T> {
-    pub(crate) fn new(value: T) -> Self {
-        Self(Some(value))
-    }
-
-    pub(crate) fn value(&self) -> &T {
-        self.0.as_ref().expect("only taken out when dropped")
-    }
-}
-
-impl<T: Send + 'static> Drop for FreedAside<T> {
-    fn drop(&mut self) {
-        if let Some(value) = self.0.take() {
-            rayon::spawn(move || drop(value));
-        }
-    }
-}
-
 impl Monitor {
     /// A monitor that nobody watches and nobody stops.
     pub fn silent() -> Self {
@@ -132,6 +110,28 @@ impl Monitor {
     pub fn shape(&self, points: impl FnOnce() -> Vec<[f64; 3]>) {
         if let Some(observer) = &self.observer {
             observer.shape(points());
+        }
+    }
+}
+
+/// A large value that is given back to the system on another thread, so that the work that had it, and a cancel of
+/// it, need not wait for that.
+pub(crate) struct FreedAside<T: Send + 'static>(Option<T>);
+
+impl<T: Send + 'static> FreedAside<T> {
+    pub(crate) fn new(value: T) -> Self {
+        Self(Some(value))
+    }
+
+    pub(crate) fn value(&self) -> &T {
+        self.0.as_ref().expect("only taken out when dropped")
+    }
+}
+
+impl<T: Send + 'static> Drop for FreedAside<T> {
+    fn drop(&mut self) {
+        if let Some(value) = self.0.take() {
+            rayon::spawn(move || drop(value));
         }
     }
 }

@@ -350,18 +350,21 @@ fn a_menu_of_choices_is_walked_by_arrows_and_left_for_its_button() {
     assert_eq!(method(&window), Method::Icp);
 }
 
-#[test]
-fn what_is_typed_while_the_search_opens_is_searched() {
-    let mut window = window();
-    click(&mut window, "Open the example pair");
-    finish(&mut window);
-    let key = |key, modifiers| egui::Event::Key {
+fn key(key: Key, modifiers: Modifiers) -> egui::Event {
+    egui::Event::Key {
         key,
         physical_key: None,
         pressed: true,
         repeat: false,
         modifiers,
-    };
+    }
+}
+
+#[test]
+fn what_is_typed_while_the_search_opens_is_searched() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
     // All in one frame, and then one letter a frame.
     for n_at_once in [3, 0] {
         let mut events = vec![key(Key::K, Modifiers::COMMAND)];
@@ -424,13 +427,6 @@ fn enter_in_an_empty_search_leaves_the_keyboard_in_its_field() {
 #[test]
 fn a_command_typed_and_entered_in_one_frame_is_done() {
     let mut window = window();
-    let key = |key, modifiers| egui::Event::Key {
-        key,
-        physical_key: None,
-        pressed: true,
-        repeat: false,
-        modifiers,
-    };
     let mut events = vec![key(Key::K, Modifiers::COMMAND)];
     events.extend("about".chars().map(|c| egui::Event::Text(c.to_string())));
     events.push(key(Key::Enter, Modifiers::NONE));
