@@ -285,8 +285,13 @@ mod tests {
         let at = Point3::origin();
         let limit = 1.0;
         let bend = ShapeReason::Bent { by: 9.0, limit };
-        let hole = |by| ShapeReason::Hole { by, limit, at };
-        let is_end = false;
+        let [is_end, is_mean] = [false; 2];
+        let hole = |by| ShapeReason::Hole {
+            by,
+            limit,
+            at,
+            is_mean,
+        };
         let bead = |by| ShapeReason::Local {
             by,
             limit,

@@ -1,6 +1,8 @@
 //! Where two parts meet under a pose: what the uncertainty of the pose and the statement about the
 //! shape are computed from.
 
+mod displaced;
+
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 use rayon::prelude::*;
 

@@ -253,6 +253,7 @@ mod tests {
             by: 6.0,
             limit: 1.5,
             at: Point3::origin(),
+            is_mean: false,
         };
         let (held, misplaced) = (shape(0.07, &[]), shape(0.04, &[hole]));
         assert!(fits_better(&held, &misplaced) && !fits_better(&misplaced, &held));

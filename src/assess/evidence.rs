@@ -34,6 +34,12 @@ impl PoseEvidence<'_> {
         self.search().of_larger(&self.pose, is_asked)
     }
 
+    /// Places of the smaller part that lie over a place of the larger one, where neither meets anything.
+    /// O(nodes · log triangles).
+    pub(super) fn displaced(&self) -> Vec<Contact> {
+        self.search().displaced(&self.pose)
+    }
+
     fn search(&self) -> ContactSearch<'_> {
         let pair = [self.source, self.target];
         ContactSearch::new(pair, self.pose.scale, self.reach, MAX_NODES)

@@ -25,7 +25,7 @@ pub(super) struct Fit {
     pub(super) left: Vec<f64>,
     /// The same for each pair of borders and of holes.
     pub(super) borders: Vec<f64>,
-    pub(super) holes: Vec<f64>,
+    pub(super) holes: Vec<HoleLeft>,
     /// How far the source lies from where it belongs, bends counted as part of its shape; turns in
     /// lengths at the contacts' radius.
     pub(super) rigid: Six,
@@ -33,6 +33,22 @@ pub(super) struct Fit {
     pub(super) is_separable: bool,
     bends: Bends,
     found: Row,
+}
+
+/// What nothing explains of how two holes differ.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HoleLeft {
+    /// From the middle of the target's to that of the source's, within the sheet.
+    pub(super) off: Vector3,
+    /// Difference of the radii.
+    wider: f64,
+}
+
+impl HoleLeft {
+    /// Distance of the farthest points of the two borders.
+    pub(super) fn size(&self) -> f64 {
+        self.off.norm() + self.wider
+    }
 }
 
 /// How much each unknown moves a place along a direction; `offset` is what a unit of the offset does.
@@ -129,8 +145,10 @@ impl Fit {
             let explained = axes.map(|axis| row(&pair.hole.center, &axis, 0.0).dot(&found));
             let left = pair.off - Vector3::from(explained);
             // Across its sheet the middle of a hole says what the surface says.
-            let within = left - pair.hole.normal * left.dot(&pair.hole.normal);
-            within.norm() + pair.wider
+            HoleLeft {
+                off: left - pair.hole.normal * left.dot(&pair.hole.normal),
+                wider: pair.wider,
+            }
         });
         Self {
             smooth: smooth.collect(),

@@ -5,7 +5,7 @@ mod hand;
 
 use rayon::prelude::*;
 
-use super::borders::{BorderComparison, Borders, PairKind};
+use super::borders::{BorderComparison, Borders, HolePair, PairKind};
 use super::contact::{ContactSearch, FEW_NODES, MAX_NODES};
 use super::coverage::overlap_limit;
 use super::settle::{Least, Settling};
@@ -93,8 +93,7 @@ pub fn held_by_borders(
     monitor: &Monitor,
 ) -> Result<Option<HeldPose>, Cancelled> {
     let found = &outcome.target_from_source;
-    let limit = free_limit(source, target, found.scale, settings);
-    let Some(free) = motion_to_search([source, target], found, limit) else {
+    let Some(free) = motion_to_search([source, target], found, settings) else {
         return Ok(None);
     };
     monitor.check()?;
@@ -180,8 +179,13 @@ pub(super) fn distinct(alternatives: &[Alternative], source: &Surface) -> Vec<Al
 
 /// The motion along which borders and holes are looked for: what the surfaces leave free, or hardly resist where the
 /// holes say that the part lies aside.
-fn motion_to_search(pair: [&Surface; 2], pose: &Similarity, limit: f64) -> Option<FreeMotion> {
+fn motion_to_search(
+    pair: [&Surface; 2],
+    pose: &Similarity,
+    settings: &AssessSettings,
+) -> Option<FreeMotion> {
     let [source, target] = pair;
+    let limit = free_limit(source, target, pose.scale, settings);
     let weak = weak_motion(source, target, pose, limit);
     let has_path = |motion: FreeMotion| {
         !matches!(
@@ -189,16 +193,23 @@ fn motion_to_search(pair: [&Surface; 2], pose: &Similarity, limit: f64) -> Optio
             FreeMotionKind::Spherical | FreeMotionKind::Other
         )
     };
-    if weak.is_some_and(has_path) || !holes_are_alone(pair, pose) {
+    if weak.is_some_and(has_path) || !holes_lie_aside(pair, pose, settings) {
         return weak;
     }
     weakest_motion(source, target, pose, limit).or(weak)
 }
 
-/// Whether each part has holes that the other lacks under a pose, as a part has that lies aside along itself.
-fn holes_are_alone(pair: [&Surface; 2], pose: &Similarity) -> bool {
-    let borders = BorderComparison::new(pair, pose.scale, near(pair[1])).at(pose);
+/// Whether the holes say that the part lies aside along itself: each part has some that the other lacks, or of those
+/// that have a counterpart most do not lie on it.
+fn holes_lie_aside(pair: [&Surface; 2], pose: &Similarity, settings: &AssessSettings) -> bool {
+    let [source, target] = pair;
+    let tolerance = Distances::of(source, target, pose.scale, settings).tolerance;
+    let borders = BorderComparison::new(pair, pose.scale, near(target)).at(pose);
+    let limit = borders.limit(&tolerance);
+    let is_off = |pair: &&HolePair| pair.off.norm() > limit;
+    let n_off = borders.holes.iter().filter(is_off).count();
     borders.missing.iter().all(|holes| !holes.is_empty())
+        || n_off > 0 && 2 * n_off >= borders.holes.len()
 }
 
 /// Distance within which borders are looked for.

@@ -2,13 +2,14 @@
 //!
 //! From the bottom up: `tolerance` says how far parts may differ; `contact` and `borders` find where two parts meet
 //! under a pose, `evidence` joins what they found, `fit` splits the gaps into a motion, an offset and bends; `trims`,
-//! `stretch` and `shape` say how the parts differ, `uncertainty` how far the pose may be off. With these, `settle`,
-//! `slide`, `all_pairs`, `held`, `alternatives`, `unbent` and `skin` improve or choose a pose before it is assessed,
-//! and `decide` makes the verdict of an [`Assessment`].
+//! `aside`, `stretch` and `shape` say how the parts differ, `uncertainty` how far the pose may be off. With these,
+//! `settle`, `slide`, `all_pairs`, `held`, `alternatives`, `unbent` and `skin` improve or choose a pose before it is
+//! assessed, and `decide` makes the verdict of an [`Assessment`].
 
 mod all_pairs;
 mod alternatives;
 mod ambiguity;
+mod aside;
 mod assessment;
 mod border_curve;
 mod borders;

@@ -5,16 +5,17 @@ mod local;
 
 use serde::{Deserialize, Serialize};
 
+use super::aside::outline_aside_of_holes;
 use super::borders::{Borders, LEAST_PAIRED};
 use super::contact::Contacts;
 use super::evidence::PoseEvidence;
-use super::fit::Fit;
+use super::fit::{Fit, HoleLeft};
 use super::stretch::{PartAxis, Stretch, stretch};
 use super::tolerance::{ShapeTolerance, UNREMARKABLE};
 use super::trims::{self, BorderApart};
 use crate::geometry::serial::{any_float, xyz};
 use crate::geometry::{Point3, Vector3};
-use local::{LocalDifference, local_difference};
+use local::local_difference;
 
 /// Parts that meet over less than this share of the smaller one are different parts.
 const LEAST_MET: f64 = 0.5;
@@ -31,6 +32,10 @@ const DIFFERENT: f64 = 6.0;
 /// area.
 pub(super) const FACETING: f64 = 3.0;
 const SAME_SHARE: f64 = 0.8;
+/// The mean of how far holes lie off is known to so many of its standard errors.
+const SURELY: f64 = 3.0;
+/// Fewer holes tell neither their mean nor how much they scatter.
+const LEAST_HOLES: usize = 4;
 /// Patches that are searched for the place of the largest difference: 2 to this power.
 const PLACE_LEVELS: u32 = 5;
 
@@ -127,7 +132,7 @@ pub enum ShapeReason {
         #[serde(with = "xyz")]
         at: Point3,
     },
-    /// A hole lies elsewhere or has another size.
+    /// A hole lies elsewhere or has another size, or all lie elsewhere.
     Hole {
         /// By how much.
         by: f64,
@@ -136,6 +141,9 @@ pub enum ShapeReason {
         /// Point of the difference, in the target's frame.
         #[serde(with = "xyz")]
         at: Point3,
+        /// No single hole does so beyond doubt, but all holes lie off one way, by so much in the mean.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        is_mean: bool,
     },
     /// One part is a longer, wider or higher version of the other.
     Stretched {
@@ -268,19 +276,8 @@ impl ShapeStatement {
                 at,
                 mostly: mostly > limit,
             });
-        } else if let Some(found) = local_difference(evidence, fit, &self.tolerance) {
-            let LocalDifference {
-                by,
-                limit,
-                at,
-                is_end,
-            } = found;
-            reasons.push(ShapeReason::Local {
-                by,
-                limit,
-                at,
-                is_end,
-            });
+        } else {
+            reasons.extend(local_difference(evidence, fit, &self.tolerance));
         }
         reasons.extend(self.border_reasons(evidence, fit));
         // Where the parts differ anyway, nothing more is learned from it.
@@ -303,12 +300,7 @@ impl ShapeStatement {
         let borders = &evidence.borders;
         let limit = borders.limit(&self.tolerance);
         let mut reasons = Vec::new();
-        let holes = borders.all_holes().zip(&fit.holes);
-        let worst = holes.max_by(|a, b| a.1.total_cmp(b.1));
-        if let Some((pair, &by)) = worst.filter(|(_, by)| **by > limit) {
-            let at = pair.hole.center;
-            reasons.push(ShapeReason::Hole { by, limit, at });
-        }
+        reasons.extend(misplaced_hole(borders, &fit.holes, &self.tolerance));
         if let ([of_source, ..], [of_target, ..]) =
             (borders.missing[0].as_slice(), borders.missing[1].as_slice())
         {
@@ -324,6 +316,12 @@ impl ShapeStatement {
             });
         }
         let Some(by) = self.borders.offset.filter(|by| *by > limit) else {
+            let aside = outline_aside_of_holes(borders, fit, limit);
+            reasons.extend(aside.map(|BorderApart { by, at }| ShapeReason::Borders {
+                by,
+                limit,
+                at,
+            }));
             return reasons;
         };
         let pairs = borders.pairs().iter().zip(&fit.borders);
@@ -366,9 +364,57 @@ fn border_fit(borders: &Borders, fit: &Fit, tolerance: &ShapeTolerance) -> Borde
         other_trim: None,
         apart: trims::farthest_apart(borders, &fit.borders, borders.limit(tolerance)),
         n_holes: borders.holes.len(),
-        worst_hole: fit.holes.iter().copied().fold(0.0, f64::max),
+        worst_hole: fit.holes.iter().map(HoleLeft::size).fold(0.0, f64::max),
         only_source: borders.missing[0].len(),
         only_target: borders.missing[1].len(),
+    }
+}
+
+/// A hole that lies elsewhere or has another size than its counterpart, or all of them lying aside one way: their
+/// mean is known better than each, where borders are ragged. `left` is what is left of the distance of each.
+fn misplaced_hole(
+    borders: &Borders,
+    left: &[HoleLeft],
+    tolerance: &ShapeTolerance,
+) -> Option<ShapeReason> {
+    let holes = borders.all_holes().zip(left);
+    let worst = holes.max_by(|a, b| a.1.size().total_cmp(&b.1.size()));
+    let (pair, of_worst) = worst?;
+    let of_each = (of_worst.size(), borders.limit(tolerance));
+    let of_all = mean_off(left).map(|mean| (mean.off, mean.limit(tolerance)));
+    let is_beyond = |(by, limit): &(f64, f64)| by > limit;
+    let [of_each, of_all] = [Some(of_each), of_all].map(|of| of.filter(is_beyond));
+    let (by, limit) = of_each.or(of_all)?;
+    Some(ShapeReason::Hole {
+        by,
+        limit,
+        at: pair.hole.center,
+        is_mean: of_each.is_none(),
+    })
+}
+
+/// How far holes lie off in the mean.
+struct MeanOff {
+    off: f64,
+    /// Standard error.
+    error: f64,
+}
+
+/// `None` of too few holes.
+fn mean_off(left: &[HoleLeft]) -> Option<MeanOff> {
+    let n = left.len() as f64;
+    let mean = left.iter().map(|hole| hole.off).sum::<Vector3>() / n;
+    let squares = left.iter().map(|hole| (hole.off - mean).norm_squared());
+    let variance = squares.sum::<f64>() / (n - 1.0);
+    (left.len() >= LEAST_HOLES).then(|| MeanOff {
+        off: mean.norm(),
+        error: (variance / n).sqrt(),
+    })
+}
+
+impl MeanOff {
+    fn limit(&self, tolerance: &ShapeTolerance) -> f64 {
+        tolerance.remainder.hypot(SURELY * self.error)
     }
 }
 

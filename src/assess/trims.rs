@@ -3,6 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::aside::outline_aside_of_holes;
 use super::borders::{BorderPair, Borders, PairKind};
 use super::contact::quantile;
 use super::evidence::PoseEvidence;
@@ -41,14 +42,18 @@ pub(super) struct OtherTrim {
 }
 
 /// The borders without the outlines that lie apart because the parts were trimmed differently; `None` where they
-/// lie together, or where one part looks like a longer, wider or higher version of the other.
+/// lie together, where one part looks like a longer, wider or higher version of the other, or where they lie aside of
+/// the holes as a whole.
 pub(super) fn other_trim(
     evidence: &PoseEvidence<'_>,
     tolerance: &ShapeTolerance,
 ) -> Option<OtherTrim> {
     let limit = evidence.borders.limit(tolerance);
     let outlines = Outlines::of(evidence, limit)?;
-    if outlines.share_apart() <= 1.0 - STATED || stretch::explains_outlines(evidence, limit) {
+    if outlines.share_apart() <= 1.0 - STATED
+        || stretch::explains_outlines(evidence, limit)
+        || outline_aside_of_holes(&evidence.borders, &outlines.fit, limit).is_some()
+    {
         return None;
     }
     Some(OtherTrim {

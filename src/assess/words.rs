@@ -200,12 +200,12 @@ impl ShapeReason {
             ),
             Self::Local { at, is_end, .. } => {
                 let what = if *is_end {
-                    "an end or a flange is bent"
+                    "an end or a flange that is bent or lies elsewhere"
                 } else {
-                    "only one part has a bead, an emboss or a dent"
+                    "a bead, a dent or a radius that only one part has"
                 };
                 format!(
-                    "{what}: the surfaces differ there by {by}, more than {limit}, at {}",
+                    "the surfaces differ at one place by {by}, more than {limit}, at {}: {what}",
                     place(at)
                 )
             }
@@ -213,6 +213,9 @@ impl ShapeReason {
                 "the borders lie {by} apart, more than {limit}, most at {}",
                 place(at)
             ),
+            Self::Hole { is_mean: true, .. } => {
+                format!("all holes are off one way, by {by} in the mean, more than {limit}")
+            }
             Self::Hole { at, .. } => {
                 format!("a hole is off by {by}, more than {limit}, at {}", place(at))
             }

@@ -115,6 +115,7 @@ fn times(text: &mut String, record: &MatchRecord) {
     let t = &record.timings;
     let steps = [
         ("read", t.read_ms),
+        ("find parts", t.find_ms),
         ("reduce", t.reduce_ms),
         ("align", t.align_ms),
         ("match", t.match_ms),

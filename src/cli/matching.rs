@@ -16,7 +16,7 @@ use super::{
 use crate::assess::Verdict;
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
-use crate::pipeline::find_parts::{find_parts, is_part_open};
+use crate::pipeline::find_parts::{FoundParts, find_parts, is_part_open};
 use crate::pipeline::load::{LoadedPart, load};
 use crate::pipeline::match_parts::{MatchRun, ReducedPair, match_parts, with_alternative};
 use crate::pipeline::outputs::record::match_record;
@@ -35,7 +35,7 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let outputs = outputs(&args.output);
     check_outputs(targets(&outputs), &named_inputs(args))?;
     check_included_name(&outputs, args.stamped.as_deref())?;
-    let mut alike_parts = Vec::new();
+    let mut found = None;
     let (mut asked, parts) = match &args.stamped {
         Some(path) => {
             let asked = asked(args)?;
@@ -44,7 +44,10 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
             if args.input.crash_part.is_none() {
                 let both = parts.as_ref();
                 if is_part_open(both) {
-                    (parts.crash, alike_parts) = found_crash(both, &asked, monitor)?;
+                    found = found_parts(both, &asked, monitor)?;
+                    if let Some(found) = &found {
+                        parts.crash = found.found.part.clone();
+                    }
                 } else if both.crash.chosen_part_ids().len() > 1 {
                     warn_of_unit(both, monitor)?;
                 }
@@ -71,8 +74,8 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     // Only now are the included files known.
     check_outputs(targets(&outputs), &input.files())?;
     let impossible = impossible(&outputs, parts.as_deref());
-    let run = run_match(&asked, parts.as_deref(), shown.of_match())?;
-    let run = Arc::new(MatchRun { alike_parts, ..run });
+    let run = run_match(&asked, parts.as_deref(), found, shown.of_match())?;
+    let run = Arc::new(run);
     let record = match_record(&run, parts.as_deref());
     drop(shown);
     if takes_stdout(args.output.json.as_deref()) {
@@ -195,20 +198,33 @@ fn write(
     Ok(())
 }
 
-/// Reduces first where another level was asked for one of the parts.
+/// Reduces first where another level was asked for one of the parts. A match that found the crash part is not made
+/// again.
 fn run_match(
     asked: &Asked,
     parts: PerRole<&LoadedPart>,
+    found: Option<FoundParts>,
     monitor: MatchMonitor<'_>,
 ) -> anyhow::Result<MatchRun> {
-    let reduced = if asked.max_triangles == PerRole::both(asked.recipe.max_triangles) {
+    let is_as_found = asked.max_triangles == PerRole::both(asked.recipe.max_triangles);
+    let reduced = if is_as_found {
         None
     } else {
         let max_triangles = asked.max_triangles;
         Some(ReducedPair::new(parts, max_triangles, monitor.monitor)?)
     };
-    let (recipe, current) = (&asked.recipe, &asked.current);
-    let run = match_parts(parts, reduced.as_ref(), recipe, current, monitor)?;
+    let mut run = match &found {
+        Some(found) if is_as_found => found.found.run.clone(),
+        _ => {
+            let (recipe, current) = (&asked.recipe, &asked.current);
+            match_parts(parts, reduced.as_ref(), recipe, current, monitor)?
+        }
+    };
+    if let Some(of_parts) = found {
+        run.alike_parts = of_parts.rivals;
+        run.times.find_ms = of_parts.took_ms - of_parts.found.run.times.total_ms;
+        run.times.total_ms += run.times.find_ms;
+    }
     let (number, n_poses) = (asked.pose_number, 1 + run.outcome.alternatives.len());
     match number {
         1 => Ok(run),
@@ -221,22 +237,20 @@ fn run_match(
     }
 }
 
-/// The crash model with the parts chosen that the stamped part belongs to, and the ids of others that it fits
-/// about as well.
-fn found_crash(
+/// The parts of the crash model that the stamped part belongs to; all are matched together where none is found.
+fn found_parts(
     parts: PerRole<&LoadedPart>,
     asked: &Asked,
     monitor: &Monitor,
-) -> anyhow::Result<(LoadedPart, Vec<u64>)> {
-    let stamped = parts.stamped.path.display();
-    let Some(found) = find_parts(parts, &asked.recipe, &asked.current, monitor)? else {
+) -> anyhow::Result<Option<FoundParts>> {
+    let found = find_parts(parts, &asked.recipe, &asked.current, monitor)?;
+    if found.is_none() {
         log::warn!(
-            "{stamped} fits no part of the crash model alone, so all are matched together; --crash-part names \
-             the right one"
+            "{} fits no part of the crash model alone, so all are matched together; --crash-part names the right one",
+            parts.stamped.path.display()
         );
-        return Ok((parts.crash.clone(), Vec::new()));
-    };
-    Ok((found.found.part, found.rivals))
+    }
+    Ok(found)
 }
 
 fn load_both(

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Instant;
 
-use super::PipelineError;
 use super::error::unless_cancelled;
 use super::likeness::{Moments, Signature, moments_of_parts, more_alike};
 use super::load::{LoadedPart, prepare};
 use super::match_parts::{MatchRecipe, MatchRun, match_parts};
+use super::{PipelineError, millis_since};
 use crate::assess::Verdict;
 use crate::formats::Selection;
 use crate::geometry::chunks::for_chunks;
@@ -23,9 +24,12 @@ const MOST_TRIED: usize = 12;
 const LEAST_LIKENESS: f64 = 0.1;
 /// Parts about as alike as the one that was found may fit as well.
 const AS_ALIKE: f64 = 0.97;
-/// They do if their surfaces lie at most so many times as far apart, or farther by a distance that means nothing: of
-/// twins with other elements the facets lie farther off.
+/// They do if their surfaces lie at most so many times as far apart, or farther by a distance that means nothing.
 const AS_CLOSE: f64 = 1.25;
+/// Where the best leaves something to look at, others are tried too, but for those that are less alike than this, if
+/// the two cover each other by so much.
+const MUCH_LESS_ALIKE: f64 = 0.8;
+const WELL_COVERED: f64 = 0.8;
 /// Where a match leaves something to look at, each part must lie on the other with at least this share.
 const LEAST_SHARE: f64 = 0.3;
 /// A stamped part of which this share lies on no crash part may belong to several.
@@ -56,6 +60,8 @@ pub struct FoundParts {
     /// Ids of other parts that the stamped part fits about as well, or lies closer to: copies, or the other side of
     /// the car.
     pub rivals: Vec<u64>,
+    /// Time of the whole search in milliseconds.
+    pub took_ms: f64,
 }
 
 /// The parts of the crash model that the stamped part belongs to; `None` if no match says so.
@@ -71,6 +77,7 @@ pub fn find_parts(
     current: &Similarity,
     monitor: &Monitor,
 ) -> Result<Option<FoundParts>, PipelineError> {
+    let begin = Instant::now();
     let task = Task {
         parts,
         recipe,
@@ -95,7 +102,11 @@ pub fn find_parts(
     };
     let found = task.with_further_parts(found)?;
     let rivals = not_among(&found.part.chosen_part_ids(), rivals);
-    Ok(Some(FoundParts { found, rivals }))
+    Ok(Some(FoundParts {
+        found,
+        rivals,
+        took_ms: millis_since(begin),
+    }))
 }
 
 /// The units that the files seem to be in, where none of the chosen crash parts has the size of the stamped part
@@ -166,6 +177,8 @@ struct Fit {
     rmse: f64,
     /// Distances up to this mean nothing.
     unremarkable: f64,
+    /// How far the shapes differ, bends counted and facets not.
+    apart: f64,
     /// The stamped part is taken for one of the other hand.
     is_mirrored: bool,
 }
@@ -199,8 +212,21 @@ impl Fit {
         is_judged_alike && self.n_holes_apart <= best.n_holes_apart && self.is_as_close_as(best)
     }
 
+    /// Parts whose likeness is less than so many times that of this one need not be tried; `None` where any may be
+    /// right.
+    fn least_alike(&self) -> Option<f64> {
+        if self.is_one_shape {
+            Some(AS_ALIKE)
+        } else {
+            (self.covered >= WELL_COVERED).then_some(MUCH_LESS_ALIKE)
+        }
+    }
+
+    /// By distances, or by shapes: of a twin with larger elements the facets lie farther off.
     fn is_as_close_as(&self, other: &Self) -> bool {
-        self.rmse <= (AS_CLOSE * other.rmse).max(other.rmse + self.unremarkable)
+        let is_close =
+            |own: f64, other: f64| own <= (AS_CLOSE * other).max(other + self.unremarkable);
+        is_close(self.rmse, other.rmse) || is_close(self.apart, other.apart)
     }
 }
 
@@ -216,9 +242,10 @@ struct Search {
 impl Search {
     /// True if parts no more alike than this need not be tried.
     fn is_over(&self, likeness: f64) -> bool {
-        let best = self.best.as_ref();
-        let best = best.filter(|(_, found)| found.fit().is_one_shape);
-        best.is_some_and(|(of_best, _)| likeness < AS_ALIKE * of_best)
+        self.best.as_ref().is_some_and(|(of_best, found)| {
+            let least = found.fit().least_alike();
+            least.is_some_and(|least| likeness < least * of_best)
+        })
     }
 
     fn take(&mut self, likeness: f64, found: Found) {
@@ -263,6 +290,9 @@ impl Found {
             n_holes_apart: borders.map_or(0, |borders| borders.only_source + borders.only_target),
             rmse: assessment.coverage.rmse(),
             unremarkable: shape.map_or(0.0, |shape| shape.tolerance.unremarkable()),
+            apart: shape.map_or(f64::INFINITY, |shape| {
+                shape.springback.hypot(shape.remainder)
+            }),
             is_mirrored: self.run.crash_from_stamped.is_mirrored(),
         }
     }
@@ -484,6 +514,7 @@ mod tests {
             n_holes_apart,
             rmse,
             unremarkable: 0.1,
+            apart: rmse,
             is_mirrored: false,
         }
     }
@@ -505,6 +536,9 @@ mod tests {
         let [far, coarse] = [fit(Verdict::Good, 0, 0.6), fit(Verdict::Good, 0, 0.1)];
         assert!(coarse.is_as_good_as(&fit(Verdict::Good, 0, 0.01)));
         assert!(!far.is_as_good_as(&own));
+        // Its facets explain how far it lies.
+        let coarse_copy = Fit { apart: 0.45, ..far };
+        assert!(coarse_copy.is_as_good_as(&own));
         let bent = fit(Verdict::Check, 0, 0.4);
         assert!(without_holes.is_better_than(&bent) && !bent.is_as_good_as(&own));
         // The twin of the own part may be judged better, and is told then.
@@ -529,6 +563,18 @@ mod tests {
         // Of parts covered alike the verdict decides.
         let alike = with(Verdict::Good, 0.95, true);
         assert!(alike.is_better_than(&ambiguous));
+    }
+
+    #[test]
+    fn parts_much_less_alike_than_one_that_is_covered_are_not_tried() {
+        let good = fit(Verdict::Good, 0, 0.1);
+        let covered = fit(Verdict::Check, 0, 0.1);
+        let in_part = Fit {
+            covered: 0.5,
+            ..covered
+        };
+        let least = [good, covered, in_part].map(|fit| fit.least_alike());
+        assert_eq!(least, [Some(AS_ALIKE), Some(MUCH_LESS_ALIKE), None]);
     }
 
     #[test]

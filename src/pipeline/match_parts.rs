@@ -25,6 +25,10 @@ use crate::units::LengthUnit;
 /// Durations of the steps in milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct MatchTimes {
+    /// Matches on other crash parts while the one was looked for that the stamped part belongs to; 0 where it was
+    /// given.
+    #[serde(default)]
+    pub find_ms: f64,
     /// Reduction of both parts; 0 if nothing was reduced here.
     pub reduce_ms: f64,
     /// Trees and normals, and the first poses.

@@ -245,6 +245,8 @@ fn role_word<S: Serializer>(role: &Role, serializer: S) -> Result<S::Ok, S::Erro
 pub struct TimingsRecord {
     /// Reading both files and making meshes of them.
     pub read_ms: f64,
+    /// Matches on other crash parts, to find the one that the stamped part belongs to; 0 if it was given.
+    pub find_ms: f64,
     /// Reducing both meshes; 0 if nothing was reduced.
     pub reduce_ms: f64,
     /// Trees, normals and start poses.

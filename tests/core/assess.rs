@@ -222,7 +222,12 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
         surface(false),
         shape(ShapeReason::Bent { by: 5.0, limit }),
         shape(ShapeReason::Borders { by: 5.0, limit, at }),
-        shape(ShapeReason::Hole { by: 5.0, limit, at }),
+        shape(ShapeReason::Hole {
+            by: 5.0,
+            limit,
+            at,
+            is_mean: true,
+        }),
         shape(ShapeReason::Stretched {
             by: 5.0,
             share: -0.02,

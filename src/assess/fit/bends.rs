@@ -1,4 +1,4 @@
-//! What springback does to a sheet: smooth bends and a twist that keep lengths.
+//! What springback does to a sheet: smooth bends and a twist that keep lengths, and the camber of a slender part.
 
 use nalgebra::SVector;
 
@@ -7,10 +7,15 @@ use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
 use crate::registration::Surface;
 
 /// Number of bends.
-pub(in crate::assess) const N_BENDS: usize = 7;
+pub(in crate::assess) const N_BENDS: usize = 9;
+
+/// A part is slender if it is so many times as long as wide. Only such a part bends within its plane: the strain of
+/// its sides grows with its width, that of a wide part would be plastic.
+const SLENDER: f64 = 3.0;
 
 /// Deflections w(x, y) out of the part's plane of second and third order, with the displacements in the
-/// plane that keep lengths (Kirchhoff's plate): what springback does.
+/// plane that keep lengths (Kirchhoff's plate), and for a slender part deflections v(x) within the plane, under which
+/// its sections stay plane (Bernoulli's beam): what springback does.
 pub(in crate::assess) struct Bends {
     pub(in crate::assess) center: Point3,
     /// Principal axes of the source in the target's frame.
@@ -71,7 +76,7 @@ impl Bends {
         let arm = self.axes.transpose() * (point - self.center);
         let (x, y) = (arm.x / self.half[0], arm.y / self.half[1]);
         // Deflection, slope along x, slope along y.
-        let bends = [
+        let out_of_plane = [
             [x * x, 2.0 * x, 0.0],
             [x * y, y, x],
             [y * y, 0.0, 2.0 * y],
@@ -80,9 +85,38 @@ impl Bends {
             [x * y * y, y * y, 2.0 * x * y],
             [y * y * y, 0.0, 3.0 * y * y],
         ];
-        bends.map(|[deflection, along_x, along_y]| {
+        let within_plane = [[x * x, 2.0 * x], [x * x * x, 3.0 * x * x]];
+        let mut bends = [Vector3::zeros(); N_BENDS];
+        let (plates, beams) = bends.split_at_mut(out_of_plane.len());
+        for (bend, [deflection, along_x, along_y]) in plates.iter_mut().zip(out_of_plane) {
             let [in_x, in_y] = [along_x / self.half[0], along_y / self.half[1]];
-            Vector3::new(-arm.z * in_x, -arm.z * in_y, deflection)
-        })
+            *bend = Vector3::new(-arm.z * in_x, -arm.z * in_y, deflection);
+        }
+        if self.half[0] >= SLENDER * self.half[1] {
+            for (bend, [deflection, along_x]) in beams.iter_mut().zip(within_plane) {
+                *bend = Vector3::new(-arm.y * along_x / self.half[0], deflection, 0.0);
+            }
+        }
+        bends
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_slender_part_bends_within_its_plane() {
+        let within_plane = |width: f64| {
+            let bends = Bends {
+                center: Point3::origin(),
+                axes: Matrix3::identity(),
+                half: [400.0, width, 30.0],
+            };
+            let row = bends.row(&Point3::new(400.0, 0.0, 0.0), &Vector3::y());
+            [row[N_BENDS - 2], row[N_BENDS - 1]]
+        };
+        assert_eq!(within_plane(100.0), [1.0, 1.0]);
+        assert_eq!(within_plane(200.0), [0.0, 0.0]);
     }
 }

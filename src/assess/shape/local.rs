@@ -4,6 +4,7 @@
 use crate::assess::contact::Contact;
 use crate::assess::evidence::PoseEvidence;
 use crate::assess::fit::Fit;
+use crate::assess::shape::ShapeReason;
 use crate::assess::tolerance::{ShapeTolerance, is_source_smaller};
 use crate::geometry::{Point3, Vector3};
 use crate::registration::Surface;
@@ -21,24 +22,13 @@ const LEAST_OF_END: f64 = 0.5;
 /// sheet.
 const LEAST_WIDTH: f64 = 2.5;
 
-/// A group of places where the surfaces lie apart.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct LocalDifference {
-    /// The largest distance.
-    pub(super) by: f64,
-    /// What is accepted there.
-    pub(super) limit: f64,
-    /// Where the largest distance is, in the target's frame.
-    pub(super) at: Point3,
-    /// Whether the group is an end or a flange of the part.
-    pub(super) is_end: bool,
-}
-
 /// A place where the surfaces lie apart by more than the limit.
 struct Apart<'a> {
     contact: &'a Contact,
     /// What neither bends nor facets explain of the distance.
     left: f64,
+    /// The parts meet there; else neither meets anything near it.
+    meets: bool,
     /// Edge of the square that it stands for.
     size: f64,
 }
@@ -57,19 +47,31 @@ struct Group<'a, 'b> {
 }
 
 /// The largest group of neighbouring places at which what neither bends nor facets explain exceeds the tolerance to
-/// one side, at an end that of springback, and which elements cutting short does not explain either.
-/// O(k² + k · outlines) for k places beyond the limit, and O(nodes of the larger part) where a group is narrow.
+/// one side, at an end that of springback, and which elements cutting short does not explain either. A piece that lies
+/// too far from its counterpart to meet it counts too.
+/// O(nodes · log triangles + k² + k · outlines) for k places beyond the limit, and O(nodes of the larger part) where a
+/// group is narrow.
 pub(super) fn local_difference(
     evidence: &PoseEvidence<'_>,
     fit: &Fit,
     tolerance: &ShapeTolerance,
-) -> Option<LocalDifference> {
+) -> Option<ShapeReason> {
     let contacts = &evidence.contacts;
+    let displaced = evidence.displaced();
+    let left_there = displaced.iter().map(|place| fit.left_at(place, contacts));
     let places = contacts.list.iter().zip(fit.left.iter().copied());
-    let beyond = places.filter(|(_, left)| left.abs() > tolerance.remainder);
-    let beyond = beyond.map(|(contact, left)| Apart {
+    let places = places.map(|(contact, left)| (contact, left, true));
+    let places = places.chain(
+        displaced
+            .iter()
+            .zip(left_there)
+            .map(|(p, left)| (p, left, false)),
+    );
+    let beyond = places.filter(|(_, left, _)| left.abs() > tolerance.remainder);
+    let beyond = beyond.map(|(contact, left, meets)| Apart {
         contact,
         left,
+        meets,
         size: (contact.weight * contacts.nodes_per_place).sqrt(),
     });
     let beyond: Vec<Apart> = beyond.collect();
@@ -80,28 +82,30 @@ pub(super) fn local_difference(
     let groups = groups(&beyond).into_iter();
     let groups = groups.filter(|group| group.places.len() >= LEAST_PLACES);
     let found = groups.filter_map(|group| {
-        let worst = group
-            .places
-            .iter()
-            .max_by(|a, b| a.left.abs().total_cmp(&b.left.abs()))?;
         let is_end = group.is_end(&outlines);
-        let difference = LocalDifference {
+        let limit = if is_end {
+            tolerance.springback
+        } else {
+            tolerance.remainder
+        };
+        let worst = group.worst()?;
+        let reason = ShapeReason::Local {
             by: worst.left.abs(),
-            limit: if is_end {
-                tolerance.springback
-            } else {
-                tolerance.remainder
-            },
+            limit,
             at: worst.contact.point,
             is_end,
         };
-        (difference.by > difference.limit).then_some((group, difference))
+        (worst.left.abs() > limit).then_some((group, reason))
     });
     let narrow = LEAST_WIDTH * edge_measured_against(evidence);
-    let (mut found, slim): (Vec<_>, Vec<_>) = found.partition(|(group, _)| group.width() >= narrow);
+    let (mut found, slim): (Vec<_>, Vec<_>) =
+        found.partition(|(group, _)| group.is_displaced() || group.width() >= narrow);
     found.extend(seen_by_the_larger(evidence, fit, tolerance.remainder, slim));
-    let found = found.into_iter().map(|(_, difference)| difference);
-    found.max_by(|a, b| a.by.total_cmp(&b.by))
+    let largest = |group: &Group| group.worst().map_or(0.0, |worst| worst.left.abs());
+    let found = found
+        .into_iter()
+        .max_by(|a, b| largest(&a.0).total_cmp(&largest(&b.0)));
+    found.map(|(_, reason)| reason)
 }
 
 /// Mean edge of the larger part's mesh.
@@ -120,8 +124,8 @@ fn seen_by_the_larger<'a, 'b>(
     evidence: &PoseEvidence<'_>,
     fit: &Fit,
     limit: f64,
-    mut found: Vec<(Group<'a, 'b>, LocalDifference)>,
-) -> Vec<(Group<'a, 'b>, LocalDifference)> {
+    mut found: Vec<(Group<'a, 'b>, ShapeReason)>,
+) -> Vec<(Group<'a, 'b>, ShapeReason)> {
     if found.is_empty() {
         return found;
     }
@@ -157,6 +161,12 @@ impl<'a, 'b> Group<'a, 'b> {
         Self { places, low, high }
     }
 
+    /// The place where the surfaces lie farthest apart.
+    fn worst(&self) -> Option<&'a Apart<'b>> {
+        let places = self.places.iter().copied();
+        places.max_by(|a, b| a.left.abs().total_cmp(&b.left.abs()))
+    }
+
     /// Whether a point lies beside a place of the group that `is_asked` accepts.
     fn has_beside(&self, at: &Point3, is_asked: impl Fn(&Apart) -> bool) -> bool {
         *at >= self.low
@@ -179,6 +189,11 @@ impl<'a, 'b> Group<'a, 'b> {
             inward = inward.max(distance);
         }
         along > LEAST_OF_END * inward
+    }
+
+    /// Whether elements that cut edges short cannot explain it, because the parts do not even meet there.
+    fn is_displaced(&self) -> bool {
+        self.places.iter().filter(|place| !place.meets).count() >= LEAST_PLACES
     }
 
     /// Mean width of what the places stand for.

@@ -419,3 +419,113 @@ fn what_lies_beyond_the_borders_overhangs_and_what_lies_elsewhere_does_not() {
     assert!(shape.overhang.unwrap() < 0.02, "{shape:?}");
     assert_eq!(statement(&left, &left).overhang, None);
 }
+
+/// A wavy strip of 600 by 150 mm with holes of 24 mm whose borders are those of irregular elements, the holes and the
+/// ends moved along it by so many elements of 4 mm. Of each `seed` the nodes lie elsewhere.
+fn pierced(seed: f64, holes_by: f64, ends_by: f64) -> Surface {
+    let counts = [150, 38];
+    let at = |i: f64, j: f64| [4.0 * (i + ends_by) - 300.0, 4.0 * j - 76.0];
+    let is_hole = |[x, y]: [f64; 2]| {
+        let from_middle = |x: f64, pitch: f64| x - pitch * (x / pitch).round().clamp(-2.0, 2.0);
+        let along = from_middle(x - 4.0 * holes_by, 110.0);
+        along.hypot(from_middle(y, 30.0)) < 12.0 && y.abs() < 45.0
+    };
+    let (m, mut triangles) = (counts[1] + 1, Vec::new());
+    for (i, j) in (0..counts[0]).flat_map(|i| (0..counts[1]).map(move |j| (i, j))) {
+        let a = (i * m + j) as u32;
+        let up = a + m as u32;
+        if !is_hole(at(i as f64 + 0.5, j as f64 + 0.5)) {
+            triangles.extend([[a, up, up + 1], [a, up + 1, a + 1]]);
+        }
+    }
+    let corners = (0..=counts[0]).flat_map(|i| (0..m).map(move |j| [i as f64, j as f64]));
+    let points = corners.map(|[i, j]| {
+        let random = |axis: f64| {
+            let mixed = (i * 12.9898 + j * 78.233 + axis + seed).sin() * 43_758.547;
+            0.7 * (mixed - mixed.floor() - 0.5)
+        };
+        let [x, y] = at(i + random(0.0), j + random(1.0));
+        Point3::new(x, y, 15.0 * (y / 25.0).cos())
+    });
+    let mesh = TriMesh::new(points.collect(), triangles).unwrap();
+    Surface::new(&mesh, "source").unwrap()
+}
+
+#[test]
+fn holes_that_all_lie_aside_one_way_are_told_however_ragged_their_borders_are() {
+    let plain = pierced(0.0, 0.0, 0.0);
+    let same = statement(&pierced(7.0, 0.0, 0.0), &plain);
+    assert!(same.reasons.is_empty(), "{same:?}");
+    let shape = statement(&pierced(7.0, 1.0, 0.0), &plain);
+    // Each of them by itself may lie as far aside.
+    let [
+        ShapeReason::Hole {
+            by,
+            limit,
+            is_mean: true,
+            ..
+        },
+    ] = shape.reasons[..]
+    else {
+        panic!("{shape:?}");
+    };
+    assert!(by > 2.0 && by < 5.0 && limit < 2.0, "{shape:?}");
+}
+
+#[test]
+fn an_outline_that_lies_aside_of_the_holes_is_told() {
+    let plain = pierced(0.0, 0.0, 0.0);
+    // Both ends, and the sides as they are.
+    let shape = statement(&pierced(7.0, 0.0, 2.0), &plain);
+    let is_of_borders = |reason: &ShapeReason| matches!(reason, ShapeReason::Borders { .. });
+    assert!(shape.reasons.iter().any(is_of_borders), "{shape:?}");
+    assert_eq!(shape.borders.other_trim, None);
+    // One end that was cut farther in is another trim.
+    let trimmed = pierced(7.0, 0.0, 0.0);
+    let mesh = trimmed.mesh();
+    let points = mesh.positions();
+    let is_left = |corners: &&[u32; 3]| corners.iter().all(|&v| points[v as usize].x > -288.0);
+    let triangles = mesh.triangles().iter().filter(is_left).copied().collect();
+    let trimmed = TriMesh::new(points.to_vec(), triangles).unwrap();
+    let shape = statement(&Surface::new(&trimmed, "source").unwrap(), &plain);
+    assert!(shape.reasons.is_empty(), "{shape:?}");
+}
+
+#[test]
+fn the_camber_of_a_slender_part_is_springback() {
+    // Deflection within the plane, under which sections stay plane.
+    let cambered = |p: Point3| {
+        let x = p.x / 200.0;
+        let turn = 4.0 * x / 200.0;
+        Point3::new(p.x - p.y * turn, p.y + 2.0 * (x * x - 0.3), p.z)
+    };
+    let plain = hat(40, |p| p);
+    let shape = statement(&hat(37, cambered), &plain);
+    assert_eq!(shape.kind, ShapeKind::Deformed, "{shape:?}");
+    assert!(shape.remainder < 0.1, "{shape:?}");
+}
+
+#[test]
+fn a_flange_too_far_from_its_counterpart_to_meet_it_is_told() {
+    // A step of 80 mm length with a flange of 20 mm at this height.
+    let step = |n: usize, height: f64| {
+        let profile = |along: f64| match along {
+            x if x < 60.0 => (x, 0.0),
+            x if x < 80.0 => (60.0, (x - 60.0) / 20.0 * height),
+            x => (x - 20.0, height),
+        };
+        grid([n, n], |i, j| {
+            let (x, z) = profile(100.0 * j as f64 / n as f64);
+            Point3::new(x, 80.0 * i as f64 / n as f64, z)
+        })
+    };
+    let plain = step(40, 20.0);
+    let same = statement(&step(50, 20.0), &plain);
+    assert!(same.reasons.is_empty(), "{same:?}");
+    for height in [12.0, 28.0] {
+        let shape = statement(&step(50, height), &plain);
+        let is_told =
+            |reason: &ShapeReason| matches!(reason, ShapeReason::Local { by, .. } if *by > 7.0);
+        assert!(shape.reasons.iter().any(is_told), "{height}: {shape:?}");
+    }
+}

@@ -181,6 +181,12 @@ fn of_elements(run: &MapRun) -> Vec<String> {
                 .to_owned(),
         );
     }
+    if count(Status::Far) > 0 {
+        warnings.push(format!(
+            "the stamped part lies over {} farther than the largest distance; --max-distance sets it",
+            counted(count(Status::Far), "element")
+        ));
+    }
     if mapped.n_distant > 0 {
         warnings.push(format!(
             "{} farther from the stamped part than half the largest distance",

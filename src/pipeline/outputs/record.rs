@@ -36,6 +36,7 @@ pub fn match_record(run: &MatchRun, parts: PerRole<&LoadedPart>) -> MatchRecord 
         files: PerRole::from_fn(|role| file(parts.get(role), *units.files.get(role))),
         timings: TimingsRecord {
             read_ms: read,
+            find_ms: run.times.find_ms,
             reduce_ms: run.times.reduce_ms,
             align_ms: run.times.align_ms,
             match_ms: run.times.match_ms,

@@ -169,6 +169,7 @@ impl Report<'_> {
         let t = &self.record.timings;
         let steps = [
             ("Read", t.read_ms),
+            ("Find parts", t.find_ms),
             ("Reduce", t.reduce_ms),
             ("Align", t.align_ms),
             ("Match", t.match_ms),
@@ -179,6 +180,7 @@ impl Report<'_> {
         let longest = steps.iter().map(|(_, ms)| *ms).fold(1e-9, f64::max);
         let rows: Vec<Vec<Markup>> = steps
             .iter()
+            .filter(|(_, ms)| *ms > 0.0)
             .map(|(name, ms)| {
                 let width = (120.0 * ms / longest).round();
                 let bar = html! { span.meter style={ "width:" (width) "px" } {} };

@@ -1,0 +1,88 @@
+//! Do outlines and holes say the same of where a part belongs? The holes of one version may all lie farther along than
+//! those of another, and where the surfaces leave the part free to slide, the pose follows them.
+
+use nalgebra::Matrix3;
+
+use super::borders::{BorderPair, Borders, PairKind};
+use super::contact::solve;
+use super::fit::Fit;
+use super::trims::BorderApart;
+use crate::geometry::{Point3, Vector3};
+
+/// A shift of the outline must explain this share of how far it lies apart, or it was trimmed elsewhere.
+const EXPLAINED: f64 = 0.75;
+/// Of the border across the shift at least this share faces each way: a single end may be trimmed elsewhere.
+const EACH_WAY: f64 = 0.25;
+/// Cosine of the largest angle between a shift and the directions across borders that it moves apart.
+const ACROSS: f64 = 0.5;
+/// Fewer holes may have been pierced elsewhere.
+const LEAST_HOLES: usize = 3;
+
+/// How far the outline lies aside of the holes, if by more than `limit`; `None` where no shift explains how it lies.
+/// `fit` is that of the borders. O(places).
+pub(super) fn outline_aside_of_holes(
+    borders: &Borders,
+    fit: &Fit,
+    limit: f64,
+) -> Option<BorderApart> {
+    if fit.holes.len() < LEAST_HOLES {
+        return None;
+    }
+    let outline = Outline::of(borders, fit);
+    let shift = outline.shift();
+    let of_holes = fit.holes.iter().map(|hole| hole.off).sum::<Vector3>();
+    let of_holes = of_holes / fit.holes.len() as f64;
+    let along = shift.try_normalize(0.5 * limit)?;
+    let by = (shift - of_holes).dot(&along);
+    if by <= limit || !outline.explained_by(&shift) {
+        return None;
+    }
+    let at = outline.place_across(&along)?;
+    Some(BorderApart { by, at })
+}
+
+/// The places along the outlines of both parts, each with what is left of the distance across it.
+struct Outline<'a>(Vec<(&'a BorderPair, f64)>);
+
+impl<'a> Outline<'a> {
+    fn of(borders: &'a Borders, fit: &Fit) -> Self {
+        let places = borders.pairs().iter().zip(fit.borders.iter().copied());
+        let of_outlines = places.filter(|(pair, _)| pair.kind == PairKind::Outlines);
+        Self(of_outlines.collect())
+    }
+
+    /// The shift that brings both outlines closest together, in least squares.
+    fn shift(&self) -> Vector3 {
+        let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
+        for (pair, left) in &self.0 {
+            matrix.ger(pair.weight, &pair.across, &pair.across, 1.0);
+            right += pair.across * (pair.weight * left);
+        }
+        solve(&matrix, &right)
+    }
+
+    /// Whether the shift leaves little of how far the outlines lie apart.
+    fn explained_by(&self, shift: &Vector3) -> bool {
+        let (mut before, mut after) = (0.0, 0.0);
+        for (pair, left) in &self.0 {
+            before += pair.weight * left.powi(2);
+            after += pair.weight * (left - pair.across.dot(shift)).powi(2);
+        }
+        after < (1.0 - EXPLAINED) * before
+    }
+
+    /// A place that a shift along this direction moves apart most; `None` where most of them face one way.
+    fn place_across(&self, along: &Vector3) -> Option<Point3> {
+        let cosines = self
+            .0
+            .iter()
+            .map(|(pair, _)| (pair, pair.across.dot(along)));
+        let across: Vec<_> = cosines.filter(|(_, cos)| cos.abs() > ACROSS).collect();
+        let total: f64 = across.iter().map(|(pair, _)| pair.weight).sum();
+        let forth = across.iter().filter(|(_, cos)| *cos > 0.0);
+        let forth: f64 = forth.map(|(pair, _)| pair.weight).sum();
+        let is_both_ways = forth.min(total - forth) >= EACH_WAY * total;
+        let most = across.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        is_both_ways.then_some(most.0.point)
+    }
+}

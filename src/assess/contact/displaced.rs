@@ -1,0 +1,53 @@
+//! Pieces of both parts that lie over each other and too far apart to be compared: a flange or a hem that is not where
+//! it belongs.
+
+use rayon::prelude::*;
+
+use super::{Contact, ContactSearch, MIN_FACING, Sides, is_beside};
+use crate::geometry::Similarity;
+use crate::search::ClosestPoint;
+
+/// Such a piece is looked for up to so many times the distance within which parts meet.
+const FARTHEST: f64 = 4.0;
+
+impl ContactSearch<'_> {
+    /// The nodes of the smaller part that meet nothing and lie over a place of the larger one that meets nothing
+    /// either, as where they met. What was trimmed lies beside the other part, and what lies over a sheet that meets
+    /// another place is one more layer. O(nodes · log triangles).
+    pub(in crate::assess) fn displaced(&self, pose: &Similarity) -> Vec<Contact> {
+        let sides = Sides::new([self.source, self.target], pose, self.of_source);
+        let n_nodes = sides.data.mesh().positions().len();
+        let nodes = (0..n_nodes).into_par_iter().step_by(self.stride);
+        let displaced = nodes.filter_map(|vertex| {
+            let meets = sides.contact(vertex, self.reach, None, &mut None);
+            if meets.is_some() {
+                return None;
+            }
+            let mut closest = None;
+            let far = sides.contact(vertex, FARTHEST * self.reach, None, &mut closest)?;
+            (!sides.is_met_beneath(vertex, self.reach)).then_some(far)
+        });
+        displaced.collect()
+    }
+}
+
+impl Sides<'_> {
+    /// Whether the place of the model closest to a node has a counterpart on the other part within `reach`.
+    fn is_met_beneath(&self, vertex: usize, reach: f64) -> bool {
+        let Self { data, model, .. } = self;
+        let moved = self.model_from_data.apply(&data.mesh().positions()[vertex]);
+        let Some(beneath) = model.bvh().closest(&moved, f64::INFINITY, None, None) else {
+            return false;
+        };
+        let data_from_model = self.model_from_data.inverse();
+        let at = data_from_model.apply(&beneath.point);
+        let reach = reach / self.unit * data_from_model.scale;
+        data.bvh()
+            .closest(&at, reach, None, None)
+            .is_some_and(|hit| {
+                let normal = data_from_model.rotate(&model.normal_at(&beneath));
+                let is_facing = normal.dot(&data.normal_at(&hit)).abs() >= MIN_FACING;
+                is_facing && !(data.is_on_border(&hit) && is_beside(data, &hit, &at))
+            })
+    }
+}
