@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
+use std::io::ErrorKind::NotFound;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
@@ -13,7 +14,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use super::PipelineError;
 use super::outputs::{Content, Target, overwritten_inputs};
-use super::project::{EXTENSION, Project};
+use super::project::{EXTENSION, Project, ProjectError};
 
 /// Runs whose sessions are kept.
 const MAX_RUNS: usize = 5;
@@ -272,20 +273,35 @@ impl Session {
         }
     }
 
-    /// Refuses to write over what another program saved since this one opened or saved the project.
+    /// Refuses to write over what another program saved since this one opened or saved the project, and over
+    /// what cannot be read, which may be work all the same.
     fn may_replace(&self, path: &Path, replaces: Option<u64>) -> Result<(), String> {
         let Some(opened) = replaces else {
             return Ok(());
         };
-        // What cannot be read holds no work.
-        let Ok((present, _)) = Project::read(path) else {
-            return Ok(());
-        };
-        let own = self.saved.get(path).copied();
-        if present.saved_at == opened || Some(present.saved_at) == own {
+        if std::fs::metadata(path)
+            .map_or_else(|error| error.kind() == NotFound, |file| file.len() == 0)
+        {
             return Ok(());
         }
         let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let present = match Project::read(path) {
+            Ok((present, _)) => present.saved_at,
+            Err(ProjectError::Newer { .. }) => {
+                return Err(format!(
+                    "a newer version of shapematch has saved {name} since it was opened here"
+                ));
+            }
+            Err(_) => {
+                return Err(format!(
+                    "{name} has changed since it was opened here and cannot be read as a project"
+                ));
+            }
+        };
+        let own = self.saved.get(path).copied();
+        if present == opened || Some(present) == own {
+            return Ok(());
+        }
         Err(format!(
             "another window has saved {name} since it was opened here"
         ))

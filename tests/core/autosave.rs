@@ -164,6 +164,42 @@ fn a_project_that_another_window_saved_is_not_written_over() {
     assert!(matches!(event, Some(AutosaveEvent::Saved(..))), "{event:?}");
 }
 
+/// What a later version saved may hold work, and so may a file that something has damaged.
+#[test]
+fn a_project_that_cannot_be_read_is_written_over_only_where_the_dialog_has_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("work.shapematch");
+    let window = run(&folder.path().join("kept"), "1");
+    let save = |replaces| {
+        window.save(path.clone(), replaces, project("/one.k"), 7);
+        window.wait_for_event(LONG)
+    };
+    let event = save(Some(1000));
+    assert!(matches!(event, Some(AutosaveEvent::Saved(..))), "{event:?}");
+    let whole = std::fs::read_to_string(&path).unwrap();
+    let (schema, later) = ("shapematch.project/", "shapematch.project/9");
+    assert!(whole.contains(schema), "{whole}");
+    for (text, says) in [
+        (whole.replace(schema, later), "a newer version"),
+        (whole[..whole.len() / 2].to_owned(), "cannot be read"),
+        ("*KEYWORD\n*END\n".to_owned(), "cannot be read"),
+    ] {
+        std::fs::write(&path, &text).unwrap();
+        let event = save(Some(1000));
+        assert!(
+            matches!(&event, Some(AutosaveEvent::SaveFailed(reason)) if reason.contains(says)),
+            "{event:?}"
+        );
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+        let event = save(None);
+        assert!(matches!(event, Some(AutosaveEvent::Saved(..))), "{event:?}");
+    }
+    // An empty file holds nothing.
+    std::fs::write(&path, "").unwrap();
+    let event = save(Some(1000));
+    assert!(matches!(event, Some(AutosaveEvent::Saved(..))), "{event:?}");
+}
+
 #[test]
 fn preferences_come_back_and_rubbish_is_as_none() {
     let folder = tempfile::tempdir().unwrap();
