@@ -5,6 +5,7 @@
 
 mod background;
 pub mod dialogs;
+mod file_uri;
 mod focus;
 pub mod gizmo;
 mod help;

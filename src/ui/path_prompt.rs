@@ -1,10 +1,12 @@
-//! A field for paths: the proposal is selected, Tab completes, `~` is the user's own folder.
+//! A field for paths: the proposal is selected, Tab completes, `~` is the user's own folder, `file:` addresses are
+//! taken.
 
 use std::path::{MAIN_SEPARATOR, PathBuf};
 
 use egui::text::{CCursor, CCursorRange};
 use egui::{Key, Modifiers, ScrollArea, TextEdit, Ui};
 
+use super::file_uri;
 use super::widgets::text_border;
 use crate::text::without_error_number;
 
@@ -91,6 +93,9 @@ pub(super) struct Completion {
 impl Completion {
     /// Reads the folder of a typed path; not for the thread that draws.
     pub fn of(typed: &str) -> Self {
+        // A pasted address goes on as the path that it means.
+        let meant = file_uri::path_of(typed).map(|path| path.display().to_string());
+        let typed = meant.as_deref().unwrap_or(typed);
         let (folder, _) = split(typed);
         let folder = if folder.is_empty() { "." } else { folder };
         let entries = std::fs::read_dir(expanded(folder)).into_iter().flatten();
@@ -148,8 +153,12 @@ fn split(typed: &str) -> (&str, &str) {
     typed.split_at(at)
 }
 
-/// A typed path, `~` at its beginning standing for the user's own folder.
+/// A typed path, `~` at its beginning standing for the user's own folder; or the path of a pasted `file:`
+/// address.
 pub(super) fn expanded(typed: &str) -> PathBuf {
+    if let Some(path) = file_uri::path_of(typed) {
+        return path;
+    }
     let rest = match typed {
         "~" => Some(""),
         _ => typed.strip_prefix("~/"),
@@ -207,6 +216,12 @@ mod tests {
             found.text,
             folder.path().join("part.k").display().to_string()
         );
+        // So is one that was pasted as an address.
+        let pasted = format!("file://localhost{}", typed.replace('p', "%70"));
+        if cfg!(unix) {
+            assert_eq!(Completion::of(&pasted), found);
+            assert_eq!(expanded(&pasted), PathBuf::from(&typed));
+        }
         assert_eq!(expanded("/~/a"), PathBuf::from("/~/a"));
         if let Some(home) = directories::BaseDirs::new() {
             assert_eq!(expanded("~/a/b.k"), home.home_dir().join("a/b.k"));
