@@ -21,6 +21,8 @@ trap cleanup EXIT
 # A home of its own: no settings of before, none left behind.
 export HOME=$folder XDG_CONFIG_HOME=$folder/config XDG_DATA_HOME=$folder/data
 export XDG_RUNTIME_DIR=$folder/run WGPU_BACKEND=${WGPU_BACKEND:-vulkan} RUST_BACKTRACE=0
+# The window tells when no work runs and its pictures are exact.
+export RUST_LOG=warn,shapematch=debug
 mkdir -m 700 "$XDG_RUNTIME_DIR"
 
 # The server picks a free display and tells its number.
@@ -39,7 +41,7 @@ open_window() {
         kill "$program" 2>/dev/null || true
         wait "$program" 2>/dev/null || true
     fi
-    "$SHAPEMATCH" "$@" >>"$folder/log" 2>&1 &
+    "$SHAPEMATCH" "$@" >"$folder/log" 2>&1 &
     program=$!
     pids+=("$program")
     window=$(timeout 60 xdotool search --sync --onlyvisible --pid "$program" | tail -n 1)
@@ -52,20 +54,24 @@ prefer() {
 }
 
 shot() { scrot -o "$1"; }
-# settle: waits until the picture stands still; an idle window draws nothing.
+is_at_rest() { [ "$(grep -ao 'at rest$\|at work$' "$folder/log" | tail -n 1)" = "at rest" ]; }
+# settle: waits until the work is done, the pictures are exact, and nothing moves.
 settle() {
-    local i
-    for i in $(seq 60); do
-        shot "$folder/a.png"
-        sleep 0.7
-        shot "$folder/b.png"
-        cmp -s "$folder/a.png" "$folder/b.png" && return 0
+    local end=$((SECONDS + 600))
+    while [ "$SECONDS" -lt "$end" ]; do
+        if is_at_rest; then
+            shot "$folder/a.png"
+            sleep 0.7
+            shot "$folder/b.png"
+            is_at_rest && cmp -s "$folder/a.png" "$folder/b.png" && return 0
+        fi
+        sleep 0.2
     done
     say "The window does not come to rest."
     exit 1
 }
-# await_rest N: the same for work that shows no motion for up to N seconds.
-await_rest() { sleep "$1"; settle; }
+# await_rest: the same after work was asked for, which the window has to take up first.
+await_rest() { sleep 2; settle; }
 keep() { settle; cp "$folder/b.png" "screenshots/$1.png"; say "screenshots/$1.png"; }
 click() { xdotool mousemove "$1" "$2"; sleep 0.2; xdotool click 1; sleep 0.3; }
 press() { xdotool key "$@"; sleep 0.3; }
@@ -81,9 +87,9 @@ drag() {
 }
 # matched: reads the files and matches.
 matched() {
-    await_rest 2
+    await_rest
     press ctrl+Return
-    await_rest 2
+    await_rest
 }
 # Where nothing reacts to the pointer.
 rest() { xdotool mousemove 700 12; }
@@ -124,7 +130,7 @@ sleep 0.3
 shot screenshots/live.png
 kill -CONT "$program"
 say "screenshots/live.png"
-await_rest 3
+await_rest
 rest
 keep matched-reduced
 press e
@@ -148,7 +154,7 @@ keep starts
 click 653 530 # Sweep
 settle
 click 400 558 # Run the sweep
-await_rest 15
+await_rest
 rest
 keep sweep
 
@@ -157,7 +163,7 @@ prefer '{"theme":"Dark","is_mouse_asked":true}'
 open_window 1400 900 --example
 matched
 press ctrl+m
-await_rest 3
+await_rest
 press shift+c
 click 560 300 # an element, which is probed
 rest
@@ -215,10 +221,10 @@ wave "$folder/large_crash.k" 1000 500 2
 wave "$folder/large_stamped.k" 710 355 2.816
 prefer '{"theme":"Dark","is_mouse_asked":true}'
 open_window 1400 900 "$folder/large_crash.k" "$folder/large_stamped.k"
-await_rest 12
+await_rest
 press ctrl+Return
-await_rest 15
+await_rest
 press m
-await_rest 3
+await_rest
 rest
 keep large

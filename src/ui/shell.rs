@@ -112,6 +112,9 @@ pub struct Shell {
     was_covered: bool,
     /// Where the pointer rests that is away for a frame.
     resting: Option<egui::Pos2>,
+    /// A picture of the frame before was not exact.
+    is_unfinished: bool,
+    is_at_rest: bool,
 }
 
 impl Shell {
@@ -157,6 +160,8 @@ impl Shell {
             keyboard: Keyboard::default(),
             was_covered: false,
             resting: None,
+            is_unfinished: false,
+            is_at_rest: false,
         };
         shell.apply_settings(&cc.egui_ctx);
         shell.autosave.list();
@@ -172,6 +177,20 @@ impl Shell {
     /// True while the worker has nothing to do.
     pub fn is_idle(&self) -> bool {
         self.worker.is_idle()
+    }
+
+    /// True if, as of the last frame, no work runs or waits and what the 3D windows show is exact. Changes are told
+    /// in the program's log at the level `debug`, for scripts that take pictures.
+    pub fn is_at_rest(&self) -> bool {
+        self.is_at_rest
+    }
+
+    fn update_rest(&mut self) {
+        let is_waiting = self.is_unfinished || self.viewports.is_waiting();
+        let is_at_rest = !is_waiting && self.is_idle() && !self.state.jobs.is_busy();
+        if std::mem::replace(&mut self.is_at_rest, is_at_rest) != is_at_rest {
+            log::debug!("{}", if is_at_rest { "at rest" } else { "at work" });
+        }
     }
 
     /// A picture of what the 3D windows show, in their size and without what lies over them. `None`
@@ -448,6 +467,7 @@ fn clock() -> Clock {
 impl eframe::App for Shell {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         focus::follow(ctx);
+        self.is_unfinished = self.viewports.take_unfinished();
         self.state.tick(self.begin.elapsed());
         // Read in this order and applied in the other, no news of a job that ended is lost.
         let events: Vec<JobEvent> = self.worker.events().collect();
@@ -503,6 +523,7 @@ impl eframe::App for Shell {
             self.run_commands(commands, &ctx);
             ctx.request_repaint();
         }
+        self.update_rest();
         if let Some(expiry) = self.state.log.notices.next_expiry() {
             ctx.request_repaint_after(expiry.saturating_sub(self.state.log.now));
         }

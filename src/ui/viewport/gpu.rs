@@ -1,7 +1,7 @@
 //! Between egui and the renderer: draws a viewport's picture before egui's pass and lays it into it.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use eframe::egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
@@ -15,6 +15,8 @@ use crate::role::{PerRole, Role};
 pub(super) struct Gpu {
     pub renderer: Renderer,
     targets: PerRole<ViewTarget>,
+    /// Whose picture was not exact when it was drawn last.
+    are_partly: PerRole<bool>,
 }
 
 /// True if the driver draws with the processor.
@@ -35,6 +37,7 @@ impl Gpu {
         let gpu = Self {
             renderer: Renderer::new(&state.device, &state.queue, state.target_format),
             targets: PerRole::from_fn(target),
+            are_partly: PerRole::default(),
         };
         state.renderer.write().callback_resources.insert(gpu);
     }
@@ -72,6 +75,21 @@ impl Drop for Stopwatch {
     }
 }
 
+/// Set when a picture of a frame is coarse, of before, or not yet whole.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Unfinished(Arc<AtomicBool>);
+
+impl Unfinished {
+    fn set(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether it was set since the last call.
+    pub fn take(&self) -> bool {
+        self.0.swap(false, Ordering::Relaxed)
+    }
+}
+
 /// One viewport's picture in one frame. The renderer itself notices if nothing has changed.
 pub(super) struct ViewCallback {
     pub role: Role,
@@ -79,6 +97,7 @@ pub(super) struct ViewCallback {
     pub camera: Camera,
     pub rect: egui::Rect,
     pub watch: Stopwatch,
+    pub unfinished: Unfinished,
     /// To be asked for the next step of a picture that takes several.
     pub ctx: egui::Context,
 }
@@ -100,7 +119,7 @@ impl CallbackTrait for ViewCallback {
         encoder: &mut wgpu::CommandEncoder,
         resources: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
-        let Some(Gpu { renderer, targets }) = resources.get_mut::<Gpu>() else {
+        let Some(gpu) = resources.get_mut::<Gpu>() else {
             return Vec::new();
         };
         // The very rounding of egui, so that one texel is one pixel.
@@ -115,11 +134,19 @@ impl CallbackTrait for ViewCallback {
             camera: &self.camera,
             size,
         };
-        let target = targets.get_mut(self.role);
+        let target = gpu.targets.get_mut(self.role);
         target.adapt(self.watch.last());
-        let drawn = renderer.draw_step(target, encoder, &frame);
-        if let Drawn::Partly(next) = drawn {
-            self.ctx.request_repaint_after(next);
+        let drawn = gpu.renderer.draw_step(target, encoder, &frame);
+        let is_partly = matches!(drawn, Drawn::Partly(_));
+        let was_partly = std::mem::replace(gpu.are_partly.get_mut(self.role), is_partly);
+        match drawn {
+            Drawn::Partly(next) => {
+                self.unfinished.set();
+                self.ctx.request_repaint_after(next);
+            }
+            // The window learns of it in its next frame.
+            Drawn::Exact if was_partly => self.ctx.request_repaint(),
+            Drawn::Exact => {}
         }
         Vec::new()
     }

@@ -34,7 +34,7 @@ use crate::role::{PerRole, Role};
 use crate::ui::theme::Look;
 use fields::{FieldKind, FieldStore};
 use frame::{FrameContext, ViewFrame};
-use gpu::{Gpu, Stopwatch, Took, ViewCallback};
+use gpu::{Gpu, Stopwatch, Took, Unfinished, ViewCallback};
 use meshes::{MeshStore, ShownMesh};
 use motion::{Crossing, SmoothPose};
 pub use overlay::free_choice;
@@ -55,6 +55,7 @@ pub struct Viewports {
     windows: PerRole<Window>,
     /// How long the last frame took.
     took: Took,
+    unfinished: Unfinished,
 }
 
 impl Viewports {
@@ -73,6 +74,7 @@ impl Viewports {
             pose: SmoothPose::default(),
             windows: PerRole::default(),
             took: Took::default(),
+            unfinished: Unfinished::default(),
         }
     }
 
@@ -153,6 +155,12 @@ impl Viewports {
     /// pictures that must not be taken too early.
     pub fn is_waiting(&self) -> bool {
         self.meshes.is_waiting() || self.fields.is_waiting() || self.sections.is_waiting()
+    }
+
+    /// True if a picture that was drawn since the last call is not the exact one, of which large parts have
+    /// slices drawn in several frames.
+    pub fn take_unfinished(&self) -> bool {
+        self.unfinished.take()
     }
 
     /// Cameras and poses as they are shown in this frame.
@@ -308,6 +316,7 @@ impl Viewports {
             camera: frame.view.camera,
             rect,
             watch: Stopwatch::start(&self.took),
+            unfinished: self.unfinished.clone(),
             ctx: ui.ctx().clone(),
         };
         let size = rect.size() * ui.pixels_per_point();
