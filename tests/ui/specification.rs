@@ -18,7 +18,7 @@ use shapematch::role::Role;
 use shapematch::samples::{self, SamplePart, SampleSettings};
 use shapematch::ui::Shell;
 
-use super::layout::texts;
+use super::layout::{dismiss_toasts, texts};
 use super::story::{click, finish, window};
 
 type Window = Harness<'static, Shell>;
@@ -220,19 +220,52 @@ fn a_dropped_file_that_cannot_be_read_says_so_and_replaces_nothing() {
 }
 
 #[test]
-fn what_is_dropped_during_a_match_is_answered() {
-    let (_folder, [crash, stamped], mut window) = both_dropped();
-    click(&mut window, "Match the parts");
-    assert!(window.state().state().jobs.locking_job().is_some());
+fn what_is_dropped_during_a_match_is_answered_and_nothing_is_lost() {
+    let (folder, [crash, stamped], mut window) = both_dropped();
+    let project = folder.path().join("work.shapematch");
+    let saved = window.state().state().to_project(0);
+    saved.write(&project).unwrap();
     point_at(&mut window, 600.0, 300.0);
-    drop_files(&mut window, &[&stamped]);
-    let is_told = {
-        let mut toasts = window.state().state().log.notices.toasts();
-        toasts.any(|toast| toast.text == "Not opened. A match is running. Stop it first.")
-    };
-    assert!(is_told);
+    let cases: [&[&PathBuf]; 3] = [&[&stamped], &[&stamped, &crash], &[&project]];
+    for dropped in cases {
+        let before = window.state().state().document.revisions();
+        click(&mut window, "Match the parts");
+        assert!(window.state().state().jobs.locking_job().is_some());
+        drop_files(&mut window, dropped);
+        let is_told = {
+            let mut toasts = window.state().state().log.notices.toasts();
+            toasts.any(|toast| toast.text == "Not opened. A match is running. Stop it first.")
+        };
+        assert!(is_told, "{dropped:?}");
+        finish(&mut window);
+        let state = window.state().state();
+        assert!(state.document.current_result().is_some(), "{dropped:?}");
+        assert_eq!(state.document.revisions(), before, "{dropped:?}");
+        assert_eq!(state.project_path(), None, "{dropped:?}");
+        dismiss_toasts(&mut window);
+    }
+    for (role, file) in [(Role::Crash, crash), (Role::Stamped, stamped)] {
+        assert_eq!(part_of(&window, role), Some(PartSource::File(file)));
+    }
+}
+
+/// One that is dropped on section 4 waits until the match is done, and is then matched itself.
+#[test]
+fn a_further_file_that_is_dropped_during_a_match_is_added_after_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut window, [_, second, _]) = with_section_4(folder.path());
+    set_pose(&mut window);
+    let run = Action::MatchOrStop.command(window.state().state());
+    act(&mut window, run.into_iter().collect());
+    assert!(window.state().state().jobs.locking_job().is_some());
+    point_at_map(&mut window);
+    drop_files(&mut window, &[&second]);
     finish(&mut window);
-    assert_eq!(part_of(&window, Role::Crash), Some(PartSource::File(crash)));
+    assert!(window.state().state().document.current_result().is_some());
+    assert_eq!(stamped_names(&window), ["stamped.dynain", "second.dynain"]);
+    let further = &window.state().state().document.mapping.further;
+    let placing = further[0].placing.as_ref().expect("it has a pose");
+    assert!(placing.crash_from_stamped != Similarity::identity());
 }
 
 fn stamped_names(window: &Window) -> Vec<String> {
