@@ -187,12 +187,12 @@ fn serve<K: Clone + PartialEq, T: Send>(shared: &Shared<K, T>, wake: &egui::Cont
     }
 }
 
-/// Threads that no job keeps busy: the picture of one file does not wait until the next one is read. `None`
-/// if the system has no threads left.
+/// Threads that no job keeps busy, behind the window as jobs are: the picture of one file does not wait until the
+/// next one is read. `None` if the system has no threads left.
 fn own_threads() -> Option<rayon::ThreadPool> {
     let n_cores = std::thread::available_parallelism().map_or(1, usize::from);
     let builder = rayon::ThreadPoolBuilder::new().num_threads(n_cores.div_ceil(2).min(8));
-    builder.build().ok()
+    builder.start_handler(|_| step_back()).build().ok()
 }
 
 /// Waits for a task; `None` when the window is gone.
@@ -245,6 +245,15 @@ mod tests {
         });
         assert_eq!(behind.unwrap().join().unwrap(), (before + STEP).min(19));
         assert_eq!(own(), before);
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn what_the_window_asks_for_is_made_behind_it() {
+        let own = || rustix::process::getpriority_process(None).unwrap();
+        let before = own();
+        let made = own_threads().unwrap().install(own);
+        assert_eq!(made, (before + STEP).min(19));
     }
 
     #[test]
