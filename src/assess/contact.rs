@@ -4,6 +4,7 @@
 mod displaced;
 
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
+use rayon::iter::Either;
 use rayon::prelude::*;
 
 use super::scaled::Scaled;
@@ -40,6 +41,8 @@ pub(super) struct Contact {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Contacts {
     pub(super) list: Vec<Contact>,
+    /// Nodes of the smaller part that were looked at and meet nothing.
+    unmet: Vec<u32>,
     /// Nodes of the smaller part for each one that was looked at.
     pub(super) nodes_per_place: f64,
     /// Share of the smaller part's area that meets the other part.
@@ -113,11 +116,15 @@ impl<'a> ContactSearch<'a> {
     ) -> Option<Contacts> {
         let sides = Sides::new([self.source, self.target], pose, self.of_source);
         let (stride, reach) = (self.stride, self.reach);
-        let list = self.closest.par_iter_mut().enumerate();
-        let list =
-            list.filter_map(|(k, closest)| sides.contact(k * stride, reach, scaled, closest));
+        let nodes = self.closest.par_iter_mut().enumerate();
+        let (list, unmet) = nodes.partition_map(|(k, closest)| {
+            match sides.contact(k * stride, reach, scaled, closest) {
+                Some(contact) => Either::Left(contact),
+                None => Either::Right((k * stride) as u32),
+            }
+        });
         let areas = sides.data.vertex_areas().iter().step_by(stride);
-        Contacts::of(list.collect(), areas.sum(), stride as f64)
+        Contacts::of(list, unmet, areas.sum(), stride as f64)
     }
 
     /// Where nodes of the larger part meet the smaller one under a pose: those that lie where `is_asked` says.
@@ -260,7 +267,7 @@ impl<'a> Sides<'a> {
 
 impl Contacts {
     /// Places where parts meet, of which the smaller has the area `total` at the nodes looked at.
-    fn of(list: Vec<Contact>, total: f64, nodes_per_place: f64) -> Option<Self> {
+    fn of(list: Vec<Contact>, unmet: Vec<u32>, total: f64, nodes_per_place: f64) -> Option<Self> {
         let sum: f64 = list.iter().map(|c| c.weight).sum();
         let origin = list.first()?.point;
         let mean: Vector3 = list.iter().map(|c| (c.point - origin) * c.weight).sum();
@@ -271,6 +278,7 @@ impl Contacts {
             share: sum / total,
             nodes_per_place,
             list,
+            unmet,
             center,
             radius,
         })

@@ -35,9 +35,9 @@ impl PoseEvidence<'_> {
     }
 
     /// Places of the smaller part that lie over a place of the larger one, where neither meets anything.
-    /// O(nodes · log triangles).
+    /// O(nodes that meet nothing · log triangles).
     pub(super) fn displaced(&self) -> Vec<Contact> {
-        self.search().displaced(&self.pose)
+        self.search().displaced(&self.pose, &self.contacts)
     }
 
     fn search(&self) -> ContactSearch<'_> {

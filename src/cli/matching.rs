@@ -213,18 +213,21 @@ fn run_match(
         let max_triangles = asked.max_triangles;
         Some(ReducedPair::new(parts, max_triangles, monitor.monitor)?)
     };
-    let mut run = match &found {
-        Some(found) if is_as_found => found.found.run.clone(),
+    let (mut run, find_ms) = match &found {
+        Some(of_parts) if is_as_found => {
+            let run = of_parts.found.run.clone();
+            let of_others = of_parts.took_ms - run.times.total_ms;
+            (run, of_others)
+        }
         _ => {
             let (recipe, current) = (&asked.recipe, &asked.current);
-            match_parts(parts, reduced.as_ref(), recipe, current, monitor)?
+            let run = match_parts(parts, reduced.as_ref(), recipe, current, monitor)?;
+            (run, found.as_ref().map_or(0.0, |of_parts| of_parts.took_ms))
         }
     };
-    if let Some(of_parts) = found {
-        run.alike_parts = of_parts.rivals;
-        run.times.find_ms = of_parts.took_ms - of_parts.found.run.times.total_ms;
-        run.times.total_ms += run.times.find_ms;
-    }
+    run.alike_parts = found.map_or_else(Vec::new, |of_parts| of_parts.rivals);
+    run.times.find_ms = find_ms;
+    run.times.total_ms += find_ms;
     let (number, n_poses) = (asked.pose_number, 1 + run.outcome.alternatives.len());
     match number {
         1 => Ok(run),

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::{Contact, ContactSearch, MIN_FACING, Sides, is_beside};
+use super::{Contact, ContactSearch, Contacts, MIN_FACING, Sides, is_beside};
 use crate::geometry::Similarity;
 use crate::search::ClosestPoint;
 
@@ -11,21 +11,19 @@ use crate::search::ClosestPoint;
 const FARTHEST: f64 = 4.0;
 
 impl ContactSearch<'_> {
-    /// The nodes of the smaller part that meet nothing and lie over a place of the larger one that meets nothing
-    /// either, as where they met. What was trimmed lies beside the other part, and what lies over a sheet that meets
-    /// another place is one more layer. O(nodes · log triangles).
-    pub(in crate::assess) fn displaced(&self, pose: &Similarity) -> Vec<Contact> {
+    /// The nodes of the smaller part that meet nothing, which `contacts` under this pose name, and lie over a place of
+    /// the larger one that meets nothing either, as where they met. What was trimmed lies beside the other part, and
+    /// what lies over a sheet that meets another place is one more layer. O(nodes that meet nothing · log triangles).
+    pub(in crate::assess) fn displaced(
+        &self,
+        pose: &Similarity,
+        contacts: &Contacts,
+    ) -> Vec<Contact> {
         let sides = Sides::new([self.source, self.target], pose, self.of_source);
-        let n_nodes = sides.data.mesh().positions().len();
-        let nodes = (0..n_nodes).into_par_iter().step_by(self.stride);
-        let displaced = nodes.filter_map(|vertex| {
-            let meets = sides.contact(vertex, self.reach, None, &mut None);
-            if meets.is_some() {
-                return None;
-            }
-            let mut closest = None;
-            let far = sides.contact(vertex, FARTHEST * self.reach, None, &mut closest)?;
-            (!sides.is_met_beneath(vertex, self.reach)).then_some(far)
+        let displaced = contacts.unmet.par_iter().filter_map(|&node| {
+            let node = node as usize;
+            let far = sides.contact(node, FARTHEST * self.reach, None, &mut None)?;
+            (!sides.is_met_beneath(node, self.reach)).then_some(far)
         });
         displaced.collect()
     }
@@ -33,9 +31,9 @@ impl ContactSearch<'_> {
 
 impl Sides<'_> {
     /// Whether the place of the model closest to a node has a counterpart on the other part within `reach`.
-    fn is_met_beneath(&self, vertex: usize, reach: f64) -> bool {
+    fn is_met_beneath(&self, node: usize, reach: f64) -> bool {
         let Self { data, model, .. } = self;
-        let moved = self.model_from_data.apply(&data.mesh().positions()[vertex]);
+        let moved = self.model_from_data.apply(&data.mesh().positions()[node]);
         let Some(beneath) = model.bvh().closest(&moved, f64::INFINITY, None, None) else {
             return false;
         };

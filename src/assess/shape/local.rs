@@ -49,8 +49,8 @@ struct Group<'a, 'b> {
 /// The largest group of neighbouring places at which what neither bends nor facets explain exceeds the tolerance to
 /// one side, at an end that of springback, and which elements cutting short does not explain either. A piece that lies
 /// too far from its counterpart to meet it counts too.
-/// O(nodes · log triangles + k² + k · outlines) for k places beyond the limit, and O(nodes of the larger part) where a
-/// group is narrow.
+/// O(nodes that meet nothing · log triangles + k² + k · outlines) for k places beyond the limit, and O(nodes of the
+/// larger part) where a group is narrow.
 pub(super) fn local_difference(
     evidence: &PoseEvidence<'_>,
     fit: &Fit,
