@@ -10,7 +10,7 @@ const MODULES: &[(&str, &str, &str)] = &[
     (
         "registration/icp",
         "One ICP run",
-        "Set on the five sample parts in ten variants from random placements (`tests/core/samples.rs`), with the \
+        "Set on the sample parts in ten variants from random placements (`tests/core/samples.rs`), with the \
          known poses as reference.",
     ),
     (
