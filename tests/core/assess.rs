@@ -174,20 +174,22 @@ fn parts_that_have_nothing_in_common_are_poor() {
     assert!(!assessed.reasons.is_empty());
 }
 
+/// Surfaces that differ by much, mostly or at some places.
+fn surfaces_apart(mostly: bool) -> ShapeReason {
+    ShapeReason::Surface {
+        by: 40.0,
+        limit: 4.0,
+        at: Point3::new(1.0, 2.0, 3.0),
+        mostly,
+    }
+}
+
 /// One of each kind of reason, with the verdict it stands for.
 fn every_reason() -> Vec<(Reason, Verdict)> {
     let unit = guess_unit(25.4).unwrap();
     let (source, target, limit) = (0.1, 0.2, 4.0);
     let at = Point3::new(1.0, 2.0, 3.0);
     let shape = |difference| Reason::Shape { difference };
-    let surface = |mostly| {
-        shape(ShapeReason::Surface {
-            by: 40.0,
-            limit,
-            at,
-            mostly,
-        })
-    };
     let twin = Some(Twin {
         angle: std::f64::consts::PI,
         axis: TwinAxis::Long,
@@ -206,7 +208,7 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
             unit,
         },
         shape(ShapeReason::HardlyMet { share: 0.2 }),
-        surface(true),
+        shape(surfaces_apart(true)),
         Reason::EndedEarly {
             termination: Termination::NoPairs,
         },
@@ -219,7 +221,7 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
             limit,
             along: PartDirection::Along,
         },
-        surface(false),
+        shape(surfaces_apart(false)),
         shape(ShapeReason::Bent { by: 5.0, limit }),
         shape(ShapeReason::Borders { by: 5.0, limit, at }),
         shape(ShapeReason::Hole {
