@@ -206,10 +206,10 @@ fn the_log_of_a_low_pane_shows_the_result_from_its_first_line() {
             .any(|seen| seen.text.starts_with("GOOD: overlap"))
     };
     let result = texts(&window).into_iter();
-    let place = result
+    let mut place = result
         .filter(|seen| seen.text.starts_with("GOOD: overlap"))
         .map(|seen| seen.rect.center());
-    let place = place.last().unwrap();
+    let place = place.next_back().unwrap();
     let back = egui::Event::MouseWheel {
         unit: egui::MouseWheelUnit::Point,
         delta: egui::vec2(0.0, 200.0),
