@@ -4,7 +4,6 @@ use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{Action, BottomTab, Dialog, Menu, Section};
 use shapematch::role::Role;
 
-use super::layout::texts;
 use super::story::{click, finish, matched, window};
 
 #[test]
@@ -178,51 +177,4 @@ fn a_typed_move_takes_a_decimal_comma_and_its_button_stays_under_the_pointer() {
             "{typed}: the button went from {at} to {now}"
         );
     }
-}
-
-/// In a pane that is too low for all of the newest row, its first line is seen, and it is followed only until the
-/// user scrolls back.
-#[test]
-fn the_log_of_a_low_pane_shows_the_result_from_its_first_line() {
-    let mut window = matched();
-    for [width, height] in [[560.0, 330.0], [640.0, 360.0], [1400.0, 900.0]] {
-        window.set_size(egui::vec2(width, height));
-        window.run_steps(4);
-        let seen = texts(&window);
-        let first = seen
-            .iter()
-            .find(|seen| seen.text.starts_with("GOOD: overlap"));
-        let first = first.unwrap_or_else(|| panic!("{width} × {height}: not seen"));
-        assert!(
-            first.rect.top() >= first.clip.top(),
-            "{width} × {height}: cut"
-        );
-    }
-    window.set_size(egui::vec2(560.0, 330.0));
-    window.run_steps(4);
-    let is_seen = |window: &_| {
-        texts(window)
-            .iter()
-            .any(|seen| seen.text.starts_with("GOOD: overlap"))
-    };
-    let result = texts(&window).into_iter();
-    let mut place = result
-        .filter(|seen| seen.text.starts_with("GOOD: overlap"))
-        .map(|seen| seen.rect.center());
-    let place = place.next_back().unwrap();
-    let back = egui::Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Point,
-        delta: egui::vec2(0.0, 200.0),
-        phase: egui::TouchPhase::Move,
-        source: egui::MouseWheelSource::Wheel,
-        modifiers: egui::Modifiers::NONE,
-    };
-    window.event(egui::Event::PointerMoved(place));
-    window.run_steps(1);
-    window.event(back);
-    window.run_steps(30);
-    assert!(!is_seen(&window), "it does not scroll back");
-    window.set_size(egui::vec2(560.0, 331.0));
-    window.run_steps(4);
-    assert!(!is_seen(&window), "it does not stay where the user looks");
 }

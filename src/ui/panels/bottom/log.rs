@@ -27,27 +27,6 @@ const RESULT: &str = "result";
 /// Rows that show their whole text, by their index.
 type Opened = BTreeSet<usize>;
 
-/// Where the table follows its newest row to.
-#[derive(Debug, Clone, Copy)]
-struct Following {
-    /// The offset that shows the newest row: its end, or its first line where it is higher than the pane.
-    newest: f32,
-    /// The user has not scrolled back.
-    is_on: bool,
-}
-
-impl Following {
-    /// For rows of these heights in a table of that height.
-    fn of(heights: &[f32], height: f32, is_on: bool) -> Self {
-        let newest = heights.last().copied().unwrap_or_default();
-        let all: f32 = heights.iter().sum();
-        Self {
-            newest: (all - newest.max(height)).max(0.0),
-            is_on,
-        }
-    }
-}
-
 /// The table, newest row in sight, and the sums.
 pub fn log_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let rows = state.log.rows();
@@ -83,36 +62,21 @@ fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
         .enumerate()
         .map(|(index, row)| row_height(ui, row, is_whole(row, index, &opened), room))
         .collect();
-    let following_id = egui::Id::unique("followed log rows").with(is_narrow);
-    let before: Option<Following> = ui.data(|data| data.get_temp(following_id));
-    let is_on = before.is_none_or(|before| before.is_on);
-    let mut following = Following::of(&heights, height, is_on);
-    let moves = is_on && before.is_none_or(|before| before.newest != following.newest);
     let mut clicked = None;
     ui.spacing_mut().item_spacing = egui::vec2(GAP, 0.0);
-    let fade = &mut ui.spacing_mut().scroll.fade;
-    if heights
-        .last()
-        .is_some_and(|newest| newest + fade.size > height)
-    {
-        // It would lie on the newest row.
-        fade.strength = 0.0;
-    }
     let mut table = TableBuilder::new(ui)
         .id_salt(("log", is_narrow))
         .sense(Sense::click())
+        .stick_to_bottom(true)
         .auto_shrink([false, false])
         .min_scrolled_height(0.0)
         .max_scroll_height(height)
         .cell_layout(Layout::left_to_right(Align::Center));
-    if moves {
-        table = table.vertical_scroll_offset(following.newest);
-    }
     let [time, step, part, took] = COLUMNS;
     if !is_narrow {
         table = table.column(Column::exact(time));
     }
-    let shown = table
+    table
         .column(Column::exact(step))
         .column(Column::exact(part))
         .column(Column::remainder().clip(true))
@@ -130,8 +94,6 @@ fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
                 response.on_hover_text(hover_text(row));
             });
         });
-    following.is_on = shown.state.clamped_offset().y > following.newest - 1.0;
-    ui.data_mut(|data| data.insert_temp(following_id, following));
     if let Some(index) = clicked {
         if !opened.remove(&index) {
             opened.insert(index);
