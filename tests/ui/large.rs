@@ -1,13 +1,12 @@
 //! Large parts: the picture in steps is the picture at once, and there is something to see before it.
 
-use std::fmt::Write as _;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use egui::{Shape, vec2};
 use egui_kittest::Harness;
 use image::RgbaImage;
-use shapematch::app::{Command, FileCommand, ViewCommand};
+use shapematch::app::Command;
 use shapematch::colormap::{ColorMap, ColorScale};
 use shapematch::geometry::camera::{OrbitStyle, StandardView};
 use shapematch::geometry::{Camera, Point3, Similarity, TriMesh, Vector3};
@@ -19,11 +18,9 @@ use shapematch::render::{
     ViewTarget,
 };
 use shapematch::role::Role;
-use shapematch::ui::Shell;
 
-use super::project::drawn;
 use super::render::new_renderer;
-use super::story::{finish, window};
+use super::story::window;
 
 const SIZE: [u32; 2] = [160, 120];
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -177,52 +174,6 @@ fn a_large_picture_in_steps_is_the_picture_at_once() {
     assert_eq!(again, Drawn::Exact);
 }
 
-#[test]
-fn the_window_is_at_rest_once_the_exact_picture_stands() {
-    let mesh = wavy();
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("wavy.obj");
-    let mut file = String::new();
-    for p in mesh.positions() {
-        writeln!(file, "v {} {} {}", p.x, p.y, p.z).unwrap();
-    }
-    for [a, b, c] in mesh.triangles() {
-        writeln!(file, "f {} {} {}", a + 1, b + 1, c + 1).unwrap();
-    }
-    std::fs::write(&path, file).unwrap();
-
-    let mut window = drawn(0.1);
-    let ctx = window.ctx.clone();
-    let (paths, role) = (vec![path], Some(Role::Crash));
-    let commands = vec![FileCommand::Open { paths, role }.into()];
-    window.state_mut().run_commands(commands, &ctx);
-    window.run_steps(1);
-    assert!(!window.state().is_at_rest(), "the file is not read yet");
-    finish(&mut window);
-    let begin = Instant::now();
-    let draw = |window: &mut Harness<'static, Shell>| {
-        window.render().unwrap();
-        window.run_steps(1);
-        window.state().is_at_rest()
-    };
-    assert!(!draw(&mut window), "the first picture is coarse");
-    // What the window learns of the part a moment later may be drawn once more.
-    let mut n_at_rest = 0;
-    while n_at_rest < 3 {
-        assert!(begin.elapsed() < PATIENCE, "never at rest");
-        n_at_rest = if draw(&mut window) { n_at_rest + 1 } else { 0 };
-    }
-    // The view turns: not at rest until that is drawn exactly.
-    let camera = window.state().state().view.cameras.crash;
-    let pivot = camera.target;
-    let mut turned = camera;
-    turned.orbit(OrbitStyle::Turntable, &pivot, 0.4, 0.1);
-    let commands = vec![ViewCommand::SetCamera(Role::Crash, turned).into()];
-    window.state_mut().run_commands(commands, &ctx);
-    window.run_steps(1);
-    assert!(!draw(&mut window), "the picture is coarse");
-}
-
 #[derive(Default)]
 struct Shapes(Mutex<Vec<Vec<[f64; 3]>>>);
 
@@ -310,7 +261,7 @@ fn a_part_is_seen_as_points_while_it_is_read() {
 }
 
 /// Small squares that were painted.
-fn dots(window: &Harness<'static, Shell>) -> usize {
+fn dots(window: &Harness<'static, shapematch::ui::Shell>) -> usize {
     let is_dot = |shape: &Shape| match shape {
         Shape::Rect(rect) => rect.rect.size() == vec2(2.0, 2.0),
         _ => false,
