@@ -114,6 +114,7 @@ pub struct Shell {
     resting: Option<egui::Pos2>,
     /// A picture of the frame before was not exact.
     is_unfinished: bool,
+    /// What was told last, see [`Shell::update_rest`].
     is_at_rest: bool,
 }
 
@@ -179,12 +180,8 @@ impl Shell {
         self.worker.is_idle()
     }
 
-    /// True if, as of the last frame, no work runs or waits and what the 3D windows show is exact. Changes are told
-    /// in the program's log at the level `debug`, for scripts that take pictures.
-    pub fn is_at_rest(&self) -> bool {
-        self.is_at_rest
-    }
-
+    /// At rest no work runs or waits and what the 3D windows show is exact. Changes are told in the program's log at
+    /// the level `debug`, for scripts that take pictures.
     fn update_rest(&mut self) {
         let is_waiting = self.is_unfinished || self.viewports.is_waiting();
         let is_at_rest = !is_waiting && self.is_idle() && !self.state.jobs.is_busy();
