@@ -1,9 +1,10 @@
 //! The wide search against known poses: the right one comes out first, wherever the part lay.
 
-use shapematch::geometry::{Similarity, TriMesh};
+use shapematch::geometry::{Point3, Similarity, TriMesh};
 use shapematch::monitor::{Cancelled, Monitor};
 use shapematch::registration::{
-    MatchInput, MatchSettings, Stage, StartRecord, Surface, WideFind, WideSearch, match_surfaces,
+    MatchInput, MatchSettings, Stage, StartKind, StartRecord, Surface, WideFind, WideSearch,
+    match_surfaces,
 };
 
 use super::drawn_pan::{everywhere, pan, panel, placement, worst_node};
@@ -52,6 +53,62 @@ fn a_fifth_of_a_part_is_found_on_the_whole() {
     let whole = panel(5.0, 0.35, everywhere);
     assert!(piece.area() < 0.22 * whole.area());
     check(&piece, &whole, 0..3);
+}
+
+/// A channel 60 mm wide from `first` to `last` along itself, bent along in two directions, in cells of `pitch`, with
+/// square holes of 12 mm.
+fn strip(pitch: f64, [first, last]: [f64; 2]) -> TriMesh {
+    const HOLES: [[f64; 2]; 6] = [
+        [-444.0, 18.0],
+        [-288.0, 0.0],
+        [-120.0, 18.0],
+        [72.0, 18.0],
+        [228.0, 0.0],
+        [420.0, -18.0],
+    ];
+    let step = |t: f64| {
+        let t = t.clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
+    };
+    let (columns, rows) = (((last - first) / pitch) as u32, (60.0 / pitch) as u32);
+    let points = (0..(columns + 1) * (rows + 1)).map(|i| {
+        let x = first + pitch * f64::from(i % (columns + 1));
+        let across = pitch * f64::from(i / (columns + 1)) - 30.0;
+        let t = (x + 540.0) / 1080.0;
+        let walls = 9.0 * step((-across - 6.0) / 12.0) + 16.0 * step((across - 6.0) / 14.0);
+        let (y, z) = (60.0 * t * t, -45.0 * (1.5 * (t - 0.6)).powi(2));
+        Point3::new(x, 0.8 * across + y, walls + z)
+    });
+    let is_solid = |&(i, j): &(u32, u32)| {
+        let x = first + pitch * (f64::from(i) + 0.5);
+        let y = pitch * (f64::from(j) + 0.5) - 30.0;
+        let is_in = |hole: &[f64; 2]| (x - hole[0]).abs() < 6.0 && (y - hole[1]).abs() < 6.0;
+        !HOLES.iter().any(is_in)
+    };
+    let cells = (0..columns * rows).map(|k| (k % columns, k / columns));
+    let triangles = cells.filter(is_solid).flat_map(|(i, j)| {
+        let a = j * (columns + 1) + i;
+        let up = a + columns + 1;
+        [[a, a + 1, up + 1], [a, up + 1, up]]
+    });
+    TriMesh::new(points.collect(), triangles.collect()).unwrap()
+}
+
+#[test]
+fn holes_say_where_a_piece_of_a_strip_lies_along_it() {
+    let whole = strip(6.0, [-540.0, 540.0]);
+    // Pieces with two holes, with three, and with one.
+    let pieces = [[-216.0, 198.0], [-18.0, 540.0], [-90.0, 204.0]];
+    for (seed, piece) in (0..).zip(pieces) {
+        let piece = strip(3.0, piece);
+        let truth = placement(seed);
+        let moved = piece.transformed(&truth.inverse());
+        let found = search(&moved, &whole, false).into_iter();
+        let by_holes = found.filter(|find| matches!(find.kind, StartKind::Holes { .. }));
+        let off = by_holes.map(|find| worst_node(&moved, &truth, &find.model_from_data));
+        let least = off.fold(f64::INFINITY, f64::min);
+        assert!(least < 2.0, "seed {seed}: {least:.2} mm");
+    }
 }
 
 #[test]

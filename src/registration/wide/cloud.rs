@@ -131,6 +131,18 @@ pub(super) struct Motion32 {
 }
 
 impl Motion32 {
+    pub(super) fn apply(&self, point: &Vector3) -> Vector3 {
+        let along = |row: [f32; 3]| Vector3::from(row.map(f64::from)).dot(point);
+        Vector3::from(self.rotation.map(along)) + Vector3::from(self.translation.map(f64::from))
+    }
+
+    pub(super) fn shifted(&self, by: &Vector3) -> Self {
+        Self {
+            translation: std::array::from_fn(|k| self.translation[k] + by[k] as f32),
+            ..*self
+        }
+    }
+
     /// True if both differ by less than an angle (given as its cosine) and a way of the centroid.
     pub(super) fn is_near(&self, other: &Self, min_cos: f32, max_shift: f32) -> bool {
         let shift_sq: f32 = (0..3)

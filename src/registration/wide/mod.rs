@@ -8,6 +8,7 @@
 //! exact meshes by the caller.
 
 mod cloud;
+mod holes;
 mod rounds;
 mod seeds;
 mod step;
@@ -20,8 +21,9 @@ use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::search::{FeatureGrid, GridSettings};
 use cloud::{Cloud, area_samples};
+use holes::Holes;
 use rounds::{Ground, Round};
-use seeds::SeedCounts;
+use seeds::{Seed, SeedCounts};
 
 /// Points that are worked on side by side.
 const LANES: usize = 8;
@@ -77,7 +79,7 @@ const OVERHANGING: SeedCounts = SeedCounts {
 };
 /// Above this loss the parts do not cover each other. Noise of 1 mm on the sample parts stays below
 /// it, a strip of 15 % that misses lies above.
-const CONTAINED_LOSS: f32 = 0.1;
+const CONTAINED_LOSS: f64 = 0.1;
 
 const ROUNDS: [Round; 5] = [
     Round {
@@ -122,6 +124,46 @@ const ROUNDS: [Round; 5] = [
     },
 ];
 
+/// What holes lay together lies within a few hundredths of where it belongs: all of it is looked at, and the better
+/// part moved.
+const HOLE_ROUNDS: [Round; 4] = [
+    Round {
+        cut: 0.27,
+        n_points: 64,
+        n_steps: 0,
+        keep: 0.1,
+        least: 40,
+        most: 200,
+    },
+    Round {
+        cut: 0.27,
+        n_points: 304,
+        n_steps: 4,
+        keep: 0.25,
+        least: 12,
+        most: 60,
+    },
+    Round {
+        cut: 0.13,
+        n_points: 1200,
+        n_steps: 8,
+        keep: 0.5,
+        least: 8,
+        most: 24,
+    },
+    Round {
+        cut: 0.067,
+        n_points: 1200,
+        n_steps: 10,
+        keep: 1.0,
+        least: 4,
+        most: 8,
+    },
+];
+
+/// Poses that holes give, of those under which the most of them have their counterpart.
+const MOST_ON_HOLES: usize = 4;
+
 /// Reach of the first round, as a share of the data's diagonal.
 const REACH: f32 = 0.15;
 
@@ -159,25 +201,40 @@ impl<'a> WideSearch<'a> {
             &self.cloud
         };
         let counts = self.counts();
-        let mut seeds = seeds::seeds(cloud, (self.data, self.model), &self.grid, counts);
+        let parts = (self.data, self.model);
         let ground = Ground {
             cloud,
             grid: &self.grid,
             reach: REACH * cloud.diagonal.min(1.0),
         };
-        let mut found = rounds::run(ground, &seeds, &ROUNDS, monitor)?;
-        // Parts of one size whose centroids do not belong on each other overhang each other.
-        if counts.patches == 0 && found.first().is_none_or(|best| best.loss > CONTAINED_LOSS) {
-            seeds = seeds::seeds(cloud, (self.data, self.model), &self.grid, OVERHANGING);
-            found = rounds::run(ground, &seeds, &ROUNDS, monitor)?;
-        }
-        let find = |candidate: rounds::Candidate| WideFind {
+        let find = |seeds: &[Seed], candidate: &rounds::Candidate| WideFind {
             kind: seeds[candidate.seed as usize].kind,
             flipped: candidate.flipped,
             model_from_data: cloud.model_from_data(&candidate.motion, &self.grid),
             loss: f64::from(candidate.loss),
         };
-        Ok(found.into_iter().map(find).collect())
+        let run = |counts: SeedCounts| {
+            let seeds = seeds::seeds(cloud, parts, &self.grid, counts);
+            let survivors = rounds::run(ground, &seeds, &ROUNDS, monitor)?;
+            let found = survivors.iter().map(|candidate| find(&seeds, candidate));
+            Ok::<Vec<WideFind>, Cancelled>(found.collect())
+        };
+        let mut found = run(counts)?;
+        // Parts of one size whose centroids do not belong on each other overhang each other.
+        let is_whole = counts.patches == 0;
+        let is_apart = found.first().is_none_or(|best| best.loss > CONTAINED_LOSS);
+        if is_whole && is_apart {
+            found = run(OVERHANGING)?;
+        }
+        if !is_whole || is_apart {
+            let holes = Holes::of(cloud, parts, &self.grid);
+            let seeds = holes.seeds();
+            let survivors = rounds::run(ground, &seeds, &HOLE_ROUNDS, monitor)?;
+            let on_holes = most_on_holes(&holes, survivors);
+            found.extend(on_holes.iter().map(|candidate| find(&seeds, candidate)));
+            found.sort_by(|a, b| a.loss.total_cmp(&b.loss));
+        }
+        Ok(found)
     }
 
     /// True if the data may cover all of the model.
@@ -193,4 +250,23 @@ impl<'a> WideSearch<'a> {
             PIECE
         }
     }
+}
+
+/// Of poses sorted by their loss those under which the most holes have their counterpart, moved onto these.
+fn most_on_holes(holes: &Holes, survivors: Vec<rounds::Candidate>) -> Vec<rounds::Candidate> {
+    let laid = survivors.into_iter().map(|candidate| {
+        let (n, motion) = holes.laid(&candidate.motion);
+        (
+            n,
+            rounds::Candidate {
+                motion,
+                ..candidate
+            },
+        )
+    });
+    let mut laid: Vec<(usize, rounds::Candidate)> = laid.collect();
+    let most = laid.iter().map(|(n, _)| *n).max().unwrap_or(0);
+    laid.retain(|(n, _)| *n == most && *n > 0);
+    laid.truncate(MOST_ON_HOLES);
+    laid.into_iter().map(|(_, candidate)| candidate).collect()
 }

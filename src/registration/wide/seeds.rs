@@ -103,7 +103,7 @@ fn push_both(found: &mut Vec<Seed>, kind: StartKind, motion: impl Fn(bool) -> Mo
     }
 }
 
-fn matrix(rotation: &Rotation) -> Matrix3 {
+pub(super) fn matrix(rotation: &Rotation) -> Matrix3 {
     *rotation.to_rotation_matrix().matrix()
 }
 
@@ -112,7 +112,7 @@ fn local(point: [f32; 3]) -> Vector3 {
 }
 
 /// The motion that turns by `turn` and lays `from` on `to`.
-fn laid(turn: &Matrix3, from: &Vector3, to: &Vector3) -> Motion32 {
+pub(super) fn laid(turn: &Matrix3, from: &Vector3, to: &Vector3) -> Motion32 {
     let translation = to - turn * from;
     Motion32 {
         rotation: std::array::from_fn(|i| std::array::from_fn(|j| turn[(i, j)] as f32)),
@@ -231,16 +231,24 @@ impl Patch {
 
     /// A right-handed frame whose third axis is the normal, or its opposite.
     fn frame(&self, flipped: bool) -> Matrix3 {
-        let z = if flipped { -self.normal } else { self.normal };
-        let x = self.longest - z * self.longest.dot(&z);
-        let x = x.try_normalize(1e-6).unwrap_or_else(|| {
-            let other = if z.x.abs() < 0.7 {
-                Vector3::x()
-            } else {
-                Vector3::y()
-            };
-            (other - z * other.dot(&z)).normalize()
-        });
-        Matrix3::from_columns(&[x, z.cross(&x), z])
+        frame(
+            &if flipped { -self.normal } else { self.normal },
+            &self.longest,
+        )
     }
+}
+
+/// A right-handed frame whose third axis is a unit vector and whose first one points as far as it may in another
+/// direction, or in any if both are parallel.
+pub(super) fn frame(z: &Vector3, towards: &Vector3) -> Matrix3 {
+    let x = towards - z * towards.dot(z);
+    let x = x.try_normalize(1e-6).unwrap_or_else(|| {
+        let other = if z.x.abs() < 0.7 {
+            Vector3::x()
+        } else {
+            Vector3::y()
+        };
+        (other - z * other.dot(z)).normalize()
+    });
+    Matrix3::from_columns(&[x, z.cross(&x), *z])
 }
