@@ -215,6 +215,7 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     let mut inputs = vec![args.crash.clone()];
     let others = args.stamped.iter().chain(&args.output.compare);
     inputs.extend(others.chain(&args.choice.project).cloned());
+    inputs.extend(args.choice.pose.iter().map(PathBuf::from));
     check_outputs(targets(&args.output), &inputs)?;
     let (crash, stamped) = load_all(args, &monitor)?;
     let whole = crash.clone();

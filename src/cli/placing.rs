@@ -97,17 +97,22 @@ pub(super) fn place(
         let file = part.path.display().to_string();
         let run =
             place_part(parts, &recipe, monitor).with_context(|| format!("cannot match {file}"))?;
-        // The record says that it is poor; the reason is known here alone.
-        if run.assessment.verdict == Verdict::Poor {
-            let units = PairUnits::of(parts.map(Some));
-            let why = run.assessment.sentences(Lengths::new(units.lengths));
-            if let Some(why) = why.first() {
-                log::warn!("{file}: {why}");
-            }
-        }
+        warn_of_doubt(&run, parts);
         poses.push(found_by(&run));
     }
     Ok(Placed { crash, poses })
+}
+
+/// Says why a match is not good: the record of a mapping holds the verdict alone.
+fn warn_of_doubt(run: &MatchRun, parts: PerRole<&LoadedPart>) {
+    if run.assessment.verdict == Verdict::Good {
+        return;
+    }
+    let units = PairUnits::of(parts.map(Some));
+    let why = run.assessment.sentences(Lengths::new(units.lengths));
+    if let Some(why) = why.first() {
+        log::warn!("{}: {why}", parts.stamped.path.display());
+    }
 }
 
 /// The pose that a match found.
@@ -145,6 +150,7 @@ fn on_found_parts(
             let reason = CarReason::Rivals(found.rivals);
             log::warn!("{}: {}", part.path.display(), reason.text());
         }
+        warn_of_doubt(&found.found.run, parts);
         ids.extend(found.found.part.chosen_part_ids());
         poses.push(found_by(&found.found.run));
     }

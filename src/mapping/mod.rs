@@ -60,6 +60,8 @@ use source::{PartnerFilter, PreparedSource};
 const CHUNK: usize = 1024;
 /// Share of the area that must agree for normals to have a sign.
 const SIGNED_SHARE: f64 = 0.9;
+/// Elements with one sheet within reach decide if they make up this share of the area.
+const LEAST_ALONE: f64 = 0.05;
 /// Stamped parts that overlap on less than this share of the target touch by chance.
 const CONFLICT_SHARE: f64 = 0.02;
 
@@ -227,26 +229,39 @@ fn facing(
     // A thousand elements spread over the mesh tell the sign of all.
     let step = (target.mesh.len() / 1000).max(1);
     let ask = |element: usize| {
-        let filter = PartnerFilter {
-            normal: target.mesh.normals()[element],
-            min_cos: options.max_angle_deg.to_radians().cos(),
-            facing: Facing::Mixed,
+        let closest = |facing| {
+            let filter = PartnerFilter {
+                normal: target.mesh.normals()[element],
+                min_cos: options.max_angle_deg.to_radians().cos(),
+                facing,
+            };
+            let own = target.mesh.size(element).max(source_size);
+            let reach = options.max_distance.unwrap_or(own);
+            let centre = target.mesh.centroids()[element];
+            source.closest(&centre, &filter, reach, None)
         };
-        let own = target.mesh.size(element).max(source_size);
-        let reach = options.max_distance.unwrap_or(own);
-        let centre = target.mesh.centroids()[element];
-        let (_, found) = source.closest(&centre, &filter, reach, None)?;
-        Some((target.mesh.areas()[element], found.is_flipped))
+        let (_, found) = closest(Facing::Mixed)?;
+        let other = if found.is_flipped {
+            Facing::Same
+        } else {
+            Facing::Opposite
+        };
+        let area = target.mesh.areas()[element];
+        Some((area, found.is_flipped, closest(other).is_none()))
     };
     let asked = (0..target.mesh.len().div_ceil(step)).into_par_iter();
-    let found: Vec<Option<(f64, bool)>> = asked.map(|number| ask(number * step)).collect();
-    let (mut same, mut opposite) = (0.0, 0.0);
-    for (area, is_flipped) in found.into_iter().flatten() {
-        if is_flipped {
-            opposite += area;
-        } else {
-            same += area;
-        }
+    let found: Vec<Option<(f64, bool, bool)>> = asked.map(|number| ask(number * step)).collect();
+    // Between two sheets the closer one may be the wrong one: elements with one sheet within reach tell more.
+    let sum = |of_flipped: bool, of_all: bool| -> f64 {
+        let votes = found.iter().flatten();
+        let votes = votes
+            .filter(|(_, is_flipped, is_alone)| *is_flipped == of_flipped && (of_all || *is_alone));
+        votes.map(|(area, ..)| area).sum()
+    };
+    let [all_same, all_opposite] = [sum(false, true), sum(true, true)];
+    let [mut same, mut opposite] = [sum(false, false), sum(true, false)];
+    if same + opposite < LEAST_ALONE * (all_same + all_opposite) {
+        [same, opposite] = [all_same, all_opposite];
     }
     let all = same + opposite;
     if all > 0.0 && same >= SIGNED_SHARE * all {

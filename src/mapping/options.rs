@@ -86,7 +86,8 @@ pub enum MapMethod {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NormalSense {
-    /// Signed where at least 90 % of the target area agree on one side.
+    /// Signed where at least 90 % of the target area agree on one side. Elements that have sheets facing either way
+    /// within reach are asked only where there are hardly others.
     #[default]
     Auto,
     /// The same side only.

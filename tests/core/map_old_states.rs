@@ -213,6 +213,10 @@ fn states_of_a_set_go_when_all_of_it_is_mapped() {
     let copy = written(&whole, "deck", REPLACE);
     assert!(!copy.contains("INITIAL_STRESS_SHELL_SET"), "{copy}");
     assert!(copy.contains("*SET_SHELL_LIST"), "{copy}");
+    // Ids without an element are nothing that would have to be mapped.
+    let gaps = Pair::new(&deck("       101       102       777"), &two_squares());
+    let copy = written(&gaps, "deck", REPLACE);
+    assert!(!copy.contains("INITIAL_STRESS_SHELL_SET"), "{copy}");
     let some = Pair::new(&deck("       101       103"), &two_squares());
     let told = refused(&some, "deck", REPLACE);
     assert!(
@@ -278,6 +282,25 @@ fn what_could_not_be_read_is_told() {
         "{told}"
     );
     assert!(told.contains("found \"1x0.0\""), "{told}");
+}
+
+#[test]
+fn a_file_without_its_end_and_nodes_at_two_places_are_told() {
+    let without_end = two_squares().replace("*END\n", "");
+    let told = Pair::new(&crash(2, ""), &without_end).map(&[]);
+    let told = errors(&told);
+    assert!(
+        told.contains("stamped.dynain: its end may be missing ("),
+        "{told}"
+    );
+    assert!(!told.contains("could not be read"), "{told}");
+    let twice = "*NODE\n       1           500.0             0.0             0.0\n*END\n";
+    let [moved, other] = [two_squares(), crash(2, "")].map(|deck| deck.replace("*END\n", twice));
+    let told = Pair::new(&other, &moved).map(&[]);
+    for file in ["crash.k", "stamped.dynain"] {
+        let line = format!("{file}: 1 node is defined again at another place");
+        assert!(errors(&told).contains(&line), "{}", errors(&told));
+    }
 }
 
 #[test]

@@ -166,3 +166,16 @@ fn a_project_that_is_none_is_told_what_it_is() {
     );
     assert!(told.contains(".shapematch"), "{told}");
 }
+
+#[test]
+fn no_output_takes_the_place_of_a_pose_file() {
+    let pair = Pair::new(&crash(2, ""), &stamped(2, ""));
+    let pose = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+    std::fs::write(pair.path("a.pose"), pose).unwrap();
+    for option in ["--out", "--csv", "--json", "--report"] {
+        let output = pair.run(&["--pose", "a.pose", option, "a.pose"]);
+        assert_eq!(output.status.code(), Some(2), "{option}");
+        assert!(errors(&output).contains("a.pose"), "{}", errors(&output));
+        assert_eq!(std::fs::read_to_string(pair.path("a.pose")).unwrap(), pose);
+    }
+}

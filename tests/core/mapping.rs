@@ -699,19 +699,23 @@ fn a_blank_of_two_gauges_has_no_gauge_between() {
     }
 }
 
-#[test]
-fn a_hem_does_not_leak() {
-    // Skin at z = 0 facing up; the folded flange 1.5 above it faces down.
+/// A skin at z = 0 that faces up, with plastic strain 0.1, and a folded flange of a length 1.5 above it that faces
+/// down, with 0.9.
+fn hemmed(length: f64) -> SourcePart {
     let skin = Blank::new(5.0).mesh(flat);
-    let flange = flipped(&Blank::new(5.0).mesh(|u, v| Point3::new(u, v, 1.5)));
+    let flange = Blank {
+        length,
+        ..Blank::new(5.0)
+    };
+    let flange = flipped(&flange.mesh(|u, v| Point3::new(u, v, 1.5)));
     let n = skin.positions().len() as u32;
     let mut positions = skin.positions().to_vec();
     positions.extend_from_slice(flange.positions());
     let mut corners = skin.corners().to_vec();
     corners.extend(flange.corners().iter().map(|c| c.map(|v| v + n)));
-    let both = ShellMesh::new(positions, corners, vec![0; 2 * skin.len()]).unwrap();
     let n_skin = skin.len();
-    let part = source(both, 2, |e, _, _| {
+    let both = ShellMesh::new(positions, corners, vec![0; n_skin + flange.len()]).unwrap();
+    source(both, 2, |e, _, _| {
         [
             0.0,
             0.0,
@@ -721,7 +725,24 @@ fn a_hem_does_not_leak() {
             0.0,
             if e < n_skin { 0.1 } else { 0.9 },
         ]
-    });
+    })
+}
+
+#[test]
+fn sheets_of_a_hem_are_told_apart_by_what_lies_beside_it() {
+    // Under the flange the closer sheet is the wrong one, and nothing but the other 60 % of the skin says so.
+    let onto = target(Blank::new(7.0).mesh(|u, v| Point3::new(u, v, 0.8)), 2);
+    let mapped = map_one(&hemmed(40.0), Similarity::identity(), &onto, &full());
+    assert_eq!(mapped.facings, [Facing::Same]);
+    for element in 0..onto.mesh.len() {
+        let value = mapped.states.as_ref().unwrap().of(element)[0][6];
+        assert!((value - 0.1).abs() < 1e-12, "{value}");
+    }
+}
+
+#[test]
+fn a_hem_does_not_leak() {
+    let part = hemmed(100.0);
     // The crash skin is 0.8 too high, so that the flange is the nearer sheet.
     let onto = target(Blank::new(7.0).mesh(|u, v| Point3::new(u, v, 0.8)), 2);
     let signed = MapOptions {

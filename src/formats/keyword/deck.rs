@@ -453,8 +453,8 @@ impl Reader<'_> {
             }
             Err((kind, what)) => {
                 self.assembly.found.push_with(kind, || {
-                    let diagnostic = Diagnostic::new(kind, format!("the included file {what}"));
-                    diagnostic.at(file.position(include.at)).found(name)
+                    let message = format!("the included file {name:?} {what}");
+                    Diagnostic::new(kind, message).at(file.position(include.at))
                 });
                 Ok(None)
             }

@@ -1,7 +1,7 @@
 //! What the crash deck has of mapped elements already: stresses and strains, with copies of its files without
 //! them, and cards that let the solver map.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -86,6 +86,8 @@ pub(super) struct LeftOut<'a> {
     new: &'a NewStates,
     /// Sets of which some elements have new states and some not.
     split: RefCell<Vec<u64>>,
+    /// Ids of all shells of the deck, collected for the first set.
+    elements: OnceCell<HashSet<u64>>,
 }
 
 impl<'a> LeftOut<'a> {
@@ -94,6 +96,7 @@ impl<'a> LeftOut<'a> {
             model,
             new,
             split: RefCell::default(),
+            elements: OnceCell::new(),
         }
     }
 
@@ -104,11 +107,19 @@ impl<'a> LeftOut<'a> {
         }
         let members = self.model.sets.shells.get(&cards.id);
         let ids = members.map_or(&[][..], |set| &set.ids);
-        let n_new = ids.iter().filter(|id| new.contains(id)).count();
-        if n_new > 0 && n_new < ids.len() {
+        let is_there = self.elements.get_or_init(|| {
+            let shells = self.model.shells.iter();
+            shells.map(|shell| shell.id).collect()
+        });
+        // A range of ids usually has gaps.
+        let there = ids.iter().filter(|id| is_there.contains(id));
+        let (n_there, n_new) = there.fold((0, 0), |(n, n_new), id| {
+            (n + 1, n_new + usize::from(new.contains(id)))
+        });
+        if n_new > 0 && n_new < n_there {
             self.split.borrow_mut().push(cards.id);
         }
-        n_new > 0 && n_new == ids.len()
+        n_new > 0 && n_new == n_there
     }
 
     /// An error if results of the file could not be left out as they should.

@@ -43,6 +43,7 @@ pub(super) fn warnings(
 ) -> Vec<String> {
     let mut warnings = mapped_by_solver(crash);
     warnings.extend(unread_line(crash));
+    warnings.extend(moved_nodes(crash));
     for placed in stamped {
         warnings.extend(file_lines(placed.part, &run.recipe.options));
     }
@@ -177,7 +178,7 @@ fn of_elements(run: &MapRun) -> Vec<String> {
     if area > 0.0 && mapped.facings.contains(&Facing::Mixed) {
         warnings.push(
             "normals of the two parts agree on no side; sheets that lie close are told apart by \
-             distance alone"
+             distance alone, or by their normals with --signed yes"
                 .to_owned(),
         );
     }
@@ -202,6 +203,7 @@ pub(in crate::pipeline) fn file_lines(part: &LoadedPart, options: &MapOptions) -
     let local = options.quantities.strain.then(|| local_strains(part));
     let lines = [
         unread_line(part),
+        moved_nodes(part),
         doubtful_line(part),
         repeated_elements(part),
         local.flatten(),
@@ -217,9 +219,23 @@ pub fn unread_line(part: &LoadedPart) -> Option<String> {
             counted(n, "piece")
         )
     };
-    let is_one =
-        |kind: DiagnosticKind| kind.severity() == Severity::Error || kind == DiagnosticKind::NoEnd;
-    told_of(part, is_one, what)
+    let unread = told_of(part, |kind| kind.severity() == Severity::Error, what);
+    unread.or_else(|| {
+        let is_cut_off = |kind| kind == DiagnosticKind::NoEnd;
+        told_of(part, is_cut_off, |_| "its end may be missing".to_owned())
+    })
+}
+
+/// Says that elements may hang on other nodes than they should.
+fn moved_nodes(part: &LoadedPart) -> Option<String> {
+    let what = |n| {
+        let verb = if n == 1 { "is" } else { "are" };
+        format!(
+            "{} {verb} defined again at another place, and elements that belong to the second lie wrong",
+            counted(n, "node")
+        )
+    };
+    told_of(part, |kind| kind == DiagnosticKind::DuplicateNode, what)
 }
 
 /// Says which results are taken though they may not be meant so.

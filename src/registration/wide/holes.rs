@@ -32,7 +32,7 @@ const LEAST_ACROSS: f64 = 0.5;
 /// Turns about the normal of an only hole.
 const N_TURNS: usize = 36;
 /// First poses at most: of a plate with hundreds of like holes they say nothing.
-const MOST_SEEDS: usize = 20_000;
+const MOST_SEEDS: usize = 10_000;
 
 /// A hole in grid units, of the data in the frame of its cloud.
 #[derive(Debug, Clone, Copy)]

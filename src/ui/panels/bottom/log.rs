@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use egui::text::LayoutJob;
 use egui::{Align, Layout, Rect, RichText, Sense, TextStyle, Ui, Vec2};
 use egui_extras::{Column, TableBuilder, TableRow};
 
@@ -16,6 +17,8 @@ use crate::ui::widgets::{level_color, nothing_yet, paint_role_mark, plain_action
 const LINE: f32 = 20.0;
 /// Columns of fixed width: time of day, step, part, duration.
 const COLUMNS: [f32; 4] = [58.0, 58.0, 12.0, 72.0];
+/// Space above and below the text of a row, together.
+const MARGIN: f32 = 4.0;
 /// Space between the columns.
 const GAP: f32 = 8.0;
 /// In a pane narrower than this the time of day is left to the tooltip.
@@ -57,10 +60,10 @@ fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
     };
     let others: f32 = fixed.iter().map(|width| width + GAP).sum();
     let room = (ui.available_width() - others - GAP).max(40.0);
-    let heights: Vec<f32> = rows
-        .iter()
-        .enumerate()
-        .map(|(index, row)| row_height(ui, row, is_whole(row, index, &opened), room))
+    let fitting = Lines::that_fit(ui, height);
+    let lines_of = |index: usize| Lines::of(&rows[index], opened.contains(&index), fitting);
+    let heights: Vec<f32> = (0..rows.len())
+        .map(|index| row_height(ui, &rows[index], lines_of(index), room))
         .collect();
     let mut clicked = None;
     ui.spacing_mut().item_spacing = egui::vec2(GAP, 0.0);
@@ -85,8 +88,7 @@ fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
             body.heterogeneous_rows(heights.into_iter(), |mut table_row| {
                 let index = table_row.index();
                 let row = &rows[index];
-                let is_opened = is_whole(row, index, &opened);
-                row_ui(&mut table_row, row, is_narrow, is_opened);
+                row_ui(&mut table_row, row, is_narrow, lines_of(index));
                 let response = table_row.response();
                 if response.clicked() {
                     clicked = Some(index);
@@ -102,24 +104,55 @@ fn table_ui(ui: &mut Ui, rows: &[LogRow], height: f32) {
     }
 }
 
-/// True for a row that shows its whole text: what came out of a match and what went wrong always do.
-fn is_whole(row: &LogRow, index: usize, opened: &Opened) -> bool {
-    row.step == RESULT || row.level >= NoticeLevel::Warning || opened.contains(&index)
+/// Lines that a row takes at most.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Lines(usize);
+
+impl Lines {
+    const ONE: Self = Self(1);
+
+    /// As many as the pane has room for.
+    fn that_fit(ui: &Ui, height: f32) -> Self {
+        let line = ui.text_style_height(&TextStyle::Body);
+        Self((((height - MARGIN) / line) as usize).max(1))
+    }
+
+    /// All of a row that was opened. What came out of a match and what went wrong are shown with as many as fit, so
+    /// that the newest row begins in sight; other rows take one.
+    fn of(row: &LogRow, is_opened: bool, fitting: Self) -> Self {
+        match is_opened {
+            true => Self(usize::MAX),
+            false if row.step == RESULT || row.level >= NoticeLevel::Warning => fitting,
+            false => Self::ONE,
+        }
+    }
 }
 
-/// One line, or as many as the whole text needs.
-fn row_height(ui: &Ui, row: &LogRow, is_opened: bool, room: f32) -> f32 {
-    if !is_opened {
+/// One line, or as many as the text needs, up to these.
+fn row_height(ui: &Ui, row: &LogRow, lines: Lines, room: f32) -> f32 {
+    if lines == Lines::ONE {
         return LINE;
     }
-    let font = TextStyle::Body.resolve(ui.style());
-    let galley = ui
-        .painter()
-        .layout(text_of(row), font, egui::Color32::WHITE, room);
-    (galley.size().y + 4.0).max(LINE)
+    let mut job = job_of(ui, row, lines);
+    job.wrap.max_width = room;
+    let galley = ui.painter().layout_job(job);
+    (galley.size().y + MARGIN).max(LINE)
 }
 
-fn row_ui(table_row: &mut TableRow<'_, '_>, row: &LogRow, is_narrow: bool, is_opened: bool) {
+/// The text of a row, cut after these lines.
+fn job_of(ui: &Ui, row: &LogRow, lines: Lines) -> LayoutJob {
+    let color = if row.level >= NoticeLevel::Note {
+        level_color(Palette::of(ui), row.level)
+    } else {
+        ui.visuals().text_color()
+    };
+    let font = TextStyle::Body.resolve(ui.style());
+    let mut job = LayoutJob::simple(text_of(row), font, color, f32::INFINITY);
+    job.wrap.max_rows = lines.0;
+    job
+}
+
+fn row_ui(table_row: &mut TableRow<'_, '_>, row: &LogRow, is_narrow: bool, lines: Lines) {
     if !is_narrow {
         table_row.col(|ui| {
             let color = Palette::of(ui).secondary;
@@ -131,7 +164,7 @@ fn row_ui(table_row: &mut TableRow<'_, '_>, row: &LogRow, is_narrow: bool, is_op
         ui.add(egui::Label::new(row.step).selectable(false));
     });
     table_row.col(|ui| role_cell(ui, row));
-    table_row.col(|ui| text_cell(ui, row, is_opened));
+    table_row.col(|ui| text_cell(ui, row, lines));
     table_row.col(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add_space(4.0);
@@ -195,16 +228,11 @@ fn role_cell(ui: &mut Ui, row: &LogRow) {
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, role.word()));
 }
 
-fn text_cell(ui: &mut Ui, row: &LogRow, is_opened: bool) {
-    let palette = Palette::of(ui);
-    let mut text = RichText::new(text_of(row));
-    if row.level >= NoticeLevel::Note {
-        text = text.color(level_color(palette, row.level));
-    }
-    let label = egui::Label::new(text).selectable(false);
-    if is_opened {
-        ui.add(label.wrap());
-    } else {
+fn text_cell(ui: &mut Ui, row: &LogRow, lines: Lines) {
+    let label = egui::Label::new(job_of(ui, row, lines)).selectable(false);
+    if lines == Lines::ONE {
         ui.add(label.truncate().show_tooltip_when_elided(false));
+    } else {
+        ui.add(label.wrap().show_tooltip_when_elided(false));
     }
 }
