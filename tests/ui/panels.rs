@@ -4,6 +4,7 @@ use egui_kittest::kittest::Queryable as _;
 use shapematch::app::{Action, BottomTab, Dialog, Menu, Section};
 use shapematch::role::Role;
 
+use super::layout::{Painted, texts};
 use super::story::{click, finish, matched, window};
 
 #[test]
@@ -176,5 +177,22 @@ fn a_typed_move_takes_a_decimal_comma_and_its_button_stays_under_the_pointer() {
             now.contains(at),
             "{typed}: the button went from {at} to {now}"
         );
+    }
+}
+
+/// In a pane that is too low for all of the newest row, it is cut after as many lines as fit, and its first line is
+/// seen.
+#[test]
+fn the_log_of_a_low_pane_shows_the_result_from_its_first_line() {
+    let mut window = matched();
+    for [width, height] in [[560.0, 330.0], [640.0, 360.0], [1400.0, 900.0]] {
+        window.set_size(egui::vec2(width, height));
+        window.run_steps(4);
+        let seen = texts(&window);
+        let is_result = |seen: &&Painted| seen.text.starts_with("GOOD: overlap");
+        let found: Vec<&Painted> = seen.iter().filter(is_result).collect();
+        assert!(!found.is_empty(), "{width} × {height}: not seen");
+        let is_cut = |seen: &&&Painted| seen.rect.top() < seen.clip.top();
+        assert_eq!(found.iter().filter(is_cut).count(), 0, "{width} × {height}");
     }
 }

@@ -19,6 +19,7 @@ use super::map::{
     map_parts, map_record, map_report, mapped_by_solver, write_mapping,
 };
 use super::match_parts::MatchRecipe;
+use super::units::PairUnits;
 use super::write_file::{write_file, write_file_unless_cancelled};
 use crate::assess::Verdict;
 use crate::formats::Selection;
@@ -28,6 +29,7 @@ use crate::monitor::Monitor;
 use crate::report::html::CarReport;
 use crate::report::{DIRECTION, build_id};
 use crate::role::PerRole;
+use crate::text::Lengths;
 
 /// Stamped parts that lie on the same elements by more than this share of the area are in conflict.
 const CONFLICT: f64 = 0.02;
@@ -235,11 +237,12 @@ fn claims(
                 let unit = guessed_units(parts, monitor)?;
                 row.reasons.extend(unit.map(CarReason::OtherUnit));
             }
-            Ok(found)
+            let lengths = Lengths::new(PairUnits::of(parts.map(Some)).lengths);
+            Ok(found.map(|found| (found, lengths)))
         });
         match unless_cancelled(found)? {
-            Ok(Some(found)) => {
-                claims.insert(at, claim(row, &found));
+            Ok(Some((found, lengths))) => {
+                claims.insert(at, claim(row, &found, lengths));
             }
             Ok(None) => {}
             Err(error) => row.reasons.push(CarReason::Failed(error.to_string())),
@@ -272,7 +275,7 @@ fn copies(
 }
 
 /// Puts what was found into the row.
-fn claim(row: &mut CarRow, found: &FoundParts) -> Claim {
+fn claim(row: &mut CarRow, found: &FoundParts, lengths: Lengths) -> Claim {
     let run = &found.found.run;
     row.crash_parts = found.found.part.chosen_part_ids();
     row.crash_from_stamped = Some(run.crash_from_stamped.to_rows());
@@ -280,6 +283,8 @@ fn claim(row: &mut CarRow, found: &FoundParts) -> Claim {
     row.rms = Some(run.assessment.coverage.rmse());
     if run.assessment.verdict != Verdict::Good {
         row.reasons.push(CarReason::Pose);
+        let why = run.assessment.sentences(lengths).into_iter().next();
+        row.reasons.extend(why.map(CarReason::Match));
     }
     if !found.rivals.is_empty() {
         row.reasons.push(CarReason::Rivals(found.rivals.clone()));

@@ -44,6 +44,8 @@ pub enum CarReason {
     OtherUnit(UnitGuess),
     /// The verdict of the match is no better than CHECK.
     Pose,
+    /// What the match says against it first.
+    Match(String),
     /// It fits these crash parts about as well.
     Rivals(Vec<u64>),
     /// Another stamped part lies on this share of the same area.
@@ -71,6 +73,7 @@ impl CarReason {
     pub fn text(&self) -> String {
         match self {
             Self::Failed(text)
+            | Self::Match(text)
             | Self::MappedBySolver(text)
             | Self::Unread(text)
             | Self::Bare(text) => text.clone(),

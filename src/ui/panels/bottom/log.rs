@@ -111,10 +111,10 @@ struct Lines(usize);
 impl Lines {
     const ONE: Self = Self(1);
 
-    /// As many as the pane has room for.
+    /// As many as the pane has room for below another row, which the fading edge of the table lies on.
     fn that_fit(ui: &Ui, height: f32) -> Self {
         let line = ui.text_style_height(&TextStyle::Body);
-        Self((((height - MARGIN) / line) as usize).max(1))
+        Self((((height - LINE - MARGIN) / line) as usize).max(1))
     }
 
     /// All of a row that was opened. What came out of a match and what went wrong are shown with as many as fit, so
