@@ -54,7 +54,7 @@ use crate::geometry::{Similarity, z_order_for};
 use crate::monitor::{Cancelled, Monitor};
 use element::{Buffers, Context, Scratch};
 use points::PointRules;
-use source::{PartnerFilter, PreparedSource};
+use source::{PartnerFilter, PreparedSource, SourcePoint};
 
 /// Target elements that are mapped between two questions for a cancel, and the unit of parallel work.
 const CHUNK: usize = 1024;
@@ -229,15 +229,16 @@ fn facing(
     // A thousand elements spread over the mesh tell the sign of all.
     let step = (target.mesh.len() / 1000).max(1);
     let ask = |element: usize| {
+        let normal = target.mesh.normals()[element];
+        let centre = target.mesh.centroids()[element];
         let closest = |facing| {
             let filter = PartnerFilter {
-                normal: target.mesh.normals()[element],
+                normal,
                 min_cos: options.max_angle_deg.to_radians().cos(),
                 facing,
             };
             let own = target.mesh.size(element).max(source_size);
             let reach = options.max_distance.unwrap_or(own);
-            let centre = target.mesh.centroids()[element];
             source.closest(&centre, &filter, reach, None)
         };
         let (_, found) = closest(Facing::Mixed)?;
@@ -246,8 +247,15 @@ fn facing(
         } else {
             Facing::Opposite
         };
-        let area = target.mesh.areas()[element];
-        Some((area, found.is_flipped, closest(other).is_none()))
+        // One that lies above or below is another sheet; a neighbour of the partner that is turned over lies beside it.
+        let is_above = |other: SourcePoint| {
+            let off = other.point - centre;
+            let height = off.dot(&normal);
+            let beside = (off - normal * height).norm();
+            (height - (found.point - centre).dot(&normal)).abs() > beside
+        };
+        let is_alone = closest(other).is_none_or(|(_, other)| !is_above(other));
+        Some((target.mesh.areas()[element], found.is_flipped, is_alone))
     };
     let asked = (0..target.mesh.len().div_ceil(step)).into_par_iter();
     let found: Vec<Option<(f64, bool, bool)>> = asked.map(|number| ask(number * step)).collect();

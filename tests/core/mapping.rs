@@ -741,6 +741,30 @@ fn sheets_of_a_hem_are_told_apart_by_what_lies_beside_it() {
 }
 
 #[test]
+fn elements_that_are_turned_over_here_and_there_are_no_sheets_of_their_own() {
+    let mesh = Blank::new(5.0).mesh(flat);
+    let turned = mesh.corners().iter().enumerate();
+    let turned = turned.map(|(e, &[a, b, c, d])| {
+        if e % 7 == 0 {
+            [a, d, c, b]
+        } else {
+            [a, b, c, d]
+        }
+    });
+    let (n, positions) = (mesh.len(), mesh.positions().to_vec());
+    let mesh = ShellMesh::new(positions, turned.collect(), vec![0; n]).unwrap();
+    let onto = target(Blank::new(7.0).mesh(|u, v| Point3::new(u, v, 0.8)), 2);
+    let mapped = map_one(
+        &source(mesh, 2, uniform),
+        Similarity::identity(),
+        &onto,
+        &full(),
+    );
+    assert_eq!(mapped.facings, [Facing::Mixed]);
+    assert_eq!(mapped.counts()[Status::Mapped as usize], onto.mesh.len());
+}
+
+#[test]
 fn a_hem_does_not_leak() {
     let part = hemmed(100.0);
     // The crash skin is 0.8 too high, so that the flange is the nearer sheet.
