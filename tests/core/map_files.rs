@@ -174,8 +174,6 @@ fn gates_and_wrong_usage_are_told() {
         "{}",
         text(&gate.stderr)
     );
-    let told = [text(&gate.stdout), text(&gate.stderr)].concat();
-    assert!(told.contains("--max-distance sets it"), "{told}");
     let quantity = bracket.map(&["--quantities", "thickness,colour"]);
     assert_eq!(quantity.status.code(), Some(2));
     assert!(text(&quantity.stderr).contains("none of thickness, plastic"));

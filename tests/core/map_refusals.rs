@@ -179,3 +179,15 @@ fn no_output_takes_the_place_of_a_pose_file() {
         assert_eq!(std::fs::read_to_string(pair.path("a.pose")).unwrap(), pose);
     }
 }
+
+#[test]
+fn a_sheet_beyond_the_largest_distance_is_told_with_the_option() {
+    let pair = Pair::new(&crash(2, ""), &stamped(2, ""));
+    let above = "1 0 0 0  0 1 0 0  0 0 1 3  0 0 0 1";
+    let output = pair.run(&["--pose", above, "--max-distance", "2"]);
+    let told = errors(&output);
+    assert!(
+        told.contains("2 elements farther than the largest distance; --max-distance sets it"),
+        "{told}"
+    );
+}

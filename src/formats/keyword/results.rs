@@ -77,6 +77,10 @@ impl Turned {
     }
 }
 
+fn ids_of_shells(model: &Model) -> HashSet<u64> {
+    model.shells.iter().map(|shell| shell.id).collect()
+}
+
 /// The results of all shells, each with its place in the reading.
 pub(super) struct Results {
     forming: Forming,
@@ -106,11 +110,17 @@ impl Results {
             ids.unwrap_or_default()
         };
         let of_sets = &raw.of_sets;
+        let shells = (!of_sets.is_empty()).then(|| ids_of_shells(model));
+        // A range of ids usually has gaps. A deck without shells has results for those of another.
+        let is_there = |id: u64| {
+            let shells = shells.as_ref().filter(|shells| !shells.is_empty());
+            shells.is_none_or(|shells| shells.contains(&id))
+        };
         if of_sets.n_stress() > 0 {
             let mut known: HashSet<u64> = forming.stresses().map(|s| s.element_id).collect();
             for (index, of_set) in of_sets.stresses().enumerate() {
                 let ids = members(of_set.element_id, &raw.stress_places[index]).iter();
-                for &id in ids.filter(|&&id| known.insert(id)) {
+                for &id in ids.filter(|&&id| is_there(id) && known.insert(id)) {
                     forming
                         .add_state(
                             id,
@@ -128,7 +138,7 @@ impl Results {
             let mut known: HashSet<u64> = forming.strains().map(|s| s.element_id).collect();
             for (index, of_set) in of_sets.strains().enumerate() {
                 let ids = members(of_set.element_id, &raw.strain_places[index]).iter();
-                for &id in ids.filter(|&&id| known.insert(id)) {
+                for &id in ids.filter(|&&id| is_there(id) && known.insert(id)) {
                     forming.add_strain(id, of_set.n_plane, of_set.points);
                     strain_source.push(index);
                 }
