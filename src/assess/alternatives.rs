@@ -10,7 +10,7 @@ use super::settle::{Least, Settling};
 use super::shape::{ELSEWHERE, OVERHANGS, ShapeReason, ShapeStatement};
 use super::sliding::weak_motion;
 use super::statements::statements;
-use super::tolerance::{AssessSettings, Distances, UNREMARKABLE, is_source_smaller};
+use super::tolerance::{AssessSettings, Distances, UNREMARKABLE};
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
@@ -21,11 +21,6 @@ const MORE_DIFFERENCES: f64 = 1.5;
 /// than it takes to see that they are behind, and noise, offsets and springback may leave two poses that fit alike so
 /// far apart.
 const WORTH_SETTLING: f64 = 2.5;
-/// Up to so many times if the part lies on other elements: those of a second copy may be three times as long, and facets
-/// lie apart by the square of that.
-const WORTH_SETTLING_ELSEWHERE: f64 = 10.0;
-/// It does if its middle lies farther away than this share of its diagonal.
-const ON_OTHER_ELEMENTS: f64 = 0.5;
 /// Where so much less of the smaller part meets the other, a pose that fits as closely does not fit as well.
 const LITTLE_LESS: f64 = 0.02;
 /// Borders may hold a pose under which what remains of the distances besides a bend is so many times as much, …
@@ -55,13 +50,9 @@ pub fn chosen_by_shape(
     let few = ContactSearch::new(pair, found.scale, distances.reach, FEW_NODES);
     let met = few.clone().at(found).map_or(0.0, |contacts| contacts.share);
     let overhangs = met < OVERHANGS;
-    let is_near = |other: &Alternative| {
-        let lies_elsewhere = || lies_on_other_elements(pair, found, &other.target_from_source);
-        overhangs
-            || other.score_ratio < WORTH_SETTLING
-            || other.score_ratio < WORTH_SETTLING_ELSEWHERE && lies_elsewhere()
-    };
-    if !outcome.alternatives.iter().any(is_near) {
+    let is_near = |other: &&Alternative| overhangs || other.score_ratio < WORTH_SETTLING;
+    let near: Vec<&Alternative> = outcome.alternatives.iter().filter(is_near).collect();
+    if near.is_empty() {
         return Ok(None);
     }
     let settling = Settling::new(pair, found.scale, settings, MAX_NODES);
@@ -71,18 +62,15 @@ pub fn chosen_by_shape(
         Candidate::at(pose, &shape, elsewhere)
     };
     let result = at(*found);
-    let candidate = |other: &Alternative| {
+    let candidate = |other: &&Alternative| {
         monitor.check()?;
         let pose = other.target_from_source;
-        let settled = || settling.settled(&pose, Least::Facets).unwrap_or(pose);
-        Ok(is_near(other).then(|| at(settled())))
+        Ok(at(settling.settled(&pose, Least::Facets).unwrap_or(pose)))
     };
-    let others = outcome.alternatives.par_iter().map(candidate);
-    let candidates: Result<Vec<Option<Candidate>>, Cancelled> = others.collect();
+    let candidates: Result<Vec<Candidate>, Cancelled> = near.par_iter().map(candidate).collect();
     let candidates = candidates?;
     // Of candidates with as many differences the first one scores best.
-    let better = candidates.iter().flatten();
-    let better = better.filter(|other| other.beats(&result));
+    let better = candidates.iter().filter(|other| other.beats(&result));
     let better = better.min_by_key(|other| other.n_differences);
     let winner = better.unwrap_or(&result);
     let before = better.map(|_| Alternative {
@@ -94,8 +82,8 @@ pub fn chosen_by_shape(
     // Where surfaces leave the pose free, borders and holes have compared all poses.
     let limit = free_limit(source, target, found.scale, settings);
     let surfaces_hold = weak_motion(source, target, &winner.pose, limit).is_none();
-    let with_shape = |(other, candidate): (&Alternative, &Option<Candidate>)| {
-        let Some(candidate) = candidate else {
+    let with_shape = |(k, other): (usize, &Alternative)| {
+        let Some(candidate) = candidates.get(k) else {
             return *other;
         };
         if winner.beats(candidate) {
@@ -118,9 +106,9 @@ pub fn chosen_by_shape(
             None => *other,
         }
     };
-    let others = outcome.alternatives.iter().zip(&candidates);
+    // The alternatives come sorted by score, so that those looked at are the first.
+    let others = outcome.alternatives.iter().enumerate().map(with_shape);
     let mut alternatives: Vec<Alternative> = others
-        .map(with_shape)
         .chain(before.map(|before| ranked(before, true)))
         .filter(|other| !same_pose(&other.target_from_source, &winner.pose, &part))
         .collect();
@@ -129,22 +117,6 @@ pub fn chosen_by_shape(
         target_from_source: winner.pose,
         alternatives: distinct(&alternatives, source),
     }))
-}
-
-/// Whether the smaller part covers another piece of the larger one under another pose.
-fn lies_on_other_elements(
-    [source, target]: [&Surface; 2],
-    pose: &Similarity,
-    other: &Similarity,
-) -> bool {
-    let (smaller, poses) = if is_source_smaller(source, target, pose.scale) {
-        (source, [*pose, *other])
-    } else {
-        (target, [pose.inverse(), other.inverse()])
-    };
-    let middle = &smaller.measures().centroid;
-    let [here, there] = poses.map(|pose| pose.apply(middle));
-    (here - there).norm() > ON_OTHER_ELEMENTS * smaller.measures().diagonal * poses[0].scale
 }
 
 /// Whether a pose that borders and holes speak for is worse than the one that the surfaces found: that one has surely

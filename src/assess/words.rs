@@ -102,7 +102,7 @@ impl Reason {
                 percent(*overlap),
                 lengths.of(*p95),
                 if *rivals_sought {
-                    "no other pose on this crash part fits nearly as well"
+                    "no other pose fits nearly as well"
                 } else {
                     "other poses were not looked for everywhere"
                 }

@@ -33,6 +33,9 @@ const N_GRID_SAMPLES: usize = 30_000;
 const N_DATA_SAMPLES: usize = 1200;
 /// Parts whose areas differ by more than this share are aligned at many places.
 const SAME_AREA: f64 = 0.1;
+/// Below this share of the larger area a part is a piece that may slide along the other, and its holes give starts. With
+/// an addendum on the other part it is larger, and the borders say more than the middles of a few holes.
+const CLEARLY_SMALLER: f64 = 0.65;
 
 /// A pose that survived the wide search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -226,7 +229,7 @@ impl<'a> WideSearch<'a> {
         if is_whole && is_apart {
             found = run(OVERHANGING)?;
         }
-        if !is_whole || is_apart {
+        if self.area_ratio() < CLEARLY_SMALLER {
             let holes = Holes::of(cloud, parts, &self.grid);
             let seeds = holes.seeds();
             let survivors = rounds::run(ground, &seeds, &HOLE_ROUNDS, monitor)?;
@@ -242,9 +245,12 @@ impl<'a> WideSearch<'a> {
         self.counts() == WHOLE
     }
 
+    fn area_ratio(&self) -> f64 {
+        self.data.measures().area / self.model.measures().area
+    }
+
     fn counts(&self) -> SeedCounts {
-        let (data, model) = (self.data.measures().area, self.model.measures().area);
-        if data > (1.0 - SAME_AREA) * model {
+        if self.area_ratio() > 1.0 - SAME_AREA {
             WHOLE
         } else {
             PIECE
