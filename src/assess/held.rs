@@ -2,7 +2,6 @@
 //! borders and holes say where it belongs.
 
 mod hand;
-mod laid;
 
 use rayon::prelude::*;
 
@@ -146,7 +145,6 @@ pub fn held_by_borders(
         })
         .collect();
     let choice = pair.choice(&result, is_close(&result), &rivals);
-    let choice = choice.or_else(|| pair.laid_better(&result, &rivals, outcome));
     let winner = choice.unwrap_or(result);
     let exactly = Settling::new([source, target], found.scale, settings, MAX_NODES);
     let mut alternatives = pair.alternatives(&winner, choice.is_some(), &rivals, outcome);
