@@ -10,10 +10,10 @@ use super::settle::{Least, Settling};
 use super::shape::{ELSEWHERE, OVERHANGS, ShapeReason, ShapeStatement};
 use super::sliding::weak_motion;
 use super::statements::statements;
-use super::tolerance::{AssessSettings, Distances, UNREMARKABLE};
+use super::tolerance::{AssessSettings, Distances, UNREMARKABLE, is_source_smaller};
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
-use crate::registration::{Alternative, MatchOutcome, Surface, same_pose};
+use crate::registration::{Alternative, MatchOutcome, Surface, WideSearch, same_pose};
 
 /// A pose with more differences of the shapes counts as at least so many times as bad as the result.
 const MORE_DIFFERENCES: f64 = 1.5;
@@ -110,6 +110,89 @@ pub fn chosen_by_shape(
     let others = outcome.alternatives.iter().enumerate().map(with_shape);
     let mut alternatives: Vec<Alternative> = others
         .chain(before.map(|before| ranked(before, true)))
+        .filter(|other| !same_pose(&other.target_from_source, &winner.pose, &part))
+        .collect();
+    alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
+    Ok(Some(HeldPose {
+        target_from_source: winner.pose,
+        alternatives: distinct(&alternatives, source),
+    }))
+}
+
+/// The pose under which holes of a piece lie on like ones of the other part, where the shapes differ under the pose of
+/// `outcome` and do not, or surely less, under that one: a piece may slide along a strip with hardly any gain or loss of
+/// its surfaces. `None` where the shapes do not differ, or differ as much under every such pose.
+/// O(poses · (border edges + nodes · log triangles)).
+pub fn placed_by_holes(
+    source: &Surface,
+    target: &Surface,
+    outcome: &MatchOutcome,
+    settings: &AssessSettings,
+    monitor: &Monitor,
+) -> Result<Option<HeldPose>, Cancelled> {
+    let found = &outcome.target_from_source;
+    if found.is_mirrored() || found.scale != 1.0 {
+        return Ok(None);
+    }
+    let shape = |pose: &Similarity| statements(source, target, pose, settings).shape;
+    let result = Candidate::at(*found, &shape(found), None);
+    if result.n_differences == 0 {
+        return Ok(None);
+    }
+    let is_source_smaller = is_source_smaller(source, target, 1.0);
+    let search = if is_source_smaller {
+        WideSearch::new(source, target)
+    } else {
+        WideSearch::new(target, source)
+    };
+    let Some(search) = search.filter(|search| !search.is_whole()) else {
+        return Ok(None);
+    };
+    let settling = Settling::new([source, target], 1.0, settings, MAX_NODES);
+    let candidate = |pose: &Similarity| {
+        monitor.check()?;
+        let pose = if is_source_smaller {
+            *pose
+        } else {
+            pose.inverse()
+        };
+        let pose = settling.settled(&pose, Least::Any).unwrap_or(pose);
+        Ok(Candidate::at(pose, &shape(&pose), None))
+    };
+    let poses = search.on_holes(monitor)?;
+    let candidates: Result<Vec<Candidate>, Cancelled> = poses.par_iter().map(candidate).collect();
+    let mut better = candidates?;
+    better.retain(|other| {
+        let differs_less = other.n_differences == 0 || other.beats(&result);
+        differs_less && other.met >= result.met - LITTLE_LESS
+    });
+    better.sort_by_key(|other| other.n_differences);
+    let Some(winner) = better.first() else {
+        return Ok(None);
+    };
+    let start = outcome.winner;
+    let alternative = |target_from_source, score_ratio| Alternative {
+        target_from_source,
+        score_ratio,
+        start,
+    };
+    let as_good = better[1..].iter().map(|other| {
+        let ratio = if other.n_differences > winner.n_differences {
+            MORE_DIFFERENCES
+        } else {
+            1.0
+        };
+        alternative(other.pose, ratio)
+    });
+    let before = alternative(*found, MORE_DIFFERENCES);
+    let others = outcome
+        .alternatives
+        .iter()
+        .map(|other| ranked(*other, true));
+    let part = source.measures().into();
+    let mut alternatives: Vec<Alternative> = as_good
+        .chain([before])
+        .chain(others)
         .filter(|other| !same_pose(&other.target_from_source, &winner.pose, &part))
         .collect();
     alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));

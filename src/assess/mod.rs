@@ -38,7 +38,7 @@ mod verdict;
 mod words;
 
 pub use all_pairs::is_better_with_all_pairs;
-pub use alternatives::{chosen_by_shape, is_pulled_aside};
+pub use alternatives::{chosen_by_shape, is_pulled_aside, placed_by_holes};
 pub use ambiguity::{Ambiguity, Clarity, Twin, TwinAxis};
 pub use assessment::Assessment;
 pub use coverage::{Coverage, OneSided, coverage, overlap_limit, quick_overlap};

@@ -41,7 +41,6 @@ pub fn start_kind_words(kind: StartKind) -> String {
             let (rotation, place) = (rotation + 1, place + 1);
             format!("wide search, rotation {rotation} at place {place}")
         }
-        StartKind::Holes { index } => format!("holes on holes {}", index + 1),
         StartKind::CurrentPose => "current pose".to_owned(),
         StartKind::Given { index } => format!("given pose {}", index + 1),
         StartKind::Alike { index } => format!("place shaped alike, {}", index + 1),
@@ -69,10 +68,6 @@ pub fn start_kind_help(kind: StartKind) -> &'static str {
             "A survivor of the wide search, which tries all rotations, both normal directions and, where \
              sizes differ, all places."
         }
-        StartKind::Holes { .. } => {
-            "Two holes of the smaller part on two of the larger one that are as large and as far apart; if it has \
-             only one, this on one as large. So a part that could slide along the other finds its place."
-        }
         StartKind::CurrentPose => "Where the part lay before the match.",
         StartKind::Given { .. } => "A pose that was given.",
         StartKind::Alike { .. } => {
@@ -96,7 +91,6 @@ pub fn start_counts(starts: &[StartRecord]) -> String {
             StartKind::PrincipalFrame { .. } => "by principal axes",
             StartKind::Covering { .. } => "by rotations",
             StartKind::Wide { .. } => "by the wide search",
-            StartKind::Holes { .. } => "by holes",
             StartKind::CurrentPose => "from the present pose",
             StartKind::Given { .. } => "given",
             StartKind::Alike { .. } | StartKind::Twin { .. } | StartKind::Turned { .. } => {

@@ -3,8 +3,7 @@
 use shapematch::geometry::{Point3, Similarity, TriMesh};
 use shapematch::monitor::{Cancelled, Monitor};
 use shapematch::registration::{
-    MatchInput, MatchSettings, Stage, StartKind, StartRecord, Surface, WideFind, WideSearch,
-    match_surfaces,
+    MatchInput, MatchSettings, Stage, StartRecord, Surface, WideFind, WideSearch, match_surfaces,
 };
 
 use super::drawn_pan::{everywhere, pan, panel, placement, worst_node};
@@ -103,9 +102,10 @@ fn holes_say_where_a_piece_of_a_strip_lies_along_it() {
         let piece = strip(3.0, piece);
         let truth = placement(seed);
         let moved = piece.transformed(&truth.inverse());
-        let found = search(&moved, &whole, false).into_iter();
-        let by_holes = found.filter(|find| matches!(find.kind, StartKind::Holes { .. }));
-        let off = by_holes.map(|find| worst_node(&moved, &truth, &find.model_from_data));
+        let [data, model] = [&moved, &whole].map(|mesh| Surface::new(mesh, "source").unwrap());
+        let search = WideSearch::new(&data, &model).unwrap();
+        let found = search.on_holes(&Monitor::silent()).unwrap().into_iter();
+        let off = found.map(|pose| worst_node(&moved, &truth, &pose));
         let least = off.fold(f64::INFINITY, f64::min);
         assert!(least < 2.0, "seed {seed}: {least:.2} mm");
     }

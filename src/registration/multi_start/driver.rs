@@ -12,7 +12,7 @@ use super::score::{PoseScorer, TwoSided};
 use super::sizes::{
     incompatible_settings, last_stage_swaps, natural_data_side, sizes_incompatible,
 };
-use super::starts::{Start, StartKind, StartMethod, starts};
+use super::starts::{Start, StartMethod, starts};
 use super::turns::turns;
 use super::variations::{mirror_images, twins};
 use super::wide_starts::WideStarts;
@@ -294,10 +294,7 @@ impl<'a> MultiStart<'a> {
         let begin = Instant::now();
         let settings = &*self.settings;
         let (choice, done) = &mut self.choices[choice_idx];
-        let (on_holes, starts): (Vec<Start>, Vec<Start>) = starts
-            .iter()
-            .partition(|start| matches!(start.kind, StartKind::Holes { .. }));
-        let mut candidates = enter(choice, &starts, numbers, monitor);
+        let mut candidates = enter(choice, starts, numbers, monitor);
         if settings.search == Search::EveryStart {
             run_every_start(choice, &mut candidates, settings, monitor)?;
             self.timings.coarse += begin.elapsed();
@@ -305,14 +302,6 @@ impl<'a> MultiStart<'a> {
             return Ok(());
         }
         run_coarse(choice, &mut candidates, settings, monitor)?;
-        let mut run = |choice: &DataChoice<'_>, starts: &[Start], to: &mut Vec<Candidate>| {
-            let mut few = enter(choice, starts, numbers, monitor);
-            run_coarse(choice, &mut few, settings, monitor)?;
-            to.extend(few);
-            Ok::<(), Cancelled>(())
-        };
-        // Few points do not tell the pose that holes give from others along a strip: it may not leave for want of room.
-        run(choice, &on_holes, &mut candidates)?;
         let deepen = |depth, choice: &DataChoice<'_>, candidates: &mut [Candidate], n_distinct| {
             refine(depth, choice, candidates, n_distinct, settings, monitor)
         };
@@ -323,12 +312,16 @@ impl<'a> MultiStart<'a> {
             self.asked.push((choice_idx, best.run.model_from_data));
             let near = alike(choice, best, self.wide.as_ref(), monitor.monitor)?;
             let turned = turns(choice, best, monitor.monitor)?;
-            run(choice, &near, &mut candidates)?;
+            let mut late = enter(choice, &near, numbers, monitor);
+            run_coarse(choice, &mut late, settings, monitor)?;
+            candidates.extend(late);
             // They score alike, so that none may leave for want of room.
             for few in turned.chunks(FEWEST_KEPT) {
-                run(choice, few, &mut candidates)?;
+                let mut turned = enter(choice, few, numbers, monitor);
+                run_coarse(choice, &mut turned, settings, monitor)?;
+                candidates.extend(turned);
             }
-            if !(turned.is_empty() && on_holes.is_empty()) {
+            if !turned.is_empty() {
                 drop_behind(choice, &mut candidates, monitor);
                 n_distinct = n_distinct.max(ranking(&candidates).len());
             }

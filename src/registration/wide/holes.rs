@@ -1,12 +1,12 @@
-//! First poses from holes: two holes of the smaller part on two of the larger one that are as large and as far apart, or
-//! its only hole on each that is as large. Where a part can slide along its counterpart, holes say where it belongs.
+//! Poses from holes: two holes of the smaller part on two of the larger one that are as large and as far apart, or its only
+//! hole on each that is as large. Where a part can slide along its counterpart, holes say where it belongs.
 
 use std::f64::consts::TAU;
 
 use super::cloud::{Cloud, Motion32};
-use super::seeds::{Seed, frame, laid, matrix};
+use super::rounds::First;
+use super::seeds::{frame, laid, matrix};
 use crate::geometry::{Matrix3, Point3, Rotation, Vector3};
-use crate::registration::starts::StartKind;
 use crate::registration::surface::Surface;
 use crate::search::FeatureGrid;
 
@@ -60,15 +60,9 @@ impl Holes {
         let of_model = holes(model, MOST_HOLES[1], |point| {
             (point - grid.origin()) * cloud.scale
         });
-        let mut of_data = holes(data, MOST_HOLES[0], |point| {
+        let of_data = holes(data, MOST_HOLES[0], |point| {
             (point - cloud.center) * cloud.scale
         });
-        if cloud.is_mirrored {
-            for hole in &mut of_data {
-                hole.center.x = -hole.center.x;
-                hole.normal.x = -hole.normal.x;
-            }
-        }
         let edge = [data, model].map(|part| part.measures().mean_edge_length);
         Self {
             data: of_data,
@@ -82,7 +76,7 @@ impl Holes {
 
     /// The first poses that they give, in a fixed order; none where a part has no holes.
     /// O(holes of the data² · holes of the model²), both bounded.
-    pub(super) fn seeds(&self) -> Vec<Seed> {
+    pub(super) fn first_poses(&self) -> Vec<First> {
         let mut found = Vec::new();
         match self.data[..] {
             [only] => self.alike.lay_only(&only, &self.model, &mut found),
@@ -160,8 +154,8 @@ impl Alike {
     }
 
     /// The only hole of the data on each hole of the model that is as large, turned about its normal.
-    fn lay_only(&self, only: &Hole, of_model: &[Hole], found: &mut Vec<Seed>) {
-        for (index, hole) in of_model.iter().enumerate() {
+    fn lay_only(&self, only: &Hole, of_model: &[Hole], found: &mut Vec<First>) {
+        for hole in of_model {
             if !self.are_as_large(only, hole) {
                 continue;
             }
@@ -171,8 +165,7 @@ impl Alike {
                 let normal = if flipped { -only.normal } else { only.normal };
                 let own = frame(&normal, &Vector3::x());
                 let turn = frame(&hole.normal, &Vector3::x()) * turn * own.transpose();
-                found.push(Seed {
-                    kind: StartKind::Holes { index },
+                found.push(First {
                     flipped,
                     motion: laid(&turn, &only.center, &hole.center),
                 });
@@ -181,7 +174,7 @@ impl Alike {
     }
 
     /// Every two holes of the data on every two of the model that stand to each other as they do.
-    fn lay_pairs(&self, of_data: &[Hole], of_model: &[Hole], found: &mut Vec<Seed>) {
+    fn lay_pairs(&self, of_data: &[Hole], of_model: &[Hole], found: &mut Vec<First>) {
         let there: Vec<Two> = (0..of_model.len())
             .flat_map(|k| (0..of_model.len()).map(move |l| [k, l]))
             .filter_map(|two| self.two(of_model, two))
@@ -190,13 +183,12 @@ impl Alike {
             .flat_map(|j| (0..j).map(move |i| [i, j]))
             .filter_map(|two| self.two(of_data, two));
         for (own, flipped) in own.flat_map(|own| [(own, false), (own.turned_over(), true)]) {
-            for (index, other) in there.iter().enumerate() {
+            for other in &there {
                 if found.len() == MOST_SEEDS {
                     return;
                 }
                 if self.stand_alike(&own, other) {
-                    found.push(Seed {
-                        kind: StartKind::Holes { index },
+                    found.push(First {
                         flipped,
                         motion: laid(
                             &(other.frame * own.frame.transpose()),

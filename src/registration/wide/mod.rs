@@ -20,10 +20,10 @@ use super::surface::Surface;
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::search::{FeatureGrid, GridSettings};
-use cloud::{Cloud, area_samples};
+use cloud::{Cloud, Motion32, area_samples};
 use holes::Holes;
 use rounds::{Ground, Round};
-use seeds::{Seed, SeedCounts};
+use seeds::SeedCounts;
 
 /// Points that are worked on side by side.
 const LANES: usize = 8;
@@ -33,9 +33,6 @@ const N_GRID_SAMPLES: usize = 30_000;
 const N_DATA_SAMPLES: usize = 1200;
 /// Parts whose areas differ by more than this share are aligned at many places.
 const SAME_AREA: f64 = 0.1;
-/// Below this share of the larger area a part is a piece that may slide along the other, and its holes give starts. With
-/// an addendum on the other part it is larger, and the borders say more than the middles of a few holes.
-const CLEARLY_SMALLER: f64 = 0.65;
 
 /// A pose that survived the wide search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,7 +79,7 @@ const OVERHANGING: SeedCounts = SeedCounts {
 };
 /// Above this loss the parts do not cover each other. Noise of 1 mm on the sample parts stays below
 /// it, a strip of 15 % that misses lies above.
-const CONTAINED_LOSS: f64 = 0.1;
+const CONTAINED_LOSS: f32 = 0.1;
 
 const ROUNDS: [Round; 5] = [
     Round {
@@ -163,8 +160,7 @@ const HOLE_ROUNDS: [Round; 4] = [
         most: 8,
     },
 ];
-
-/// Poses that holes give, of those under which the most of them have their counterpart.
+/// Poses that holes give at most.
 const MOST_ON_HOLES: usize = 4;
 
 /// Reach of the first round, as a share of the data's diagonal.
@@ -204,40 +200,59 @@ impl<'a> WideSearch<'a> {
             &self.cloud
         };
         let counts = self.counts();
-        let parts = (self.data, self.model);
-        let ground = Ground {
-            cloud,
-            grid: &self.grid,
-            reach: REACH * cloud.diagonal.min(1.0),
-        };
-        let find = |seeds: &[Seed], candidate: &rounds::Candidate| WideFind {
+        let mut seeds = seeds::seeds(cloud, (self.data, self.model), &self.grid, counts);
+        let ground = self.ground(cloud);
+        let mut found = rounds::run(
+            ground,
+            seeds.iter().map(|seed| seed.first),
+            &ROUNDS,
+            monitor,
+        )?;
+        // Parts of one size whose centroids do not belong on each other overhang each other.
+        if counts.patches == 0 && found.first().is_none_or(|best| best.loss > CONTAINED_LOSS) {
+            seeds = seeds::seeds(cloud, (self.data, self.model), &self.grid, OVERHANGING);
+            found = rounds::run(
+                ground,
+                seeds.iter().map(|seed| seed.first),
+                &ROUNDS,
+                monitor,
+            )?;
+        }
+        let find = |candidate: rounds::Candidate| WideFind {
             kind: seeds[candidate.seed as usize].kind,
             flipped: candidate.flipped,
             model_from_data: cloud.model_from_data(&candidate.motion, &self.grid),
             loss: f64::from(candidate.loss),
         };
-        let run = |counts: SeedCounts| {
-            let seeds = seeds::seeds(cloud, parts, &self.grid, counts);
-            let survivors = rounds::run(ground, &seeds, &ROUNDS, monitor)?;
-            let found = survivors.iter().map(|candidate| find(&seeds, candidate));
-            Ok::<Vec<WideFind>, Cancelled>(found.collect())
-        };
-        let mut found = run(counts)?;
-        // Parts of one size whose centroids do not belong on each other overhang each other.
-        let is_whole = counts.patches == 0;
-        let is_apart = found.first().is_none_or(|best| best.loss > CONTAINED_LOSS);
-        if is_whole && is_apart {
-            found = run(OVERHANGING)?;
+        Ok(found.into_iter().map(find).collect())
+    }
+
+    /// Poses `model_from_data` in which holes of the data lie on holes of the model that are as large and as far apart:
+    /// of those whose surfaces lie close the ones under which the most holes have their counterpart, at most four. They
+    /// are as exact as the middles of a few holes. Empty where a part has no holes.
+    /// O(holes of the data² · holes of the model² + poses), all bounded.
+    pub fn on_holes(&self, monitor: &Monitor) -> Result<Vec<Similarity>, Cancelled> {
+        let holes = Holes::of(&self.cloud, (self.data, self.model), &self.grid);
+        let ground = self.ground(&self.cloud);
+        let first = holes.first_poses().into_iter();
+        let survivors = rounds::run(ground, first, &HOLE_ROUNDS, monitor)?.into_iter();
+        let moved = survivors.map(|candidate| holes.laid(&candidate.motion));
+        let mut moved: Vec<(usize, Motion32)> = moved.collect();
+        let most = moved.iter().map(|(n, _)| *n).max().unwrap_or(0);
+        moved.retain(|(n, _)| *n == most && *n > 0);
+        moved.truncate(MOST_ON_HOLES);
+        let poses = moved
+            .iter()
+            .map(|(_, motion)| self.cloud.model_from_data(motion, &self.grid));
+        Ok(poses.collect())
+    }
+
+    fn ground<'b>(&'b self, cloud: &'b Cloud) -> Ground<'b> {
+        Ground {
+            cloud,
+            grid: &self.grid,
+            reach: REACH * cloud.diagonal.min(1.0),
         }
-        if self.area_ratio() < CLEARLY_SMALLER {
-            let holes = Holes::of(cloud, parts, &self.grid);
-            let seeds = holes.seeds();
-            let survivors = rounds::run(ground, &seeds, &HOLE_ROUNDS, monitor)?;
-            let on_holes = most_on_holes(&holes, survivors);
-            found.extend(on_holes.iter().map(|candidate| find(&seeds, candidate)));
-            found.sort_by(|a, b| a.loss.total_cmp(&b.loss));
-        }
-        Ok(found)
     }
 
     /// True if the data may cover all of the model.
@@ -245,34 +260,12 @@ impl<'a> WideSearch<'a> {
         self.counts() == WHOLE
     }
 
-    fn area_ratio(&self) -> f64 {
-        self.data.measures().area / self.model.measures().area
-    }
-
     fn counts(&self) -> SeedCounts {
-        if self.area_ratio() > 1.0 - SAME_AREA {
+        let (data, model) = (self.data.measures().area, self.model.measures().area);
+        if data > (1.0 - SAME_AREA) * model {
             WHOLE
         } else {
             PIECE
         }
     }
-}
-
-/// Of poses sorted by their loss those under which the most holes have their counterpart, moved onto these.
-fn most_on_holes(holes: &Holes, survivors: Vec<rounds::Candidate>) -> Vec<rounds::Candidate> {
-    let laid = survivors.into_iter().map(|candidate| {
-        let (n, motion) = holes.laid(&candidate.motion);
-        (
-            n,
-            rounds::Candidate {
-                motion,
-                ..candidate
-            },
-        )
-    });
-    let mut laid: Vec<(usize, rounds::Candidate)> = laid.collect();
-    let most = laid.iter().map(|(n, _)| *n).max().unwrap_or(0);
-    laid.retain(|(n, _)| *n == most && *n > 0);
-    laid.truncate(MOST_ON_HOLES);
-    laid.into_iter().map(|(_, candidate)| candidate).collect()
 }

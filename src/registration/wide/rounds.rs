@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use super::LANES;
 use super::cloud::{Cloud, Motion32};
-use super::seeds::Seed;
 use super::step::{Reach, loss, step};
 use crate::monitor::{Cancelled, Monitor};
 use crate::search::FeatureGrid;
@@ -22,6 +21,14 @@ pub(super) struct Round {
     pub(super) least: usize,
     /// … and at most so many.
     pub(super) most: usize,
+}
+
+/// A first pose.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct First {
+    /// True if the data's normals count reversed.
+    pub(super) flipped: bool,
+    pub(super) motion: Motion32,
 }
 
 /// A pose on its way through the rounds.
@@ -49,21 +56,20 @@ pub(super) struct Ground<'a> {
     pub(super) reach: f32,
 }
 
-/// Runs all seeds through `rounds`; the distinct survivors come out best first. After a stop request
+/// Runs all first poses through `rounds`; the distinct survivors come out best first. After a stop request
 /// what has been reached is returned.
 pub(super) fn run(
     ground: Ground<'_>,
-    seeds: &[Seed],
+    first: impl Iterator<Item = First>,
     rounds: &[Round],
     monitor: &Monitor,
 ) -> Result<Vec<Candidate>, Cancelled> {
-    let mut field: Vec<Candidate> = seeds
-        .iter()
+    let mut field: Vec<Candidate> = first
         .zip(0..)
-        .map(|(seed, index)| Candidate {
+        .map(|(first, index)| Candidate {
             seed: index,
-            flipped: seed.flipped,
-            motion: seed.motion,
+            flipped: first.flipped,
+            motion: first.motion,
             loss: 1.0,
         })
         .collect();

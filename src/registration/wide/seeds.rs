@@ -4,6 +4,7 @@ use nalgebra::SymmetricEigen;
 
 use super::LANES;
 use super::cloud::{Cloud, Motion32};
+use super::rounds::First;
 use crate::geometry::{Matrix3, Rotation, Vector3};
 use crate::registration::starts::{StartKind, super_fibonacci};
 use crate::registration::surface::Surface;
@@ -22,13 +23,11 @@ pub(super) struct SeedCounts {
     pub(super) turns: usize,
 }
 
-/// A first pose.
+/// A first pose with how it came to be.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seed {
     pub(super) kind: StartKind,
-    /// True if the data's normals count reversed.
-    pub(super) flipped: bool,
-    pub(super) motion: Motion32,
+    pub(super) first: First,
 }
 
 /// Samples of the larger part that its patches are measured on.
@@ -97,8 +96,10 @@ fn push_both(found: &mut Vec<Seed>, kind: StartKind, motion: impl Fn(bool) -> Mo
     for flipped in [false, true] {
         found.push(Seed {
             kind,
-            flipped,
-            motion: motion(flipped),
+            first: First {
+                flipped,
+                motion: motion(flipped),
+            },
         });
     }
 }

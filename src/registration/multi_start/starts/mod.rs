@@ -105,11 +105,6 @@ pub enum StartKind {
         /// Number of the place; at the first the centroids lie on each other.
         place: usize,
     },
-    /// Holes of the smaller part on holes of the larger one that are as large and as far apart.
-    Holes {
-        /// Number of the holes of the larger part, by size.
-        index: usize,
-    },
     /// Where the parts lay.
     // "swapped" named a start that no version made; a file with that word still opens.
     #[serde(alias = "swapped")]
