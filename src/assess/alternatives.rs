@@ -13,7 +13,7 @@ use super::statements::statements;
 use super::tolerance::{AssessSettings, Distances, UNREMARKABLE, is_source_smaller};
 use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
-use crate::registration::{Alternative, MatchOutcome, Surface, WideSearch, same_pose};
+use crate::registration::{Alternative, MatchOutcome, Surface, WideSearch, is_piece, same_pose};
 
 /// A pose with more differences of the shapes counts as at least so many times as bad as the result.
 const MORE_DIFFERENCES: f64 = 1.5;
@@ -121,8 +121,8 @@ pub fn chosen_by_shape(
 
 /// The pose under which holes of a piece lie on like ones of the other part, where the shapes differ under the pose of
 /// `outcome` and do not, or surely less, under that one: a piece may slide along a strip with hardly any gain or loss of
-/// its surfaces. `None` where the shapes do not differ, or differ as much under every such pose.
-/// O(poses · (border edges + nodes · log triangles)).
+/// its surfaces. `None` where rivals were not to be looked for, where the shapes do not differ, or where they differ as
+/// much under every such pose. O(poses · (border edges + nodes · log triangles)).
 pub fn placed_by_holes(
     source: &Surface,
     target: &Surface,
@@ -131,30 +131,31 @@ pub fn placed_by_holes(
     monitor: &Monitor,
 ) -> Result<Option<HeldPose>, Cancelled> {
     let found = &outcome.target_from_source;
-    if found.is_mirrored() || found.scale != 1.0 {
+    let is_source_smaller = is_source_smaller(source, target, 1.0);
+    let [data, model] = if is_source_smaller {
+        [source, target]
+    } else {
+        [target, source]
+    };
+    let has_holes = |part: &Surface| part.borders().iter().any(|border| border.is_hole);
+    let is_rigid = !found.is_mirrored() && found.scale == 1.0;
+    let is_asked = outcome.rivals_sought && is_rigid && is_piece(data, model);
+    if !(is_asked && has_holes(data) && has_holes(model)) {
         return Ok(None);
     }
     let shape = |pose: &Similarity| statements(source, target, pose, settings).shape;
     let result = Candidate::at(*found, &shape(found), None);
-    if result.n_differences == 0 {
-        return Ok(None);
-    }
-    let is_source_smaller = is_source_smaller(source, target, 1.0);
-    let search = if is_source_smaller {
-        WideSearch::new(source, target)
-    } else {
-        WideSearch::new(target, source)
-    };
-    let Some(search) = search.filter(|search| !search.is_whole()) else {
+    let search = (result.n_differences > 0).then(|| WideSearch::new(data, model));
+    let Some(search) = search.flatten() else {
         return Ok(None);
     };
     let settling = Settling::new([source, target], 1.0, settings, MAX_NODES);
-    let candidate = |pose: &Similarity| {
+    let candidate = |model_from_data: &Similarity| {
         monitor.check()?;
         let pose = if is_source_smaller {
-            *pose
+            *model_from_data
         } else {
-            pose.inverse()
+            model_from_data.inverse()
         };
         let pose = settling.settled(&pose, Least::Any).unwrap_or(pose);
         Ok(Candidate::at(pose, &shape(&pose), None))
@@ -167,39 +168,40 @@ pub fn placed_by_holes(
         differs_less && other.met >= result.met - LITTLE_LESS
     });
     better.sort_by_key(|other| other.n_differences);
-    let Some(winner) = better.first() else {
-        return Ok(None);
-    };
-    let start = outcome.winner;
-    let alternative = |target_from_source, score_ratio| Alternative {
+    Ok(better.split_first().map(|(winner, others)| HeldPose {
+        target_from_source: winner.pose,
+        alternatives: behind(winner, others, outcome, source),
+    }))
+}
+
+/// The other poses beside one that holes gave: those that holes gave too, the result before, and its alternatives. Only
+/// one under which the shapes differ no more is as likely.
+fn behind(
+    winner: &Candidate,
+    by_holes: &[Candidate],
+    outcome: &MatchOutcome,
+    source: &Surface,
+) -> Vec<Alternative> {
+    let as_likely = |target_from_source| Alternative {
         target_from_source,
-        score_ratio,
-        start,
+        score_ratio: 1.0,
+        start: outcome.winner,
     };
-    let as_good = better[1..].iter().map(|other| {
-        let ratio = if other.n_differences > winner.n_differences {
-            MORE_DIFFERENCES
-        } else {
-            1.0
-        };
-        alternative(other.pose, ratio)
-    });
-    let before = alternative(*found, MORE_DIFFERENCES);
-    let others = outcome
-        .alternatives
-        .iter()
-        .map(|other| ranked(*other, true));
     let part = source.measures().into();
-    let mut alternatives: Vec<Alternative> = as_good
+    let by_holes = by_holes.iter().map(|other| {
+        let is_beaten = other.n_differences > winner.n_differences;
+        ranked(as_likely(other.pose), is_beaten)
+    });
+    let before = ranked(as_likely(outcome.target_from_source), true);
+    let others = outcome.alternatives.iter();
+    let others = others.map(|other| ranked(*other, true));
+    let mut all: Vec<Alternative> = by_holes
         .chain([before])
         .chain(others)
         .filter(|other| !same_pose(&other.target_from_source, &winner.pose, &part))
         .collect();
-    alternatives.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
-    Ok(Some(HeldPose {
-        target_from_source: winner.pose,
-        alternatives: distinct(&alternatives, source),
-    }))
+    all.sort_by(|a, b| a.score_ratio.total_cmp(&b.score_ratio));
+    distinct(&all, source)
 }
 
 /// Whether a pose that borders and holes speak for is worse than the one that the surfaces found: that one has surely

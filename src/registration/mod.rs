@@ -41,4 +41,5 @@ pub use result::{
 pub use scale_check::{ScaleCheck, UnitGuess, guess_unit};
 pub use settings::{DataSide, Hand, MatchSettings, Method, Search, limits};
 pub use surface::{Measures, Surface};
+pub(crate) use wide::is_piece;
 pub use wide::{WideFind, WideSearch};

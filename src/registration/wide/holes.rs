@@ -1,5 +1,5 @@
-//! Poses from holes: two holes of the smaller part on two of the larger one that are as large and as far apart, or its only
-//! hole on each that is as large. Where a part can slide along its counterpart, holes say where it belongs.
+//! Poses from holes: two holes of the smaller part on two of the larger one that are as large and as far apart, or its
+//! only hole on each that is as large. Where a part can slide along its counterpart, holes say where it belongs.
 
 use std::f64::consts::TAU;
 
@@ -32,7 +32,7 @@ const LEAST_ACROSS: f64 = 0.5;
 /// Turns about the normal of an only hole.
 const N_TURNS: usize = 36;
 /// First poses at most: of a plate with hundreds of like holes they say nothing.
-const MOST_SEEDS: usize = 10_000;
+const MOST_FIRST: usize = 10_000;
 
 /// A hole in grid units, of the data in the frame of its cloud.
 #[derive(Debug, Clone, Copy)]
@@ -184,7 +184,7 @@ impl Alike {
             .filter_map(|two| self.two(of_data, two));
         for (own, flipped) in own.flat_map(|own| [(own, false), (own.turned_over(), true)]) {
             for other in &there {
-                if found.len() == MOST_SEEDS {
+                if found.len() == MOST_FIRST {
                     return;
                 }
                 if self.stand_alike(&own, other) {

@@ -261,11 +261,15 @@ impl<'a> WideSearch<'a> {
     }
 
     fn counts(&self) -> SeedCounts {
-        let (data, model) = (self.data.measures().area, self.model.measures().area);
-        if data > (1.0 - SAME_AREA) * model {
-            WHOLE
-        } else {
+        if is_piece(self.data, self.model) {
             PIECE
+        } else {
+            WHOLE
         }
     }
+}
+
+/// True if a part is too small to cover all of another one.
+pub(crate) fn is_piece(data: &Surface, model: &Surface) -> bool {
+    data.measures().area <= (1.0 - SAME_AREA) * model.measures().area
 }
