@@ -20,7 +20,7 @@ const MORE_DIFFERENCES: f64 = 1.5;
 /// Alternatives that score up to so many times as bad are looked at where they settle: they are refined no further
 /// than it takes to see that they are behind, and noise, offsets and springback may leave two poses that fit alike so
 /// far apart.
-const WORTH_SETTLING: f64 = 2.5;
+const WORTH_SETTLING: f64 = 3.0;
 /// Where so much less of the smaller part meets the other, a pose that fits as closely does not fit as well.
 const LITTLE_LESS: f64 = 0.02;
 /// Borders may hold a pose under which what remains of the distances besides a bend is so many times as much, …
@@ -79,7 +79,7 @@ pub fn chosen_by_shape(
         start: outcome.winner,
     });
     let part = source.measures().into();
-    // Where surfaces leave the pose free, borders and holes have compared all poses.
+    // Where surfaces leave the pose free, borders and holes have compared all poses, unless outlines are no evidence.
     let limit = free_limit(source, target, found.scale, settings);
     let surfaces_hold = weak_motion(source, target, &winner.pose, limit).is_none();
     let with_shape = |(k, other): (usize, &Alternative)| {
@@ -93,7 +93,7 @@ pub fn chosen_by_shape(
             Some(1.0)
         } else {
             let ratio = candidate.ratio_to(winner, distances.noise);
-            ratio.filter(|_| surfaces_hold)
+            ratio.filter(|_| surfaces_hold || winner.has_other_trim)
         };
         // One that settles at the winner's pose is no other.
         let is_other = !same_pose(&candidate.pose, &winner.pose, &part);
@@ -247,6 +247,8 @@ struct Candidate {
     /// Holes with a counterpart, and those where the other part is solid.
     n_holes: usize,
     n_alone: usize,
+    /// Whether one part is trimmed farther out, so that outlines say nothing of the pose.
+    has_other_trim: bool,
     /// Share of the smaller part that meets the other, and, where each has a piece that the other lacks, the share that
     /// lies neither on the other part nor beyond its borders.
     met: f64,
@@ -266,6 +268,7 @@ impl Candidate {
             n_clear,
             n_holes: shape.borders.n_holes,
             n_alone: shape.borders.only_source + shape.borders.only_target,
+            has_other_trim: shape.borders.other_trim.is_some(),
             met: shape.met,
             elsewhere,
             apart: [shape.springback, shape.remainder],

@@ -8,6 +8,8 @@ use crate::geometry::{Point3, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::{ClosestPoint, PointTree};
 
+/// Holes in common that hold a part whose surface can slide.
+pub(super) const HOLES_THAT_HOLD: usize = 2;
 /// Borders are cut into straight edges; so much of their mean edge length is no deviation.
 const BORDER_FACETS: f64 = 0.06;
 /// So many times the median step aside is none either.

@@ -7,6 +7,7 @@ use std::cmp::Ordering;
 
 use super::ambiguity::Clarity;
 use super::assessment::Assessment;
+use super::borders::HOLES_THAT_HOLD;
 use super::pose::{PoseKind, PoseStatement};
 use super::reason::Reason;
 use super::shape::{ELSEWHERE, ShapeReason, ShapeStatement};
@@ -17,8 +18,6 @@ use crate::registration::{MatchOutcome, Termination};
 
 /// Fraction of the smaller part that meets the other one for GOOD.
 const ENOUGH_MET: f64 = 0.75;
-/// Holes in common that hold a part whose surface can slide.
-const HOLES_THAT_HOLD: usize = 2;
 /// Scores of the opposite hand below this fraction of the result's fit clearly better.
 pub(super) const OPPOSITE_HAND: f64 = 0.8;
 /// Below this one they fit a little better.

@@ -1,7 +1,7 @@
 //! The last step of a pose: where surfaces alone leave it free to slide, borders and holes hold it, and an
 //! offset of the sheets does not push it aside.
 
-use super::borders::{BorderComparison, Borders};
+use super::borders::{BorderComparison, Borders, HOLES_THAT_HOLD};
 use super::contact::{ContactSearch, MAX_NODES, quantile};
 use super::evidence::EvidenceSearch;
 use super::tolerance::{AssessSettings, Distances};
@@ -15,7 +15,8 @@ const STEPS: usize = 6;
 const STILL: f64 = 0.02;
 /// Borders are looked for within this share of the diagonal: a door slides so far.
 const BORDER_SHARE: f64 = 0.015;
-/// Borders must lie beside each other along this share of the smaller part's.
+/// Borders must lie beside each other along this share of the smaller part's, unless holes hold it: the outline of a part
+/// that is not trimmed yet lies beside no other.
 const LEAST_PAIRED: f64 = 0.3;
 /// The misfit of the borders must shrink at least to this share, or the distance of the surfaces while no fewer
 /// borders lie beside each other: those of a bent part fit nowhere.
@@ -104,7 +105,8 @@ impl<'a> Settling<'a> {
         for step in 0..=STEPS {
             let mut evidence = search.at(&moved)?;
             let share = evidence.borders.share();
-            if share < LEAST_PAIRED {
+            let n_holes = evidence.borders.holes.len();
+            if share < LEAST_PAIRED && n_holes < HOLES_THAT_HOLD {
                 return None;
             }
             let facets = evidence.borders.unremarkable();

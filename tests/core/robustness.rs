@@ -1,15 +1,29 @@
 //! A small fixed slice of the robustness table: always the same pairs, so that a change for the worse
 //! is seen at once.
 
-use shapematch::assess::Verdict;
+use shapematch::assess::{PoseKind, Verdict};
 use shapematch::monitor::Monitor;
 use shapematch::pipeline::bench::growth::growth;
 use shapematch::pipeline::bench::growth_page::growth_page;
-use shapematch::pipeline::bench::robustness::{Ending, RobustnessSettings, robustness};
+use shapematch::pipeline::bench::robustness::{
+    Ending, RobustnessRun, RobustnessSettings, robustness,
+};
 use shapematch::pipeline::bench::robustness_page::page;
 use shapematch::pipeline::bench::robustness_table::RobustnessTable;
 use shapematch::samples::SamplePart;
 use shapematch::samples::scenario::Scenario;
+
+/// The only run of one scenario on one part.
+fn run(seed: u64, part: SamplePart, scenario: Scenario) -> RobustnessRun {
+    let settings = RobustnessSettings {
+        seed,
+        parts: vec![part],
+        scenarios: vec![scenario],
+        ..RobustnessSettings::default()
+    };
+    let runs = robustness(&settings, &Monitor::silent(), |_| ()).unwrap();
+    runs.into_iter().next().unwrap()
+}
 
 #[test]
 fn a_slice_of_the_table_is_right_and_honest() {
@@ -93,16 +107,6 @@ fn growth_tells_times_and_exponents_of_right_poses() {
 /// borders that have no counterpart do not pull surfaces apart.
 #[test]
 fn pieces_of_parts_that_slide_are_found_along_all_of_the_part() {
-    let run = |seed, part, scenario| {
-        let settings = RobustnessSettings {
-            seed,
-            parts: vec![part],
-            scenarios: vec![scenario],
-            ..RobustnessSettings::default()
-        };
-        let runs = robustness(&settings, &Monitor::silent(), |_| ()).unwrap();
-        runs.into_iter().next().unwrap()
-    };
     for (seed, part, scenario) in [
         (21, SamplePart::Plate, Scenario::Cut(0.2)),
         (21, SamplePart::Channel, Scenario::Cut(0.2)),
@@ -128,4 +132,23 @@ fn pieces_of_parts_that_slide_are_found_along_all_of_the_part() {
     // The parts of both sides differ by one hole.
     let other = run(21, SamplePart::Crossmember, Scenario::OtherHand);
     assert_eq!(other.verdict, Verdict::Poor, "{other:?}");
+}
+
+/// The outline of a part before its last trim lies beside no other: holes place it, and a pose that fits as well
+/// is told.
+#[test]
+fn holes_place_a_part_before_its_last_trim() {
+    // It lay 0.55 mm aside where its holes did not count.
+    let fender = run(91, SamplePart::Fender, Scenario::Addendum);
+    assert_eq!(fender.verdict, Verdict::Good, "{fender:?}");
+    assert!(
+        fender.node_error.is_some_and(|error| error < 0.2),
+        "{fender:?}"
+    );
+    // Half of the holes are not punched yet, and those that are fit after half a turn as well.
+    for seed in [91, 94] {
+        let channel = run(seed, SamplePart::Channel, Scenario::Addendum);
+        assert_eq!(channel.verdict, Verdict::Check, "{channel:?}");
+        assert_eq!(channel.pose, Some(PoseKind::Ambiguous), "{channel:?}");
+    }
 }
