@@ -93,7 +93,7 @@ pub fn chosen_by_shape(
             Some(1.0)
         } else {
             let ratio = candidate.ratio_to(winner, distances.noise);
-            ratio.filter(|_| surfaces_hold || winner.has_other_trim)
+            ratio.filter(|_| surfaces_hold || winner.are_outlines_silent)
         };
         // One that settles at the winner's pose is no other.
         let is_other = !same_pose(&candidate.pose, &winner.pose, &part);
@@ -247,8 +247,8 @@ struct Candidate {
     /// Holes with a counterpart, and those where the other part is solid.
     n_holes: usize,
     n_alone: usize,
-    /// Whether one part is trimmed farther out, so that outlines say nothing of the pose.
-    has_other_trim: bool,
+    /// Whether outlines say nothing of the pose: one part is trimmed farther out, or few of them lie beside others.
+    are_outlines_silent: bool,
     /// Share of the smaller part that meets the other, and, where each has a piece that the other lacks, the share that
     /// lies neither on the other part nor beyond its borders.
     met: f64,
@@ -262,13 +262,14 @@ impl Candidate {
         let differences = shape.reasons.iter().filter_map(is_clear);
         let (n_differences, n_clear) =
             differences.fold((0, 0), |(n, clear), is| (n + 1, clear + usize::from(is)));
+        let borders = &shape.borders;
         Self {
             pose,
             n_differences,
             n_clear,
-            n_holes: shape.borders.n_holes,
-            n_alone: shape.borders.only_source + shape.borders.only_target,
-            has_other_trim: shape.borders.other_trim.is_some(),
+            n_holes: borders.n_holes,
+            n_alone: borders.only_source + borders.only_target,
+            are_outlines_silent: borders.other_trim.is_some() || borders.offset.is_none(),
             met: shape.met,
             elsewhere,
             apart: [shape.springback, shape.remainder],
