@@ -93,7 +93,7 @@ pub fn chosen_by_shape(
             Some(1.0)
         } else {
             let ratio = candidate.ratio_to(winner, distances.noise);
-            ratio.filter(|_| surfaces_hold || winner.are_outlines_silent)
+            ratio.filter(|_| surfaces_hold || winner.outlines_are_no_evidence)
         };
         // One that settles at the winner's pose is no other.
         let is_other = !same_pose(&candidate.pose, &winner.pose, &part);
@@ -248,7 +248,7 @@ struct Candidate {
     n_holes: usize,
     n_alone: usize,
     /// Whether outlines say nothing of the pose: one part is trimmed farther out, or few of them lie beside others.
-    are_outlines_silent: bool,
+    outlines_are_no_evidence: bool,
     /// Share of the smaller part that meets the other, and, where each has a piece that the other lacks, the share that
     /// lies neither on the other part nor beyond its borders.
     met: f64,
@@ -269,7 +269,7 @@ impl Candidate {
             n_clear,
             n_holes: borders.n_holes,
             n_alone: borders.only_source + borders.only_target,
-            are_outlines_silent: borders.other_trim.is_some() || borders.offset.is_none(),
+            outlines_are_no_evidence: borders.other_trim.is_some() || borders.offset.is_none(),
             met: shape.met,
             elsewhere,
             apart: [shape.springback, shape.remainder],
