@@ -65,7 +65,7 @@ pub fn chosen_by_shape(
     let candidate = |other: &&Alternative| {
         monitor.check()?;
         let pose = other.target_from_source;
-        Ok(at(settling.settled(&pose, Least::Facets).unwrap_or(pose)))
+        Ok(at(settling.closest(&pose).unwrap_or(pose)))
     };
     let candidates: Result<Vec<Candidate>, Cancelled> = near.par_iter().map(candidate).collect();
     let candidates = candidates?;
@@ -174,11 +174,11 @@ pub fn placed_by_holes(
     }))
 }
 
-/// The other poses beside one that holes gave: those that holes gave too, the result before, and its alternatives. Only
-/// one under which the shapes differ no more is as likely.
-fn behind(
+/// The other poses beside one that took the place of the result: those that were found with it, the result before, and its
+/// alternatives. Only one under which the shapes differ no more is as likely.
+pub(super) fn behind(
     winner: &Candidate,
-    by_holes: &[Candidate],
+    found_too: &[Candidate],
     outcome: &MatchOutcome,
     source: &Surface,
 ) -> Vec<Alternative> {
@@ -188,14 +188,14 @@ fn behind(
         start: outcome.winner,
     };
     let part = source.measures().into();
-    let by_holes = by_holes.iter().map(|other| {
+    let found_too = found_too.iter().map(|other| {
         let is_beaten = other.n_differences > winner.n_differences;
         ranked(as_likely(other.pose), is_beaten)
     });
     let before = ranked(as_likely(outcome.target_from_source), true);
     let others = outcome.alternatives.iter();
     let others = others.map(|other| ranked(*other, true));
-    let mut all: Vec<Alternative> = by_holes
+    let mut all: Vec<Alternative> = found_too
         .chain([before])
         .chain(others)
         .filter(|other| !same_pose(&other.target_from_source, &winner.pose, &part))
@@ -239,9 +239,9 @@ fn ranked(other: Alternative, is_beaten: bool) -> Alternative {
 }
 
 /// A pose and what speaks against one shape under it. A bend does so under every pose.
-struct Candidate {
-    pose: Similarity,
-    n_differences: usize,
+pub(super) struct Candidate {
+    pub(super) pose: Similarity,
+    pub(super) n_differences: usize,
     /// Of these the ones that nothing but another place explains.
     n_clear: usize,
     /// Holes with a counterpart, and those where the other part is solid.
@@ -251,14 +251,14 @@ struct Candidate {
     outlines_are_no_evidence: bool,
     /// Share of the smaller part that meets the other, and, where each has a piece that the other lacks, the share that
     /// lies neither on the other part nor beyond its borders.
-    met: f64,
+    pub(super) met: f64,
     elsewhere: Option<f64>,
     /// How far the surfaces lie apart by a bend and besides it.
     apart: [f64; 2],
 }
 
 impl Candidate {
-    fn at(pose: Similarity, shape: &ShapeStatement, elsewhere: Option<f64>) -> Self {
+    pub(super) fn at(pose: Similarity, shape: &ShapeStatement, elsewhere: Option<f64>) -> Self {
         let differences = shape.reasons.iter().filter_map(is_clear);
         let (n_differences, n_clear) =
             differences.fold((0, 0), |(n, clear), is| (n + 1, clear + usize::from(is)));
@@ -297,8 +297,13 @@ impl Candidate {
             && self.n_differences <= other.n_differences
             && self.n_alone <= other.n_alone
             && self.n_holes >= other.n_holes;
-        let apart = |of: &Self| of.apart[0].hypot(of.apart[1]) + noise;
+        let apart = |of: &Self| of.apart() + noise;
         fits_as_much.then(|| (apart(self) / apart(other)).max(1.0))
+    }
+
+    /// How far the surfaces lie apart in all.
+    pub(super) fn apart(&self) -> f64 {
+        self.apart[0].hypot(self.apart[1])
     }
 
     /// Whether the shapes surely differ less under this pose: there are fewer differences, or as many while holes

@@ -301,6 +301,11 @@ impl Borders {
         }
     }
 
+    /// The borders without outlines, which lie beside each other by chance where the parts are trimmed differently.
+    pub(super) fn of_holes(&self) -> Self {
+        self.filtered(|_, pair| pair.kind == PairKind::Holes)
+    }
+
     /// Distance between borders that says nothing about the parts.
     pub(super) fn unremarkable(&self) -> f64 {
         BORDER_FACETS * self.edge + RAGGED * self.ragged

@@ -35,6 +35,7 @@ mod trims;
 mod unbent;
 mod uncertainty;
 mod verdict;
+mod whole;
 mod words;
 
 pub use all_pairs::is_better_with_all_pairs;
@@ -55,6 +56,7 @@ pub use trims::BorderApart;
 pub use unbent::without_bend;
 pub use uncertainty::{PartDirection, PoseUncertainty};
 pub use verdict::Verdict;
+pub use whole::placed_as_a_whole;
 pub use words::error_beside;
 
 use crate::monitor::{Cancelled, Monitor};

@@ -89,6 +89,16 @@ impl<'a> Settling<'a> {
 
     /// [`settled`], from this first step on.
     pub(super) fn settled(&self, pose: &Similarity, least: Least) -> Option<Similarity> {
+        self.settled_if(pose, least, BETTER)
+    }
+
+    /// [`settled`], also where the surfaces come only a little closer: how close they may come under this pose.
+    pub(super) fn closest(&self, pose: &Similarity) -> Option<Similarity> {
+        self.settled_if(pose, Least::Facets, 1.0)
+    }
+
+    /// [`Settling::settled`] if the distance of the surfaces shrinks to a share of this, or the misfit of the borders.
+    fn settled_if(&self, pose: &Similarity, least: Least, closer: f64) -> Option<Similarity> {
         let Distances {
             tolerance,
             reach,
@@ -117,7 +127,7 @@ impl<'a> Settling<'a> {
                 let little = self.distances.little_more(LITTLE_GAP, first_gap);
                 let most = AS_CLOSE * first_gap + noise + little;
                 let fits = misfit < tolerance.remainder + facets && gap < most;
-                let is_closer = gap < BETTER * first_gap && share >= first_share;
+                let is_closer = gap < closer * first_gap && share >= first_share;
                 return (fits && misfit < BETTER * first_misfit || is_closer).then_some(moved);
             }
             let limit = evidence.borders.limit(&tolerance);

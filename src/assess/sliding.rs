@@ -3,8 +3,9 @@
 use nalgebra::{Const, SMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
+use super::contact::{ContactSearch, FEW_NODES};
 use crate::geometry::serial::{any_float, xyz};
-use crate::geometry::{Matrix3, Point3, Similarity, Vector3};
+use crate::geometry::{Matrix3, Point3, Rotation, Similarity, Vector3};
 use crate::registration::Surface;
 use crate::search::ClosestPoint;
 
@@ -20,6 +21,17 @@ const WEAKEST_BELOW: f64 = 5e-2;
 
 /// Nodes that are looked at; more do not change the eigenvalues by a percent.
 const MAX_NODES: usize = 4000;
+
+/// A motion with less of a turn is a shift (square of the turn's share).
+const SHIFT: f64 = 1e-12;
+/// A smooth panel resists a small motion as little as a faceted surface of revolution does. Over distances beyond
+/// its elements it comes apart the more the farther it is moved, a surface that slides on itself does not: the part
+/// is moved by these shares of the mean distance from its centroid.
+const MOVED_BY: [f64; 2] = [0.05, 0.1];
+/// Of a panel that comes apart the surfaces lie so many times as far apart as before, and as facets explain, …
+const APART: f64 = 2.0;
+/// … and so many times as far as under half the motion.
+const FARTHER: f64 = 1.5;
 
 /// What kind of surface slides on itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -66,14 +78,60 @@ pub struct Freedom {
 }
 
 /// Finds the motions that slide the overlap on itself (Gelfand et al. 2003): the small eigenvalues
-/// of Σ a aᵀ with a = ((x − c) × n, n) over source nodes within `limit` of the target.
+/// of Σ a aᵀ with a = ((x − c) × n, n) over source nodes within `limit` of the target. There are none
+/// where the surfaces come apart when the part is moved along the weakest.
 pub fn free_motions(
     source: &Surface,
     target: &Surface,
     target_from_source: &Similarity,
     limit: f64,
 ) -> Freedom {
-    motions_below(FREE_BELOW, source, target, target_from_source, limit)
+    let found = motions_below(FREE_BELOW, source, target, target_from_source, limit);
+    if found.motion.is_some() && comes_apart([source, target], target_from_source, limit) {
+        return Freedom {
+            motion: None,
+            n_free: 0,
+            ..found
+        };
+    }
+    found
+}
+
+/// Whether the surfaces come apart, to both sides, when the source is moved along the motion that they resist least.
+fn comes_apart(pair: [&Surface; 2], pose: &Similarity, limit: f64) -> bool {
+    let [source, target] = pair;
+    let Some(resistance) = Resistance::of(source, target, pose, limit) else {
+        return false;
+    };
+    let mut search = ContactSearch::new(pair, pose.scale, limit, FEW_NODES);
+    let mut apart = |by: f64| {
+        let moved = resistance.weakest_motion(by * resistance.radius);
+        search.at(&moved.after(pose)).map(|contacts| {
+            let gaps = contacts.list.iter().map(|contact| contact.gap);
+            let facets = contacts.list.iter().map(|contact| contact.facet);
+            let gaps: Vec<f64> = gaps.collect();
+            let middle = median(gaps.clone());
+            let off = median(gaps.iter().map(|gap| (gap - middle).abs()).collect());
+            (off, median(facets.collect()))
+        })
+    };
+    let Some((now, facet)) = apart(0.0) else {
+        return false;
+    };
+    let nothing = now.max(facet);
+    [1.0, -1.0].into_iter().all(|side| {
+        let [near, far] = MOVED_BY.map(|by| apart(side * by).map_or(0.0, |(off, _)| off));
+        far >= APART * nothing && far >= FARTHER * near
+    })
+}
+
+/// 0 of none.
+fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return 0.0;
+    }
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// The motion that the overlap resists so little that noise, springback or facets may hide where it ends.
@@ -202,6 +260,25 @@ impl Resistance {
             center,
             radius,
         })
+    }
+
+    /// The motion that meets the least resistance, as a screw that moves points by about `amount`.
+    fn weakest_motion(&self, amount: f64) -> Similarity {
+        let motion = self
+            .eigen
+            .eigenvectors
+            .column(self.eigen.eigenvalues.imin());
+        let omega = Vector3::new(motion[0], motion[1], motion[2]);
+        let shift = Vector3::new(motion[3], motion[4], motion[5]);
+        let turned = omega.norm_squared();
+        if turned < SHIFT {
+            return Similarity::from_translation(shift * amount);
+        }
+        let on_axis = self.center + omega.cross(&shift) * self.radius / turned;
+        let turn = Rotation::from_scaled_axis(omega * amount / self.radius);
+        let turn = Similarity::about(&on_axis, *turn.to_rotation_matrix().matrix());
+        let along = omega * omega.dot(&shift) / turned;
+        Similarity::from_translation(along * amount).after(&turn)
     }
 }
 

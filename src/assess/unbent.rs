@@ -46,8 +46,7 @@ pub fn without_bend(
     for step in 0..=STEPS {
         let mut evidence = search.at(&moved)?;
         let fit = if evidence.borders.share() < LEAST_PAIRED {
-            // What lies beside each other by chance holds nothing.
-            evidence.borders = evidence.borders.filtered(|_, _| false);
+            evidence.borders = evidence.borders.of_holes();
             Fit::of(&evidence)
         } else {
             let limit = evidence.borders.limit(&tolerance);

@@ -298,6 +298,11 @@ pub(super) fn settle(
         outcome.alternatives = placed.alternatives;
     }
     monitor.check()?;
+    if let Some(placed) = assess::placed_as_a_whole(source, target, outcome, check, monitor)? {
+        outcome.target_from_source = placed.target_from_source;
+        outcome.alternatives = placed.alternatives;
+    }
+    monitor.check()?;
     // Both hands are compared where their surfaces lie closest.
     if let Some(ratio) = assess::hand_by_borders(source, target, outcome, check, monitor)? {
         outcome.mirror_check.score_ratio = Some(ratio);

@@ -1,0 +1,171 @@
+//! The pose under which the parts meet as a whole. A large smooth panel that springback has bent lies closer where only a
+//! half of it lies on the other part, so that the pairs that a match keeps may take it far away from a first pose that was
+//! right.
+
+use rayon::prelude::*;
+
+use super::alternatives::{Candidate, behind};
+use super::borders::BorderComparison;
+use super::contact::{ContactSearch, FEW_NODES};
+use super::evidence::EvidenceSearch;
+use super::fit::Fit;
+use super::held::{HeldPose, near};
+use super::shape::OVERHANGS;
+use super::statements::statements;
+use super::tolerance::{AssessSettings, Distances};
+use crate::geometry::Similarity;
+use crate::monitor::{Cancelled, Monitor};
+use crate::registration::{Extent, MatchOutcome, Surface, same_pose};
+
+/// Nodes of the smaller part that first poses are compared and moved on, before the best are moved on more.
+const N_NODES: usize = 500;
+/// First poses under which the parts lie closest as a whole, and no farther apart than surfaces are compared, that are moved
+/// until all that meets lies closest.
+const MOST_MOVED: usize = 12;
+/// Steps of each.
+const STEPS: usize = 12;
+/// The last step was made if it moves the part by less than this share of what may remain of the distances.
+const STILL: f64 = 0.02;
+/// Of those so many, under which the parts lie closest as a whole, are judged.
+const MOST_JUDGED: usize = 3;
+/// A pose under which so many times as much of the smaller part meets the other explains more.
+const MUCH_MORE: f64 = 1.3;
+/// As much meets but for this share of the part.
+const LITTLE_LESS: f64 = 0.02;
+/// Poses that lie no more than so many times as far apart as springback may bend a part have been chosen from by their
+/// borders and holes.
+const ASIDE: f64 = 2.0;
+
+/// The pose under which much more of the smaller part meets the other than under that of `outcome`, or as much where the
+/// shapes differ under that one, while nothing but springback within the tolerance keeps them apart. `None` where there is
+/// none, and where the parts meet as a whole without a difference. O(first poses · nodes · log triangles).
+pub fn placed_as_a_whole(
+    source: &Surface,
+    target: &Surface,
+    outcome: &MatchOutcome,
+    settings: &AssessSettings,
+    monitor: &Monitor,
+) -> Result<Option<HeldPose>, Cancelled> {
+    let found = &outcome.target_from_source;
+    if !outcome.rivals_sought || found.is_mirrored() || found.scale != 1.0 {
+        return Ok(None);
+    }
+    let shape = |pose: &Similarity| statements(source, target, pose, settings).shape;
+    let result = Candidate::at(*found, &shape(found), None);
+    if result.met >= OVERHANGS && result.n_differences == 0 {
+        return Ok(None);
+    }
+    let pair = [source, target];
+    let tolerance = Distances::of(source, target, 1.0, settings).tolerance;
+    let corners = source.mesh().aabb().corners();
+    let mut candidates = Vec::new();
+    for pose in moved_as_a_whole(pair, outcome, settings, monitor)? {
+        monitor.check()?;
+        if pose.max_displacement(found, &corners) <= ASIDE * tolerance.springback {
+            continue;
+        }
+        let shape = shape(&pose);
+        let explains_more = shape.met > MUCH_MORE * result.met
+            || result.n_differences > 0 && shape.met >= result.met - LITTLE_LESS;
+        if shape.reasons.is_empty() && explains_more {
+            candidates.push(Candidate::at(pose, &shape, None));
+        }
+    }
+    candidates.sort_by(|a, b| a.apart().total_cmp(&b.apart()));
+    Ok(candidates.split_first().map(|(winner, others)| HeldPose {
+        target_from_source: winner.pose,
+        alternatives: behind(winner, others, outcome, source),
+    }))
+}
+
+/// The first poses of the match, each moved until what meets of the smaller part lies closest; those under which the parts
+/// lie closest as a whole come first.
+fn moved_as_a_whole(
+    pair: [&Surface; 2],
+    outcome: &MatchOutcome,
+    settings: &AssessSettings,
+    monitor: &Monitor,
+) -> Result<Vec<Similarity>, Cancelled> {
+    let [source, target] = pair;
+    let search = ContactSearch::new(pair, 1.0, near(target), N_NODES);
+    let part: Extent = source.measures().into();
+    let mut firsts: Vec<Similarity> = Vec::new();
+    for start in &outcome.starts {
+        if !firsts
+            .iter()
+            .any(|known| same_pose(known, &start.first, &part))
+        {
+            firsts.push(start.first);
+        }
+    }
+    let at_first = firsts.par_iter().map(|pose| (apart(&search, pose), *pose));
+    let distances = Distances::of(source, target, 1.0, settings);
+    let mut at_first: Vec<(f64, Similarity)> = at_first.collect();
+    at_first.retain(|(apart, _)| *apart <= distances.reach);
+    let still = STILL * distances.tolerance.remainder;
+    let borders = BorderComparison::new(pair, 1.0, near(target));
+    // Those that lie closest come first.
+    let moved = |poses: &[Similarity], n_nodes: usize| -> Result<Vec<_>, Cancelled> {
+        let contacts = ContactSearch::new(pair, 1.0, distances.reach, n_nodes);
+        let moved = poses.par_iter().map(|first| {
+            monitor.check()?;
+            let search = EvidenceSearch::new(contacts.clone(), &borders, &distances);
+            let pose = held_by_holes(search, first, near(target), still);
+            Ok((apart(&contacts, &pose), pose))
+        });
+        let mut moved = moved.collect::<Result<Vec<(f64, Similarity)>, Cancelled>>()?;
+        moved.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(moved)
+    };
+    at_first.sort_by(|a, b| a.0.total_cmp(&b.0));
+    at_first.truncate(MOST_MOVED);
+    let firsts: Vec<Similarity> = at_first.into_iter().map(|(_, pose)| pose).collect();
+    let mut distinct: Vec<Similarity> = Vec::new();
+    for (apart, pose) in moved(&firsts, N_NODES)? {
+        let is_known = distinct.iter().any(|known| same_pose(known, &pose, &part));
+        if apart <= distances.tolerance.springback && !is_known {
+            distinct.push(pose);
+        }
+    }
+    distinct.truncate(MOST_JUDGED);
+    let judged = moved(&distinct, FEW_NODES)?.into_iter();
+    Ok(judged.map(|(_, pose)| pose).collect())
+}
+
+/// How far the parts lie apart as a whole: what does not meet counts as lying as far apart as is looked.
+fn apart(search: &ContactSearch<'_>, pose: &Similarity) -> f64 {
+    let reach = search.reach();
+    let Some(contacts) = search.clone().at(pose) else {
+        return reach;
+    };
+    let met = contacts.share.min(1.0);
+    (met * contacts.typical_gap(reach).powi(2) + (1.0 - met) * reach * reach).sqrt()
+}
+
+/// The pose moved until the places that meet and the holes beside each other lie closest, but for bends and an offset.
+/// It ends where a step would take the part farther than holes are looked for.
+fn held_by_holes(
+    mut search: EvidenceSearch<'_, '_>,
+    first: &Similarity,
+    farthest: f64,
+    still: f64,
+) -> Similarity {
+    let mut pose = *first;
+    for _ in 0..STEPS {
+        let Some(mut evidence) = search.at(&pose) else {
+            break;
+        };
+        evidence.borders = evidence.borders.of_holes();
+        let next = Fit::of(&evidence).corrected(&evidence);
+        let corners = evidence.source.mesh().aabb().corners();
+        let step = next.max_displacement(&pose, &corners);
+        if step > farthest {
+            break;
+        }
+        pose = next;
+        if step < still {
+            break;
+        }
+    }
+    pose
+}
