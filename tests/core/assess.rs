@@ -74,7 +74,7 @@ fn free_motions_are_named_with_their_axis() {
 fn a_smooth_panel_that_comes_apart_where_it_is_moved_does_not_slide() {
     // Two meshes of one surface. Small motions meet next to nothing: the arch along y has 12 m of radius, and facets
     // resist as much.
-    let panel = |n: usize, twist: f64| {
+    let panel = |n: u32, twist: f64| {
         let mesh = sheet(n, |u, v| {
             let (x, y) = (1200.0 * (u - 0.5), 900.0 * (v - 0.5));
             let arched = x * x / 8_000.0 + twist * y * y / 24_000.0;
@@ -495,7 +495,7 @@ fn an_offset_is_no_larger_than_the_sheet() {
 #[test]
 fn a_bent_panel_is_placed_as_a_whole_where_half_of_it_lies_closer_elsewhere() {
     // A panel of 1,200 x 900 mm, and the same before its trim, bent by 2 mm, on another mesh.
-    let panel = |n: usize, margin: f64, bend: f64| {
+    let panel = |n: u32, margin: f64, bend: f64| {
         let mesh = sheet(n, |u, v| {
             let x = (1200.0 + 2.0 * margin) * (u - 0.5);
             let y = (900.0 + 2.0 * margin) * (v - 0.5);
