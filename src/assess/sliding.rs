@@ -28,6 +28,8 @@ const SHIFT: f64 = 1e-12;
 /// its elements it comes apart the more the farther it is moved, a surface that slides on itself does not: the part
 /// is moved by these shares of the mean distance from its centroid.
 const MOVED_BY: [f64; 2] = [0.05, 0.1];
+/// Distances up to this share of it are rounding.
+const NOTHING: f64 = 1e-6;
 /// Of a panel that comes apart the surfaces lie so many times as far apart as before, and as facets explain, …
 const APART: f64 = 2.0;
 /// … and so many times as far as under half the motion.
@@ -118,7 +120,7 @@ fn comes_apart(pair: [&Surface; 2], pose: &Similarity, limit: f64) -> bool {
     let Some((now, facet)) = apart(0.0) else {
         return false;
     };
-    let nothing = now.max(facet);
+    let nothing = now.max(facet).max(NOTHING * resistance.radius);
     [1.0, -1.0].into_iter().all(|side| {
         let [near, far] = MOVED_BY.map(|by| apart(side * by).map_or(0.0, |(off, _)| off));
         far >= APART * nothing && far >= FARTHER * near

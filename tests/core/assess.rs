@@ -72,31 +72,24 @@ fn free_motions_are_named_with_their_axis() {
 
 #[test]
 fn a_smooth_panel_that_comes_apart_where_it_is_moved_does_not_slide() {
-    // Two meshes of one surface. Small motions meet next to nothing: the arch along y has 12 m of radius, and facets
-    // resist as much.
-    let panel = |n: u32, twist: f64| {
+    // Two meshes of one surface, whose curvature changes a little along x and y.
+    let panel = |n: u32, along_y: f64| {
         let mesh = sheet(n, |u, v| {
             let (x, y) = (1200.0 * (u - 0.5), 900.0 * (v - 0.5));
-            let arched = x * x / 8_000.0 + twist * y * y / 24_000.0;
-            Point3::new(x, y, arched)
+            let arched = x * x / 8_000.0 + x.powi(3) / 1e8;
+            let across = y * y / 24_000.0 + y.powi(3) / 3e7;
+            Point3::new(x, y, arched + along_y * across)
         });
         Surface::new(&mesh, "target").unwrap()
     };
     let pose = Similarity::identity();
-    let found = |twist| free_motions(&panel(37, twist), &panel(50, twist), &pose, 5.0);
-    let panel = found(1.0);
-    assert!(panel.weakest < 1e-4, "{panel:?}");
-    assert_eq!((panel.motion, panel.n_free), (None, 0));
-    // Without the arch along y it slides.
+    let found = |along_y| free_motions(&panel(74, along_y), &panel(100, along_y), &pose, 5.0);
+    let hood = found(1.0);
+    assert!(hood.weakest < 1e-4, "{hood:?}");
+    assert_eq!((hood.motion, hood.n_free), (None, 0));
+    // What is arched in one direction only slides in the other.
     let bent = found(0.0);
-    assert_eq!(bent.motion.unwrap().kind, FreeMotionKind::Extruded);
-    // Meshes that are the same interlock, which holds nothing.
-    let cup = sheet(40, |u, v| {
-        let angle = 6.0 * u;
-        let radius = 60.0 - 20.0 * v * v;
-        Point3::new(radius * angle.cos(), radius * angle.sin(), 80.0 * v)
-    });
-    assert_eq!(freedom(&cup).motion.unwrap().kind, FreeMotionKind::Revolved);
+    assert!(bent.motion.is_some(), "{bent:?}");
 }
 
 /// The usual match of two full meshes.
@@ -493,32 +486,34 @@ fn an_offset_is_no_larger_than_the_sheet() {
 }
 
 #[test]
-fn a_bent_panel_is_placed_as_a_whole_where_half_of_it_lies_closer_elsewhere() {
+fn a_bent_panel_is_placed_as_a_whole_wherever_its_closest_half_lies() {
     // A panel of 1,200 x 900 mm, and the same before its trim, bent by 2 mm, on another mesh.
     let panel = |n: u32, margin: f64, bend: f64| {
         let mesh = sheet(n, |u, v| {
             let x = (1200.0 + 2.0 * margin) * (u - 0.5);
             let y = (900.0 + 2.0 * margin) * (v - 0.5);
-            let shape = x * x / 3000.0 + y * y / 2000.0 + x * y * y / 2e6;
-            Point3::new(x, y, shape + bend * (x / 600.0).powi(2))
+            let arched = x * x / 8_000.0 + y * y / 6_000.0;
+            let crease = 12.0 * (y / 120.0 - x / 900.0).tanh();
+            Point3::new(x, y, arched + crease + bend * (x / 600.0).powi(2))
         });
         Surface::new(&mesh, "panel").unwrap()
     };
     let (crash, stamped) = (panel(60, 0.0, 0.0), panel(91, 90.0, 2.0));
-    let settings = AssessSettings::default();
-    let placed = |outcome: &MatchOutcome| {
-        let monitor = Monitor::silent();
-        placed_as_a_whole(&stamped, &crash, outcome, &settings, &monitor).unwrap()
-    };
-    let mut outcome = matched(&stamped, &crash);
     let corners = crash.mesh().aabb().corners();
     let off = |pose: &Similarity| pose.max_displacement(&Similarity::identity(), &corners);
-    assert!(off(&outcome.target_from_source) < 5.0);
-    assert_eq!(placed(&outcome), None);
     // Whatever the pairs that were kept have made of it, one of the first poses was right.
-    outcome.target_from_source.translation.x += 400.0;
-    let placed = placed(&outcome).unwrap();
-    assert!(off(&placed.target_from_source) < 5.0, "{placed:?}");
-    let before = &placed.alternatives[0];
+    let mut outcome = matched(&stamped, &crash);
+    outcome.target_from_source = Similarity::from_translation(Vector3::new(400.0, 0.0, 0.0));
+    let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
+    let placed = placed_as_a_whole(&stamped, &crash, &outcome, &settings, &monitor).unwrap();
+    let placed = placed.unwrap();
+    assert!(off(&placed.target_from_source) < 10.0, "{placed:?}");
+    // The pose before is told, as a worse one.
+    let before = |other: &&Alternative| off(&other.target_from_source) > 300.0;
+    let before = placed.alternatives.iter().find(before).unwrap();
     assert!(before.score_ratio > 1.4, "{before:?}");
+    // Where the parts meet as a whole already there is nothing to do.
+    outcome.target_from_source = Similarity::identity();
+    let again = placed_as_a_whole(&stamped, &crash, &outcome, &settings, &monitor).unwrap();
+    assert_eq!(again, None);
 }
