@@ -22,7 +22,7 @@ const MORE_DIFFERENCES: f64 = 1.5;
 /// far apart.
 const WORTH_SETTLING: f64 = 3.0;
 /// Where so much less of the smaller part meets the other, a pose that fits as closely does not fit as well.
-const LITTLE_LESS: f64 = 0.02;
+pub(super) const LITTLE_LESS: f64 = 0.02;
 /// Borders may hold a pose under which what remains of the distances besides a bend is so many times as much, …
 const AS_CLOSE: f64 = 1.5;
 /// … and so many tolerances more.

@@ -63,7 +63,7 @@ const AS_CLOSE: f64 = 1.5;
 /// … and so many tolerances more.
 const LITTLE_GAP: f64 = 0.25;
 /// A pose that meets so many times as much of the part may lie as far apart as springback explains.
-const MUCH_MORE: f64 = 1.3;
+pub(super) const MUCH_MORE: f64 = 1.3;
 /// It must meet this share of what the result meets.
 const AS_MUCH: f64 = 0.9;
 /// Shares of the part that meet the other are the same up to this much.

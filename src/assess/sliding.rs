@@ -107,7 +107,7 @@ fn comes_apart(pair: [&Surface; 2], pose: &Similarity, limit: f64) -> bool {
     };
     let mut search = ContactSearch::new(pair, pose.scale, limit, FEW_NODES);
     let mut apart = |by: f64| {
-        let moved = resistance.weakest_motion(by * resistance.radius);
+        let moved = resistance.along_weakest(by * resistance.radius);
         search.at(&moved.after(pose)).map(|contacts| {
             let gaps = contacts.list.iter().map(|contact| contact.gap);
             let facets = contacts.list.iter().map(|contact| contact.facet);
@@ -155,22 +155,13 @@ pub(super) fn weakest_motion(
     limit: f64,
 ) -> Option<FreeMotion> {
     let resistance = Resistance::of(source, target, target_from_source, limit)?;
-    let Resistance {
-        eigen,
-        center,
-        radius,
-        ..
-    } = &resistance;
-    let weakest = eigen.eigenvalues.imin();
-    if eigen.eigenvalues[weakest] > WEAKEST_BELOW * eigen.eigenvalues.max() {
+    let eigenvalues = &resistance.eigen.eigenvalues;
+    if eigenvalues.min() > WEAKEST_BELOW * eigenvalues.max() {
         return None;
     }
-    let motion = eigen.eigenvectors.column(weakest);
-    let omega = Vector3::new(motion[0], motion[1], motion[2]);
-    let shift = Vector3::new(motion[3], motion[4], motion[5]);
+    let (omega, shift, on_axis) = resistance.weakest();
     let is_shift = shift.norm() > omega.norm();
     let direction = if is_shift { shift } else { omega };
-    let on_axis = center + omega.cross(&shift) * *radius / omega.norm_squared().max(1e-300);
     Some(FreeMotion {
         kind: if is_shift {
             FreeMotionKind::Extruded
@@ -178,7 +169,7 @@ pub(super) fn weakest_motion(
             FreeMotionKind::Revolved
         },
         direction: direction.try_normalize(0.0)?,
-        point: if is_shift { *center } else { on_axis },
+        point: if is_shift { resistance.center } else { on_axis },
     })
 }
 
@@ -264,19 +255,24 @@ impl Resistance {
         })
     }
 
-    /// The motion that meets the least resistance, as a screw that moves points by about `amount`.
-    fn weakest_motion(&self, amount: f64) -> Similarity {
-        let motion = self
-            .eigen
-            .eigenvectors
-            .column(self.eigen.eigenvalues.imin());
+    /// The motion that meets the least resistance: its turn, lengths scaled by the radius, its shift at the centroid, and
+    /// a point of its axis.
+    fn weakest(&self) -> (Vector3, Vector3, Point3) {
+        let weakest = self.eigen.eigenvalues.imin();
+        let motion = self.eigen.eigenvectors.column(weakest);
         let omega = Vector3::new(motion[0], motion[1], motion[2]);
         let shift = Vector3::new(motion[3], motion[4], motion[5]);
+        let arm = omega.cross(&shift) * self.radius / omega.norm_squared().max(1e-300);
+        (omega, shift, self.center + arm)
+    }
+
+    /// The same as a screw that moves points by about `amount`.
+    fn along_weakest(&self, amount: f64) -> Similarity {
+        let (omega, shift, on_axis) = self.weakest();
         let turned = omega.norm_squared();
         if turned < SHIFT {
             return Similarity::from_translation(shift * amount);
         }
-        let on_axis = self.center + omega.cross(&shift) * self.radius / turned;
         let turn = Rotation::from_scaled_axis(omega * amount / self.radius);
         let turn = Similarity::about(&on_axis, *turn.to_rotation_matrix().matrix());
         let along = omega * omega.dot(&shift) / turned;

@@ -4,12 +4,12 @@
 
 use rayon::prelude::*;
 
-use super::alternatives::{Candidate, behind};
+use super::alternatives::{Candidate, LITTLE_LESS, behind};
 use super::borders::BorderComparison;
 use super::contact::{ContactSearch, FEW_NODES};
 use super::evidence::EvidenceSearch;
 use super::fit::Fit;
-use super::held::{HeldPose, near};
+use super::held::{HeldPose, MUCH_MORE, near};
 use super::shape::OVERHANGS;
 use super::statements::statements;
 use super::tolerance::{AssessSettings, Distances};
@@ -22,16 +22,12 @@ const N_NODES: usize = 500;
 /// First poses under which the parts lie closest as a whole, and no farther apart than surfaces are compared, that are moved
 /// until all that meets lies closest.
 const MOST_MOVED: usize = 12;
-/// Steps of each.
+/// Of those so many, under which the parts lie closest as a whole, are judged.
+const MOST_JUDGED: usize = 3;
+/// Steps that a first pose is moved in at most.
 const STEPS: usize = 12;
 /// The last step was made if it moves the part by less than this share of what may remain of the distances.
 const STILL: f64 = 0.02;
-/// Of those so many, under which the parts lie closest as a whole, are judged.
-const MOST_JUDGED: usize = 3;
-/// A pose under which so many times as much of the smaller part meets the other explains more.
-const MUCH_MORE: f64 = 1.3;
-/// As much meets but for this share of the part.
-const LITTLE_LESS: f64 = 0.02;
 /// Poses that lie no more than so many times as far apart as springback may bend a part have been chosen from by their
 /// borders and holes.
 const ASIDE: f64 = 2.0;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::load::LoadedPart;
 use super::reduce::Levels;
 use super::{PipelineError, millis_since};
-use crate::assess::{self, AssessSettings, Assessment};
+use crate::assess::{self, AssessSettings, Assessment, HeldPose};
 use crate::geometry::serial::shared;
 use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::{Cancelled, Monitor};
@@ -279,8 +279,7 @@ pub(super) fn settle(
     };
     if let Some(held) = assess::held_by_borders(source, target, outcome, check, monitor)? {
         if is_kept(&held.target_from_source, false) {
-            outcome.target_from_source = held.target_from_source;
-            outcome.alternatives = held.alternatives;
+            take(outcome, held);
         }
     } else if let Some(pose) = assess::settled(source, target, &found, check)
         && is_kept(&pose, true)
@@ -289,18 +288,15 @@ pub(super) fn settle(
     }
     monitor.check()?;
     if let Some(chosen) = assess::chosen_by_shape(source, target, outcome, check, monitor)? {
-        outcome.target_from_source = chosen.target_from_source;
-        outcome.alternatives = chosen.alternatives;
+        take(outcome, chosen);
     }
     monitor.check()?;
     if let Some(placed) = assess::placed_by_holes(source, target, outcome, check, monitor)? {
-        outcome.target_from_source = placed.target_from_source;
-        outcome.alternatives = placed.alternatives;
+        take(outcome, placed);
     }
     monitor.check()?;
     if let Some(placed) = assess::placed_as_a_whole(source, target, outcome, check, monitor)? {
-        outcome.target_from_source = placed.target_from_source;
-        outcome.alternatives = placed.alternatives;
+        take(outcome, placed);
     }
     monitor.check()?;
     // Both hands are compared where their surfaces lie closest.
@@ -322,6 +318,12 @@ pub(super) fn settle(
         outcome.target_from_source = pose;
     }
     Ok(())
+}
+
+/// Another pose becomes the result, with the others beside it.
+fn take(outcome: &mut MatchOutcome, pose: HeldPose) {
+    outcome.target_from_source = pose.target_from_source;
+    outcome.alternatives = pose.alternatives;
 }
 
 /// The first poses of "Align surface normals": centroids and mean normals aligned, both signs,
