@@ -455,8 +455,8 @@ impl<'a> Pair<'a> {
         Some((contacts.share, contacts.typical_gap(self.remainder)))
     }
 
-    /// The result and poses of other families whose surfaces lie as close: turned over, or turned round;
-    /// each with the motion that is free from there.
+    /// The result and poses of other families whose surfaces lie as close: turned over, turned round, or on another
+    /// copy of the part; each with the motion that is free from there.
     fn roots(
         &self,
         result: &Settled,
@@ -465,11 +465,16 @@ impl<'a> Pair<'a> {
     ) -> Vec<(Similarity, FreeMotion)> {
         let mut roots = vec![(result.pose, *free)];
         let mut n_tried = 0;
+        let centroid = self.source.measures().centroid;
         for other in others {
             let is_known = |(root, free): &(Similarity, FreeMotion)| {
                 let turn = other.rotation * root.rotation.transpose();
                 match free.kind {
-                    FreeMotionKind::Extruded => 0.5 * (turn.trace() - 1.0) > SAME_WAY,
+                    FreeMotionKind::Extruded => {
+                        let way = other.apply(&centroid) - root.apply(&centroid);
+                        let across = way.cross(&free.direction).norm();
+                        0.5 * (turn.trace() - 1.0) > SAME_WAY && across < self.near
+                    }
                     _ => free.direction.dot(&(turn * free.direction)) > SAME_WAY,
                 }
             };

@@ -517,3 +517,69 @@ fn a_bent_panel_is_placed_as_a_whole_wherever_its_closest_half_lies() {
     let again = placed_as_a_whole(&stamped, &crash, &outcome, &settings, &monitor).unwrap();
     assert_eq!(again, None);
 }
+
+/// The poses of a match that fit as well as its result, which is the first of them.
+fn likely_poses(source: &Surface, target: &Surface) -> Vec<Similarity> {
+    let mut outcome = matched(source, target);
+    let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
+    let held = held_by_borders(source, target, &outcome, &settings, &monitor).unwrap();
+    if let Some(held) = held {
+        outcome.target_from_source = held.target_from_source;
+        outcome.alternatives = held.alternatives;
+    }
+    let others = outcome.alternatives.iter();
+    let likely = others.filter(|other| other.score_ratio < 1.3);
+    let poses = likely.map(|other| other.target_from_source);
+    std::iter::once(outcome.target_from_source)
+        .chain(poses)
+        .collect()
+}
+
+/// Asserts that a stamped mesh that holds a part twice, `apart` from each other, has both among its likely poses on the
+/// part.
+fn both_are_likely(part: &TriMesh, crash: &TriMesh, apart: Vector3) {
+    let shift = Similarity::from_translation(apart);
+    let twice = disturb::joined(part, &part.transformed(&shift));
+    let target = Surface::new(crash, "target").unwrap();
+    let corners = part.aabb().corners();
+    for seed in 1..=3 {
+        let truth = placement(seed);
+        let stamped = twice.transformed(&truth.inverse());
+        let source = Surface::new(&stamped, "source").unwrap();
+        let poses = likely_poses(&source, &target);
+        for second in [Similarity::identity(), shift.inverse()] {
+            let off = |pose: &Similarity| {
+                let off = pose.after(&truth.inverse());
+                off.max_displacement(&second, &corners)
+            };
+            let least = poses.iter().map(off).fold(f64::INFINITY, f64::min);
+            assert!(least < 2.0, "seed {seed}: {least:.1} mm");
+        }
+    }
+}
+
+#[test]
+fn the_second_of_two_symmetric_parts_in_one_mesh_is_as_likely() {
+    let hat = |n| {
+        sheet(n, |u, v| {
+            let (x, y) = (300.0 * (u - 0.5), 200.0 * (v - 0.5));
+            let top = 30.0 * (-(x / 90.0).powi(2) - (y / 50.0).powi(2)).exp();
+            Point3::new(x, y, top)
+        })
+    };
+    both_are_likely(&hat(30), &hat(23), Vector3::new(0.0, 230.0, 0.0));
+}
+
+#[test]
+fn the_second_of_two_rails_in_one_mesh_is_as_likely() {
+    // An open profile of one width along 900 mm, cut aslant at one end.
+    let rail = |n| {
+        sheet(n, |u, v| {
+            let across = 160.0 * v;
+            let wall = 50.0 / (1.0 + (-(across - 50.0) / 4.0).exp());
+            let lip = -20.0 / (1.0 + (-(across - 120.0) / 4.0).exp());
+            Point3::new(u * (900.0 + 0.4 * across), across, wall + lip)
+        })
+    };
+    both_are_likely(&rail(61), &rail(47), Vector3::new(0.0, 210.0, 0.0));
+}

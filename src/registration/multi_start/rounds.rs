@@ -178,6 +178,8 @@ pub(crate) fn refine(
         keep: n_distinct,
         after,
     };
+    // Late starts may have met earlier ones, which must not take the place of other poses.
+    merge(choice, candidates, monitor);
     prune(choice, candidates, cut(n_coarse), monitor);
     let rules = choice.rules(Stage::Refine, settings, choice.fine);
     let (n_points, most) = match depth {
