@@ -14,6 +14,7 @@ use super::shape::{ELSEWHERE, ShapeReason, ShapeStatement};
 use super::sliding::FreeMotionKind;
 use super::tolerance::UNREMARKABLE;
 use super::verdict::Verdict;
+use crate::registration::starts::StartKind;
 use crate::registration::{MatchOutcome, Termination};
 
 /// Fraction of the smaller part that meets the other one for GOOD.
@@ -46,6 +47,7 @@ pub(super) fn decide(
         ending(outcome),
         sliding(assessment, shape, outcome.rivals_sought),
         ambiguity(assessment),
+        others_not_sought(outcome),
         uncertainty(assessment),
     ];
     let of_shape = [
@@ -82,7 +84,10 @@ fn pose_kind(reasons: &[Reason]) -> PoseKind {
         Reason::EndedEarly { .. } => PoseKind::NotFound,
         Reason::Shape { .. } if reason.severity() == Verdict::Poor => PoseKind::NotFound,
         Reason::EqualAlternative { .. } | Reason::NearAlternative { .. } => PoseKind::Ambiguous,
-        Reason::Sliding { .. } | Reason::Uncertain { .. } | Reason::Stopped => PoseKind::Uncertain,
+        Reason::Sliding { .. }
+        | Reason::Uncertain { .. }
+        | Reason::OthersNotSought
+        | Reason::Stopped => PoseKind::Uncertain,
         _ => PoseKind::Certain,
     };
     reasons.iter().map(of).max().unwrap_or(PoseKind::Certain)
@@ -198,6 +203,21 @@ fn ambiguity(assessment: &Assessment) -> Option<Reason> {
             n_equivalent: ambiguity.n_equivalent,
         }),
     }
+}
+
+/// A match that began at poses that somebody gave says nothing of others. Pairs of equal nodes leave none.
+fn others_not_sought(outcome: &MatchOutcome) -> Option<Reason> {
+    let winner = outcome.starts.get(outcome.winner)?;
+    let is_given = matches!(
+        winner.kind,
+        StartKind::CurrentPose | StartKind::Given { .. }
+    );
+    let was_searched = outcome.rivals_sought
+        || matches!(
+            outcome.termination,
+            Termination::ClosedForm | Termination::Stopped
+        );
+    (is_given && !was_searched).then_some(Reason::OthersNotSought)
 }
 
 fn ending(outcome: &MatchOutcome) -> Option<Reason> {

@@ -85,6 +85,8 @@ pub enum Reason {
         /// Equivalent poses, the result included.
         n_equivalent: usize,
     },
+    /// Only given poses were refined: another pose may fit as well.
+    OthersNotSought,
     /// The user stopped the match before it converged.
     Stopped,
     /// The iteration ended without a fit.
@@ -123,6 +125,7 @@ impl Reason {
             | Self::Sliding { .. }
             | Self::NearAlternative { .. }
             | Self::EqualAlternative { .. }
+            | Self::OthersNotSought
             | Self::Stopped => Verdict::Check,
             // Such a sentence stands beside the verdict it belonged to, which is stored too.
             Self::Sentence(_) => Verdict::Check,

@@ -89,6 +89,9 @@ impl Reason {
                 error_beside(*score_ratio),
                 counted(*n_equivalent, "equivalent pose")
             ),
+            Self::OthersNotSought => {
+                "only the given pose was refined: another one may fit as well".to_owned()
+            }
             Self::Stopped => "the match was stopped before it converged".to_owned(),
             Self::EndedEarly { termination } => {
                 format!("the match ended early: {}", termination.label())

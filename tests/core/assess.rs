@@ -273,6 +273,7 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
             twin: None,
             n_equivalent: 2,
         },
+        Reason::OthersNotSought,
         Reason::Stopped,
         Reason::Sentence("the shapes differ".to_owned()),
     ];
