@@ -7,7 +7,7 @@ use super::coverage::Coverage;
 use super::pose::PoseStatement;
 use super::reason::Reason;
 use super::shape::ShapeStatement;
-use super::sliding::Freedom;
+use super::sliding::{FreeMotion, Freedom};
 use super::uncertainty::PoseUncertainty;
 use super::verdict::Verdict;
 use crate::registration::{MirrorCheck, ScaleCheck};
@@ -24,7 +24,7 @@ pub struct Assessment {
     pub coverage: Coverage,
     /// How clearly the pose beats the second-best.
     pub ambiguity: Ambiguity,
-    /// Motions that slide the surface on itself.
+    /// Motions that slide the surface on itself, whatever else holds it.
     pub freedom: Freedom,
     /// Sizes and units.
     pub scale_check: ScaleCheck,
@@ -53,6 +53,14 @@ impl Assessment {
     /// How far the pose may be off, where that is known.
     pub fn uncertainty(&self) -> Option<&PoseUncertainty> {
         self.pose.as_ref()?.uncertainty.as_ref()
+    }
+
+    /// The motion that leaves the pose open: one that the surfaces do not resist, and neither holes nor borders do.
+    pub fn open_motion(&self) -> Option<&FreeMotion> {
+        self.reasons.iter().find_map(|reason| match reason {
+            Reason::Sliding { motion } => Some(motion),
+            _ => None,
+        })
     }
 
     /// The reasons in words, one each, without capital and full stop.

@@ -69,7 +69,7 @@ pub struct MatchRecord {
     pub alternatives: Vec<AlternativeRecord>,
     /// Distances and overlap.
     pub metrics: Metrics,
-    /// Motions that change nothing, in words; absent if the shape fixes the pose.
+    /// Motions that the surfaces do not resist, in words; holes and borders may hold the pose all the same.
     pub free_motion: Option<String>,
     /// Method by its name.
     pub method: Method,

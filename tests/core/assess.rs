@@ -158,7 +158,21 @@ fn a_flat_plate_is_not_good() {
     let turn = Pose::new(Vector3::new(10.0, 20.0, 30.0), Vector3::new(0.5, 0.1, 0.2));
     let (_, assessed) = judge(&plate(20).transformed(&turn.into()), &plate(14));
     assert_ne!(assessed.verdict, Verdict::Good);
-    assert_eq!(assessed.freedom.motion.unwrap().kind, FreeMotionKind::Flat);
+    let motion = assessed.freedom.motion;
+    assert_eq!(motion.unwrap().kind, FreeMotionKind::Flat);
+    assert_eq!(assessed.open_motion(), motion.as_ref());
+    // Holes or borders that hold the plate leave no reason, and nothing to be drawn.
+    let held = |reason: &Reason| !matches!(reason, Reason::Sliding { .. });
+    let held = Assessment {
+        reasons: assessed
+            .reasons
+            .iter()
+            .filter(|r| held(r))
+            .cloned()
+            .collect(),
+        ..assessed
+    };
+    assert_eq!((held.freedom.motion, held.open_motion()), (motion, None));
 }
 
 #[test]

@@ -213,7 +213,7 @@ impl AppState {
     }
 
     fn freedom_cause(&self, assessment: &Assessment) -> Option<Cause> {
-        let motion = assessment.freedom.motion?;
+        let motion = assessment.open_motion()?;
         Some(Cause {
             title: "Sliding possible".to_owned(),
             evidence: sentence(&motion.words()),

@@ -1,4 +1,4 @@
-//! Motions that the shape does not resist, drawn on the part: arrows along free shifts, a ring about a
+//! The motion that leaves the pose open, drawn on the part: arrows along free shifts, a ring about a
 //! free turn, with one sentence.
 
 use egui::{Align2, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
@@ -25,7 +25,7 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
     let Some(result) = over.frame.state.document.current_result() else {
         return;
     };
-    let Some(motion) = &result.run.assessment.freedom.motion else {
+    let Some(motion) = result.run.assessment.open_motion() else {
         return;
     };
     let Some(part) = over.frame.state.document.part(Role::Stamped) else {
