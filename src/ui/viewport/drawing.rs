@@ -2,7 +2,7 @@
 //! scale, distances between clicked points, the gap at the cursor, and gaps drawn ten times as wide.
 
 use egui::{Align, Button, Color32, Layout, RichText, Sense, Ui, Vec2, WidgetInfo, vec2};
-use egui_plot::{Line, LineStyle, Plot, PlotBounds, PlotPoints, PlotUi, Points};
+use egui_plot::{LineStyle, Plot, PlotBounds, PlotPoints, PlotUi, Points};
 
 use super::coordinates::with_coordinates;
 use super::outlines::{Lie, Outline, around};
@@ -11,6 +11,7 @@ use crate::app::{Action, AppState, Command, InspectCommand, SectionView};
 use crate::geometry::{Gap, Plane, Point3, SectionLine, Vector3, gap_to_nearest, nearest_on_lines};
 use crate::role::Role;
 use crate::text::capital;
+use crate::ui::panels::bottom::charts::exact_line;
 use crate::ui::theme::{Look, UNIT, color};
 use crate::ui::widgets::{file_swatch, nothing_yet, paint_role_mark, segments};
 
@@ -397,7 +398,7 @@ impl Drawing<'_> {
                 Role::Crash => BELOW,
                 Role::Stamped => ABOVE,
             };
-            let line = Line::new(role.word(), PlotPoints::from(points))
+            let line = exact_line(role.word(), points)
                 .color(color(style.rgb))
                 .width(width)
                 .allow_hover(false);
@@ -414,7 +415,7 @@ impl Drawing<'_> {
             return;
         }
         let points = || PlotPoints::from(picked.to_vec());
-        let line = Line::new("measured", points())
+        let line = exact_line("measured", points())
             .color(self.look.tool)
             .width(1.2)
             .style(LineStyle::dashed_dense());
@@ -468,7 +469,7 @@ impl Drawing<'_> {
             };
             let to = gap.from + (gap.to - gap.from) * scale;
             let ends = vec![self.plane.flat(&gap.from), self.plane.flat(&to)];
-            let line = Line::new("gap", PlotPoints::from(ends))
+            let line = exact_line("gap", ends)
                 .color(self.look.text)
                 .width(1.5)
                 .allow_hover(false);

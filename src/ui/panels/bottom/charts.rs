@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use egui::{Ui, Vec2};
-use egui_plot::{GridMark, Plot};
+use egui_plot::{GridMark, Line, Plot, PlotPoints};
 
 use crate::text::{tick_number, trimmed};
 use crate::ui::theme::Palette;
@@ -22,6 +22,12 @@ pub fn still_chart(ui: &Ui, name: &str, size: Vec2) -> Plot<'static> {
         .x_axis_formatter(|mark, _| mark_text(mark))
         .y_axis_formatter(|mark, _| mark_text(mark))
         .grid_color(Palette::of(ui).line)
+}
+
+/// A line through its points as they are. The library would join those less than a pixel apart to one as thick as they
+/// are high, which makes a ramp of a step.
+pub fn exact_line<'a>(name: &str, points: impl Into<PlotPoints<'a>>) -> Line<'a> {
+    Line::new(name, points).allow_band(false)
 }
 
 /// The number at a mark, with the decimals of its step.
@@ -286,6 +292,30 @@ mod tests {
         let [low, high] = margined([2.0, f64::NAN, 2.0].into_iter()).unwrap();
         assert!(low < 2.0 && high > 2.0);
         assert_eq!(margined([f64::NAN].into_iter()), None);
+    }
+
+    #[test]
+    fn a_step_is_drawn_as_one() {
+        let points = || vec![[0.0, 1.0], [0.02, 1.0], [0.02, 0.0], [1.0, 0.0]];
+        let n_bands = |line: fn(Vec<[f64; 2]>) -> Line<'static>| {
+            let output = egui::Context::default().run_ui(egui::RawInput::default(), |ui| {
+                still_chart(ui, "steps", egui::vec2(200.0, 80.0))
+                    .show(ui, |plot| plot.line(line(points())));
+            });
+            let shapes = output.shapes.iter();
+            let is_band = |shape: &egui::Shape| match shape {
+                egui::Shape::Vec(inner) => {
+                    let is_band = |shape: &egui::Shape| matches!(shape, egui::Shape::Band(_));
+                    inner.iter().any(is_band)
+                }
+                shape => matches!(shape, egui::Shape::Band(_)),
+            };
+            let n_bands = shapes.filter(|clipped| is_band(&clipped.shape)).count();
+            output.drop_without_applying_deltas();
+            n_bands
+        };
+        assert_eq!(n_bands(|points| exact_line("steps", points)), 0);
+        assert_eq!(n_bands(|points| Line::new("steps", points)), 1);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! start shows the pose of that iteration, a click or the arrow keys keep it.
 
 use egui::{Button, ComboBox, Key, Modifiers, RichText, Ui, vec2};
-use egui_plot::{Line, PlotPoints, VLine};
+use egui_plot::{PlotPoints, VLine};
 
 use super::charts;
 use crate::app::{AppState, Command, Preview, PreviewCommand};
@@ -291,11 +291,11 @@ impl Chart {
             let others = others.filter(|(number, _)| curves.has_others && *number != leader);
             for (number, start) in others {
                 let name = format!("start {}", number + 1);
-                let line = Line::new(name, self.points(start));
+                let line = charts::exact_line(&name, self.points(start));
                 plot.line(line.color(quiet).width(1.0).allow_hover(false));
             }
             let name = format!("start {}", leader + 1);
-            let line = Line::new(name, self.points(&curves.starts[leader]));
+            let line = charts::exact_line(&name, self.points(&curves.starts[leader]));
             plot.line(line.color(palette.accent_text).width(2.0));
             if let Some(at) = curves.shown {
                 let line = VLine::new("shown", at as f64);

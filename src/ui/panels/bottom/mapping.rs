@@ -2,7 +2,7 @@
 
 use egui::{Align, Layout, RichText, Sense, TextStyle, Ui, vec2};
 use egui_extras::{Column, TableBuilder};
-use egui_plot::{Line, PlotPoints};
+use egui_plot::PlotPoints;
 
 use super::charts;
 use super::probe::{probe_ui, with_unit};
@@ -528,9 +528,9 @@ fn histogram_ui(ui: &mut Ui, (pair, by): (&PairRecord, ColorBy), size: egui::Vec
     let plot = charts::with_round_numbers(charts::with_two_shares(plot), size.x);
     plot.show(ui, |plot| {
         let [stamped, crash] = &pair.histograms;
-        let line = Line::new("▲ stamped", steps(stamped)).fill(0.0);
+        let line = charts::exact_line("▲ stamped", steps(stamped)).fill(0.0);
         plot.line(line.color(palette.stamped).width(1.5).fill_alpha(0.15));
-        let line = Line::new("■ crash, mapped", steps(crash)).fill(0.0);
+        let line = charts::exact_line("■ crash, mapped", steps(crash)).fill(0.0);
         plot.line(line.color(palette.crash).width(1.5).fill_alpha(0.15));
     });
 }

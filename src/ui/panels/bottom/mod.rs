@@ -1,6 +1,6 @@
 //! The pane at the bottom: a row of tabs over one of them.
 
-mod charts;
+pub mod charts;
 mod convergence;
 mod deviation;
 mod diagnostics;

@@ -1,7 +1,7 @@
 //! One element of a mapping: where its values come from, both sides in numbers and through the thickness.
 
 use egui::{Align, Layout, RichText, Ui, vec2};
-use egui_plot::{Line, MarkerShape, Points};
+use egui_plot::{MarkerShape, Points};
 
 use super::charts;
 use super::mapping::{column_ui, look_at_element, number};
@@ -229,11 +229,11 @@ fn profile_plot(
         .include_x(high)
         .y_axis_min_width(26.0);
     charts::with_inner_numbers(plot, size.x - 40.0).show(ui, |plot| {
-        let line = Line::new("▲ stamped", stamped.clone());
+        let line = charts::exact_line("▲ stamped", stamped.clone());
         plot.line(line.color(palette.stamped).width(1.5));
         let points = Points::new("▲ stamped", stamped).shape(MarkerShape::Up);
         plot.points(points.color(palette.stamped).radius(4.0));
-        let line = Line::new("■ crash", crash.clone());
+        let line = charts::exact_line("■ crash", crash.clone());
         plot.line(line.color(palette.crash).width(1.5));
         let points = Points::new("■ crash", crash).shape(MarkerShape::Square);
         plot.points(points.color(palette.crash).radius(3.5));

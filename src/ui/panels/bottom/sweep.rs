@@ -2,9 +2,9 @@
 
 use egui::{Align, Button, Color32, Layout, ScrollArea, Sense, Ui, vec2};
 use egui_extras::{Column, TableBuilder};
-use egui_plot::{HoverPosition, Line, LineStyle, PlotBounds, PlotPoints, Points};
+use egui_plot::{HoverPosition, LineStyle, PlotBounds, PlotPoints, Points};
 
-use super::charts::{decade_text, log_chart, range};
+use super::charts::{decade_text, exact_line, log_chart, range};
 use crate::app::{AppState, Command, ExportCommand, MatchCommand, MoveCommand};
 use crate::jobs::JobKey;
 use crate::pipeline::sweep::{MatchingRow, PAPER_MATCHING, PAPER_REDUCTION, Sweep, SweepSettings};
@@ -301,7 +301,7 @@ fn chart_ui(ui: &mut Ui, title: &str, curves: &[Curve], size: egui::Vec2) -> Opt
             plot.set_plot_bounds(PlotBounds::from_min_max(low, high));
             for curve in curves {
                 let points = || PlotPoints::from(curve.points.clone());
-                let line = Line::new(curve.name, points()).color(curve.color);
+                let line = exact_line(curve.name, points()).color(curve.color);
                 if curve.is_reference {
                     plot.line(line.width(1.0).style(LineStyle::dashed_loose()));
                 } else {
