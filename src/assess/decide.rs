@@ -23,6 +23,10 @@ const ENOUGH_MET: f64 = 0.75;
 pub(super) const OPPOSITE_HAND: f64 = 0.8;
 /// Below this one they fit a little better.
 pub(super) const NEAR_MIRROR: f64 = 0.98;
+/// Several target parts so many times as large as the source hold more than it, …
+const SEVERAL_FROM: f64 = 2.0;
+/// … and larger than that no whole car is beside one of its parts.
+const SEVERAL_TO: f64 = 500.0;
 
 /// Sets the verdict, its reasons, the most severe first, and the statement about the pose. `mirrored` is the
 /// statement about the shape of the opposite hand, `most_scaled` how far the scale of the pairs may be off.
@@ -31,12 +35,13 @@ pub(super) fn decide(
     shape: &ShapeStatement,
     mirrored: Option<&ShapeStatement>,
     outcome: &MatchOutcome,
-    most_scaled: f64,
+    (most_scaled, n_target_parts): (f64, usize),
 ) {
+    let several = several_parts(assessment, n_target_parts);
     if let Some(units) = unit(assessment) {
         // Whatever lies on the wrong size by chance says nothing of pose and shape.
         assessment.verdict = units.severity();
-        assessment.reasons = vec![units];
+        assessment.reasons = several.into_iter().chain([units]).collect();
         if let Some(pose) = &mut assessment.pose {
             pose.kind = PoseKind::NotFound;
             pose.uncertainty = None;
@@ -74,6 +79,8 @@ pub(super) fn decide(
         pose.kind = pose_kind(&reasons);
     }
     reasons.sort_by_key(|reason| std::cmp::Reverse(reason.severity()));
+    // Nothing else that was found means anything beside it.
+    reasons.splice(..0, several.filter(|_| verdict == Verdict::Poor));
     assessment.verdict = verdict;
     assessment.reasons = reasons;
 }
@@ -132,6 +139,16 @@ fn fits_better(shape: &ShapeStatement, than: &ShapeStatement) -> bool {
         Ordering::Equal => remains_less(shape, than, UNREMARKABLE),
         Ordering::Greater => false,
     }
+}
+
+/// More parts than the source belongs to, by their size.
+fn several_parts(assessment: &Assessment, n_parts: usize) -> Option<Reason> {
+    let size_ratio = assessment.scale_check.size_ratio;
+    let is_whole = n_parts > 1 && (SEVERAL_FROM..SEVERAL_TO).contains(&size_ratio);
+    is_whole.then_some(Reason::SeveralParts {
+        n_parts,
+        size_ratio,
+    })
 }
 
 fn unit(assessment: &Assessment) -> Option<Reason> {

@@ -24,6 +24,14 @@ pub enum Reason {
         #[serde(with = "any_float")]
         score_ratio: f64,
     },
+    /// The target consists of more parts than the source belongs to.
+    SeveralParts {
+        /// How many.
+        n_parts: usize,
+        /// Their size together over that of the source.
+        #[serde(with = "any_float")]
+        size_ratio: f64,
+    },
     /// The sizes differ by a factor between length units.
     DifferentUnits {
         /// Target size over source size.
@@ -129,9 +137,10 @@ impl Reason {
             | Self::Stopped => Verdict::Check,
             // Such a sentence stands beside the verdict it belonged to, which is stored too.
             Self::Sentence(_) => Verdict::Check,
-            Self::OppositeHand { .. } | Self::DifferentUnits { .. } | Self::EndedEarly { .. } => {
-                Verdict::Poor
-            }
+            Self::OppositeHand { .. }
+            | Self::SeveralParts { .. }
+            | Self::DifferentUnits { .. }
+            | Self::EndedEarly { .. } => Verdict::Poor,
         }
     }
 }

@@ -53,6 +53,8 @@ pub struct AssessSettings {
     pub remove_offset: bool,
     /// A millimetre in target length units; 1 if not known.
     pub millimetre: Option<f64>,
+    /// How many parts the target consists of; 0 if not known.
+    pub n_target_parts: usize,
 }
 
 impl AssessSettings {

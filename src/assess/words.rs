@@ -59,6 +59,14 @@ impl Reason {
                 "the part is nearly its own mirror image: mirrored, the {}",
                 error_beside(*score_ratio)
             ),
+            Self::SeveralParts {
+                n_parts,
+                size_ratio,
+            } => format!(
+                "the crash side holds {n_parts} parts, together about {} × larger than the stamped \
+                 part: choose the part",
+                rounded(*size_ratio)
+            ),
             Self::DifferentUnits { size_ratio, unit } => different_units(*size_ratio, *unit),
             Self::PairScale { scale } => {
                 format!("the paired points fit best at a scale of {scale:.4}")

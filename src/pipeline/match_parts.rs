@@ -249,6 +249,7 @@ fn assess_settings(parts: PerRole<&LoadedPart>, settings: &MatchSettings) -> Ass
         shape_tolerance: Some(settings.shape_tolerance).filter(|t| *t > 0.0),
         millimetre,
         remove_offset: settings.remove_offset,
+        n_target_parts: crash.chosen_part_ids().len(),
         ..AssessSettings::default()
     }
 }

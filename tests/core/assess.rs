@@ -210,6 +210,35 @@ fn parts_that_have_nothing_in_common_are_poor() {
     assert!(!assessed.reasons.is_empty());
 }
 
+#[test]
+fn that_several_parts_are_matched_as_one_comes_before_their_size() {
+    let target = pan(9.0, 0.0, everywhere);
+    let source = target.transformed(&Similarity::from_scale(1.0 / 9.8));
+    let [source, target] = [&source, &target].map(|mesh| Surface::new(mesh, "source").unwrap());
+    let outcome = matched(&source, &target);
+    let reasons = |n_target_parts| {
+        let settings = AssessSettings {
+            n_target_parts,
+            ..AssessSettings::default()
+        };
+        let monitor = Monitor::silent();
+        let assessed = assess(&source, &target, &outcome, &settings, &monitor).unwrap();
+        assert_eq!(assessed.verdict, Verdict::Poor);
+        assessed.reasons
+    };
+    let of_one = reasons(1);
+    assert!(
+        matches!(of_one[..], [Reason::DifferentUnits { .. }]),
+        "{of_one:?}"
+    );
+    let of_several = reasons(12);
+    let several = Reason::SeveralParts {
+        n_parts: 12,
+        size_ratio: outcome.scale_check.size_ratio,
+    };
+    assert_eq!(of_several[..], [several, of_one[0].clone()]);
+}
+
 /// Surfaces that differ by much, mostly or at some places.
 fn surfaces_apart(mostly: bool) -> ShapeReason {
     ShapeReason::Surface {
@@ -239,6 +268,10 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
     };
     let poor = [
         Reason::OppositeHand { score_ratio: 0.5 },
+        Reason::SeveralParts {
+            n_parts: 12,
+            size_ratio: 8.6,
+        },
         Reason::DifferentUnits {
             size_ratio: 25.0,
             unit,

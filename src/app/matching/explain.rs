@@ -36,7 +36,8 @@ impl AppState {
         }
         // Sizes and overlap of several parts say nothing about the one that is stamped; parts in
         // different units lie nowhere on each other.
-        let first = self.parts_cause().or_else(|| self.units_cause(assessment));
+        let of_parts = self.parts_cause(assessment);
+        let first = of_parts.or_else(|| self.units_cause(assessment));
         if let Some(only) = first {
             return vec![only];
         }
@@ -54,8 +55,11 @@ impl AppState {
     /// nothing else that it found means anything.
     pub fn is_unit_in_doubt(&self) -> bool {
         let result = self.document.current_result();
-        let unit = result.and_then(|result| result.run.assessment.scale_check.unit.as_ref());
-        unit.is_some() && self.unit_hint().is_some() && self.parts_cause().is_none()
+        result.is_some_and(|result| {
+            let assessment = &result.run.assessment;
+            let is_other = assessment.scale_check.unit.is_some() && self.unit_hint().is_some();
+            is_other && self.parts_cause(assessment).is_none()
+        })
     }
 
     /// Why the last match gave no pose, if these are still its parts.
@@ -146,12 +150,14 @@ impl AppState {
         Some((label, vec![command.into()]))
     }
 
-    fn parts_cause(&self) -> Option<Cause> {
-        let more = self.more_alike()?;
+    fn parts_cause(&self, assessment: &Assessment) -> Option<Cause> {
+        let Some(more) = self.more_alike() else {
+            return several_parts_cause(assessment);
+        };
         let title = self.document.part_title(more.part);
         let commands = vec![PartCommand::UseOnly(more.part).into()];
         Some(Cause {
-            title: format!("{} crash parts are matched as one", more.n_used),
+            title: matched_as_one(more.n_used),
             evidence: format!("{title} alone is more like the stamped part than all together."),
             remedy: Some((format!("Match only {}", more.part.id), commands)),
         })
@@ -271,4 +277,21 @@ impl AppState {
         let command = MatchCommand::SetRecipe(Box::new(recipe));
         (label, vec![command.into()])
     }
+}
+
+/// What is wrong where all parts of a crash model are matched together.
+fn matched_as_one(n_parts: usize) -> String {
+    format!("{n_parts} crash parts are matched as one")
+}
+
+/// Several crash parts none of which is more like the stamped part: which it is only the user knows.
+fn several_parts_cause(assessment: &Assessment) -> Option<Cause> {
+    assessment.reasons.iter().find_map(|reason| match reason {
+        Reason::SeveralParts { n_parts, .. } => Some(Cause {
+            title: matched_as_one(*n_parts),
+            evidence: "Choose in section 1 the part that the stamped one belongs to.".to_owned(),
+            remedy: None,
+        }),
+        _ => None,
+    })
 }

@@ -5,14 +5,10 @@ use crate::app::{AppState, Document, Settings};
 use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::units::PairUnits;
+use crate::registration::guess_unit;
 use crate::role::{PerRole, Role};
 use crate::text::Lengths;
 use crate::units::{KnownUnits, LengthUnit};
-
-/// Factors between length units people use: cm, inch, foot and metre against millimetre.
-const FACTORS: [f64; 4] = [10.0, 25.4, 304.8, 1000.0];
-/// How far the sizes of the two parts may be from an exact factor: trimmed flanges change a size.
-const TOLERANCE: f64 = 1.4;
 
 /// Sizes or units of the two parts differ by about a known factor between units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,11 +22,9 @@ pub struct UnitHint {
 impl UnitHint {
     /// Compares the diagonals of the two boxes; `None` if they are alike or differ otherwise.
     fn of_sizes(crash: f64, stamped: f64) -> Option<Self> {
-        let ratio = size_ratio(crash, stamped)?;
-        let both_ways = FACTORS.iter().flat_map(|&f| [f, 1.0 / f]);
-        let nearest = both_ways.min_by(|a, b| off(ratio, *a).total_cmp(&off(ratio, *b)))?;
-        (off(ratio, nearest) < TOLERANCE.ln()).then_some(Self {
-            factor: nearest,
+        let guess = guess_unit(size_ratio(crash, stamped)?)?;
+        Some(Self {
+            factor: guess.factor(),
             unit: None,
         })
     }
@@ -219,7 +213,7 @@ mod tests {
         assert_eq!(hint.factor, 1000.0);
         assert_eq!(hint.text(), "Stamped looks 1000 × smaller than crash");
         assert_eq!(factor(1.0, 26.0), Some(1.0 / 25.4));
-        for [crash, stamped] in [[1.0, 1.3], [1.0, 3.0], [1.0, 0.0], [0.0, 1.0]] {
+        for [crash, stamped] in [[1.0, 1.3], [8.6, 1.0], [1.0, 3.0], [1.0, 0.0], [0.0, 1.0]] {
             assert_eq!(factor(crash, stamped), None);
         }
     }
