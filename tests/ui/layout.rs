@@ -283,6 +283,27 @@ fn the_question_about_the_mouse_is_seen_whole_below_recent_files() {
     assert!(window.query_by_label("OK").is_none());
 }
 
+/// The classes of the overlap and their shares of both parts stand beside each other.
+#[test]
+fn the_overlap_of_two_parts_has_room_for_its_shares() {
+    let mut window = matched();
+    click(&mut window, "Move over");
+    finish(&mut window);
+    let overlap = Action::ToggleOverlap.command(window.state().state());
+    act(&mut window, overlap.into_iter().collect());
+    finish(&mut window);
+    dismiss_toasts(&mut window);
+    for size in [[1400.0, 900.0], [1280.0, 720.0], [1100.0, 720.0]] {
+        window.set_size(Vec2::from(size));
+        window.run_steps(20);
+        let found = faults(&window);
+        assert!(found.is_empty(), "{size:?}: {}", found.join("\n"));
+        let is_class = |text: &Painted| text.text == "on this part only";
+        let is_shown = texts(&window).iter().any(is_class);
+        assert!(is_shown || size[0] < 1200.0, "{size:?}: no legend");
+    }
+}
+
 /// Every label of a row of choices keeps off the edges of its own.
 #[test]
 fn the_uses_of_the_right_window_have_room_around_their_names() {

@@ -22,6 +22,10 @@ use crate::ui::viewport::fields::FieldKind;
 /// Width of what is inside the plate, and of the folded one; air beside it.
 const WIDTH: f32 = 172.0;
 const SLIM: f32 = 58.0;
+/// Width of the classes of the overlap with a column of shares for each of two parts, and of the narrowest window
+/// that has room for it beside the names of the parts.
+const TWO_SHARES: f32 = 212.0;
+const BESIDE_NAMES: f32 = 420.0;
 const AIR: f32 = 8.0;
 /// Room above the legend for the buttons of the camera, and below it for the scale bar.
 const ABOVE: f32 = 44.0;
@@ -55,14 +59,20 @@ pub(super) fn show(ui: &mut Ui, over: &Overlay<'_>, commands: &mut Vec<Command>)
         _ => None,
     };
     if let Some(classes) = classes {
-        if has_room {
-            return Some(plate(ui, over, WIDTH, |ui| classes(ui, over, commands)));
+        let has_two = kind == FieldKind::Overlap && over.frame.picture.roles().len() > 1;
+        let (width, least) = if has_two {
+            (TWO_SHARES, BESIDE_NAMES)
+        } else {
+            (WIDTH, 0.0)
+        };
+        if has_room && window.width() >= least {
+            return Some(plate(ui, over, width, |ui| classes(ui, over, commands)));
         }
-        behind_button(ui, over, |ui| classes(ui, over, commands));
+        behind_button(ui, over, width, |ui| classes(ui, over, commands));
         return None;
     }
     if top(over).is_none() {
-        behind_button(ui, over, |ui| {
+        behind_button(ui, over, WIDTH, |ui| {
             slim(ui, over, (kind, &scale), false, commands);
         });
         return None;
@@ -98,7 +108,7 @@ type Classes = fn(&mut Ui, &Overlay<'_>, &mut Vec<Command>);
 const BUTTON: f32 = 20.0;
 
 /// A button at the foot of the window that opens the legend over it.
-fn behind_button(ui: &mut Ui, over: &Overlay<'_>, add: impl FnOnce(&mut Ui)) {
+fn behind_button(ui: &mut Ui, over: &Overlay<'_>, width: f32, add: impl FnOnce(&mut Ui)) {
     if !over.frame.picture.has_colored() {
         return;
     }
@@ -115,7 +125,7 @@ fn behind_button(ui: &mut Ui, over: &Overlay<'_>, add: impl FnOnce(&mut Ui)) {
         let config = egui::containers::menu::MenuConfig::new().close_behavior(close);
         let menu = egui::containers::menu::MenuButton::from_button(button).config(config);
         let (response, _) = menu.ui(ui, |ui| {
-            ui.set_width(WIDTH);
+            ui.set_width(width);
             egui::ScrollArea::vertical()
                 .max_height(ui.ctx().content_rect().height() - 2.0 * BUTTON)
                 .show(ui, add);
