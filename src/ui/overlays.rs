@@ -15,6 +15,7 @@ use crate::app::{
     Settings, Theme, ViewCommand, clock_text,
 };
 use crate::colormap::ColorMap;
+use crate::text::{fixed, trimmed};
 
 /// Draws the open dialog, if any. `is_on_processor`: every pixel costs the processor time.
 pub fn overlays_ui(
@@ -148,14 +149,23 @@ fn display_ui(ui: &mut Ui, settings: &mut Settings) {
         }
     });
     form_row(ui, "UI scale", LABEL, |ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
         ui.spacing_mut().button_padding.x = 6.0;
-        for scale in [0.75_f32, 1.0, 1.25, 1.5, 2.0, 2.5] {
-            let is_on = (settings.ui_scale - scale).abs() < 1e-3;
-            if chip(ui, &format!("{:.0} %", scale * 100.0), is_on).clicked() {
-                settings.ui_scale = scale;
-            }
+        let now = settings.ui_scale;
+        let mut scales = vec![0.75, 1.0, 1.25, 1.5, 2.0, 2.5];
+        if !scales.contains(&now) {
+            // One that the keys chose.
+            scales.push(now);
+            scales.sort_by(f32::total_cmp);
         }
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
+            for scale in scales {
+                let label = trimmed(f64::from(100.0 * scale), 1) + " %";
+                if chip(ui, &label, scale == now).clicked() {
+                    settings.ui_scale = scale;
+                }
+            }
+        });
     });
     form_row(ui, "Motion", LABEL, |ui| {
         ui.checkbox(&mut settings.reduce_motion, "Reduce motion");
@@ -188,38 +198,42 @@ fn map_row(ui: &mut Ui, name: &str, map: &mut ColorMap) {
 /// How lengths are written.
 fn decimals_ui(ui: &mut Ui, settings: &mut Settings) {
     form_row(ui, "Lengths", LABEL, |ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        let automatic = chip(ui, "Automatic", settings.decimals.is_none())
-            .on_hover_text("Three significant digits");
-        if automatic.clicked() {
-            settings.decimals = None;
-        }
-        for n in Settings::DECIMALS {
-            let example = crate::text::fixed(0.0, usize::from(n)) + " mm";
-            let one = chip(ui, &example, settings.decimals == Some(n)).on_hover_text(
-                "So many decimals of a millimetre; other units get as many as show no less. Exports and \
-                 typed numbers keep all digits.",
-            );
-            if one.clicked() {
-                settings.decimals = Some(n);
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
+            let automatic = chip(ui, "Automatic", settings.decimals.is_none())
+                .on_hover_text("Three significant digits");
+            if automatic.clicked() {
+                settings.decimals = None;
             }
-        }
+            for n in Settings::DECIMALS {
+                let example = fixed(0.0, usize::from(n)) + " mm";
+                let one = chip(ui, &example, settings.decimals == Some(n)).on_hover_text(
+                    "So many decimals of a millimetre; other units get as many as show no less. Exports and \
+                     typed numbers keep all digits.",
+                );
+                if one.clicked() {
+                    settings.decimals = Some(n);
+                }
+            }
+        });
     });
 }
 
 /// Which messages come up over the windows.
 fn messages_choice(ui: &mut Ui, settings: &mut Settings) {
     form_row(ui, "Notifications", LABEL, |ui| {
-        for level in NoticeLevel::TOLD {
-            let mut is_shown = !settings.muted.contains(&level);
-            if ui.checkbox(&mut is_shown, level.label()).changed() {
-                if is_shown {
-                    settings.muted.remove(&level);
-                } else {
-                    settings.muted.insert(level);
+        ui.horizontal_wrapped(|ui| {
+            for level in NoticeLevel::TOLD {
+                let mut is_shown = !settings.muted.contains(&level);
+                if ui.checkbox(&mut is_shown, level.label()).changed() {
+                    if is_shown {
+                        settings.muted.remove(&level);
+                    } else {
+                        settings.muted.insert(level);
+                    }
                 }
             }
-        }
+        });
     });
 }
 

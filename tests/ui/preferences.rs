@@ -103,6 +103,27 @@ fn every_length_has_the_decimals_of_the_preferences() {
 }
 
 #[test]
+fn the_preferences_fit_a_small_window_and_show_the_scale_of_the_keys() {
+    let mut window = super::story::window();
+    for _ in 0..10 {
+        run(&mut window, Action::ScaleUp);
+    }
+    assert_eq!(settings(&window).ui_scale, 2.25);
+    window.set_size(egui::vec2(1280.0, 720.0) / 2.25);
+    window.run_steps(2);
+    run(&mut window, Action::Preferences);
+    window.run_steps(4);
+    let screen = window.ctx.content_rect();
+    for name in ["Close", "225 %", "250 %"] {
+        let place = window.get_by_label(name).rect();
+        assert!(
+            screen.shrink(16.0).contains_rect(place),
+            "{name}: {place} of {screen}"
+        );
+    }
+}
+
+#[test]
 fn colours_of_the_preferences_hold_at_once_and_for_the_next_start() {
     let mut window = matched();
     run(&mut window, Action::ToggleDeviation);
