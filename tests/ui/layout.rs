@@ -304,6 +304,31 @@ fn the_overlap_of_two_parts_has_room_for_its_shares() {
     }
 }
 
+/// The unfolded legend of a mapped quantity says more than the folded one.
+#[test]
+fn the_legend_of_a_mapped_quantity_has_its_figures() {
+    let mut window = matched();
+    let map = Action::MapOrCancel.command(window.state().state());
+    act(&mut window, map.into_iter().collect());
+    finish(&mut window);
+    click(&mut window, "Values");
+    finish(&mut window);
+    dismiss_toasts(&mut window);
+    wait_for(&mut window, "Unfold the legend (crash)");
+    let figures = |window: &Window| {
+        let starts = ["max ", "mean ", "min "];
+        let texts = texts(window);
+        let is_one = |start: &&str| texts.iter().any(|text| text.text.starts_with(*start));
+        starts.iter().filter(|start| is_one(start)).count()
+    };
+    assert_eq!(figures(&window), 0);
+    click(&mut window, "Unfold the legend (crash)");
+    window.run_steps(4);
+    assert_eq!(figures(&window), 3);
+    let found = faults(&window);
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
 /// Every label of a row of choices keeps off the edges of its own.
 #[test]
 fn the_uses_of_the_right_window_have_room_around_their_names() {

@@ -1,6 +1,8 @@
 //! Numbers shown as colours: thickness, forming results and error of the reduction, made off the frame and
 //! kept while they are shown; distance between the parts and overlap, which the worker measures.
 
+mod summary;
+
 use std::sync::Arc;
 
 use super::map_fields;
@@ -17,9 +19,9 @@ use crate::render::FieldLook;
 use crate::role::{PerRole, Role};
 use crate::search::{Bvh, SearchLimits, closest_many};
 use crate::ui::background::{Background, Task};
+pub(super) use summary::Summary;
+use summary::{robust_range, without_rounding};
 
-/// Share of the values on either end that may lie beyond the colours.
-const TAIL: f64 = 0.005;
 /// Fields kept although nothing shows them now.
 const KEPT: usize = 6;
 
@@ -56,6 +58,11 @@ impl FieldKind {
         self == Self::Deviation
     }
 
+    /// True for differences of a quantity, which may all be rounding.
+    pub fn is_difference(self) -> bool {
+        matches!(self, Self::Map(MapPicture::Difference | MapPicture::Other))
+    }
+
     /// Title of the legend.
     pub fn label(self) -> &'static str {
         match self {
@@ -90,6 +97,7 @@ struct Field {
     is_by_corner: bool,
     /// What the colours should span; nothing where no value is known.
     range: Option<[f64; 2]>,
+    summary: Option<Summary>,
     /// Keeps what the key names by its address.
     _key: (Arc<ShownMesh>, Option<Arc<TriMesh>>, Results),
     _stated: Option<Stated>,
@@ -104,6 +112,8 @@ pub(super) struct FieldStore {
     /// Ranges of what each window shows, so that both have one scale. A window without any value says
     /// nothing of it.
     ranges: PerRole<Option<(FieldKind, Option<[f64; 2]>)>>,
+    /// Figures of what each window shows.
+    summaries: PerRole<Option<Summary>>,
     /// How many parts each window shows.
     n_shown: PerRole<usize>,
 }
@@ -115,6 +125,7 @@ impl FieldStore {
             ready: Vec::new(),
             failed: Vec::new(),
             ranges: PerRole::default(),
+            summaries: PerRole::default(),
             n_shown: PerRole::default(),
         }
     }
@@ -158,6 +169,8 @@ impl FieldStore {
                     let ranges = found.iter().flatten().filter_map(|field| field.range);
                     (kind, ranges.reduce(union))
                 });
+        let summaries = found.iter().flatten().filter_map(|field| field.summary);
+        *self.summaries.get_mut(window) = summaries.reduce(Summary::and);
         *self.n_shown.get_mut(window) = drawn.len();
         let n_shown = self.n_shown.crash + self.n_shown.stamped;
         let n = self.ready.len().saturating_sub(KEPT + n_shown);
@@ -171,6 +184,11 @@ impl FieldStore {
             })
         };
         found.into_iter().map(|field| look(field?)).collect()
+    }
+
+    /// Figures of the values that a window shows; those of deviation and overlap are measured elsewhere.
+    pub fn summary(&self, window: Role) -> Option<Summary> {
+        *self.summaries.get(window)
     }
 
     /// True while fields are being made.
@@ -422,9 +440,13 @@ impl Order {
             }
             None => self.results(),
         };
+        let is_by_corner = matches!(self.key.kind, FieldKind::Map(_));
+        let source = &self.mesh.source;
+        let element = is_by_corner.then_some(|triangle: usize| source.element(triangle));
         Field {
             range: robust_range(&values),
-            is_by_corner: matches!(self.key.kind, FieldKind::Map(_)),
+            summary: Summary::of(self.mesh.mesh(), &values, element),
+            is_by_corner,
             values: values.into(),
             _key: (self.mesh, self.other, (self.mapped, self.compared)),
             _stated: self.stated,
@@ -455,7 +477,12 @@ impl Order {
         match (&self.mapped, self.key.kind) {
             (Some(run), FieldKind::Map(picture)) => {
                 let results = (run.as_ref(), self.compared.as_deref());
-                map_fields::at_corners(&self.mesh, results, picture, shown)
+                let values = map_fields::at_corners(&self.mesh, results, picture, shown);
+                if !self.key.kind.is_difference() {
+                    return values;
+                }
+                let sizes = (0..run.shells.len()).map(|element| run.shown(element, shown).abs());
+                without_rounding(values, sizes)
             }
             (Some(run), _) => mapped(&self.mesh, run, |e| run.shown(e, shown)),
             (None, FieldKind::Forming(value)) => forming(&self.mesh, value, shown),
@@ -548,26 +575,6 @@ fn vertex_means(shown: &ShownMesh, of_shell: impl Fn(u32) -> Option<f64>) -> Vec
 /// A thickness of zero is one that was not given.
 fn known(value: f32) -> f32 {
     if value > 0.0 { value } else { f32::NAN }
-}
-
-/// Smallest and largest value without the tails, widened if they coincide; nothing without values.
-fn robust_range(values: &[f32]) -> Option<[f64; 2]> {
-    let mut finite: Vec<f32> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    if finite.is_empty() {
-        return None;
-    }
-    finite.sort_unstable_by(f32::total_cmp);
-    let tail = (TAIL * finite.len() as f64) as usize;
-    let (low, high) = (
-        f64::from(finite[tail]),
-        f64::from(finite[finite.len() - 1 - tail]),
-    );
-    Some(if high - low > 1e-6 * high.abs() {
-        [low, high]
-    } else {
-        let air = if high == 0.0 { 1.0 } else { 0.05 * high.abs() };
-        [low - air, high + air]
-    })
 }
 
 #[cfg(test)]

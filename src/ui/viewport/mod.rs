@@ -348,6 +348,7 @@ impl Viewports {
             hit: hit.as_ref(),
             scale: kind.and_then(|kind| Some((kind, self.fields.scale(role, state)?))),
             kind,
+            summary: self.fields.summary(role),
             hint: window.tools.hint(state),
             pick,
             is_preparing: is_preparing(state, frame.view, frame.picture),

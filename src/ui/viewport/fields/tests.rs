@@ -33,3 +33,32 @@ fn distances_are_those_to_the_surface() {
     let points = [0.5, -0.25].map(|z| Point3::new(1.0, 1.0, z));
     assert_eq!(distances(&Bvh::build(mesh), &points), [0.5, 0.25]);
 }
+
+#[test]
+fn a_summary_weighs_by_area_and_counts_what_is_known() {
+    let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [6.0, 0.0]];
+    let positions = corners.map(|[x, y]| Point3::new(x, y, 0.0)).to_vec();
+    // A square of two triangles and a triangle as large as it.
+    let triangles = vec![[0, 1, 2], [0, 2, 3], [1, 4, 2]];
+    let mesh = TriMesh::new(positions, triangles).unwrap();
+    let element = |triangle: usize| (triangle / 2) as u32;
+    let by_corner: Vec<f32> = [1.0, 1.0, 4.0].into_iter().flat_map(|v| [v; 3]).collect();
+    let found = Summary::of(&mesh, &by_corner, Some(element)).unwrap();
+    assert_eq!((found.min, found.max, found.n), (1.0, 4.0, 2));
+    assert!((found.mean() - 2.5).abs() < 1e-6);
+    let nowhere: Option<fn(usize) -> u32> = None;
+    let at_nodes = [3.0, 3.0, 3.0, f32::NAN, 3.0];
+    let found = Summary::of(&mesh, &at_nodes, nowhere).unwrap();
+    assert_eq!((found.n, found.is_of_elements), (4, false));
+    assert!((found.mean() - 3.0).abs() < 1e-6);
+    assert_eq!(Summary::of(&mesh, &[f32::NAN; 5], nowhere), None);
+}
+
+#[test]
+fn differences_that_are_all_rounding_are_none() {
+    let sizes = || [0.8, 1.4, f64::NAN].into_iter();
+    let equal = without_rounding(vec![1e-7, f32::NAN, -2e-7], sizes());
+    assert!(equal[0] == 0.0 && equal[1].is_nan() && equal[2] == 0.0);
+    let differ = vec![1e-7, 0.01];
+    assert_eq!(without_rounding(differ.clone(), sizes()), differ);
+}

@@ -20,7 +20,7 @@ pub use free::free_choice;
 pub(super) use crate::text::grouped;
 use egui::{Align2, FontId, Painter, Rect, Ui};
 
-use super::fields::FieldKind;
+use super::fields::{FieldKind, Summary};
 use super::frame::FrameContext;
 use super::navigation::CameraDrag;
 use super::picking::Pick;
@@ -42,6 +42,8 @@ pub(super) struct Overlay<'a> {
     pub scale: Option<(FieldKind, ColorScale)>,
     /// What the colours should show, measured or not.
     pub kind: Option<FieldKind>,
+    /// Figures of the field, where its legend has no others.
+    pub summary: Option<Summary>,
     /// What the handle under the pointer does.
     pub hint: Option<String>,
     /// What a click would pick for a pair of points.
@@ -53,6 +55,12 @@ pub(super) struct Overlay<'a> {
 impl Overlay<'_> {
     fn role(&self) -> Role {
         self.frame.view.window
+    }
+
+    /// True where differences are shown and there are none but rounding.
+    fn is_equal(&self) -> bool {
+        let is_difference = self.kind.is_some_and(FieldKind::is_difference);
+        is_difference && self.summary.is_some_and(|summary| summary.is_nothing())
     }
 
     fn painter(&self, ui: &Ui) -> Painter {

@@ -1,18 +1,25 @@
 //! The bar of colours with its ticks.
 
-use egui::{Align2, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
+use egui::{
+    Align, Align2, FontId, Layout, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, UiBuilder,
+    pos2, vec2,
+};
 
 use super::menu;
 use super::tick_text;
 use crate::app::Command;
 use crate::colormap::{ColorScale, Pattern};
+use crate::text::{counted, length, signed};
 use crate::ui::theme::{color, ink};
+use crate::ui::viewport::fields::Summary;
 use crate::ui::viewport::overlay::Overlay;
 
 /// Width of the bar.
 pub(super) const BAR: f32 = 14.0;
+/// Left of the figures beside bar and ticks.
+const NUMBERS: f32 = 76.0;
 
-/// Title, menu, bar, ticks: for values without more to say about them.
+/// Title, menu, bar, ticks, and the figures of the values.
 pub(super) fn plain(
     ui: &mut Ui,
     over: &Overlay<'_>,
@@ -36,10 +43,51 @@ pub(super) fn plain(
         });
     });
     ui.add_space(6.0);
+    if over.is_equal() {
+        equal(ui, scale, over);
+        return;
+    }
     let (room, _) = ui.allocate_exact_size(vec2(super::WIDTH, height + 8.0), Sense::hover());
     let bar = Rect::from_min_size(room.min + vec2(2.0, 4.0), vec2(BAR, height));
     paint(ui.painter(), scale, bar, over);
     ticks(ui.painter(), scale, bar, over, false);
+    if let Some(summary) = over.summary {
+        let left = pos2(room.left() + NUMBERS, room.top());
+        let room = Rect::from_min_max(left, room.max);
+        numbers(ui, over, &summary, (scale, room));
+    }
+}
+
+/// Extremes and mean of the values, and of how many they are.
+fn numbers(ui: &mut Ui, over: &Overlay<'_>, of: &Summary, (scale, room): (&ColorScale, Rect)) {
+    let number = if scale.min < 0.0 { signed } else { length };
+    let noun = if of.is_of_elements { "element" } else { "node" };
+    let builder = UiBuilder::new()
+        .max_rect(room)
+        .layout(Layout::top_down(Align::Min));
+    let mut beside = ui.new_child(builder);
+    for text in [
+        format!("max {}", number(of.max)),
+        format!("mean {}", number(of.mean())),
+        format!("min {}", number(of.min)),
+        counted(of.n, noun),
+    ] {
+        let text = RichText::new(text).size(11.0);
+        beside.label(text.color(over.frame.look.weak));
+    }
+}
+
+/// The one colour of differences that are all rounding.
+pub(super) fn equal(ui: &mut Ui, scale: &ColorScale, over: &Overlay<'_>) {
+    ui.horizontal(|ui| {
+        let (swatch, _) = ui.allocate_exact_size(vec2(BAR, BAR), Sense::hover());
+        ui.painter()
+            .rect_filled(swatch, 0.0, color(scale.color(0.0)));
+        let stroke = Stroke::new(1.0, over.frame.look.plate_line);
+        ui.painter()
+            .rect_stroke(swatch, 0.0, stroke, egui::StrokeKind::Outside);
+        ui.label(RichText::new("equal").size(11.0));
+    });
 }
 
 /// The colours, low values at the foot, with their patterns.

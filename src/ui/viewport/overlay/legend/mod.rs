@@ -240,6 +240,13 @@ fn slim(
     if kind == FieldKind::Deviation {
         deviation::slim_freshness(ui, over, commands);
     }
+    if over.is_equal() {
+        bar::equal(ui, scale, over);
+        if can_open {
+            fold(ui, over);
+        }
+        return;
+    }
     let left = over.frame.rect().height() - top(over).unwrap_or(ABOVE) - BELOW - 84.0;
     let height = left.clamp(60.0, 220.0);
     let (room, _) = ui.allocate_exact_size(vec2(SLIM, height + 16.0), Sense::hover());

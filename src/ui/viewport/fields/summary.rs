@@ -1,0 +1,124 @@
+//! Figures of a field: what its colours span, and what its legend says of the values.
+
+use crate::geometry::TriMesh;
+
+/// Share of the values on either end that may lie beyond the colours.
+const TAIL: f64 = 0.005;
+/// Differences up to this share of the largest value are rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// What a legend says of the values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::ui::viewport) struct Summary {
+    pub min: f64,
+    pub max: f64,
+    /// How many nodes or elements have one.
+    pub n: usize,
+    pub is_of_elements: bool,
+    /// Sum over the area, and the area.
+    sum: f64,
+    area: f64,
+}
+
+impl Summary {
+    /// Of values at the nodes of a mesh, or at the corners of its triangles where `element` says which element
+    /// each belongs to. `None` where none is known. O(triangles).
+    pub(super) fn of(
+        mesh: &TriMesh,
+        values: &[f32],
+        element: Option<impl Fn(usize) -> u32>,
+    ) -> Option<Self> {
+        let mut found = Self {
+            min: f64::INFINITY,
+            max: f64::NEG_INFINITY,
+            n: 0,
+            is_of_elements: element.is_some(),
+            sum: 0.0,
+            area: 0.0,
+        };
+        let mut last = None;
+        for (triangle, corners) in mesh.triangles().iter().enumerate() {
+            let area = mesh.triangle_area(triangle) / 3.0;
+            for (k, &node) in corners.iter().enumerate() {
+                let at = match &element {
+                    Some(_) => 3 * triangle + k,
+                    None => node as usize,
+                };
+                let value = values.get(at).copied().map_or(f64::NAN, f64::from);
+                if value.is_finite() {
+                    found.min = found.min.min(value);
+                    found.max = found.max.max(value);
+                    found.sum += area * value;
+                    found.area += area;
+                }
+            }
+            // The triangles of an element follow each other.
+            if let Some(element) = &element {
+                let is_known = values.get(3 * triangle).is_some_and(|v| v.is_finite());
+                let now = is_known.then(|| element(triangle));
+                found.n += usize::from(now.is_some() && now != last);
+                last = now;
+            }
+        }
+        if element.is_none() {
+            found.n = values.iter().filter(|value| value.is_finite()).count();
+        }
+        (found.area > 0.0).then_some(found)
+    }
+
+    /// The figures of both together.
+    pub(super) fn and(self, other: Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+            n: self.n + other.n,
+            is_of_elements: self.is_of_elements,
+            sum: self.sum + other.sum,
+            area: self.area + other.area,
+        }
+    }
+
+    /// The mean over the area.
+    pub fn mean(&self) -> f64 {
+        self.sum / self.area
+    }
+
+    /// True if there is nothing but zero.
+    pub fn is_nothing(&self) -> bool {
+        self.min == 0.0 && self.max == 0.0
+    }
+}
+
+/// Differences of values of these sizes; all zero where all are rounding, which shows nothing but noise.
+pub(super) fn without_rounding(
+    mut differences: Vec<f32>,
+    sizes: impl Iterator<Item = f64>,
+) -> Vec<f32> {
+    let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+    let is_rounding = |value: &f32| value.is_nan() || f64::from(value.abs()) <= ROUNDING * largest;
+    if differences.iter().all(is_rounding) {
+        let known = differences.iter_mut().filter(|value| !value.is_nan());
+        known.for_each(|value| *value = 0.0);
+    }
+    differences
+}
+
+/// Smallest and largest value without the tails, widened if they coincide; nothing without values.
+pub(super) fn robust_range(values: &[f32]) -> Option<[f64; 2]> {
+    let mut finite: Vec<f32> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    if finite.is_empty() {
+        return None;
+    }
+    finite.sort_unstable_by(f32::total_cmp);
+    let tail = (TAIL * finite.len() as f64) as usize;
+    let (low, high) = (
+        f64::from(finite[tail]),
+        f64::from(finite[finite.len() - 1 - tail]),
+    );
+    Some(if high - low > 1e-6 * high.abs() {
+        [low, high]
+    } else {
+        let air = if high == 0.0 { 1.0 } else { 0.05 * high.abs() };
+        [low - air, high + air]
+    })
+}
