@@ -48,10 +48,13 @@ impl<'a> Takes<'a> {
 
     /// The field of a value, which a drag keeps within the range too.
     pub fn field<'v, N: Numeric>(&self, value: &'v mut N) -> DragValue<'v> {
+        self.bare_field(value).suffix(self.suffix())
+    }
+
+    /// The same without the unit, which a second suffix would only follow.
+    pub fn bare_field<'v, N: Numeric>(&self, value: &'v mut N) -> DragValue<'v> {
         let (least, most) = (*self.range.start(), *self.range.end());
-        DragValue::new(value)
-            .range(N::from_f64(least)..=N::from_f64(most))
-            .suffix(self.suffix())
+        DragValue::new(value).range(N::from_f64(least)..=N::from_f64(most))
     }
 
     /// The value that a text says, or why it says none.

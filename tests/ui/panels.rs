@@ -1,7 +1,7 @@
 //! Panels clicked by name, with the keyboard, at several sizes.
 
 use egui_kittest::kittest::Queryable as _;
-use shapematch::app::{Action, BottomTab, Dialog, Menu, Section};
+use shapematch::app::{Action, Axis, AxisFrame, BottomTab, Dialog, Menu, MoveCommand, Section};
 use shapematch::role::Role;
 
 use super::layout::{Painted, texts};
@@ -139,6 +139,36 @@ fn every_state_of_the_window_has_names_at_every_size() {
         window.set_size(egui::Vec2::from(size));
         window.run_steps(3);
         window.check_accessibility();
+    }
+}
+
+#[test]
+fn the_numbers_of_a_pose_stay_within_the_column() {
+    let mut window = matched();
+    click(&mut window, "Move by hand");
+    let ctx = window.ctx.clone();
+    for distance in [0.0, -14_359.123_4] {
+        let by_hand = MoveCommand::Translate {
+            axis: Axis::X,
+            frame: AxisFrame::Global,
+            distance,
+        };
+        window.state_mut().run_commands(vec![by_hand.into()], &ctx);
+        for width in [1400.0, 800.0] {
+            window.set_size(egui::vec2(width, 900.0));
+            window.run_steps(4);
+            let is_view = |label: String| label.starts_with("Crash part, ");
+            let view = window.get_by(|node| node.label().is_some_and(is_view));
+            let edge = view.rect().left() - 12.0;
+            for name in [
+                "Centre Z",
+                "Translation since loading, Z",
+                "Matrix to paste",
+            ] {
+                let field = window.get_by_label(name).rect();
+                assert!(field.right() < edge, "{name} at {width}: {field}, {edge}");
+            }
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{CollapsingHeader, Key, Modifiers, Ui, vec2};
+use egui::{CollapsingHeader, Color32, Key, Modifiers, TextStyle, Ui, vec2};
 
 use crate::app::{
     Action, AppState, Axis, AxisFrame, Command, MoveCommand, turns_deg, with_turns_deg,
@@ -10,7 +10,7 @@ use crate::app::{
 use crate::geometry::Similarity;
 use crate::report::parse_matrix;
 use crate::role::Role;
-use crate::text::fixed;
+use crate::text::{fixed, trimmed};
 use crate::ui::theme::{ROW, UNIT};
 use crate::ui::typed::{Takes, refusal, told_field};
 use crate::ui::widgets::{
@@ -19,6 +19,8 @@ use crate::ui::widgets::{
 
 /// Width of the label column.
 const LABEL: f32 = 76.0;
+/// Left and right of a number in one of three fields beside each other.
+const PADDING: f32 = 4.0;
 /// What a typed move, angle or coordinate may be.
 const MOVES: RangeInclusive<f64> = -1e9..=1e9;
 
@@ -196,7 +198,8 @@ fn fields_ui(
     let mut refused = None;
     form_row(ui, label, LABEL, |ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        ui.spacing_mut().button_padding.x = 4.0;
+        ui.spacing_mut().button_padding.x = PADDING;
+        ui.style_mut().drag_value_text_style = TextStyle::Small;
         let width = (ui.available_width() - 8.0) / 3.0;
         // As wide while it is typed in.
         ui.spacing_mut().interact_size.x = width;
@@ -208,22 +211,37 @@ fn fields_ui(
             // Three have no room for their unit.
             let name = format!("{spoken} {}", axis.letter());
             let takes = takes(&name);
+            let decimals = fitting_decimals(ui, before, width - 2.0 * PADDING);
             let field = takes
-                .field(&mut value)
-                .suffix("")
-                .fixed_decimals(3)
+                .bare_field(&mut value)
+                .fixed_decimals(decimals)
                 .speed(0.5)
                 .min_size(vec2(width, ROW));
             let (response, why) = told_field(ui, &name, field, |text| takes.read(text));
             refused = refused.take().or(why);
-            if response.changed() && value != before {
+            // A field that was only looked into holds the value as it is shown.
+            let is_other = fixed(value, decimals) != fixed(before, decimals);
+            if response.changed() && is_other {
                 typed = Some((axis, value - before, value));
             }
-            response.on_hover_text(format!("{name}: {before}{unit}"));
+            response.on_hover_text(format!("{name}: {}{unit}", trimmed(before, 9)));
         }
     });
     refusal(ui, refused);
     typed
+}
+
+/// The decimals, at most three, with which a number fits its field.
+fn fitting_decimals(ui: &Ui, value: f64, room: f32) -> usize {
+    let font = TextStyle::Small.resolve(ui.style());
+    let fits = |decimals: &usize| {
+        let text = fixed(value, *decimals);
+        let laid = ui
+            .painter()
+            .layout_no_wrap(text, font.clone(), Color32::WHITE);
+        laid.size().x <= room
+    };
+    (0..=3).rev().find(fits).unwrap_or(0)
 }
 
 /// A field that takes any matrix and says what it understood.

@@ -277,7 +277,7 @@ fn auto_length_ui<R>(
     let is_auto = *length == 0.0;
     let takes = Takes::length(setting.label, lengths, range);
     let field = takes
-        .field(length)
+        .bare_field(length)
         .range(0.0..=f64::MAX)
         .speed(step)
         .max_decimals(6)

@@ -9,7 +9,7 @@ pub(in crate::ui) use views::{Look, ink};
 
 use egui::{
     Color32, CornerRadius, FontDefinitions, FontFamily, FontId, Margin, Shadow, Stroke, Style,
-    TextStyle, Visuals, style::ScrollAnimation, vec2,
+    TextStyle, Visuals, emath, style::NumberFormatter, style::ScrollAnimation, vec2,
 };
 
 use crate::colormap::Rgb;
@@ -189,6 +189,10 @@ fn style(palette: &Palette, is_dark: bool) -> Style {
     let mut style = Style {
         visuals: visuals(palette, is_dark),
         animation_time: GLIDE,
+        // A minus, as in every other text.
+        number_formatter: NumberFormatter::new(|value, decimals| {
+            emath::format_with_decimals_in_range(value, decimals).replace('-', "−")
+        }),
         ..Style::default()
     };
     let proportional = |size| FontId::new(size, FontFamily::Proportional);
