@@ -258,14 +258,10 @@ fn message_ui(ui: &mut Ui, state: &AppState, notice: &Notice, commands: &mut Vec
         let color = level_color(Palette::of(ui), notice.level);
         ui.label(RichText::new(notice.level.mark()).color(color));
         caption(ui, clock_text(state.log.clock.day_time_at(notice.at)));
-        let count = match notice.count {
-            1 => String::new(),
-            n => format!(" (×{n})"),
-        };
         let room = ui.available_width() - 64.0;
         ui.vertical(|ui| {
             ui.set_width(room);
-            ui.add(egui::Label::new(format!("{}{count}", notice.text)).wrap());
+            ui.add(egui::Label::new(notice.shown()).wrap());
         });
         if ui.small_button("Copy").clicked() {
             let (text, what) = (notice.text.clone(), "Message".to_owned());

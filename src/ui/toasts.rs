@@ -1,4 +1,4 @@
-//! Short messages in the lower right corner; at most three.
+//! Short messages in the lower right corner; at most two.
 
 use egui::text::LayoutJob;
 use egui::{Align2, Color32, Frame, Margin, RichText, Stroke, TextStyle, Ui, vec2};
@@ -66,17 +66,13 @@ fn buttons(notice: &Notice) -> bool {
 }
 
 fn text(ui: &Ui, notice: &Notice, width: f32) -> LayoutJob {
-    let text = match notice.count {
-        0 | 1 => notice.text.clone(),
-        n => format!("{} (×{n})", notice.text),
-    };
     let font = TextStyle::Body.resolve(ui.style());
     let job = |text| LayoutJob::simple(text, font.clone(), Palette::of(ui).text, width - BESIDE);
     let fits = |text: &str| {
         let laid = ui.painter().layout_job(job(text.to_owned()));
         laid.rows.len() <= MAX_LINES
     };
-    job(shortened(text, fits))
+    job(shortened(notice.shown(), fits))
 }
 
 /// As much of a text as fits, cut in its middle: a path says most at its end.
@@ -129,7 +125,7 @@ fn toast_ui(
             ui.vertical(|ui| {
                 ui.set_width(width - BESIDE);
                 let job = text(ui, notice, width);
-                let is_whole = job.text.starts_with(notice.text.as_str());
+                let is_whole = job.text == notice.shown();
                 let mut label = ui.add(egui::Label::new(job));
                 if !is_whole {
                     label = label.on_hover_text(&notice.text);

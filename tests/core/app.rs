@@ -1131,6 +1131,19 @@ fn equal_messages_count_up_and_short_ones_end() {
     window.apply(NoticeCommand::Tell(NoticeLevel::Success, "copied".into()));
     let counts: Vec<usize> = window.state.log.notices.toasts().map(|n| n.count).collect();
     assert_eq!(counts, [1, 12]);
+    // A sentence begins with a capital, the name of a file as it is.
+    let shown = window.state.log.notices.toasts().map(Notice::shown);
+    assert_eq!(shown.collect::<Vec<_>>(), ["Copied", "Disk full (×12)"]);
+    let tell = |text: &str| NoticeCommand::Tell(NoticeLevel::Success, text.to_owned());
+    window.apply(tell("stamped.k: no forming results"));
+    let shown: Vec<String> = window
+        .state
+        .log
+        .notices
+        .toasts()
+        .map(Notice::shown)
+        .collect();
+    assert_eq!(shown, ["stamped.k: no forming results", "Copied"]);
     window.state.tick(Duration::from_secs(5));
     assert_eq!(toasts(&window.state), ["disk full"]);
     assert_eq!(window.state.log.notices.n_unread(), 1);

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::Action;
 use crate::jobs::JobKey;
+use crate::text::capital;
 
 /// How loud a message is, quiet first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -91,8 +92,19 @@ pub struct Notice {
     is_toast: bool,
 }
 
+impl Notice {
+    /// As toast and bell write it: with a capital, and how often it came.
+    pub fn shown(&self) -> String {
+        let text = capital(&self.text);
+        match self.count {
+            0 | 1 => text,
+            n => format!("{text} (×{n})"),
+        }
+    }
+}
+
 /// Most toasts on the screen at once.
-pub const MAX_TOASTS: usize = 3;
+pub const MAX_TOASTS: usize = 2;
 /// Messages the bell's list keeps.
 const MAX_KEPT: usize = 200;
 
@@ -232,7 +244,7 @@ impl Notices {
         }
     }
 
-    /// The toasts to be drawn, newest first, at most three.
+    /// The toasts to be drawn, newest first, at most two.
     pub fn toasts(&self) -> impl Iterator<Item = &Notice> {
         let shown = self.items.iter().rev().filter(|n| n.is_toast);
         shown.take(MAX_TOASTS)
