@@ -241,7 +241,7 @@ impl AppState {
                 "Nothing was loaded; choose another file or fix this one"
             }
             JobKey::PlaceFurther => FURTHER_WITHOUT_POSE,
-            JobKey::Export => "Nothing was written; choose another place",
+            JobKey::Export => "Nothing was written or copied",
             _ => "Parts and pose are as they were",
         };
         let text = format!("{}. {what_now}", capital(&message));

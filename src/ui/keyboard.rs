@@ -5,7 +5,7 @@ use egui::{Event, Modifiers};
 use super::palette;
 use crate::app::{
     Action, AppState, Axis, Command, Dialog, Key, KeyMode, ModalInput, MoveCommand, NoticeCommand,
-    NoticeLevel, Shortcut, ViewCommand,
+    NoticeLevel, Section, Shortcut, ViewCommand,
 };
 
 /// Actions whose keys act while a dialog lies over the window.
@@ -21,8 +21,13 @@ const WITH_DIALOG: [Action; 9] = [
     Action::ScaleReset,
 ];
 
-/// Actions that begin the work itself: where they are not possible, their keys say why.
-const SAY_WHY: [Action; 3] = [Action::MatchOrStop, Action::Refine, Action::MapOrCancel];
+/// Actions that begin the work itself or look for what is not there: where they are not possible, their keys say why.
+const SAY_WHY: [Action; 4] = [
+    Action::MatchOrStop,
+    Action::Refine,
+    Action::MapOrCancel,
+    Action::NextAlternative,
+];
 
 /// What the keys of a frame belong to: the topmost thing that is open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,14 +81,12 @@ impl Keyboard {
                 commands.push(MoveCommand::Input(input).into());
                 continue;
             }
-            let Some(command) = of_event(event, held, owner, state) else {
-                continue;
-            };
-            let opened = match command {
-                Command::View(ViewCommand::SetDialog(dialog)) => dialog,
+            let asked = of_event(event, held, owner, state);
+            let opened = asked.iter().find_map(|command| match command {
+                Command::View(ViewCommand::SetDialog(dialog)) => *dialog,
                 _ => None,
-            };
-            commands.push(command);
+            });
+            commands.extend(asked);
             if let Some(dialog) = opened {
                 // The rest is meant for what opens.
                 if dialog == Dialog::Palette {
@@ -96,23 +99,34 @@ impl Keyboard {
     }
 }
 
-fn of_event(event: &Event, held: Modifiers, owner: KeyOwner, state: &AppState) -> Option<Command> {
-    let (shortcut, is_pressed, is_repeat) = pressed(event, held)?;
-    let action = Action::of_shortcut(shortcut)?;
-    if is_pressed && !is_ours(shortcut, action, owner, state.view.dialog.is_some()) {
-        return None;
-    }
+fn of_event(event: &Event, held: Modifiers, owner: KeyOwner, state: &AppState) -> Vec<Command> {
+    let Some((shortcut, is_pressed, is_repeat)) = pressed(event, held) else {
+        return Vec::new();
+    };
+    let is_meant = |action: &Action| {
+        !is_pressed || is_ours(shortcut, *action, owner, state.view.dialog.is_some())
+    };
+    let Some(action) = Action::of_shortcut(shortcut).filter(is_meant) else {
+        return Vec::new();
+    };
     let mode = action.row().keys.mode;
     if mode == KeyMode::WhileHeld {
         let is_new = is_pressed != state.view.is_blinking;
-        return is_new.then(|| ViewCommand::SetBlinking(is_pressed).into());
+        let blink = is_new.then(|| ViewCommand::SetBlinking(is_pressed).into());
+        return blink.into_iter().collect();
     }
-    let acts = is_pressed && (mode == KeyMode::Repeats || !is_repeat);
+    if !is_pressed || (is_repeat && mode != KeyMode::Repeats) {
+        return Vec::new();
+    }
     match action.enabled(state) {
-        Err(reason) if acts && SAY_WHY.contains(&action) => {
-            Some(NoticeCommand::Tell(NoticeLevel::Note, reason.to_string()).into())
+        Err(reason) if SAY_WHY.contains(&action) => {
+            let why = NoticeCommand::Tell(NoticeLevel::Note, reason.to_string()).into();
+            // The section that the reason points to.
+            let is_map = action == Action::MapOrCancel && state.document.both().is_some();
+            let open = is_map.then(|| ViewCommand::OpenSection(Section::Map, true).into());
+            std::iter::once(why).chain(open).collect()
         }
-        _ => acts.then(|| action.command(state)).flatten(),
+        _ => action.command(state).into_iter().collect(),
     }
 }
 

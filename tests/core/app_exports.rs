@@ -71,8 +71,18 @@ fn a_card_for_a_file_in_another_unit_is_answered_with_the_converted_file() {
         }
         other => panic!("{other:?}"),
     }
-    let told = window.state.log.notices.kept().next().unwrap();
-    assert!(told.text.contains("1000"), "{}", told.text);
+    let told = |window: &Window| window.state.log.notices.kept().next().unwrap().clone();
+    assert!(told(&window).text.contains("1000"), "{:?}", told(&window));
+    // A copy is answered with the same words, which name a menu entry and no option.
+    let n_told = told(&window).count;
+    let form = CopyForm::Cards(shapematch::report::CardForm::StampedPart);
+    window.apply(ExportCommand::Copy(form));
+    let Notice { text, count, .. } = told(&window);
+    assert_eq!(count, n_told + 1);
+    assert!(
+        text.contains("Save part as") && !text.contains("--"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use shapematch::app::{Axis, Dialog, MoveCommand, PartCommand, PartRef};
+use shapematch::app::{Axis, Dialog, MoveCommand, PartCommand, PartRef, Section};
 use shapematch::registration::Method;
 use shapematch::role::Role;
 use shapematch::settings::Choice as _;
@@ -85,6 +85,29 @@ fn the_key_of_a_match_that_cannot_begin_says_why() {
     assert!(told.any(
         |notice| notice.text == "Load both parts first." || notice.text == "Load a part first."
     ));
+}
+
+#[test]
+fn keys_that_have_nothing_to_do_yet_say_so_and_show_the_section_they_speak_of() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    let told = |window: &Window, begin: &str| {
+        let mut toasts = window.state().state().log.notices.toasts();
+        toasts.any(|notice| notice.text.starts_with(begin))
+    };
+    window.key_press(Key::V);
+    window.run_steps(2);
+    assert!(told(&window, "Run a match first."));
+    let is_open = |window: &Window| {
+        let sections = &window.state().state().view.sections;
+        sections.is_open(Section::Map)
+    };
+    assert!(!is_open(&window));
+    window.key_press_modifiers(Modifiers::COMMAND, Key::M);
+    window.run_steps(2);
+    assert!(told(&window, "There is no match yet: "));
+    assert!(is_open(&window));
 }
 
 #[test]

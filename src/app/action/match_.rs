@@ -233,7 +233,7 @@ fn has_alternative(state: &AppState) -> Result<(), Reason> {
     let result = state.document.result.as_ref();
     let run = result.ok_or(Reason("Run a match first."))?;
     let n_alternatives = facts::n_alternatives(&run.run);
-    require(n_alternatives > 0, "No other pose fits nearly as well.")?;
+    require(n_alternatives > 0, "This match has no other pose.")?;
     let is_in_doubt = state.is_unit_in_doubt();
     require(
         !is_in_doubt,

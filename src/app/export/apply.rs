@@ -96,6 +96,7 @@ impl Work<'_> {
                 let what = format!("Matrix ({direction}, {}, all digits)", form.label());
                 self.copy(text, &what)
             }
+            CopyForm::Cards(_) if self.tells_of_two_units() => Vec::new(),
             CopyForm::Cards(cards) => {
                 let what = format!("{} (stamped → crash, ten columns)", form.label());
                 let to = Destination::Clipboard(what);
@@ -112,24 +113,32 @@ impl Work<'_> {
     /// Asks for a name. Cards cannot hold a unit factor, so the converted stamped file is offered
     /// in their place.
     fn ask_place(&mut self, kind: Output) -> Vec<Effect> {
-        let stamped = self.document.part(Role::Stamped);
-        let factor = stamped.map_or(1.0, |part| part.length_factor());
-        let kind = if matches!(kind, Output::Cards(_)) && factor != 1.0 {
-            let text = format!(
-                "The lengths of the stamped file are multiplied by {factor}, and the include card has \
-                 no field for that. Write the stamped file in the crash part's unit, open it in place \
-                 of the present one, match again, and then write the card."
-            );
-            self.notify(NoticeLevel::Warning, text);
-            Output::Mesh(MeshOutput::Converted)
-        } else {
-            kind
+        let kind = match kind {
+            Output::Cards(_) if self.tells_of_two_units() => Output::Mesh(MeshOutput::Converted),
+            kind => kind,
         };
         vec![Effect::AskSave {
             kind,
             path: self.document.suggested_path(kind),
             inputs: self.document.files(),
         }]
+    }
+
+    /// Where the stamped file was read in another unit, says why there are no cards, and the way to them.
+    fn tells_of_two_units(&mut self) -> bool {
+        let stamped = self.document.part(Role::Stamped);
+        let factor = stamped.map_or(1.0, |part| part.length_factor());
+        if factor == 1.0 {
+            return false;
+        }
+        let text = format!(
+            "The lengths of the stamped file are multiplied by {factor}, and the cards have no field for \
+             that. Write “{}” (Save part as), open it in place of the present file, match again, and then \
+             make the cards.",
+            MeshOutput::Converted.label().trim_end_matches('…')
+        );
+        self.notify(NoticeLevel::Warning, text);
+        true
     }
 
     fn write(&mut self, output: Output, path: PathBuf) -> Vec<Effect> {

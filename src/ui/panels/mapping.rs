@@ -17,7 +17,7 @@ use crate::pipeline::forming_values::LayerChoice;
 use crate::pipeline::map::{MapRecord, PairRecord};
 use crate::role::Role;
 use crate::settings::{MAP_SETTINGS, Setting};
-use crate::text::{fixed, grouped, length, percent, sentence};
+use crate::text::{Lengths, fixed, grouped, length, percent, sentence};
 use crate::ui::theme::{Palette, ROW, TALL};
 use crate::ui::widgets::{
     Look, action_button, caption, card, chip, paragraph, plain_action, secondary, wide_action,
@@ -196,7 +196,7 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
         if stale.is_some() {
             ui.multiply_opacity(STALE);
         }
-        for line in lines(record) {
+        for line in lines(record, state.lengths()) {
             ui.label(line);
         }
         for warning in &record.warnings {
@@ -360,7 +360,7 @@ fn compare_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 /// Counts, means, and the way back.
-fn lines(record: &MapRecord) -> Vec<String> {
+fn lines(record: &MapRecord, lengths: Lengths) -> Vec<String> {
     let mut lines = Vec::new();
     for row in &record.statuses {
         lines.push(format!(
@@ -370,16 +370,16 @@ fn lines(record: &MapRecord) -> Vec<String> {
             percent(row.area_share)
         ));
     }
-    let mean = |name: &str, pair: &Option<PairRecord>| {
+    let mean = |name: &str, pair: &Option<PairRecord>, unit: &str| {
         let pair = pair.as_ref()?;
         Some(format!(
-            "{name}: mean {} (stamped {})",
+            "{name}: mean {}{unit} (stamped {}{unit})",
             length(pair.crash.mean),
             length(pair.stamped.mean)
         ))
     };
-    lines.extend(mean("Thickness", &record.thickness));
-    lines.extend(mean("Plastic strain", &record.plastic_strain));
+    lines.extend(mean("Thickness", &record.thickness, lengths.suffix()));
+    lines.extend(mean("Plastic strain", &record.plastic_strain, ""));
     if let Some(back) = &record.map_back {
         for (name, p95, range) in [
             ("thickness", back.thickness_p95, back.thickness_range),

@@ -168,6 +168,9 @@ const TOLERANCE_HELP: &str = "Shape tolerance: how far the shapes may differ bes
                               verdict follows at once; the pose stays. An empty field takes the automatic \
                               tolerance";
 
+/// Room for the word before the tolerance with air beside it.
+const WITHIN: f32 = 48.0;
+
 /// The tolerance of the verdict; another one gives a new verdict. From right to left. Says why
 /// a typed one was refused.
 fn tolerance_ui(
@@ -196,7 +199,13 @@ fn tolerance_ui(
             *tolerance = 0.0;
         }
         let takes = Takes::length(setting.label, state.lengths(), limits::LENGTH);
+        let lengths = state.lengths();
         let field = takes.field(&mut shown).speed(0.01 * usual).max_decimals(4);
+        let field = if is_automatic {
+            field.custom_formatter(move |value, _| lengths.number(value))
+        } else {
+            field
+        };
         let (field, why) = told_field(ui, setting.label, field, |text| match text.trim() {
             // The automatic one.
             "" => Ok(0.0),
@@ -206,7 +215,10 @@ fn tolerance_ui(
         if field.on_hover_text(TOLERANCE_HELP).changed() {
             *tolerance = shown;
         }
-        caption(ui, "within");
+        // In a narrow column it would touch the verdict.
+        if ui.available_width() > WITHIN {
+            caption(ui, "within");
+        }
     });
     if recipe != state.document.recipe {
         commands.push(MatchCommand::SetRecipe(Box::new(recipe)).into());

@@ -441,11 +441,14 @@ impl Order {
             None => self.results(),
         };
         let is_by_corner = matches!(self.key.kind, FieldKind::Map(_));
-        let source = &self.mesh.source;
-        let element = is_by_corner.then_some(|triangle: usize| source.element(triangle));
+        let summary = {
+            let element = |triangle: usize| self.mesh.source.element(triangle);
+            let element: Option<&dyn Fn(usize) -> u32> = is_by_corner.then_some(&element);
+            Summary::of(self.mesh.mesh(), &values, element)
+        };
         Field {
             range: robust_range(&values),
-            summary: Summary::of(self.mesh.mesh(), &values, element),
+            summary,
             is_by_corner,
             values: values.into(),
             _key: (self.mesh, self.other, (self.mapped, self.compared)),

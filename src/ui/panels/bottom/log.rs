@@ -10,6 +10,7 @@ use crate::app::{
     Action, AppState, Command, ExportCommand, LogRow, NoticeLevel, clock_text, duration_text,
 };
 use crate::pipeline::outputs::Output;
+use crate::text::counted;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{level_color, nothing_yet, paint_role_mark, plain_action};
 
@@ -193,9 +194,9 @@ fn sums_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 fn sums(state: &AppState) -> String {
     let total = duration_text(state.log.total());
-    let threads = rayon::current_num_threads();
+    let threads = counted(rayon::current_num_threads(), "thread");
     let build = crate::report::build_id();
-    format!("total {total} · {threads} threads · build {build}")
+    format!("total {total} · {threads} · build {build}")
 }
 
 fn text_of(row: &LogRow) -> String {

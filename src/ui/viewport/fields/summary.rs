@@ -26,7 +26,7 @@ impl Summary {
     pub(super) fn of(
         mesh: &TriMesh,
         values: &[f32],
-        element: Option<impl Fn(usize) -> u32>,
+        element: Option<&dyn Fn(usize) -> u32>,
     ) -> Option<Self> {
         let mut found = Self {
             min: f64::INFINITY,
@@ -40,7 +40,7 @@ impl Summary {
         for (triangle, corners) in mesh.triangles().iter().enumerate() {
             let area = mesh.triangle_area(triangle) / 3.0;
             for (k, &node) in corners.iter().enumerate() {
-                let at = match &element {
+                let at = match element {
                     Some(_) => 3 * triangle + k,
                     None => node as usize,
                 };
@@ -53,7 +53,7 @@ impl Summary {
                 }
             }
             // The triangles of an element follow each other.
-            if let Some(element) = &element {
+            if let Some(element) = element {
                 let is_known = values.get(3 * triangle).is_some_and(|v| v.is_finite());
                 let now = is_known.then(|| element(triangle));
                 found.n += usize::from(now.is_some() && now != last);

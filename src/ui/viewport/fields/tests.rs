@@ -43,15 +43,14 @@ fn a_summary_weighs_by_area_and_counts_what_is_known() {
     let mesh = TriMesh::new(positions, triangles).unwrap();
     let element = |triangle: usize| (triangle / 2) as u32;
     let by_corner: Vec<f32> = [1.0, 1.0, 4.0].into_iter().flat_map(|v| [v; 3]).collect();
-    let found = Summary::of(&mesh, &by_corner, Some(element)).unwrap();
+    let found = Summary::of(&mesh, &by_corner, Some(&element)).unwrap();
     assert_eq!((found.min, found.max, found.n), (1.0, 4.0, 2));
     assert!((found.mean() - 2.5).abs() < 1e-6);
-    let nowhere: Option<fn(usize) -> u32> = None;
     let at_nodes = [3.0, 3.0, 3.0, f32::NAN, 3.0];
-    let found = Summary::of(&mesh, &at_nodes, nowhere).unwrap();
+    let found = Summary::of(&mesh, &at_nodes, None).unwrap();
     assert_eq!((found.n, found.is_of_elements), (4, false));
     assert!((found.mean() - 3.0).abs() < 1e-6);
-    assert_eq!(Summary::of(&mesh, &[f32::NAN; 5], nowhere), None);
+    assert_eq!(Summary::of(&mesh, &[f32::NAN; 5], None), None);
 }
 
 #[test]
