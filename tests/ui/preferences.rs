@@ -86,7 +86,7 @@ fn every_length_has_the_decimals_of_the_preferences() {
             &mut window,
             ViewCommand::SetTab(BottomTab::Deviation).into(),
         );
-        places.push("matched, within");
+        places.push("matched ≤");
         for place in places {
             let found = texts(&window, place);
             let lengths = found.iter().filter(|text| text.contains(" mm"));

@@ -168,7 +168,7 @@ fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])>
     for (index, class) in OverlapClass::ALL.into_iter().enumerate() {
         let name = match class {
             OverlapClass::Matched => {
-                format!("matched, within {}", lengths.of(deviation.limit))
+                format!("matched ≤ {}", lengths.of(deviation.limit))
             }
             OverlapClass::OffByMore => "beyond the limit".to_owned(),
             OverlapClass::OnlyHere => "on this part only".to_owned(),

@@ -18,6 +18,8 @@ use crate::ui::widgets::{length, paint_role_mark, percent, signed};
 
 /// Width of the histogram beside the bar.
 const HISTOGRAM: f32 = 64.0;
+/// From an end of the bar to the middle of the field of its limit.
+const BESIDE_LIMIT: f32 = 16.0;
 /// How quickly a dragged limit grows, per point.
 const DRAG_RATE: f64 = 0.012;
 
@@ -331,9 +333,10 @@ fn histogram(ui: &Ui, over: &Overlay<'_>, scale: &ColorScale, stats: &DeviationS
     }
     let foot = Stroke::new(1.0, over.frame.look.plate_line);
     ui.painter().vline(room.right() + 1.0, room.y_range(), foot);
+    // Beside the fields of the limits, where no bar reaches.
     let beyond = [
-        (counted.above, room.top() + 6.0, "above"),
-        (counted.below, room.bottom() - 6.0, "below"),
+        (counted.above, room.top() - BESIDE_LIMIT, "above"),
+        (counted.below, room.bottom() + BESIDE_LIMIT, "below"),
     ];
     for (share, y, word) in beyond {
         if share > 5e-4 {

@@ -369,8 +369,15 @@ fn tick_text(tick: f64, ticks: &[f64]) -> String {
     let digits = step
         .map_or(3.0, |step| (-step.log10() + 0.3).ceil())
         .clamp(0.0, 9.0);
+    if digits > MOST_DIGITS && tick != 0.0 {
+        let text = format!("{tick:.1e}").replace('-', "−");
+        return text.replace(".0e", "e");
+    }
     tick_number(tick, digits as usize)
 }
+
+/// Numbers with more decimals have no room beside the bar.
+const MOST_DIGITS: f64 = 5.0;
 
 #[cfg(test)]
 mod tests {
@@ -382,5 +389,8 @@ mod tests {
         assert_eq!(tick_text(20.0, &[0.0, 20.0]), "20");
         assert_eq!(tick_text(-1e-17, &[-0.2, 0.0]), "0");
         assert_eq!(tick_text(1.25, &[1.2, 1.25]), "1.25");
+        let tiny = [-2e-7, 0.0, 2e-7, 1.2e-6];
+        let read = tiny.map(|tick| tick_text(tick, &tiny));
+        assert_eq!(read, ["−2e−7", "0", "2e−7", "1.2e−6"]);
     }
 }
