@@ -1,5 +1,7 @@
 //! Keys to commands, through the table of actions.
 
+use std::collections::VecDeque;
+
 use egui::{Event, Modifiers};
 
 use super::palette;
@@ -30,7 +32,7 @@ const SAY_WHY: [Action; 4] = [
 ];
 
 /// What the keys of a frame belong to: the topmost thing that is open.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum KeyOwner {
     /// A question over the window, such as the field for a path.
     Question,
@@ -39,6 +41,7 @@ pub enum KeyOwner {
     /// A text field, perhaps in a dialog. Keys that write nothing still act.
     TextField,
     /// The window, or the dialog over it.
+    #[default]
     Window,
 }
 
@@ -49,6 +52,14 @@ pub struct Keyboard {
     /// A text field had the focus at the end of the last frame. Escape takes the focus away before the
     /// frame begins, but belongs to the field nevertheless.
     was_typing: bool,
+    owner: KeyOwner,
+    /// A dialog was open when the frame began, and no key has changed that.
+    had_dialog: bool,
+    held: Modifiers,
+    /// The keys of the frame that are still to act, in their order.
+    keys: VecDeque<Event>,
+    /// What follows the last command.
+    then: Option<Command>,
 }
 
 impl Keyboard {
@@ -65,58 +76,101 @@ impl Keyboard {
         }
     }
 
-    /// The commands of the keys that nothing consumed; to be asked when everything is drawn.
-    pub fn commands(
-        &mut self,
-        ctx: &egui::Context,
-        state: &AppState,
-        owner: KeyOwner,
-    ) -> Vec<Command> {
-        self.was_typing = ctx.text_edit_focused();
-        let (events, held) = ctx.input(|input| (input.events.clone(), input.modifiers));
-        let is_moving = state.moving.tool.is_some() && owner == KeyOwner::Window;
-        let mut commands = Vec::new();
-        for (index, event) in events.iter().enumerate() {
-            if is_moving && let Some(input) = modal_input(event) {
-                commands.push(MoveCommand::Input(input).into());
-                continue;
-            }
-            let asked = of_event(event, held, owner, state);
-            let opened = asked.iter().find_map(|command| match command {
-                Command::View(ViewCommand::SetDialog(dialog)) => *dialog,
-                _ => None,
-            });
-            commands.extend(asked);
-            if let Some(dialog) = opened {
-                // The rest is meant for what opens.
-                if dialog == Dialog::Palette {
-                    palette::begin_with(ctx, &events[index + 1..]);
-                }
-                break;
-            }
+    /// Before anything is drawn: whose the keys of this frame are. A move by keys takes them at once, so that
+    /// Enter presses no button and minus zooms no camera.
+    pub fn begin(&mut self, ctx: &egui::Context, state: &AppState, has_question: bool) {
+        self.owner = self.owner(ctx, has_question);
+        self.had_dialog = state.view.dialog.is_some();
+        self.keys.clear();
+        if !self.is_moving(state) {
+            return;
         }
-        commands
+        ctx.input_mut(|input| {
+            let held = input.modifiers;
+            let is_taken =
+                |event: &Event| modal_input(event).is_some() || pressed(event, held).is_some();
+            let (taken, left) = std::mem::take(&mut input.events)
+                .into_iter()
+                .partition::<Vec<Event>, _>(is_taken);
+            self.keys.extend(taken);
+            input.events = left;
+        });
+    }
+
+    /// When everything is drawn: the keys that nothing consumed are to act.
+    pub fn collect(&mut self, ctx: &egui::Context) {
+        self.was_typing = ctx.text_edit_focused();
+        ctx.input(|input| {
+            self.held = input.modifiers;
+            self.keys.extend(input.events.iter().cloned());
+        });
+    }
+
+    /// The command of the next key that has one. It is applied before the one after it is asked for: a slow frame
+    /// takes several keys together, and each means what those before it have made of the state.
+    pub fn next(&mut self, ctx: &egui::Context, state: &AppState) -> Option<Command> {
+        if let Some(command) = self.then.take() {
+            return Some(command);
+        }
+        while let Some(event) = self.keys.pop_front() {
+            if self.is_moving(state)
+                && let Some(input) = modal_input(&event)
+            {
+                return Some(MoveCommand::Input(input).into());
+            }
+            let has_dialog = self.had_dialog || state.view.dialog.is_some();
+            let asked = of_event(&event, self.held, self.owner, has_dialog, state);
+            let Some((command, then)) = asked else {
+                continue;
+            };
+            self.then = then;
+            self.had_dialog = false;
+            if matches!(
+                command,
+                Command::View(ViewCommand::SetDialog(Some(Dialog::Palette)))
+            ) {
+                // The rest is meant for the search that opens.
+                palette::begin_with(ctx, self.keys.make_contiguous());
+                self.keys.clear();
+            }
+            return Some(command);
+        }
+        None
+    }
+
+    /// What opens now has the keys that are left.
+    pub fn give_up(&mut self) {
+        self.keys.clear();
+    }
+
+    /// Whether keys go to a move by keys.
+    fn is_moving(&self, state: &AppState) -> bool {
+        let has_dialog = self.had_dialog || state.view.dialog.is_some();
+        state.moving.tool.is_some() && self.owner == KeyOwner::Window && !has_dialog
     }
 }
 
-fn of_event(event: &Event, held: Modifiers, owner: KeyOwner, state: &AppState) -> Vec<Command> {
-    let Some((shortcut, is_pressed, is_repeat)) = pressed(event, held) else {
-        return Vec::new();
-    };
-    let is_meant = |action: &Action| {
-        !is_pressed || is_ours(shortcut, *action, owner, state.view.dialog.is_some())
-    };
-    let Some(action) = Action::of_shortcut(shortcut).filter(is_meant) else {
-        return Vec::new();
-    };
+/// What a key asks for, and what follows it.
+fn of_event(
+    event: &Event,
+    held: Modifiers,
+    owner: KeyOwner,
+    has_dialog: bool,
+    state: &AppState,
+) -> Option<(Command, Option<Command>)> {
+    let (shortcut, is_pressed, is_repeat) = pressed(event, held)?;
+    let action = Action::of_shortcut(shortcut)?;
+    if is_pressed && !is_ours(shortcut, action, owner, has_dialog) {
+        return None;
+    }
+    let alone = |command| (command, None);
     let mode = action.row().keys.mode;
     if mode == KeyMode::WhileHeld {
         let is_new = is_pressed != state.view.is_blinking;
-        let blink = is_new.then(|| ViewCommand::SetBlinking(is_pressed).into());
-        return blink.into_iter().collect();
+        return is_new.then(|| alone(ViewCommand::SetBlinking(is_pressed).into()));
     }
     if !is_pressed || (is_repeat && mode != KeyMode::Repeats) {
-        return Vec::new();
+        return None;
     }
     match action.enabled(state) {
         Err(reason) if SAY_WHY.contains(&action) => {
@@ -124,9 +178,9 @@ fn of_event(event: &Event, held: Modifiers, owner: KeyOwner, state: &AppState) -
             // The section that the reason points to.
             let is_map = action == Action::MapOrCancel && state.document.both().is_some();
             let open = is_map.then(|| ViewCommand::OpenSection(Section::Map, true).into());
-            std::iter::once(why).chain(open).collect()
+            Some((why, open))
         }
-        _ => action.command(state).into_iter().collect(),
+        _ => action.command(state).map(alone),
     }
 }
 

@@ -213,6 +213,17 @@ impl Shell {
         }
     }
 
+    /// Applies the keys of the frame, one after the other.
+    fn press_keys(&mut self, ctx: &egui::Context) {
+        while let Some(command) = self.keyboard.next(ctx, &self.state) {
+            self.run_commands(vec![command], ctx);
+            if self.dialogs.is_open() {
+                self.keyboard.give_up();
+            }
+            ctx.request_repaint();
+        }
+    }
+
     fn open_at_start(&mut self, options: StartupOptions, ctx: &egui::Context) {
         let mut commands: Vec<Command> = Vec::new();
         match (options.crash, options.stamped) {
@@ -508,18 +519,20 @@ impl eframe::App for Shell {
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        let owner = self.keyboard.owner(&ctx, self.dialogs.is_open());
+        let has_question = self.dialogs.is_open();
+        self.keyboard.begin(&ctx, &self.state, has_question);
         let mut commands = Vec::new();
         panels::window_ui(ui, &self.state, &mut self.viewports, &mut commands);
         toasts::toasts_ui(&ctx, &self.state, &mut commands);
         let is_on_processor = self.viewports.is_on_processor();
         overlays::overlays_ui(&ctx, &self.state, is_on_processor, &mut commands);
         self.dialogs.show(&ctx, &mut commands);
-        commands.extend(self.keyboard.commands(&ctx, &self.state, owner));
+        self.keyboard.collect(&ctx);
         if !commands.is_empty() {
             self.run_commands(commands, &ctx);
             ctx.request_repaint();
         }
+        self.press_keys(&ctx);
         self.update_rest();
         if let Some(expiry) = self.state.log.notices.next_expiry() {
             ctx.request_repaint_after(expiry.saturating_sub(self.state.log.now));

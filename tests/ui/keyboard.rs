@@ -471,3 +471,45 @@ fn a_command_typed_and_entered_in_one_frame_is_done() {
         window.step();
     }
 }
+
+/// A slow frame, such as the one behind an undo, takes several keys together: those behind G belong to the move.
+#[test]
+fn the_keys_behind_g_move_the_part_whatever_the_frame_takes_together() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    let undo = (Key::Z, Modifiers::COMMAND);
+    let typed = [Key::G, Key::X, Key::Num5, Key::Comma, Key::Num5, Key::Enter];
+    let typed = typed.map(|key| (key, Modifiers::NONE));
+    let all = || [undo].into_iter().chain(typed).collect::<Vec<_>>();
+    for (keys, n_first, x) in [
+        (typed.to_vec(), typed.len(), 5.5),
+        (typed.to_vec(), 1, 11.0),
+        (all(), all().len(), 11.0),
+        (all(), 2, 11.0),
+    ] {
+        for frame in [&keys[..n_first], &keys[n_first..]] {
+            for &(pressed, modifiers) in frame {
+                let down = key(pressed, modifiers);
+                let mut up = down.clone();
+                if let egui::Event::Key { pressed, .. } = &mut up {
+                    *pressed = false;
+                }
+                window.input_mut().events.extend([down, up]);
+            }
+            window.step();
+        }
+        window.run_steps(2);
+        let state = window.state().state();
+        assert!(state.moving.tool.is_none(), "{n_first} of {keys:?}");
+        assert!(!state.view.display.is_see_through, "{n_first} of {keys:?}");
+        let name = state.history.undo_name();
+        let is_named = |name: &str| name.starts_with("Move 5.5") && name.ends_with("along X");
+        assert!(
+            name.is_some_and(is_named),
+            "{name:?}, {n_first} of {keys:?}"
+        );
+        let moved = state.document.crash_from_stamped().translation;
+        assert!((moved.x - x).abs() < 1e-9, "{moved}");
+    }
+}
