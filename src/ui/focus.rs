@@ -1,7 +1,7 @@
 //! The ring around what has the keyboard: shown where the keyboard is used to go from one to the next, and not
 //! after a click, which says where it went.
 
-use egui::{ComboBox, Context, Event, Id, InnerResponse, Key, Response, Ui};
+use egui::{ComboBox, Context, Event, Id, InnerResponse, Key, Popup, Response, Ui};
 
 use super::theme;
 
@@ -23,7 +23,7 @@ pub fn is_ringed(response: &Response) -> bool {
 }
 
 /// A menu of choices that the keyboard enters when it opens, at the choice that holds ([`chosen`]), and leaves for
-/// its button when it closes.
+/// its button when it closes. Tab closes it too.
 pub fn menu<R>(
     ui: &mut Ui,
     menu: ComboBox,
@@ -36,6 +36,10 @@ pub fn menu<R>(
         ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(was_open), is_open));
     if before && !is_open {
         shown.response.request_focus();
+    } else if is_open && ui.input(|input| input.key_pressed(Key::Tab)) {
+        // Tab has gone on beside the open list; from the button it goes on with the next press.
+        Popup::close_all(ui.ctx());
+        ui.ctx().request_repaint();
     }
     shown
 }

@@ -373,6 +373,23 @@ fn a_menu_of_choices_is_walked_by_arrows_and_left_for_its_button() {
     assert_eq!(method(&window), Method::Icp);
 }
 
+#[test]
+fn tab_closes_a_menu_of_choices() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    let method = egui::accesskit::Role::ComboBox;
+    for modifiers in [Modifiers::NONE, Modifiers::SHIFT] {
+        window.get_by_role_and_label(method, "Method").click();
+        window.run_steps(4);
+        assert!(egui::Popup::is_any_open(&window.ctx));
+        window.key_press_modifiers(modifiers, Key::Tab);
+        window.run_steps(4);
+        assert!(!egui::Popup::is_any_open(&window.ctx));
+        assert_eq!(focused(&window).as_deref(), Some("Method"));
+    }
+}
+
 fn key(key: Key, modifiers: Modifiers) -> egui::Event {
     egui::Event::Key {
         key,
