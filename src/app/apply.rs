@@ -15,6 +15,15 @@ impl AppState {
         if let Some(section) = Section::of_command(&command) {
             self.view.sections.touch(section);
         }
+        if Section::is_held_at(&command) {
+            self.view.sections.hold();
+        }
+        if matches!(
+            command,
+            Command::Match(MatchCommand::Run | MatchCommand::Refine)
+        ) {
+            self.view.sections.arrange();
+        }
         let was_start_shown = self.shown_start().is_some();
         let mut effects = self.apply_one(command);
         while !self.follow_ups.is_empty() {

@@ -92,6 +92,7 @@ impl AppState {
             FollowUp::PartsSwapped => self.see_swapped(),
             FollowUp::PartLoaded(role) => {
                 self.with_scene(|view, scene| view.fit_after_load(role, scene));
+                self.view.sections.arrange();
                 self.go_on_from_load();
             }
             FollowUp::PartReselected(role) => {
@@ -126,6 +127,7 @@ impl AppState {
             }
             FollowUp::SectionToggled => self.show_section(),
             FollowUp::Mapped => {
+                self.view.sections.arrange();
                 // Whoever looks at distances or at parts wants to see what came of the mapping.
                 if !self.is_mapping_shown() {
                     self.view.display = self.with_map_picture(None);
@@ -202,6 +204,7 @@ impl AppState {
 
     /// The verdict is seen, whatever else has to fold for it; the next section comes where there is room.
     pub(super) fn show_verdict(&mut self) {
+        self.view.sections.arrange();
         self.view.sections.unfold(Section::Map);
         self.view.sections.touch(Section::Match);
     }

@@ -1,11 +1,18 @@
 //! Panels clicked by name, with the keyboard, at several sizes.
 
-use egui_kittest::kittest::Queryable as _;
-use shapematch::app::{Action, Axis, AxisFrame, BottomTab, Dialog, Menu, MoveCommand, Section};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use shapematch::app::{
+    Action, Axis, AxisFrame, BottomTab, Dialog, FileCommand, Menu, MoveCommand, Section,
+    ViewCommand,
+};
 use shapematch::role::Role;
+use shapematch::ui::Shell;
 
 use super::layout::{Painted, texts};
 use super::story::{click, finish, matched, window};
+
+type Window = Harness<'static, Shell>;
 
 #[test]
 fn an_empty_window_invites_and_says_why_the_rest_waits() {
@@ -225,4 +232,92 @@ fn the_log_of_a_low_pane_shows_the_result_from_its_first_line() {
         let is_cut = |seen: &&&Painted| seen.rect.top() < seen.clip.top();
         assert_eq!(found.iter().filter(is_cut).count(), 0, "{width} × {height}");
     }
+}
+
+/// Which sections are unfolded, as their headers tell.
+fn folds(window: &Window) -> Vec<bool> {
+    ["1 Load & display", "2 Reduce", "3 Match", "4 Map"]
+        .map(|header| {
+            let node = window.get_by_label(header);
+            node.accesskit_node().toggled() == Some(egui::accesskit::Toggled::True)
+        })
+        .to_vec()
+}
+
+/// Sections fold and unfold by themselves at a load, a match and a mapping, and at nothing between.
+#[test]
+fn undo_levels_and_moves_by_hand_fold_no_section() {
+    let mut window = matched();
+    window.set_size(egui::vec2(1280.0, 720.0));
+    window.run_steps(8);
+    let before = folds(&window);
+    assert!(before[2], "the verdict is seen");
+    let (ctrl, none) = (egui::Modifiers::COMMAND, egui::Modifiers::NONE);
+    for (key, held) in [
+        (egui::Key::Z, ctrl),
+        (egui::Key::Y, ctrl),
+        (egui::Key::PageUp, none),
+    ] {
+        window.key_press_modifiers(held, key);
+        window.run_steps(2);
+        finish(&mut window);
+        window.run_steps(4);
+        assert_eq!(folds(&window), before, "{key:?}");
+    }
+    let ctx = window.ctx.clone();
+    let flip = MoveCommand::Flip(Axis::X).into();
+    window.state_mut().run_commands(vec![flip], &ctx);
+    window.run_steps(8);
+    assert_eq!(folds(&window), before, "a move by hand");
+}
+
+/// What a click hits stays where it is when the first number is typed.
+#[test]
+fn the_first_move_by_hand_shifts_nothing() {
+    let mut window = window();
+    window.set_size(egui::vec2(1400.0, 1600.0));
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    click(&mut window, "Move by hand");
+    window.run_steps(4);
+    let field = "Translation since loading, X";
+    let role = egui::accesskit::Role::SpinButton;
+    let place = |window: &Window| window.get_by_role_and_label(role, field).rect();
+    let before = place(&window);
+    super::typed::type_into(&mut window, field, "3");
+    window.run_steps(4);
+    assert_eq!(
+        window
+            .state()
+            .state()
+            .document
+            .crash_from_stamped()
+            .translation
+            .x,
+        3.0
+    );
+    let after = place(&window);
+    assert!((after.min - before.min).length() < 0.5, "{before} {after}");
+}
+
+#[test]
+fn the_header_of_a_folded_section_says_that_the_unit_is_in_doubt() {
+    let mut window = window();
+    click(&mut window, "Open the example pair");
+    finish(&mut window);
+    let ctx = window.ctx.clone();
+    let smaller = FileCommand::SetLengthFactor {
+        role: Role::Stamped,
+        factor: 0.001,
+    };
+    let fold = ViewCommand::OpenSection(Section::Load, false);
+    for command in [smaller.into(), fold.into()] {
+        window.state_mut().run_commands(vec![command], &ctx);
+        window.run_steps(2);
+        finish(&mut window);
+    }
+    window.run_steps(4);
+    let texts = super::layout::texts(&window);
+    let mut texts = texts.iter().map(|painted| painted.text.as_str());
+    assert!(texts.any(|text| text == "⚠ unit in doubt"));
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{BottomTab, ViewCommand, ViewRoom, ViewState};
+use super::{BottomTab, Section, ViewCommand, ViewRoom, ViewState};
 use crate::app::{AppState, Document, PartRef, ShownFile};
 use crate::geometry::{Aabb, Camera, Point3, Similarity, Vector3};
 use crate::pipeline::load::LoadedPart;
@@ -60,7 +60,12 @@ impl ViewState {
             ViewCommand::OpenSection(section, is_open) => {
                 self.sections.set_open(section, is_open);
             }
-            ViewCommand::UseSection(section) => self.sections.touch(section),
+            ViewCommand::ShowSection(section) => self.show_section(section),
+            ViewCommand::ShowMoveByHand => {
+                self.show_section(Section::Match);
+                self.n_asked_by_hand += 1;
+            }
+            ViewCommand::UseSection(section) => self.sections.ask_for(section),
             ViewCommand::ToggleGraphicsOnly => {
                 self.is_graphics_only = !self.is_graphics_only;
             }
@@ -71,6 +76,12 @@ impl ViewState {
             }
             ViewCommand::SetDialog(dialog) => self.dialog = dialog,
         }
+    }
+
+    fn show_section(&mut self, section: Section) {
+        self.is_graphics_only = false;
+        self.column = Some(false);
+        self.sections.set_open(section, true);
     }
 
     fn apply_camera(&mut self, command: &ViewCommand, scene: &Scene<'_>) {

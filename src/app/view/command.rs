@@ -52,6 +52,10 @@ pub enum ViewCommand {
     SetFreeWindow(FreeWindow),
     /// Fold or unfold a section.
     OpenSection(Section, bool),
+    /// Unfold a section, and the column where it is folded.
+    ShowSection(Section),
+    /// Show section 3 and unfold what moves the part by hand in it.
+    ShowMoveByHand,
     /// The user works in a section; it is the last to be folded for want of room.
     UseSection(Section),
     /// Fold the left column to a rail, or unfold it.

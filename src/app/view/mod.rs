@@ -14,7 +14,7 @@ pub use command::ViewCommand;
 pub use display::{BottomTab, ColorBy, Dialog, Display, ShownGeometry};
 pub use free_window::FreeWindow;
 pub use sections::Sections;
-pub use status::{Section, Stale};
+pub use status::{OpenQuestion, Section, Stale};
 
 pub(super) use self::apply::Scene;
 use crate::geometry::camera::{Covered, OrbitStyle};
@@ -65,6 +65,8 @@ pub struct ViewState {
     column: Option<bool>,
     /// Which of the three sections are unfolded.
     pub sections: Sections,
+    /// How often it was asked to unfold what moves the part by hand.
+    pub n_asked_by_hand: u64,
     /// What lies over the window.
     pub dialog: Option<Dialog>,
 }
@@ -92,6 +94,7 @@ impl Default for ViewState {
             is_narrow: false,
             column: None,
             sections: Sections::default(),
+            n_asked_by_hand: 0,
             dialog: None,
         }
     }

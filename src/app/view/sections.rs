@@ -12,6 +12,10 @@ pub struct Sections {
     is_open: [bool; 4],
     /// The sections in order of their last use, the latest first.
     order: [Section; 4],
+    /// They may fold and unfold as their contents ask: after a main step, until something else is done.
+    is_arranging: bool,
+    /// The one that the user asked for last, since they are no longer arranged.
+    asked: Option<Section>,
 }
 
 impl Default for Sections {
@@ -20,6 +24,8 @@ impl Default for Sections {
             // The mapping comes once there is a pose to map with.
             is_open: [true, true, true, false],
             order: Section::ALL,
+            is_arranging: true,
+            asked: None,
         }
     }
 }
@@ -28,6 +34,23 @@ impl Sections {
     /// True unless the user folded it.
     pub fn is_open(&self, section: Section) -> bool {
         self.is_open[section.index()]
+    }
+
+    /// A part was loaded, matched or mapped: the sections are arranged for what comes next.
+    pub fn arrange(&mut self) {
+        self.is_arranging = true;
+    }
+
+    /// Something between the main steps is done, such as an undo or a move by hand: none folds or unfolds by it.
+    pub fn hold(&mut self) {
+        if std::mem::take(&mut self.is_arranging) {
+            self.asked = None;
+        }
+    }
+
+    /// Whether they are arranged by their contents.
+    pub fn is_arranging(&self) -> bool {
+        self.is_arranging
     }
 
     /// The section that is worked in.
@@ -41,11 +64,17 @@ impl Sections {
         self.order[..=at].rotate_right(1);
     }
 
+    /// The user turns to this section.
+    pub fn ask_for(&mut self, section: Section) {
+        self.touch(section);
+        self.asked = Some(section);
+    }
+
     /// The user folds or unfolds a section; this wins over everything that follows from room.
     pub fn set_open(&mut self, section: Section, is_open: bool) {
         self.is_open[section.index()] = is_open;
         if is_open {
-            self.touch(section);
+            self.ask_for(section);
         }
     }
 
@@ -75,6 +104,15 @@ impl Sections {
             is_first = false;
         }
         shown
+    }
+
+    /// Which sections stay unfolded between the main steps: those that were, less what the user folds, with what
+    /// the user unfolds.
+    pub fn held(&self, before: [bool; 4]) -> [bool; 4] {
+        Section::ALL.map(|section| {
+            let was_shown = before[section.index()] || self.asked == Some(section);
+            was_shown && self.is_open(section)
+        })
     }
 
     /// Which sections stay unfolded once the user works in the column: none is folded for want of room
@@ -159,6 +197,22 @@ mod tests {
         assert!(sections.shown(bodies, 710.0, [true; 4])[0]);
         assert!(!sections.shown(bodies, 710.0, [false, true, true, false])[0]);
         assert!(sections.shown(bodies, 740.0, [false, true, true, false])[0]);
+    }
+
+    #[test]
+    fn between_the_main_steps_only_the_user_folds_and_unfolds() {
+        let mut sections = Sections::default();
+        sections.ask_for(Section::Load);
+        sections.hold();
+        let before = [false, false, true, false];
+        // What another section has to do with it does not unfold it.
+        sections.touch(Section::Reduce);
+        assert_eq!(sections.held(before), before);
+        sections.set_open(Section::Load, true);
+        let both = [true, false, true, false];
+        assert_eq!(sections.held(before), both);
+        sections.set_open(Section::Match, false);
+        assert_eq!(sections.held(both), [true, false, false, false]);
     }
 
     #[test]

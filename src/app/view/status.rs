@@ -1,7 +1,7 @@
 //! The sections of the left column, what in them is out of date, and which bottom tabs have content.
 
 use super::BottomTab;
-use crate::app::{AppState, Command, MoveCommand, Part};
+use crate::app::{AppState, Command, FileCommand, MoveCommand, Part};
 use crate::jobs::JobKey;
 use crate::role::Role;
 
@@ -37,9 +37,21 @@ impl Section {
         }
     }
 
+    /// What is done in it.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Load => "Section 1: files, units, parts and how they are shown",
+            Self::Reduce => "Section 2: fewer triangles",
+            Self::Match => "Section 3: first poses, method, result, point pairs",
+            Self::Map => "Section 4: forming results onto the crash mesh",
+        }
+    }
+
     /// The section whose work a command is, if it is plainly one section's.
     pub(in crate::app) fn of_command(command: &Command) -> Option<Self> {
         match command {
+            // Nobody asked for this one.
+            Command::File(FileCommand::ChangedOnDisk(_)) => None,
             Command::File(_) => Some(Self::Load),
             Command::Reduce(_) => Some(Self::Reduce),
             // How tools and curves are shown is no work on the match.
@@ -48,6 +60,14 @@ impl Section {
             Command::Map(_) => Some(Self::Map),
             _ => None,
         }
+    }
+
+    /// Whether the sections stay as they are at a command, whatever it does to what is in them.
+    pub(in crate::app) fn is_held_at(command: &Command) -> bool {
+        matches!(
+            command,
+            Command::History(_) | Command::Move(_) | Command::Reduce(_)
+        )
     }
 }
 
@@ -58,7 +78,39 @@ pub struct Stale {
     pub reason: &'static str,
 }
 
+/// What a section asks the user to decide; its header says so while it is folded.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OpenQuestion {
+    /// For the header.
+    pub short: &'static str,
+    /// The whole, for the tooltip.
+    pub text: String,
+}
+
 impl AppState {
+    /// What is to be decided in a section.
+    pub fn open_question(&self, section: Section) -> Option<OpenQuestion> {
+        if section != Section::Load {
+            return None;
+        }
+        let of_unit = || {
+            let hint = self.unit_hint()?;
+            Some(OpenQuestion {
+                short: "⚠ unit in doubt",
+                text: hint.text(),
+            })
+        };
+        let of_change = || {
+            let mut roles = Role::ALL.into_iter();
+            let role = roles.find(|role| self.has_changed_on_disk(*role))?;
+            Some(OpenQuestion {
+                short: "⚠ changed on disk",
+                text: format!("The {} file has changed on disk", role.word()),
+            })
+        };
+        of_unit().or_else(of_change)
+    }
+
     /// The mark "out of date — rerun" of a section.
     pub fn stale(&self, section: Section) -> Option<Stale> {
         let reason = match section {

@@ -46,6 +46,7 @@ pub fn matching_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             result::result_ui(ui, state, commands);
             compare_ui(ui, state, commands);
             manual_move::manual_move_ui(ui, state, commands);
+            result::pose_by_hand_ui(ui, state, commands);
         },
     );
 }

@@ -49,17 +49,18 @@ fn number_ui(ui: &mut Ui, state: &AppState, section: Section, commands: &mut Vec
         palette.text,
     );
     let stale = state.stale(section);
-    if stale.is_some() {
+    let question = state.open_question(section);
+    if stale.is_some() || question.is_some() {
         let at = pos2(badge.right(), badge.top() + 2.0);
         ui.painter().circle_filled(at, 3.5, palette.check);
     }
-    let tip = match stale {
-        Some(stale) => format!("{title}\nOut of date: {}", stale.reason),
-        None => title.to_owned(),
+    let tip = match (question, stale) {
+        (Some(question), _) => format!("{title}\n{}", question.text),
+        (None, Some(stale)) => format!("{title}\nOut of date: {}", stale.reason),
+        (None, None) => title.to_owned(),
     };
     if response.on_hover_text(tip).clicked() {
-        commands.push(ViewCommand::FoldColumn(false).into());
-        commands.push(ViewCommand::OpenSection(section, true).into());
+        commands.push(ViewCommand::ShowSection(section).into());
     }
 }
 

@@ -22,10 +22,6 @@ use crate::ui::widgets::{
 pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     explain::failure_ui(ui, state, commands);
     let Some(result) = &state.document.result else {
-        // A pose made by hand is worth copying too.
-        if state.document.has_pose() && Action::CopyMatrix.enabled(state).is_ok() {
-            matrix_ui(ui, state, commands);
-        }
         return;
     };
     ui.add_space(2.0);
@@ -56,6 +52,15 @@ pub fn result_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.scroll_to_rect(egui::Rect::from_x_y_ranges(x, top..=bottom), None);
     }
     matrix_ui(ui, state, commands);
+}
+
+/// A pose made by hand is worth copying too. It stands below what the part is moved with, so that the first move
+/// shifts nothing there.
+pub fn pose_by_hand_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let is_alone = state.document.result.is_none() && state.document.has_pose();
+    if is_alone && Action::CopyMatrix.enabled(state).is_ok() {
+        matrix_ui(ui, state, commands);
+    }
 }
 
 /// The height of the card, which gets lower with the first move by hand: it is kept while the pointer is

@@ -139,14 +139,17 @@ pub fn drawn_ui(ui: &Ui, state: &AppState) {
 }
 
 /// Decides which sections are unfolded in a column of this height; before the sections are drawn. They
-/// fold for want of room only until the user works in the column, and again when its height changes.
+/// fold for want of room only after a main step, until the user works in the column or does something else, and
+/// again when its height changes.
 pub fn fold_ui(ui: &Ui, state: &AppState, height: f32) {
     let before = Fold::read(ui);
     let room = height - TALL * Section::ALL.len() as f32;
     let is_resized = (height - before.height).abs() > 0.5;
     let is_used = before.is_used && !is_resized;
     let sections = &state.view.sections;
-    let shown = if is_used {
+    let shown = if !sections.is_arranging() && !is_resized {
+        sections.held(before.shown)
+    } else if is_used {
         sections.kept(before.bodies, room, before.shown)
     } else {
         sections.shown(before.bodies, room, before.shown)
@@ -204,9 +207,11 @@ fn header_ui(
     let title_rect = painter.text(at, Align2::LEFT_CENTER, title, title_font, palette.text);
     paint_fold(painter, pos2(rect.right() - 24.0, middle), is_open, palette);
     let stale = state.stale(section);
-    let (text, color) = match stale {
-        Some(_) => ("⚠ out of date", palette.check),
-        None => (summary, palette.secondary),
+    let question = state.open_question(section).filter(|_| !is_open);
+    let (text, color) = match (&question, stale) {
+        (Some(question), _) => (question.short, palette.check),
+        (None, Some(_)) => ("⚠ out of date", palette.check),
+        (None, None) => (summary, palette.secondary),
     };
     let room = rect.right() - 40.0 - title_rect.right() - UNIT;
     let galley = elided(ui, text, small, color, room);
@@ -215,9 +220,10 @@ fn header_ui(
         middle - galley.size().y / 2.0,
     );
     ui.painter().galley(at, galley, color);
-    let response = match stale {
-        Some(stale) => response.on_hover_text(format!("Out of date: {}", stale.reason)),
-        None => response,
+    let response = match (question, stale) {
+        (Some(question), _) => response.on_hover_text(question.text),
+        (None, Some(stale)) => response.on_hover_text(format!("Out of date: {}", stale.reason)),
+        (None, None) => response,
     };
     response.clicked()
 }
