@@ -16,8 +16,19 @@ pub struct PairUnits {
 
 impl PairUnits {
     /// What both files say together. The crash file's units count; a stamped file says only what
-    /// that one leaves open, because the factor between the two is what was chosen for it.
+    /// that one leaves open, unless it needs a factor that was not applied.
     pub fn of(parts: PerRole<Option<&LoadedPart>>) -> Self {
+        let mut units = Self::settled(parts);
+        if let (Some(crash), Some(stamped)) = (parts.crash, parts.stamped)
+            && missing_factor(PerRole::new(crash, stamped)).is_some()
+        {
+            units.files.stamped = stamped.units();
+        }
+        units
+    }
+
+    /// The same where the factor between the two is what was chosen for the stamped file, whatever it says.
+    pub fn settled(parts: PerRole<Option<&LoadedPart>>) -> Self {
         let known = parts.map(|part| part?.units());
         let lengths_of = |role: Role, must_be_firm: bool| {
             let known = known
@@ -50,7 +61,10 @@ impl PairUnits {
                 .get(role)
                 .map_or_else(|| "unit unknown".to_owned(), KnownUnits::words);
             let factor = part.settings.length_factor;
-            sentences.push(if factor == 1.0 {
+            let own = units.files.get(role).map(|known| known.units.length);
+            sentences.push(if factor == 1.0 && own != units.lengths {
+                format!("{name}: {words}; no factor was applied")
+            } else if factor == 1.0 {
                 format!("{name}: {words}")
             } else {
                 format!("{name}: {words}; its lengths were multiplied by {factor}")
@@ -75,6 +89,20 @@ impl PairUnits {
             )
         })
     }
+}
+
+/// What the stamped part's lengths have still to be multiplied by: both files say their units, and the sizes of
+/// the parts speak for it too, since a comment may be older than its file.
+pub fn missing_factor(parts: PerRole<&LoadedPart>) -> Option<f64> {
+    let PerRole { crash, stamped } = parts.map(|part| {
+        let known = part.units().filter(|known| known.origin.is_firm())?;
+        Some(known.units.length)
+    });
+    let factor = stamped?.factor_to(crash?) / parts.stamped.settings.length_factor;
+    let size = |part: &LoadedPart| part.surface.measures().diagonal;
+    let ratio = size(parts.crash) / size(parts.stamped);
+    let off = |from: f64| (ratio / from).ln().abs();
+    ((factor - 1.0).abs() > 1e-9 && off(factor) < off(1.0)).then_some(factor)
 }
 
 /// The unit of lengths after a factor was applied.

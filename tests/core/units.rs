@@ -57,12 +57,30 @@ fn what_the_files_say_is_asked_about_once_and_is_one_undo_step() {
     assert_eq!((hint.factor, hint.unit), (1000.0, Some(LengthUnit::Meter)));
     assert_eq!(hint.text(), "Stamped looks 1000 × smaller than crash");
     assert_eq!(words(&window, Role::Stamped), "m, from title or comment");
+    // Lengths of either file alone are in its own unit, and exports say the same.
+    let unit = |window: &Window, role| window.state.lengths_of(role).suffix();
+    assert_eq!(unit(&window, Role::Stamped), " m");
+    assert_eq!(unit(&window, Role::Crash), " mm");
+    let [crash, stamped] = Role::ALL.map(|role| window.part(role).loaded.clone());
+    assert_eq!(
+        PairUnits::sentences(PerRole::new(&*crash, &*stamped))[2],
+        "says_m.k: m, from title or comment; no factor was applied"
+    );
+    // Section 1 may be folded; its header says that there is a question.
+    let asks = |window: &Window| window.state.open_question(Section::Load).is_some();
+    assert!(asks(&window));
     let before = window.state.document.clone();
     let n_done = window.state.history.n_done();
     window.apply(set(Role::Stamped, LengthUnit::Meter));
+    assert!(!asks(&window));
     assert_eq!(window.part(Role::Stamped).length_factor(), 1000.0);
     assert_eq!(window.state.unit_hint(), None);
     assert_eq!(words(&window, Role::Stamped), "m, set by you");
+    assert_eq!(
+        unit(&window, Role::Stamped),
+        " mm",
+        "its lengths are converted"
+    );
     assert_eq!(
         window.state.document.length_unit(),
         Some(LengthUnit::Millimeter)

@@ -4,7 +4,7 @@ use super::PartsState;
 use crate::app::{AppState, Document, Settings};
 use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::load::LoadedPart;
-use crate::pipeline::units::PairUnits;
+use crate::pipeline::units::{PairUnits, missing_factor};
 use crate::registration::guess_unit;
 use crate::role::{PerRole, Role};
 use crate::text::Lengths;
@@ -29,29 +29,20 @@ impl UnitHint {
         })
     }
 
-    /// Compares what both files say of themselves; the sizes have to speak for it too, since a
-    /// comment may be older than its file.
-    fn of_units(crash: LengthUnit, stamped: LengthUnit, ratio: f64, applied: f64) -> Option<Self> {
-        let factor = stamped.factor_to(crash) / applied;
-        let is_likelier = off(ratio, factor) < off(ratio, 1.0);
-        ((factor - 1.0).abs() > 1e-9 && is_likelier).then_some(Self {
-            factor,
-            unit: Some(stamped),
-        })
-    }
-
     /// What the units of two parts say where both are known, else their sizes.
     pub(in crate::app) fn of_parts(crash: &LoadedPart, stamped: &LoadedPart) -> Option<Self> {
         let firm = |known: Option<KnownUnits>| known.filter(|known| known.origin.is_firm());
         let (of_crash, of_stamped) = (crash.units(), stamped.units());
         let applied = stamped.settings.length_factor;
-        let size = |part: &LoadedPart| part.surface.measures().diagonal;
-        let (target, source) = (size(crash), size(stamped));
-        if let (Some(a), Some(b)) = (firm(of_crash), firm(of_stamped)) {
-            let ratio = size_ratio(target, source)?;
-            return Self::of_units(a.units.length, b.units.length, ratio, applied);
+        if let (Some(_), Some(own)) = (firm(of_crash), firm(of_stamped)) {
+            let factor = missing_factor(PerRole::new(crash, stamped))?;
+            return Some(Self {
+                factor,
+                unit: Some(own.units.length),
+            });
         }
-        let mut hint = Self::of_sizes(target, source)?;
+        let size = |part: &LoadedPart| part.surface.measures().diagonal;
+        let mut hint = Self::of_sizes(size(crash), size(stamped))?;
         let of_crash = of_crash.map(|known| known.units.length);
         hint.unit = of_crash.and_then(|unit| unit.times(applied * hint.factor));
         Some(hint)
@@ -89,10 +80,10 @@ fn off(ratio: f64, factor: f64) -> f64 {
 }
 
 impl Document {
-    /// What is known about the units of both files.
+    /// What is known about the units of both files under their factors; [`AppState::units_of`] knows what is asked.
     pub fn units(&self) -> PairUnits {
         let part = |role| self.part(role).map(|part| &*part.loaded);
-        PairUnits::of(PerRole::from_fn(part))
+        PairUnits::settled(PerRole::from_fn(part))
     }
 
     /// The units of a further stamped file, before its factor was applied.
@@ -155,6 +146,22 @@ impl AppState {
     /// How the window writes every length that it shows.
     pub fn lengths(&self) -> Lengths {
         self.document.lengths(self.settings.decimals)
+    }
+
+    /// How the window writes the lengths of one file alone: in the unit of all lengths, unless it is asked
+    /// whether that file is in another.
+    pub fn lengths_of(&self, role: Role) -> Lengths {
+        let own = self.document.part(role).and_then(|part| {
+            let known = self.units_of(role)?;
+            known.units.length.times(1.0 / part.length_factor())
+        });
+        let is_asked = role == Role::Stamped && self.unit_hint().is_some();
+        let unit = if is_asked {
+            own
+        } else {
+            self.document.length_unit()
+        };
+        Lengths::new(unit).with_decimals(self.settings.decimals)
     }
 
     /// The hint about units, until it is answered.

@@ -169,7 +169,7 @@ fn detail(role: Role, part: &Part, state: &AppState) -> String {
         );
     }
     if let Some(thickness) = part.facts.thickness {
-        text += &format!(" · t {}", state.lengths().of(thickness));
+        text += &format!(" · t {}", state.lengths_of(role).of(thickness));
     }
     if part.length_factor() != 1.0 {
         text += &format!(" · lengths × {}", part.length_factor());

@@ -192,7 +192,7 @@ fn hover_text(row: &Row<'_>, state: &AppState) -> String {
         counted(summary.n_triangles, "triangle")
     );
     if let Some(thickness) = summary.thickness {
-        text += &format!(", thickness {}", state.lengths().of(thickness));
+        text += &format!(", thickness {}", state.lengths_of(row.role).of(thickness));
     }
     if let Some(likeness) = row.likeness {
         text += &format!("\nlikeness {}", whole_percent(likeness));

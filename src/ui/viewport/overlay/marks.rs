@@ -49,7 +49,7 @@ fn bar(painter: &Painter, over: &Overlay<'_>) -> f32 {
     };
     let left = over.frame.rect().left_bottom() + vec2(MARGIN + beside, -MARGIN - 8.0);
     let right = left + vec2(bar.pixels as f32, 0.0);
-    let text = length_text(bar.length) + over.frame.state.document.unit_suffix();
+    let text = length_text(bar.length) + over.frame.state.lengths_of(over.role()).suffix();
     let galley = painter.layout_no_wrap(text, FontId::proportional(11.5), over.frame.look.text);
     // A number wider than its bar needs the room, not the margin.
     let beyond = vec2((0.5 * (galley.size().x - (right.x - left.x))).max(0.0), 0.0);
@@ -177,7 +177,7 @@ fn value_text(over: &Overlay<'_>, hit: &Hit) -> Option<String> {
         (FieldKind::Uncertainty, Some(value)) => Some(format!("± {}", state.lengths().of(value))),
         (FieldKind::Forming(value), Some(number)) => Some(forming_text(state, value, number)),
         (FieldKind::Map(picture), value) => map_text(state, picture, value),
-        (_, value) => value.map(|value| state.lengths().of(value)),
+        (_, value) => value.map(|value| state.lengths_of(hit.role).of(value)),
     }
 }
 

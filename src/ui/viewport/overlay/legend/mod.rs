@@ -210,6 +210,10 @@ fn unit(over: &Overlay<'_>, kind: FieldKind) -> Option<String> {
             return None;
         }
         FieldKind::Map(MapPicture::Angle) => return Some("°".to_owned()),
+        FieldKind::Thickness | FieldKind::ReductionError => {
+            let unit = state.lengths_of(over.role()).unit;
+            return unit.map(|unit| unit.symbol().to_owned());
+        }
         FieldKind::Forming(value) => Some(value),
         FieldKind::Map(MapPicture::Difference | MapPicture::Other) => {
             state.map_quantity().forming()
