@@ -23,6 +23,12 @@ const SYNONYMS: &[&[&str]] = &[
     &["quit", "exit", "close"],
     &["save", "write", "export"],
     &["180°", "180 deg"],
+    &["grey", "greyscale", "grayscale", "black and white"],
+    &["timings", "times", "duration"],
+    &["history", "steps"],
+    &["sweep", "tables"],
+    &["diagnostics", "warnings"],
+    &["map", "transfer"],
 ];
 
 /// Least points per letter of a find in a label; scattered letters have fewer.

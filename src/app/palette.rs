@@ -1,13 +1,14 @@
-//! What the command search offers: every action, every colour, recent files, every form of matrix and
-//! card, the themes.
+//! What the command search offers: every action, tab, section, colour and colour map, recent files, every form of
+//! matrix and card, the themes.
 
 use std::path::Path;
 
 use super::fuzzy::Search;
 use super::{
-    Action, ActionRow, AppState, ColorBy, Command, CopyForm, ExportCommand, FileCommand, Menu,
-    ProjectCommand, Settings, Theme, ViewCommand,
+    Action, ActionRow, AppState, BottomTab, ColorBy, Command, CopyForm, ExportCommand, FileCommand,
+    Menu, ProjectCommand, Section, Settings, Theme, ViewCommand,
 };
+use crate::colormap::ColorMap;
 use crate::pipeline::outputs::{MeshOutput, Output};
 use crate::report::{CardForm, MatrixForm};
 use crate::text::inside;
@@ -144,6 +145,20 @@ impl AppState {
             ));
         }
         entries.extend(ColorBy::ALL.map(|by| self.color_entry(by)));
+        entries.extend(ColorMap::ALL.map(|map| self.map_entry(map)));
+        entries.extend(BottomTab::ALL.map(|tab| self.tab_entry(tab)));
+        entries.extend(Section::ALL.map(|section| {
+            let label = format!("{} {}", section.index() + 1, section.title());
+            let open = ViewCommand::ShowSection(section);
+            place("Left column", label, section.help(), open)
+        }));
+        let by_hand = "Numbers, axes, flips and a pasted matrix; in section 3";
+        entries.push(place(
+            "Left column",
+            "Move by hand".to_owned(),
+            by_hand,
+            ViewCommand::ShowMoveByHand,
+        ));
         let locked = why(Action::OpenExample);
         let recent = self.settings.recent.iter();
         entries.extend(recent.map(|path| PaletteEntry {
@@ -184,6 +199,33 @@ impl AppState {
         }
     }
 
+    /// One map for all values, with and without a sign.
+    fn map_entry(&self, map: ColorMap) -> PaletteEntry {
+        let mut display = self.view.display.clone();
+        (display.coloring.map, display.coloring.signed_map) = (map, map);
+        let label = format!("Colour map: {}", inside(map.label()));
+        let help = "Colours of the values that are shown";
+        place(
+            "View",
+            label,
+            help,
+            ViewCommand::SetDisplay(Box::new(display)),
+        )
+    }
+
+    fn tab_entry(&self, tab: BottomTab) -> PaletteEntry {
+        let reason = (!self.has_content(tab)).then_some("The tab has nothing to show yet.");
+        PaletteEntry {
+            reason,
+            ..place(
+                "Tab",
+                format!("Tab: {}", inside(tab.label())),
+                tab.help(),
+                ViewCommand::SetTab(tab),
+            )
+        }
+    }
+
     fn action_entry(&self, row: &ActionRow) -> PaletteEntry {
         PaletteEntry {
             label: row.label.to_owned(),
@@ -200,6 +242,20 @@ impl AppState {
 
 fn does(command: impl Into<Command>) -> Does {
     Does::Command(Box::new(command.into()))
+}
+
+/// Something that is always possible: where it is, its name and what it does.
+fn place(group: &'static str, label: String, help: &str, command: ViewCommand) -> PaletteEntry {
+    PaletteEntry {
+        label,
+        group,
+        help: help.to_owned(),
+        keys: String::new(),
+        reason: None,
+        is_recent: false,
+        letters: Vec::new(),
+        does: does(command),
+    }
 }
 
 fn export(label: String, command: ExportCommand, reason: Option<&'static str>) -> PaletteEntry {
@@ -287,6 +343,33 @@ mod tests {
         let mut groups: Vec<_> = ColorBy::ALL.map(ColorBy::group).to_vec();
         groups.dedup();
         assert_eq!(groups, ["Part", "Match", "Forming", "Mapping"]);
+    }
+
+    #[test]
+    fn tabs_sections_and_maps_are_found_by_their_usual_words() {
+        let state = AppState::default();
+        for (typed, label) in [
+            ("history", "Tab: history"),
+            ("timings", "Tab: timings"),
+            ("sweep", "Tab: sweep"),
+            ("move by hand", "Move by hand"),
+            ("greyscale", "Colour map: grey, for printing"),
+            ("rainbow", "Colour map: rainbow, like LS-PrePost"),
+        ] {
+            let found = state.palette(typed);
+            let first = found.first().map(|entry| entry.label.as_str());
+            assert_eq!(first, Some(label), "{typed}");
+        }
+        for tab in BottomTab::ALL {
+            let found = state.palette(tab.label());
+            let is_it = |entry: &PaletteEntry| entry.label.ends_with(&inside(tab.label()));
+            assert!(found.iter().any(is_it), "{}", tab.label());
+        }
+        for section in Section::ALL {
+            let found = state.palette(section.title());
+            let is_it = |entry: &PaletteEntry| entry.label.ends_with(section.title());
+            assert!(found.iter().any(is_it), "{}", section.title());
+        }
     }
 
     #[test]

@@ -17,6 +17,9 @@ use crate::app::{
 use crate::colormap::ColorMap;
 use crate::text::{fixed, trimmed};
 
+/// What a dialog leaves of the window, with its own title and foot.
+pub(super) const MARGIN: egui::Vec2 = vec2(96.0, 160.0);
+
 /// Draws the open dialog, if any. `is_on_processor`: every pixel costs the processor time.
 pub fn overlays_ui(
     ctx: &egui::Context,
@@ -33,14 +36,21 @@ pub fn overlays_ui(
     let frame = egui::Frame::popup(&ctx.global_style())
         .inner_margin(24)
         .corner_radius(8);
-    let mut modal = Modal::new(egui::Id::unique(("dialog", dialog as u8))).frame(frame);
+    let id = egui::Id::unique(("dialog", dialog as u8));
+    let mut modal = Modal::new(id).frame(frame);
+    let window = ctx.content_rect().size();
+    if dialog == Dialog::Palette {
+        // Its field stays where it is, however many lines are found.
+        let top = egui::vec2(0.0, palette::top(window.y));
+        modal.area = Modal::default_area(id).anchor(egui::Align2::CENTER_TOP, top);
+    }
     if is_on_processor {
         // Darkening the whole window doubles the time of every frame.
         modal = modal.backdrop_color(egui::Color32::TRANSPARENT);
     }
     let response = modal.show(ctx, |ui| {
         ui.spacing_mut().item_spacing.y = UNIT;
-        let room = ctx.content_rect().size() - vec2(96.0, 160.0);
+        let room = window - MARGIN;
         match dialog {
             Dialog::Help => help_ui(ui, room),
             Dialog::Palette => palette_ui(ui, state, room, commands),

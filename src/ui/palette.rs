@@ -4,12 +4,24 @@ use egui::{
     Align, Event, Key, Layout, Modifiers, Rect, RichText, ScrollArea, Sense, Ui, pos2, vec2,
 };
 
+use super::overlays::MARGIN;
 use super::theme::{Palette, ROW, UNIT};
 use super::widgets::{caption, draft, secondary, set_draft, text_field};
 use crate::app::{AppState, Command, PaletteEntry, ViewCommand};
 
 /// Width of the search.
 const WIDTH: f32 = 560.0;
+
+/// Height of the list at most.
+const LIST: f32 = 13.5 * ROW;
+/// Field, foot and margins beside the list.
+const BESIDE_LIST: f32 = 130.0;
+
+/// Where the search begins in a window of this height: with the whole list it stands in the middle.
+pub fn top(window: f32) -> f32 {
+    let list = LIST.min(window - MARGIN.y);
+    (0.5 * (window - list - BESIDE_LIST)).max(0.0)
+}
 
 /// The field and the list of what fits.
 pub fn palette_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mut Vec<Command>) {
@@ -49,7 +61,7 @@ pub fn palette_ui(ui: &mut Ui, state: &AppState, room: egui::Vec2, commands: &mu
     let has_moved = steps != 0 || text != before;
     let mut chosen = is_entered.then(|| found.get(at)).flatten();
     ScrollArea::vertical()
-        .max_height(room.y.min(13.5 * ROW))
+        .max_height(room.y.min(LIST))
         .auto_shrink([false, true])
         .show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;

@@ -439,6 +439,22 @@ fn what_is_typed_while_the_search_opens_is_searched() {
     }
 }
 
+#[test]
+fn the_field_of_the_search_stays_where_it_is_while_typing() {
+    let mut window = window();
+    window.key_press_modifiers(Modifiers::COMMAND, Key::K);
+    window.run_steps(4);
+    let role = egui::accesskit::Role::TextInput;
+    let place = |window: &Window| window.get_by_role_and_label(role, "Search commands").rect();
+    let before = place(&window);
+    for typed in ["hist", "ory", " qqq"] {
+        window.event(egui::Event::Text(typed.to_owned()));
+        window.run_steps(4);
+        let now = place(&window);
+        assert!((now.top() - before.top()).abs() < 0.5, "{before} {now}");
+    }
+}
+
 /// Enter where nothing is found changes nothing: the field keeps the keyboard, and shows it.
 #[test]
 fn enter_in_an_empty_search_leaves_the_keyboard_in_its_field() {

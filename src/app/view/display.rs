@@ -230,6 +230,22 @@ impl BottomTab {
             Self::Diagnostics => "Diagnostics",
         }
     }
+
+    /// What it shows.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Log => "What was done and what came of it",
+            Self::Timings => "How long each step took",
+            Self::Starts => "The starts of the last match",
+            Self::Convergence => "Residual and overlap over the iterations",
+            Self::Sweep => "The paper's tables over methods and levels",
+            Self::Deviation => "Distances between the parts as numbers",
+            Self::Section => "Both outlines in the section plane",
+            Self::Mapping => "Checks, statistics and probe of the mapping",
+            Self::History => "Everything done so far; go back to any of it",
+            Self::Diagnostics => "What the reader found in the files",
+        }
+    }
 }
 
 /// What lies over the window.

@@ -26,8 +26,14 @@ const MOVES: RangeInclusive<f64> = -1e9..=1e9;
 
 /// The fold "Move by hand".
 pub fn manual_move_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    CollapsingHeader::new("Move by hand")
+    let id = egui::Id::unique("asked for the move by hand");
+    let n_asked = state.view.n_asked_by_hand;
+    let n_before: u64 =
+        ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(id), n_asked));
+    let is_asked = n_before < n_asked;
+    let shown = CollapsingHeader::new("Move by hand")
         .id_salt("move by hand")
+        .open(is_asked.then_some(true))
         .show_unindented(ui, |ui| {
             let is_free = state.can_move().is_ok();
             ui.add_enabled_ui(is_free, |ui| {
@@ -38,6 +44,9 @@ pub fn manual_move_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
                 paste_ui(ui, commands);
             });
         });
+    if is_asked {
+        shown.header_response.scroll_to_me(Some(egui::Align::TOP));
+    }
 }
 
 fn axes_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
