@@ -350,6 +350,27 @@ fn two_files_without_roles_are_sorted_by_content() {
     );
 }
 
+/// Files that were opened as the one and the other part stay there; where they speak against it, a swap is offered.
+#[test]
+fn a_swap_is_offered_for_files_that_were_opened_the_other_way_round() {
+    let offers = |crash: &str, stamped: &str| {
+        let mut window = Window::new();
+        window.open(crash, Role::Crash);
+        window.open(stamped, Role::Stamped);
+        assert_eq!(window.part(Role::Crash).loaded.file_name(), crash);
+        let is_offer = |n: &Notice| n.offer == Some(Action::Swap);
+        let is_offered = window.state.log.notices.toasts().any(is_offer);
+        window.act(Action::Swap);
+        let mut left = window.state.log.notices.toasts();
+        assert!(!left.any(is_offer), "it is swapped");
+        is_offered
+    };
+    assert!(offers("panel_stamped.k", "panel_crash.k"));
+    assert!(!offers("panel_crash.k", "panel_stamped.k"));
+    // The content counts: the file called crash is the one that was formed.
+    assert!(!offers("crash.k", "stamped.k"));
+}
+
 #[test]
 fn names_decide_where_the_content_of_two_files_says_nothing() {
     let of = |names: [&str; 2]| {

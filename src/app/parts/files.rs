@@ -199,6 +199,7 @@ impl PartsState {
     }
 
     fn swap(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
+        work.log.notices.withdraw(Action::Swap);
         self.exchange(work);
         self.leave_tools_out(work)
     }
@@ -345,6 +346,9 @@ impl PartsState {
         effects.extend(self.settle_length_factor(work));
         if self.guess.n_pending == 0 && !is_again {
             effects.extend(self.leave_tools_out(work));
+            if !is_guess {
+                offer_swap(work);
+            }
         }
         effects
     }
@@ -474,12 +478,45 @@ impl PartsState {
     }
 }
 
+/// [`PartFacts::formed`] of a file with stresses or strains.
+const RESULTS: u8 = 2;
+
 /// How a file is read that was not read before.
 fn usual_load_settings(settings: &Settings) -> LoadSettings {
     LoadSettings {
         read: ReadOptions::default().with_limit(settings.read_limit),
         ..LoadSettings::default()
     }
+}
+
+/// Each file was opened as one of the parts. Where they speak plainly against that, the user is asked.
+fn offer_swap(work: &mut Work<'_>) {
+    let Some(both) = work.document.both() else {
+        return;
+    };
+    let PerRole { crash, stamped } = both;
+    let is_by_content = crash.facts.formed == RESULTS && stamped.facts.formed == 0;
+    let is_by_name = crash.facts.formed >= stamped.facts.formed
+        && stamped_word(crash) > 0
+        && stamped_word(stamped) < 0;
+    let names = both.map(|part| part.loaded.file_name());
+    let text = if is_by_content {
+        format!(
+            "Swapped files? {} was opened as crash part and carries forming results, {} carries none",
+            names.crash, names.stamped
+        )
+    } else if is_by_name {
+        format!(
+            "Swapped files? {} was opened as crash part, {} as stamped part",
+            names.crash, names.stamped
+        )
+    } else {
+        return;
+    };
+    work.log_step("load", None, text.clone(), None);
+    let showing = work.showing(NoticeLevel::Warning);
+    let notices = &mut work.log.notices;
+    notices.offer(NoticeLevel::Warning, text, showing, Action::Swap);
 }
 
 /// How plainly a file's name says that it is the stamped part: 1, that it is the crash part: -1, else 0.
