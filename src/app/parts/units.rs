@@ -74,11 +74,6 @@ fn size_ratio(crash: f64, stamped: f64) -> Option<f64> {
     (ratio.is_finite() && ratio > 0.0).then_some(ratio)
 }
 
-/// How far a ratio is from a factor, in the logarithm.
-fn off(ratio: f64, factor: f64) -> f64 {
-    (ratio / factor).ln().abs()
-}
-
 impl Document {
     /// What is known about the units of both files under their factors; [`AppState::units_of`] knows what is asked.
     pub fn units(&self) -> PairUnits {
