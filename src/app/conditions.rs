@@ -1,6 +1,6 @@
 //! What stands in the way of an action: parts that are missing, jobs that hold the inputs.
 
-use super::{Document, JobBoard, Reason};
+use super::{Document, JobBoard, MatchResult, Reason};
 use crate::jobs::JobKey;
 use crate::role::Role;
 
@@ -45,6 +45,27 @@ impl Document {
         any.map_err(|_| Reason("Load both parts first."))?;
         self.has_part(Role::Crash)?;
         self.has_part(Role::Stamped)
+    }
+
+    /// The match of the parts as they are, wherever the stamped part lies by now.
+    pub fn match_of_parts(&self) -> Result<&MatchResult, Reason> {
+        let result = self.result.as_ref().ok_or(Reason("Run a match first."))?;
+        if result.stamp.parts == self.stamp().parts {
+            Ok(result)
+        } else {
+            Err(Reason("A part was exchanged after the match: match again."))
+        }
+    }
+
+    /// `Ok` if there is a match that stands for the pose.
+    pub fn has_result(&self) -> Result<(), Reason> {
+        self.match_of_parts()?;
+        match self.current_result() {
+            Some(_) => Ok(()),
+            None => Err(Reason(
+                "The pose was changed after the match. Go back to the result, or match again.",
+            )),
+        }
     }
 
     /// `Ok` if the stamped part may be moved while these jobs run.

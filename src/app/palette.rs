@@ -119,11 +119,7 @@ impl AppState {
         let why = |action: Action| action.enabled(self).err().map(|reason| reason.0);
         let (no_part, no_match) = (why(Action::CopyMatrix), why(Action::SaveCards));
         for form in CopyForm::all() {
-            let reason = if form.is_possible(self) {
-                None
-            } else {
-                no_part.or(no_match)
-            };
+            let reason = form.enabled(self).err().map(|reason| reason.0);
             let label = format!("Copy: {}", form.label());
             entries.push(export(label, ExportCommand::Copy(form), reason));
         }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use shapematch::app::*;
+use shapematch::pipeline::outputs::record::match_record;
 use shapematch::pipeline::outputs::{MeshOutput, Output};
 use shapematch::role::{PerRole, Role};
 
@@ -116,4 +117,56 @@ fn the_command_line_says_levels_settings_and_pose() {
     }
     window.act(Action::CopyCommandLine);
     assert!(matches!(last_effect(&window), Effect::CopyText(text) if *text == line));
+}
+
+#[test]
+fn after_refining_the_copied_line_is_that_of_the_record() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    let line = |window: &Window| window.state.document.command_line().unwrap();
+    let recorded = |window: &Window| {
+        let result = window.state.document.current_result().unwrap();
+        let parts = Role::ALL.map(|role| window.part(role).loaded.to_arc());
+        let [crash, stamped] = &parts;
+        match_record(&result.run, PerRole::new(&**crash, &**stamped)).command_line
+    };
+    assert_eq!(line(&window), recorded(&window));
+    window.apply(MoveCommand::SetPose {
+        crash_from_stamped: shifted(2.5),
+        name: "by hand".to_owned(),
+    });
+    window.act(Action::Refine);
+    let line = line(&window);
+    assert_eq!(line, recorded(&window));
+    for piece in [
+        "--start current",
+        "--wide-search no",
+        "--start-pose",
+        "1.0 0.0 0.0 2.5",
+    ] {
+        assert!(line.contains(piece), "{line}");
+    }
+}
+
+#[test]
+fn a_pose_that_was_moved_after_the_match_is_refused_with_one_reason() {
+    let mut window = Window::with_both();
+    let reasons = |window: &Window| {
+        let actions = [Action::SaveCards, Action::SaveReport, Action::SaveRecord];
+        let mut reasons = actions.map(|action| action.enabled(&window.state)).to_vec();
+        let cards = CopyForm::all().filter(|form| matches!(form, CopyForm::Cards(_)));
+        reasons.extend(cards.map(|form| form.enabled(&window.state)));
+        reasons
+    };
+    for reason in reasons(&window) {
+        assert_eq!(reason, Err(Reason("Run a match first.")));
+    }
+    window.act(Action::MatchOrStop);
+    assert!(reasons(&window).iter().all(Result::is_ok));
+    window.apply(MoveCommand::Flip(Axis::X));
+    let why = Action::CopyCommandLine.enabled(&window.state);
+    assert!(why.is_err_and(|why| why.0.contains("after the match")));
+    for reason in reasons(&window) {
+        assert_eq!(reason, why);
+    }
 }

@@ -55,8 +55,7 @@ pub(super) fn is_reduced(state: &AppState) -> Result<(), Reason> {
 }
 
 pub(super) fn has_result(state: &AppState) -> Result<(), Reason> {
-    let has_result = state.document.current_result().is_some();
-    require(has_result, "Run a match first.")
+    state.document.has_result()
 }
 
 pub(super) fn has_mapping(state: &AppState) -> Result<(), Reason> {

@@ -6,6 +6,7 @@ use crate::app::{Document, Part, Reason};
 use crate::formats::Selection;
 use crate::geometry::Similarity;
 use crate::jobs::PartSource;
+use crate::pipeline::outputs::record;
 use crate::registration::StartMethod;
 use crate::report::command_line::{CommandLine, CommandSide, MapCommandLine};
 use crate::role::{PerRole, Role};
@@ -25,55 +26,61 @@ impl Document {
     /// unless the match starts there.
     pub fn can_copy_command_line(&self) -> Result<(), Reason> {
         self.has_both_parts()?;
-        let is_moved = self.result.as_ref().is_some_and(|result| {
-            let now = self.stamp();
-            result.stamp.parts == now.parts && result.stamp.pose != now.pose
-        });
         let begins_here = self.recipe.settings.starts.method == StartMethod::CurrentPose;
-        if is_moved && !begins_here {
-            return Err(Reason(
-                "The pose was changed after the match. Go back to the result, or match again.",
-            ));
+        if self.match_of_parts().is_err() || begins_here {
+            return Ok(());
         }
-        Ok(())
+        self.has_result()
     }
 
-    /// The line that does the match with the present files, parts, levels, settings and pose, without
-    /// the window and bit for bit; `None` without both parts.
+    /// The line that gives the pose that is shown without the window and bit for bit: that of the record
+    /// where there is a result, which may have begun elsewhere than the form says; else the match that the
+    /// present files, parts, levels, settings and pose ask for. `None` without both parts.
     pub fn command_line(&self) -> Option<String> {
         let both = self.both()?;
-        let PerRole { crash, stamped } = both;
-        let recipe = &self.recipe;
+        let paths = both.map(path);
+        let side = |role: Role| CommandSide {
+            path: paths.get(role),
+            ..both.get(role).loaded.command_side()
+        };
+        let sides = PerRole::from_fn(side);
+        let line = if let Some(result) = self.current_result() {
+            CommandLine {
+                sides,
+                alternative: result.alternative,
+                ..record::command_line(&result.run, both.map(|part| &*part.loaded))
+            }
+        } else {
+            self.unmatched_line(both, sides)
+        };
+        Some(examples(both) + &line.line())
+    }
+
+    /// The match that Run would do.
+    fn unmatched_line<'a>(
+        &'a self,
+        both: PerRole<&'a Part>,
+        mut sides: PerRole<CommandSide<'a>>,
+    ) -> CommandLine<'a> {
         let ceilings = both.map(Part::ceiling);
         let is_reduced = ceilings.iter().any(|(_, ceiling)| ceiling.is_some());
-        let (crash_path, stamped_path) = (path(crash), path(stamped));
-        let crash_side = crash.loaded.command_side();
-        // Before a match, all parts of a model are no choice: the match finds those that fit.
-        let is_chosen =
-            self.current_result().is_some() || crash.loaded.settings.selection != Selection::All;
-        let line = CommandLine {
-            sides: PerRole {
-                crash: CommandSide {
-                    path: &crash_path,
-                    selection: crash_side.selection.filter(|_| is_chosen),
-                    ..crash_side
-                },
-                stamped: CommandSide {
-                    path: &stamped_path,
-                    ..stamped.loaded.command_side()
-                },
-            },
-            read: &crash.loaded.settings.read,
-            settings: &recipe.settings,
+        let read = &both.crash.loaded.settings;
+        // All parts of a model are no choice: the match finds those that fit.
+        if read.selection == Selection::All {
+            sides.crash.selection = None;
+        }
+        CommandLine {
+            sides,
+            read: &read.read,
+            settings: &self.recipe.settings,
             max_triangles: if is_reduced {
                 ceilings
             } else {
-                PerRole::both(recipe.max_triangles)
+                PerRole::both(self.recipe.max_triangles)
             },
             current: self.crash_from_stamped(),
-            alternative: self.current_result().and_then(|result| result.alternative),
-        };
-        Some(examples(both) + &line.line())
+            alternative: None,
+        }
     }
 
     /// `Ok` if a line can do the mapping that section 4 asks for.

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 pub use command::ExportCommand;
 pub use picture::{PictureChoice, PicturePlace, PictureSize, PictureWindows};
 
-use super::{AppState, Document};
+use super::{AppState, Document, Reason};
 use crate::pipeline::outputs::{Needs, Output};
 use crate::report::{CardForm, MatrixForm};
 use crate::role::Role;
@@ -49,16 +49,11 @@ impl CopyForm {
         }
     }
 
-    /// True if it can be copied now: cards need a match.
-    pub fn is_possible(self, state: &AppState) -> bool {
-        state.document.can_write(self.output())
-    }
-
-    /// The output whose text it is.
-    pub fn output(self) -> Output {
+    /// `Ok` if it can be copied now: cards need a match.
+    pub fn enabled(self, state: &AppState) -> Result<(), Reason> {
         match self {
-            Self::Matrix(form) => Output::Matrix(form),
-            Self::Cards(form) => Output::Cards(form),
+            Self::Matrix(_) => state.document.has_part(Role::Stamped),
+            Self::Cards(_) => state.document.has_result(),
         }
     }
 }
@@ -74,7 +69,7 @@ impl Document {
                 part.is_some_and(|part| part.level.is_some())
             }
             Needs::BothParts => self.both().is_some(),
-            Needs::Match => self.current_result().is_some(),
+            Needs::Match => self.has_result().is_ok(),
             Needs::Mapping => self.current_mapping().is_some(),
         }
     }
@@ -106,7 +101,7 @@ impl AppState {
     /// The form that was copied last, or the matrix by rows where that is not possible now.
     pub fn copy_form(&self) -> CopyForm {
         let last = self.settings.matrix_form.as_deref();
-        let mut known = CopyForm::all().filter(|form| form.is_possible(self));
+        let mut known = CopyForm::all().filter(|form| form.enabled(self).is_ok());
         let found = known.find(|form| Some(form.name()) == last);
         found.unwrap_or(CopyForm::Matrix(MatrixForm::Rows))
     }

@@ -51,7 +51,7 @@ pub fn match_record(run: &MatchRun, parts: PerRole<&LoadedPart>) -> MatchRecord 
 }
 
 /// What the command line has to be told to do the run again.
-fn command_line<'a>(run: &'a MatchRun, parts: PerRole<&'a LoadedPart>) -> CommandLine<'a> {
+pub fn command_line<'a>(run: &'a MatchRun, parts: PerRole<&'a LoadedPart>) -> CommandLine<'a> {
     CommandLine {
         sides: parts.map(LoadedPart::command_side),
         read: &parts.crash.settings.read,

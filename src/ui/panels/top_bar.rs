@@ -8,7 +8,7 @@ use egui::{
 use super::rail::fold_ui;
 use super::units::window_unit_ui;
 use crate::app::{
-    Action, ActionRow, AppState, Command, CopyForm, Dialog, ExportCommand, Menu, MenuGroup,
+    Action, ActionRow, AppState, Command, CopyForm, Dialog, ExportCommand, Menu, MenuGroup, Reason,
     ViewCommand,
 };
 use crate::pipeline::outputs::{MeshOutput, Output};
@@ -185,25 +185,30 @@ fn export_forms_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let matrices = MatrixForm::ALL
         .iter()
         .map(|form| (form.label(), Output::Matrix(*form)));
-    let can_write = Action::SaveMatrix.enabled(state).is_ok();
-    save_menu(ui, "Save matrix as", can_write, matrices, commands);
+    let enabled = Action::SaveMatrix.enabled(state);
+    save_menu(ui, "Save matrix as", enabled, matrices, commands);
     let cards = CardForm::ALL
         .iter()
         .map(|form| (form.label(), Output::Cards(*form)));
-    let can_write = Action::SaveCards.enabled(state).is_ok();
-    save_menu(ui, "Save cards as", can_write, cards, commands);
+    let enabled = Action::SaveCards.enabled(state);
+    save_menu(ui, "Save cards as", enabled, cards, commands);
     let meshes = MeshOutput::ALL
         .into_iter()
         .filter(|mesh| state.document.can_write(Output::Mesh(*mesh)))
         .map(|mesh| (mesh.label(), Output::Mesh(mesh)));
-    let can_write = state.document.parts.iter().any(|(_, part)| part.is_some());
-    save_menu(ui, "Save part as", can_write, meshes, commands);
+    let enabled = state.document.has_any_part();
+    save_menu(ui, "Save part as", enabled, meshes, commands);
 }
 
 /// What can be put on the clipboard; what needs a match waits for one.
 pub fn copy_forms_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     for form in CopyForm::all() {
-        let button = ui.add_enabled(form.is_possible(state), Button::new(form.label()));
+        let enabled = form.enabled(state);
+        let button = ui.add_enabled(enabled.is_ok(), Button::new(form.label()));
+        let button = match enabled {
+            Ok(()) => button,
+            Err(reason) => button.on_disabled_hover_text(reason.0),
+        };
         if button.clicked() {
             commands.push(ExportCommand::Copy(form).into());
             ui.close();
@@ -215,12 +220,12 @@ pub fn copy_forms_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>)
 fn save_menu(
     ui: &mut Ui,
     name: &str,
-    is_possible: bool,
+    enabled: Result<(), Reason>,
     items: impl Iterator<Item = (&'static str, Output)>,
     commands: &mut Vec<Command>,
 ) {
-    ui.add_enabled_ui(is_possible, |ui| {
-        ui.menu_button(name, |ui| {
+    ui.add_enabled_ui(enabled.is_ok(), |ui| {
+        let menu = ui.menu_button(name, |ui| {
             for (label, kind) in items {
                 if ui.button(label).clicked() {
                     commands.push(ExportCommand::AskSave(kind).into());
@@ -228,6 +233,9 @@ fn save_menu(
                 }
             }
         });
+        if let Err(reason) = enabled {
+            menu.response.on_disabled_hover_text(reason.0);
+        }
     });
 }
 
