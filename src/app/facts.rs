@@ -3,7 +3,6 @@
 use super::NoticeLevel;
 use crate::assess::{Ambiguity, Coverage, Verdict};
 use crate::formats::{Diagnostic, Severity};
-use crate::geometry::Similarity;
 use crate::jobs::{MeasuredLevel, PartFacts};
 use crate::pipeline::load::LoadedPart;
 use crate::pipeline::match_parts::MatchRun;
@@ -81,17 +80,6 @@ pub(super) fn deviation_line(measured: &MeasuredLevel, lengths: Lengths) -> Stri
             lengths.of(d.border_max)
         )
     })
-}
-
-/// The pose a match found: its best or one of its alternatives.
-pub(super) fn match_pose(run: &MatchRun, alternative: Option<usize>) -> Option<Similarity> {
-    match alternative {
-        None => Some(run.crash_from_stamped),
-        Some(index) => {
-            let found = run.outcome.alternatives.get(index);
-            found.map(|alternative| alternative.target_from_source)
-        }
-    }
 }
 
 /// Alternatives that fit nearly as well as the best; they come first in the list.

@@ -54,7 +54,7 @@ pub fn run(args: &MatchArgs, quiet: bool) -> anyhow::Result<ExitCode> {
             }
             (asked, parts)
         }
-        None if is_project(&args.crash) => project::open(&args.crash, monitor)?,
+        None if is_project(&args.crash) => project::open(args, monitor)?,
         None => {
             log::error!(
                 "the stamped part is missing; give two files, or one project (.{EXTENSION}): {}",

@@ -4,18 +4,24 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
-use super::recipe::Asked;
-use super::{check_outputs, json_target, print, takes_stdout, write_json};
+use super::args::MatchArgs;
+use super::recipe::{Asked, take_typed};
+use super::{UsageError, check_outputs, json_target, print, takes_stdout, write_json};
 use crate::formats::{Disk, FileHash};
+use crate::geometry::Similarity;
 use crate::monitor::Monitor;
+use crate::pipeline::PipelineError;
 use crate::pipeline::load::LoadedPart;
+use crate::pipeline::match_parts::MatchRecipe;
 use crate::pipeline::project::{PartEntry, Project, ProjectRequest, open_project};
+use crate::registration::StartMethod;
 use crate::role::PerRole;
 use crate::settings::Choice as _;
 use crate::text::{capital, counted, factor_note, grouped, length, percent};
 
 /// Reads a project and its parts, and what its match is to be run with.
-pub fn open(path: &Path, monitor: &Monitor) -> anyhow::Result<(Asked, PerRole<LoadedPart>)> {
+pub fn open(args: &MatchArgs, monitor: &Monitor) -> anyhow::Result<(Asked, PerRole<LoadedPart>)> {
+    let path = args.crash.as_path();
     let request = ProjectRequest {
         path: path.to_path_buf(),
         ..ProjectRequest::default()
@@ -39,26 +45,89 @@ pub fn open(path: &Path, monitor: &Monitor) -> anyhow::Result<(Asked, PerRole<Lo
         let path = &found.part.path;
         log::warn!("the file has changed since the project was saved: {path:?}");
     }
+    let begin = begin(&project, args)?;
+    if let Some(note) = pose_note(&project, &begin.recipe) {
+        warn(path, &[note]);
+    }
     let asked = Asked {
         crash: entries.crash.load_settings(),
         stamped: entries.stamped.load_settings(),
-        recipe: project.recipe.clone(),
         max_triangles: match entries.map(|entry| entry.max_triangles) {
+            levels if is_reduced(levels) && args.settings.value("triangles").is_none() => levels,
             // Nothing was reduced by hand: the recipe says what to do.
-            PerRole {
-                crash: None,
-                stamped: None,
-            } => PerRole::both(project.recipe.max_triangles),
-            levels => levels,
+            _ => PerRole::both(begin.recipe.max_triangles),
         },
-        current: project.pose,
-        pose_number: project
-            .result
-            .as_ref()
-            .and_then(|result| result.alternative)
-            .map_or(1, |index| index + 2),
+        recipe: begin.recipe,
+        current: begin.pose,
+        pose_number: begin.alternative.map_or(1, |index| index + 2),
     };
     Ok((asked, parts.map(|found| found.part)))
+}
+
+fn is_reduced(levels: PerRole<Option<usize>>) -> bool {
+    levels.iter().any(|(_, level)| level.is_some())
+}
+
+/// How the match of a project is made.
+struct Begin {
+    recipe: MatchRecipe,
+    /// Where the stamped part lies before.
+    pose: Similarity,
+    /// The alternative that is taken instead of the best pose.
+    alternative: Option<usize>,
+}
+
+/// A match that still stands for the pose is made again from where it began, which Refine and point pairs
+/// leave out of the settings, unless another start is typed.
+fn begin(project: &Project, args: &MatchArgs) -> anyhow::Result<Begin> {
+    let typed = &args.settings;
+    for (is_typed, option) in [
+        (typed.value("method").is_some(), "method"),
+        (!typed.start_poses.is_empty(), "start-pose"),
+    ] {
+        if is_typed {
+            let text = format!("--{option} is for two files; a project has its own");
+            return Err(UsageError(text).into());
+        }
+    }
+    let mut begin = Begin {
+        recipe: project.recipe.clone(),
+        pose: project.pose,
+        alternative: None,
+    };
+    let current = project.result.as_ref().filter(|result| result.is_current);
+    if let Some(result) = current.filter(|_| typed.value("start").is_none()) {
+        let starts = &result.run.recipe.settings.starts;
+        if starts.method != StartMethod::SurfaceNormals {
+            begin.recipe.settings.starts = starts.clone();
+            begin.pose = result.run.start_pose;
+        }
+        begin.alternative = result.alternative;
+    }
+    take_typed(&mut begin.recipe, args)?;
+    begin.recipe.settings.check().map_err(PipelineError::from)?;
+    Ok(begin)
+}
+
+/// What is told of a pose that no match stands for, and that the match to come does not begin at.
+fn pose_note(project: &Project, recipe: &MatchRecipe) -> Option<String> {
+    if recipe.settings.starts.method == StartMethod::CurrentPose {
+        return None;
+    }
+    let when = match &project.result {
+        Some(result)
+            if result.is_current || result.run.pose(result.alternative) == Some(project.pose) =>
+        {
+            return None;
+        }
+        Some(_) => " after the match",
+        None if project.pose == Similarity::identity() => return None,
+        None => "",
+    };
+    Some(format!(
+        "the stamped part was moved{when}; it is matched anew here, and --start current --wide-search no begins at \
+         its pose"
+    ))
 }
 
 fn warn(path: &Path, notes: &[String]) {
@@ -97,7 +166,7 @@ fn describe(project: &Project, path: &Path) -> String {
     }
     let pose = &project.pose;
     let shift: [f64; 3] = pose.translation.into();
-    let angle = pose.angle_to(&crate::geometry::Similarity::identity());
+    let angle = pose.angle_to(&Similarity::identity());
     let _ = writeln!(
         text,
         "Pose     rotated by {}°, translated by ({})",

@@ -36,13 +36,7 @@ pub struct Asked {
 /// Understands the options of `shapematch match`; reads the files of `--start-pose`.
 pub fn asked(args: &MatchArgs) -> anyhow::Result<Asked> {
     let input = &args.input;
-    let mut recipe = recipe(&args.settings)?;
-    if args.shorthands.scale {
-        recipe.settings.motion = Motion::Similarity;
-    }
-    if args.shorthands.mirror {
-        recipe.settings.hand = Hand::Either;
-    }
+    let mut recipe = recipe(args)?;
     let current = start_poses(&args.settings, &mut recipe)?;
     let level = |own: Option<usize>| own.or(recipe.max_triangles);
     Ok(Asked {
@@ -59,8 +53,8 @@ pub fn asked(args: &MatchArgs) -> anyhow::Result<Asked> {
 }
 
 /// The method's defaults, changed by what was typed.
-fn recipe(args: &SettingArgs) -> anyhow::Result<MatchRecipe> {
-    let typed = |option: &str| args.value(option);
+fn recipe(args: &MatchArgs) -> anyhow::Result<MatchRecipe> {
+    let typed = |option: &str| args.settings.value(option);
     let method = match typed("method") {
         Some(Value::Choice(name)) => Method::from_name(name).unwrap_or_default(),
         _ => Method::default(),
@@ -74,15 +68,28 @@ fn recipe(args: &SettingArgs) -> anyhow::Result<MatchRecipe> {
         settings: MatchSettings::of(method),
         max_triangles: None,
     };
-    for (option, value) in args.typed.iter().filter(|(option, _)| *option != "method") {
-        let is_set = setting(option).is_some_and(|row| row.set(&mut recipe, value));
+    take_typed(&mut recipe, args)?;
+    Ok(recipe)
+}
+
+/// Changes a recipe by what was typed, except for its method.
+pub(super) fn take_typed(recipe: &mut MatchRecipe, args: &MatchArgs) -> anyhow::Result<()> {
+    let typed = args.settings.typed.iter();
+    for (option, value) in typed.filter(|(option, _)| *option != "method") {
+        let is_set = setting(option).is_some_and(|row| row.set(recipe, value));
         if !is_set {
             let kind = recipe.settings.selection.name();
             let text = format!("--{option} has no effect with the pair selection {kind}");
             return Err(UsageError(text).into());
         }
     }
-    Ok(recipe)
+    if args.shorthands.scale {
+        recipe.settings.motion = Motion::Similarity;
+    }
+    if args.shorthands.mirror {
+        recipe.settings.hand = Hand::Either;
+    }
+    Ok(())
 }
 
 /// Takes the start poses that were typed; the value is the pose the stamped part starts from.

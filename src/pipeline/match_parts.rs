@@ -75,6 +75,29 @@ pub struct MatchRun {
     pub alike_parts: Vec<u64>,
 }
 
+impl MatchRun {
+    /// Its best pose, or one of its alternatives.
+    pub fn pose(&self, alternative: Option<usize>) -> Option<Similarity> {
+        match alternative {
+            None => Some(self.crash_from_stamped),
+            Some(index) => {
+                let found = self.outcome.alternatives.get(index);
+                found.map(|alternative| alternative.target_from_source)
+            }
+        }
+    }
+
+    /// Where it is the run of an alternative: "pose 2 of the match, not the best (with that, error 3 % lower)".
+    pub fn told_alternative(&self) -> Option<String> {
+        let number = self.alternative? + 2;
+        let best = self.outcome.alternatives.first()?;
+        let error = assess::error_beside(best.score_ratio);
+        Some(format!(
+            "pose {number} of the match, not the best (with that, {error})"
+        ))
+    }
+}
+
 /// Meshes of both parts at a level of reduction that is at hand already.
 #[derive(Debug, Clone)]
 pub struct ReducedPair {

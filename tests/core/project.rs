@@ -673,3 +673,53 @@ fn the_command_line_runs_and_describes_a_project() {
     assert!(!both.status.success());
     assert!(String::from_utf8_lossy(&both.stderr).contains("project"));
 }
+
+/// A pose that no match stands for is not what a new match gives; one that was refined is.
+#[test]
+fn the_command_line_says_when_a_project_lies_elsewhere_than_its_match() {
+    let (folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    let moved = Similarity {
+        translation: window.pose().translation + shapematch::geometry::Vector3::x(),
+        ..window.pose()
+    };
+    window.apply(MoveCommand::SetPose {
+        crash_from_stamped: moved,
+        name: "by hand".to_owned(),
+    });
+    save(&mut window, &path);
+    let matrix = folder.path().join("m.txt");
+    let run = |options: &[&str]| {
+        let project = ["match", path.to_str().unwrap()];
+        let matrix = ["--matrix", matrix.to_str().unwrap()];
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_shapematch"))
+            .args([&project, &matrix, options].concat())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), said)
+    };
+    let note = "the stamped part was moved after the match";
+    let (_, said) = run(&[]);
+    assert!(
+        said.contains(note) && said.contains("--start current"),
+        "{said}"
+    );
+    let refined = |window: &Window| {
+        let text = std::fs::read_to_string(&matrix).unwrap();
+        let pose = shapematch::report::parse_matrix(&text).unwrap().motion;
+        assert_eq!(pose_bits(&pose), pose_bits(&window.pose()));
+    };
+    window.act(Action::Refine);
+    assert!(window.state.document.current_result().is_some());
+    let (_, said) = run(&["--start", "current", "--wide-search", "no"]);
+    assert!(!said.contains(note), "{said}");
+    refined(&window);
+    let (code, said) = run(&["--method", "icp"]);
+    assert_eq!(code, Some(2), "{said}");
+
+    save(&mut window, &path);
+    let (_, said) = run(&[]);
+    assert!(!said.contains(note), "{said}");
+    refined(&window);
+}

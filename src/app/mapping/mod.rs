@@ -20,7 +20,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use self::further::{set_pose, set_units};
-use super::facts::match_pose;
 use super::work::Work;
 use super::{AppState, ColorBy, Document, Effect, Reason, Shared};
 use crate::geometry::Similarity;
@@ -175,7 +174,7 @@ impl Document {
         };
         let verdict = result.run.assessment.verdict;
         let bounds = part.bounds();
-        let found = match_pose(&result.run, result.alternative);
+        let found = result.run.pose(result.alternative);
         let distance = found.map_or(0.0, |found| {
             found.max_displacement(self.crash_from_stamped(), &bounds.corners())
         });

@@ -58,7 +58,7 @@ pub(super) fn show_alternative(work: &mut Work<'_>, alternative: Option<usize>) 
         return;
     };
     let is_same_pair = result.stamp.parts == work.document.stamp().parts;
-    let pose = facts::match_pose(&result.run, alternative);
+    let pose = result.run.pose(alternative);
     let Some(crash_from_stamped) = pose.filter(|_| is_same_pair) else {
         return;
     };
