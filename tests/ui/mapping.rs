@@ -543,6 +543,23 @@ fn mapping_is_the_next_thing_to_do_only_at_a_pose_of_a_match() {
 }
 
 #[test]
+fn checks_of_a_mapping_that_is_out_of_date_say_so_in_the_tab() {
+    let mut window = matched();
+    click(&mut window, "Map");
+    finish(&mut window);
+    let says = |window: &Harness<'static, Shell>, what: &str| {
+        window.query_all_by_label_contains(what).next().is_some()
+    };
+    assert!(!says(&window, "Checks out of date"));
+    let document = &window.state().state().document;
+    let mut options = document.mapping.recipe.options.clone();
+    options.max_distance = Some(3.0);
+    run(&mut window, MapCommand::SetOptions(Box::new(options)));
+    window.run_steps(4);
+    assert!(says(&window, "Checks out of date"));
+}
+
+#[test]
 fn the_left_window_says_that_its_values_are_mapped() {
     let mut window = matched();
     let titles = |window: &Harness<'static, Shell>| {

@@ -175,6 +175,18 @@ impl Document {
         self.mapping.further.iter().map(pose).collect()
     }
 
+    /// The stamped files that are mapped from with where their poses come from, the first one first. Empty while
+    /// one of them has no pose.
+    pub fn mapped_poses(&self) -> Vec<(String, PoseOrigin)> {
+        let Ok(further) = self.further_places() else {
+            return Vec::new();
+        };
+        let origins = further.into_iter().map(|(_, origin)| origin);
+        let origins = std::iter::once(self.pose_origin()).chain(origins);
+        let names = self.all_stamped().map(|part| part.file_name());
+        names.zip(origins).collect()
+    }
+
     /// All stamped parts that are mapped from, the first one first.
     pub fn all_stamped(&self) -> impl Iterator<Item = &Shared<LoadedPart>> {
         let first = self.part(Role::Stamped).map(|part| &part.loaded);

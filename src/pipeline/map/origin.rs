@@ -59,6 +59,27 @@ impl PoseOrigin {
         }
     }
 
+    /// The most doubtful of the poses of these files, the first of equal ones, in words: "b.k: POOR match". One
+    /// that is as good as all others names no file.
+    pub fn most_doubtful(files: &[(String, Self)], lengths: Lengths) -> Option<(Self, String)> {
+        let (first, others) = files.split_first()?;
+        let (name, most) = others.iter().fold(first, |most, next| {
+            if next.1.doubt() > most.1.doubt() {
+                next
+            } else {
+                most
+            }
+        });
+        let words = most.words(lengths);
+        let is_named = !others.is_empty() && most.is_good() != Some(true);
+        let words = if is_named {
+            format!("{name}: {words}")
+        } else {
+            words
+        };
+        Some((*most, words))
+    }
+
     /// What is to be told before the mapping is used; `None` if nothing is.
     pub(super) fn warning(&self, file: &str, lengths: Lengths) -> Option<String> {
         match self {
@@ -71,7 +92,7 @@ impl PoseOrigin {
     }
 
     /// How little is to be said for the pose, the best first.
-    pub(super) fn doubt(&self) -> u8 {
+    fn doubt(&self) -> u8 {
         match self {
             Self::Match {
                 verdict: Verdict::Good,
@@ -95,6 +116,23 @@ impl PoseOrigin {
 mod tests {
     use super::*;
     use crate::units::LengthUnit;
+
+    #[test]
+    fn of_several_files_the_most_doubtful_is_named() {
+        use Verdict::{Good, Poor};
+        let of = |verdicts: &[Verdict]| {
+            let names = ["a.k", "b.k", "c.k"].map(str::to_owned).into_iter();
+            let poses = verdicts
+                .iter()
+                .map(|&verdict| PoseOrigin::Match { verdict });
+            let files: Vec<_> = names.zip(poses).collect();
+            PoseOrigin::most_doubtful(&files, Lengths::new(None)).map(|(_, words)| words)
+        };
+        assert_eq!(of(&[]), None);
+        assert_eq!(of(&[Poor]).as_deref(), Some("POOR match"));
+        assert_eq!(of(&[Good, Poor, Good]).as_deref(), Some("b.k: POOR match"));
+        assert_eq!(of(&[Good, Good]).as_deref(), Some("GOOD match"));
+    }
 
     #[test]
     fn only_a_good_match_stands_for_a_pose() {

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::{Serialize, Serializer};
 
 use super::balance::force_balance;
+use super::origin::PoseOrigin;
 use super::peak::peak_at_best;
 use super::record::{MapRecord, PairRecord, StampedRecord};
 use super::{MapRun, ShownValue};
@@ -179,28 +180,17 @@ pub(super) fn checks_of(
 
 /// Whether a match stands for the pose of every stamped part; of several the most doubtful is named.
 fn pose(record: &MapRecord, lengths: Lengths) -> Option<CheckRecord> {
-    let first = record.stamped.first()?;
-    let doubt = |stamped: &&StampedRecord| stamped.pose.doubt();
-    let others = record.stamped.iter().skip(1);
-    let most = others.fold(first, |most, next| {
-        if doubt(&next) > doubt(&most) {
-            next
-        } else {
-            most
-        }
-    });
-    let words = most.pose.words(lengths);
-    let is_named = record.stamped.len() > 1 && most.pose.is_good() != Some(true);
-    let name = Path::new(&most.file).file_name().unwrap_or_default();
+    let of = |stamped: &StampedRecord| {
+        let name = Path::new(&stamped.file).file_name().unwrap_or_default();
+        (name.to_string_lossy().into_owned(), stamped.pose)
+    };
+    let poses: Vec<_> = record.stamped.iter().map(of).collect();
+    let (most, found) = PoseOrigin::most_doubtful(&poses, lengths)?;
     Some(CheckRecord {
         name: "Pose".to_owned(),
-        found: if is_named {
-            format!("{}: {words}", name.to_string_lossy())
-        } else {
-            words
-        },
+        found,
         limit: "a match that is GOOD".to_owned(),
-        is_met: most.pose.is_good(),
+        is_met: most.is_good(),
         reason: None,
         picture: CheckPicture::Distance,
         worst: None,

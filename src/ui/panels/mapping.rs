@@ -14,7 +14,7 @@ use crate::geometry::Point3;
 use crate::jobs::JobKey;
 use crate::mapping::MapOptions;
 use crate::pipeline::forming_values::LayerChoice;
-use crate::pipeline::map::{MapRecord, PairRecord};
+use crate::pipeline::map::{MapRecord, PairRecord, PoseOrigin};
 use crate::role::Role;
 use crate::settings::{MAP_SETTINGS, Setting};
 use crate::text::{Lengths, fixed, grouped, length, percent, sentence};
@@ -169,13 +169,17 @@ fn run_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     pose_ui(ui, state);
 }
 
-/// At which pose a mapping is made: a permanent line wherever no good match stands for it.
+/// At which pose a mapping is made, of several files at their most doubtful one: a permanent line wherever no
+/// good match stands for it.
 fn pose_ui(ui: &mut Ui, state: &AppState) {
     if state.document.can_map().is_err() {
         return;
     }
-    let origin = state.document.pose_origin();
-    let text = format!("Pose: {}", origin.words(state.lengths()));
+    let poses = state.document.mapped_poses();
+    let Some((origin, words)) = PoseOrigin::most_doubtful(&poses, state.lengths()) else {
+        return;
+    };
+    let text = format!("Pose: {words}");
     let color = match origin.is_good() {
         Some(false) => Palette::of(ui).check,
         _ => ui.visuals().weak_text_color(),
@@ -230,7 +234,7 @@ fn result_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut V
 }
 
 /// How much of a result is seen that is out of date.
-const STALE: f32 = 0.5;
+pub const STALE: f32 = 0.5;
 
 /// The file that mappings are compared with, and the way out of it.
 fn other_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {

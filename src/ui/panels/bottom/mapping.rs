@@ -6,11 +6,14 @@ use egui_plot::PlotPoints;
 
 use super::charts;
 use super::probe::{probe_ui, with_unit};
-use crate::app::{AppState, ColorBy, Command, InspectCommand, MapResult, ViewCommand, file_names};
+use crate::app::{
+    AppState, ColorBy, Command, InspectCommand, MapResult, Section, ViewCommand, file_names,
+};
 use crate::pipeline::forming_values::FormingValue;
 use crate::pipeline::map::{CheckRecord, ComparisonRecord, DistributionRecord, PairRecord};
 use crate::role::Role;
-use crate::text::{fixed, grouped, inside};
+use crate::text::{fixed, grouped, inside, sentence};
+use crate::ui::panels::mapping::STALE;
 use crate::ui::theme::Palette;
 use crate::ui::widgets::{caption, length, nothing_yet, segments, signed};
 
@@ -170,8 +173,18 @@ fn low_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut Vec<
 fn checks_ui(ui: &mut Ui, state: &AppState, result: &MapResult, commands: &mut Vec<Command>) {
     let checks = &result.record.checks;
     let (n_met, n_asked) = result.record.n_met();
-    let title = format!("Checks: {n_met} of {n_asked} met (click to see)");
-    caption(ui, title);
+    if let Some(stale) = state.stale(Section::Map) {
+        let title = format!("Checks out of date: {n_met} of {n_asked} met then");
+        let title = RichText::new(title).small().color(Palette::of(ui).check);
+        let why = format!("{} Map again.", sentence(stale.reason));
+        ui.label(title).on_hover_text(why);
+        ui.multiply_opacity(STALE);
+    } else {
+        caption(
+            ui,
+            format!("Checks: {n_met} of {n_asked} met (click to see)"),
+        );
+    }
     ui.spacing_mut().item_spacing.y = 0.0;
     let [name, found] = check_columns(ui, checks);
     // A table keeps its columns as wide and its rows where they were first: one for each width and place.
