@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::names::told_apart;
 use super::{Label, Mapping, PointPairs, Shared};
+use crate::assess::Verdict;
 use crate::formats::model::ReadFile;
 use crate::geometry::{Aabb, Similarity, TriMesh};
 use crate::jobs::{MeasuredLevel, PartFacts, PartSource, Stamp};
@@ -74,6 +75,17 @@ pub struct MatchResult {
     pub alternative: Option<usize>,
     /// The state of the document right after the result was taken over.
     pub stamp: Stamp,
+}
+
+impl MatchResult {
+    /// The verdict on the pose that is taken: where another pose fits better, an alternative is at best one
+    /// to check.
+    pub fn verdict(&self) -> Verdict {
+        match (self.alternative, self.run.assessment.verdict) {
+            (Some(_), Verdict::Good) => Verdict::Check,
+            (_, verdict) => verdict,
+        }
+    }
 }
 
 impl Part {

@@ -57,7 +57,7 @@ pub use unbent::without_bend;
 pub use uncertainty::{PartDirection, PoseUncertainty};
 pub use verdict::Verdict;
 pub use whole::placed_as_a_whole;
-pub use words::error_beside;
+pub use words::{beside, error_beside};
 
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{MatchOutcome, Surface};

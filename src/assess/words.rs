@@ -125,18 +125,28 @@ impl Reason {
 
 /// The error of another pose beside that of the best: "error 8 % higher", "error 5.6 × lower".
 pub fn error_beside(score_ratio: f64) -> String {
+    match beside(score_ratio) {
+        equal if equal == EQUAL => format!("{equal} error"),
+        differs => format!("error {differs}"),
+    }
+}
+
+const EQUAL: &str = "equal";
+
+/// The same without what it is said of: "8 % higher", "5.6 × lower", "equal".
+pub fn beside(score_ratio: f64) -> String {
     let (times, how) = if score_ratio < 1.0 {
         (score_ratio.recip(), "lower")
     } else {
         (score_ratio, "higher")
     };
     match times {
-        t if t < 1.0005 => "equal error".to_owned(),
+        t if t < 1.0005 => EQUAL.to_owned(),
         // Less than half a percent is said with the digit that tells it from none.
-        t if t < 1.005 => format!("error {:.1} % {how}", 100.0 * (score_ratio - 1.0).abs()),
-        t if t < 2.0 => format!("error {:.0} % {how}", 100.0 * (score_ratio - 1.0).abs()),
-        t if t.is_finite() => format!("error {t:.1} × {how}"),
-        _ => format!("error far {how}"),
+        t if t < 1.005 => format!("{:.1} % {how}", 100.0 * (score_ratio - 1.0).abs()),
+        t if t < 2.0 => format!("{:.0} % {how}", 100.0 * (score_ratio - 1.0).abs()),
+        t if t.is_finite() => format!("{t:.1} × {how}"),
+        _ => format!("far {how}"),
     }
 }
 

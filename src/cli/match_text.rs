@@ -89,9 +89,10 @@ fn fit(text: &mut String, record: &MatchRecord) {
     );
     if let Some(other) = record.alternatives.first() {
         let ratio = other.score_ratio;
+        let which = if ratio < 1.0 { "best" } else { "second-best" };
         let _ = writeln!(
             text,
-            "Next     the second-best pose scores {ratio:.2} times as high (lower is better)"
+            "Next     the {which} pose scores {ratio:.2} times as high (lower is better)"
         );
     }
 }

@@ -948,6 +948,12 @@ fn the_numbers_of_the_result_are_those_of_the_shown_pose() {
     };
     assert_eq!(shown(&window), *measured);
     assert_ne!(shown(&window), of_match);
+    // Moved from there, the alternative is still the earlier result.
+    window.apply(MoveCommand::Flip(Axis::X));
+    let earlier = window.state.document.result.clone().unwrap();
+    assert_eq!(window.state.coverage_of(&earlier), Some(&*measured));
+    assert_ne!(earlier.verdict(), shapematch::assess::Verdict::Good);
+    window.act(Action::Undo);
     window.act(Action::NextAlternative);
     window.act(Action::NextAlternative);
     assert_eq!(shown(&window), of_match, "the best pose again");

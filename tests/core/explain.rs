@@ -1,7 +1,7 @@
 //! What the window says after a move and after a weak or failed match, and that each remedy does something.
 
 use shapematch::app::*;
-use shapematch::assess::{Reason, ShapeReason, Twin, TwinAxis, Verdict};
+use shapematch::assess::{Clarity, Reason, ShapeReason, Twin, TwinAxis, Verdict};
 use shapematch::geometry::{Point3, Rotation, Similarity, TriMesh, Vector3};
 use shapematch::jobs::{JobEvent, JobKey, JobStage};
 use shapematch::registration::{Method, Surface};
@@ -73,6 +73,44 @@ fn a_weak_match_has_causes_whose_remedies_do_something() {
         }
         assert!(before != shown(&other.state), "{label} does nothing");
     }
+}
+
+#[test]
+fn an_ambiguous_pose_is_told_from_the_pose_that_is_shown() {
+    let mut window = Window::with_both_and_no_rivals();
+    window.act(Action::MatchOrStop);
+    let mut result = window.state.document.result.clone().unwrap();
+    let mut run = (*result.run).clone();
+    let mut assessment = (*run.assessment).clone();
+    assessment.ambiguity.clarity = Clarity::Ambiguous;
+    assessment.ambiguity.ratio = Some(run.outcome.alternatives[0].score_ratio);
+    run.assessment = assessment.into();
+    result.run = std::sync::Arc::new(run).into();
+    window.state.document.result = Some(result);
+    let ambiguous = |window: &Window| {
+        let causes = window.state.causes();
+        let mut causes = causes.into_iter();
+        causes
+            .find(|cause| cause.title == "Ambiguous pose")
+            .unwrap()
+    };
+    let of_best = ambiguous(&window);
+    let evidence = &of_best.evidence;
+    assert!(
+        evidence.contains("almost as well (error 2 % higher)"),
+        "{evidence}"
+    );
+    window.act(Action::NextAlternative);
+    let (evidence, remedy) = (ambiguous(&window).evidence, ambiguous(&window).remedy);
+    assert!(
+        evidence.contains("at least as well (error 2 % lower)"),
+        "{evidence}"
+    );
+    for command in remedy.unwrap().1 {
+        window.apply(command);
+    }
+    let result = window.state.document.current_result().unwrap();
+    assert_eq!(result.alternative, None);
 }
 
 #[test]

@@ -373,9 +373,29 @@ fn an_alternative_is_measured_anew_before_it_is_written() {
     };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("match.json");
-    try_export(Destination::File(path.clone()), Output::Record, input).unwrap();
+    try_export(
+        Destination::File(path.clone()),
+        Output::Record,
+        input.clone(),
+    )
+    .unwrap();
     let record: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
     assert_eq!(record["matrix"][2][3].as_f64(), Some(other.translation.z));
+    let told = "pose 2 of the match, not the best (with that, error 17 % lower)";
+    assert_eq!(record["warnings"][0], told);
+    let cards = Output::Cards(CardForm::StampedPart);
+    let cards = try_export(
+        Destination::Clipboard("Include card".to_owned()),
+        cards,
+        input,
+    );
+    assert!(
+        cards
+            .unwrap()
+            .text
+            .unwrap()
+            .contains(&format!("$ {told}\n"))
+    );
     assert_eq!(record["verdict"], "poor");
     let best = &record["alternatives"][0];
     assert_eq!(

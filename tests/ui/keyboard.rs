@@ -222,11 +222,7 @@ fn a_pose_moved_by_hand_can_be_copied_and_the_result_is_one_click_away() {
     let flip = MoveCommand::Flip(Axis::X).into();
     window.state_mut().run_commands(vec![flip], &ctx);
     window.run_steps(3);
-    assert!(
-        window
-            .query_by_label("Copy matrix (pose by hand)")
-            .is_some()
-    );
+    assert!(window.query_by_label("Copy matrix (not matched)").is_some());
     click(&mut window, "Back to the result");
     window.run_steps(2);
     let document = &window.state().state().document;

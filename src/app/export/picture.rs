@@ -147,8 +147,7 @@ impl Document {
             texts.push(("Pose", format!("# {DIRECTION}\n{}", rows.join("\n"))));
         }
         if let Some(result) = self.current_result() {
-            let verdict = result.run.assessment.verdict;
-            texts.push(("Verdict", verdict.label().to_owned()));
+            texts.push(("Verdict", result.verdict().label().to_owned()));
         }
         texts
     }

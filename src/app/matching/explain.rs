@@ -1,8 +1,8 @@
 //! Why a match is weak: the likely causes with their evidence, and a remedy for each.
 
 use super::Failure;
-use crate::app::{Action, AppState, Command, FileCommand, MatchCommand, PartCommand};
-use crate::assess::{Assessment, Clarity, Reason, ShapeReason, Verdict, error_beside};
+use crate::app::{Action, AppState, Command, FileCommand, MatchCommand, MatchResult, PartCommand};
+use crate::assess::{Assessment, Clarity, Reason, ShapeReason, Twin, Verdict, error_beside};
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::registration::{Hand, Method, StartMethod};
 use crate::role::Role;
@@ -43,7 +43,7 @@ impl AppState {
         }
         let found = [
             self.hand_cause(assessment),
-            self.twin_cause(assessment),
+            self.twin_cause(result),
             self.freedom_cause(assessment),
             self.overlap_cause(assessment),
             self.shape_cause(assessment),
@@ -201,20 +201,40 @@ impl AppState {
         })
     }
 
-    fn twin_cause(&self, assessment: &Assessment) -> Option<Cause> {
-        let ambiguity = &assessment.ambiguity;
+    /// Beside an alternative that is shown the other pose is the best one.
+    fn twin_cause(&self, result: &MatchResult) -> Option<Cause> {
+        let run = &result.run;
+        let ambiguity = &run.assessment.ambiguity;
         if ambiguity.clarity == Clarity::Clear {
             return None;
         }
-        let how = ambiguity.twin.map(|twin| twin.words(self.lengths()));
+        let (twin, ratio, remedy) = if let Some(index) = result.alternative {
+            let shown = run.outcome.alternatives.get(index)?;
+            let source = &self.document.part(Role::Stamped)?.loaded.surface;
+            let twin = Twin::of(source, &shown.target_from_source, &run.crash_from_stamped);
+            let back = MatchCommand::ShowAlternative(None);
+            let remedy = ("Show the best pose".to_owned(), vec![back.into()]);
+            let is_possible = Action::NextAlternative.enabled(self).is_ok();
+            let remedy = is_possible.then_some(remedy);
+            (Some(twin), shown.score_ratio.recip(), remedy)
+        } else {
+            let remedy = self.do_action(Action::NextAlternative, "Show the other pose");
+            (ambiguity.twin, ambiguity.ratio.unwrap_or(1.0), remedy)
+        };
+        let how = twin.map(|twin| twin.words(self.lengths()));
+        let well = if ratio < 1.0 {
+            "at least as well"
+        } else {
+            "almost as well"
+        };
         Some(Cause {
             title: "Ambiguous pose".to_owned(),
             evidence: format!(
-                "{}, the part fits almost as well ({}): check holes and beads.",
+                "{}, the part fits {well} ({}): check holes and beads.",
                 capital(how.as_deref().unwrap_or("in another pose")),
-                error_beside(ambiguity.ratio.unwrap_or(1.0))
+                error_beside(ratio)
             ),
-            remedy: self.do_action(Action::NextAlternative, "Show the other pose"),
+            remedy,
         })
     }
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::MatchState;
 use crate::app::work::Work;
-use crate::app::{AppState, Document, Effect, Reason, facts};
+use crate::app::{AppState, Effect, MatchResult, Reason, facts};
 use crate::assess::{Assessment, Coverage};
 use crate::jobs::{JobKey, JobKind, MeasureInput, Stamp};
 
@@ -13,10 +13,14 @@ impl AppState {
     /// Distances and overlap of the current result at the pose that is shown: those of the match for its
     /// best pose, for an alternative what was measured there; `None` until that is known.
     pub fn result_coverage(&self) -> Option<&Coverage> {
-        let result = self.document.current_result()?;
+        self.coverage_of(self.document.current_result()?)
+    }
+
+    /// The same of a result that the part may have been moved from.
+    pub fn coverage_of<'a>(&'a self, result: &'a MatchResult) -> Option<&'a Coverage> {
         match result.alternative {
             None => Some(&result.run.assessment.coverage),
-            Some(_) => self.matching.current_measurement(&self.document),
+            Some(_) => self.matching.measurement_at(result.stamp),
         }
     }
 }
@@ -42,9 +46,8 @@ impl AppState {
 }
 
 impl MatchState {
-    /// The measurement, if parts and pose are still those it was made at.
-    fn current_measurement(&self, document: &Document) -> Option<&Coverage> {
-        let stamp = document.stamp();
+    /// The measurement, if it was made of these parts at this pose.
+    fn measurement_at(&self, stamp: Stamp) -> Option<&Coverage> {
         let (at, measurement) = self.measurement.as_ref()?;
         (*at == stamp).then_some(&**measurement)
     }
@@ -57,8 +60,8 @@ impl MatchState {
         let stamp = work.document.stamp();
         let result = work.document.current_result();
         let is_alternative = result.is_some_and(|result| result.alternative.is_some());
-        let is_known = self.current_measurement(work.document).is_some()
-            || self.alternative_asked == Some(stamp);
+        let is_known =
+            self.measurement_at(stamp).is_some() || self.alternative_asked == Some(stamp);
         let is_free = work.is_unlocked().is_ok() && !work.jobs.is_active(JobKey::Measure);
         if !is_alternative || is_known || !is_free {
             return Vec::new();

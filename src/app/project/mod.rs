@@ -187,7 +187,7 @@ impl AppState {
         };
         if let Some(result) = self.document.current_result() {
             title += " · ";
-            title += result.run.assessment.verdict.label();
+            title += result.verdict().label();
         }
         title
     }
@@ -212,7 +212,7 @@ impl AppState {
     }
 }
 
-fn absolute(path: &Path) -> PathBuf {
+pub(in crate::app) fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 

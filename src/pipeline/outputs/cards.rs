@@ -37,6 +37,9 @@ pub fn cards(
             lengths.of(coverage.rmse())
         ),
     ];
+    // No sign beyond ASCII comes into the deck by it.
+    let alternative = run.told_alternative();
+    comments.extend(alternative.map(|told| told.replace('×', "x")));
     comments.extend(PairUnits::sentences(parts));
     comments.extend(PairUnits::stress_warning(parts));
     comments.push(build_id());

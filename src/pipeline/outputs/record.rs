@@ -92,7 +92,7 @@ fn file(part: &LoadedPart, units: Option<KnownUnits>) -> FileRecord {
 
 /// What the user should know about the files.
 fn warnings(run: &MatchRun, parts: PerRole<&LoadedPart>) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let mut warnings = Vec::from_iter(run.told_alternative());
     if !run.alike_parts.is_empty() {
         warnings.push(format!(
             "{} fits {} about as well; --crash-part names the right one",

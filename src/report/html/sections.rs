@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use super::page::{block, cell, fact_table, folded, image, printable, section};
 use super::{CardsInfo, Figure, Report, charts};
+use crate::assess::beside;
 use crate::geometry::{Matrix3, Similarity, Vector3};
 use crate::report::matrix::number;
 use crate::report::{MatrixForm, PoseRecord};
@@ -77,7 +78,9 @@ impl Report<'_> {
                 (key_figure("P95", &lengths.of(metrics.p95), ""))
                 (key_figure("Starts that agree", &agreement, ""))
                 @match next {
-                    Some(other) => (key_figure("Next best pose", &format!("× {:.2}", other.score_ratio), "worse score")),
+                    // The report of an alternative stands beside the best pose.
+                    Some(other) if other.score_ratio < 1.0 => (key_figure("Best pose", &beside(other.score_ratio), "error")),
+                    Some(other) => (key_figure("Next best pose", &beside(other.score_ratio), "error")),
                     None if self.outcome.rivals_sought => (key_figure("Next best pose", "none near", "")),
                     None => (key_figure("Next best pose", "–", "not looked for everywhere")),
                 }

@@ -57,11 +57,11 @@ fn summary(state: &AppState) -> String {
     }
     match state.document.current_result() {
         Some(result) => {
-            let assessment = &result.run.assessment;
-            format!(
-                "{} · RMS {}",
-                assessment.verdict.label(),
-                state.lengths().of(assessment.coverage.rmse())
+            let verdict = result.verdict().label();
+            // An alternative is measured once it is shown.
+            state.coverage_of(result).map_or_else(
+                || verdict.to_owned(),
+                |coverage| format!("{verdict} · RMS {}", state.lengths().of(coverage.rmse())),
             )
         }
         None if state.document.both().is_none() => String::new(),

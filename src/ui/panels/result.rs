@@ -4,7 +4,7 @@ use egui::{Button, RichText, Ui, vec2};
 
 use super::explain;
 use crate::app::{Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, Section};
-use crate::assess::{Ambiguity, Coverage, OneSided, Verdict};
+use crate::assess::{Ambiguity, Coverage, OneSided};
 use crate::registration::{group_starts, limits};
 use crate::report::{PoseRecord, few_agree_words, number, start_counts};
 use crate::role::PerRole;
@@ -100,19 +100,20 @@ impl HeldHeight {
 
 /// A result that the shown pose or parts are no longer those of: quiet, with the ways on.
 fn outdated_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mut Vec<Command>) {
-    let verdict = result.run.assessment.verdict;
     let reason = state.stale(Section::Match).map_or("", |stale| stale.reason);
     let color = Palette::of(ui).secondary;
-    let title = format!("Earlier result: {}", verdict.label());
+    let mut title = format!("Earlier result: {}", result.verdict().label());
+    title += &pose_number(state, result);
     ui.label(RichText::new(title).color(color).size(15.0));
     paragraph(ui, sentence(reason));
-    let coverage = &result.run.assessment.coverage;
-    let spread = format!(
-        "{} · {}",
-        state.lengths().number(coverage.rmse()),
-        state.lengths().of(coverage.p95())
-    );
-    figure(ui, "RMS · P95 then", &spread);
+    if let Some(coverage) = state.coverage_of(result) {
+        let spread = format!(
+            "{} · {}",
+            state.lengths().number(coverage.rmse()),
+            state.lengths().of(coverage.p95())
+        );
+        figure(ui, "RMS · P95 then", &spread);
+    }
     let is_same_pair = result.stamp.parts == state.document.stamp().parts;
     ui.horizontal(|ui| {
         let can_go_back = is_same_pair && state.can_move().is_ok();
@@ -128,17 +129,11 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     let palette = Palette::of(ui);
     let assessment = &result.run.assessment;
     let lengths = state.lengths();
-    // Where another pose fits better, an alternative is at best one to check.
-    let verdict = match (result.alternative, assessment.verdict) {
-        (Some(_), Verdict::Good) => Verdict::Check,
-        (_, verdict) => verdict,
-    };
+    let verdict = result.verdict();
     let mut refused = None;
     ui.horizontal(|ui| {
         let mut text = format!("{} {}", verdict.sign(), verdict.label());
-        if let Some(index) = result.alternative {
-            text += &format!(" – pose {} of {}", index + 2, state.n_equal_poses());
-        }
+        text += &pose_number(state, result);
         let color = verdict_color(palette, verdict);
         let label = ui.label(RichText::new(text).color(color).size(17.0));
         ui.ctx().accesskit_node_builder(label.id, |node| {
@@ -167,6 +162,13 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     for statement in assessment.statements(lengths) {
         paragraph(ui, sentence(&statement));
     }
+}
+
+/// Of an alternative: " – pose 2 of 3".
+fn pose_number(state: &AppState, result: &MatchResult) -> String {
+    result.alternative.map_or_else(String::new, |index| {
+        format!(" – pose {} of {}", index + 2, state.n_equal_poses())
+    })
 }
 
 const TOLERANCE_HELP: &str = "Shape tolerance: how far the shapes may differ besides springback. The \
@@ -347,9 +349,9 @@ fn matrix_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let last = state.copy_form();
         let width = ui.available_width() - ROW - UNIT;
-        let is_by_hand = state.document.current_result().is_none();
-        let label = if is_by_hand {
-            "Copy matrix (pose by hand)"
+        let is_unmatched = state.document.current_result().is_none();
+        let label = if is_unmatched {
+            "Copy matrix (not matched)"
         } else {
             "Copy matrix"
         };
