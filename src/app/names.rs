@@ -24,6 +24,11 @@ pub(super) fn told_apart<'a>(path: &Path, all: impl Iterator<Item = &'a Path>) -
     };
     let n = (1..=n_folders).find(is_own).unwrap_or(n_folders);
     let folder = end_of(folder, n);
+    // A file named from the folder that the program runs in.
+    let folder = match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => &folder,
+    };
     format!("{} – {}", name.to_string_lossy(), folder.display())
 }
 
@@ -36,5 +41,8 @@ mod tests {
         let paths = ["/a/b/part.k", "/a/c/part.k", "/a/b/other.k"].map(Path::new);
         let told = paths.map(|path| told_apart(path, paths.into_iter()));
         assert_eq!(told, ["part.k – b", "part.k – c", "other.k"]);
+        let paths = ["part.k", "/a/part.k"].map(Path::new);
+        let told = paths.map(|path| told_apart(path, paths.into_iter()));
+        assert_eq!(told, ["part.k – .", "part.k – a"]);
     }
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::names::told_apart;
+use super::project::absolute;
 use super::{NoticeLevel, PictureChoice, UnitMemory};
 use crate::colormap::ColorMap;
 use crate::formats::ReadOptions;
@@ -197,7 +198,9 @@ impl Settings {
 
     /// Puts a file or a project first in the list of recent files; `now` in seconds since 1970.
     pub fn remember_path(&mut self, path: &Path, now: u64) {
-        self.recent.retain(|known| known != path);
+        // A file may be named from the folder that the program runs in, or whole.
+        let whole = absolute(path);
+        self.recent.retain(|known| absolute(known) != whole);
         self.recent.insert(0, path.to_path_buf());
         self.opened.insert(path.to_path_buf(), now);
         self.trim_recent();

@@ -2,7 +2,8 @@
 //! saves, and the session itself after each step, in case the program ends without saving.
 //!
 //! Each run of the program keeps its session in one file of the user's data folder. A lock beside it
-//! tells whether its program still runs; the system releases the lock however the program ended.
+//! tells whether its program still runs; the system releases the lock however the program ended. Work that
+//! was saved as a project has nothing to recover: its session ends until the next step.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -248,6 +249,8 @@ impl Session {
                 Some(match saved.and_then(|()| save(&path, &project)) {
                     Ok(()) => {
                         self.saved.insert(path.clone(), project.saved_at);
+                        // Nothing is left to be recovered until the next step.
+                        self.end();
                         AutosaveEvent::Saved(path, state)
                     }
                     Err(reason) => AutosaveEvent::SaveFailed(reason),
@@ -349,8 +352,13 @@ impl Session {
         let mut paths: Vec<PathBuf> = paths.collect();
         paths.sort();
         paths.reverse();
-        let own = self.path();
-        paths.retain(|path| Some(path) != own.as_ref());
+        // A session of this run may have ended too, where its work was saved.
+        let own = format!("{}.", self.name);
+        let name = |path: &PathBuf| {
+            path.file_name()
+                .map(|name| name.to_string_lossy().into_owned())
+        };
+        paths.retain(|path| !name(path).is_some_and(|name| name.starts_with(&own)));
         paths
     }
 

@@ -70,6 +70,30 @@ fn a_session_that_did_not_end_is_offered_until_it_is_dismissed() {
 }
 
 #[test]
+fn a_session_that_was_saved_is_offered_only_after_another_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let kept = folder.path().join("kept");
+    let of = run(&kept, "000000000001-1");
+    let is_running = || kept.join("000000000001-1.run.shapematch").exists();
+    of.autosave(project("/a/b.k"));
+    let path = folder.path().join("saved.shapematch");
+    of.save(path, None, project("/a/b.k"), 7);
+    let event = of.wait_for_event(LONG);
+    assert!(
+        matches!(event, Some(AutosaveEvent::Saved(_, 7))),
+        "{event:?}"
+    );
+    // As far as others see, its program may be killed now.
+    assert!(!is_running());
+    let found = listed(&run(&kept, "000000000002-1"));
+    assert!(!found.iter().any(|session| session.is_lost), "{found:?}");
+    assert_eq!(listed(&of), [], "it is not another run");
+    of.autosave(project("/a/b.k"));
+    assert_eq!(listed(&of), []);
+    assert!(is_running());
+}
+
+#[test]
 fn a_session_whose_program_still_runs_is_not_offered_and_looked_at_again() {
     let folder = tempfile::tempdir().unwrap();
     leave_lost(folder.path(), "000000000001-1", "/a/lost.k");
