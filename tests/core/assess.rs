@@ -249,11 +249,37 @@ fn surfaces_apart(mostly: bool) -> ShapeReason {
     }
 }
 
+/// Of each kind of difference one that leaves the parts one.
+fn differences() -> [ShapeReason; 6] {
+    let (by, limit) = (5.0, 4.0);
+    let at = Point3::new(1.0, 2.0, 3.0);
+    [
+        surfaces_apart(false),
+        ShapeReason::Bent { by, limit },
+        ShapeReason::Borders { by, limit, at },
+        ShapeReason::Hole {
+            by,
+            limit,
+            at,
+            is_mean: true,
+        },
+        ShapeReason::Stretched {
+            by,
+            share: -0.02,
+            axis: PartAxis::Width,
+        },
+        ShapeReason::Holes {
+            only_source: 1,
+            only_target: 2,
+            at,
+        },
+    ]
+}
+
 /// One of each kind of reason, with the verdict it stands for.
 fn every_reason() -> Vec<(Reason, Verdict)> {
     let unit = guess_unit(25.4).unwrap();
     let (source, target, limit) = (0.1, 0.2, 4.0);
-    let at = Point3::new(1.0, 2.0, 3.0);
     let shape = |difference| Reason::Shape { difference };
     let twin = Some(Twin {
         angle: std::f64::consts::PI,
@@ -290,25 +316,6 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
             limit,
             along: PartDirection::Along,
         },
-        shape(surfaces_apart(false)),
-        shape(ShapeReason::Bent { by: 5.0, limit }),
-        shape(ShapeReason::Borders { by: 5.0, limit, at }),
-        shape(ShapeReason::Hole {
-            by: 5.0,
-            limit,
-            at,
-            is_mean: true,
-        }),
-        shape(ShapeReason::Stretched {
-            by: 5.0,
-            share: -0.02,
-            axis: PartAxis::Width,
-        }),
-        shape(ShapeReason::Holes {
-            only_source: 1,
-            only_target: 2,
-            at,
-        }),
         Reason::BothOverhang { source, target },
         Reason::Sliding { motion },
         Reason::NearAlternative {
@@ -330,6 +337,8 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
         rivals_sought: true,
     };
     let poor = poor.map(|reason| (reason, Verdict::Poor)).into_iter();
+    let differences = differences().map(|difference| Reason::Shape { difference });
+    let check = check.into_iter().chain(differences);
     let check = check.map(|reason| (reason, Verdict::Check));
     poor.chain(check).chain([(good, Verdict::Good)]).collect()
 }
