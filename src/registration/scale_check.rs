@@ -76,11 +76,10 @@ impl ScaleCheck {
 /// Parts that cover each other in part differ in size too, at the least overlap of 20 % by a factor of about
 /// 2.2: smaller ratios than this are no hint.
 const LEAST_RATIO: f64 = 4.0;
-/// By how much a ratio may miss the factor of a unit, to which any two different parts come near by chance,
-const NEAR_FACTOR: f64 = 1.1;
-/// and one from the next on, by which no two parts of a car differ: a trim or a partial overlap changes a size.
-const NEAR_LARGE_FACTOR: f64 = 1.7;
-const LARGE_FACTOR: f64 = 500.0;
+/// By how much a ratio may miss the factor of a unit in which parts are modelled,
+const NEAR_FACTOR: f64 = 1.7;
+/// and that of one in which they rarely are, to which any two different parts come near by chance.
+const NEAR_RARE_FACTOR: f64 = 1.1;
 
 /// The unit factor nearest to `size_ratio`, if it comes near one.
 pub fn guess_unit(size_ratio: f64) -> Option<UnitGuess> {
@@ -89,10 +88,11 @@ pub fn guess_unit(size_ratio: f64) -> Option<UnitGuess> {
         return None;
     }
     let near = |guess: &UnitGuess| {
-        if guess.factor().ln().abs() < LARGE_FACTOR.ln() {
+        let is_usual = |unit| !matches!(unit, LengthUnit::Centimeter | LengthUnit::Foot);
+        if is_usual(guess.source) && is_usual(guess.target) {
             NEAR_FACTOR.ln()
         } else {
-            NEAR_LARGE_FACTOR.ln()
+            NEAR_RARE_FACTOR.ln()
         }
     };
     UnitGuess::all()
