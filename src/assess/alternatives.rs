@@ -4,6 +4,7 @@
 
 use rayon::prelude::*;
 
+use super::borders::HOLES_THAT_HOLD;
 use super::contact::{ContactSearch, FEW_NODES, MAX_NODES};
 use super::held::{HeldPose, distinct, free_limit};
 use super::settle::{Least, Settling};
@@ -255,6 +256,10 @@ pub(super) struct Candidate {
     elsewhere: Option<f64>,
     /// How far the surfaces lie apart by a bend and besides it.
     apart: [f64; 2],
+    /// How far outlines and holes lie apart, where there are enough of both, …
+    off: Option<[f64; 2]>,
+    /// … and what is accepted of them.
+    limit: f64,
 }
 
 impl Candidate {
@@ -273,6 +278,10 @@ impl Candidate {
             met: shape.met,
             elsewhere,
             apart: [shape.springback, shape.remainder],
+            off: (borders.offset)
+                .filter(|_| borders.n_holes >= HOLES_THAT_HOLD)
+                .map(|offset| [offset, borders.worst_hole]),
+            limit: shape.tolerance.remainder,
         }
     }
 
@@ -307,11 +316,22 @@ impl Candidate {
     }
 
     /// Whether the shapes surely differ less under this pose: there are fewer differences, or as many while holes
-    /// that lie alone under the other pose have their counterpart.
+    /// that lie alone under the other pose have their counterpart, or none while both outlines and holes lie closer.
     fn beats(&self, other: &Self) -> bool {
         let pairs_holes = self.n_holes > other.n_holes && self.n_alone < other.n_alone;
         self.n_differences < other.n_clear
             || pairs_holes && self.n_differences <= other.n_differences
+            || self.n_differences == 0 && other.n_differences > 0 && self.lies_closer_than(other)
+    }
+
+    /// Whether both outlines and holes lie closer under this pose by more than is accepted, and no fewer holes have
+    /// their counterpart. Either alone may be the mark of another version.
+    fn lies_closer_than(&self, other: &Self) -> bool {
+        let (Some(own), Some(others)) = (self.off, other.off) else {
+            return false;
+        };
+        let mut pairs = own.iter().zip(&others);
+        self.n_holes >= other.n_holes && pairs.all(|(own, other)| other - own > self.limit)
     }
 }
 
@@ -415,6 +435,28 @@ mod tests {
             assert_eq!(fewer.beats(&more), beats);
             assert!(!more.beats(&fewer));
         }
+    }
+
+    #[test]
+    fn a_pose_under_which_both_outlines_and_holes_lie_aside_is_beaten() {
+        let hole = ShapeReason::Hole {
+            by: 1.8,
+            limit: 1.0,
+            at: Point3::origin(),
+            is_mean: true,
+        };
+        let at = |off, reasons: &[ShapeReason]| Candidate {
+            n_holes: 24,
+            off: Some(off),
+            ..candidate(reasons)
+        };
+        let right = at([0.6, 0.4], &[]);
+        assert!(right.beats(&at([3.2, 2.4], &[hole])));
+        // The outlines alone, or the holes alone, or what nobody remarks.
+        assert!(!right.beats(&at([3.2, 1.2], &[hole])));
+        assert!(!right.beats(&at([0.9, 2.4], &[hole])));
+        assert!(!right.beats(&at([3.2, 2.4], &[])));
+        assert!(!at([0.6, 0.4], &[hole]).beats(&at([3.2, 2.4], &[hole])));
     }
 
     #[test]
