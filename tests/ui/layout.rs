@@ -138,10 +138,16 @@ pub(super) fn set(window: &mut Window, theme: Theme, ui_scale: f32) {
 
 /// Toasts lie over the windows on purpose.
 pub(super) fn dismiss_toasts(window: &mut Window) {
-    let toasts = window.state().state().log.notices.toasts();
-    let ids: Vec<_> = toasts.map(|notice| notice.id).collect();
-    let commands = ids.into_iter().map(|id| NoticeCommand::Dismiss(id).into());
-    act(window, commands.collect());
+    // Those that had no room come in their place.
+    loop {
+        let toasts = window.state().state().log.notices.toasts();
+        let ids: Vec<_> = toasts.map(|notice| notice.id).collect();
+        if ids.is_empty() {
+            break;
+        }
+        let commands = ids.into_iter().map(|id| NoticeCommand::Dismiss(id).into());
+        act(window, commands.collect());
+    }
 }
 
 fn act(window: &mut Window, commands: Vec<Command>) {

@@ -417,6 +417,11 @@ fn a_file_that_changes_on_disk_is_offered_to_be_read_again() {
             .count(),
         1
     );
+    // Nothing folds or unfolds by itself now: the header of the section says it.
+    let open = ViewCommand::OpenSection(Section::Load, true);
+    let ctx = window.ctx.clone();
+    window.state_mut().run_commands(vec![open.into()], &ctx);
+    window.run_steps(2);
     click(&mut window, "Reload the stamped file");
     finish(&mut window);
     assert_ne!(content(&window), before);

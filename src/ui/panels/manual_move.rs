@@ -86,9 +86,10 @@ fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 .field(&mut value)
                 .speed(speed)
                 .max_decimals(6)
-                .min_size(vec2(80.0, ROW));
+                .min_size(vec2(64.0, ROW));
             let spoken = format!("{name} by");
             let (_, refused) = told_field(ui, &spoken, field, |text| takes.read(text));
+            ui.spacing_mut().item_spacing.x = 4.0;
             for axis in Axis::ALL {
                 let label = format!("{} {}", if value < 0.0 { "−" } else { "+" }, axis.letter());
                 let spoken = format!("{name} by {value}{unit} on {}", axis.letter());

@@ -251,8 +251,8 @@ fn share_text(share: f64) -> String {
 
 /// Grid of a narrow chart that has its numbers inside.
 fn inner_marks(bounds: (f64, f64), pixels: f64) -> Vec<GridMark> {
-    // A mark is labelled when its step is wide on the screen, and grey up to twice that: a narrow chart is less.
-    let step_size = 10.0 * (bounds.1 - bounds.0);
+    // A mark is labelled when its step is wide on the screen.
+    let step_size = bounds.1 - bounds.0;
     let marks = inner_ticks(bounds, pixels).0.into_iter();
     marks.map(|value| GridMark { value, step_size }).collect()
 }
