@@ -19,7 +19,7 @@ use crate::ui::widgets::{
 
 /// Width of the label column.
 const LABEL: f32 = 76.0;
-/// Left and right of a number in one of three fields beside each other.
+/// Left and right of the text in one of several fields or buttons beside each other.
 const PADDING: f32 = 4.0;
 /// What a typed move, angle or coordinate may be.
 const MOVES: RangeInclusive<f64> = -1e9..=1e9;
@@ -51,7 +51,7 @@ pub fn manual_move_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
 
 fn axes_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     form_row(ui, "Axes", LABEL, |ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
+        tighten(ui);
         for frame in AxisFrame::ALL {
             if chip(ui, frame.label(), state.moving.axes == frame).clicked() {
                 commands.push(MoveCommand::SetAxes(frame).into());
@@ -65,6 +65,12 @@ fn axes_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let gizmo = ("Gizmo", look, vec2(0.0, ROW));
         action_button(ui, state, Action::ToggleGizmo, gizmo, commands);
     });
+}
+
+/// A row that fits the narrowest column.
+fn tighten(ui: &mut Ui) {
+    ui.spacing_mut().item_spacing.x = 4.0;
+    ui.spacing_mut().button_padding.x = PADDING;
 }
 
 /// A typed move along and a typed turn about each axis.
@@ -86,10 +92,9 @@ fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 .field(&mut value)
                 .speed(speed)
                 .max_decimals(6)
-                .min_size(vec2(64.0, ROW));
+                .min_size(vec2(80.0, ROW));
             let spoken = format!("{name} by");
             let (_, refused) = told_field(ui, &spoken, field, |text| takes.read(text));
-            ui.spacing_mut().item_spacing.x = 4.0;
             for axis in Axis::ALL {
                 let label = format!("{} {}", if value < 0.0 { "−" } else { "+" }, axis.letter());
                 let spoken = format!("{name} by {value}{unit} on {}", axis.letter());
@@ -122,6 +127,7 @@ fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 fn flip_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     form_row(ui, "Flip 180°", LABEL, |ui| {
+        tighten(ui);
         for (action, label) in [
             (Action::FlipX, "about X"),
             (Action::FlipY, "about Y"),
@@ -207,8 +213,7 @@ fn fields_ui(
     let mut typed = None;
     let mut refused = None;
     form_row(ui, label, LABEL, |ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        ui.spacing_mut().button_padding.x = PADDING;
+        tighten(ui);
         ui.style_mut().drag_value_text_style = TextStyle::Small;
         let width = (ui.available_width() - 8.0) / 3.0;
         // As wide while it is typed in.
