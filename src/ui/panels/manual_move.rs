@@ -83,6 +83,7 @@ fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             ui.data(|data| data.get_temp(id))
                 .unwrap_or(if is_turn { 15.0 } else { 10.0 });
         let refused = form_row(ui, name, LABEL, |ui| {
+            tighten(ui);
             let (takes, speed) = if is_turn {
                 (Takes::number(name, unit, MOVES), 1.0)
             } else {
@@ -92,7 +93,7 @@ fn steps_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 .field(&mut value)
                 .speed(speed)
                 .max_decimals(6)
-                .min_size(vec2(80.0, ROW));
+                .min_size(vec2(68.0, ROW));
             let spoken = format!("{name} by");
             let (_, refused) = told_field(ui, &spoken, field, |text| takes.read(text));
             for axis in Axis::ALL {
