@@ -25,8 +25,8 @@ export XDG_RUNTIME_DIR=$folder/run WGPU_BACKEND=${WGPU_BACKEND:-vulkan} RUST_BAC
 export RUST_LOG=warn,shapematch=debug
 mkdir -m 700 "$XDG_RUNTIME_DIR"
 
-# The server picks a free display and tells its number.
-Xvfb -screen 0 1400x900x24 -nolisten tcp -displayfd 3 3>"$folder/display" >/dev/null 2>&1 &
+# The server picks a free display and tells its number. It stays as it is between two windows.
+Xvfb -noreset -screen 0 1400x900x24 -nolisten tcp -displayfd 3 3>"$folder/display" >/dev/null 2>&1 &
 pids+=($!)
 until [ -s "$folder/display" ]; do sleep 0.1; done
 DISPLAY=:$(cat "$folder/display")
