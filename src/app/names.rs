@@ -25,9 +25,10 @@ pub(super) fn told_apart<'a>(path: &Path, all: impl Iterator<Item = &'a Path>) -
     let n = (1..=n_folders).find(is_own).unwrap_or(n_folders);
     let folder = end_of(folder, n);
     // A file named from the folder that the program runs in.
-    let folder = match folder.as_os_str().is_empty() {
-        true => Path::new("."),
-        false => &folder,
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        &folder
     };
     format!("{} – {}", name.to_string_lossy(), folder.display())
 }

@@ -29,13 +29,15 @@ const SEVERAL_FROM: f64 = 2.0;
 const SEVERAL_TO: f64 = 500.0;
 
 /// Sets the verdict, its reasons, the most severe first, and the statement about the pose. `mirrored` is the
-/// statement about the shape of the opposite hand, `most_scaled` how far the scale of the pairs may be off.
+/// statement about the shape of the opposite hand, `most_scaled` how far the scale of the pairs may be off, `n_target_parts` how
+/// many parts the target consists of.
 pub(super) fn decide(
     assessment: &mut Assessment,
     shape: &ShapeStatement,
     mirrored: Option<&ShapeStatement>,
     outcome: &MatchOutcome,
-    (most_scaled, n_target_parts): (f64, usize),
+    most_scaled: f64,
+    n_target_parts: usize,
 ) {
     let several = several_parts(assessment, n_target_parts);
     if let Some(units) = unit(assessment) {

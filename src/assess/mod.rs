@@ -112,7 +112,8 @@ pub fn assess(
         &shape,
         mirrored.as_ref(),
         outcome,
-        (most_scaled, settings.n_target_parts),
+        most_scaled,
+        settings.n_target_parts,
     );
     let is_comparable = assessment.scale_check.unit.is_none();
     assessment.shape = is_comparable.then_some(shape);

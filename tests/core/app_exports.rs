@@ -86,6 +86,13 @@ fn a_card_for_a_file_in_another_unit_is_answered_with_the_converted_file() {
     );
 }
 
+/// Asserts that a command line has all these pieces.
+fn assert_has(line: &str, pieces: &[&str]) {
+    for piece in pieces {
+        assert!(line.contains(piece), "{piece}: {line}");
+    }
+}
+
 #[test]
 fn the_command_line_says_levels_settings_and_pose() {
     let mut window = Window::with_both();
@@ -107,14 +114,15 @@ fn the_command_line_says_levels_settings_and_pose() {
         max_triangles: 60,
     });
     let line = window.state.document.command_line().unwrap();
-    for piece in [
-        "--stamped-triangles 60",
-        "--allowance 0.25",
-        "--start current --start-pose",
-        "1.0 0.0 0.0 2.5",
-    ] {
-        assert!(line.contains(piece), "{line}");
-    }
+    assert_has(
+        &line,
+        &[
+            "--stamped-triangles 60",
+            "--allowance 0.25",
+            "--start current --start-pose",
+            "1.0 0.0 0.0 2.5",
+        ],
+    );
     window.act(Action::CopyCommandLine);
     assert!(matches!(last_effect(&window), Effect::CopyText(text) if *text == line));
 }
@@ -138,14 +146,15 @@ fn after_refining_the_copied_line_is_that_of_the_record() {
     window.act(Action::Refine);
     let line = line(&window);
     assert_eq!(line, recorded(&window));
-    for piece in [
-        "--start current",
-        "--wide-search no",
-        "--start-pose",
-        "1.0 0.0 0.0 2.5",
-    ] {
-        assert!(line.contains(piece), "{line}");
-    }
+    assert_has(
+        &line,
+        &[
+            "--start current",
+            "--wide-search no",
+            "--start-pose",
+            "1.0 0.0 0.0 2.5",
+        ],
+    );
 }
 
 #[test]

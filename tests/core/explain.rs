@@ -1,7 +1,7 @@
 //! What the window says after a move and after a weak or failed match, and that each remedy does something.
 
 use shapematch::app::*;
-use shapematch::assess::{Clarity, Reason, ShapeReason, Twin, TwinAxis, Verdict};
+use shapematch::assess::{Assessment, Clarity, Reason, ShapeReason, Twin, TwinAxis, Verdict};
 use shapematch::geometry::{Point3, Rotation, Similarity, TriMesh, Vector3};
 use shapematch::jobs::{JobEvent, JobKey, JobStage};
 use shapematch::registration::{Method, Surface};
@@ -75,18 +75,26 @@ fn a_weak_match_has_causes_whose_remedies_do_something() {
     }
 }
 
+/// Changes what was found out about the result.
+fn reassess(window: &mut Window, change: impl FnOnce(&mut Assessment)) {
+    let result = window.state.document.result.as_mut().unwrap();
+    let mut run = (*result.run).clone();
+    let mut assessment = (*run.assessment).clone();
+    change(&mut assessment);
+    run.assessment = assessment.into();
+    result.run = std::sync::Arc::new(run).into();
+}
+
 #[test]
 fn an_ambiguous_pose_is_told_from_the_pose_that_is_shown() {
     let mut window = Window::with_both_and_no_rivals();
     window.act(Action::MatchOrStop);
-    let mut result = window.state.document.result.clone().unwrap();
-    let mut run = (*result.run).clone();
-    let mut assessment = (*run.assessment).clone();
-    assessment.ambiguity.clarity = Clarity::Ambiguous;
-    assessment.ambiguity.ratio = Some(run.outcome.alternatives[0].score_ratio);
-    run.assessment = assessment.into();
-    result.run = std::sync::Arc::new(run).into();
-    window.state.document.result = Some(result);
+    let result = window.state.document.result.as_ref().unwrap();
+    let ratio = result.run.outcome.alternatives[0].score_ratio;
+    reassess(&mut window, |assessment| {
+        assessment.ambiguity.clarity = Clarity::Ambiguous;
+        assessment.ambiguity.ratio = Some(ratio);
+    });
     let ambiguous = |window: &Window| {
         let causes = window.state.causes();
         let mut causes = causes.into_iter();
@@ -117,14 +125,8 @@ fn an_ambiguous_pose_is_told_from_the_pose_that_is_shown() {
 fn shapes_that_differ_are_explained_from_the_reason_not_from_its_words() {
     let mut window = Window::with_both_and_no_rivals();
     window.act(Action::MatchOrStop);
-    let mut result = window.state.document.result.clone().unwrap();
-    let mut run = (*result.run).clone();
-    let mut assessment = (*run.assessment).clone();
-    let mut with = |reasons: Vec<Reason>, window: &mut Window| {
-        assessment.reasons = reasons;
-        run.assessment = assessment.clone().into();
-        result.run = std::sync::Arc::new(run.clone()).into();
-        window.state.document.result = Some(result.clone());
+    let with = |reasons: Vec<Reason>, window: &mut Window| {
+        reassess(window, |assessment| assessment.reasons = reasons);
         let causes = window.state.causes();
         causes
             .iter()

@@ -179,22 +179,19 @@ fn the_numbers_of_a_pose_stay_within_the_column() {
     }
 }
 
+/// How far the stamped part was moved along X.
+fn moved_x(window: &Window) -> f64 {
+    let document = &window.state().state().document;
+    document.crash_from_stamped().translation.x
+}
+
 #[test]
 fn a_typed_move_takes_a_decimal_comma_and_its_button_stays_under_the_pointer() {
     let mut window = matched();
     click(&mut window, "Move by hand");
     window.run_steps(4);
-    let x = |window: &egui_kittest::Harness<'static, shapematch::ui::Shell>| {
-        window
-            .state()
-            .state()
-            .document
-            .crash_from_stamped()
-            .translation
-            .x
-    };
     for (typed, moved) in [("12,5", 12.5), ("1 cm", 10.0), ("nan", 10.0), ("inf", 10.0)] {
-        let before = x(&window);
+        let before = moved_x(&window);
         window.get_by_label("Move by").click();
         window.run_steps(2);
         window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
@@ -208,7 +205,7 @@ fn a_typed_move_takes_a_decimal_comma_and_its_button_stays_under_the_pointer() {
         window.run_steps(2);
         window.get_by_label(&name).click();
         window.run_steps(4);
-        assert!((x(&window) - before - moved).abs() < 1e-9, "{typed}");
+        assert!((moved_x(&window) - before - moved).abs() < 1e-9, "{typed}");
         let now = window.get_by_label(&name).rect();
         assert!(
             now.contains(at),
@@ -286,16 +283,7 @@ fn the_first_move_by_hand_shifts_nothing() {
     let before = place(&window);
     super::typed::type_into(&mut window, field, "3");
     window.run_steps(4);
-    assert_eq!(
-        window
-            .state()
-            .state()
-            .document
-            .crash_from_stamped()
-            .translation
-            .x,
-        3.0
-    );
+    assert_eq!(moved_x(&window), 3.0);
     let after = place(&window);
     assert!((after.min - before.min).length() < 0.5, "{before} {after}");
 }
