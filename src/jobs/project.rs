@@ -27,6 +27,8 @@ pub struct OpenedProject {
     pub further: Vec<Option<FoundPart>>,
     /// Files that are neither where the project says nor beside it; nothing was loaded then.
     pub missing: Vec<(ProjectFile, PathBuf)>,
+    /// Why the file that the user pointed at is not taken, a sentence.
+    pub refused: Option<String>,
 }
 
 /// A part of a project.
@@ -56,6 +58,7 @@ pub(super) fn open_project(
         mut parts,
         further,
         missing,
+        refused,
     } = project::open_project(request, monitor)?;
     let mut opened = PerRole::default();
     for role in Role::ALL {
@@ -71,6 +74,7 @@ pub(super) fn open_project(
         parts: opened,
         further,
         missing,
+        refused,
     })
 }
 

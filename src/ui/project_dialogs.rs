@@ -3,9 +3,10 @@
 use egui::{Button, Frame, Margin, Panel, RichText, Stroke, Ui, vec2};
 
 use super::theme::{Palette, ROW, UNIT};
+use super::typed::refusal;
 use super::widgets::{caption, paragraph, role_mark, secondary};
 use crate::app::{AppState, Command, ProjectCommand, ViewCommand};
-use crate::jobs::{Located, ProjectFile};
+use crate::jobs::Located;
 
 /// Least width of the buttons that answer.
 const BUTTON: f32 = 104.0;
@@ -50,10 +51,7 @@ pub fn missing_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             ui.add(egui::Label::new(path.display().to_string()).truncate());
         });
         ui.horizontal(|ui| {
-            let what = match file {
-                ProjectFile::Part(role) => format!("the {} part", role.word()),
-                ProjectFile::Further(n) => format!("stamped file {}", n + 2),
-            };
+            let what = file.words();
             if plain(ui, "Find it…")
                 .accessible_name(format!("Find {what}"))
                 .clicked()
@@ -70,6 +68,7 @@ pub fn missing_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         });
     }
     ui.add_space(UNIT);
+    refusal(ui, state.project.refused.clone());
     paragraph(
         ui,
         "They were looked for where the project says, and beside the project. Find one, and the others are looked \

@@ -198,27 +198,26 @@ fn a_project_brings_everything_back() {
     assert_same_work(&window, &moved);
 }
 
+/// A packed deck with one more line: another byte is another content.
+fn touched(path: &Path) -> Vec<u8> {
+    use std::io::{Read as _, Write as _};
+    let packed = std::fs::read(path).unwrap();
+    let mut text = Vec::new();
+    flate2::read::GzDecoder::new(&packed[..])
+        .read_to_end(&mut text)
+        .unwrap();
+    text.extend(b"$ touched\n");
+    let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    packer.write_all(&text).unwrap();
+    packer.finish().unwrap()
+}
+
 #[test]
 fn a_file_that_changed_keeps_the_pose_and_ages_the_result() {
     let (_folder, [crash, stamped, path]) = folder();
     let mut window = worked(&crash, &stamped);
     save(&mut window, &path);
-    let mut text = std::fs::read(&crash).unwrap();
-    // Another byte is another content, whatever the format.
-    if crash.extension().is_some_and(|ending| ending == "gz") {
-        use std::io::{Read as _, Write as _};
-        let mut unpacked = Vec::new();
-        flate2::read::GzDecoder::new(&text[..])
-            .read_to_end(&mut unpacked)
-            .unwrap();
-        unpacked.extend(b"$ touched\n");
-        let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
-        packer.write_all(&unpacked).unwrap();
-        text = packer.finish().unwrap();
-    } else {
-        text.extend(b"$ touched\n");
-    }
-    std::fs::write(&crash, text).unwrap();
+    std::fs::write(&crash, touched(&crash)).unwrap();
     let again = open(&path);
     assert_eq!(
         pose_bits(again.state.document.crash_from_stamped()),
@@ -253,6 +252,71 @@ fn a_missing_file_is_asked_for_or_done_without() {
     asked.apply(ProjectCommand::Locate(of_stamped, Located::At(hidden)));
     assert_eq!(asked.state.view.dialog, None);
     assert!(asked.state.document.current_result().is_some());
+}
+
+/// The crash part read as the stamped part would be matched onto itself.
+#[test]
+fn the_file_of_the_other_part_is_not_taken_for_a_missing_one() {
+    let (folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    save(&mut window, &path);
+    let elsewhere = folder.path().join("elsewhere.k");
+    std::fs::rename(&stamped, &elsewhere).unwrap();
+    let copy = folder.path().join("copy.k");
+    std::fs::copy(&crash, &copy).unwrap();
+    let of_stamped = ProjectFile::Part(Role::Stamped);
+    let mut asked = open(&path);
+    assert_eq!(asked.state.project.refused, None);
+    for given in [&crash, &copy] {
+        asked.apply(ProjectCommand::Locate(
+            of_stamped,
+            Located::At(given.clone()),
+        ));
+        assert_eq!(asked.state.view.dialog, Some(Dialog::MissingFiles));
+        let (request, missing) = asked.state.project.missing.clone().unwrap();
+        assert_eq!(missing, [(of_stamped, stamped.clone())]);
+        assert!(request.located.is_empty());
+        let name = given.file_name().unwrap().to_str().unwrap();
+        let why = format!("{name} is the crash part of the project, not the stamped part.");
+        assert_eq!(asked.state.project.refused, Some(why));
+    }
+    // Any other file is the user's choice, and is told.
+    let other = folder.path().join("other.k");
+    std::fs::write(&other, touched(&elsewhere)).unwrap();
+    asked.apply(ProjectCommand::Locate(of_stamped, Located::At(other)));
+    assert_eq!(asked.state.view.dialog, None);
+    assert_eq!(asked.state.project.refused, None);
+    assert!(asked.state.document.current_result().is_none());
+    let told = "other.k is not the file that the project was saved with; poses are kept";
+    let mut toasts = asked.state.log.notices.toasts();
+    assert!(toasts.any(|toast| toast.text.starts_with(told)));
+}
+
+/// Both ways round, and where both are missing.
+#[test]
+fn a_stamped_file_is_not_taken_for_the_crash_part() {
+    let (folder, [crash, stamped, path]) = folder();
+    let mut window = worked(&crash, &stamped);
+    save(&mut window, &path);
+    let now = folder.path().join("moved");
+    std::fs::create_dir(&now).unwrap();
+    let [crash_now, stamped_now] = [&crash, &stamped].map(|file| {
+        let to = now.join(file.file_name().unwrap());
+        std::fs::rename(file, &to).unwrap();
+        to
+    });
+    let mut asked = open(&path);
+    let of_crash = ProjectFile::Part(Role::Crash);
+    asked.apply(ProjectCommand::Locate(of_crash, Located::At(stamped_now)));
+    let why = asked.state.project.refused.clone().unwrap();
+    assert!(
+        why.ends_with(" is the stamped part of the project, not the crash part."),
+        "{why}"
+    );
+    assert_eq!(asked.state.project.missing.as_ref().unwrap().1.len(), 2);
+    asked.apply(ProjectCommand::Locate(of_crash, Located::At(crash_now)));
+    assert_eq!(asked.state.view.dialog, None);
+    assert_same_work(&window, &asked);
 }
 
 #[test]

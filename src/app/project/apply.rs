@@ -112,6 +112,7 @@ impl ProjectState {
             return Vec::new();
         }
         self.missing = None;
+        self.refused = None;
         *dialog = None;
         vec![work.start(JobKind::OpenProject(request))]
     }

@@ -32,6 +32,8 @@ pub struct ProjectState {
     pub sessions: Vec<RecoveredSession>,
     /// Its files that were not found, and what was asked for.
     pub missing: Option<(ProjectRequest, Vec<(ProjectFile, PathBuf)>)>,
+    /// Why the file that was pointed at last is not taken, a sentence.
+    pub refused: Option<String>,
     /// The document as it was saved or opened.
     saved: Option<Document>,
     /// The document and whether there was a sweep when the session was autosaved last.

@@ -10,7 +10,10 @@ use crate::app::{
     AppState, Dialog, Document, Effect, Further, Mapping, MatchResult, NoticeLevel, Part, Placing,
     PointPairs, ShownGeometry, StampedPose,
 };
-use crate::jobs::{JobKind, MeasureLevelInput, OpenedPart, OpenedProject, ProjectRequest, Stamp};
+use crate::jobs::{
+    JobKind, Located, MeasureLevelInput, OpenedPart, OpenedProject, ProjectFile, ProjectRequest,
+    Stamp,
+};
 use crate::pipeline::project::{
     FoundPart, FurtherEntry, PartEntry, PlacingEntry, Project, ResultEntry,
 };
@@ -24,6 +27,7 @@ impl AppState {
     ) -> Vec<Effect> {
         if !opened.missing.is_empty() {
             self.project.missing = Some((opened.request, opened.missing));
+            self.project.refused = opened.refused;
             self.view.dialog = Some(Dialog::MissingFiles);
             return Vec::new();
         }
@@ -45,7 +49,7 @@ impl AppState {
             self.work()
                 .log_at(NoticeLevel::Note, "project", None, text, None);
         }
-        self.tell_changed_files(&parts, &further);
+        self.tell_changed_files(&request, &parts, &further);
         self.previews.drop_all();
         let window = self.read_window(&project);
         let parts = (&parts, &further[..]);
@@ -67,25 +71,33 @@ impl AppState {
 
     fn tell_changed_files(
         &mut self,
+        request: &ProjectRequest,
         parts: &PerRole<Option<OpenedPart>>,
         further: &[Option<FoundPart>],
     ) {
         let changed = |(role, part): (Role, &Option<OpenedPart>)| {
             let part = part.as_ref().filter(|part| part.is_changed)?;
-            Some((role, part.part.file_name(), "poses are kept"))
+            let file = ProjectFile::Part(role);
+            Some((file, part.part.file_name(), "poses are kept"))
         };
-        let further = further.iter().flatten().filter(|part| part.is_changed);
-        let further = further.map(|found| {
-            let name = found.part.file_name();
-            (Role::Stamped, name, "it is matched anew")
+        let further = further.iter().enumerate().filter_map(|(n, found)| {
+            let found = found.as_ref().filter(|part| part.is_changed)?;
+            let file = ProjectFile::Further(n);
+            Some((file, found.part.file_name(), "it is matched anew"))
         });
         let changed: Vec<_> = parts.iter().filter_map(changed).chain(further).collect();
-        for (role, name, what) in changed {
-            let text = format!(
-                "{name} has changed since the project was saved; {what}, results are out of date"
-            );
+        for (file, name, what) in changed {
+            // Whether the file that was pointed at is another one or a later state of the same is not known.
+            let how = match request.located.get(&file) {
+                Some(Located::At(_)) => "is not the file that the project was saved with",
+                Some(Located::AsStored | Located::Without) | None => {
+                    "has changed since the project was saved"
+                }
+            };
+            let text = format!("{name} {how}; {what}, results are out of date");
+            let role = Some(file.role());
             self.work()
-                .log_at(NoticeLevel::Warning, "project", Some(role), text, None);
+                .log_at(NoticeLevel::Warning, "project", role, text, None);
         }
     }
 

@@ -177,6 +177,14 @@ impl ProjectFile {
             Self::Further(_) => Role::Stamped,
         }
     }
+
+    /// "the crash part", "stamped file 2".
+    pub fn words(self) -> String {
+        match self {
+            Self::Part(role) => format!("the {} part", role.word()),
+            Self::Further(n) => format!("stamped file {}", n + 2),
+        }
+    }
 }
 
 /// A match and whether it still stood for parts and pose when the project was saved.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::{PartEntry, Project, ProjectFile};
+use crate::formats::source::tidy;
 use crate::formats::{Disk, FileHash};
 use crate::monitor::Monitor;
 use crate::pipeline::PipelineError;
@@ -48,6 +49,8 @@ pub struct FoundProject {
     pub further: Vec<Option<FoundPart>>,
     /// Files that are neither where the project says nor beside it; nothing was loaded then.
     pub missing: Vec<(ProjectFile, PathBuf)>,
+    /// Why the file that the user pointed at is not taken, a sentence.
+    pub refused: Option<String>,
 }
 
 /// A part of a project.
@@ -67,6 +70,7 @@ pub fn open_project(
     monitor: &Monitor,
 ) -> Result<FoundProject, PipelineError> {
     let (mut project, mut notes) = Project::read(&request.path).map_err(Box::new)?;
+    let refused = refuse_mistaken(&project, &mut request, monitor)?;
     follow_moved(&mut project, &mut request, &mut notes, monitor)?;
     let mut missing = Vec::new();
     let mut source_of = |file: ProjectFile, entry: &PartEntry| {
@@ -110,7 +114,63 @@ pub fn open_project(
         parts,
         further: further_parts,
         missing,
+        refused,
     })
+}
+
+/// A file that the user pointed at is not taken where it is another file of the project: the crash part read as the
+/// stamped part would be matched onto itself.
+fn refuse_mistaken(
+    project: &Project,
+    request: &mut ProjectRequest,
+    monitor: &Monitor,
+) -> Result<Option<String>, PipelineError> {
+    let mut refused = None;
+    for (file, located) in request.located.clone() {
+        let Located::At(path) = located else {
+            continue;
+        };
+        let found = FileHash::of_file(&Disk, &path, monitor).ok();
+        monitor.check()?;
+        if let Some(other) = mistaken_for(project, request, file, (&path, found)) {
+            let name = path.file_name().unwrap_or(path.as_os_str());
+            refused = Some(format!(
+                "{} is {} of the project, not {}.",
+                name.to_string_lossy(),
+                other.words(),
+                file.words()
+            ));
+            request.located.remove(&file);
+        }
+    }
+    Ok(refused)
+}
+
+/// The other file of the project that this one is, by its path or its content. A file that stands twice in the
+/// project is none.
+fn mistaken_for(
+    project: &Project,
+    request: &ProjectRequest,
+    file: ProjectFile,
+    (path, content): (&Path, Option<FileHash>),
+) -> Option<ProjectFile> {
+    let own = project.entry(file)?;
+    if content.is_some() && content == own.hash {
+        return None;
+    }
+    let is_it = |other: &ProjectFile| {
+        let Some(entry) = project.entry(*other).filter(|_| *other != file) else {
+            return false;
+        };
+        let place = match request.located.get(other) {
+            Some(Located::At(place)) => Some(place.clone()),
+            Some(Located::AsStored | Located::Without) | None => entry.locate(&request.path),
+        };
+        let is_there = place.is_some_and(|place| tidy(&place) == tidy(path));
+        let is_same = content.is_some() && content == entry.hash;
+        entry.file != own.file && (is_there || is_same)
+    };
+    project.files().into_iter().find(is_it)
 }
 
 /// Files often move together: what is missing is looked for where it would lie beside a file that the user
