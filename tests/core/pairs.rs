@@ -167,6 +167,30 @@ fn pairs_are_a_start_of_the_match() {
     assert!(starts[0].max_displacement(&pose(), &corners) < 1e-9);
 }
 
+/// Before a match the copied line is the match that would run, so it has the pose of the pairs.
+#[test]
+fn a_start_from_pairs_is_copied_with_its_pose() {
+    let mut window = with_pairs(2);
+    let mut recipe = window.state.document.recipe.clone();
+    recipe.settings.starts.method = StartMethod::GivenPoses;
+    window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
+    let why = Action::CopyCommandLine.enabled(&window.state);
+    assert_eq!(why, Action::MatchOrStop.enabled(&window.state));
+    assert!(why.is_err_and(|why| why.0.starts_with("Pick three pairs of points first")));
+    assert_eq!(window.state.document.command_line(), None);
+    let stamped = Point3::from(PLACES[2]);
+    pick(&mut window, Role::Crash, pose().apply(&stamped));
+    pick(&mut window, Role::Stamped, stamped);
+    assert_eq!(Action::CopyCommandLine.enabled(&window.state), Ok(()));
+    let line = window.state.document.command_line().unwrap();
+    let (_, given) = line.split_once("--start given --start-pose '").unwrap();
+    let (numbers, _) = given.split_once('\'').unwrap();
+    let numbers: Vec<f64> = numbers.split(' ').map(|n| n.parse().unwrap()).collect();
+    let fit = window.state.document.pair_fit().unwrap();
+    let rows = fit.fit.target_from_source.to_rows();
+    assert_eq!(numbers, rows.as_flattened());
+}
+
 #[test]
 fn refining_starts_from_the_present_pose_and_leaves_the_recipe() {
     let mut window = with_pairs(3);

@@ -6,6 +6,7 @@ use crate::app::{Document, Part, Reason};
 use crate::formats::Selection;
 use crate::geometry::Similarity;
 use crate::jobs::PartSource;
+use crate::pipeline::match_parts::MatchRecipe;
 use crate::pipeline::outputs::record;
 use crate::registration::StartMethod;
 use crate::report::command_line::{CommandLine, CommandSide, MapCommandLine};
@@ -23,19 +24,20 @@ const EXAMPLES: [(PartSource, &str, &str); 2] = [
 
 impl Document {
     /// `Ok` if a line can give the pose that is shown: not where it was moved by hand after a match,
-    /// unless the match starts there.
+    /// unless the match starts there, nor before the pairs that it starts with fix a pose.
     pub fn can_copy_command_line(&self) -> Result<(), Reason> {
         self.has_both_parts()?;
         let begins_here = self.recipe.settings.starts.method == StartMethod::CurrentPose;
         if self.match_of_parts().is_err() || begins_here {
-            return Ok(());
+            return self.has_start_pose();
         }
         self.has_result()
     }
 
     /// The line that gives the pose that is shown without the window and bit for bit: that of the record
     /// where there is a result, which may have begun elsewhere than the form says; else the match that the
-    /// present files, parts, levels, settings and pose ask for. `None` without both parts.
+    /// present files, parts, levels, settings and pose ask for. `None` without both parts, and while the pairs
+    /// that it begins with fix no pose.
     pub fn command_line(&self) -> Option<String> {
         let both = self.both()?;
         let paths = both.map(path);
@@ -44,6 +46,7 @@ impl Document {
             ..both.get(role).loaded.command_side()
         };
         let sides = PerRole::from_fn(side);
+        let recipe = self.recipe_to_run();
         let line = if let Some(result) = self.current_result() {
             CommandLine {
                 sides,
@@ -51,7 +54,7 @@ impl Document {
                 ..record::command_line(&result.run, both.map(|part| &*part.loaded))
             }
         } else {
-            self.unmatched_line(both, sides)
+            self.unmatched_line(both, sides, recipe.as_ref()?)
         };
         Some(examples(both) + &line.line())
     }
@@ -61,6 +64,7 @@ impl Document {
         &'a self,
         both: PerRole<&'a Part>,
         mut sides: PerRole<CommandSide<'a>>,
+        recipe: &'a MatchRecipe,
     ) -> CommandLine<'a> {
         let ceilings = both.map(Part::ceiling);
         let is_reduced = ceilings.iter().any(|(_, ceiling)| ceiling.is_some());
@@ -72,11 +76,11 @@ impl Document {
         CommandLine {
             sides,
             read: &read.read,
-            settings: &self.recipe.settings,
+            settings: &recipe.settings,
             max_triangles: if is_reduced {
                 ceilings
             } else {
-                PerRole::both(self.recipe.max_triangles)
+                PerRole::both(recipe.max_triangles)
             },
             current: self.crash_from_stamped(),
             alternative: None,

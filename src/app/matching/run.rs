@@ -62,15 +62,10 @@ fn match_input(work: &Work<'_>) -> Option<MatchInput> {
         meshes: both.map(|part| Arc::clone(part.reduced_mesh())),
         max_triangles: both.map(Part::ceiling),
     });
-    let mut recipe = work.document.recipe.clone();
-    if recipe.settings.starts.method == StartMethod::GivenPoses {
-        let fit = work.document.pair_fit().ok()?;
-        recipe.settings.starts.poses = vec![fit.fit.target_from_source];
-    }
     Some(MatchInput {
         parts: both.map(|part| part.loaded.to_arc()),
         reduced,
-        recipe,
+        recipe: work.document.recipe_to_run()?,
         current: *work.document.crash_from_stamped(),
     })
 }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{AppState, Document, JobBoard, Reason};
 use crate::geometry::Point3;
 use crate::geometry::serial::xyz;
+use crate::pipeline::match_parts::MatchRecipe;
 use crate::registration::{
     PairDoubt, PointPairFit, RegistrationError, StartMethod, fit_point_pairs,
 };
@@ -154,6 +155,16 @@ impl Document {
         has.then_some(()).ok_or(Reason(
             "Pick three pairs of points first, or choose another start.",
         ))
+    }
+
+    /// What a match is run with: the pose of the pairs, where it begins there; none while they fix no pose.
+    pub(in crate::app) fn recipe_to_run(&self) -> Option<MatchRecipe> {
+        let mut recipe = self.recipe.clone();
+        if recipe.settings.starts.method == StartMethod::GivenPoses {
+            let fit = self.pair_fit().ok()?;
+            recipe.settings.starts.poses = vec![fit.fit.target_from_source];
+        }
+        Some(recipe)
     }
 
     /// `Ok` if the pairs fix a pose and the part may be moved.
