@@ -112,7 +112,7 @@ fn wrote(files: &MapFiles, failed: &[PathBuf]) -> Vec<(&'static str, String)> {
     lines
 }
 
-/// How many checks are met, those that are not, and why one is judged as it is.
+/// How many checks are met, those that are not, and why one is not judged, or as it is.
 fn checked(record: &MapRecord) -> Vec<(&'static str, String)> {
     let (n_met, n_judged) = record.n_met();
     let mut lines = vec![("Checks", format!("{n_met} of {n_judged} met"))];
@@ -120,7 +120,8 @@ fn checked(record: &MapRecord) -> Vec<(&'static str, String)> {
     for check in record.checks.iter().filter(told) {
         let met = match check.is_met {
             Some(true) => "met",
-            _ => "not met",
+            Some(false) => "not met",
+            None => "not judged",
         };
         let (name, found, limit) = (&check.name, &check.found, &check.limit);
         let text = format!("{name}: {found}, asked for {limit}, {met}");

@@ -325,7 +325,8 @@ fn a_peak_narrower_than_an_element_is_explained_wherever_checks_are_told() {
     let (mut n_met, mut n_judged) = (0, 0);
     for check in checks {
         let is_peak = check["name"] == "Largest plastic strain";
-        assert_eq!(check["reason"].is_object(), is_peak, "{check}");
+        let is_told = is_peak || check["name"] == "Pose";
+        assert_eq!(check["reason"].is_object(), is_told, "{check}");
         if is_peak {
             assert_eq!(check["reason"]["name"], "peak-narrower-than-element");
             assert!(check["reason"]["text"].as_str().unwrap().starts_with(words));
@@ -339,6 +340,29 @@ fn a_peak_narrower_than_an_element_is_explained_wherever_checks_are_told() {
     assert_eq!(page.matches(words).count(), 1);
     assert_eq!(page.matches("✔ met").count(), n_met);
     assert_eq!(page.matches("✖ not met").count(), n_judged - n_met);
+}
+
+/// The window, which knows the match, has one judged check more.
+#[test]
+fn why_a_given_pose_is_not_judged_stands_wherever_checks_are_told() {
+    let bracket = Bracket::new();
+    let (json, page) = (bracket.path("map.json"), bracket.path("map.html"));
+    let output = bracket.map(&["--json", &json, "--report", &page]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let record: Value = serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
+    let pose = &record["checks"][0];
+    assert_eq!(pose["name"], "Pose");
+    assert!(pose["is_met"].is_null());
+    assert_eq!(pose["reason"]["name"], "given-pose");
+    let told = text(&output.stdout);
+    assert!(
+        told.contains("Pose: given, asked for a match that is GOOD, not judged"),
+        "{told}"
+    );
+    let words = "Only the match that found a pose says whether it is right";
+    assert!(told.contains(words), "{told}");
+    let page = std::fs::read_to_string(&page).unwrap();
+    assert_eq!(page.matches(words).count(), 1);
 }
 
 #[test]

@@ -46,12 +46,15 @@ pub enum CheckPicture {
     Stress,
 }
 
-/// Why a check is judged against something else than the stamped values as they are.
+/// Why a check is not judged, or against something else than the stamped values as they are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CheckReason {
     /// A peak that is narrower than a crash element is lost in part whoever maps it.
     PeakNarrowerThanElement,
+    /// Of a pose that was given nothing is known, so that the command line has one judged check fewer than the
+    /// window, which knows the match.
+    GivenPose,
 }
 
 impl CheckReason {
@@ -61,6 +64,10 @@ impl CheckReason {
             Self::PeakNarrowerThanElement => {
                 "The stamped peak is narrower than a crash element, which can carry no more than the \
                  mean over its area: it is judged against that mean."
+            }
+            Self::GivenPose => {
+                "Only the match that found a pose says whether it is right, and this one was given. Where the \
+                 match is known, as in the window, the pose is one more check."
             }
         }
     }
@@ -90,8 +97,8 @@ pub struct CheckRecord {
     pub limit: String,
     /// Whether it is met; `None` for what is stated and not judged.
     pub is_met: Option<bool>,
-    /// Why it is judged against something else than the stamped values as they are; in a record by its
-    /// name and in words.
+    /// Why it is not judged, or against something else than the stamped values as they are; in a record by
+    /// its name and in words.
     #[serde(serialize_with = "with_words")]
     pub reason: Option<CheckReason>,
     /// Where it is seen.
@@ -191,7 +198,7 @@ fn pose(record: &MapRecord, lengths: Lengths) -> Option<CheckRecord> {
         found,
         limit: "a match that is GOOD".to_owned(),
         is_met: most.is_good(),
-        reason: None,
+        reason: (most == PoseOrigin::Given).then_some(CheckReason::GivenPose),
         picture: CheckPicture::Distance,
         worst: None,
     })
