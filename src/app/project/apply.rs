@@ -129,6 +129,7 @@ impl ProjectState {
         let Some((mut request, mut missing)) = self.missing.take() else {
             return Vec::new();
         };
+        self.refused = None;
         let is_found = matches!(located, Located::At(_));
         request.located.insert(file, located);
         missing.retain(|(missing, _)| *missing != file);
