@@ -43,11 +43,7 @@ pub struct Assessment {
 impl Assessment {
     /// The statements about pose and shape, one sentence each.
     pub fn statements(&self, lengths: Lengths) -> Vec<String> {
-        let pose = self.pose.as_ref().map(|pose| pose.words(lengths));
-        let shape = self.shape.as_ref().map(|shape| shape.words(lengths));
-        let pose = pose.map(|words| format!("pose {words}"));
-        let shape = shape.map(|words| format!("shape: {words}"));
-        pose.into_iter().chain(shape).collect()
+        statements(self.pose.as_ref(), self.shape.as_ref(), lengths)
     }
 
     /// How far the pose may be off, where that is known.
@@ -68,4 +64,30 @@ impl Assessment {
         let words = self.reasons.iter().map(|reason| reason.words(lengths));
         words.collect()
     }
+}
+
+/// What is said of an alternative beside its distances.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AlternativeStatements {
+    /// How far its pose may be off; another one fits nearly as well by its nature.
+    pub pose: PoseStatement,
+    /// Whether both parts have one shape under it.
+    pub shape: ShapeStatement,
+}
+
+impl AlternativeStatements {
+    /// One sentence each, as of the best pose.
+    pub fn sentences(&self, lengths: Lengths) -> Vec<String> {
+        statements(Some(&self.pose), Some(&self.shape), lengths)
+    }
+}
+
+fn statements(
+    pose: Option<&PoseStatement>,
+    shape: Option<&ShapeStatement>,
+    lengths: Lengths,
+) -> Vec<String> {
+    let pose = pose.map(|pose| format!("pose {}", pose.words(lengths)));
+    let shape = shape.map(|shape| format!("shape: {}", shape.words(lengths)));
+    pose.into_iter().chain(shape).collect()
 }

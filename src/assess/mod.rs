@@ -41,7 +41,7 @@ mod words;
 pub use all_pairs::is_better_with_all_pairs;
 pub use alternatives::{chosen_by_shape, is_pulled_aside, placed_by_holes};
 pub use ambiguity::{Ambiguity, Clarity, Twin, TwinAxis};
-pub use assessment::Assessment;
+pub use assessment::{AlternativeStatements, Assessment};
 pub use coverage::{Coverage, OneSided, coverage, overlap_limit, quick_overlap};
 pub use held::{HeldPose, hand_by_borders, held_by_borders};
 pub use pose::{PoseKind, PoseStatement};
@@ -59,6 +59,7 @@ pub use verdict::Verdict;
 pub use whole::placed_as_a_whole;
 pub use words::{beside, error_beside};
 
+use crate::geometry::Similarity;
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::{MatchOutcome, Surface};
 use statements::{Statements, mirrored_statement, statements};
@@ -120,4 +121,23 @@ pub fn assess(
     monitor.check()?;
     monitor.progress("verify", 2, Some(2));
     Ok(assessment)
+}
+
+/// The two statements about an alternative, on the full meshes. O(border edges + nodes · log triangles).
+pub fn assess_alternative(
+    source: &Surface,
+    target: &Surface,
+    pose: &Similarity,
+    settings: &AssessSettings,
+) -> AlternativeStatements {
+    let tolerance = Distances::of(source, target, pose.scale, settings).tolerance;
+    let Statements { uncertainty, shape } = statements(source, target, pose, settings);
+    AlternativeStatements {
+        pose: PoseStatement {
+            kind: PoseKind::Ambiguous,
+            uncertainty,
+            tolerance: tolerance.of_pose(shape.springback, settings.length_of_millimetre()),
+        },
+        shape,
+    }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
 use super::{ExportRequest, Exported, OpenedProject, PartFacts, PartSource, SweepRows};
-use crate::assess::Coverage;
+use crate::assess::{AlternativeStatements, Coverage};
 use crate::geometry::{Similarity, TriMesh};
 use crate::pipeline::inspect::Comparison;
 use crate::pipeline::load::{LoadSettings, LoadedPart};
@@ -15,6 +15,7 @@ use crate::pipeline::match_parts::{MatchRecipe, MatchRun, ReducedPair};
 use crate::pipeline::project::ProjectRequest;
 use crate::pipeline::reduce::{Deviation, Level, Levels};
 use crate::pipeline::sweep::{Sweep, SweepSettings};
+use crate::registration::MatchSettings;
 use crate::registration::starts::Start;
 use crate::role::{PerRole, Role};
 
@@ -201,6 +202,17 @@ pub struct MeasureInput {
     pub parts: PerRole<Arc<LoadedPart>>,
     /// Where the source lies.
     pub crash_from_stamped: Similarity,
+    /// Settings of the match that this pose is an alternative of, which is compared in its shape too.
+    pub alternative_of: Option<Box<MatchSettings>>,
+}
+
+/// What was measured at a pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measurement {
+    /// Distances and overlap.
+    pub coverage: Coverage,
+    /// What is said of an alternative, with the shape tolerance that was asked for (0 for the automatic one).
+    pub alternative: Option<(f64, AlternativeStatements)>,
 }
 
 /// Input of a comparison.
@@ -398,7 +410,7 @@ pub enum JobOutput {
     /// The match with its new verdict.
     Judged(Arc<MatchRun>),
     /// Distances and overlap.
-    Measured(Arc<Coverage>),
+    Measured(Arc<Measurement>),
     /// Deviation of every node.
     Compared(Arc<Comparison>),
     /// A further stamped file was read.

@@ -19,8 +19,8 @@ pub use export::{Destination, ExportRequest, Exported};
 pub use facts::PartFacts;
 pub use job::{
     CompareInput, CompareMappingInput, FoundCrash, FurtherInput, JobId, JobKey, JobKind, JobOutput,
-    MapInput, MatchInput, MeasureInput, MeasureLevelInput, MeasuredLevel, PlaceInput, Recording,
-    ReduceInput, Stamp, SweepInput, VerdictInput,
+    MapInput, MatchInput, MeasureInput, MeasureLevelInput, MeasuredLevel, Measurement, PlaceInput,
+    Recording, ReduceInput, Stamp, SweepInput, VerdictInput,
 };
 pub use live::{Live, LiveIteration, LiveSlot};
 pub use project::{OpenedPart, OpenedProject};

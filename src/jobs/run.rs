@@ -9,8 +9,8 @@ use super::{
     PlaceInput, SweepInput, VerdictInput,
 };
 use super::{
-    FoundCrash, JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, PartFacts, PartSource,
-    Recording, ReduceInput,
+    FoundCrash, JobKind, JobOutput, MeasureLevelInput, MeasuredLevel, Measurement, PartFacts,
+    PartSource, Recording, ReduceInput,
 };
 use crate::assess::{coverage, overlap_limit, quick_overlap};
 use crate::monitor::{Cancelled, Monitor};
@@ -251,7 +251,17 @@ fn measure(input: &MeasureInput, monitor: &Monitor) -> Result<JobOutput, JobErro
     let pose = &input.crash_from_stamped;
     let limit = overlap_limit(source, target, pose.scale, 0.0);
     let coverage = coverage(source, target, pose, limit, monitor)?;
-    Ok(JobOutput::Measured(Arc::new(coverage)))
+    let parts = input.parts.as_deref();
+    let alternative = input.alternative_of.as_ref().map(|settings| {
+        let said = match_parts::alternative_statements(parts, settings, pose);
+        (settings.shape_tolerance, said)
+    });
+    monitor.check()?;
+    let measurement = Measurement {
+        coverage,
+        alternative,
+    };
+    Ok(JobOutput::Measured(Arc::new(measurement)))
 }
 
 fn compare(input: &CompareInput, monitor: &Monitor) -> Result<JobOutput, JobError> {

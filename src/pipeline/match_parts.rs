@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::load::LoadedPart;
 use super::reduce::Levels;
 use super::{PipelineError, millis_since};
-use crate::assess::{self, AssessSettings, Assessment, HeldPose};
+use crate::assess::{self, AlternativeStatements, AssessSettings, Assessment, HeldPose};
 use crate::geometry::serial::shared;
 use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::{Cancelled, Monitor};
@@ -252,6 +252,17 @@ pub fn judged_anew(
         assessment: Arc::new(assessment),
         ..run.clone()
     })
+}
+
+/// What is said of an alternative of a match with these settings.
+pub fn alternative_statements(
+    parts: PerRole<&LoadedPart>,
+    settings: &MatchSettings,
+    crash_from_stamped: &Similarity,
+) -> AlternativeStatements {
+    let (target, source) = (&parts.crash.surface, &parts.stamped.surface);
+    let check = assess_settings(parts, settings);
+    assess::assess_alternative(source, target, crash_from_stamped, &check)
 }
 
 /// What the assessment of a match of these parts depends on.

@@ -4,6 +4,7 @@ mod card_reader;
 pub mod cards;
 pub mod command_line;
 pub mod csv;
+pub mod distances;
 pub mod html;
 mod info;
 pub mod matrix;

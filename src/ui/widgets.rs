@@ -377,22 +377,21 @@ pub fn figure_fits(ui: &Ui, name: &str, value: &str) -> bool {
 }
 
 /// A name on the left and a value on the right edge, for lists of figures.
-pub fn figure(ui: &mut Ui, name: &str, value: &str) {
+pub fn figure(ui: &mut Ui, name: &str, value: &str) -> Response {
     ui.spacing_mut().interact_size.y = 18.0;
     let has_room = figure_fits(ui, name, value);
     let value_ui = |ui: &mut Ui| {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.label(value);
-        });
+        let right = Layout::right_to_left(Align::Center);
+        ui.with_layout(right, |ui| ui.label(value)).inner
     };
-    ui.horizontal(|ui| {
-        secondary(ui, name);
-        if has_room {
-            value_ui(ui);
-        }
+    let row = ui.horizontal(|ui| {
+        let name = secondary(ui, name);
+        if has_room { name | value_ui(ui) } else { name }
     });
-    if !has_room {
-        ui.horizontal(value_ui);
+    if has_room {
+        row.inner
+    } else {
+        row.inner | ui.horizontal(value_ui).inner
     }
 }
 

@@ -233,6 +233,7 @@ fn matches(parts: &PerRole<Arc<LoadedPart>>, try_one: &impl Fn(&str, &JobKind)) 
     let measure = MeasureInput {
         parts: parts.clone(),
         crash_from_stamped,
+        alternative_of: Some(Box::new(run.recipe.settings.clone())),
     };
     try_one("measure", &JobKind::Measure(measure.clone()));
     try_one("overlap", &JobKind::Overlap(measure));

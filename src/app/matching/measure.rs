@@ -6,8 +6,9 @@ use std::time::Duration;
 use super::MatchState;
 use crate::app::work::Work;
 use crate::app::{AppState, Effect, MatchResult, Reason, facts};
-use crate::assess::{Assessment, Coverage};
-use crate::jobs::{JobKey, JobKind, MeasureInput, Stamp};
+use crate::assess::{AlternativeStatements, Assessment, Coverage};
+use crate::jobs::{JobKey, JobKind, MeasureInput, Measurement, Stamp};
+use crate::registration::MatchSettings;
 
 impl AppState {
     /// Distances and overlap of the current result at the pose that is shown: those of the match for its
@@ -20,8 +21,19 @@ impl AppState {
     pub fn coverage_of<'a>(&'a self, result: &'a MatchResult) -> Option<&'a Coverage> {
         match result.alternative {
             None => Some(&result.run.assessment.coverage),
-            Some(_) => self.matching.measurement_at(result.stamp),
+            Some(_) => {
+                let measured = self.matching.measurement_at(result.stamp)?;
+                Some(&measured.coverage)
+            }
         }
+    }
+
+    /// What is said of the alternative that is shown; `None` until it is measured.
+    pub fn alternative_statements(&self) -> Option<&AlternativeStatements> {
+        let result = self.document.current_result()?;
+        let measured = self.matching.measurement_at(result.stamp)?;
+        let (_, said) = measured.alternative.as_ref()?;
+        result.alternative.is_some().then_some(said)
     }
 }
 
@@ -47,7 +59,7 @@ impl AppState {
 
 impl MatchState {
     /// The measurement, if it was made of these parts at this pose.
-    fn measurement_at(&self, stamp: Stamp) -> Option<&Coverage> {
+    fn measurement_at(&self, stamp: Stamp) -> Option<&Measurement> {
         let (at, measurement) = self.measurement.as_ref()?;
         (*at == stamp).then_some(&**measurement)
     }
@@ -60,24 +72,27 @@ impl MatchState {
         let stamp = work.document.stamp();
         let result = work.document.current_result();
         let is_alternative = result.is_some_and(|result| result.alternative.is_some());
-        let is_known =
-            self.measurement_at(stamp).is_some() || self.alternative_asked == Some(stamp);
+        let tolerance = work.document.recipe.settings.shape_tolerance;
+        let measured = self.measurement_at(stamp);
+        let said = measured.and_then(|measured| measured.alternative.as_ref());
+        let is_known = said.is_some_and(|(of, _)| *of == tolerance)
+            || self.alternative_asked == Some((stamp, tolerance));
         let is_free = work.is_unlocked().is_ok() && !work.jobs.is_active(JobKey::Measure);
         if !is_alternative || is_known || !is_free {
             return Vec::new();
         }
-        self.alternative_asked = Some(stamp);
+        self.alternative_asked = Some((stamp, tolerance));
         measure(work)
     }
 
     pub(in crate::app) fn take_measured(
         &mut self,
         work: &mut Work<'_>,
-        measurement: Arc<Coverage>,
+        measurement: Arc<Measurement>,
         stamp: Stamp,
         took: Duration,
     ) {
-        let line = facts::measure_line(&measurement, work.lengths());
+        let line = facts::measure_line(&measurement.coverage, work.lengths());
         work.log_step("measure", None, line, Some(took));
         self.measurement = Some((stamp, measurement.into()));
     }
@@ -87,9 +102,18 @@ pub(super) fn measure(work: &mut Work<'_>) -> Vec<Effect> {
     let Some(both) = work.document.both() else {
         return Vec::new();
     };
+    let result = work.document.current_result();
+    let alternative = result.filter(|result| result.alternative.is_some());
+    let alternative_of = alternative.map(|result| {
+        Box::new(MatchSettings {
+            shape_tolerance: work.document.recipe.settings.shape_tolerance,
+            ..result.run.recipe.settings.clone()
+        })
+    });
     let input = MeasureInput {
         parts: both.map(|part| part.loaded.to_arc()),
         crash_from_stamped: *work.document.crash_from_stamped(),
+        alternative_of,
     };
     let mut effects = work.cancel(JobKey::Measure);
     effects.push(work.start(JobKind::Measure(input)));

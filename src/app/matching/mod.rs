@@ -18,8 +18,7 @@ pub use starts::{LiveStarts, Starts};
 
 use super::work::Work;
 use super::{AppState, Effect, Reason, Shared};
-use crate::assess::Coverage;
-use crate::jobs::{JobKind, Live, Stamp, SweepRows};
+use crate::jobs::{JobKind, Live, Measurement, Stamp, SweepRows};
 use crate::pipeline::sweep::Sweep;
 use crate::registration::Method;
 use crate::role::PerRole;
@@ -44,9 +43,9 @@ pub struct MatchState {
     /// Why the last match gave no result.
     failure: Option<Failure>,
     /// Distances and overlap with the state they were measured in.
-    measurement: Option<(Stamp, Shared<Coverage>)>,
-    /// The state of the alternative that was measured last without being asked for.
-    alternative_asked: Option<Stamp>,
+    measurement: Option<(Stamp, Shared<Measurement>)>,
+    /// The state and the shape tolerance of the alternative that was measured last without being asked for.
+    alternative_asked: Option<(Stamp, f64)>,
     /// The state and the shape tolerance of the verdict that was asked for last.
     judging_asked: Option<(Stamp, f64)>,
     /// The tables of the last sweep.

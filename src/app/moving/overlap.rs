@@ -49,6 +49,7 @@ impl MovingState {
         let input = MeasureInput {
             parts: both.map(|part| part.loaded.to_arc()),
             crash_from_stamped: *work.document.crash_from_stamped(),
+            alternative_of: None,
         };
         self.overlap_asked = Some(stamp);
         vec![work.start(JobKind::Overlap(input))]

@@ -75,7 +75,7 @@ impl Report<'_> {
                 (key_figure("▲ stamped on ■ crash", &percent(metrics.overlap.stamped), &format!("within {limit}")))
                 (key_figure("■ crash on ▲ stamped", &percent(metrics.overlap.crash), &format!("within {limit}")))
                 (key_figure("RMS distance", &lengths.of(metrics.rmse), "of the overlap"))
-                (key_figure("P95", &lengths.of(metrics.p95), ""))
+                (key_figure("P95", &lengths.of(metrics.p95), "of the overlap"))
                 (key_figure("Starts that agree", &agreement, ""))
                 @match next {
                     // The report of an alternative stands beside the best pose.

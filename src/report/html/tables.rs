@@ -6,6 +6,7 @@ use super::Report;
 use super::page::{Column, cell, fact_table, image, printable, table};
 use crate::formats::FileHash;
 use crate::geometry::Point3;
+use crate::report::distances::{COMPARED_P95, COMPARED_RMS};
 use crate::report::matrix::number;
 use crate::report::{FileRecord, outcome_words, start_name};
 use crate::settings::{SETTINGS, Setting};
@@ -53,8 +54,8 @@ impl Report<'_> {
             Column::number("Off by more"),
             Column::number("No counterpart"),
             Column::number("Mean"),
-            Column::number("RMS"),
-            Column::number("P95"),
+            Column::number(COMPARED_RMS.name),
+            Column::number(COMPARED_P95.name),
             Column::number("Min"),
             Column::number("Max"),
         ];

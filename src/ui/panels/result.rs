@@ -6,6 +6,7 @@ use super::explain;
 use crate::app::{Action, AppState, Command, ExportCommand, MatchCommand, MatchResult, Section};
 use crate::assess::{Ambiguity, Coverage, OneSided};
 use crate::registration::{group_starts, limits};
+use crate::report::distances::{OVERLAP_HELP, OVERLAP_SPREAD};
 use crate::report::{PoseRecord, few_agree_words, number, start_counts};
 use crate::role::PerRole;
 use crate::settings::setting;
@@ -112,7 +113,7 @@ fn outdated_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &m
             state.lengths().number(coverage.rmse()),
             state.lengths().of(coverage.p95())
         );
-        figure(ui, "RMS · P95 then", &spread);
+        figure(ui, "RMS · P95 then", &spread).on_hover_text(OVERLAP_SPREAD.help);
     }
     let is_same_pair = result.stamp.parts == state.document.stamp().parts;
     ui.horizontal(|ui| {
@@ -148,7 +149,7 @@ fn verdict_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, commands: &mu
     });
     refusal(ui, refused);
     if let Some(score_ratio) = score_ratio(result) {
-        paragraph(ui, alternative_words(score_ratio));
+        alternative_ui(ui, state, result, score_ratio);
         return;
     }
     let is_unit_in_doubt = state.is_unit_in_doubt();
@@ -233,6 +234,24 @@ fn tolerance_ui(
     refused
 }
 
+/// How an alternative fits beside the best pose, and the statements that the best pose has too.
+fn alternative_ui(ui: &mut Ui, state: &AppState, result: &MatchResult, score_ratio: f64) {
+    let lengths = state.lengths();
+    let best = &result.run.assessment.coverage;
+    let (rms, p95) = (lengths.number(best.rmse()), lengths.of(best.p95()));
+    paragraph(ui, alternative_words(score_ratio)).on_hover_text(format!(
+        "{} at the best pose: {rms} · {p95}",
+        OVERLAP_SPREAD.name
+    ));
+    if state.is_unit_in_doubt() {
+        return;
+    }
+    let said = state.alternative_statements();
+    for statement in said.iter().flat_map(|said| said.sentences(lengths)) {
+        paragraph(ui, sentence(&statement));
+    }
+}
+
 /// How well an alternative fits beside the best pose.
 fn alternative_words(score_ratio: f64) -> String {
     let worse = whole_percent(score_ratio - 1.0);
@@ -258,14 +277,6 @@ fn figures_ui(ui: &mut Ui, state: &AppState, result: &MatchResult) {
             None => {
                 caption(ui, "Measuring this pose…");
             }
-        }
-        if result.alternative.is_some() {
-            let best = &result.run.assessment.coverage;
-            let (rms, p95) = (
-                state.lengths().number(best.rmse()),
-                state.lengths().of(best.p95()),
-            );
-            figure(ui, "best pose: RMS · P95", &format!("{rms} · {p95}"));
         }
         let outcome = &result.run.outcome;
         let groups = group_starts(&outcome.starts, &state.stamped_extent());
@@ -303,13 +314,14 @@ fn coverage_ui(ui: &mut Ui, state: &AppState, coverage: &Coverage) {
         .iter()
         .all(|[name, _, value]| figure_fits(ui, name, value));
     for [name, short, value] in rows {
-        figure(ui, if has_words { name } else { short }, value);
+        figure(ui, if has_words { name } else { short }, value).on_hover_text(OVERLAP_HELP);
     }
     let (rms, p95) = (
         state.lengths().number(coverage.rmse()),
         state.lengths().of(coverage.p95()),
     );
-    figure(ui, "RMS · P95 of the overlap", &format!("{rms} · {p95}"));
+    let spread = format!("{rms} · {p95}");
+    figure(ui, OVERLAP_SPREAD.name, &spread).on_hover_text(OVERLAP_SPREAD.help);
 }
 
 /// Poses that fit nearly as well: one click or one key away.

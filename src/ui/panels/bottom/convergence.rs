@@ -7,6 +7,7 @@ use egui_plot::{PlotPoints, VLine};
 use super::charts;
 use crate::app::{AppState, Command, Preview, PreviewCommand};
 use crate::registration::{IterationRecord, StartRecord};
+use crate::report::distances::{self, RESIDUAL};
 use crate::report::start_name;
 use crate::text::Lengths;
 use crate::ui::focus;
@@ -195,8 +196,10 @@ fn figures_ui(ui: &mut Ui, curves: &Curves<'_>) {
     let n_steps = iterations.len();
     let words = |step: &IterationRecord| {
         format!(
-            "residual {} · kept {}",
+            "{} {} · {} {}",
+            RESIDUAL.name,
             curves.lengths.of(step.rmse),
+            distances::KEPT.name,
             percent(step.fraction)
         )
     };
@@ -232,13 +235,12 @@ struct Chart {
 }
 
 const RMS: Chart = Chart {
-    name: "residual",
+    name: RESIDUAL.name,
     value: |iteration| iteration.rmse,
     is_length: true,
 };
-/// Share of the stamped part's area whose pairs an iteration keeps: no overlap, which the verdict states.
 const KEPT: Chart = Chart {
-    name: "kept",
+    name: distances::KEPT.name,
     value: |iteration| iteration.fraction,
     is_length: false,
 };

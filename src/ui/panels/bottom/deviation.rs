@@ -11,6 +11,7 @@ use crate::app::{
 use crate::assess::deviation::OverlapClass;
 use crate::geometry::Point3;
 use crate::pipeline::inspect::Comparison;
+use crate::report::distances::{COMPARED_P95, COMPARED_RMS};
 use crate::role::Role;
 use crate::ui::theme::{Palette, ROW};
 use crate::ui::widgets::{
@@ -159,8 +160,8 @@ fn rows(state: &AppState, comparison: &Comparison) -> Vec<(String, [String; 2])>
         row(&inside, &|s| percent(s.share_inside(tolerance))),
         row("mean", &|s| lengths.signed(s.mean)),
         // Beside those of the overlap, which leave out what lies beyond the limit.
-        row("RMS (compared)", &|s| lengths.number(s.rms)),
-        row("P95 (compared)", &|s| lengths.number(s.p95)),
+        row(COMPARED_RMS.name, &|s| lengths.number(s.rms)),
+        row(COMPARED_P95.name, &|s| lengths.number(s.p95)),
         row("min", &|s| lengths.signed(s.min)),
         row("max", &|s| lengths.signed(s.max)),
         row("standard deviation", &|s| lengths.number(s.std)),
@@ -217,7 +218,11 @@ fn numbers_ui(ui: &mut Ui, state: &AppState, comparison: &Comparison) {
                 let (name, values) = &rows[row.index()];
                 row.col(|ui| {
                     let text = RichText::new(name).color(Palette::of(ui).secondary);
-                    ui.add(egui::Label::new(text).truncate());
+                    let label = ui.add(egui::Label::new(text).truncate());
+                    let named = [COMPARED_RMS, COMPARED_P95].into_iter();
+                    for measure in named.filter(|measure| measure.name == name) {
+                        label.clone().on_hover_text(measure.help);
+                    }
                 });
                 for value in values {
                     row.col(|ui| right(ui, RichText::new(value)));
@@ -385,9 +390,9 @@ fn csv(state: &AppState, comparison: &Comparison) -> String {
     line("tolerance", [tolerance; 2]);
     line("share inside", both.map(|s| s.share_inside(tolerance)));
     line("mean", both.map(|s| s.mean));
-    line("RMS (compared)", both.map(|s| s.rms));
+    line(COMPARED_RMS.name, both.map(|s| s.rms));
     line("standard deviation", both.map(|s| s.std));
-    line("P95 (compared)", both.map(|s| s.p95));
+    line(COMPARED_P95.name, both.map(|s| s.p95));
     line("Min", both.map(|s| s.min));
     line("Max", both.map(|s| s.max));
     for (index, name) in ["matched", "beyond the limit", "on this part only"]

@@ -8,6 +8,7 @@ use super::thumbnails::Thumbnails;
 use crate::app::{AppState, Command, MatchCommand, Preview, PreviewCommand, duration_text};
 use crate::geometry::Similarity;
 use crate::registration::{StartGroup, StartOutcome, StartRecord, group_starts};
+use crate::report::distances::{KEPT, PAIRS_P95, RESIDUAL};
 use crate::report::{
     outcome_words, start_data_words, start_kind_help, start_kind_words, start_name,
 };
@@ -124,8 +125,11 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
     let unit = table.state.document.unit_suffix();
     let columns = Columns::fitting(ui.available_width());
     let figures = &columns.figures;
-    let mut titles = vec![String::new(), "start".to_owned(), "outcome".to_owned()];
-    titles.extend(figures.iter().map(|figure| figure.title(unit)));
+    let words = ["", "start", "outcome"].map(|title| (title.to_owned(), None));
+    let figure_titles = figures
+        .iter()
+        .map(|figure| (figure.title(unit), figure.help()));
+    let titles: Vec<_> = words.into_iter().chain(figure_titles).collect();
     let mut hovered = None;
     let thumbnails = Thumbnails::of(ui.ctx());
     let mut thumbnails = thumbnails.lock();
@@ -145,9 +149,12 @@ fn table_ui(ui: &mut Ui, table: &Table<'_>, commands: &mut Vec<Command>) -> Opti
     }
     builder
         .header(20.0, |mut header| {
-            for title in titles {
+            for (title, help) in titles {
                 header.col(|ui| {
-                    caption(ui, title);
+                    let title = caption(ui, title);
+                    if let Some(help) = help {
+                        title.on_hover_text(help);
+                    }
                 });
             }
         })
@@ -352,12 +359,25 @@ impl Figure {
 
     fn title(self, unit: &str) -> String {
         match self {
-            Self::Kept => "kept".to_owned(),
-            Self::Residual => format!("residual{unit}"),
-            Self::P95 => format!("P95{unit}"),
+            Self::Kept => KEPT.name.to_owned(),
+            Self::Residual => format!("{}{unit}", RESIDUAL.name),
+            Self::P95 => format!("{}{unit}", PAIRS_P95.name),
             Self::Iterations => "iterations".to_owned(),
             Self::Time => "time".to_owned(),
             Self::ToBest => format!("to best{unit}"),
+        }
+    }
+
+    /// Over what it is measured, where its name does not say it.
+    fn help(self) -> Option<&'static str> {
+        match self {
+            Self::Kept => Some(KEPT.help),
+            Self::Residual => Some(RESIDUAL.help),
+            Self::P95 => Some(PAIRS_P95.help),
+            Self::Iterations | Self::Time => None,
+            Self::ToBest => Some(
+                "Farthest that a corner of the part’s box lies from where the best pose has it",
+            ),
         }
     }
 
@@ -365,7 +385,7 @@ impl Figure {
         match self {
             Self::Kept => 62.0,
             Self::Residual => 84.0,
-            Self::P95 => 68.0,
+            Self::P95 => 96.0,
             Self::Iterations => 60.0,
             Self::Time => 64.0,
             Self::ToBest => 72.0,
