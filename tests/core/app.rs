@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use shapematch::app::*;
+use shapematch::assess::PoseKind;
 use shapematch::formats::Model;
 use shapematch::geometry::camera::StandardView;
 use shapematch::geometry::{Point3, Similarity, TriMesh, Vector3};
@@ -941,22 +942,67 @@ fn the_numbers_of_the_result_are_those_of_the_shown_pose() {
     let input = MeasureInput {
         parts: pair.map(|part| part.loaded.to_arc()),
         crash_from_stamped: shifted(2.0),
+        alternative_of: None,
     };
     let measured = PipelineRunner.run(JobKind::Measure(input), &Monitor::silent());
     let Ok(JobOutput::Measured(measured)) = measured else {
         panic!("not measured");
     };
-    assert_eq!(shown(&window), *measured);
+    assert_eq!(shown(&window), measured.coverage);
     assert_ne!(shown(&window), of_match);
+    // It has both statements, under its own pose and with the tolerance that is asked for.
+    let said = window.state.alternative_statements().unwrap().clone();
+    assert_eq!(said.pose.kind, PoseKind::Ambiguous);
+    let sentences = said.sentences(window.state.lengths());
+    assert!(sentences[0].starts_with("pose ") && sentences[1].starts_with("shape: "));
+    let mut recipe = window.state.document.recipe.clone();
+    recipe.settings.shape_tolerance = 2.0 * said.shape.tolerance.remainder;
+    window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
+    let with = |window: &Window| {
+        let said = window.state.alternative_statements().unwrap();
+        said.shape.tolerance.remainder
+    };
+    assert_eq!(with(&window), 2.0 * said.shape.tolerance.remainder);
+    window.act(Action::Undo);
+    assert_eq!(with(&window), said.shape.tolerance.remainder);
     // Moved from there, the alternative is still the earlier result.
     window.apply(MoveCommand::Flip(Axis::X));
     let earlier = window.state.document.result.clone().unwrap();
-    assert_eq!(window.state.coverage_of(&earlier), Some(&*measured));
+    assert_eq!(window.state.coverage_of(&earlier), Some(&measured.coverage));
     assert_ne!(earlier.verdict(), shapematch::assess::Verdict::Good);
     window.act(Action::Undo);
     window.act(Action::NextAlternative);
     window.act(Action::NextAlternative);
     assert_eq!(shown(&window), of_match, "the best pose again");
+}
+
+/// One goes from pose to pose with the camera at rest, so it sees all of them beside what lies over the window.
+#[test]
+fn a_fitted_view_shows_every_pose_that_fits_as_well() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    if !window.state.view.is_moved_over {
+        window.act(Action::ToggleMoveOver);
+    }
+    let fitted = |window: &mut Window| {
+        window.apply(ViewCommand::FitAll(Role::Crash));
+        window.state.view.cameras.crash
+    };
+    let of_best = fitted(&mut window);
+    for _ in 0..2 {
+        window.act(Action::NextAlternative);
+        assert!(
+            window
+                .state
+                .document
+                .result
+                .as_ref()
+                .unwrap()
+                .alternative
+                .is_some()
+        );
+        assert_eq!(fitted(&mut window), of_best);
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{BottomTab, Section, ViewCommand, ViewRoom, ViewState};
-use crate::app::{AppState, Document, PartRef, ShownFile};
+use crate::app::{AppState, Document, PartRef, ShownFile, facts};
 use crate::geometry::{Aabb, Camera, Point3, Similarity, Vector3};
 use crate::pipeline::load::LoadedPart;
 use crate::registration::starts::Start;
@@ -208,6 +208,15 @@ impl ViewState {
             let corners = part.bounds().corners();
             let poses = scene.starts.iter().map(|start| start.target_from_source);
             points.extend(poses.flat_map(|pose| corners.map(|corner| pose.apply(&corner))));
+        }
+        // So it does with the poses that fit as well.
+        let shared = stamped.filter(|_| role == Role::Crash && self.is_moved_over);
+        let result = scene.document.current_result();
+        for (part, result) in shared.into_iter().zip(result) {
+            let equal = (0..facts::n_alternatives(&result.run)).map(Some);
+            let poses = std::iter::once(None).chain(equal);
+            let poses = poses.filter_map(|pose| result.run.pose(pose));
+            points.extend(poses.flat_map(|pose| spread(&part.loaded, pose)));
         }
         let room = self.room(role, scene);
         self.fit(role, &points, &room);

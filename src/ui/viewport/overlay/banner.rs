@@ -9,7 +9,7 @@ use crate::assess::Coverage;
 use crate::role::Role;
 
 /// Above the scale bar and the readout.
-const BOTTOM: f32 = 62.0;
+pub(super) const BOTTOM: f32 = 62.0;
 const HEIGHT: f32 = 32.0;
 /// Where it begins, from the foot of the window.
 pub(super) const TOP: f32 = BOTTOM + HEIGHT;

@@ -1,12 +1,14 @@
 //! The motion that leaves the pose open, drawn on the part: arrows along free shifts, a ring about a
-//! free turn, with one sentence.
+//! free turn. One sentence says it at the foot of the window, where it lies over no part that is fitted.
 
-use egui::{Align2, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
+use egui::{CornerRadius, FontId, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 
-use super::Overlay;
+use super::{MARGIN, Overlay, banner, cube};
+use crate::app::Part;
 use crate::assess::{FreeMotion, FreeMotionKind};
 use crate::geometry::{Point3, Vector3};
 use crate::role::Role;
+use crate::text::capital;
 use crate::ui::viewport::navigation::pos_of;
 
 /// Half the length of an arrow and the radius of a ring, as shares of the part's size.
@@ -16,19 +18,26 @@ const RADIUS: f64 = 0.16;
 const N_POINTS: usize = 64;
 /// Length of an arrow's head.
 const HEAD: f32 = 11.0;
+/// Widest and narrowest lines of the sentence.
+const WIDEST: f32 = 340.0;
+const NARROWEST: f32 = 120.0;
+/// Between the sentence and what is below it.
+const AIR: f32 = 4.0;
 
-/// The free motion of the present result, in the window with both parts.
-pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
-    if over.role() != Role::Crash || over.frame.view.over < 1.0 || over.frame.state.is_preview() {
-        return;
+/// The free motion of the present result and the part that it moves, in the window with both parts.
+fn shown<'a>(over: &Overlay<'a>) -> Option<(&'a FreeMotion, &'a Part)> {
+    let state = over.frame.state;
+    if over.role() != Role::Crash || over.frame.view.over < 1.0 || state.is_preview() {
+        return None;
     }
-    let Some(result) = over.frame.state.document.current_result() else {
-        return;
-    };
-    let Some(motion) = result.run.assessment.open_motion() else {
-        return;
-    };
-    let Some(part) = over.frame.state.document.part(Role::Stamped) else {
+    let result = state.document.current_result()?;
+    let motion = result.run.assessment.open_motion()?;
+    Some((motion, state.document.part(Role::Stamped)?))
+}
+
+/// Arrows and ring, on the part.
+pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
+    let Some((motion, part)) = shown(over) else {
         return;
     };
     let size = part.bounds().diagonal() * over.frame.view.pose.scale;
@@ -49,7 +58,6 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
         FreeMotionKind::Extruded => arrow(&motion.direction),
         FreeMotionKind::Revolved | FreeMotionKind::Spherical | FreeMotionKind::Other => ring(),
     }
-    label(&painter, over, motion, size);
 }
 
 /// Two directions across a third and each other.
@@ -123,34 +131,33 @@ fn draw_ring(
     head(painter, over, tip, tip - before);
 }
 
-fn label(painter: &Painter, over: &Overlay<'_>, motion: &FreeMotion, size: f64) {
-    let Some(at) = seen(over, &motion.point) else {
-        return;
+/// The sentence, above the scale bar or the banner; returns how far it reaches up from the foot of the window.
+pub(super) fn sentence(ui: &Ui, over: &Overlay<'_>, has_banner: bool) -> Option<f32> {
+    let (motion, _) = shown(over)?;
+    let window = over.frame.rect();
+    let painter = over.painter(ui);
+    // The cube in the corner stays beside it.
+    let beside = if cube::is_shown(over) {
+        MARGIN + cube::SIZE
+    } else {
+        MARGIN
     };
-    let words = motion.words();
-    let mut letters = words.chars();
-    let first = letters.next().map(|c| c.to_uppercase().to_string());
-    let text = format!("{}{}", first.unwrap_or_default(), letters.as_str());
-    let room = over.frame.rect().width() - 40.0;
+    let room = window.width() - 2.0 * (beside + 2.0 * AIR) - 16.0;
     let galley = painter.layout(
-        text,
+        capital(&motion.words()),
         FontId::proportional(12.5),
         over.frame.look.text,
-        room.min(340.0),
+        room.clamp(NARROWEST, WIDEST),
     );
-    let pixel = over.frame.view.camera.pixel_size(
-        crate::ui::viewport::navigation::screen_of(over.frame.rect()),
-        &motion.point,
-    );
-    let below = (RADIUS * size / pixel) as f32 + 22.0;
-    let plate =
-        Align2::CENTER_TOP.anchor_size(at + vec2(0.0, below), galley.size() + vec2(16.0, 8.0));
-    let inside = over.frame.rect().shrink(12.0);
-    let shift = vec2(
-        (inside.left() - plate.left()).max(0.0) + (inside.right() - plate.right()).min(0.0),
-        (inside.top() - plate.top()).max(0.0) + (inside.bottom() - 60.0 - plate.bottom()).min(0.0),
-    );
-    let plate: Rect = plate.translate(shift);
+    let foot = if has_banner {
+        banner::TOP + AIR
+    } else {
+        banner::BOTTOM
+    };
+    let size = galley.size() + vec2(16.0, 8.0);
+    let center = window.center_bottom() - vec2(0.0, foot + 0.5 * size.y);
+    let plate = Rect::from_center_size(center, size);
     painter.rect_filled(plate, CornerRadius::same(5), over.frame.look.plate);
     painter.galley(plate.min + vec2(8.0, 4.0), galley, over.frame.look.text);
+    Some(foot + size.y)
 }

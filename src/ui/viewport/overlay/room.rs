@@ -2,7 +2,7 @@
 
 use egui::Rect;
 
-use super::{MARGIN, Overlay, banner, cube, free, header};
+use super::{MARGIN, Overlay, cube, free, header};
 use crate::app::{Command, ViewCommand, ViewRoom};
 use crate::geometry::camera::Covered;
 
@@ -13,16 +13,17 @@ const NEAR_EDGE: f32 = 24.0;
 /// Air between a part and what lies over the window.
 const AIR: f32 = 4.0;
 
-/// Tells the state the shape of the window and what covers it, if that changed.
+/// Tells the state the shape of the window and what covers it, if that changed. `foot` is how far what lies above
+/// the scale bar reaches up.
 pub(super) fn tell(
     over: &Overlay<'_>,
     legend: Option<Rect>,
-    has_banner: bool,
+    foot: Option<f32>,
     commands: &mut Vec<Command>,
 ) {
     let room = ViewRoom {
         aspect: over.frame.view.aspect,
-        covered: covered(over, legend, has_banner),
+        covered: covered(over, legend, foot),
     };
     let role = over.role();
     if room.differs(over.frame.state.view.rooms.get(role)) {
@@ -30,14 +31,10 @@ pub(super) fn tell(
     }
 }
 
-fn covered(over: &Overlay<'_>, legend: Option<Rect>, has_banner: bool) -> Covered {
+fn covered(over: &Overlay<'_>, legend: Option<Rect>, foot: Option<f32>) -> Covered {
     let window = over.frame.rect();
     let head = header::height(over).unwrap_or(free::BELOW_CHOICE);
-    let foot = if has_banner {
-        banner::TOP
-    } else {
-        MARGIN + SCALE_BAR
-    };
+    let foot = foot.unwrap_or(MARGIN + SCALE_BAR);
     let corner = if cube::is_shown(over) {
         let [width, height] = [MARGIN + cube::SIZE; 2];
         [share(width, window.width()), share(height, window.height())]
