@@ -303,7 +303,19 @@ fn paint(ui: &Ui, rect: Rect, row: &Row<'_>, columns: &Columns, state: &AppState
     let body = TextStyle::Body.resolve(ui.style());
     let small = TextStyle::Small.resolve(ui.style());
     let left = |x: Rangef, text: &str, color: Color32| {
-        let galley = elided_middle(ui, text, body.clone(), color, x.span());
+        let whole = |font: &FontId| {
+            let laid = ui
+                .painter()
+                .layout_no_wrap(text.to_owned(), font.clone(), color);
+            laid.size().x <= x.span()
+        };
+        // A title is read whole in small letters sooner than cut.
+        let font = if whole(&small) && !whole(&body) {
+            &small
+        } else {
+            &body
+        };
+        let galley = elided_middle(ui, text, font.clone(), color, x.span());
         let at = pos2(x.min, middle - galley.size().y / 2.0);
         ui.painter().galley(at, galley, color);
     };
