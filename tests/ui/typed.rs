@@ -142,8 +142,15 @@ fn limits_moves_and_sizes_that_cannot_be_are_refused() {
     click(&mut window, "Unfold the legend (stamped)");
     let coloring = |window: &Window| window.state().state().view.display.coloring;
     let before = coloring(&window);
+    let role = egui::accesskit::Role::SpinButton;
+    let below = |window: &Window| {
+        let field = window.get_by_role_and_label(role, "Tolerance (stamped)");
+        field.rect().top()
+    };
+    let at = below(&window);
     let lower = [("much", "“much” is not a number.")];
     is_refused(&mut window, "Lower limit (stamped)", &lower);
+    assert_eq!(below(&window), at, "the fields of the legend stay in place");
     let tolerance = [("-1", "Tolerance: 0 to 1,000,000,000.")];
     is_refused(&mut window, "Tolerance (stamped)", &tolerance);
     assert_eq!(coloring(&window), before);

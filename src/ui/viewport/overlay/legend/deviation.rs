@@ -9,6 +9,7 @@ use super::{Room, WIDTH, bar, menu, overlap};
 use crate::app::{Coloring, Command, Freshness, InspectCommand};
 use crate::assess::deviation::DeviationStats;
 use crate::colormap::ColorScale;
+use crate::report::distances::{COMPARED_P95, COMPARED_RMS};
 use crate::role::Role;
 use crate::text::capital;
 use crate::ui::theme::{Palette, color};
@@ -49,17 +50,19 @@ pub(super) fn show(
     if room.is_full {
         side_words(ui, over, "on the crash normal side", true);
     }
-    limit_field(ui, over, scale, Limit::Upper, &mut coloring);
+    let upper = limit_field(ui, over, scale, Limit::Upper, &mut coloring);
     bars(ui, over, (scale, stats), room.bar, &mut coloring);
-    limit_field(ui, over, scale, Limit::Lower, &mut coloring);
+    let lower = limit_field(ui, over, scale, Limit::Lower, &mut coloring);
     if room.is_full {
         side_words(ui, over, "opposite", false);
     }
     ui.add_space(2.0);
-    tolerance(ui, over, scale, stats, &mut coloring);
+    let band = tolerance(ui, over, scale, stats, &mut coloring);
     if room.is_full {
         numbers(ui, over, stats);
     }
+    // At the foot, so that fields and bars stay where they are.
+    refusal(ui, upper.or(lower).or(band));
     if coloring != before {
         menu::set(over, coloring, commands);
     }
@@ -209,19 +212,19 @@ impl Limit {
     }
 }
 
-/// The value at an end of the bar, typed or dragged.
+/// The value at an end of the bar, typed or dragged; says why a typed one was refused.
 fn limit_field(
     ui: &mut Ui,
     over: &Overlay<'_>,
     scale: &ColorScale,
     limit: Limit,
     coloring: &mut Coloring,
-) {
+) -> Option<String> {
     let mut value = match limit {
         Limit::Upper => scale.max,
         Limit::Lower => scale.min,
     };
-    let refused = ui.horizontal(|ui| {
+    let row = ui.horizontal(|ui| {
         ui.add_space(HISTOGRAM - 2.0);
         let takes = Takes::number(limit.name(), "", -1e9..=1e9);
         let field = takes
@@ -246,7 +249,7 @@ fn limit_field(
         response.on_hover_text("Drag or type; both ends move together unless Alt is held");
         refused
     });
-    refusal(ui, refused.inner);
+    row.inner
 }
 
 /// The limits with a new value at one end, which the other end mirrors while they are symmetric, unless the end
@@ -456,15 +459,15 @@ fn drag_tolerance(
     }
 }
 
-/// How much area lies within the neutral band, whose width can be typed.
+/// How much area lies within the neutral band, whose width can be typed; says why a typed one was refused.
 fn tolerance(
     ui: &mut Ui,
     over: &Overlay<'_>,
     scale: &ColorScale,
     stats: &DeviationStats,
     coloring: &mut Coloring,
-) {
-    let refused = ui.horizontal(|ui| {
+) -> Option<String> {
+    let row = ui.horizontal(|ui| {
         let inside = percent(stats.share_inside(scale.tolerance));
         ui.label(RichText::new(inside).size(15.0).color(over.frame.look.text));
         ui.label(RichText::new("within ±").size(12.0));
@@ -486,7 +489,7 @@ fn tolerance(
         ui.label(RichText::new(over.frame.state.document.unit_suffix()).size(12.0));
         refused
     });
-    refusal(ui, refused.inner);
+    row.inner
 }
 
 /// Says that the colours are those of the reduced part, where the numbers are those of the full one.
@@ -504,16 +507,13 @@ fn drawn_on(ui: &mut Ui, over: &Overlay<'_>, words: &str) {
 fn numbers(ui: &mut Ui, over: &Overlay<'_>, stats: &DeviationStats) {
     let small = |text: String| RichText::new(text).size(11.0).color(over.frame.look.weak);
     let lengths = over.frame.state.lengths();
-    ui.label(small("of the compared area:".to_owned()));
-    let mean = format!(
-        "mean {} · RMS {}",
-        lengths.signed_of(stats.mean),
-        lengths.of(stats.rms)
-    );
-    ui.label(small(mean));
     let (least, most) = (lengths.signed(stats.min), lengths.signed_of(stats.max));
-    ui.label(small(format!("from {least} to {most}")));
-    ui.label(small(format!("P95 {}", lengths.of(stats.p95))));
+    let mean = lengths.signed(stats.mean);
+    ui.label(small(format!("mean {mean}, {least} to {most}")));
+    for (measure, value) in [(COMPARED_RMS, stats.rms), (COMPARED_P95, stats.p95)] {
+        let text = format!("{} {}", measure.name, lengths.of(value));
+        ui.label(small(text)).on_hover_text(measure.help);
+    }
     let alone = stats.class_shares[2];
     if alone > 5e-4 {
         ui.horizontal(|ui| {
