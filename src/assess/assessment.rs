@@ -46,6 +46,14 @@ impl Assessment {
         statements(self.pose.as_ref(), self.shape.as_ref(), lengths)
     }
 
+    /// The verdict on what was read, whatever could not be: errors in a file concern all its parts, so that they
+    /// are no difference between them.
+    pub fn verdict_as_read(&self) -> Verdict {
+        let reasons = self.reasons.iter();
+        let others = reasons.filter(|reason| !matches!(reason, Reason::ReadErrors { .. }));
+        others.map(Reason::severity).max().unwrap_or(Verdict::Good)
+    }
+
     /// How far the pose may be off, where that is known.
     pub fn uncertainty(&self) -> Option<&PoseUncertainty> {
         self.pose.as_ref()?.uncertainty.as_ref()

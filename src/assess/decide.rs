@@ -12,7 +12,7 @@ use super::pose::{PoseKind, PoseStatement};
 use super::reason::Reason;
 use super::shape::{ELSEWHERE, ShapeReason, ShapeStatement};
 use super::sliding::FreeMotionKind;
-use super::tolerance::UNREMARKABLE;
+use super::tolerance::{AssessSettings, UNREMARKABLE};
 use super::verdict::Verdict;
 use crate::registration::starts::StartKind;
 use crate::registration::{MatchOutcome, Termination};
@@ -29,21 +29,22 @@ const SEVERAL_FROM: f64 = 2.0;
 const SEVERAL_TO: f64 = 500.0;
 
 /// Sets the verdict, its reasons, the most severe first, and the statement about the pose. `mirrored` is the
-/// statement about the shape of the opposite hand, `most_scaled` how far the scale of the pairs may be off, `n_target_parts` how
-/// many parts the target consists of.
+/// statement about the shape of the opposite hand, `most_scaled` how far the scale of the pairs may be off, `settings` those of
+/// the assessment.
 pub(super) fn decide(
     assessment: &mut Assessment,
     shape: &ShapeStatement,
     mirrored: Option<&ShapeStatement>,
     outcome: &MatchOutcome,
     most_scaled: f64,
-    n_target_parts: usize,
+    settings: &AssessSettings,
 ) {
-    let several = several_parts(assessment, n_target_parts);
+    let several = several_parts(assessment, settings.n_target_parts);
+    let read = read_errors(settings);
     if let Some(units) = unit(assessment) {
         // Whatever lies on the wrong size by chance says nothing of pose and shape.
         assessment.verdict = units.severity();
-        assessment.reasons = several.into_iter().chain([units]).collect();
+        assessment.reasons = several.into_iter().chain([units]).chain(read).collect();
         if let Some(pose) = &mut assessment.pose {
             pose.kind = PoseKind::NotFound;
             pose.uncertainty = None;
@@ -62,7 +63,7 @@ pub(super) fn decide(
         scale(assessment, most_scaled),
         overlap(assessment, shape),
     ];
-    let found = of_pose.into_iter().chain(of_shape).flatten();
+    let found = of_pose.into_iter().chain(of_shape).chain([read]).flatten();
     let differences = shape
         .reasons
         .iter()
@@ -150,6 +151,15 @@ fn several_parts(assessment: &Assessment, n_parts: usize) -> Option<Reason> {
     is_whole.then_some(Reason::SeveralParts {
         n_parts,
         size_ratio,
+    })
+}
+
+/// A pose on what was read in part says nothing of the rest.
+fn read_errors(settings: &AssessSettings) -> Option<Reason> {
+    let (in_source, in_target) = (settings.n_source_errors, settings.n_target_errors);
+    (in_source + in_target > 0).then_some(Reason::ReadErrors {
+        in_source,
+        in_target,
     })
 }
 

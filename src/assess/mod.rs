@@ -114,7 +114,7 @@ pub fn assess(
         mirrored.as_ref(),
         outcome,
         most_scaled,
-        settings.n_target_parts,
+        settings,
     );
     let is_comparable = assessment.scale_check.unit.is_none();
     assessment.shape = is_comparable.then_some(shape);

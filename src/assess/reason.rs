@@ -102,6 +102,14 @@ pub enum Reason {
         /// Why the iterations ended.
         termination: Termination,
     },
+    /// What the files hold of nodes, elements and transformations was not read without errors: parts may be
+    /// incomplete or lie elsewhere.
+    ReadErrors {
+        /// In the file of the source.
+        in_source: u64,
+        /// In the file of the target.
+        in_target: u64,
+    },
     /// Nothing speaks against the pose.
     InOrder {
         /// Share of the smaller part that meets the other.
@@ -134,7 +142,8 @@ impl Reason {
             | Self::NearAlternative { .. }
             | Self::EqualAlternative { .. }
             | Self::OthersNotSought
-            | Self::Stopped => Verdict::Check,
+            | Self::Stopped
+            | Self::ReadErrors { .. } => Verdict::Check,
             // Such a sentence stands beside the verdict it belonged to, which is stored too.
             Self::Sentence(_) => Verdict::Check,
             Self::OppositeHand { .. }

@@ -55,6 +55,10 @@ pub struct AssessSettings {
     pub millimetre: Option<f64>,
     /// How many parts the target consists of; 0 if not known.
     pub n_target_parts: usize,
+    /// Errors of the reader about nodes, elements and transformations in the file of the source.
+    pub n_source_errors: u64,
+    /// The same in the file of the target.
+    pub n_target_errors: u64,
 }
 
 impl AssessSettings {

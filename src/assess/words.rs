@@ -104,6 +104,10 @@ impl Reason {
             Self::EndedEarly { termination } => {
                 format!("the match ended early: {}", termination.label())
             }
+            Self::ReadErrors {
+                in_source,
+                in_target,
+            } => read_errors(*in_source, *in_target),
             Self::InOrder {
                 overlap,
                 p95,
@@ -372,6 +376,19 @@ impl PoseStatement {
             lengths.of(self.tolerance)
         )
     }
+}
+
+fn read_errors(in_source: u64, in_target: u64) -> String {
+    let of = |(n, file): (u64, &str)| {
+        let n = usize::try_from(n).unwrap_or(usize::MAX);
+        (n > 0).then(|| format!("{} in the {file} file", counted(n, "read error")))
+    };
+    let files = [(in_source, "stamped"), (in_target, "crash")];
+    let files: Vec<String> = files.into_iter().filter_map(of).collect();
+    format!(
+        "{}: nodes or elements may be missing or lie elsewhere",
+        files.join(" and ")
+    )
 }
 
 fn different_units(size_ratio: f64, unit: UnitGuess) -> String {

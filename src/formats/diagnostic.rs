@@ -164,6 +164,13 @@ kinds! {
     NoEnd, Warning, "deck without an end";
 }
 
+impl DiagnosticKind {
+    /// Whether such an error may concern the geometry.
+    fn is_of_geometry(self) -> bool {
+        self.severity() == Severity::Error && self != Self::BadForming
+    }
+}
+
 /// One diagnostic: where, what was found, what was expected.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -241,6 +248,8 @@ impl fmt::Display for Diagnostic {
 pub struct Diagnostics {
     kept: Vec<Diagnostic>,
     counts: Vec<u64>,
+    /// Errors that concern no geometry although others of their kind do.
+    n_aside: u64,
 }
 
 impl Default for Diagnostics {
@@ -248,6 +257,7 @@ impl Default for Diagnostics {
         Self {
             kept: Vec::new(),
             counts: vec![0; DiagnosticKind::ALL.len()],
+            n_aside: 0,
         }
     }
 }
@@ -286,6 +296,16 @@ impl Diagnostics {
         for (count, later) in self.counts.iter_mut().zip(later.counts) {
             *count += later;
         }
+        self.n_aside += later.n_aside;
+    }
+
+    /// Reads what says nothing of where nodes and elements lie: no error in it is one of the geometry. What a
+    /// missing include or a parameter without value is needed for is an error of its own.
+    pub(crate) fn beside_geometry<T>(&mut self, read: impl FnOnce(&mut Self) -> T) -> T {
+        let before = self.n_geometry_errors();
+        let result = read(self);
+        self.n_aside += self.n_geometry_errors() - before;
+        result
     }
 
     /// The kept diagnostics in the order they were made.
@@ -314,6 +334,12 @@ impl Diagnostics {
         let both = DiagnosticKind::ALL.iter().zip(&self.counts);
         both.map(|(&kind, &count)| (kind, count))
             .filter(|&(_, count)| count > 0)
+    }
+
+    /// How many errors concern where nodes and elements lie, or leave some out.
+    pub fn n_geometry_errors(&self) -> u64 {
+        let of_geometry = self.counts().filter(|(kind, _)| kind.is_of_geometry());
+        of_geometry.map(|(_, n)| n).sum::<u64>() - self.n_aside
     }
 
     /// How many diagnostics were made in all.
@@ -347,6 +373,21 @@ mod tests {
         assert_eq!(all.total(), 48);
         assert_eq!(all.iter().count(), 23);
         assert_eq!(all.counts().count(), 2);
+        assert_eq!(all.n_geometry_errors(), 45);
+    }
+
+    #[test]
+    fn errors_beside_the_geometry_are_counted_apart() {
+        let bad = |text: &str| Diagnostic::new(DiagnosticKind::BadField, text);
+        let mut all = Diagnostics::default();
+        all.push(bad("a node"));
+        all.beside_geometry(|found| {
+            found.push(bad("a material"));
+            found.push(Diagnostic::new(DiagnosticKind::BadForming, "a stress"));
+        });
+        let mut both = all.clone();
+        both.append(all);
+        assert_eq!((both.n_geometry_errors(), both.total()), (2, 6));
     }
 
     #[test]

@@ -282,9 +282,10 @@ impl Found {
         let shape = assessment.shape.as_ref();
         let borders = shape.map(|shape| &shape.borders);
         let [stamped, crash] = self.shares();
+        let verdict = assessment.verdict_as_read();
         Fit {
-            verdict: assessment.verdict,
-            is_one_shape: assessment.verdict != Verdict::Poor
+            verdict,
+            is_one_shape: verdict != Verdict::Poor
                 && shape.is_some_and(|shape| shape.reasons.is_empty()),
             covered: stamped * crash,
             n_holes_apart: borders.map_or(0, |borders| borders.only_source + borders.only_target),
@@ -306,7 +307,7 @@ impl Found {
     /// Whether a match that nobody looked at says that the parts belong together: a small flat piece lies
     /// somewhere on many parts.
     fn is_convincing(&self) -> bool {
-        match self.run.assessment.verdict {
+        match self.run.assessment.verdict_as_read() {
             Verdict::Good => true,
             Verdict::Check => self.shares().iter().all(|share| *share >= LEAST_SHARE),
             Verdict::Poor => false,

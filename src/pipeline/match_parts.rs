@@ -284,6 +284,8 @@ fn assess_settings(parts: PerRole<&LoadedPart>, settings: &MatchSettings) -> Ass
         millimetre,
         remove_offset: settings.remove_offset,
         n_target_parts: crash.chosen_part_ids().len(),
+        n_source_errors: parts.stamped.model.diagnostics.n_geometry_errors(),
+        n_target_errors: crash.model.diagnostics.n_geometry_errors(),
         ..AssessSettings::default()
     }
 }

@@ -239,6 +239,34 @@ fn that_several_parts_are_matched_as_one_comes_before_their_size() {
     assert_eq!(of_several[..], [several, of_one[0].clone()]);
 }
 
+#[test]
+fn what_could_not_be_read_is_at_most_check_and_changes_nothing_else() {
+    let target = pan(9.0, 0.0, everywhere);
+    let [source, target] = [&target, &target].map(|mesh| Surface::new(mesh, "source").unwrap());
+    let outcome = matched(&source, &target);
+    let with_errors = |n_source_errors| {
+        let settings = AssessSettings {
+            n_source_errors,
+            ..AssessSettings::default()
+        };
+        assess(&source, &target, &outcome, &settings, &Monitor::silent()).unwrap()
+    };
+    let (whole, in_part) = (with_errors(0), with_errors(2));
+    assert_eq!(whole.verdict, Verdict::Good, "{:?}", whole.reasons);
+    assert_eq!(in_part.verdict, Verdict::Check);
+    assert_eq!(in_part.verdict_as_read(), Verdict::Good);
+    let reason = Reason::ReadErrors {
+        in_source: 2,
+        in_target: 0,
+    };
+    assert_eq!(in_part.reasons, std::slice::from_ref(&reason));
+    assert_eq!(in_part.shape, whole.shape);
+    assert_eq!(
+        reason.words(Lengths::new(None)),
+        "2 read errors in the stamped file: nodes or elements may be missing or lie elsewhere"
+    );
+}
+
 /// Surfaces that differ by much, mostly or at some places.
 fn surfaces_apart(mostly: bool) -> ShapeReason {
     ShapeReason::Surface {
@@ -329,6 +357,10 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
         },
         Reason::OthersNotSought,
         Reason::Stopped,
+        Reason::ReadErrors {
+            in_source: 1,
+            in_target: 2,
+        },
         Reason::Sentence("the shapes differ".to_owned()),
     ];
     let good = Reason::InOrder {

@@ -293,6 +293,37 @@ fn another_part_is_poor_and_says_so() {
 }
 
 #[test]
+fn a_transformation_that_is_not_there_is_a_reason_to_check() {
+    let pair = Pair::bundled();
+    let main = pair.path("main.k");
+    let include = "*KEYWORD\n*INCLUDE_TRANSFORM\ncrash.k.gz\n,0\n,\n1,1,1\n5\n*END\n";
+    std::fs::write(&main, include).unwrap();
+    let (stamped, page) = (pair.path("stamped.dynain.gz"), pair.path("r.html"));
+    let told = "1 read error in the crash file";
+    let matched = |options: &[&str]| {
+        let output = shapematch(&[&["match", &main, &stamped], options].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        output
+    };
+    let output = matched(&["--report", &page]);
+    let report = text(&output.stdout);
+    assert!(report.starts_with("CHECK\n"), "{report}");
+    assert!(report.contains(told), "{report}");
+    assert!(std::fs::read_to_string(&page).unwrap().contains(told));
+    let record = record(&matched(&["--json", "-"]));
+    assert_eq!(record["verdict"], "check", "{record}");
+    assert!(record.to_string().contains("read-errors"), "{record}");
+    for pose in [&[][..], &["--identity"]] {
+        let output = shapematch(&[&["map", &main, &stamped, "--json", "-"], pose].concat());
+        let record: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let checks = record["checks"].as_array().unwrap();
+        let check = checks.iter().find(|check| check["name"] == "Read errors");
+        let check = check.unwrap_or_else(|| panic!("{record}"));
+        assert_eq!(check["is_met"], false, "{check}");
+    }
+}
+
+#[test]
 fn a_part_of_a_whole_model_is_chosen_by_id_title_and_set() {
     let folder = tempfile::tempdir().unwrap();
     let to = folder.path().to_str().unwrap();

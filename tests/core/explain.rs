@@ -86,6 +86,32 @@ fn reassess(window: &mut Window, change: impl FnOnce(&mut Assessment)) {
 }
 
 #[test]
+fn errors_of_the_reader_lead_to_the_diagnostics() {
+    let mut window = Window::with_both();
+    window.act(Action::MatchOrStop);
+    reassess(&mut window, |assessment| {
+        assessment.verdict = Verdict::Check;
+        assessment.reasons = vec![Reason::ReadErrors {
+            in_source: 0,
+            in_target: 1,
+        }];
+    });
+    let causes = window.state.causes();
+    let cause = causes
+        .into_iter()
+        .find(|cause| cause.title == "Files with errors")
+        .unwrap();
+    assert!(
+        cause.evidence.starts_with("1 read error in the crash file"),
+        "{cause:?}"
+    );
+    for command in cause.remedy.unwrap().1 {
+        window.apply(command);
+    }
+    assert_eq!(window.state.view.tab, BottomTab::Diagnostics);
+}
+
+#[test]
 fn an_ambiguous_pose_is_told_from_the_pose_that_is_shown() {
     let mut window = Window::with_both_and_no_rivals();
     window.act(Action::MatchOrStop);

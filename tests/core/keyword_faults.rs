@@ -39,6 +39,37 @@ fn line(diagnostic: &Diagnostic) -> u64 {
     position.expect("the line is told").line
 }
 
+#[test]
+fn errors_that_concern_where_things_lie_are_told_from_others() {
+    let of = |cards: &str| {
+        let model = read_text(format!("{NODES}{PART}{SHELL}{cards}"));
+        let found = &model.diagnostics;
+        let is_error = |d: &&Diagnostic| d.severity() == Severity::Error;
+        let n_errors = found.iter().filter(is_error).count() as u64;
+        (n_errors, found.n_geometry_errors())
+    };
+    for cards in [
+        "*ELEMENT_SHELL\n2,1,1,2,3,9\n",
+        "*ELEMENT_SHELL\nx,1,1,2,3,4\n",
+        "*NODE_TRANSFORM\nx,3\n",
+        "*SET_NODE_LIST\n3\n1,2,3,4\n*NODE_TRANSFORM\n1,3\n",
+        "*DEFINE_TRANSFORMATION\n1\n*NODE_TRANSFORM\n1,3\n",
+        "*DEFINE_TRANSFORMATION\n1\nROTATE,x\n",
+    ] {
+        assert_eq!(of(cards), (1, 1), "{cards}");
+    }
+    for cards in [
+        "*SECTION_SHELL\nx,2\n1.0\n",
+        "*PART\nother\n-2,1\n",
+        "*INITIAL_STRESS_SHELL\n1,1,1\n0.,x,1.,1.,1.,1.,1.,1.\n",
+        "*NODE_THICKNESS\nx,1.0\n",
+        "*ELEMENT_SHELL_THICKNESS\n2,1,1,2,3,4\nx,1.,1.,1.\n",
+        "*INCLUDE\nnowhere.k\n",
+    ] {
+        assert_eq!(of(cards), (1, 0), "{cards}");
+    }
+}
+
 mod titles {
     use super::*;
 

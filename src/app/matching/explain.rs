@@ -1,7 +1,10 @@
 //! Why a match is weak: the likely causes with their evidence, and a remedy for each.
 
 use super::Failure;
-use crate::app::{Action, AppState, Command, FileCommand, MatchCommand, MatchResult, PartCommand};
+use crate::app::{
+    Action, AppState, BottomTab, Command, FileCommand, MatchCommand, MatchResult, PartCommand,
+    ViewCommand,
+};
 use crate::assess::{Assessment, Clarity, Reason, ShapeReason, Twin, Verdict, error_beside};
 use crate::pipeline::match_parts::MatchRecipe;
 use crate::registration::{Hand, Method, StartMethod};
@@ -47,6 +50,7 @@ impl AppState {
             self.freedom_cause(assessment),
             self.overlap_cause(assessment),
             self.shape_cause(assessment),
+            self.read_cause(assessment),
         ];
         found.into_iter().flatten().take(MOST).collect()
     }
@@ -284,6 +288,17 @@ impl AppState {
                 self.lengths().of(by)
             ),
             remedy: Some(self.allow(by)),
+        })
+    }
+
+    fn read_cause(&self, assessment: &Assessment) -> Option<Cause> {
+        let is_one = |reason: &&Reason| matches!(reason, Reason::ReadErrors { .. });
+        let reason = assessment.reasons.iter().find(is_one)?;
+        let tab = ViewCommand::SetTab(BottomTab::Diagnostics);
+        Some(Cause {
+            title: "Files with errors".to_owned(),
+            evidence: sentence(&reason.words(self.lengths())),
+            remedy: Some(("Show diagnostics".to_owned(), vec![tab.into()])),
         })
     }
 

@@ -172,7 +172,8 @@ impl Reader<'_> {
     ) -> Result<(), Cancelled> {
         let name = block.name.as_str();
         if name.starts_with("PARAMETER") {
-            self.parameters.define(block, &mut self.assembly.found);
+            let found = &mut self.assembly.found;
+            found.beside_geometry(|found| self.parameters.define(block, found));
             return Ok(());
         }
         if !name.is_empty() && !is_known(name) {
@@ -277,10 +278,13 @@ impl Reader<'_> {
                 assembly.title = title;
             }
         } else if name == "PART" || name.starts_with("PART_") {
-            let parts = read_parts(block, &context.parts(), &mut assembly.found);
+            let found = &mut assembly.found;
+            let parts = found.beside_geometry(|found| read_parts(block, &context.parts(), found));
             assembly.add_parts(parts, file);
         } else if name == "SECTION_SHELL" || name.starts_with("SECTION_SHELL_") {
-            let sections = read_shell_sections(block, &context.parts(), &mut assembly.found);
+            let found = &mut assembly.found;
+            let sections =
+                found.beside_geometry(|found| read_shell_sections(block, &context.parts(), found));
             assembly.sections.extend(sections);
         } else if name == "CONTROL_SHELL" {
             read_shell_control(block, &mut assembly.shell_control);
@@ -296,8 +300,8 @@ impl Reader<'_> {
             }
         } else if is_forming(name) {
             let units = context.results();
-            let into = &mut assembly.forming;
-            read_block(file, block, units, into, &mut assembly.found);
+            let (into, found) = (&mut assembly.forming, &mut assembly.found);
+            found.beside_geometry(|found| read_block(file, block, units, into, found));
         } else if context.length == 1.0 {
             assembly.unit_clues.read_block(block);
             if name.starts_with("MAT_") {
@@ -402,10 +406,10 @@ impl Reader<'_> {
     /// Unit factors of an include that are none, or that multiply up to none, count as 1.
     fn check_units(&mut self, file: &SourceFile, include: &mut Include, context: &Context) {
         let is_unit = |factor: f64| (1.0 / MAX_UNIT_FACTOR..=MAX_UNIT_FACTOR).contains(&factor);
-        let mut refuse = |name: &str, factor: f64| {
+        let refuse = |found: &mut Diagnostics, name: &str, factor: f64| {
             let kind = DiagnosticKind::BadTransformation;
             let message = format!("the include's factor on {name} is no unit factor and left out");
-            self.assembly.found.push_with(kind, || {
+            found.push_with(kind, || {
                 let diagnostic = Diagnostic::new(kind, message).at(file.position(include.at));
                 diagnostic
                     .found(format!("{factor:e}"))
@@ -413,13 +417,20 @@ impl Reader<'_> {
             });
         };
         if !is_unit(include.length) || !is_unit(include.length * context.length) {
-            refuse("lengths (FCTLEN)", include.length);
+            refuse(&mut self.assembly.found, "lengths (FCTLEN)", include.length);
             include.length = 1.0;
         }
         // Stresses go with the square of time and may differ by more.
         let is_stress_unit = |factor: f64| factor > 0.0 && (1e-50..=1e50).contains(&factor);
         if !is_stress_unit(include.stress) || !is_stress_unit(include.stress * context.stress) {
-            refuse("stresses (FCTMAS / FCTLEN / FCTTIM²)", include.stress);
+            let found = &mut self.assembly.found;
+            found.beside_geometry(|found| {
+                refuse(
+                    found,
+                    "stresses (FCTMAS / FCTLEN / FCTTIM²)",
+                    include.stress,
+                );
+            });
             include.stress = 1.0;
         }
     }
@@ -452,9 +463,12 @@ impl Reader<'_> {
                 Ok(Some(Arc::new(SourceFile::new(path, bytes))))
             }
             Err((kind, what)) => {
-                self.assembly.found.push_with(kind, || {
-                    let message = format!("the included file {name:?} {what}");
-                    Diagnostic::new(kind, message).at(file.position(include.at))
+                let found = &mut self.assembly.found;
+                found.beside_geometry(|found| {
+                    found.push_with(kind, || {
+                        let message = format!("the included file {name:?} {what}");
+                        Diagnostic::new(kind, message).at(file.position(include.at))
+                    });
                 });
                 Ok(None)
             }
@@ -537,8 +551,10 @@ fn is_comment(bytes: &[u8]) -> bool {
 fn node_keyword(assembly: &mut Assembly, file: &SourceFile, block: &Block<'_>, context: &Context) {
     let offsets = context.offsets;
     if block.name.starts_with("NODE_THICKNESS") {
-        let rows =
-            nodes::read_node_thickness(block, offsets.node, offsets.set, &mut assembly.found);
+        let found = &mut assembly.found;
+        let rows = found.beside_geometry(|found| {
+            nodes::read_node_thickness(block, offsets.node, offsets.set, found)
+        });
         let scaled = rows.into_iter().map(|row| nodes::NodeThickness {
             thickness: row.thickness * context.length,
             ..row

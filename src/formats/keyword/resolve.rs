@@ -360,8 +360,9 @@ fn carry_out(
         Motion::Scale { nodes, .. } | Motion::Include { nodes, .. } => nodes.clone().collect(),
         Motion::NodeSet { set, at_once, .. } => {
             let members = model.sets.nodes.get(set).ok_or_else(|| {
-                let message = format!("node set {set} is not defined");
-                failed(DiagnosticKind::BadSet, message)
+                let message =
+                    format!("transformation {id} moves node set {set}, which is not defined");
+                failed(DiagnosticKind::BadTransformation, message)
             })?;
             let ids = members.ids.iter();
             let known = ids.filter_map(|&id| model.nodes.index_of(id));

@@ -254,9 +254,9 @@ impl Reader<'_> {
             let message = self.no_thickness("the last shell", kept.is_some());
             let at = before.card(b"", before.offset()).position(0);
             let missing = Diagnostic::new(DiagnosticKind::MissingCard, message).at(at);
-            self.chunk
-                .diagnostics
-                .push(missing.expected(FOUR_THICKNESSES));
+            let missing = missing.expected(FOUR_THICKNESSES);
+            let found = &mut self.chunk.diagnostics;
+            found.beside_geometry(|found| found.push(missing));
             return Ok(());
         };
         let card = cards.card(line, at);
@@ -289,12 +289,14 @@ impl Reader<'_> {
                         .found(card.line_text())
                         .expected(FOUR_THICKNESSES)
                 };
-                self.chunk.diagnostics.push_with(kind, describe);
+                let found = &mut self.chunk.diagnostics;
+                found.beside_geometry(|found| found.push_with(kind, describe));
                 return Ok(());
             }
             (Err(error), _) => {
                 let describe = || card.diagnose(&error, "the shell's thickness");
-                self.chunk.diagnostics.push_with(error.kind, describe);
+                let found = &mut self.chunk.diagnostics;
+                found.beside_geometry(|found| found.push_with(error.kind, describe));
             }
         }
         if has_mid_side {

@@ -126,6 +126,8 @@ pub struct MapRun {
     pub poses: Vec<Similarity>,
     /// Where each of them comes from.
     pub origins: Vec<PoseOrigin>,
+    /// Errors of the reader about nodes, elements and transformations, in all files together.
+    pub n_read_errors: u64,
     /// The crash part as it was mapped onto.
     pub target: TargetPart,
     /// For each element of `target` its index in the crash model's shells.
@@ -278,6 +280,7 @@ pub fn map_parts(
             .map(|placed| placed.crash_from_stamped)
             .collect(),
         origins: stamped.iter().map(|placed| placed.origin).collect(),
+        n_read_errors: n_read_errors(crash, stamped),
         target,
         shells: crash_shells.shells,
         source_shells: shells.into_iter().map(|shells| shells.shells).collect(),
@@ -287,6 +290,13 @@ pub fn map_parts(
         map_ms,
         check_ms: millis_since(start),
     })
+}
+
+/// Errors about the geometry of all files.
+fn n_read_errors(crash: &LoadedPart, stamped: &[PlacedPart<'_>]) -> u64 {
+    let parts = stamped.iter().map(|placed| placed.part).chain([crash]);
+    let found = parts.map(|part| part.model.diagnostics.n_geometry_errors());
+    found.sum()
 }
 
 /// The parts of some shells, each once, in rising order.

@@ -116,6 +116,7 @@ pub(super) fn checks_of(
 ) -> Result<Vec<CheckRecord>, Cancelled> {
     let mut checks = vec![area(run, record)];
     checks.extend(doubled(run));
+    checks.extend(read_errors(run));
     monitor.check()?;
     checks.push(distance(run, lengths));
     monitor.check()?;
@@ -232,6 +233,20 @@ fn doubled(run: &MapRun) -> Option<CheckRecord> {
         reason: None,
         picture: CheckPicture::Status,
         worst: elements.iter().position(|e| is_doubled(e.status)),
+    })
+}
+
+/// Errors of the reader by which elements may be missing or lie elsewhere, if there are any.
+fn read_errors(run: &MapRun) -> Option<CheckRecord> {
+    let n = usize::try_from(run.n_read_errors).unwrap_or(usize::MAX);
+    (n > 0).then(|| CheckRecord {
+        name: "Read errors".to_owned(),
+        found: format!("{n} in nodes, elements and transformations"),
+        limit: "none".to_owned(),
+        is_met: Some(false),
+        reason: None,
+        picture: CheckPicture::Status,
+        worst: None,
     })
 }
 

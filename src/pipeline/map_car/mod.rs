@@ -111,12 +111,8 @@ struct Claim {
     ids: Vec<u64>,
     pose: Similarity,
     verdict: Verdict,
-}
-
-impl Claim {
-    fn is_good(&self) -> bool {
-        self.verdict == Verdict::Good
-    }
+    /// Whether the match is good but for errors of the reader.
+    is_good: bool,
 }
 
 /// What was made of the stamped parts of one group.
@@ -164,7 +160,7 @@ pub fn map_car(
     let mut new_states = NewStates::default();
     for members in groups(&claims) {
         monitor.check()?;
-        let is_good = |at: &&usize| claims[*at].is_good();
+        let is_good = |at: &&usize| claims[*at].is_good;
         let first = members.iter().find(is_good).unwrap_or(&members[0]);
         let group = Group {
             crash,
@@ -293,6 +289,7 @@ fn claim(row: &mut CarRow, found: &FoundParts, lengths: Lengths) -> Claim {
         ids: row.crash_parts.clone(),
         pose: run.crash_from_stamped,
         verdict: run.assessment.verdict,
+        is_good: run.assessment.verdict_as_read() == Verdict::Good,
     }
 }
 
@@ -382,7 +379,7 @@ impl Group<'_> {
         let files = self.members.iter().map(|(file, _)| file);
         mapping.stress_factors = files.filter_map(|file| file.stress_factor).collect();
         let mut run = map_parts(&crash, &placed, &mapping, monitor)?;
-        let is_good = || self.members.iter().map(|(_, claim)| claim.is_good());
+        let is_good = || self.members.iter().map(|(_, claim)| claim.is_good);
         let mut is_displaced = vec![false; placed.len()];
         let differ = is_good().any(|good| good) && !is_good().all(|good| good);
         if differ && run.mapped.area_share(Status::Conflict, &run.target.mesh) > CONFLICT {
