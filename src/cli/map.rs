@@ -27,8 +27,8 @@ use crate::pipeline::PipelineError;
 use crate::pipeline::load::{LoadSettings, LoadedPart, load};
 use crate::pipeline::map::{
     DefaultThickness, MapFiles, MapOutput, MapRecipe, MapRecord, MapRun, OtherResult, PlacedPart,
-    PoseOrigin, deck_comments, element_table, elements_path, map_parts, map_record, map_report,
-    unmapped_sets, unread_line, write_mapping,
+    PoseOrigin, check_shells, deck_comments, element_table, elements_path, map_parts, map_record,
+    map_report, unmapped_sets, unread_line, write_mapping,
 };
 use crate::pipeline::outputs::{Content, Target};
 use crate::registration::Hand;
@@ -223,6 +223,7 @@ pub fn run(args: &MapArgs, quiet: bool) -> anyhow::Result<ExitCode> {
     inputs.extend(stamped.iter().flat_map(LoadedPart::files));
     check_outputs(targets(&args.output), &inputs)?;
     check_order(&crash, &stamped)?;
+    check_shells(&crash, stamped.iter())?;
     // Where the work ends in an error, what the reader found may be the reason.
     let tell = |_: &anyhow::Error| warn_of_unread(std::iter::once(&whole).chain(&stamped));
     let placed = place(&args.choice, crash, &stamped, &monitor).inspect_err(tell)?;

@@ -7,7 +7,9 @@ use crate::monitor::Cancelled;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MappingError {
     /// No target element has an area.
-    #[error("the crash part has no shells to map onto")]
+    #[error(
+        "the crash part has no shells to map onto; solids and thick shells take no forming results"
+    )]
     EmptyTarget,
     /// There is no source, or one without area.
     #[error("the stamped part has no shells to map from")]

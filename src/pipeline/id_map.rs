@@ -78,6 +78,11 @@ impl IdMap {
         self.element.get(triangle as usize).copied()
     }
 
+    /// Element of each triangle.
+    pub fn elements(&self) -> &[u32] {
+        &self.element
+    }
+
     /// Part of a triangle.
     pub fn part_of(&self, triangle: u32) -> Option<u32> {
         self.part.get(triangle as usize).copied()

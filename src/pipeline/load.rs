@@ -124,6 +124,7 @@ pub struct LoadedPart {
     /// What loading did.
     pub report: LoadReport,
     mean_thickness: Option<f64>,
+    has_shells: bool,
 }
 
 /// Where a part comes from.
@@ -290,6 +291,11 @@ impl LoadedPart {
         self.model.nodes.ids().get(node as usize).copied()
     }
 
+    /// Whether shells are among the chosen elements: solids and thick shells neither give nor take forming results.
+    pub fn has_shells(&self) -> bool {
+        self.has_shells
+    }
+
     /// Area-weighted mean thickness of the chosen elements in the crash model's unit, if known.
     pub fn mean_thickness(&self) -> Option<f64> {
         self.mean_thickness
@@ -404,6 +410,8 @@ pub fn prepare(
     };
     let ids = IdMap::new(&origins, &clean.vertex_of, &clean.triangle_of, monitor)?;
     drop(origins);
+    let is_shell = |&element: &u32| (element as usize) < model.shells.len();
+    let has_shells = ids.elements().iter().any(is_shell);
     let n_turned = clean.n_turned;
     let surface = Surface::prepare(clean, "chosen", monitor)?;
     let mesh = surface.mesh().clone();
@@ -429,6 +437,7 @@ pub fn prepare(
         guessed_units,
         report,
         mean_thickness,
+        has_shells,
     })
 }
 

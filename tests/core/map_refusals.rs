@@ -1,6 +1,11 @@
 //! What `shapematch map` asks about or refuses before a deck is written: other units of stress, files in the other
 //! order, decks that are cut off, names that do not exist.
 
+use shapematch::app::Action;
+use shapematch::role::Role;
+
+use super::app::Window;
+use super::app_mapping::real;
 use super::map_decks::{Pair, crash, errors, stamped, stresses};
 
 const STEEL: &str = "*MAT_3-PARAMETER_BARLAT\n         5    7.8E-9  210000.0       0.3\n";
@@ -190,4 +195,30 @@ fn a_sheet_beyond_the_largest_distance_is_told_with_the_option() {
         told.contains("2 elements farther than the largest distance; --max-distance sets it"),
         "{told}"
     );
+}
+
+#[test]
+fn a_crash_part_of_solids_takes_no_results_which_is_said_before_the_match() {
+    let mut solid = "*KEYWORD\n*NODE\n".to_owned();
+    for z in [0, 1] {
+        for (n, (x, y)) in [(0, 0), (20, 0), (20, 10), (0, 10)].into_iter().enumerate() {
+            solid += &format!("{},{x},{y},{z}\n", 4 * z + n + 1);
+        }
+    }
+    solid += "*PART\nblock\n7,7,5\n*ELEMENT_SOLID\n101,7\n1,2,3,4,5,6,7,8\n*END\n";
+    let pair = Pair::new(&solid, &stamped(2, &stresses(1..=2)));
+    let output = pair.run(&[]);
+    let told = errors(&output);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(told.contains("no shells to map onto; solids"), "{told}");
+    assert!(!told.contains("pose"), "{told}");
+    let mut window = Window::new();
+    window.runner = Some(real);
+    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
+        window.open(pair.path(name).to_str().unwrap(), role);
+    }
+    for action in [Action::MapOrCancel, Action::MapAsLoaded] {
+        let reason = action.enabled(&window.state).unwrap_err();
+        assert_eq!(reason.0, "The crash part has no shells to map onto.");
+    }
 }

@@ -147,6 +147,12 @@ impl Document {
     /// `Ok` if the forming results can be mapped now.
     pub fn can_map(&self) -> Result<(), Reason> {
         self.has_forming_results()?;
+        if self
+            .part(Role::Crash)
+            .is_some_and(|part| !part.loaded.has_shells())
+        {
+            return Err(Reason("The crash part has no shells to map onto."));
+        }
         self.further_poses().map(|_| ())
     }
 

@@ -36,6 +36,7 @@ pub use origin::PoseOrigin;
 pub use output::{MapFile, MapFiles, MapOutput, WriteKind, elements_path, write_mapping};
 pub use place::{FurtherPose, place, placing_recipe, pose_warning};
 pub use probe::{ProbeRecord, ProbedValue, probe_records};
+pub use ready::check_shells;
 pub use record::{DistributionRecord, MapRecord, PairRecord, element_table, map_record};
 pub use report::map_report;
 pub use unmapped::unmapped_sets;
@@ -225,6 +226,7 @@ pub fn map_parts(
     monitor: &Monitor,
 ) -> Result<MapRun, PipelineError> {
     let start = Instant::now();
+    check_shells(crash, stamped.iter().map(|placed| placed.part))?;
     let crash_shells = part_shells(crash, monitor)?;
     let layers = Layers { crash, recipe };
     let crash_parts = parts_in_use(&crash_shells);

@@ -1,11 +1,11 @@
-//! What must hold before stresses are carried over: global axes on both sides, and one unit.
+//! What must hold before results are carried over: shells on both sides, and for stresses global axes and one unit.
 
 use std::collections::BTreeSet;
 
 use super::PipelineError;
 use crate::formats::Model;
 use crate::geometry::tensor::{Tensor, von_mises};
-use crate::mapping::SourcePart;
+use crate::mapping::{MappingError, SourcePart};
 use crate::pipeline::load::LoadedPart;
 use crate::units::{LengthUnit, UnitSystem};
 
@@ -22,6 +22,20 @@ const TOO_MUCH_IN_MPA: f64 = 1e5;
 const USUAL_IN_GPA: (f64, f64) = (0.02, 2.0);
 /// Elements that may hold peaks of no meaning.
 const PEAKS: f64 = 0.01;
+
+/// An error if a part has no shells, which a match would not show.
+pub fn check_shells<'a>(
+    crash: &LoadedPart,
+    mut stamped: impl Iterator<Item = &'a LoadedPart>,
+) -> Result<(), PipelineError> {
+    if !crash.has_shells() {
+        return Err(MappingError::EmptyTarget.into());
+    }
+    if !stamped.all(LoadedPart::has_shells) {
+        return Err(MappingError::EmptySource.into());
+    }
+    Ok(())
+}
 
 /// An error if initial stresses of one of the parts are read in element axes (`LISPSID` on
 /// `*CONTROL_SHELL`): stresses are mapped and written in global axes. `parts` are those in use.

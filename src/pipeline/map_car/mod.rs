@@ -15,8 +15,8 @@ use super::find_parts::{FoundParts, find_parts, guessed_units, mirrored_twin};
 use super::load::{LoadSettings, LoadedPart, load, prepare};
 use super::map::{
     DefaultThickness, LEAST_AREA, MapOutput, MapRecipe, MapRecord, MapRun, NewStates, PlacedPart,
-    PoseOrigin, WriteKind, bare_elements, car_copies, deck_comments, elements_path, file_lines,
-    map_parts, map_record, map_report, mapped_by_solver, write_mapping,
+    PoseOrigin, WriteKind, bare_elements, car_copies, check_shells, deck_comments, elements_path,
+    file_lines, map_parts, map_record, map_report, mapped_by_solver, write_mapping,
 };
 use super::match_parts::MatchRecipe;
 use super::units::PairUnits;
@@ -152,6 +152,7 @@ pub fn map_car(
     recipe: &CarRecipe,
     monitor: &Monitor,
 ) -> Result<CarRecord, PipelineError> {
+    check_shells(crash, std::iter::empty())?;
     let mut rows: Vec<CarRow> = stamped.iter().map(|file| CarRow::new(&file.path)).collect();
     record::tell_apart(&mut rows);
     let claims = claims(crash, stamped, (recipe, &mut rows), monitor)?;
