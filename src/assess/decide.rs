@@ -27,6 +27,8 @@ pub(super) const NEAR_MIRROR: f64 = 0.98;
 const SEVERAL_FROM: f64 = 2.0;
 /// … and larger than that no whole car is beside one of its parts.
 const SEVERAL_TO: f64 = 500.0;
+/// Parts whose sizes differ by more than this factor are not in one unit, whatever the units are.
+const FAR_APART: f64 = 50.0;
 
 /// Sets the verdict, its reasons, the most severe first, and the statement about the pose. `mirrored` is the
 /// statement about the shape of the opposite hand, `most_scaled` how far the scale of the pairs may be off, `settings` those of
@@ -41,7 +43,8 @@ pub(super) fn decide(
 ) {
     let several = several_parts(assessment, settings.n_target_parts);
     let read = read_errors(settings);
-    if let Some(units) = unit(assessment) {
+    let sizes = || sizes_far_apart(assessment, several.is_some());
+    if let Some(units) = unit(assessment).or_else(sizes) {
         // Whatever lies on the wrong size by chance says nothing of pose and shape.
         assessment.verdict = units.severity();
         assessment.reasons = several.into_iter().chain([units]).chain(read).collect();
@@ -169,6 +172,13 @@ fn unit(assessment: &Assessment) -> Option<Reason> {
     check
         .unit
         .map(|unit| Reason::DifferentUnits { size_ratio, unit })
+}
+
+/// Sizes that differ by far more than parts that belong together, by the factor of no unit that is known.
+fn sizes_far_apart(assessment: &Assessment, is_several: bool) -> Option<Reason> {
+    let size_ratio = assessment.scale_check.size_ratio;
+    let is_far = size_ratio.ln().abs() > FAR_APART.ln();
+    (is_far && !is_several).then_some(Reason::SizesFarApart { size_ratio })
 }
 
 /// A scale that would move the ends of the part by more than springback may.

@@ -116,7 +116,7 @@ pub fn assess(
         most_scaled,
         settings,
     );
-    let is_comparable = assessment.scale_check.unit.is_none();
+    let is_comparable = !assessment.reasons.iter().any(Reason::is_of_units);
     assessment.shape = is_comparable.then_some(shape);
     monitor.check()?;
     monitor.progress("verify", 2, Some(2));

@@ -40,6 +40,12 @@ pub enum Reason {
         /// The factor, and between which units it lies.
         unit: UnitGuess,
     },
+    /// The sizes differ by a large factor that lies between no known units.
+    SizesFarApart {
+        /// Target size over source size.
+        #[serde(with = "any_float")]
+        size_ratio: f64,
+    },
     /// The final pairs would fit better at another scale.
     PairScale {
         /// The scale that fits them best.
@@ -128,6 +134,14 @@ pub enum Reason {
 }
 
 impl Reason {
+    /// Whether it says that the parts are in different units: nothing else that was found means anything then.
+    pub fn is_of_units(&self) -> bool {
+        matches!(
+            self,
+            Self::DifferentUnits { .. } | Self::SizesFarApart { .. }
+        )
+    }
+
     /// The verdict that this reason alone would give.
     pub fn severity(&self) -> Verdict {
         match self {
@@ -149,6 +163,7 @@ impl Reason {
             Self::OppositeHand { .. }
             | Self::SeveralParts { .. }
             | Self::DifferentUnits { .. }
+            | Self::SizesFarApart { .. }
             | Self::EndedEarly { .. } => Verdict::Poor,
         }
     }

@@ -68,6 +68,7 @@ impl Reason {
                 rounded(*size_ratio)
             ),
             Self::DifferentUnits { size_ratio, unit } => different_units(*size_ratio, *unit),
+            Self::SizesFarApart { size_ratio } => sizes_far_apart(*size_ratio),
             Self::PairScale { scale } => {
                 format!("the paired points fit best at a scale of {scale:.4}")
             }
@@ -403,6 +404,16 @@ fn different_units(size_ratio: f64, unit: UnitGuess) -> String {
         unit.source.plural(),
         unit.target.plural()
     )
+}
+
+fn sizes_far_apart(size_ratio: f64) -> String {
+    let times = size_ratio.max(size_ratio.recip());
+    let times = if times < 1e3 {
+        rounded(times)
+    } else {
+        format!("{times:.1e}").replace(".0e", "e")
+    };
+    format!("sizes differ by a factor of {times}: check the unit")
 }
 
 fn rounded(times: f64) -> String {

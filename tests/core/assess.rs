@@ -240,6 +240,29 @@ fn that_several_parts_are_matched_as_one_comes_before_their_size() {
 }
 
 #[test]
+fn sizes_far_apart_are_a_reason_where_no_unit_is_known() {
+    let target = pan(9.0, 0.0, everywhere);
+    for (factor, words) in [(1e-4, "1e4"), (1.0 / 80.0, "80.0"), (1e4, "1e4")] {
+        let source = target.transformed(&Similarity::from_scale(factor));
+        let [source, target] = [&source, &target].map(|mesh| Surface::new(mesh, "source").unwrap());
+        let mut outcome = matched(&target, &target);
+        outcome.scale_check.size_ratio = 1.0 / factor;
+        outcome.scale_check.unit = guess_unit(1.0 / factor);
+        let settings = AssessSettings::default();
+        let assessed = assess(&source, &target, &outcome, &settings, &Monitor::silent()).unwrap();
+        assert_eq!(assessed.verdict, Verdict::Poor, "{factor}");
+        let [Reason::SizesFarApart { .. }] = assessed.reasons[..] else {
+            panic!("{:?}", assessed.reasons);
+        };
+        let told = assessed.reasons[0].words(Lengths::new(None));
+        assert_eq!(
+            told,
+            format!("sizes differ by a factor of {words}: check the unit")
+        );
+    }
+}
+
+#[test]
 fn what_could_not_be_read_is_at_most_check_and_changes_nothing_else() {
     let target = pan(9.0, 0.0, everywhere);
     let [source, target] = [&target, &target].map(|mesh| Surface::new(mesh, "source").unwrap());
@@ -330,6 +353,7 @@ fn every_reason() -> Vec<(Reason, Verdict)> {
             size_ratio: 25.0,
             unit,
         },
+        Reason::SizesFarApart { size_ratio: 1e-4 },
         shape(ShapeReason::HardlyMet { share: 0.2 }),
         shape(surfaces_apart(true)),
         Reason::EndedEarly {

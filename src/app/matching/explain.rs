@@ -176,7 +176,11 @@ impl AppState {
             ),
             // Among the parts of a whole model sizes say nothing, but the files do.
             (None, Some(hint)) => sentence(&hint.text()),
-            (None, None) => return None,
+            (None, None) => {
+                let mut reasons = assessment.reasons.iter();
+                let far_apart = reasons.find(|reason| reason.is_of_units())?;
+                sentence(&far_apart.words(self.lengths()))
+            }
         };
         Some(Cause {
             title: "Different units".to_owned(),
