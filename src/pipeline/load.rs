@@ -19,7 +19,7 @@ use crate::geometry::{CleanMesh, MeshError, Point3, TriMesh};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::Surface;
 use crate::report::command_line::CommandSide;
-use crate::role::Role;
+use crate::role::{PerRole, Role};
 use crate::samples::{self, SampleFile};
 use crate::text::{counted, parts_by_id};
 use crate::units::{self, KnownUnits, UnitOrigin, Units};
@@ -76,6 +76,23 @@ pub fn tools_line(file_name: &str, tools: &[u64]) -> Option<String> {
     Some(format!(
         "{file_name}: {which} left out as tools, which are rigid or have no forming results"
     ))
+}
+
+/// Says that a part of one file was loaded as both, as a test may do; `None` if none was.
+pub fn same_parts_line(parts: PerRole<&LoadedPart>) -> Option<String> {
+    let PerRole { crash, stamped } = parts;
+    let is_one_file = crash.hash().is_some() && crash.hash() == stamped.hash();
+    let is_same = || {
+        let of_crash = crash.chosen_part_ids();
+        let mut of_stamped = stamped.chosen_part_ids().into_iter();
+        of_stamped.any(|id| of_crash.contains(&id))
+    };
+    (is_one_file && is_same()).then(|| {
+        format!(
+            "{} is the crash part and the stamped part: both files have the same content",
+            stamped.file_name()
+        )
+    })
 }
 
 /// What loading did.

@@ -222,3 +222,25 @@ fn a_crash_part_of_solids_takes_no_results_which_is_said_before_the_match() {
         assert_eq!(reason.0, "The crash part has no shells to map onto.");
     }
 }
+
+#[test]
+fn one_file_as_both_parts_is_told_once() {
+    let both = stamped(2, &stresses(1..=2));
+    let pair = Pair::new(&both, &both);
+    let told = "is the crash part and the stamped part";
+    let matched = pair.shapematch(&["match", "crash.k", "stamped.dynain"]);
+    let text = String::from_utf8_lossy(&matched.stdout).into_owned() + errors(&matched);
+    assert_eq!(text.matches(told).count(), 1, "{text}");
+    let mapped = pair.map(&["--layers", "3"]);
+    assert_eq!(errors(&mapped).matches(told).count(), 1);
+    let mut window = Window::new();
+    window.runner = Some(real);
+    for (name, role) in [("crash.k", Role::Crash), ("stamped.dynain", Role::Stamped)] {
+        let rows = window.state.log.rows();
+        assert!(!rows.iter().any(|row| row.text.contains(told)));
+        window.open(pair.path(name).to_str().unwrap(), role);
+    }
+    let rows = window.state.log.rows();
+    let n_told = rows.iter().filter(|row| row.text.contains(told)).count();
+    assert_eq!(n_told, 1);
+}

@@ -11,7 +11,7 @@ use crate::app::work::Work;
 use crate::app::{Action, Effect, NoticeLevel, Part, Settings, StampedPose, facts};
 use crate::formats::ReadOptions;
 use crate::jobs::{JobKey, JobKind, PartFacts, PartSource, ProjectRequest};
-use crate::pipeline::load::{LoadSettings, LoadedPart, usual_selection};
+use crate::pipeline::load::{LoadSettings, LoadedPart, same_parts_line, usual_selection};
 use crate::pipeline::project::is_project;
 use crate::role::{PerRole, Role};
 
@@ -345,6 +345,7 @@ impl PartsState {
         let mut effects = vec![Effect::SaveSettings];
         effects.extend(self.settle_length_factor(work));
         if self.guess.n_pending == 0 && !is_again {
+            warn_of_same_parts(work);
             effects.extend(self.leave_tools_out(work));
             if !is_guess {
                 offer_swap(work);
@@ -486,6 +487,15 @@ fn usual_load_settings(settings: &Settings) -> LoadSettings {
     LoadSettings {
         read: ReadOptions::default().with_limit(settings.read_limit),
         ..LoadSettings::default()
+    }
+}
+
+/// Says that one file was opened as both parts.
+fn warn_of_same_parts(work: &mut Work<'_>) {
+    let both = work.document.both();
+    let line = both.and_then(|both| same_parts_line(both.map(|part| &*part.loaded)));
+    if let Some(line) = line {
+        work.log_at(NoticeLevel::Warning, "load", None, line, None);
     }
 }
 

@@ -7,8 +7,9 @@ use super::{MapFiles, MapRun, PlacedPart, PoseOrigin, mapped_by_solver};
 use crate::formats::diagnostic::{DiagnosticKind, Severity};
 use crate::formats::keyword::materials::is_known_law;
 use crate::mapping::{Facing, MapOptions, Quantities, SourcePart, Status};
-use crate::pipeline::load::LoadedPart;
+use crate::pipeline::load::{LoadedPart, same_parts_line};
 use crate::registration::guess_unit;
+use crate::role::PerRole;
 use crate::text::{counted, length, parts_by_id};
 
 /// The parts of a stamped file that have neither stresses nor strains, and no thickness but that of their
@@ -45,6 +46,7 @@ pub(super) fn warnings(
     warnings.extend(unread_line(crash));
     warnings.extend(moved_nodes(crash));
     for placed in stamped {
+        warnings.extend(same_parts_line(PerRole::new(crash, placed.part)));
         warnings.extend(file_lines(placed.part, &run.recipe.options));
     }
     warnings.extend(not_there(run));

@@ -1,6 +1,6 @@
 //! The record of a match of two loaded parts.
 
-use crate::pipeline::load::LoadedPart;
+use crate::pipeline::load::{LoadedPart, same_parts_line};
 use crate::pipeline::match_parts::MatchRun;
 use crate::pipeline::units::PairUnits;
 use crate::report::command_line::CommandLine;
@@ -93,6 +93,7 @@ fn file(part: &LoadedPart, units: Option<KnownUnits>) -> FileRecord {
 /// What the user should know about the files.
 fn warnings(run: &MatchRun, parts: PerRole<&LoadedPart>) -> Vec<String> {
     let mut warnings = Vec::from_iter(run.told_alternative());
+    warnings.extend(same_parts_line(parts));
     if !run.alike_parts.is_empty() {
         warnings.push(format!(
             "{} fits {} about as well; --crash-part names the right one",
