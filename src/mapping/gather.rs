@@ -227,7 +227,7 @@ impl Context<'_> {
             found.outside += point.area;
         } else if self.any_sheet_within(&point.position, reach) {
             found.angle += point.area;
-        } else if is_far {
+        } else if is_far || self.is_over_sheet(element, &point.position) {
             found.far += point.area;
         } else {
             found.outside += point.area;
@@ -237,6 +237,22 @@ impl Context<'_> {
     fn any_sheet_within(&self, query: &Point3, reach: f64) -> bool {
         let mut sources = self.sources.iter();
         sources.any(|source| source.distance(query, reach).is_some())
+    }
+
+    /// True if a compatible sheet lies over the point as near as sheets are looked for where no largest distance is
+    /// given: what lies beyond a small one is still not outside of the sheet.
+    fn is_over_sheet(&self, element: usize, query: &Point3) -> bool {
+        if self.options.max_distance.is_none() {
+            return false;
+        }
+        let size = self.target.mesh.size(element);
+        let mut sources = self.sources.iter().enumerate();
+        sources.any(|(source, prepared)| {
+            let reach = 2.0 * size.max(self.source_sizes[source]);
+            let filter = self.filter(element, source);
+            let nearest = prepared.closest(query, &filter, reach, None);
+            nearest.is_some_and(|(_, partner)| !self.is_outside(element, query, &partner))
+        })
     }
 
     pub(super) fn is_valid(&self, element: usize, partner: &SourcePoint, reach: f64) -> bool {
