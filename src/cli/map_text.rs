@@ -93,7 +93,8 @@ fn wrote(files: &MapFiles, failed: &[PathBuf]) -> Vec<(&'static str, String)> {
             lines.push(("", replaced));
         }
     }
-    if lines.is_empty() {
+    // The counts are those of all files together.
+    if files.files.iter().any(|file| failed.contains(&file.path)) {
         return lines;
     }
     let counts = format!(

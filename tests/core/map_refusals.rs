@@ -197,7 +197,14 @@ fn a_sheet_beyond_the_largest_distance_is_told_with_the_option() {
     );
     // However small it is: outside is what lies beyond the border.
     let moved = "1 0 0 10  0 1 0 0  0 0 1 0.1  0 0 0 1";
-    let output = pair.run(&["--pose", moved, "--max-distance", "1e-6", "--csv", "table.csv"]);
+    let output = pair.run(&[
+        "--pose",
+        moved,
+        "--max-distance",
+        "1e-6",
+        "--csv",
+        "table.csv",
+    ]);
     assert_eq!(output.status.code(), Some(1), "{}", errors(&output));
     let table = std::fs::read_to_string(pair.path("table.csv")).unwrap();
     let statuses = table.lines().skip(1);

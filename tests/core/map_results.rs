@@ -232,7 +232,7 @@ fn stamped_elements_without_a_thickness_are_told() {
         assert!(output.status.success(), "{}", errors(&output));
         assert!(
             errors(&output).contains(
-                "no thickness on 1 element with other values: the stamped elements there have none above 0"
+                "no thickness on 1 element with other values: the stamped elements there have none above 0; the first is shell 1 of stamped.dynain"
             ),
             "{}",
             errors(&output)
@@ -396,6 +396,16 @@ fn results_of_no_shell_and_doubled_ones_are_told_and_not_counted() {
     let told = errors(&output);
     assert!(
         told.contains("stamped.dynain: 2 doubtful results"),
+        "{told}"
+    );
+    // The first is named with its file and line.
+    let deck = std::fs::read_to_string(pair.path("stamped.dynain")).unwrap();
+    let is_third = |line: &str| line.starts_with("         3 ");
+    let results = deck.find("*INITIAL_STRESS_SHELL").unwrap();
+    let before = deck[..results].lines().count();
+    let line = 1 + before + deck[results..].lines().position(is_third).unwrap();
+    assert!(
+        told.contains(&format!("stamped.dynain:{line}:1: warning: shell 3 has")),
         "{told}"
     );
     let info = std::process::Command::new(env!("CARGO_BIN_EXE_shapematch"))

@@ -40,6 +40,9 @@ pub(crate) struct RawForming {
     /// Where the results of sets begin, stresses and strains each in the order of the file.
     pub stress_places: Vec<Place>,
     pub strain_places: Vec<Place>,
+    /// The same of those of single shells.
+    pub shell_stress_places: Vec<Place>,
+    pub shell_strain_places: Vec<Place>,
 }
 
 /// The forms of results that are understood.
@@ -112,6 +115,10 @@ pub(crate) fn read_block(
             .resize_with(into.of_sets.n_stress(), place);
         into.strain_places
             .resize_with(into.of_sets.n_strain(), place);
+        into.shell_stress_places
+            .resize_with(into.of_shells.n_stress(), place);
+        into.shell_strain_places
+            .resize_with(into.of_shells.n_strain(), place);
         if let Err(Stop) = read {
             return;
         }

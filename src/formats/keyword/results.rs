@@ -8,6 +8,7 @@ use super::super::diagnostic::{Diagnostic, DiagnosticKind, Diagnostics};
 use super::super::model::{Forming, IdIndex, Model};
 use super::super::moved::reverse_points;
 use super::forming::RawForming;
+use super::resolve::with_position;
 use super::source_file::Place;
 use crate::geometry::tensor::rotated;
 use crate::geometry::{Matrix3, Matrix4};
@@ -86,6 +87,9 @@ pub(super) struct Results {
     forming: Forming,
     n_own_stress: usize,
     n_own_strain: usize,
+    /// Where the results of single shells begin.
+    stress_places: Vec<Place>,
+    strain_places: Vec<Place>,
     /// For what came from a set: its index among the results of sets.
     stress_source: Vec<usize>,
     strain_source: Vec<usize>,
@@ -148,6 +152,8 @@ impl Results {
             forming,
             n_own_stress,
             n_own_strain,
+            stress_places: raw.shell_stress_places,
+            strain_places: raw.shell_strain_places,
             stress_source,
             strain_source,
             shell_of: None,
@@ -164,8 +170,9 @@ impl Results {
         let (shell_of, _) = IdIndex::new(&ids);
         let stresses = self.forming.stresses().map(|stress| stress.element_id);
         let strains = self.forming.strains().map(|strain| strain.element_id);
-        tell_doubtful(stresses, "stresses", &shell_of, found);
-        tell_doubtful(strains, "strains", &shell_of, found);
+        let (of_stresses, of_strains) = (&self.stress_places, &self.strain_places);
+        tell_doubtful(stresses, ("stresses", of_stresses), &shell_of, found);
+        tell_doubtful(strains, ("strains", of_strains), &shell_of, found);
     }
 
     pub(super) fn finish(self) -> Forming {
@@ -271,12 +278,12 @@ impl Results {
 
 fn tell_doubtful(
     ids: impl Iterator<Item = u64>,
-    what: &str,
+    (what, places): (&str, &[Place]),
     shell_of: &IdIndex,
     found: &mut Diagnostics,
 ) {
     let mut known = HashSet::new();
-    for id in ids {
+    for (index, id) in ids.enumerate() {
         let why = if shell_of.get(id).is_none() {
             "and is not defined"
         } else if !known.insert(id) {
@@ -286,7 +293,9 @@ fn tell_doubtful(
         };
         let kind = DiagnosticKind::DoubtfulForming;
         found.push_with(kind, || {
-            Diagnostic::new(kind, format!("shell {id} has {what} {why}"))
+            let finding = Diagnostic::new(kind, format!("shell {id} has {what} {why}"));
+            let position = places.get(index).map(Place::position);
+            with_position(finding, position)
         });
     }
 }

@@ -50,7 +50,7 @@ pub(super) fn warnings(
         warnings.extend(file_lines(placed.part, &run.recipe.options));
     }
     warnings.extend(not_there(run));
-    warnings.extend(bare_elements(run));
+    warnings.extend(bare_elements(run, stamped));
     let sources = stamped.iter().zip(&run.source_shells);
     warnings.extend(sources.filter_map(|(placed, shells)| without_results(placed, shells)));
     warnings.extend(of_elements(run));
@@ -314,35 +314,40 @@ fn not_there(run: &MapRun) -> Option<String> {
     })
 }
 
-/// Says how many elements with other values have no thickness, and how many have no stress card.
-pub(in crate::pipeline) fn bare_elements(run: &MapRun) -> Vec<String> {
+/// Says how many elements with other values have no thickness, and how many have no stress card, with the first
+/// stamped element of each.
+pub(in crate::pipeline) fn bare_elements(run: &MapRun, stamped: &[PlacedPart<'_>]) -> Vec<String> {
     let mapped = &run.mapped;
     // Rings that are filled have what their neighbours have.
     let is_mapped = |status: Status| status.has_values() && status != Status::Filled;
-    let count = |is_bare: &dyn Fn(usize) -> bool| {
+    let told = |what: &str, have_none: &str, is_bare: &dyn Fn(usize) -> bool| {
         let elements = mapped.elements.iter().enumerate();
-        elements
-            .filter(|(element, report)| is_mapped(report.status) && is_bare(*element))
-            .count()
+        let bare =
+            elements.filter(|(element, report)| is_mapped(report.status) && is_bare(*element));
+        let bare: Vec<usize> = bare.map(|(element, _)| element).collect();
+        let giver = run.giver(*bare.first()?);
+        let first = giver.and_then(|(file, shell)| {
+            let part = stamped.get(file)?.part;
+            let id = part.model.shells.get(shell)?.id;
+            Some(format!("; the first is shell {id} of {}", part.file_name()))
+        });
+        Some(format!(
+            "no {what} on {} with other values: the stamped elements there have {have_none}{}",
+            counted(bare.len(), "element"),
+            first.unwrap_or_default()
+        ))
     };
-    let told = |n: usize, what: &str, have_none: &str| {
-        let on = counted(n, "element");
-        format!("no {what} on {on} with other values: the stamped elements there have {have_none}")
-    };
-    let mut lines = Vec::new();
     let thickness = &mapped.thickness;
-    let n = count(&|element| thickness.get(element).is_some_and(|t| t.is_nan()));
-    if n > 0 {
-        lines.push(told(n, "thickness", "none above 0"));
-    }
-    let n = count(&|element| {
+    let no_thickness = |element: usize| thickness.get(element).is_some_and(|t| t.is_nan());
+    let no_state = |element: usize| {
         let states = mapped.states.as_ref();
         states.is_some_and(|states| states.of(element).is_empty())
-    });
-    if n > 0 {
-        lines.push(told(n, "stresses and plastic strains", "none"));
-    }
-    lines
+    };
+    let lines = [
+        told("thickness", "none above 0", &no_thickness),
+        told("stresses and plastic strains", "none", &no_state),
+    ];
+    lines.into_iter().flatten().collect()
 }
 
 /// What is to be told of states that the crash deck has already.

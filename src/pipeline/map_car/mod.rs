@@ -436,7 +436,7 @@ impl Group<'_> {
                 .iter()
                 .map(|part| file_lines(part, &mapping.options))
                 .collect(),
-            bare: bare_elements(&run),
+            bare: bare_elements(&run, &placed),
             mirrored_twin,
             record,
             page,
