@@ -8,7 +8,7 @@ use super::{MapResult, compare_with, file_names, start};
 use crate::app::follow_up::FollowUp;
 use crate::app::work::Work;
 use crate::app::{AppState, Document, Effect, NoticeLevel, Shared};
-use crate::pipeline::load::LoadedPart;
+use crate::pipeline::load::{LoadedPart, same_parts_line};
 use crate::pipeline::map::{
     ComparisonRecord, ElementLists, MapRecord, MapRun, OtherResult, unread_line,
 };
@@ -56,10 +56,13 @@ pub(in crate::app) fn take_mapped(
         percent(record.mapped_area),
         counted(record.n_elements, "element")
     );
-    // What could not be read was told when the file was.
+    // What could not be read was told when the file was, and so was one file in both places.
     let crash = work.document.part(Role::Crash).map(|part| &part.loaded);
     let parts = crash.into_iter().chain(work.document.all_stamped());
-    let told: Vec<String> = parts.filter_map(|part| unread_line(part)).collect();
+    let both = work.document.both();
+    let same = both.and_then(|both| same_parts_line(both.map(|part| &*part.loaded)));
+    let unread = parts.filter_map(|part| unread_line(part));
+    let told: Vec<String> = unread.chain(same).collect();
     for warning in record.warnings.iter().filter(|one| !told.contains(one)) {
         work.log_at(NoticeLevel::Warning, "map", None, capital(warning), None);
     }
