@@ -3,7 +3,7 @@
 //! From the bottom up: `tolerance` says how far parts may differ; `contact` and `borders` find where two parts meet
 //! under a pose, `evidence` joins what they found, `fit` splits the gaps into a motion, an offset and bends; `trims`,
 //! `aside`, `stretch` and `shape` say how the parts differ, `uncertainty` how far the pose may be off. With these,
-//! `settle`, `slide`, `all_pairs`, `held`, `alternatives`, `unbent` and `skin` improve or choose a pose before it is
+//! `settle`, `slide`, `all_pairs`, `held`, `candidate`, `alternatives`, `unbent` and `skin` improve or choose a pose before it is
 //! assessed, and `decide` makes the verdict of an [`Assessment`].
 
 mod all_pairs;
@@ -13,6 +13,7 @@ mod aside;
 mod assessment;
 mod border_curve;
 mod borders;
+mod candidate;
 mod contact;
 mod coverage;
 mod decide;
@@ -39,7 +40,7 @@ mod whole;
 mod words;
 
 pub use all_pairs::is_better_with_all_pairs;
-pub use alternatives::{chosen_by_shape, is_pulled_aside, placed_by_holes};
+pub use alternatives::{PulledAside, chosen_by_shape, placed_by_holes, pulled_aside};
 pub use ambiguity::{Ambiguity, Clarity, Twin, TwinAxis};
 pub use assessment::{AlternativeStatements, Assessment};
 pub use coverage::{Coverage, OneSided, coverage, overlap_limit, quick_overlap};

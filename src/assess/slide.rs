@@ -22,6 +22,8 @@ const N_MODEL_PLACES: usize = 12_000;
 /// Distance beyond which borders have nothing to do with each other, as a share of the larger part's
 /// diagonal; the lattice is as fine.
 const CUT: f64 = 0.02;
+/// Of a motion in one direction so many times finer: a lattice that steps over a hole finds its other side.
+const FINER_ALONG_ONE: f64 = 8.0;
 /// Shares of it in the rounds after the first.
 const CUTS: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
 /// Steps of each round.
@@ -177,7 +179,11 @@ fn axes(free: &FreeMotion, [data, model]: [Aabb; 2], cut: f64) -> Vec<Axis> {
         };
         kinds.iter().map(axis).collect()
     };
-    let mut step = cut;
+    let mut step = if kinds.len() == 1 {
+        cut / FINER_ALONG_ONE
+    } else {
+        cut
+    };
     loop {
         let found = lattice(step);
         let count: f64 = found.iter().map(|axis| axis.amounts.len() as f64).product();

@@ -25,11 +25,30 @@ pub(super) fn statements(
     pose: &Similarity,
     settings: &AssessSettings,
 ) -> Statements {
+    compare([source, target], pose, settings, true)
+}
+
+/// The same of the shape alone, as if the parts had holes and no outlines.
+pub(super) fn shape_without_outlines(
+    source: &Surface,
+    target: &Surface,
+    pose: &Similarity,
+    settings: &AssessSettings,
+) -> ShapeStatement {
+    compare([source, target], pose, settings, false).shape
+}
+
+fn compare(
+    pair: [&Surface; 2],
+    pose: &Similarity,
+    settings: &AssessSettings,
+    has_outlines: bool,
+) -> Statements {
+    let [source, target] = pair;
     let distances = Distances::of(source, target, pose.scale, settings);
     let millimetre = settings.length_of_millimetre();
     let diagonal = target.measures().diagonal;
     let tolerance = distances.tolerance.for_bends(diagonal, millimetre);
-    let pair = [source, target];
     let contacts = ContactSearch::new(pair, pose.scale, distances.reach, MAX_NODES);
     let borders = BorderComparison::new(pair, pose.scale, distances.near);
     let mut search = EvidenceSearch::new(contacts, &borders, &distances);
@@ -39,10 +58,13 @@ pub(super) fn statements(
             shape: ShapeStatement::nothing_met(tolerance),
         };
     };
-    let other_trim = trims::other_trim(&evidence, &tolerance).map(|trim| {
+    let mut other_trim = None;
+    if !has_outlines {
+        evidence.borders = evidence.borders.of_holes();
+    } else if let Some(trim) = trims::other_trim(&evidence, &tolerance) {
         evidence.borders = trim.left;
-        trim.apart
-    });
+        other_trim = Some(trim.apart);
+    }
     let fit = Fit::of(&evidence);
     let uncertainty = PoseUncertainty::of(&evidence, &fit, settings.thickness);
     let mut shape = ShapeStatement::of(&evidence, &fit, tolerance);

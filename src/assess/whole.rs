@@ -4,8 +4,9 @@
 
 use rayon::prelude::*;
 
-use super::alternatives::{Candidate, LITTLE_LESS, behind};
+use super::alternatives::behind;
 use super::borders::BorderComparison;
+use super::candidate::{Candidate, FewPlaces, LITTLE_LESS, judged};
 use super::contact::{ContactSearch, FEW_NODES};
 use super::evidence::EvidenceSearch;
 use super::fit::Fit;
@@ -46,27 +47,33 @@ pub fn placed_as_a_whole(
     if !outcome.rivals_sought || found.is_mirrored() || found.scale != 1.0 {
         return Ok(None);
     }
-    let shape = |pose: &Similarity| statements(source, target, pose, settings).shape;
-    let result = Candidate::at(*found, &shape(found), None);
-    if result.met >= OVERHANGS && result.n_differences == 0 {
+    let shape = statements(source, target, found, settings).shape;
+    let has_nothing_open = |result: &Candidate| result.met >= OVERHANGS && !result.differs();
+    if has_nothing_open(&Candidate::at(*found, &shape, None)) {
         return Ok(None);
     }
     let pair = [source, target];
-    let tolerance = Distances::of(source, target, 1.0, settings).tolerance;
+    let distances = Distances::of(source, target, 1.0, settings);
     let corners = source.mesh().aabb().corners();
-    let mut candidates = Vec::new();
-    for pose in moved_as_a_whole(pair, outcome, settings, monitor)? {
-        monitor.check()?;
-        if pose.max_displacement(found, &corners) <= ASIDE * tolerance.springback {
-            continue;
-        }
-        let shape = shape(&pose);
-        let explains_more = shape.met > MUCH_MORE * result.met
-            || result.n_differences > 0 && shape.met >= result.met - LITTLE_LESS;
-        if shape.reasons.is_empty() && explains_more {
-            candidates.push(Candidate::at(pose, &shape, None));
-        }
+    let mut poses = moved_as_a_whole(pair, outcome, settings, monitor)?;
+    let far = ASIDE * distances.tolerance.springback;
+    poses.retain(|pose| pose.max_displacement(found, &corners) > far);
+    poses.insert(0, *found);
+    let few = FewPlaces::new(pair, 1.0, &distances);
+    let mut candidates = judged(&poses, |pose, shape_at| {
+        few.candidate(pose, &shape_at(source, target, &pose, settings))
+    });
+    monitor.check()?;
+    let result = candidates.remove(0);
+    if has_nothing_open(&result) {
+        return Ok(None);
     }
+    candidates.retain(|other| {
+        let explains_more = other.met > MUCH_MORE * result.met
+            || result.differs() && other.met >= result.met - LITTLE_LESS;
+        let is_explained = result.lies_much_closer_elsewhere_than(other, distances.noise);
+        other.is_one_shape && explains_more && !is_explained
+    });
     candidates.sort_by(|a, b| a.apart().total_cmp(&b.apart()));
     Ok(candidates.split_first().map(|(winner, others)| HeldPose {
         target_from_source: winner.pose,

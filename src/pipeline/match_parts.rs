@@ -8,13 +8,15 @@ use serde::{Deserialize, Serialize};
 use super::load::LoadedPart;
 use super::reduce::Levels;
 use super::{PipelineError, millis_since};
-use crate::assess::{self, AlternativeStatements, AssessSettings, Assessment, HeldPose};
+use crate::assess::{
+    self, AlternativeStatements, AssessSettings, Assessment, HeldPose, PulledAside,
+};
 use crate::geometry::serial::shared;
 use crate::geometry::{Similarity, TriMesh};
 use crate::monitor::{Cancelled, Monitor};
 use crate::registration::starts::{self, Start};
 use crate::registration::{
-    self, MatchInput, MatchMonitor, MatchOutcome, MatchSettings, Method, StartMethod,
+    self, Alternative, MatchInput, MatchMonitor, MatchOutcome, MatchSettings, Method, StartMethod,
     StartSettings, Surface, Termination,
 };
 use crate::role::{PerRole, Role};
@@ -310,19 +312,7 @@ pub(super) fn settle(
         }
     }
     monitor.check()?;
-    let found = outcome.target_from_source;
-    let is_kept = |pose: &Similarity, surfaces_hold| {
-        !assess::is_pulled_aside(source, target, [&found, pose], surfaces_hold, check)
-    };
-    if let Some(held) = assess::held_by_borders(source, target, outcome, check, monitor)? {
-        if is_kept(&held.target_from_source, false) {
-            take(outcome, held);
-        }
-    } else if let Some(pose) = assess::settled(source, target, &found, check)
-        && is_kept(&pose, true)
-    {
-        outcome.target_from_source = pose;
-    }
+    hold(outcome, [source, target], check, monitor)?;
     monitor.check()?;
     if let Some(chosen) = assess::chosen_by_shape(source, target, outcome, check, monitor)? {
         take(outcome, chosen);
@@ -343,7 +333,7 @@ pub(super) fn settle(
     monitor.check()?;
     let rough = outcome.target_from_source;
     if let Some(pose) = assess::without_bend(source, target, &rough, check)
-        && !assess::is_pulled_aside(source, target, [&rough, &pose], false, check)
+        && assess::pulled_aside(source, target, [&rough, &pose], false, check).is_none()
     {
         outcome.target_from_source = pose;
     }
@@ -351,6 +341,38 @@ pub(super) fn settle(
     if check.remove_offset
         && let Some(pose) =
             assess::without_offset(source, target, &outcome.target_from_source, check)
+    {
+        outcome.target_from_source = pose;
+    }
+    Ok(())
+}
+
+/// Moves the pose to where borders and holes hold it, unless that pulls it aside of where the surfaces lie on each other.
+fn hold(
+    outcome: &mut MatchOutcome,
+    [source, target]: [&Surface; 2],
+    check: &AssessSettings,
+    monitor: &Monitor,
+) -> Result<(), Cancelled> {
+    let found = outcome.target_from_source;
+    let aside = |pose: &Similarity, surfaces_hold| {
+        assess::pulled_aside(source, target, [&found, pose], surfaces_hold, check)
+    };
+    if let Some(held) = assess::held_by_borders(source, target, outcome, check, monitor)? {
+        match aside(&held.target_from_source, false) {
+            None => take(outcome, held),
+            Some(PulledAside::Rival) => {
+                let rival = Alternative {
+                    target_from_source: held.target_from_source,
+                    score_ratio: 1.0,
+                    start: outcome.winner,
+                };
+                outcome.alternatives.insert(0, rival);
+            }
+            Some(PulledAside::Worse) => {}
+        }
+    } else if let Some(pose) = assess::settled(source, target, &found, check)
+        && aside(&pose, true).is_none()
     {
         outcome.target_from_source = pose;
     }

@@ -696,3 +696,46 @@ fn the_second_of_two_rails_in_one_mesh_is_as_likely() {
     };
     both_are_likely(&rail(61), &rail(47), Vector3::new(0.0, 210.0, 0.0));
 }
+
+/// A channel with flanges from `first` to `last` along itself, whose walls come closer to each other by 0.6° each.
+fn tapered(n: u32, [first, last]: [f64; 2]) -> TriMesh {
+    let step = |t: f64| 1.0 / (1.0 + (-t / 2.0).exp());
+    sheet(n, |u, v| {
+        let x = first + u * (last - first);
+        let (y, half) = (170.0 * (v - 0.5), 45.0 - 0.0105 * x);
+        Point3::new(x, y, 50.0 * (step(y + half) - step(y - half)))
+    })
+}
+
+#[test]
+fn a_channel_whose_ends_coincide_is_as_likely_as_one_whose_walls_do() {
+    let [source, target] = [(70, [0.0, 560.0]), (59, [140.0, 700.0])].map(|(n, range)| {
+        let mesh = tapered(n, range);
+        Surface::new(&mesh, "source").unwrap()
+    });
+    let right = Similarity::identity();
+    let slid = Similarity::from_translation(Vector3::new(140.0, 0.0, 0.0));
+    let (settings, monitor) = (AssessSettings::default(), Monitor::silent());
+    let aside = |poses| pulled_aside(&source, &target, poses, false, &settings);
+    assert_eq!(aside([&right, &slid]), Some(PulledAside::Rival));
+    assert_eq!(aside([&slid, &right]), None);
+    // The pose under which the walls lie on each other is the result, whichever covers more.
+    let mut outcome = matched(&source, &target);
+    let [found, other] = [slid, right];
+    outcome.target_from_source = found;
+    outcome.alternatives = vec![Alternative {
+        target_from_source: other,
+        score_ratio: 7.0,
+        start: outcome.winner,
+    }];
+    let chosen = chosen_by_shape(&source, &target, &outcome, &settings, &monitor).unwrap();
+    let chosen = chosen.unwrap();
+    let off = |pose: &Similarity| pose.max_displacement(&right, &source.mesh().aabb().corners());
+    assert!(off(&chosen.target_from_source) < 5.0, "{chosen:?}");
+    let rival = &chosen.alternatives[0];
+    assert_eq!(rival.score_ratio, 1.0);
+    assert!(
+        (off(&rival.target_from_source) - 140.0).abs() < 5.0,
+        "{rival:?}"
+    );
+}

@@ -152,3 +152,17 @@ fn holes_place_a_part_before_its_last_trim() {
         assert_eq!(channel.pose, Some(PoseKind::Ambiguous), "{channel:?}");
     }
 }
+
+/// Outlines that end anywhere lie beside each other under one pose and not under the next one of a row of holes: that
+/// speaks for neither.
+#[test]
+fn outlines_that_lie_together_nowhere_hide_no_rival() {
+    for (seed, scenario) in [
+        (103, Scenario::Addendum),
+        (95, Scenario::AddendumAndCut),
+        (108, Scenario::AddendumAndCut),
+    ] {
+        let channel = run(seed, SamplePart::Channel, scenario);
+        assert_eq!(channel.verdict, Verdict::Check, "{channel:?}");
+    }
+}

@@ -111,6 +111,54 @@ fn holes_say_where_a_piece_of_a_strip_lies_along_it() {
     }
 }
 
+/// A panel with beads and holes on a lattice of 100 mm, in cells of 4 mm, over a range of x and y of the same length; one
+/// more hole, smaller than the others, tells the places of the lattice apart.
+fn lattice([x0, y0]: [f64; 2], length: f64) -> TriMesh {
+    const PITCH: f64 = 4.0;
+    let wave = |t: f64| (std::f64::consts::TAU * t / 100.0).sin();
+    let n = (length / PITCH) as u32;
+    let points = (0..(n + 1) * (n + 1)).map(|i| {
+        let steps = [(x0, i % (n + 1)), (y0, i / (n + 1))];
+        let [x, y] = steps.map(|(first, k)| first + PITCH * f64::from(k));
+        Point3::new(x, y, 6.0 * wave(x) * wave(y))
+    });
+    let is_solid = |&(i, j): &(u32, u32)| {
+        let [x, y] = [(x0, i), (y0, j)].map(|(first, k)| first + PITCH * (f64::from(k) + 0.5));
+        let of_lattice = [x, y].map(|t| (t + 50.0).rem_euclid(100.0) - 50.0);
+        let is_hole = of_lattice.iter().all(|t| t.abs() < 12.0);
+        let is_extra = (x - 150.0).abs() < 6.0 && (y - 250.0).abs() < 6.0;
+        !(is_hole || is_extra)
+    };
+    let cells = (0..n * n).map(|k| (k % n, k / n));
+    let triangles = cells.filter(is_solid).flat_map(|(i, j)| {
+        let a = j * (n + 1) + i;
+        let up = a + n + 1;
+        [[a, a + 1, up + 1], [a, up + 1, up]]
+    });
+    TriMesh::new(points.collect(), triangles.collect()).unwrap()
+}
+
+#[test]
+fn the_one_small_hole_among_like_ones_tells_places_of_a_lattice_apart() {
+    // A window with 25 holes of the lattice and the small one.
+    let (window, whole) = (
+        lattice([-48.0, -48.0], 496.0),
+        lattice([-248.0, -248.0], 896.0),
+    );
+    for seed in 0..3 {
+        let truth = placement(seed);
+        let moved = window.transformed(&truth.inverse());
+        let [data, model] = [&moved, &whole].map(|mesh| Surface::new(mesh, "source").unwrap());
+        let search = WideSearch::new(&data, &model).unwrap();
+        let found = search.on_holes(&Monitor::silent()).unwrap();
+        assert!(!found.is_empty());
+        for pose in found {
+            let off = worst_node(&moved, &truth, &pose);
+            assert!(off < 5.0, "seed {seed}: {off:.2} mm");
+        }
+    }
+}
+
 #[test]
 fn parts_that_overhang_each_other_are_found() {
     let left = panel(5.0, 0.0, |x, _| x < 60.0);

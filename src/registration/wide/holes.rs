@@ -3,6 +3,8 @@
 
 use std::f64::consts::TAU;
 
+use rayon::prelude::*;
+
 use super::cloud::{Cloud, Motion32};
 use super::rounds::First;
 use super::seeds::{frame, laid, matrix};
@@ -10,8 +12,10 @@ use crate::geometry::{Matrix3, Point3, Rotation, Vector3};
 use crate::registration::surface::Surface;
 use crate::search::FeatureGrid;
 
-/// Holes of the smaller and of the larger part that are looked at, the largest first.
+/// Holes of the smaller and of the larger part that poses are made of, the largest first …
 const MOST_HOLES: [usize; 2] = [24, 64];
+/// … and holes of a part that are counted: the only one that tells places of a regular pattern apart may be small.
+const MOST_COUNTED: usize = 500;
 /// Holes are as large if their radii differ by at most this share of the larger one and so many mean edge lengths,
 /// which the corners of a coarse or ragged hole take from it.
 const SAME_RADIUS: f64 = 0.15;
@@ -31,6 +35,8 @@ const NEAR_SHARE: f64 = 0.02;
 const LEAST_ACROSS: f64 = 0.5;
 /// Turns about the normal of an only hole.
 const N_TURNS: usize = 36;
+/// Where less than this share of the most holes have a counterpart, others lie closer to where the part belongs.
+const NEARLY_MOST: f64 = 0.85;
 /// First poses at most: of a plate with hundreds of like holes they say nothing.
 const MOST_FIRST: usize = 10_000;
 
@@ -57,12 +63,8 @@ impl Holes {
         (data, model): (&Surface, &Surface),
         grid: &FeatureGrid,
     ) -> Self {
-        let of_model = holes(model, MOST_HOLES[1], |point| {
-            (point - grid.origin()) * cloud.scale
-        });
-        let of_data = holes(data, MOST_HOLES[0], |point| {
-            (point - cloud.center) * cloud.scale
-        });
+        let of_model = holes(model, |point| (point - grid.origin()) * cloud.scale);
+        let of_data = holes(data, |point| (point - cloud.center) * cloud.scale);
         let edge = [data, model].map(|part| part.measures().mean_edge_length);
         Self {
             data: of_data,
@@ -74,14 +76,25 @@ impl Holes {
         }
     }
 
-    /// The first poses that they give, in a fixed order; none where a part has no holes.
-    /// O(holes of the data² · holes of the model²), both bounded.
+    /// The first poses that they give under which nearly the most holes have their counterpart, in a fixed order; none
+    /// where a part has no holes. O(holes of the data² · holes of the model²), both bounded.
     pub(super) fn first_poses(&self) -> Vec<First> {
         let mut found = Vec::new();
-        match self.data[..] {
-            [only] => self.alike.lay_only(&only, &self.model, &mut found),
-            _ => self.alike.lay_pairs(&self.data, &self.model, &mut found),
+        let [data, model] = [(&self.data, MOST_HOLES[0]), (&self.model, MOST_HOLES[1])]
+            .map(|(holes, most)| &holes[..holes.len().min(most)]);
+        match data {
+            [only] => self.alike.lay_only(only, model, &mut found),
+            _ => self.alike.lay_pairs(data, model, &mut found),
         }
+        let counted = found.par_iter().map(|first| self.laid(&first.motion).0);
+        let counts: Vec<usize> = counted.collect();
+        let most = counts.iter().max().copied().unwrap_or(0) as f64;
+        let mut counts = counts.into_iter();
+        found.retain(|_| {
+            counts
+                .next()
+                .is_some_and(|n| n as f64 >= NEARLY_MOST * most)
+        });
         found
     }
 
@@ -107,7 +120,7 @@ impl Holes {
 }
 
 /// The largest holes of a part, with their middles moved by `to_local`.
-fn holes(surface: &Surface, most: usize, to_local: impl Fn(&Point3) -> Vector3) -> Vec<Hole> {
+fn holes(surface: &Surface, to_local: impl Fn(&Point3) -> Vector3) -> Vec<Hole> {
     let mesh = surface.mesh();
     let found = surface.borders().iter().filter(|border| border.is_hole);
     let mut found: Vec<Hole> = found
@@ -130,7 +143,7 @@ fn holes(surface: &Surface, most: usize, to_local: impl Fn(&Point3) -> Vector3) 
         })
         .collect();
     found.sort_by(|a, b| b.radius.total_cmp(&a.radius));
-    found.truncate(most);
+    found.truncate(MOST_COUNTED);
     found
 }
 

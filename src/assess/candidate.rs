@@ -1,0 +1,347 @@
+//! A pose and what the shapes under it say for and against it.
+
+use rayon::prelude::*;
+
+use super::borders::HOLES_THAT_HOLD;
+use super::contact::{ContactSearch, FEW_NODES};
+use super::shape::{ELSEWHERE, OVERHANGS, ShapeReason, ShapeStatement};
+use super::statements::{shape_without_outlines, statements};
+use super::tolerance::{AssessSettings, Distances, UNREMARKABLE};
+use crate::geometry::Similarity;
+use crate::registration::Surface;
+
+/// Where so much less of the smaller part meets the other, a pose that fits as closely does not fit as well.
+pub(super) const LITTLE_LESS: f64 = 0.02;
+/// Where each part has a piece that the other lacks, a pose under which at least this share of the smaller part meets
+/// the other is as likely as one under which more does.
+pub(super) const LEAST_SHARED: f64 = 0.5;
+/// Lengths of so many tolerances are differences whatever the facets are and however the part is bent.
+const CLEARLY: f64 = 2.0;
+/// Surfaces lie as close if they lie at most so many times as far apart.
+pub(super) const AS_CLOSE: f64 = 1.5;
+/// Where a piece of the smaller part meets the other, it lies much closer than all of it under another pose if it lies
+/// apart by at most this share of what a bend of the whole is in that piece, which grows with the square of its length.
+const MUCH_CLOSER: f64 = 0.5;
+/// Surfaces that lie apart by at most so many times what facets leave lie on each other.
+const ON_EACH_OTHER: f64 = 2.0;
+
+/// Whether a piece of the smaller part, of this share, lies much closer, by `own`, than the part does that lies `other`
+/// apart.
+pub(super) fn is_much_closer(share: f64, own: f64, other: f64, noise: f64) -> bool {
+    own + noise <= MUCH_CLOSER * share * share * other
+}
+
+/// Two parts looked at in few places.
+pub(super) struct FewPlaces<'a>(ContactSearch<'a>);
+
+impl<'a> FewPlaces<'a> {
+    pub(super) fn new(pair: [&'a Surface; 2], scale: f64, distances: &Distances) -> Self {
+        Self(ContactSearch::new(pair, scale, distances.reach, FEW_NODES))
+    }
+
+    /// Share of the smaller part that meets the other under a pose, and how far apart they lie there.
+    pub(super) fn met_and_apart(&self, pose: &Similarity) -> (f64, f64) {
+        let contacts = self.0.clone().at(pose);
+        contacts.map_or((0.0, f64::INFINITY), |contacts| {
+            (contacts.share, contacts.typical_gap(0.0))
+        })
+    }
+
+    /// A pose with what speaks against it; where each part has a piece that the other lacks, with what lies elsewhere.
+    pub(super) fn candidate(&self, pose: Similarity, shape: &ShapeStatement) -> Candidate {
+        let overhangs = shape.met < OVERHANGS;
+        let elsewhere = overhangs.then(|| self.elsewhere(&pose, shape.met));
+        Candidate::at(pose, shape, elsewhere)
+    }
+
+    /// Of a part of which the share `met` meets the other, the share that lies neither there nor beyond its borders.
+    pub(super) fn elsewhere(&self, pose: &Similarity, met: f64) -> f64 {
+        1.0 - met - self.0.overhang(pose)
+    }
+}
+
+/// The comparison of both parts, source first, under a pose.
+pub(super) type ShapeAt = fn(&Surface, &Surface, &Similarity, &AssessSettings) -> ShapeStatement;
+
+/// Each pose with what speaks against it; `candidate` makes that of one comparison of the shapes. Where the outlines lie
+/// together under no pose and are no evidence under one of them, they are none under the others either: that they lie
+/// beside others by chance speaks against none of them.
+pub(super) fn judged(
+    poses: &[Similarity],
+    candidate: impl Fn(Similarity, ShapeAt) -> Candidate + Sync,
+) -> Vec<Candidate> {
+    let with_outlines: ShapeAt =
+        |source, target, pose, settings| statements(source, target, pose, settings).shape;
+    let all = poses.par_iter().map(|pose| candidate(*pose, with_outlines));
+    let mut all: Vec<Candidate> = all.collect();
+    let lie_together = all.iter().any(Candidate::has_outlines_together);
+    let are_evidence = |candidate: &Candidate| !candidate.outlines_are_no_evidence;
+    if lie_together || all.iter().all(are_evidence) {
+        return all;
+    }
+    let others = all.par_iter_mut().filter(|other| are_evidence(other));
+    others.for_each(|other| {
+        *other = Candidate {
+            outlines_are_no_evidence: true,
+            off: None,
+            ..candidate(other.pose, shape_without_outlines)
+        };
+    });
+    all
+}
+
+/// A pose and what speaks against one shape under it. A bend does so under every pose.
+pub(super) struct Candidate {
+    pub(super) pose: Similarity,
+    pub(super) n_differences: usize,
+    /// Of these the ones that nothing but another place explains.
+    pub(super) n_clear: usize,
+    /// Holes with a counterpart, and those where the other part is solid.
+    pub(super) n_holes: usize,
+    pub(super) n_alone: usize,
+    /// Whether outlines say nothing of the pose: one part is trimmed farther out, or few of them lie beside others.
+    pub(super) outlines_are_no_evidence: bool,
+    /// Whether outlines lie apart by more than is accepted.
+    pub(super) outlines_lie_apart: bool,
+    /// Whether nothing at all speaks against one shape, a bend neither.
+    pub(super) is_one_shape: bool,
+    /// Share of the smaller part that meets the other, and, where each has a piece that the other lacks, the share that
+    /// lies neither on the other part nor beyond its borders.
+    pub(super) met: f64,
+    pub(super) elsewhere: Option<f64>,
+    /// How far the surfaces lie apart by a bend and besides it.
+    pub(super) apart: [f64; 2],
+    /// A constant distance of the sheets besides.
+    pub(super) offset: f64,
+    /// How far outlines and holes lie apart, where there are enough of both, …
+    pub(super) off: Option<[f64; 2]>,
+    /// … and what is accepted of them.
+    pub(super) limit: f64,
+}
+
+impl Candidate {
+    pub(super) fn at(pose: Similarity, shape: &ShapeStatement, elsewhere: Option<f64>) -> Self {
+        let differences = shape.reasons.iter().filter_map(is_clear);
+        let (n_differences, n_clear) =
+            differences.fold((0, 0), |(n, clear), is| (n + 1, clear + usize::from(is)));
+        let borders = &shape.borders;
+        Self {
+            pose,
+            n_differences,
+            n_clear,
+            n_holes: borders.n_holes,
+            n_alone: borders.only_source + borders.only_target,
+            outlines_are_no_evidence: borders.other_trim.is_some() || borders.offset.is_none(),
+            is_one_shape: shape.reasons.is_empty(),
+            offset: shape.offset.unwrap_or(0.0),
+            outlines_lie_apart: shape.reasons.iter().any(is_of_outlines),
+            met: shape.met,
+            elsewhere,
+            apart: [shape.springback, shape.remainder],
+            off: (borders.offset)
+                .filter(|_| borders.n_holes >= HOLES_THAT_HOLD)
+                .map(|offset| [offset, borders.worst_hole]),
+            limit: shape.tolerance.remainder,
+        }
+    }
+
+    /// Whether the parts, each of which has a piece that the other lacks, share enough under this pose too, and what
+    /// they share is as much alike. That more overlaps under one of two such poses says nothing: a row of like features
+    /// may be shifted by one of them.
+    pub(super) fn fits_elsewhere_as_well_as(&self, other: &Self, distances: &Distances) -> bool {
+        let is_trimmed_off = self.elsewhere.is_some_and(|share| share < ELSEWHERE);
+        let mut pairs = self.apart.iter().zip(&other.apart);
+        let most = |apart: f64| AS_CLOSE * apart + distances.little_more(UNREMARKABLE, apart);
+        is_trimmed_off
+            && self.met >= LEAST_SHARED
+            && self.n_differences <= other.n_differences
+            && self.n_alone <= other.n_alone
+            && pairs.all(|(own, other)| *own <= most(*other))
+    }
+
+    /// How far the surfaces lie apart under this pose over how far they do under another, at least 1; `None` where
+    /// less meets or more differs. `noise` is what facets leave.
+    pub(super) fn ratio_to(&self, other: &Self, noise: f64) -> Option<f64> {
+        let fits_as_much = self.met >= other.met - LITTLE_LESS
+            && self.n_differences <= other.n_differences
+            && self.n_alone <= other.n_alone
+            && self.n_holes >= other.n_holes;
+        let apart = |of: &Self| of.apart() + noise;
+        fits_as_much.then(|| (apart(self) / apart(other)).max(1.0))
+    }
+
+    /// Whether the outlines say that the part belongs here.
+    fn has_outlines_together(&self) -> bool {
+        !self.outlines_are_no_evidence && !self.outlines_lie_apart
+    }
+
+    /// Whether each part has a piece here that the other lacks, and no more differs than under another pose, under which
+    /// more of the parts meets while the surfaces lie much farther apart: a piece lies on another by chance hardly ever,
+    /// while a bend and an offset explain much.
+    pub(super) fn lies_much_closer_elsewhere_than(&self, other: &Self, noise: f64) -> bool {
+        let in_all = |of: &Self| of.apart().hypot(of.offset);
+        self.elsewhere.is_some_and(|share| share < ELSEWHERE)
+            && (LEAST_SHARED..other.met).contains(&self.met)
+            && self.n_differences <= other.n_differences
+            && self.n_alone <= other.n_alone
+            && is_much_closer(self.met, in_all(self), in_all(other), noise)
+    }
+
+    /// Whether a piece of each part even lies on the other, but for what facets leave, while the other pose keeps them
+    /// much farther apart.
+    pub(super) fn lies_on(&self, other: &Self, noise: f64) -> bool {
+        self.apart().hypot(self.offset) <= ON_EACH_OTHER * noise
+            && self.lies_much_closer_elsewhere_than(other, noise)
+    }
+
+    /// Whether something other than a bend speaks against one shape.
+    pub(super) fn differs(&self) -> bool {
+        self.n_differences > 0
+    }
+
+    /// How far the surfaces lie apart by bends and besides them.
+    pub(super) fn apart(&self) -> f64 {
+        self.apart[0].hypot(self.apart[1])
+    }
+
+    /// Whether the shapes surely differ less under this pose: there are fewer differences, or as many while holes
+    /// that lie alone under the other pose have their counterpart, or none while both outlines and holes lie closer.
+    pub(super) fn beats(&self, other: &Self) -> bool {
+        let pairs_holes = self.n_holes > other.n_holes && self.n_alone < other.n_alone;
+        self.n_differences < other.n_clear
+            || pairs_holes && self.n_differences <= other.n_differences
+            || self.n_differences == 0 && other.n_differences > 0 && self.lies_closer_than(other)
+    }
+
+    /// Whether both outlines and holes lie closer under this pose by more than is accepted, and no fewer holes have
+    /// their counterpart. Either alone may be the mark of another version.
+    fn lies_closer_than(&self, other: &Self) -> bool {
+        let (Some(own), Some(others)) = (self.off, other.off) else {
+            return false;
+        };
+        let mut pairs = own.iter().zip(&others);
+        self.n_holes >= other.n_holes && pairs.all(|(own, other)| other - own > self.limit)
+    }
+}
+
+/// Whether a difference is beyond doubt; `None` for a bend.
+fn is_clear(reason: &ShapeReason) -> Option<bool> {
+    match reason {
+        ShapeReason::Bent { .. } => None,
+        ShapeReason::Surface { by, limit, .. }
+        | ShapeReason::Local { by, limit, .. }
+        | ShapeReason::Borders { by, limit, .. }
+        | ShapeReason::Hole { by, limit, .. } => Some(*by > CLEARLY * limit),
+        ShapeReason::Holes { .. } => Some(true),
+        ShapeReason::HardlyMet { .. } | ShapeReason::Stretched { .. } => Some(false),
+    }
+}
+
+fn is_of_outlines(reason: &ShapeReason) -> bool {
+    matches!(reason, ShapeReason::Borders { .. })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assess::ShapeTolerance;
+    use crate::geometry::Point3;
+
+    fn candidate(reasons: &[ShapeReason]) -> Candidate {
+        let tolerance = ShapeTolerance {
+            remainder: 1.0,
+            springback: 5.0,
+        };
+        let shape = ShapeStatement {
+            reasons: reasons.to_vec(),
+            ..ShapeStatement::nothing_met(tolerance)
+        };
+        Candidate::at(Similarity::identity(), &shape, None)
+    }
+
+    #[test]
+    fn only_a_difference_beyond_doubt_speaks_against_a_pose() {
+        let at = Point3::origin();
+        let limit = 1.0;
+        let bend = ShapeReason::Bent { by: 9.0, limit };
+        let [is_end, is_mean] = [false; 2];
+        let hole = |by| ShapeReason::Hole {
+            by,
+            limit,
+            at,
+            is_mean,
+        };
+        let bead = |by| ShapeReason::Local {
+            by,
+            limit,
+            at,
+            is_end,
+        };
+        let holes = ShapeReason::Holes {
+            only_source: 1,
+            only_target: 1,
+            at,
+        };
+        let hardly = ShapeReason::HardlyMet { share: 0.49 };
+        for (fewer, more, beats) in [
+            (vec![], vec![hole(2.1)], true),
+            (vec![], vec![hole(1.9)], false),
+            (vec![], vec![bead(3.0)], true),
+            (vec![], vec![holes], true),
+            (vec![], vec![bend], false),
+            (vec![], vec![hardly], false),
+            (vec![bend], vec![bend, holes], true),
+            // Another version has its difference under either pose.
+            (vec![hole(3.0)], vec![hole(8.0)], false),
+            (vec![hole(1.1)], vec![hole(8.0), bead(3.0)], true),
+            (vec![hole(1.1)], vec![hole(1.2), bead(3.0)], false),
+        ] {
+            let (fewer, more) = (candidate(&fewer), candidate(&more));
+            assert_eq!(fewer.beats(&more), beats);
+            assert!(!more.beats(&fewer));
+        }
+    }
+
+    #[test]
+    fn a_pose_under_which_both_outlines_and_holes_lie_aside_is_beaten() {
+        let hole = ShapeReason::Hole {
+            by: 1.8,
+            limit: 1.0,
+            at: Point3::origin(),
+            is_mean: true,
+        };
+        let at = |off, reasons: &[ShapeReason]| Candidate {
+            n_holes: 24,
+            off: Some(off),
+            ..candidate(reasons)
+        };
+        let right = at([0.6, 0.4], &[]);
+        assert!(right.beats(&at([3.2, 2.4], &[hole])));
+        // The outlines alone, or the holes alone, or what nobody remarks.
+        assert!(!right.beats(&at([3.2, 1.2], &[hole])));
+        assert!(!right.beats(&at([0.9, 2.4], &[hole])));
+        assert!(!right.beats(&at([3.2, 2.4], &[])));
+        assert!(!at([0.6, 0.4], &[hole]).beats(&at([3.2, 2.4], &[hole])));
+    }
+
+    #[test]
+    fn a_pose_that_settles_as_close_is_as_likely_whatever_it_scored_on_the_way() {
+        let at = |springback, remainder, met| Candidate {
+            met,
+            apart: [springback, remainder],
+            ..candidate(&[])
+        };
+        let best = at(0.1, 0.3, 0.97);
+        let near = |other: &Candidate| other.ratio_to(&best, 0.02);
+        assert!(near(&at(0.0, 0.32, 0.97)).unwrap() < 1.05);
+        assert_eq!(near(&at(0.0, 0.1, 0.97)), Some(1.0));
+        assert!(near(&at(0.1, 0.6, 0.97)).unwrap() > 1.5);
+        // What meets less does not fit as well, nor what misses a hole.
+        assert_eq!(near(&at(0.1, 0.3, 0.9)), None);
+        let alone = Candidate {
+            n_alone: 1,
+            ..at(0.1, 0.3, 0.97)
+        };
+        assert_eq!(near(&alone), None);
+    }
+}
