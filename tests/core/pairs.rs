@@ -48,6 +48,15 @@ fn with_pairs(n: usize) -> Window {
     window
 }
 
+/// The same, of which the match begins at the pairs.
+fn begun_at_pairs(n: usize) -> Window {
+    let mut window = with_pairs(n);
+    let mut recipe = window.state.document.recipe.clone();
+    recipe.settings.starts.method = StartMethod::GivenPoses;
+    window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
+    window
+}
+
 #[test]
 fn clicks_alternate_and_each_is_one_step() {
     let mut window = Window::with_both();
@@ -146,10 +155,7 @@ fn a_wrong_pair_is_named_and_picked_again() {
 
 #[test]
 fn pairs_are_a_start_of_the_match() {
-    let mut window = with_pairs(2);
-    let mut recipe = window.state.document.recipe.clone();
-    recipe.settings.starts.method = StartMethod::GivenPoses;
-    window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
+    let mut window = begun_at_pairs(2);
     assert!(Action::MatchOrStop.enabled(&window.state).is_err());
     let stamped = Point3::from(PLACES[2]);
     pick(&mut window, Role::Crash, pose().apply(&stamped));
@@ -170,10 +176,7 @@ fn pairs_are_a_start_of_the_match() {
 /// Before a match the copied line is the match that would run, so it has the pose of the pairs.
 #[test]
 fn a_start_from_pairs_is_copied_with_its_pose() {
-    let mut window = with_pairs(2);
-    let mut recipe = window.state.document.recipe.clone();
-    recipe.settings.starts.method = StartMethod::GivenPoses;
-    window.apply(MatchCommand::SetRecipe(Box::new(recipe)));
+    let mut window = begun_at_pairs(2);
     let why = Action::CopyCommandLine.enabled(&window.state);
     assert_eq!(why, Action::MatchOrStop.enabled(&window.state));
     assert!(why.is_err_and(|why| why.0.starts_with("Pick three pairs of points first")));
@@ -207,6 +210,28 @@ fn refining_starts_from_the_present_pose_and_leaves_the_recipe() {
     assert_eq!(starts.method, StartMethod::CurrentPose);
     assert_eq!(input.current, window.pose());
     assert_eq!(window.state.document.recipe, recipe);
+}
+
+/// Only what begins at the pairs waits for them.
+#[test]
+fn what_does_not_begin_at_the_pairs_needs_none() {
+    let mut window = begun_at_pairs(1);
+    let why = window.state.can_match_as_asked();
+    assert_eq!(why, Action::MatchOrStop.enabled(&window.state));
+    assert!(why.is_err());
+    for command in [MatchCommand::Run, MatchCommand::Sweep(Box::default())] {
+        assert!(window.state.apply(command).is_empty());
+    }
+    for action in [Action::Refine, Action::Align] {
+        let mut window = begun_at_pairs(1);
+        assert_eq!(action.enabled(&window.state), Ok(()), "{action:?}");
+        let command = action.command(&window.state).unwrap();
+        let effects = window.state.apply(command);
+        assert!(
+            matches!(effects[..], [Effect::StartJob(..)]),
+            "{action:?}: {effects:?}"
+        );
+    }
 }
 
 #[test]

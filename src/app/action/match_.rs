@@ -171,8 +171,7 @@ const MATCH: &[ActionRow] = &[
             if state.jobs.is_active(JobKey::Match) {
                 return Ok(());
             }
-            state.can_match()?;
-            state.document.has_start_pose()
+            state.can_match_as_asked()
         },
         command: |state| {
             some(if state.jobs.is_active(JobKey::Match) {

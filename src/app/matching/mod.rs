@@ -18,7 +18,7 @@ pub use starts::{LiveStarts, Starts};
 
 use super::work::Work;
 use super::{AppState, Effect, Reason, Shared};
-use crate::jobs::{JobKind, Live, Measurement, Stamp, SweepRows};
+use crate::jobs::{Live, Measurement, Stamp, SweepRows};
 use crate::pipeline::sweep::Sweep;
 use crate::registration::Method;
 use crate::role::PerRole;
@@ -59,13 +59,19 @@ impl AppState {
     pub fn can_match(&self) -> Result<(), Reason> {
         self.document.can_match(&self.jobs)
     }
+
+    /// `Ok` if it may start as the recipe says.
+    pub fn can_match_as_asked(&self) -> Result<(), Reason> {
+        self.can_match()?;
+        self.document.has_start_pose()
+    }
 }
 
 impl MatchState {
     pub(super) fn apply(&mut self, work: &mut Work<'_>, command: MatchCommand) -> Vec<Effect> {
         match command {
             MatchCommand::SetRecipe(recipe) => self.set_recipe(work, *recipe),
-            MatchCommand::Align => return run::start_with_input(work, JobKind::Align),
+            MatchCommand::Align => return run::align(work),
             MatchCommand::ShowStart(index) => self.show_start(work, index),
             MatchCommand::StepStart(direction) => self.step_start(work, direction),
             MatchCommand::UseMatchStart(index) => self.use_match_start(work, index),

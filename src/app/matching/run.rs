@@ -20,29 +20,39 @@ impl MatchState {
     }
 
     pub(in crate::app) fn run_match(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
-        self.run_match_of(work, JobKind::Match)
+        self.run_as_asked(work, JobKind::Match)
     }
 
     /// Finds the parts of the crash model that the stamped part belongs to; the match follows with them.
     pub(in crate::app) fn find_parts(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
-        self.run_match_of(work, JobKind::FindParts)
+        self.run_as_asked(work, JobKind::FindParts)
     }
 
-    /// From where the part lies now; a wide search would lead away from it.
+    /// From where the part lies now, whatever the recipe begins with; a wide search would lead away from it.
     pub(super) fn refine(&mut self, work: &mut Work<'_>) -> Vec<Effect> {
-        self.run_match_of(work, |mut input| {
-            input.recipe.settings.starts.method = StartMethod::CurrentPose;
-            input.recipe.settings.starts.wide_search = false;
-            JobKind::Match(input)
-        })
+        let mut recipe = work.document.recipe.clone();
+        recipe.settings.starts.method = StartMethod::CurrentPose;
+        recipe.settings.starts.wide_search = false;
+        self.run_match_of(work, recipe, JobKind::Match)
     }
 
-    pub(super) fn run_match_of(
+    /// With the starts of the recipe; not while the pairs it begins with fix no pose.
+    fn run_as_asked(
         &mut self,
         work: &mut Work<'_>,
         kind: impl FnOnce(MatchInput) -> JobKind,
     ) -> Vec<Effect> {
-        let effects = start_with_input(work, kind);
+        let recipe = work.document.recipe_to_run();
+        recipe.map_or_else(Vec::new, |recipe| self.run_match_of(work, recipe, kind))
+    }
+
+    fn run_match_of(
+        &mut self,
+        work: &mut Work<'_>,
+        recipe: MatchRecipe,
+        kind: impl FnOnce(MatchInput) -> JobKind,
+    ) -> Vec<Effect> {
+        let effects = start_with_input(work, recipe, kind);
         if !effects.is_empty() {
             self.live_starts.clear();
             self.failure = None;
@@ -53,8 +63,14 @@ impl MatchState {
     }
 }
 
+/// The surface normals aligned, whatever the recipe begins with.
+pub(super) fn align(work: &mut Work<'_>) -> Vec<Effect> {
+    let recipe = work.document.recipe.clone();
+    start_with_input(work, recipe, JobKind::Align)
+}
+
 /// The inputs of a match: the levels that are shown, the settings, the pose.
-fn match_input(work: &Work<'_>) -> Option<MatchInput> {
+fn match_input(work: &Work<'_>, recipe: MatchRecipe) -> Option<MatchInput> {
     work.document.can_match(work.jobs).ok()?;
     let both = work.document.both()?;
     let is_reduced = both.crash.level.is_some() || both.stamped.level.is_some();
@@ -65,16 +81,17 @@ fn match_input(work: &Work<'_>) -> Option<MatchInput> {
     Some(MatchInput {
         parts: both.map(|part| part.loaded.to_arc()),
         reduced,
-        recipe: work.document.recipe_to_run()?,
+        recipe,
         current: *work.document.crash_from_stamped(),
     })
 }
 
 pub(super) fn start_with_input(
     work: &mut Work<'_>,
+    recipe: MatchRecipe,
     kind: impl FnOnce(MatchInput) -> JobKind,
 ) -> Vec<Effect> {
-    let Some(input) = match_input(work) else {
+    let Some(input) = match_input(work, recipe) else {
         return Vec::new();
     };
     work.previews.drop_all();

@@ -26,11 +26,19 @@ impl MatchState {
     pub(super) fn run_sweep(
         &mut self,
         work: &mut Work<'_>,
-        settings: SweepSettings,
+        mut settings: SweepSettings,
     ) -> Vec<Effect> {
+        let Some(recipe) = work.document.recipe_to_run() else {
+            return Vec::new();
+        };
+        settings
+            .settings
+            .starts
+            .poses
+            .clone_from(&recipe.settings.starts.poses);
         let rows = SweepRows::default();
         let told = rows.clone();
-        let effects = start_with_input(work, |input| {
+        let effects = start_with_input(work, recipe, |input| {
             JobKind::Sweep(SweepInput {
                 parts: input.parts,
                 settings,

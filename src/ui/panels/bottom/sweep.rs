@@ -48,7 +48,7 @@ fn head_ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 commands.push(MatchCommand::Stop.into());
             }
         } else {
-            let can = state.can_match();
+            let can = state.can_match_as_asked();
             let button = Button::new("Run the sweep").min_size(vec2(0.0, ROW));
             let response = ui.add_enabled(can.is_ok(), button);
             if response.clicked() {
