@@ -83,6 +83,6 @@ pub use shared::Shared;
 pub use state::AppState;
 pub use typed::{typed_count, typed_length, typed_number};
 pub use view::{
-    BottomTab, ColorBy, Dialog, Display, FreeWindow, OpenQuestion, Section, Sections,
+    BottomTab, ColorBy, ColumnRoom, Dialog, Display, FreeWindow, OpenQuestion, Section, Sections,
     ShownGeometry, Stale, ViewCommand, ViewRoom, ViewState,
 };

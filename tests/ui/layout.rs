@@ -289,6 +289,29 @@ fn the_question_about_the_mouse_is_seen_whole_below_recent_files() {
     assert!(window.query_by_label("OK").is_none());
 }
 
+/// A column that was unfolded in a small window is a rail again where larger text leaves still less room; unfolded
+/// there, it cuts no name of a part.
+#[test]
+fn an_unfolded_column_folds_again_where_room_is_lost() {
+    let mut window = matched();
+    dismiss_toasts(&mut window);
+    for scale in [2.0, 2.5] {
+        set(&mut window, Theme::Light, scale);
+        window.set_size(Vec2::new(1280.0, 720.0) / scale);
+        window.run_steps(4);
+        assert!(window.state().state().view.is_column_folded(), "{scale}");
+        act(&mut window, vec![ViewCommand::FoldColumn(false).into()]);
+        window.run_steps(4);
+        assert!(!window.state().state().view.is_column_folded(), "{scale}");
+        for text in texts(&window) {
+            if ["CRASH", "STAMPED", "fixed", "moves"].contains(&&*text.text) {
+                let end = text.clip.right() + 1.0;
+                assert!(text.rect.right() <= end, "{scale}: {}", text.text);
+            }
+        }
+    }
+}
+
 /// The classes of the overlap and their shares of both parts stand beside each other.
 #[test]
 fn the_overlap_of_two_parts_has_room_for_its_shares() {

@@ -121,6 +121,14 @@ fn the_preferences_fit_a_small_window_and_show_the_scale_of_the_keys() {
             "{name}: {place} of {screen}"
         );
     }
+    click(&mut window, "Close");
+    for (action, end) in [(Action::ScaleUp, 2.5), (Action::ScaleDown, 0.75)] {
+        for _ in 0..20 {
+            run(&mut window, action);
+        }
+        assert_eq!(settings(&window).ui_scale, end);
+        assert!(action.enabled(window.state().state()).is_err());
+    }
 }
 
 #[test]

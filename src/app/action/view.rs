@@ -476,7 +476,10 @@ const WINDOW: &[ActionRow] = &[
         label: "Increase UI scale",
         tooltip: "Make text and controls larger",
         keys: Keys::repeat(&[Shortcut::ctrl(Key::Plus)]),
-        enabled: always,
+        enabled: |state| {
+            let is_less = state.settings.ui_scale < *Settings::UI_SCALES.end();
+            require(is_less, "This is the largest UI scale.")
+        },
         command: |state| scaled(state, state.settings.ui_scale + 0.125),
     },
     ActionRow {
@@ -484,7 +487,10 @@ const WINDOW: &[ActionRow] = &[
         label: "Decrease UI scale",
         tooltip: "Make text and controls smaller",
         keys: Keys::repeat(&[Shortcut::ctrl(Key::Minus)]),
-        enabled: always,
+        enabled: |state| {
+            let is_more = state.settings.ui_scale > *Settings::UI_SCALES.start();
+            require(is_more, "This is the smallest UI scale.")
+        },
         command: |state| scaled(state, state.settings.ui_scale - 0.125),
     },
     ActionRow {

@@ -70,8 +70,8 @@ impl ViewState {
                 self.is_graphics_only = !self.is_graphics_only;
             }
             ViewCommand::FoldColumn(is_folded) => self.column = Some(is_folded),
-            ViewCommand::SetNarrow(is_narrow) => {
-                self.is_narrow = is_narrow;
+            ViewCommand::SetColumnRoom(room) => {
+                self.column_room = room;
                 self.column = None;
             }
             ViewCommand::SetDialog(dialog) => self.dialog = dialog,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{BottomTab, Dialog, Display, FreeWindow, Section, ShownGeometry, ViewRoom};
+use super::{BottomTab, ColumnRoom, Dialog, Display, FreeWindow, Section, ShownGeometry, ViewRoom};
 use crate::geometry::camera::{OrbitStyle, StandardView};
 use crate::geometry::{Camera, Point3};
 use crate::role::Role;
@@ -60,8 +60,8 @@ pub enum ViewCommand {
     UseSection(Section),
     /// Fold the left column to a rail, or unfold it.
     FoldColumn(bool),
-    /// Whether the window is too narrow for the left column beside the 3D windows, as the shell reports.
-    SetNarrow(bool),
+    /// The room for the left column beside the 3D windows, as the shell reports.
+    SetColumnRoom(ColumnRoom),
     /// Only the 3D windows, or everything.
     ToggleGraphicsOnly,
     /// Open something over the window, or close it.

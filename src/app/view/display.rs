@@ -269,6 +269,17 @@ pub enum Dialog {
     MissingFiles,
 }
 
+/// What room a window has for the left column beside its 3D windows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColumnRoom {
+    /// For both.
+    Enough,
+    /// For both only in a pinch: the column is a rail until it is asked for.
+    Narrow,
+    /// For one of them. A column that was unfolded with more room is a rail again.
+    Tiny,
+}
+
 /// Plain choices about the picture, changed as a whole.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 pub use command::ViewCommand;
-pub use display::{BottomTab, ColorBy, Dialog, Display, ShownGeometry};
+pub use display::{BottomTab, ColorBy, ColumnRoom, Dialog, Display, ShownGeometry};
 pub use free_window::FreeWindow;
 pub use sections::Sections;
 pub use status::{OpenQuestion, Section, Stale};
@@ -59,9 +59,9 @@ pub struct ViewState {
     pub tab: BottomTab,
     /// Only the 3D windows are shown.
     pub is_graphics_only: bool,
-    /// The window is too narrow for the left column beside the 3D windows.
-    pub is_narrow: bool,
-    /// What the user said about the column since the window became narrow or wide.
+    /// What room the window has for the left column.
+    pub column_room: ColumnRoom,
+    /// What the user said about the column since the window got this room.
     column: Option<bool>,
     /// Which of the three sections are unfolded.
     pub sections: Sections,
@@ -91,7 +91,7 @@ impl Default for ViewState {
             hidden_files: BTreeSet::new(),
             tab: BottomTab::default(),
             is_graphics_only: false,
-            is_narrow: false,
+            column_room: ColumnRoom::Enough,
             column: None,
             sections: Sections::default(),
             n_asked_by_hand: 0,
@@ -125,7 +125,8 @@ impl ViewState {
 
     /// True while the left column is a rail: in a narrow window, or because the user folded it.
     pub fn is_column_folded(&self) -> bool {
-        self.column.unwrap_or(self.is_narrow)
+        self.column
+            .unwrap_or(self.column_room != ColumnRoom::Enough)
     }
 
     /// True while a window shows what it was fitted to: the user has not moved its camera since.

@@ -27,7 +27,7 @@ use egui::{Frame, Margin, Panel, ScrollArea, Sense, Ui, UiBuilder, vec2};
 use super::project_dialogs::restore_ui;
 use super::theme::{Palette, UNIT};
 use super::viewport::Viewports;
-use crate::app::{AppState, Command, Settings, ViewCommand};
+use crate::app::{AppState, ColumnRoom, Command, Settings, ViewCommand};
 
 /// Width of the left column at the first start.
 const COLUMN: f32 = 344.0;
@@ -83,11 +83,15 @@ pub fn window_ui(
         shown.response.rect.height()
     };
     let window = ui.ctx().content_rect().size();
-    let is_narrow = COLUMN_SHARE * window.x < COLUMN_RANGE[0];
-    if is_narrow != state.view.is_narrow {
-        commands.push(ViewCommand::SetNarrow(is_narrow).into());
-    }
     let is_tiny = window.x < TINY.x || window.y < TINY.y;
+    let column_room = match COLUMN_SHARE * window.x < COLUMN_RANGE[0] {
+        false => ColumnRoom::Enough,
+        true if is_tiny => ColumnRoom::Tiny,
+        true => ColumnRoom::Narrow,
+    };
+    if column_room != state.view.column_room {
+        commands.push(ViewCommand::SetColumnRoom(column_room).into());
+    }
     if state.view.is_column_folded() {
         rail::rail_ui(ui, state, commands);
         if !is_tiny {

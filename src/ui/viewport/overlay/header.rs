@@ -53,13 +53,14 @@ pub(super) fn show(ui: &Ui, over: &Overlay<'_>) {
         0.0
     };
     let beside = beside.max(legend::beside_names(over));
-    let room = window.width() - 2.0 * MARGIN - beside - 36.0;
+    let whole = window.width() - 2.0 * MARGIN - 36.0;
+    let room = whole - beside;
     let small =
         |text: String, room: f32| fitted(&painter, text, 11.5, (over.frame.look.weak, room));
     let blocks: Vec<_> = roles(over)
         .iter()
         .map(|&role| {
-            let title = title(&painter, over, role);
+            let title = title(&painter, over, role, whole);
             let used = if is_small(over) {
                 title_width(&title) + 9.0
             } else {
@@ -158,8 +159,8 @@ fn is_free(over: &Overlay<'_>) -> bool {
     is_gone && over.frame.state.view.is_moved_over
 }
 
-/// Name of a part and what becomes of it.
-fn title(painter: &Painter, over: &Overlay<'_>, role: Role) -> [Arc<Galley>; 2] {
+/// Name of a part and, where there is room, what becomes of it.
+fn title(painter: &Painter, over: &Overlay<'_>, role: Role, room: f32) -> [Arc<Galley>; 2] {
     let state = over.frame.state;
     let (name, what) = match role {
         Role::Crash if state.is_mapping_shown() => ("CRASH", "mapped"),
@@ -169,10 +170,17 @@ fn title(painter: &Painter, over: &Overlay<'_>, role: Role) -> [Arc<Galley>; 2] 
     let galley = |text: &str, color| {
         painter.layout_no_wrap(text.to_owned(), FontId::proportional(13.5), color)
     };
-    [
-        galley(name, over.frame.look.text),
-        galley(what, over.frame.look.weak),
-    ]
+    let title = |what| {
+        [
+            galley(name, over.frame.look.text),
+            galley(what, over.frame.look.weak),
+        ]
+    };
+    let whole = title(what);
+    if title_width(&whole) > room {
+        return title("");
+    }
+    whole
 }
 
 /// A line in the role's colour marks the window that keys act on, a frame the keyboard's focus.
